@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/core/events.hpp"
+#include "helixnav/core/gaussian.hpp"
+
+namespace helixnav::core {
+
+/// True identity of an observed object, where somebody knows it; no_label: false detection or unknown.
+using Label = std::int64_t;
+inline constexpr Label no_label = -1;
+
+/// A pose known from elsewhere (simulator, Vicon), of the robot's reference point.
+struct TruePose {
+  Nanoseconds t_ns = 0;
+  Pose2 T_world_robot;
+};
+
+/// A landmark position known from elsewhere (simulator, survey).
+struct TrueLandmark {
+  Label label = no_label;
+  Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
+};
+
+/// A position fix kept for evaluation, of the point `antenna_robot_m` on the robot, in the frame of the truth (which is
+/// not the map frame: evaluation aligns the two).
+struct TruePosition {
+  Nanoseconds t_ns = 0;
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
+};
+
+/// What a reader or a simulator hands out: the events, in time order, and beside them what only evaluation may see.
+/// Estimators never include this header (checked by the include-graph test).
+struct Recording {
+  std::string name;
+  PoseGaussian start;         ///< of the robot in the map frame; DESIGN: identity with zero covariance
+  std::vector<Event> events;  ///< in time order; an increment comes before the scan that ends it
+
+  std::vector<std::vector<Label>> labels;  ///< [scan][observation]; empty when nobody labelled the log
+  std::vector<TruePose> true_poses;
+  std::vector<TrueLandmark> true_landmarks;
+  std::vector<TruePosition> true_positions;
+  Eigen::Vector2d antenna_robot_m = Eigen::Vector2d::Zero();  ///< lever arm that true_positions refer to
+};
+
+}  // namespace helixnav::core

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/core/gaussian.hpp"
+
+#include <Eigen/Cholesky>
+
+namespace helixnav::core {
+namespace {
+
+constexpr double relative_tolerance = 1e-9;
+
+bool is_symmetric_and_finite(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  if (matrix.rows() != matrix.cols() || !matrix.allFinite()) return false;
+  if (matrix.rows() == 0) return true;
+  const double scale = matrix.cwiseAbs().maxCoeff();
+  return (matrix - matrix.transpose()).cwiseAbs().maxCoeff() <= relative_tolerance * scale;
+}
+
+}  // namespace
+
+bool is_symmetric_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  return is_symmetric_and_finite(matrix) && matrix.llt().info() == Eigen::Success;
+}
+
+bool is_symmetric_positive_semidefinite(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  if (!is_symmetric_and_finite(matrix)) return false;
+  if (matrix.rows() == 0) return true;
+  const double shift = relative_tolerance * matrix.cwiseAbs().maxCoeff();
+  if (shift == 0.0) return true;  // the zero matrix
+  Eigen::MatrixXd shifted = matrix;
+  shifted.diagonal().array() += shift;
+  return shifted.llt().info() == Eigen::Success;
+}
+
+}  // namespace helixnav::core
