@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/landmark_id.hpp"
+#include "helixnav/core/time.hpp"
+
+namespace helixnav::core {
+
+/// What became of one observation.
+enum class Outcome {
+  matched,    ///< used to update the landmark named
+  augmented,  ///< began the landmark named
+  ambiguous,  ///< explained by more than one landmark, or neither near nor far enough: not used
+  rejected,   ///< refused with numbers: joint test, gate, excluded landmark
+};
+
+enum class LandmarkState { tentative, mature, dead };
+
+enum class Mode { mapping, searching };
+
+/// One observation's fate with the number that decided it.
+struct AssociationReport {
+  int observation = 0;  ///< index in the scan, from 0
+  Outcome outcome = Outcome::ambiguous;
+  LandmarkId landmark = no_landmark;
+  double nis = 0.0;         ///< νᵀS⁻¹ν of the pair chosen; NaN when there was none
+  int dof = 0;              ///< rows of ν; 0 when there was none
+  double margin_nats = 0.0; ///< cost of the best alternative minus cost of the choice; +inf when there was none
+};
+
+/// A decision worth a sentence: trigger, relocalisation, verification, closure, refusal, landmark death. `numbers` are
+/// named with units and kept in order; `verdict` is a word such as "accepted".
+struct Decision {
+  std::string kind;
+  std::string verdict;
+  std::vector<std::pair<std::string, double>> numbers;
+};
+
+/// Everything one scan did to the map and the pose. Filled by supervisor::Navigator, written by logs::RunWriter.
+struct StepReport {
+  std::int64_t step = 0;  ///< index of the scan, from 0
+  Nanoseconds t_ns = 0;
+  Mode mode = Mode::mapping;
+  PoseGaussian pose;      ///< T_world_robot after the scan
+  std::vector<AssociationReport> associations;
+  double joint_nis = 0.0; ///< of the joint update; 0 with joint_dof 0 when nothing matched
+  int joint_dof = 0;
+  int active_landmarks = 0;
+  int mapped_landmarks = 0;
+  bool switched_region = false;
+  std::vector<Decision> decisions;
+};
+
+/// One landmark of the map as known now.
+struct MapLandmark {
+  LandmarkId id = no_landmark;
+  PointGaussian point;
+  int observations = 0;
+  LandmarkState state = LandmarkState::tentative;
+};
+
+}  // namespace helixnav::core
