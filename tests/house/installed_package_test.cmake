@@ -1,0 +1,34 @@
+# Script: installs BUILD_DIR into WORK_DIR, moves what was installed, builds the consumer with find_package(helixnav) there
+# and runs it.
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(status)
+    list(JOIN ARGN " " command)
+    message(NOTICE "${output}")
+    message(FATAL_ERROR "failed: ${command}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK_DIR})
+run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/first)
+file(RENAME ${WORK_DIR}/first ${WORK_DIR}/prefix)
+
+file(GLOB_RECURSE package_files ${WORK_DIR}/prefix/*.cmake)
+foreach(file IN LISTS package_files)
+  file(STRINGS ${file} lines)
+  foreach(path IN ITEMS ${SOURCE_DIR} ${BUILD_DIR})
+    string(FIND "${lines}" "${path}" position)
+    if(NOT position EQUAL -1)
+      message(FATAL_ERROR "${file} names the folder that it was built from or in, ${path}")
+    endif()
+  endforeach()
+endforeach()
+
+run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${WORK_DIR}/build
+  -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
+run(${CMAKE_COMMAND} --build ${WORK_DIR}/build --parallel 2)
+run(${WORK_DIR}/build/consumer)
+if(NOT output MATCHES "^HelixNav ${VERSION} ")
+  message(FATAL_ERROR "the consumer said: ${output}")
+endif()
