@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "helixnav/core/ackermann.hpp"
+#include "helixnav/core/angle.hpp"
+#include "helixnav/core/events.hpp"
+#include "helixnav/sim/world.hpp"
+
+namespace helixnav::sim {
+
+/// Car-like vehicle that follows its route by pure pursuit at constant speed of the rear axle.
+struct VehicleOptions {
+  core::AckermannGeometry geometry;
+  double speed_mps = 3.0;
+  double odometry_period_s = 0.1;  ///< one (speed, steering) sample, held constant in the meantime
+  int samples_per_scan = 5;
+  double lookahead_m = 5.0;
+};
+
+/// Scanner that finds trees: each visible one with a probability, and things that are none.
+struct ScannerOptions {
+  core::Pose2 T_robot_sensor{3.78, 0.50, 0.0};
+  core::FieldOfView field_of_view{1.0, 30.0, -core::pi / 2.0, core::pi / 2.0};
+  double detection_probability = 0.9;
+  double clutter_per_scan = 0.5;    ///< mean of a Poisson number, uniform over the area of the field of view
+  double occluding_radius_m = 0.0;  ///< of every trunk: a tree whose centre lies behind a nearer trunk is not seen
+};
+
+/// White noise of the sensors.
+struct NoiseLevels {
+  core::AckermannNoise odometry{0.45, 0.0442};  ///< per sample; by default 0.1 m and 0.6° per scan of 1.5 m
+  double sigma_range_m = 0.1;
+  double sigma_bearing_rad = 0.7 * core::pi / 180.0;
+};
+
+/// What odometry's noise model does not know: a first-order Gauss-Markov error, drawn stationary.
+struct OdometryBias {
+  double sigma_steering_rad = 0.0;
+  double sigma_speed_scale = 0.0;  ///< of the factor on the wheel speed
+  double time_constant_s = 60.0;
+};
+
+/// Everything that a simulated run depends on, beside its seed. True noise is what happens, told noise is what the
+/// events claim (covariance of Odometry, R of Observation).
+struct Scenario {
+  std::string name;
+  std::string description;  ///< one line
+  WorldOptions world;
+  VehicleOptions vehicle;
+  ScannerOptions scanner;
+  NoiseLevels true_noise;
+  NoiseLevels told_noise;
+  OdometryBias bias;
+};
+
+/// Names that named_scenario knows, in the order in which to show them.
+std::vector<std::string> scenario_names();
+
+/// One of the scenarios by name, to use or to change. InputError for an unknown name, with the nearest known one.
+/// Test: sim/scenario_test.cpp.
+Scenario named_scenario(std::string_view name);
+
+/// Throws InputError that names the first key out of its range, with value and range.
+/// Test: sim/scenario_test.cpp.
+void check_scenario(const Scenario& scenario);
+
+}  // namespace helixnav::sim

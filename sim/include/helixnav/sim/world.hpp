@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/sim/route.hpp"
+
+namespace helixnav::sim {
+
+/// A quantity drawn uniformly per seed, or per object.
+struct Interval {
+  double min = 0.0;
+  double max = 0.0;
+};
+
+enum class WorldKind {
+  loop,             ///< closed wavy road with trees and a bare stretch before it closes
+  open_road,        ///< begins as the loop, then swings out beside its own beginning and never comes back to it
+  orchard,          ///< racetrack whose home straight runs through a lattice of trees larger than what was mapped of it
+  figure_of_eight,  ///< two lobes with trees, bare around the crossing: two old regions to come back to
+  circuit,          ///< small circle among scattered landmarks, driven again and again
+};
+
+/// What a world is drawn from. Not every quantity matters to every kind; the comment names those it matters to.
+struct WorldOptions {
+  WorldKind kind = WorldKind::loop;
+  Interval loop_length_m{390.0, 820.0};  ///< once round (loop, open_road, figure_of_eight); circuit uses its middle
+  Interval bare_length_m{110.0, 200.0};  ///< without trees, just before the loop closes (loop, open_road)
+  Interval tree_spacing_m{5.0, 15.0};    ///< along each side of the road; the nearest neighbour is then about 8 m away
+  Interval tree_offset_m{4.0, 9.0};      ///< from the middle of the road
+  double road_clearance_m = 3.0;         ///< no tree nearer to the middle of any part of the route
+  double changed_share = 0.0;            ///< of the trees: felled before the return; as many new ones planted
+  double drive_on_m = 180.0;             ///< driven after the (last) return
+  int returns = 1;                       ///< how often the loop is closed (loop, circuit)
+  Interval lattice_pitch_m{4.0, 7.0};    ///< orchard
+  int circuit_landmarks = 20;            ///< circuit: at 0.5 to 1.5 times its radius from its centre
+  double blackout_length_m = 0.0;        ///< loop: stretch of the first lap where the scanner sees nothing
+};
+
+/// A tree, seen as a point. It exists while the vehicle is in `present` of its route.
+struct Tree {
+  Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
+  Stretch present;
+};
+
+/// The truth: the way the vehicle takes from the origin along x, and the trees. No two trees are nearer than 2 m, even
+/// when they never stand at the same time; the index of a tree is its label.
+struct World {
+  Route route;
+  double drive_m = 0.0;  ///< how much of the route is driven
+  std::vector<Tree> trees;
+  std::vector<double> returns_at_m;  ///< distances along the route where old ground begins again; empty: never
+  std::optional<Stretch> blackout;
+};
+
+inline constexpr double nearest_trees_m = 2.0;
+
+/// Draws a world. Road, trees, changes and blackout come from streams of their own: the same seed with another
+/// changed_share has the same road and the same trees on the first lap. Cost: trees × points of the route.
+/// Test: sim/world_test.cpp.
+World build_world(const WorldOptions& options, std::uint64_t seed);
+
+}  // namespace helixnav::sim

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "helixnav/core/random.hpp"
+#include "helixnav/sim/world.hpp"
+
+namespace helixnav::sim {
+
+/// Trees as they are planted: one too near to another or to the route is left out.
+class Grove {
+ public:
+  Grove(const Route& route, double road_clearance_m) : route_(route), road_clearance_m_(road_clearance_m) {}
+
+  /// False when there was no room.
+  bool plant(const Eigen::Vector2d& point_m, const Stretch& present);
+
+  /// Plants on both sides of a stretch, each place with a probability.
+  void plant_along(const Stretch& stretch, const WorldOptions& options, double probability, const Stretch& present,
+                   core::RandomStream& random);
+
+  /// Ends the presence of each tree with a probability.
+  void fell(double share, double at_m, core::RandomStream& random);
+
+  const std::vector<Tree>& trees() const { return trees_; }
+
+ private:
+  const Route& route_;
+  double road_clearance_m_;
+  std::vector<Tree> trees_;
+};
+
+}  // namespace helixnav::sim

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scanner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace helixnav::sim {
+namespace {
+
+bool contains(const Stretch& stretch, double along_m) { return stretch.from_m <= along_m && along_m < stretch.to_m; }
+
+bool contains(const core::FieldOfView& view, double range_m, double bearing_rad) {
+  return view.min_range_m <= range_m && range_m <= view.max_range_m && view.min_bearing_rad <= bearing_rad &&
+         bearing_rad <= view.max_bearing_rad;
+}
+
+}  // namespace
+
+Scanner::Scanner(const Scenario& scenario, const World& world, std::uint64_t seed)
+    : world_(world),
+      options_(scenario.scanner),
+      true_noise_(scenario.true_noise),
+      told_noise_(scenario.told_noise),
+      random_(seed, "sim.scanner") {}
+
+LabelledScan Scanner::look(const core::Pose2& T_world_robot, double along_m, core::Nanoseconds t_ns) {
+  LabelledScan seen;
+  seen.scan.t_ns = t_ns;
+  seen.scan.T_robot_sensor = options_.T_robot_sensor;
+  seen.scan.field_of_view = options_.field_of_view;
+  if (world_.blackout && contains(*world_.blackout, along_m)) return seen;
+
+  const std::vector<Sighting> visible = visible_trees(core::compose(T_world_robot, options_.T_robot_sensor), along_m);
+  for (const Sighting& tree : visible) {
+    if (occluded(tree, visible)) continue;
+    if (random_.bernoulli(options_.detection_probability)) add_tree(tree, seen);
+  }
+  const int clutter = random_.poisson(options_.clutter_per_scan);
+  for (int i = 0; i < clutter; ++i) add_clutter(seen);
+  shuffle(seen);
+  return seen;
+}
+
+std::vector<Scanner::Sighting> Scanner::visible_trees(const core::Pose2& T_world_sensor, double along_m) const {
+  std::vector<Sighting> visible;
+  const core::Pose2 T_sensor_world = core::inverse(T_world_sensor);
+  for (std::size_t i = 0; i < world_.trees.size(); ++i) {
+    if (!contains(world_.trees[i].present, along_m)) continue;
+    const Eigen::Vector2d point_m = core::transform(T_sensor_world, world_.trees[i].point_m);
+    const Sighting sighting{point_m.norm(), std::atan2(point_m.y(), point_m.x()), static_cast<core::Label>(i)};
+    if (contains(options_.field_of_view, sighting.range_m, sighting.bearing_rad)) visible.push_back(sighting);
+  }
+  std::sort(visible.begin(), visible.end(), [](const Sighting& a, const Sighting& b) {
+    return std::pair(a.range_m, a.label) < std::pair(b.range_m, b.label);
+  });
+  return visible;
+}
+
+bool Scanner::occluded(const Sighting& sighting, const std::vector<Sighting>& nearer_first) const {
+  const double radius_m = options_.occluding_radius_m;
+  return std::any_of(nearer_first.begin(), nearer_first.end(), [&](const Sighting& other) {
+    if (other.range_m >= sighting.range_m) return false;
+    const double off_rad = core::wrap_to_pi(other.bearing_rad - sighting.bearing_rad);
+    return std::abs(off_rad) < std::asin(std::min(1.0, radius_m / other.range_m));
+  });
+}
+
+void Scanner::add_tree(const Sighting& truth, LabelledScan& into) {
+  const double range_m = random_.normal(truth.range_m, true_noise_.sigma_range_m);
+  const double bearing_rad = core::wrap_to_pi(random_.normal(truth.bearing_rad, true_noise_.sigma_bearing_rad));
+  if (range_m <= 0.0) return;  // a scanner has no negative ranges: a miss
+  into.scan.observations.push_back(
+      core::make_range_bearing(range_m, bearing_rad, told_noise_.sigma_range_m, told_noise_.sigma_bearing_rad));
+  into.labels.push_back(truth.label);
+}
+
+void Scanner::add_clutter(LabelledScan& into) {
+  const core::FieldOfView& view = options_.field_of_view;
+  const double range_m =
+      std::sqrt(random_.uniform(view.min_range_m * view.min_range_m, view.max_range_m * view.max_range_m));
+  const double bearing_rad = random_.uniform(view.min_bearing_rad, view.max_bearing_rad);
+  into.scan.observations.push_back(
+      core::make_range_bearing(range_m, bearing_rad, told_noise_.sigma_range_m, told_noise_.sigma_bearing_rad));
+  into.labels.push_back(core::no_label);
+}
+
+void Scanner::shuffle(LabelledScan& scan) {
+  for (std::size_t i = scan.labels.size(); i > 1; --i) {
+    const auto j = static_cast<std::size_t>(random_.below(i));
+    std::swap(scan.labels[i - 1], scan.labels[j]);
+    std::swap(scan.scan.observations[i - 1], scan.scan.observations[j]);
+  }
+}
+
+}  // namespace helixnav::sim

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "helixnav/core/random.hpp"
+#include "helixnav/core/recording.hpp"
+#include "helixnav/sim/scenario.hpp"
+
+namespace helixnav::sim {
+
+/// A scan with the label of each observation.
+struct LabelledScan {
+  core::Scan scan;
+  std::vector<core::Label> labels;
+};
+
+/// Looks at the trees of a world with range and bearing noise, misses, clutter and occlusion.
+class Scanner {
+ public:
+  Scanner(const Scenario& scenario, const World& world, std::uint64_t seed);
+
+  LabelledScan look(const core::Pose2& T_world_robot, double along_m, core::Nanoseconds t_ns);
+
+ private:
+  struct Sighting {
+    double range_m;
+    double bearing_rad;
+    core::Label label;
+  };
+
+  std::vector<Sighting> visible_trees(const core::Pose2& T_world_sensor, double along_m) const;
+  bool occluded(const Sighting& sighting, const std::vector<Sighting>& nearer_first) const;
+  void add_tree(const Sighting& truth, LabelledScan& into);
+  void add_clutter(LabelledScan& into);
+  void shuffle(LabelledScan& scan);
+
+  const World& world_;
+  ScannerOptions options_;
+  NoiseLevels true_noise_;
+  NoiseLevels told_noise_;
+  core::RandomStream random_;
+};
+
+}  // namespace helixnav::sim

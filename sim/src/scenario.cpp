@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/sim/scenario.hpp"
+
+#include <array>
+#include <limits>
+#include <sstream>
+
+#include "helixnav/core/errors.hpp"
+#include "helixnav/core/nearest_name.hpp"
+
+namespace helixnav::sim {
+namespace {
+
+constexpr double degrees = core::pi / 180.0;
+
+NoiseLevels scaled(NoiseLevels noise, double factor) {
+  noise.odometry.sigma_speed_mps *= factor;
+  noise.odometry.sigma_steering_rad *= factor;
+  noise.sigma_range_m *= factor;
+  noise.sigma_bearing_rad *= factor;
+  return noise;
+}
+
+Scenario large_loop_changed() {
+  Scenario s;
+  s.world.changed_share = 0.3;
+  return s;
+}
+
+Scenario sparse() {
+  Scenario s = large_loop_changed();
+  s.world.tree_spacing_m = {12.0, 25.0};
+  s.scanner.clutter_per_scan = 1.5;
+  return s;
+}
+
+Scenario big_drift() {
+  Scenario s = large_loop_changed();
+  s.scanner.clutter_per_scan = 1.5;
+  s.true_noise.odometry = {1.6 * s.true_noise.odometry.sigma_speed_mps, 1.6 * s.true_noise.odometry.sigma_steering_rad};
+  s.told_noise = s.true_noise;
+  return s;
+}
+
+Scenario long_loop() {
+  Scenario s;
+  s.world.loop_length_m = {300.0, 2000.0};
+  return s;
+}
+
+Scenario open_road() {
+  Scenario s;
+  s.world.kind = WorldKind::open_road;
+  return s;
+}
+
+Scenario orchard() {
+  Scenario s;
+  s.world.kind = WorldKind::orchard;
+  s.world.loop_length_m = {620.0, 700.0};
+  s.world.changed_share = 0.05;
+  s.world.drive_on_m = 220.0;
+  s.true_noise.odometry = {1.6, 0.0184};
+  s.told_noise = s.true_noise;
+  return s;
+}
+
+Scenario two_laps() {
+  Scenario s;
+  s.world.returns = 2;
+  return s;
+}
+
+Scenario figure_of_eight() {
+  Scenario s;
+  s.world.kind = WorldKind::figure_of_eight;
+  return s;
+}
+
+Scenario odometry_bias() {
+  Scenario s;
+  s.bias.sigma_steering_rad = 0.002;
+  s.bias.sigma_speed_scale = 0.01;
+  return s;
+}
+
+Scenario told_noise(double factor) {
+  Scenario s;
+  s.told_noise = scaled(s.true_noise, factor);
+  return s;
+}
+
+Scenario told_half() { return told_noise(0.5); }
+Scenario told_double() { return told_noise(2.0); }
+
+Scenario occlusion() {
+  Scenario s;
+  s.scanner.occluding_radius_m = 0.5;
+  return s;
+}
+
+Scenario blackout() {
+  Scenario s;
+  s.world.blackout_length_m = 80.0;
+  return s;
+}
+
+/// A small robot on a circle of 8 m, 200 scans a lap, 800 in all; each scan sees all landmarks within 8 m.
+Scenario circuit(double sigma_turn_rad, double sigma_range_m, double sigma_bearing_rad) {
+  Scenario s;
+  s.world.kind = WorldKind::circuit;
+  s.world.loop_length_m = {50.0, 50.0};
+  s.world.road_clearance_m = 1.0;
+  s.world.returns = 3;
+  s.world.drive_on_m = 50.0;
+  s.vehicle.geometry = {0.5, 0.0};
+  s.vehicle.speed_mps = 1.0;
+  s.vehicle.odometry_period_s = 0.25;
+  s.vehicle.samples_per_scan = 1;
+  s.vehicle.lookahead_m = 1.0;
+  s.scanner.T_robot_sensor = {};
+  s.scanner.field_of_view = {0.1, 8.0, -core::pi, core::pi};
+  s.scanner.detection_probability = 1.0;
+  s.scanner.clutter_per_scan = 0.0;
+  const double sample_m = s.vehicle.speed_mps * s.vehicle.odometry_period_s;
+  s.true_noise.odometry.sigma_speed_mps = 0.05 * s.vehicle.speed_mps;
+  s.true_noise.odometry.sigma_steering_rad = sigma_turn_rad * s.vehicle.geometry.wheelbase_m / sample_m;
+  s.true_noise.sigma_range_m = sigma_range_m;
+  s.true_noise.sigma_bearing_rad = sigma_bearing_rad;
+  s.told_noise = s.true_noise;
+  return s;
+}
+
+Scenario circuit_moderate() { return circuit(1.0 * degrees, 0.1, 2.0 * degrees); }
+Scenario circuit_large() { return circuit(2.0 * degrees, 0.3, 5.0 * degrees); }
+
+Scenario noise_free() {
+  Scenario s;
+  s.true_noise = {{0.0, 0.0}, 0.0, 0.0};
+  s.scanner.detection_probability = 1.0;
+  s.scanner.clutter_per_scan = 0.0;
+  return s;
+}
+
+Scenario large_loop() { return {}; }
+
+struct Entry {
+  std::string_view name;
+  std::string_view description;
+  Scenario (*make)();
+};
+
+constexpr std::array<Entry, 17> entries{{
+    {"large-loop", "closed road of 390-820 m, trees 8 m apart, bare before it closes; drives on for 180 m", large_loop},
+    {"large-loop-changed", "large-loop with 30 % of the trees felled and as many planted between the laps",
+     large_loop_changed},
+    {"sparse", "large-loop-changed with a tree every 12-25 m and 1.5 false detections a scan", sparse},
+    {"big-drift", "large-loop-changed with 1.6 times the odometry noise and 1.5 false detections a scan", big_drift},
+    {"long", "large-loop of 300-2000 m", long_loop},
+    {"open-road", "road that passes 50 or 120 m beside its beginning and never returns: no loop to close", open_road},
+    {"orchard", "racetrack through a lattice of trees larger than the part mapped; pitch and shape vary", orchard},
+    {"two-laps", "large-loop closed twice", two_laps},
+    {"figure-of-eight", "two lobes with trees, bare around the crossing: two old regions to return to",
+     figure_of_eight},
+    {"odometry-bias", "large-loop with slow errors of steering (0.002 rad) and speed (1 %) that no covariance tells of",
+     odometry_bias},
+    {"told-noise-half", "large-loop whose events claim half of the true noise", told_half},
+    {"told-noise-double", "large-loop whose events claim twice the true noise", told_double},
+    {"occlusion", "large-loop whose trunks of 0.5 m radius hide the trees behind them", occlusion},
+    {"blackout", "large-loop whose scanner sees nothing for 80 m of the first lap", blackout},
+    {"circuit", "circle of 50 m driven four times (800 scans) among 20 landmarks, moderate noise", circuit_moderate},
+    {"circuit-large-noise", "circuit with 2 deg/step odometry, 0.3 m and 5 deg scanner noise", circuit_large},
+    {"noise-free", "large-loop whose sensors are exact and miss nothing; the events claim the usual noise", noise_free},
+}};
+
+constexpr double unlimited = std::numeric_limits<double>::max();
+
+void require(const char* key, double value, double low, double high) {
+  if (value >= low && value <= high) return;
+  std::ostringstream message;
+  message << "scenario: " << key << " = " << value << ", allowed is " << low << " to ";
+  if (high < unlimited) {
+    message << high;
+  } else {
+    message << "any";
+  }
+  throw core::InputError(message.str());
+}
+
+void require(const char* key, const Interval& interval, double low, double high) {
+  require((std::string(key) + ".min").c_str(), interval.min, low, high);
+  require((std::string(key) + ".max").c_str(), interval.max, interval.min, high);
+}
+
+void check_world(const WorldOptions& world) {
+  require("world.loop_length_m", world.loop_length_m, 10.0, 1e5);
+  const bool has_bare_stretch = world.kind == WorldKind::loop || world.kind == WorldKind::open_road;
+  require("world.bare_length_m", world.bare_length_m, 0.0,
+          has_bare_stretch ? 0.9 * world.loop_length_m.min : unlimited);
+  require("world.tree_spacing_m", world.tree_spacing_m, nearest_trees_m, unlimited);
+  require("world.tree_offset_m", world.tree_offset_m, 0.0, unlimited);
+  require("world.road_clearance_m", world.road_clearance_m, 0.0, unlimited);
+  require("world.changed_share", world.changed_share, 0.0, 1.0);
+  require("world.drive_on_m", world.drive_on_m, 0.0, 1e5);
+  require("world.returns", world.returns, 1.0, 1000.0);
+  require("world.lattice_pitch_m", world.lattice_pitch_m, nearest_trees_m, unlimited);
+  require("world.circuit_landmarks", world.circuit_landmarks, 0.0, 1e6);
+  require("world.blackout_length_m", world.blackout_length_m, 0.0, unlimited);
+}
+
+void check_vehicle(const VehicleOptions& vehicle) {
+  require("vehicle.wheelbase_m", vehicle.geometry.wheelbase_m, 1e-3, unlimited);
+  require("vehicle.speed_mps", vehicle.speed_mps, 1e-3, unlimited);
+  require("vehicle.odometry_period_s", vehicle.odometry_period_s, 1e-6, unlimited);
+  require("vehicle.samples_per_scan", vehicle.samples_per_scan, 1.0, 1e6);
+  require("vehicle.lookahead_m", vehicle.lookahead_m, 1e-3, unlimited);
+}
+
+void check_scanner(const ScannerOptions& scanner) {
+  const core::FieldOfView& view = scanner.field_of_view;
+  require("scanner.min_range_m", view.min_range_m, 0.0, unlimited);
+  require("scanner.max_range_m", view.max_range_m, view.min_range_m, unlimited);
+  require("scanner.min_bearing_rad", view.min_bearing_rad, -core::pi, core::pi);
+  require("scanner.max_bearing_rad", view.max_bearing_rad, view.min_bearing_rad, core::pi);
+  require("scanner.detection_probability", scanner.detection_probability, 0.0, 1.0);
+  require("scanner.clutter_per_scan", scanner.clutter_per_scan, 0.0, 500.0);
+  require("scanner.occluding_radius_m", scanner.occluding_radius_m, 0.0, unlimited);
+}
+
+void check_noise(const NoiseLevels& noise, const std::string& whose, double least_sigma) {
+  require((whose + ".sigma_speed_mps").c_str(), noise.odometry.sigma_speed_mps, 0.0, unlimited);
+  require((whose + ".sigma_steering_rad").c_str(), noise.odometry.sigma_steering_rad, 0.0, unlimited);
+  require((whose + ".sigma_range_m").c_str(), noise.sigma_range_m, least_sigma, unlimited);
+  require((whose + ".sigma_bearing_rad").c_str(), noise.sigma_bearing_rad, least_sigma, unlimited);
+}
+
+}  // namespace
+
+std::vector<std::string> scenario_names() {
+  std::vector<std::string> names;
+  for (const Entry& entry : entries) names.emplace_back(entry.name);
+  return names;
+}
+
+Scenario named_scenario(std::string_view name) {
+  for (const Entry& entry : entries) {
+    if (entry.name != name) continue;
+    Scenario scenario = entry.make();
+    scenario.name = entry.name;
+    scenario.description = entry.description;
+    return scenario;
+  }
+  throw core::InputError("scenario: unknown name '" + std::string(name) + "', did you mean '" +
+                         core::nearest_name(name, scenario_names()) + "'?");
+}
+
+void check_scenario(const Scenario& scenario) {
+  constexpr double least_told_sigma = 1e-9;  // an observation's R must be positive definite
+  check_world(scenario.world);
+  check_vehicle(scenario.vehicle);
+  check_scanner(scenario.scanner);
+  check_noise(scenario.true_noise, "true_noise", 0.0);
+  check_noise(scenario.told_noise, "told_noise", least_told_sigma);
+  require("bias.sigma_steering_rad", scenario.bias.sigma_steering_rad, 0.0, unlimited);
+  require("bias.sigma_speed_scale", scenario.bias.sigma_speed_scale, 0.0, unlimited);
+  require("bias.time_constant_s", scenario.bias.time_constant_s, 1e-3, unlimited);
+}
+
+}  // namespace helixnav::sim

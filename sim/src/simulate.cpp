@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/sim/simulate.hpp"
+
+#include <utility>
+
+#include "odometer.hpp"
+#include "scanner.hpp"
+#include "vehicle.hpp"
+
+namespace helixnav::sim {
+namespace {
+
+std::vector<core::TrueLandmark> true_landmarks(const World& world) {
+  std::vector<core::TrueLandmark> landmarks;
+  landmarks.reserve(world.trees.size());
+  for (const Tree& tree : world.trees) {
+    landmarks.push_back({static_cast<core::Label>(landmarks.size()), tree.point_m});
+  }
+  return landmarks;
+}
+
+void record(LabelledScan seen, const core::Pose2& T_world_robot, core::Recording& recording) {
+  recording.true_poses.push_back({seen.scan.t_ns, T_world_robot});
+  recording.labels.push_back(std::move(seen.labels));
+  recording.events.emplace_back(std::move(seen.scan));
+}
+
+}  // namespace
+
+core::Recording simulate(const Scenario& scenario, std::uint64_t seed) {
+  check_scenario(scenario);
+  return simulate_in(build_world(scenario.world, seed), scenario, seed);
+}
+
+core::Recording simulate_in(const World& world, const Scenario& scenario, std::uint64_t seed) {
+  check_scenario(scenario);
+  core::Recording recording;
+  recording.name = scenario.name;
+  recording.true_landmarks = true_landmarks(world);
+
+  Odometer odometer(scenario, seed);
+  Scanner scanner(scenario, world, seed);
+  record(scanner.look({}, 0.0, 0), {}, recording);
+  int sample = 0;
+  for (const DriveStep& step : drive(world.route, world.drive_m, scenario.vehicle)) {
+    ++sample;
+    const core::Nanoseconds t_ns = core::nanoseconds_from_seconds(sample * scenario.vehicle.odometry_period_s);
+    recording.events.emplace_back(odometer.measure(step.sample, t_ns));
+    if (sample % scenario.vehicle.samples_per_scan == 0) {
+      record(scanner.look(step.T_world_robot, step.along_m, t_ns), step.T_world_robot, recording);
+    }
+  }
+  return recording;
+}
+
+}  // namespace helixnav::sim
