@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "text_cursor.hpp"
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <utility>
@@ -18,6 +19,11 @@ std::string quoted(std::string_view field) {
     text += c >= ' ' && c <= '~' ? c : '?';
   }
   return text + (field.size() > longest ? "…'" : "'");
+}
+
+std::string to_text(double value) {
+  std::array<char, 32> buffer{};
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
 }
 
 }  // namespace
@@ -72,7 +78,8 @@ std::string_view TextCursor::word() {
 
 template <class Number>
 Number TextCursor::parse(std::string_view what) {
-  const TextCursor before = *this;
+  skip_blanks();
+  const std::size_t begin_of_field = position_;
   const std::string_view field = word();
   Number value{};
   const char* begin = field.data();
@@ -86,7 +93,8 @@ Number TextCursor::parse(std::string_view what) {
     good = good && std::isfinite(value);
   }
   if (!good) {
-    before.fail_expected(what, field);
+    position_ = begin_of_field;
+    fail_expected(what, field);
   }
   return value;
 }
@@ -102,6 +110,24 @@ double TextCursor::number_in_stream(std::string_view what) {
 std::int64_t TextCursor::integer_in_stream(std::string_view what) {
   skip_line_ends();
   return parse<std::int64_t>(what);
+}
+
+double TextCursor::number_between(double low, double high, std::string_view what) {
+  skip_blanks();
+  const std::size_t begin_of_field = position_;
+  const double value = parse<double>(what);
+  if (value < low || value > high) {
+    const std::string_view field = text_.substr(begin_of_field, position_ - begin_of_field);
+    position_ = begin_of_field;
+    fail_expected(std::string(what) + " in [" + to_text(low) + ", " + to_text(high) + "]",
+                  field.substr(0, field.find_first_of(" \t\r\n,")));
+  }
+  return value;
+}
+
+double TextCursor::number_between_in_stream(double low, double high, std::string_view what) {
+  skip_line_ends();
+  return number_between(low, high, what);
 }
 
 void TextCursor::end_line(std::string_view columns) {
@@ -122,8 +148,9 @@ void TextCursor::fail(std::string_view message) const {
   throw core::InputError(file_name_ + where + ": " + std::string(message));
 }
 
-void TextCursor::fail_expected(std::string_view what, std::string_view found) const {
-  const std::string end_of = place_ == Place::line && position_ < text_.size() ? "the end of the line" : "the end of the file";
+void TextCursor::fail_expected(std::string_view what, std::string_view found) {
+  const bool more_lines = place_ == Place::line && position_ < text_.size();
+  const std::string end_of = more_lines ? "the end of the line" : "the end of the file";
   fail("expected " + std::string(what) + ", found " + (found.empty() ? end_of : quoted(found)));
 }
 

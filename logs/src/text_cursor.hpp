@@ -36,17 +36,19 @@ class TextCursor {
   void end_line(std::string_view columns);
   void skip_line();
 
-  /// Throws InputError: "file:line: message" or "file: byte n: message".
-  [[noreturn]] void fail(std::string_view message) const;
-  /// The same with the field before the cursor, quoted and shortened.
-  [[noreturn]] void fail_expected(std::string_view what, std::string_view found) const;
+  /// As number() and number_in_stream(), but in [low, high].
+  double number_between(double low, double high, std::string_view what);
+  double number_between_in_stream(double low, double high, std::string_view what);
 
-  std::size_t byte() const { return position_; }
+  /// Throws InputError with the cursor's place: "file:line: message" or "file: byte n: message".
+  [[noreturn]] void fail(std::string_view message) const;
+
   std::size_t line() const { return line_; }
 
  private:
   template <class Number>
   Number parse(std::string_view what);
+  [[noreturn]] void fail_expected(std::string_view what, std::string_view found);
   void skip_blanks();
   void skip_line_ends();
 

@@ -1,24 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../../logs/src/text_cursor.hpp"
-
-#include <functional>
-#include <string>
+#include "text_cursor.hpp"
 
 #include <gtest/gtest.h>
 
-#include "helixnav/core/errors.hpp"
+#include "input_error.hpp"
 
 namespace helixnav::logs {
 namespace {
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const core::InputError& error) {
-    return error.what();
-  }
-  return "nothing thrown";
-}
 
 TEST(TextCursor, ReadsNumbersOfALineAcrossSpacesTabsAndCarriageReturns) {
   TextCursor cursor(" 1.5\t-2e3   +7\r\n4\n", "a.txt");
@@ -43,7 +31,7 @@ TEST(TextCursor, NamesFileLineFoundAndExpected) {
   TextCursor cursor("1\n 2 pig\n", "a.txt");
   cursor.skip_line();
   cursor.number("x");
-  EXPECT_EQ(message_of([&] { cursor.number("a speed [m/s]"); }),
+  EXPECT_EQ(testing::input_error_of([&] { cursor.number("a speed [m/s]"); }),
             "a.txt:2: expected a speed [m/s], found 'pig'");
 }
 
@@ -57,17 +45,17 @@ TEST(TextCursor, RefusesNanInfinityAndHalfNumbers) {
 TEST(TextCursor, RefusesColumnsTooManyAndTooFew) {
   TextCursor many("1 2 3\n", "a.txt");
   many.number("x");
-  EXPECT_EQ(message_of([&] { many.end_line("1 column"); }), "a.txt:1: more columns than 1 column");
+  EXPECT_EQ(testing::input_error_of([&] { many.end_line("1 column"); }), "a.txt:1: more columns than 1 column");
   TextCursor few("1\n2\n", "a.txt");
   few.number("x");
-  EXPECT_EQ(message_of([&] { few.number("y"); }), "a.txt:1: expected y, found the end of the line");
+  EXPECT_EQ(testing::input_error_of([&] { few.number("y"); }), "a.txt:1: expected y, found the end of the line");
 }
 
 TEST(TextCursor, NamesTheByteWhereTheTextIsOneLine) {
   TextCursor cursor("12 13 \x01\xff", "laser.txt", ' ', TextCursor::Place::byte);
   cursor.integer("x");
   cursor.integer("x");
-  EXPECT_EQ(message_of([&] { cursor.integer_in_stream("a range [cm]"); }),
+  EXPECT_EQ(testing::input_error_of([&] { cursor.integer_in_stream("a range [cm]"); }),
             "laser.txt: byte 6: expected a range [cm], found '?\?'");
 }
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/core/recording.hpp"
+#include "helixnav/core/time.hpp"
+#include "helixnav/logs/sick_scan.hpp"
+
+namespace helixnav::logs {
+
+/// One reading of the truck's rear-left wheel encoder and steering sensor, 40 a second.
+struct DeadReckoning {
+  core::Nanoseconds t_ns = 0;
+  double wheel_speed_mps = 0.0;  ///< of the wheel, not of the axle's middle
+  double steering_rad = 0.0;     ///< positive to the left
+};
+
+/// One GPS fix in a local frame, x east and y north.
+struct GpsFix {
+  core::Nanoseconds t_ns = 0;
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
+};
+
+/// A log of the ACFR truck (Victoria Park, car park) as recorded, before any model. Each sensor's readings are in time
+/// order (times of one sensor never decrease).
+struct AcfrLog {
+  std::string name;
+  std::vector<DeadReckoning> dead_reckoning;
+  std::vector<SickScan> scans;
+  std::vector<GpsFix> gps;
+  std::vector<core::TrueLandmark> beacons;  ///< surveyed, in the frame of the GPS; label = row in the file
+
+  /// In the order of the codes 1, 2, 3 of ACFR's event tables.
+  enum class Sensor { gps, dead_reckoning, laser };
+  struct Reading {
+    Sensor sensor = Sensor::gps;
+    std::size_t index = 0;
+  };
+  std::vector<Reading> order;  ///< all readings as they came in
+};
+
+/// Reads ACFR's text release: a folder, or a zip, that holds DRS.txt, LASER.txt, GPS.txt and Sensors_manager.txt (at any
+/// depth in the zip). Seconds and metres in the files; LASER.txt is one line without ends. Victoria Park: 0.6 s.
+/// Throws core::InputError with file and line (LASER.txt: byte) for a missing or broken file, a number that is none, time
+/// going backwards, an index or time in Sensors_manager.txt that the other files do not have.
+/// Test: logs/acfr_ascii_test.cpp.
+AcfrLog read_acfr_ascii(const std::filesystem::path& folder_or_zip);
+
+}  // namespace helixnav::logs

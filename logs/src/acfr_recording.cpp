@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/logs/acfr_recording.hpp"
+
+#include <cmath>
+
+namespace helixnav::logs {
+namespace {
+
+/// Turns held samples of speed and steering into increments that end where they are asked to end.
+class HeldSteering {
+ public:
+  HeldSteering(const AcfrLog& log, const AcfrSettings& settings) : log_(log), settings_(settings) {}
+
+  /// Appends the motion from the last end until `t_ns`; nothing before the first sample.
+  void move_until(core::Nanoseconds t_ns, std::vector<core::Event>& events) {
+    if (started_ && t_ns > now_ns_) {
+      events.emplace_back(increment(t_ns));
+      now_ns_ = t_ns;
+    }
+  }
+
+  /// The reading `index` holds from now on.
+  void hold(std::size_t index) {
+    index_ = index;
+    if (!started_) {
+      started_ = true;
+      now_ns_ = log_.dead_reckoning[index].t_ns;
+    }
+  }
+
+ private:
+  core::Odometry increment(core::Nanoseconds t_ns) const {
+    const DeadReckoning& held = log_.dead_reckoning[index_];
+    core::AckermannSample sample;
+    sample.wheel_speed_mps = held.wheel_speed_mps;
+    sample.steering_rad = held.steering_rad + settings_.steering_offset_rad;
+    sample.duration_s = core::seconds(t_ns - now_ns_);
+    core::Odometry odometry = ackermann_increment(settings_.geometry, settings_.noise, sample);
+    odometry.covariance *= core::seconds(holds_until_ns(t_ns) - held.t_ns) / sample.duration_s;
+    odometry.t_ns = t_ns;
+    return odometry;
+  }
+
+  /// One sample has one error: a whole of duration d has d²σ², so that a part p of it carries p·d·σ².
+  core::Nanoseconds holds_until_ns(core::Nanoseconds otherwise_ns) const {
+    const bool last = index_ + 1 == log_.dead_reckoning.size();
+    return last ? otherwise_ns : log_.dead_reckoning[index_ + 1].t_ns;
+  }
+
+  const AcfrLog& log_;
+  const AcfrSettings& settings_;
+  std::size_t index_ = 0;
+  core::Nanoseconds now_ns_ = 0;
+  bool started_ = false;
+};
+
+std::vector<SickDetection> detect(const SickScan& scan, const AcfrSettings& settings) {
+  return settings.detector == AcfrSettings::Detector::trees ? detect_trees(scan, settings.trees)
+                                                            : detect_reflectors(scan, settings.reflectors);
+}
+
+core::FieldOfView field_of_view(const AcfrSettings& settings) {
+  const bool trees = settings.detector == AcfrSettings::Detector::trees;
+  const double half_rad = core::pi / 2.0 - (trees ? settings.trees.edge_margin_rad : 0.0);
+  return {trees ? settings.trees.min_range_m : 0.0,
+          trees ? settings.trees.max_range_m : settings.reflectors.max_range_m, -half_rad, half_rad};
+}
+
+core::Scan observe(const SickScan& raw, const AcfrSettings& settings) {
+  core::Scan scan;
+  scan.t_ns = raw.t_ns;
+  scan.T_robot_sensor = settings.T_robot_laser;
+  scan.field_of_view = field_of_view(settings);
+  for (const SickDetection& seen : detect(raw, settings)) {
+    scan.observations.push_back(core::make_range_bearing(seen.range_m, seen.bearing_rad, settings.sigma_range_m,
+                                                         settings.sigma_bearing_rad));
+  }
+  return scan;
+}
+
+}  // namespace
+
+AcfrSettings car_park_settings() {
+  AcfrSettings settings;
+  settings.detector = AcfrSettings::Detector::reflectors;
+  settings.sigma_range_m = 0.1;
+  settings.sigma_bearing_rad = 0.01;
+  return settings;
+}
+
+core::Recording make_recording(const AcfrLog& log, const AcfrSettings& settings) {
+  core::Recording recording;
+  recording.name = log.name;
+  recording.true_landmarks = log.beacons;
+  recording.antenna_robot_m = settings.T_robot_laser.position_m();
+  recording.events.reserve(log.dead_reckoning.size() + 2 * log.scans.size());
+  HeldSteering steering(log, settings);
+  for (const AcfrLog::Reading& reading : log.order) {
+    if (reading.sensor == AcfrLog::Sensor::dead_reckoning) {
+      steering.move_until(log.dead_reckoning[reading.index].t_ns, recording.events);
+      steering.hold(reading.index);
+    } else if (reading.sensor == AcfrLog::Sensor::laser) {
+      steering.move_until(log.scans[reading.index].t_ns, recording.events);
+      recording.events.emplace_back(observe(log.scans[reading.index], settings));
+    } else {
+      recording.true_positions.push_back({log.gps[reading.index].t_ns, log.gps[reading.index].position_m});
+    }
+  }
+  return recording;
+}
+
+}  // namespace helixnav::logs

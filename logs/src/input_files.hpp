@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace helixnav::logs {
+
+/// The whole content of a file. Throws core::InputError naming the file when it cannot be read.
+std::string read_file(const std::filesystem::path& path);
+
+/// Text of files by their name without folders.
+using TextByName = std::map<std::string, std::string>;
+
+/// The files called `names` (without folders, any depth) of a zip or tar, by libarchive; those not there are left out.
+/// Throws core::InputError for an archive that is none or is cut off.
+TextByName read_archive(const std::filesystem::path& archive, const std::vector<std::string>& names);
+
+/// The names (without folders) of all files in an archive; empty when it is no archive.
+std::vector<std::string> names_in_archive(const std::filesystem::path& archive);
+
+}  // namespace helixnav::logs
