@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "helixnav/smoothing/problem.hpp"
+#include "helixnav/smoothing/robust_kernel.hpp"
+
+namespace helixnav::smoothing {
+
+enum class Method {
+  gauss_newton,         ///< full steps; fast from a good start, may diverge from a bad one
+  levenberg_marquardt,  ///< damped by λ·diag(H), gain-controlled
+  dogleg,               ///< Powell's dogleg in the metric of diag(H)
+};
+
+/// Fill-reducing ordering of the Cholesky factor.
+enum class Ordering {
+  least_fill,  ///< AMD and METIS analysed, the one with fewer nonzeros kept
+  amd,
+  metis,
+};
+
+struct Options {
+  Method method = Method::levenberg_marquardt;
+  RobustKernel kernel;
+  Ordering ordering = Ordering::least_fill;
+  int max_iterations = 200;
+  double tolerance_chi2 = 1e-6;  ///< converged when the quadratic model promises less than this [χ²], or 1e-11 of the cost
+};
+
+/// χ² of a state, by kind. `cost` is what is minimised: landmarks pass through the robust kernel.
+struct Chi2 {
+  double odometry = 0.0;
+  double landmarks = 0.0;
+  double priors = 0.0;  ///< priors and fixes
+  double cost = 0.0;
+
+  double total() const { return odometry + landmarks + priors; }
+};
+
+struct Iteration {
+  Chi2 chi2;              ///< after the step
+  double step_m = 0.0;    ///< largest move of a pose or landmark
+  double step_rad = 0.0;  ///< largest turn of a pose
+  double damping = 0.0;   ///< λ (Levenberg–Marquardt), trust radius in σ (dogleg), 0 (Gauss–Newton)
+};
+
+enum class Reason {
+  converged,       ///< the quadratic model promises nothing more
+  stalled,         ///< no damping gives a decrease although the model promises one
+  diverged,        ///< Gauss–Newton: the cost grew beyond all bounds; the best state is kept
+  max_iterations,
+};
+
+struct Report {
+  Chi2 start;
+  Chi2 chi2;  ///< of the solution
+  int dof = 0;
+  std::vector<Iteration> iterations;  ///< accepted steps
+  Reason reason = Reason::max_iterations;
+  Ordering ordering = Ordering::amd;  ///< the one kept
+  double factor_nonzeros = 0.0;       ///< of L, with the ordering kept
+};
+
+/// Moves the graph's values to the minimum of χ² near the start. The structure is analysed once; a factorisation per step.
+/// Errors: those of check_problem; NumericalError naming the variable when H is singular at the solution (for Gauss–Newton
+/// and dogleg: at any step) or a residual is not finite at the start. The problem is left as it was when anything is thrown.
+/// Licence: CHOLMOD's simplicial LLᵀ (LGPL); no GPL module is called.
+/// Test: smoothing/optimize_test.cpp, smoothing/dlr_test.cpp (published χ² 56871.4), smoothing/victoria_park_test.cpp.
+Report optimize(Problem& problem, const Options& options = {});
+
+/// χ² of the values as they stand, by kind. Errors as check_problem.
+Chi2 evaluate_chi2(const Problem& problem, const RobustKernel& kernel = {});
+
+/// "converged", "stalled", … for reports.
+std::string to_string(Reason reason);
+std::string to_string(Ordering ordering);
+
+}  // namespace helixnav::smoothing

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/smoothing/optimize.hpp"
+
+#include "helixnav/smoothing/smooth.hpp"
+#include "session.hpp"
+
+namespace helixnav::smoothing {
+namespace {
+
+Reason run(Session& session) {
+  switch (session.options.method) {
+    case Method::gauss_newton:
+      return gauss_newton(session);
+    case Method::dogleg:
+      return dogleg(session);
+    default:
+      return levenberg_marquardt(session);
+  }
+}
+
+}  // namespace
+
+Report optimize(Problem& problem, const Options& options) {
+  check_problem(problem);
+  Session session(problem, options);
+  if (session.layout.columns > 0) {
+    session.report.reason = run(session);
+    session.linearize();
+    session.factorize_undamped();  // damping hides what the measurements leave open
+  } else {
+    session.report.reason = Reason::converged;
+  }
+  put_state(session.state, problem.graph);
+  session.report.chi2 = session.chi2;
+  return session.report;
+}
+
+Report smooth(Problem& problem, const SmoothOptions& options) {
+  if (!options.soften_sigma) return optimize(problem, options.solver);
+  Problem softened = problem;
+  soften_odometry(softened, *options.soften_sigma);
+  optimize(softened, options.solver);
+  Problem restarted = problem;
+  put_state(state_of(softened.graph), restarted.graph);
+  const Report report = optimize(restarted, options.solver);
+  put_state(state_of(restarted.graph), problem.graph);
+  return report;
+}
+
+Chi2 evaluate_chi2(const Problem& problem, const RobustKernel& kernel) {
+  check_problem(problem);
+  const Layout layout = make_layout(problem);
+  return NormalEquations(problem, layout, kernel).evaluate(state_of(problem.graph));
+}
+
+std::string to_string(Reason reason) {
+  switch (reason) {
+    case Reason::converged:
+      return "converged";
+    case Reason::stalled:
+      return "stalled";
+    case Reason::diverged:
+      return "diverged";
+    default:
+      return "max_iterations";
+  }
+}
+
+std::string to_string(Ordering ordering) {
+  switch (ordering) {
+    case Ordering::amd:
+      return "AMD";
+    case Ordering::metis:
+      return "METIS";
+    default:
+      return "least fill";
+  }
+}
+
+}  // namespace helixnav::smoothing

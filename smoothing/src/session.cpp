@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "helixnav/core/errors.hpp"
+
+namespace helixnav::smoothing {
+
+Session::Session(const Problem& given, const Options& given_options)
+    : problem(given),
+      options(given_options),
+      layout(make_layout(given)),
+      equations(given, layout, given_options.kernel),
+      cholesky(equations.column_start, equations.row_index, given_options.ordering),
+      state(state_of(given.graph)),
+      chi2(equations.evaluate(state)),
+      trial_(state) {
+  if (!std::isfinite(chi2.cost)) throw core::NumericalError("smoothing: chi2 is not finite at the start");
+  report.start = chi2;
+  report.dof = degrees_of_freedom(given);
+  report.ordering = cholesky.ordering_kept();
+  report.factor_nonzeros = cholesky.nonzeros();
+}
+
+void Session::factorize_undamped() {
+  const int failed = cholesky.factorize(equations.values, singular_pivot);
+  if (failed >= 0) {
+    throw core::NumericalError("smoothing: the measurements do not determine " +
+                               name_of_column(problem, layout, failed) + " (singular normal equations)");
+  }
+}
+
+Chi2 Session::try_step(const Eigen::VectorXd& step) {
+  Chi2 trial_chi2;
+  trial_chi2.cost = std::numeric_limits<double>::infinity();
+  if (!step.allFinite()) return trial_chi2;
+  add_step(layout, step, state, trial_);
+  try {
+    trial_chi2 = equations.evaluate(trial_);
+  } catch (const core::NumericalError&) {
+    return trial_chi2;  // a landmark came to stand at a sensor: no step to take
+  }
+  if (!std::isfinite(trial_chi2.cost)) trial_chi2.cost = std::numeric_limits<double>::infinity();
+  return trial_chi2;
+}
+
+void Session::accept(const Chi2& trial_chi2, const Eigen::VectorXd& step, double damping) {
+  Iteration iteration;
+  iteration.chi2 = trial_chi2;
+  iteration.damping = damping;
+  for (const int column : layout.pose_column) {
+    if (column < 0) continue;
+    iteration.step_m = std::max(iteration.step_m, step.segment<2>(column).norm());
+    iteration.step_rad = std::max(iteration.step_rad, std::abs(step[column + 2]));
+  }
+  for (const int column : layout.landmark_column) {
+    iteration.step_m = std::max(iteration.step_m, step.segment<2>(column).norm());
+  }
+  report.iterations.push_back(iteration);
+  std::swap(state, trial_);
+  chi2 = trial_chi2;
+}
+
+double Session::promised_decrease(const Eigen::VectorXd& step) {
+  equations.multiply(step, H_step_);
+  return -2.0 * equations.gradient.dot(step) - step.dot(H_step_);
+}
+
+}  // namespace helixnav::smoothing
