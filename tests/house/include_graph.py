@@ -56,8 +56,9 @@ def without_comments_and_strings(text):
     return token.sub(lambda match: re.sub(r"[^\n]", " ", match.group()), text)
 
 
-def check_include(room, path, is_public, quote, target, table):
-    """What is wrong with one #include, or None."""
+def check_include(room, path, source_root, quote, target, table):
+    """What is wrong with one #include, or None. source_root is None for public headers, else the room's src folder."""
+    is_public = source_root is None
     parts = target.split("/")
     if parts[0] == "helixnav":
         other = parts[1] if len(parts) > 2 else None
@@ -73,7 +74,8 @@ def check_include(room, path, is_public, quote, target, table):
     if quote == '"':
         if ".." in parts or is_public:
             return f'say "helixnav/<room>/…" instead of {target}'
-        return None if (path.parent / target).is_file() else f'<> for what is not ours ({target})'
+        beside = (path.parent / target).is_file() or (source_root / target).is_file()
+        return None if beside else f"{target} is no header of {room}/src; what is not ours goes into <>"
     if room in ESTIMATORS and target in FILES_AND_SCREENS:
         return f"estimators see no files and no screens (<{target}>)"
     if is_public and room != "mrpt_adapter" and parts[0] != "Eigen" and target not in STANDARD_HEADERS:
@@ -81,14 +83,15 @@ def check_include(room, path, is_public, quote, target, table):
     return None
 
 
-def check_file(room, path, is_public, table):
+def check_file(room, path, source_root, table):
     """Yields (line, finding) of one source or header."""
+    is_public = source_root is None
     text = path.read_text(encoding="utf-8")
     code = without_comments_and_strings(text).splitlines()
     for number, (line, bare) in enumerate(zip(text.splitlines(), code), start=1):
         include = INCLUDE.match(line) if bare.lstrip().startswith("#") else None
         if include:
-            finding = check_include(room, path, is_public, include.group(1), include.group(2), table)
+            finding = check_include(room, path, source_root, include.group(1), include.group(2), table)
             if finding:
                 yield number, finding
         if is_public and re.match(r"\s*#\s*define\b", bare):
@@ -110,7 +113,8 @@ def check(root):
             is_public = place.parts[1] == "include"
             if is_public and place.parts[:4] != (room, "include", "helixnav", room):
                 findings.append(f"{place}:1: public headers live in {room}/include/helixnav/{room}/")
-            findings += [f"{place}:{line}: {finding}" for line, finding in check_file(room, path, is_public, table)]
+            source_root = None if is_public else root / room / "src"
+            findings += [f"{place}:{line}: {finding}" for line, finding in check_file(room, path, source_root, table)]
     return findings
 
 

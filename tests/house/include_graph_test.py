@@ -36,6 +36,7 @@ class IncludeGraph(unittest.TestCase):
             "core/src/recording.cpp": '#include "helixnav/core/recording.hpp"\n',
             "cekf/src/update.cpp": '#include <Eigen/Cholesky>\n#include "helixnav/core/se2.hpp"\n#include "blocks.hpp"\n',
             "cekf/src/blocks.hpp": "#pragma once\n",
+            "cekf/src/deeper/a.cpp": '#include "blocks.hpp"\n',
             "logs/src/reader.cpp": '#include <fstream>\n#include "helixnav/core/recording.hpp"\n',
             "apps/replay.cpp": '#include <iostream>\n#include "helixnav/cekf/cekf.hpp"\nvoid f() { std::cout << 1; }\n',
         }))
@@ -66,6 +67,9 @@ class IncludeGraph(unittest.TestCase):
 
     def test_refuses_relative_paths_out_of_the_room(self):
         self.refused("cekf/src/a.cpp", '#include "../../core/src/hidden.hpp"\n', "instead of")
+
+    def test_refuses_quotes_around_what_is_not_ours(self):
+        self.refused("logs/src/a.cpp", '#include "archive.h"\n', "no header of logs/src")
 
     def test_refuses_a_public_header_in_the_wrong_place(self):
         self.refused("cekf/include/helixnav/core/a.hpp", "#pragma once\n", "live in cekf/include/helixnav/cekf")
