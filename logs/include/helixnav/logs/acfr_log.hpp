@@ -52,4 +52,17 @@ struct AcfrLog {
 /// Test: logs/acfr_ascii_test.cpp.
 AcfrLog read_acfr_ascii(const std::filesystem::path& folder_or_zip);
 
+/// Reads Victoria Park from its MATLAB files in one folder: aa3_dr.mat and aa3_gpsx.mat; scans from aa3_lsr2.mat, else
+/// from LASER.txt, else from that in victoria_park_ascii.zip, else none. Times are shifted to the clock of the text
+/// release, which begins 20.967 s later, at the first GPS fix, so that results and GPS of the two can be compared.
+/// The steering differs from the text release's (data README). Errors as read_acfr_ascii. Test: logs/acfr_mat_test.cpp.
+AcfrLog read_victoria_park_mat(const std::filesystem::path& folder);
+
+/// All 4466 fixes of Victoria Park from aa3_gpsx.mat, on the clock of the text release, which has only 948 of them.
+std::vector<GpsFix> read_victoria_park_gps(const std::filesystem::path& aa3_gpsx);
+
+/// Reads the ACFR car park: data_set.mat, and the surveyed poles from beac_juan3.mat beside it when it is there.
+/// Errors as read_acfr_ascii. Test: logs/acfr_mat_test.cpp.
+AcfrLog read_car_park_mat(const std::filesystem::path& data_set);
+
 }  // namespace helixnav::logs
