@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/association/innovation_problem.hpp"
+
+namespace helixnav::association {
+
+/// Covariance between the innovations of two pairs, 2×2 with padding: H_a P H_bᵀ, plus R when both are the same
+/// observation. Cost: about 40 multiplications. Test: association/joint_innovation_test.cpp (dense H P Hᵀ).
+Eigen::Matrix2d innovation_cross_covariance(const InnovationProblem& problem, const GatedPair& a, const GatedPair& b);
+
+/// Innovation of a set of pairs taken together, with the covariance that the shared pose and the map's correlations
+/// give it. Two padded rows for each pair, in the order given.
+struct JointInnovation {
+  Eigen::VectorXd nu;
+  Eigen::MatrixXd S;
+  int dof = 0;
+};
+JointInnovation joint_innovation(const InnovationProblem& problem, const std::vector<int>& pairs);
+
+/// νᵀS⁻¹ν of a set of pairs with its degrees of freedom, ln N(ν; 0, S), and what each pair adds to it.
+struct JointNis {
+  double nis = 0.0;
+  int dof = 0;
+  double log_likelihood = 0.0;
+  std::vector<double> share;  ///< NIS of the set minus NIS of the set without this pair, in the order given
+};
+
+/// Cost O(n³) in the number of pairs. The shares come from one inverse: rᵢᵀ(S⁻¹)ᵢᵢ⁻¹rᵢ with r = S⁻¹ν.
+/// Throws NumericalError, naming the landmarks, when the joint covariance is not positive definite.
+/// Test: association/joint_innovation_test.cpp (dense inverse; leave one out).
+JointNis joint_nis(const InnovationProblem& problem, const std::vector<int>& pairs);
+
+}  // namespace helixnav::association

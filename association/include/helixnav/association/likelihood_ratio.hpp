@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "helixnav/association/innovation_problem.hpp"
+#include "helixnav/association/linear_assignment.hpp"
+#include "helixnav/core/events.hpp"
+
+namespace helixnav::association {
+
+/// λ = λ_false + λ_new: expected observations of one scan that come from no landmark of the map, per unit of the
+/// observation space. A density has the inverse unit of a likelihood, so that their ratio does not depend on units.
+struct ExtraneousDensity {
+  double range_bearing_per_m_rad = 0.02;
+  double cartesian_per_m2 = 0.001;
+  double bearing_per_rad = 0.5;
+  double range_per_m = 0.05;
+
+  double of(core::ObservationKind kind) const;
+};
+
+/// `expected_per_scan` observations spread evenly over the field of view in the coordinates of each kind. Throws
+/// PreconditionError unless the field of view is bounded and has an area.
+ExtraneousDensity uniform_density(const core::FieldOfView& field_of_view, double expected_per_scan);
+
+/// Costs in nats: −ln[P_D N(ν; 0, S)/(1 − P_D)] for a pair, −ln λ for an observation without one; entry e of the
+/// result is pair e of the problem. The ratio of two hypotheses is the posterior odds
+/// when landmarks are detected with P_D and extraneous observations are a Poisson process.
+/// Test: association/likelihood_ratio_test.cpp (metres against centimetres, radians against degrees).
+AssignmentProblem likelihood_ratio_costs(const InnovationProblem& problem, double detection_probability,
+                                         const ExtraneousDensity& extraneous);
+
+}  // namespace helixnav::association

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace helixnav::association {
+
+/// core::chi2_quantile, remembered for each thread: association asks for the same few probabilities at 1 … 60 degrees of
+/// freedom in every scan, and one quantile costs as much as a whole gate test of a scan.
+double chi2_threshold(double probability, int dof);
+
+}  // namespace helixnav::association

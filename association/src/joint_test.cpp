@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <optional>
+
+#include "chi2_table.hpp"
+#include "helixnav/association/joint_innovation.hpp"
+#include "helixnav/association/k_best.hpp"
+#include "matching.hpp"
+
+namespace helixnav::association {
+namespace {
+
+bool passes(const JointNis& joint, const Options& options) {
+  return joint.dof == 0 || joint.nis <= chi2_threshold(options.joint_probability, joint.dof);
+}
+
+/// −ln of the posterior odds of the whole set against nothing matched, with the covariances between pairs.
+double joint_cost(const JointNis& joint, const AssignmentProblem& costs, const InnovationProblem& problem,
+                  const std::vector<int>& pair) {
+  double cost = -joint.log_likelihood;
+  for (std::size_t i = 0; i < pair.size(); ++i) {
+    if (pair[i] == unmatched) {
+      cost += costs.unassigned_cost[i];
+    } else {  // leaves −ln(P_D/(1−P_D)) of the pair's own cost
+      cost += costs.cost[pair[i]] + problem.pairs[pair[i]].log_likelihood;
+    }
+  }
+  return cost;
+}
+
+struct Passing {
+  std::vector<int> pair;
+  JointNis joint;
+  int alternative;
+  double cost;
+};
+
+/// The best passing one of the next-best assignments.
+std::optional<Passing> best_alternative(const InnovationProblem& problem, const AssignmentProblem& costs,
+                                        const Options& options) {
+  std::optional<Passing> best;
+  if (options.joint_alternatives < 1) return best;
+  const std::vector<AssignmentSolution> solutions = k_best_assignments(costs, options.joint_alternatives + 1);
+  for (std::size_t k = 1; k < solutions.size(); ++k) {
+    const std::vector<int>& pair = solutions[k].entry;  // entry e of the costs is pair e, −1 is unmatched
+    JointNis joint = joint_nis(problem, matched_pairs(pair));
+    if (!passes(joint, options)) continue;
+    const double cost = joint_cost(joint, costs, problem, pair);
+    if (!best || cost < best->cost) best = {pair, std::move(joint), static_cast<int>(k), cost};
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<int> matched_pairs(const std::vector<int>& pair_of_observation) {
+  std::vector<int> pairs;
+  pairs.reserve(pair_of_observation.size());
+  for (const int p : pair_of_observation) {
+    if (p != unmatched) pairs.push_back(p);
+  }
+  return pairs;
+}
+
+Guarded guard_by_dropping(const InnovationProblem& problem, const std::vector<int>& pair, const Options& options) {
+  Guarded guarded;
+  guarded.pair = pair;
+  guarded.dropped.assign(pair.size(), unmatched);
+  std::vector<int> pairs = matched_pairs(pair);
+  JointNis joint = joint_nis(problem, pairs);
+  guarded.first_nis = joint.nis;
+  guarded.first_dof = joint.dof;
+  while (options.joint_test && !passes(joint, options)) {
+    const auto worst = std::max_element(joint.share.begin(), joint.share.end()) - joint.share.begin();
+    const int observation = problem.pairs[pairs[worst]].observation;
+    guarded.dropped[observation] = pairs[worst];
+    guarded.pair[observation] = unmatched;
+    pairs.erase(pairs.begin() + worst);
+    joint = joint_nis(problem, pairs);
+  }
+  guarded.nis = joint.nis;
+  guarded.dof = joint.dof;
+  return guarded;
+}
+
+Guarded guard_by_alternatives(const InnovationProblem& problem, const AssignmentProblem& costs,
+                              const std::vector<int>& pair, const Options& options) {
+  Guarded dropped = guard_by_dropping(problem, pair, options);
+  if (dropped.pair == pair) return dropped;
+  std::optional<Passing> other = best_alternative(problem, costs, options);
+  if (!other) return dropped;
+  const JointNis rest = joint_nis(problem, matched_pairs(dropped.pair));
+  if (joint_cost(rest, costs, problem, dropped.pair) <= other->cost) return dropped;
+  Guarded guarded;
+  guarded.dropped.assign(pair.size(), unmatched);
+  for (std::size_t i = 0; i < pair.size(); ++i) {
+    if (pair[i] != unmatched && other->pair[i] == unmatched) guarded.dropped[i] = pair[i];
+  }
+  guarded.pair = std::move(other->pair);
+  guarded.nis = other->joint.nis;
+  guarded.dof = other->joint.dof;
+  guarded.first_nis = dropped.first_nis;
+  guarded.first_dof = dropped.first_dof;
+  guarded.alternative = other->alternative;
+  return guarded;
+}
+
+}  // namespace helixnav::association
