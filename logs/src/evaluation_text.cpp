@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <cstdio>
+
+#include "run_json.hpp"
+
+namespace helixnav::logs {
+
+namespace {
+
+template <typename... Values>
+std::string format(const char* pattern, Values... values) {
+  const int length = std::snprintf(nullptr, 0, pattern, values...);
+  std::string text(static_cast<std::size_t>(length) + 1, '\0');
+  std::snprintf(text.data(), text.size(), pattern, values...);
+  text.pop_back();
+  return text;
+}
+
+double degrees(double angle_rad) { return angle_rad * 180.0 / core::pi; }
+
+std::string position_text(const PositionEvaluation& position) {
+  const ErrorStatistics& e = position.error_m;
+  std::string text = format("position error       RMSE %.3f m, median %.3f m, 95 %% %.3f m, maximum %.3f m\n", e.rmse,
+                            e.median, e.p95, e.max);
+  text += position.aligned ? "  against            position fixes, after rigid alignment\n"
+                           : "  against            true poses, in the map frame as it is\n";
+  text += format("  fixes used         %zu\n", position.fixes_used);
+  if (position.aligned) {
+    text += format("  fixes left out     %zu (farther than %g m)\n", position.fixes_left_out, position.limit_m);
+    text += format("  alignment          x %.3f m, y %.3f m, heading %.3f deg (map in the frame of the fixes)\n",
+                   position.T_truth_map.x_m, position.T_truth_map.y_m, degrees(position.T_truth_map.heading_rad));
+  }
+  if (position.fixes_outside > 0) text += format("  outside the run    %zu\n", position.fixes_outside);
+  return text;
+}
+
+std::string pose_text(const PoseEvaluation& pose) {
+  const ErrorStatistics& e = pose.heading_error_rad;
+  std::string text = format("heading error        RMSE %.3f deg, median %.3f deg, 95 %% %.3f deg, maximum %.3f deg\n",
+                            degrees(e.rmse), degrees(e.median), degrees(e.p95), degrees(e.max));
+  if (pose.nees_count > 0) {
+    text += format("NEES                 mean %.3f (3 when consistent), %.1f %% inside the 95 %% band, %zu instants\n",
+                   pose.nees_mean, 100.0 * pose.nees_inside_95, pose.nees_count);
+  }
+  return text;
+}
+
+std::string map_text(const MapEvaluation& map) {
+  const ErrorStatistics& e = map.error_m;
+  std::string text = format("landmark error       RMSE %.3f m, median %.3f m, 95 %% %.3f m, maximum %.3f m\n", e.rmse,
+                            e.median, e.p95, e.max);
+  text += format("  pairs              %zu ", e.count);
+  text += map.by_label ? std::string("(by label)\n") : format("(nearest first, within %g m)\n", map.limit_m);
+  text += format("  missing            %zu\n  duplicates         %zu\n  spurious           %zu\n", map.missing,
+                 map.duplicates, map.spurious);
+  return text;
+}
+
+Json statistics_to_json(const ErrorStatistics& statistics, const std::string& unit) {
+  return {{"rmse_" + unit, statistics.rmse},
+          {"median_" + unit, statistics.median},
+          {"p95_" + unit, statistics.p95},
+          {"max_" + unit, statistics.max}};
+}
+
+Json position_to_json(const PositionEvaluation& position) {
+  Json json = statistics_to_json(position.error_m, "m");
+  json["fixes_used"] = position.fixes_used;
+  json["fixes_left_out"] = position.fixes_left_out;
+  json["fixes_outside"] = position.fixes_outside;
+  json["against"] = position.aligned ? "positions" : "poses";
+  if (position.aligned) {
+    json["limit_m"] = position.limit_m;
+    json["alignment"] = {{"x_m", position.T_truth_map.x_m},
+                         {"y_m", position.T_truth_map.y_m},
+                         {"heading_rad", position.T_truth_map.heading_rad}};
+  }
+  return json;
+}
+
+Json map_to_json(const MapEvaluation& map) {
+  Json json = statistics_to_json(map.error_m, "m");
+  json["pairs"] = map.error_m.count;
+  json["by"] = map.by_label ? "label" : "distance";
+  if (!map.by_label) json["limit_m"] = map.limit_m;
+  json["missing"] = map.missing;
+  json["duplicates"] = map.duplicates;
+  json["spurious"] = map.spurious;
+  return json;
+}
+
+}  // namespace
+
+std::string evaluation_text(const Evaluation& evaluation) {
+  std::string text = format("steps                %zu\n", evaluation.steps);
+  if (evaluation.position) text += position_text(*evaluation.position);
+  if (evaluation.pose) text += pose_text(*evaluation.pose);
+  if (evaluation.map) text += map_text(*evaluation.map);
+  if (!evaluation.position && !evaluation.map) text += "no truth             nothing to compare the run with\n";
+  if (evaluation.nis.updates > 0) {
+    text += format("NIS                  mean %.3f per degree of freedom, %.1f %% inside the 95 %% band, %zu updates\n",
+                   evaluation.nis.mean_per_dof, 100.0 * evaluation.nis.inside_95, evaluation.nis.updates);
+  }
+  return text;
+}
+
+Json evaluation_to_json(const Evaluation& evaluation) {
+  Json json = Json::object();
+  json["steps"] = evaluation.steps;
+  if (evaluation.position) json["error"] = position_to_json(*evaluation.position);
+  if (evaluation.pose) {
+    json["heading_error"] = statistics_to_json(evaluation.pose->heading_error_rad, "rad");
+    json["nees"] = {{"count", evaluation.pose->nees_count},
+                    {"mean", evaluation.pose->nees_mean},
+                    {"inside_95", evaluation.pose->nees_inside_95}};
+  }
+  if (evaluation.map) json["landmark_error"] = map_to_json(*evaluation.map);
+  json["nis"] = {{"updates", evaluation.nis.updates},
+                 {"mean_per_dof", evaluation.nis.mean_per_dof},
+                 {"inside_95", evaluation.nis.inside_95}};
+  return json;
+}
+
+std::string evaluation_json(const Evaluation& evaluation) { return evaluation_to_json(evaluation).dump(2) + '\n'; }
+
+}  // namespace helixnav::logs

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/logs/run_writer.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <initializer_list>
+
+#include "helixnav/core/errors.hpp"
+#include "helixnav/logs/report.hpp"
+#include "run_file.hpp"
+#include "run_json.hpp"
+#include "run_number.hpp"
+#include "run_tables.hpp"
+#include "run_truth.hpp"
+#include "run_words.hpp"
+
+namespace helixnav::logs {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void make_folder(const std::string& folder, RunWriter::IfNotEmpty if_not_empty) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder)) {
+    throw core::InputError(folder + ": cannot make the folder" + (error ? ": " + error.message() : ""));
+  }
+  if (fs::is_empty(folder)) return;
+  if (if_not_empty == RunWriter::IfNotEmpty::refuse) {
+    throw core::InputError(folder + ": the folder is not empty; expected an empty or new one, or leave to overwrite");
+  }
+  for (const char* name : run_files) fs::remove(fs::path(folder) / name, error);
+}
+
+void append_cells(std::string& text, std::initializer_list<double> values) {
+  for (const double value : values) {
+    text += ',';
+    append_number(text, value);
+  }
+}
+
+void append_counts(std::string& text, std::initializer_list<std::int64_t> values) {
+  for (const std::int64_t value : values) {
+    text += ',';
+    append_number(text, value);
+  }
+}
+
+void append_step_and_time(std::string& text, const core::StepReport& report) {
+  append_number(text, report.step);
+  text += ',';
+  append_seconds(text, report.t_ns);
+}
+
+// A cell must not end the line that it stands in, nor the list of numbers.
+void append_word(std::string& text, const std::string& word) {
+  for (const char c : word) text += c == ',' || c == ';' || c == '=' || c == '"' || c == '\n' || c == '\r' ? ' ' : c;
+}
+
+void append_association(std::string& text, std::int64_t step, const core::AssociationReport& a, bool revised) {
+  append_number(text, step);
+  append_counts(text, {a.observation, a.landmark});
+  text += ',';
+  text += word_of(outcome_words, a.outcome);
+  append_cells(text, {a.nis});
+  append_counts(text, {a.dof});
+  append_cells(text, {a.margin_nats});
+  text += revised ? ",1\n" : ",0\n";
+}
+
+void append_decision(std::string& text, const core::StepReport& report, const core::Decision& decision) {
+  append_step_and_time(text, report);
+  text += ',';
+  append_word(text, decision.kind);
+  text += ',';
+  append_word(text, decision.verdict);
+  char separator = ',';
+  for (const auto& [name, value] : decision.numbers) {
+    text += separator;
+    append_word(text, name);
+    text += '=';
+    append_number(text, value);
+    separator = ';';
+  }
+  text += decision.numbers.empty() ? ",\n" : "\n";
+}
+
+void append_trajectory(std::string& text, const core::StepReport& report) {
+  const core::Pose2& pose = report.pose.mean;
+  append_seconds(text, report.t_ns);
+  for (const double value : {pose.x_m, pose.y_m, 0.0, 0.0, 0.0, std::sin(0.5 * pose.heading_rad),
+                             std::cos(0.5 * pose.heading_rad)}) {
+    text += ' ';
+    append_number(text, value);
+  }
+  text += '\n';
+}
+
+void append_health(std::string& text, const core::StepReport& report, std::int64_t association_rows,
+                   double microseconds) {
+  const Eigen::Matrix3d& P = report.pose.covariance;
+  append_step_and_time(text, report);
+  text += ',';
+  text += word_of(mode_words, report.mode);
+  append_cells(text, {P(0, 0), P(0, 1), P(0, 2), P(1, 1), P(1, 2), P(2, 2), report.joint_nis});
+  append_counts(text, {report.joint_dof, report.active_landmarks, report.mapped_landmarks, report.switched_region,
+                       association_rows, static_cast<std::int64_t>(report.decisions.size())});
+  append_cells(text, {std::round(microseconds * 10.0) / 10.0});
+  text += '\n';
+}
+
+std::string map_text(const std::vector<core::MapLandmark>& map) {
+  std::string text(map_table.header);
+  text += '\n';
+  for (const core::MapLandmark& landmark : map) {
+    const Eigen::Matrix2d& P = landmark.point.covariance_m2;
+    append_number(text, std::int64_t{landmark.id});
+    append_cells(text, {landmark.point.mean_m.x(), landmark.point.mean_m.y(), P(0, 0), P(0, 1), P(1, 1)});
+    append_counts(text, {landmark.observations});
+    text += ',';
+    text += word_of(state_words, landmark.state);
+    text += '\n';
+  }
+  return text;
+}
+
+// One growing table with the block of the step at hand.
+struct Table {
+  AppendFile file;
+  std::string block;
+
+  Table(const std::string& folder, const RunTable& table) : file(folder + '/' + std::string(table.file)) {
+    block = std::string(table.header) + '\n';
+    flush();
+  }
+  void flush() {
+    if (!block.empty()) file.append(block);
+    block.clear();
+  }
+};
+
+}  // namespace
+
+struct RunWriter::Files {
+  Table associations;
+  Table decisions;
+  Table trajectory;
+  Table health;
+  std::int64_t revised_rows = 0;
+
+  explicit Files(const std::string& folder)
+      : associations(folder, associations_table),
+        decisions(folder, decisions_table),
+        trajectory(folder, trajectory_table),
+        health(folder, health_table) {}
+};
+
+RunWriter::RunWriter(const std::string& folder, const RunManifest& manifest, const core::Recording& recording,
+                     IfNotEmpty if_not_empty)
+    : folder_(folder) {
+  make_folder(folder_, if_not_empty);
+  write_truth(folder_, recording);
+  files_ = std::make_unique<Files>(folder_);
+  // Last: where there is a manifest, all else is.
+  write_whole_file(folder_ + '/' + manifest_file, manifest_to_json(manifest).dump(2) + '\n');
+}
+
+RunWriter::~RunWriter() = default;
+
+void RunWriter::write(const core::StepReport& report, double microseconds) {
+  Files& f = *files_;
+  for (const core::AssociationReport& a : report.associations) {
+    append_association(f.associations.block, report.step, a, false);
+  }
+  for (const core::Decision& decision : report.decisions) append_decision(f.decisions.block, report, decision);
+  append_trajectory(f.trajectory.block, report);
+  const auto rows = f.revised_rows + static_cast<std::int64_t>(report.associations.size());
+  append_health(f.health.block, report, rows, microseconds);
+  f.revised_rows = 0;
+  // Health last: its row counts the rows of the others, so a reader knows when a step is complete.
+  f.associations.flush();
+  f.decisions.flush();
+  f.trajectory.flush();
+  f.health.flush();
+}
+
+void RunWriter::revise(std::int64_t step, const std::vector<core::AssociationReport>& associations) {
+  for (const core::AssociationReport& a : associations) append_association(files_->associations.block, step, a, true);
+  files_->revised_rows += static_cast<std::int64_t>(associations.size());
+}
+
+Evaluation RunWriter::finish(const std::vector<core::MapLandmark>& map, const RunEnd& end) {
+  write_whole_file(folder_ + "/map.csv", map_text(map));
+  RunFolder run = read_run(folder_);
+  run.finished = true;
+  const Evaluation evaluation = evaluate(run);
+  Json summary = summary_to_json(run, evaluation, end.numbers);
+  summary["timing"] = timing_to_json(run.microseconds, end.timing);
+  write_whole_file(folder_ + '/' + report_file, render_report(run, evaluation, end.timing));
+  write_whole_file(folder_ + '/' + summary_file, summary.dump(2) + '\n');
+  return evaluation;
+}
+
+}  // namespace helixnav::logs
