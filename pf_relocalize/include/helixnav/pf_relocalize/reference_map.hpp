@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/core/gaussian.hpp"
+#include "helixnav/pf_relocalize/bases.hpp"
+
+namespace helixnav::pf_relocalize {
+
+/// How the errors that landmarks share are treated before a filter that knows independent landmarks sees them.
+enum class Decorrelation {
+  relative_marginals,  ///< dropped after the change of frame (no bound; no false closing in the prototype's worlds)
+  scalar_bound,        ///< eq (11) of the paper
+  trace_bound,         ///< block bound of least trace
+  whitened_bound,      ///< block bound of least Σ log det
+  constellations,      ///< whitened bound inside groups of at most 8
+  latent_modes,        ///< strongest modes kept exactly, one ξ a particle; whitened bound on the rest
+};
+
+/// The word used in files and options; the reverse throws InputError that lists the words.
+std::string_view name_of(Decorrelation decorrelation);
+Decorrelation decorrelation_from(std::string_view name);
+
+struct ReferenceMapOptions {
+  Decorrelation decorrelation = Decorrelation::relative_marginals;
+  int latent_modes = 6;        ///< columns kept exactly; THEORY §2: trace × 1.5 at 24 landmarks
+  int constellation_size = 8;
+  int sweeps = 5;
+};
+
+/// What the particle filter is told of the old map: landmarks with independent errors in the frame of two of them, and
+/// the vehicle's prior in that frame, transformed jointly (it is correlated with the bases).
+struct ReferenceMap {
+  core::Pose2 T_world_base;
+  Bases bases;
+  std::vector<core::LandmarkId> ids;
+  std::vector<core::PointGaussian> landmarks;  ///< in the base frame
+  core::PoseGaussian prior;                    ///< T_base_robot
+  Eigen::MatrixXd latent;                      ///< V, 2n×q [m]; q = 0 unless latent_modes
+  Eigen::MatrixXd prior_by_latent;             ///< Cov(pose, ξ), 3×q
+
+  int latent_modes() const { return static_cast<int>(latent.cols()); }
+};
+
+/// Builds the map from a joint estimate (pose and n ≥ 3 landmarks, covariance symmetric positive semidefinite, else
+/// PreconditionError). Bases are chosen by choose_bases, or given. Cost: bound O(n²), latent modes O(n³).
+/// Source: hybrid_masson2003 §3.1 eq (10)-(11), THEORY §2. Test: pf_relocalize/reference_map_test.cpp.
+ReferenceMap build_reference_map(const core::JointGaussian& joint, const ReferenceMapOptions& options = {});
+ReferenceMap build_reference_map(const core::JointGaussian& joint, const Bases& bases,
+                                 const ReferenceMapOptions& options = {});
+
+}  // namespace helixnav::pf_relocalize

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/pf_relocalize/bases.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "helixnav/core/errors.hpp"
+
+namespace helixnav::pf_relocalize {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+
+constexpr std::size_t origins_tried = 16;
+
+Vector2d turned_left(const Vector2d& v) { return {-v.y(), v.x()}; }
+
+const Vector2d& point(const core::JointGaussian& joint, int i) { return joint.points_m[static_cast<std::size_t>(i)]; }
+
+Matrix2d cross(const core::JointGaussian& joint, int i, int j) {
+  return joint.covariance.block<2, 2>(3 + 2 * i, 3 + 2 * j);
+}
+
+/// Cov(δm_i − δm_A, δm_j − δm_A).
+Matrix2d relative_cross(const core::JointGaussian& joint, int i, int j, int a) {
+  return cross(joint, i, j) - cross(joint, i, a) - cross(joint, a, j) + cross(joint, a, a);
+}
+
+int landmark_count(const core::JointGaussian& joint) { return static_cast<int>(joint.points_m.size()); }
+
+/// Origins in the order of Σ_i tr Cov(δm_i − δm_A): well observed, and sharing their error with the rest.
+std::vector<int> best_origins(const core::JointGaussian& joint) {
+  const int n = landmark_count(joint);
+  std::vector<double> cost(static_cast<std::size_t>(n), 0.0);
+  for (int a = 0; a < n; ++a) {
+    for (int i = 0; i < n; ++i) cost[static_cast<std::size_t>(a)] += relative_cross(joint, i, i, a).trace();
+  }
+  std::vector<int> order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) {
+    return cost[static_cast<std::size_t>(i)] < cost[static_cast<std::size_t>(j)];
+  });
+  order.resize(std::min(order.size(), origins_tried));
+  return order;
+}
+
+/// δα = lever·(δm_B − δm_A), the rotation of the frame by errors of its bases.
+Vector2d heading_lever(const core::JointGaussian& joint, const Bases& bases) {
+  const Vector2d d = point(joint, bases.b) - point(joint, bases.a);
+  return turned_left(d) / d.squaredNorm();
+}
+
+void check(const core::JointGaussian& joint, const Bases& bases) {
+  const int n = landmark_count(joint);
+  const bool valid = bases.a >= 0 && bases.a < n && bases.b >= 0 && bases.b < n && bases.a != bases.b &&
+                     joint.covariance.rows() == 3 + 2 * n && joint.covariance.cols() == 3 + 2 * n;
+  if (!valid || (point(joint, bases.a) - point(joint, bases.b)).norm() < 1e-6) {
+    throw core::PreconditionError("base frame: two different landmarks and a (3+2n) x (3+2n) covariance are needed");
+  }
+}
+
+/// J·M for the Jacobian J of the change of frame; M has the rows of the joint state.
+Eigen::MatrixXd apply_jacobian(const core::JointGaussian& joint, const Bases& bases, const core::JointGaussian& relative,
+                               const Eigen::MatrixXd& M) {
+  const Matrix2d R_base_world = core::rotation(-base_frame(joint, bases).heading_rad);
+  const auto of_a = M.middleRows<2>(3 + 2 * bases.a);
+  const Eigen::RowVectorXd dalpha =
+      heading_lever(joint, bases).transpose() * (M.middleRows<2>(3 + 2 * bases.b) - of_a);
+  Eigen::MatrixXd out(M.rows(), M.cols());
+  out.topRows<2>().noalias() = R_base_world * (M.topRows<2>() - of_a);
+  out.topRows<2>().noalias() -= turned_left(relative.pose.position_m()) * dalpha;
+  out.row(2) = M.row(2) - dalpha;
+  for (int i = 0; i < landmark_count(joint); ++i) {
+    auto rows = out.middleRows<2>(3 + 2 * i);
+    rows.noalias() = R_base_world * (M.middleRows<2>(3 + 2 * i) - of_a);
+    rows.noalias() -= turned_left(point(relative, i)) * dalpha;
+  }
+  return out;
+}
+
+}  // namespace
+
+core::Pose2 base_frame(const core::JointGaussian& joint, const Bases& bases) {
+  const Vector2d d = point(joint, bases.b) - point(joint, bases.a);
+  return {point(joint, bases.a).x(), point(joint, bases.a).y(), std::atan2(d.y(), d.x())};
+}
+
+double mean_relative_variance_m2(const core::JointGaussian& joint, const Bases& bases) {
+  check(joint, bases);
+  const Vector2d lever = heading_lever(joint, bases);
+  const double heading_variance = lever.dot(relative_cross(joint, bases.b, bases.b, bases.a) * lever);
+  double sum = 0.0;
+  for (int i = 0; i < landmark_count(joint); ++i) {
+    const Vector2d swing = turned_left(point(joint, i) - point(joint, bases.a));
+    sum += relative_cross(joint, i, i, bases.a).trace() -
+           2.0 * swing.dot(relative_cross(joint, i, bases.b, bases.a) * lever) + swing.squaredNorm() * heading_variance;
+  }
+  return sum / landmark_count(joint);
+}
+
+Bases choose_bases(const core::JointGaussian& joint) {
+  if (landmark_count(joint) < 2) throw core::PreconditionError("choose_bases: at least two landmarks are needed");
+  Bases best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const int a : best_origins(joint)) {
+    for (int b = 0; b < landmark_count(joint); ++b) {
+      if (b == a || (point(joint, a) - point(joint, b)).norm() < 1e-6) continue;
+      const double variance = mean_relative_variance_m2(joint, {a, b});
+      if (variance < least) {
+        least = variance;
+        best = {a, b};
+      }
+    }
+  }
+  return best;
+}
+
+core::JointGaussian in_base_frame(const core::JointGaussian& joint, const Bases& bases) {
+  check(joint, bases);
+  const core::Pose2 T_base_world = core::inverse(base_frame(joint, bases));
+  core::JointGaussian relative;
+  relative.ids = joint.ids;
+  relative.pose = core::compose(T_base_world, joint.pose);
+  for (const Vector2d& m : joint.points_m) relative.points_m.push_back(core::transform(T_base_world, m));
+  const Eigen::MatrixXd JP = apply_jacobian(joint, bases, relative, joint.covariance);
+  const Eigen::MatrixXd JPJt = apply_jacobian(joint, bases, relative, JP.transpose());
+  relative.covariance = 0.5 * (JPJt + JPJt.transpose());
+  return relative;
+}
+
+}  // namespace helixnav::pf_relocalize

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pair_sum.hpp"
+
+namespace helixnav::pf_relocalize {
+namespace {
+
+std::vector<Eigen::Vector2d> points_of(const ReferenceMap& map) {
+  std::vector<Eigen::Vector2d> points;
+  for (const core::PointGaussian& landmark : map.landmarks) points.push_back(landmark.mean_m);
+  return points;
+}
+
+}  // namespace
+
+LandmarkTable::LandmarkTable(const ReferenceMap& map)
+    : modes(static_cast<std::size_t>(map.latent.cols())), grid(points_of(map)) {
+  for (std::size_t i = 0; i < map.landmarks.size(); ++i) {
+    const core::PointGaussian& landmark = map.landmarks[i];
+    x.push_back(landmark.mean_m.x());
+    y.push_back(landmark.mean_m.y());
+    sxx.push_back(landmark.covariance_m2(0, 0));
+    sxy.push_back(landmark.covariance_m2(0, 1));
+    syy.push_back(landmark.covariance_m2(1, 1));
+    variance.push_back(largest_variance(landmark.covariance_m2));
+    largest = std::max(largest, variance.back());
+    const auto V = map.latent.middleRows<2>(2 * static_cast<Eigen::Index>(i));
+    for (Eigen::Index k = 0; k < V.cols(); ++k) latent.insert(latent.end(), {V(0, k), V(1, k)});
+    latent_reach_m = std::max(latent_reach_m, 4.0 * V.norm());
+  }
+}
+
+ParticleBlock::ParticleBlock(const Particles& particles, std::size_t begin, std::size_t end)
+    : source(particles), first(begin) {
+  poses.n = end - begin;
+  poses.x = particles.x_m.data() + begin;
+  poses.y = particles.y_m.data() + begin;
+  for (std::size_t i = 0; i < poses.n; ++i) {
+    poses.cos_heading[i] = std::cos(particles.heading_rad[begin + i]);
+    poses.sin_heading[i] = std::sin(particles.heading_rad[begin + i]);
+  }
+}
+
+}  // namespace helixnav::pf_relocalize
