@@ -87,6 +87,8 @@ ObservationOutcome outcome_of(const InnovationProblem& problem, int observation,
   } else if (std::isinf(gated.nearest_nis)) {
     outcome.outcome = Outcome::new_landmark;
   } else {
+    outcome.candidate = gated.nearest_candidate;
+    outcome.landmark = problem.ids[outcome.candidate];
     outcome.nis = gated.nearest_nis;
     outcome.dof = gated.dof;
   }

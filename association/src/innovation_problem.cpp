@@ -154,7 +154,10 @@ void gate_observation(const core::Observation& observation, int index, std::pair
                                  std::to_string(problem.ids[prediction.candidate]) +
                                  " is not finite and positive definite");
     }
-    gated.nearest_nis = std::min(gated.nearest_nis, pair.nis);
+    if (pair.nis < gated.nearest_nis) {
+      gated.nearest_nis = pair.nis;
+      gated.nearest_candidate = pair.candidate;
+    }
     if (pair.nis <= limit.match) problem.pairs.push_back(pair);
   }
   gated.end = static_cast<int>(problem.pairs.size());

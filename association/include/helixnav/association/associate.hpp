@@ -43,10 +43,11 @@ enum class Outcome {
 /// What became of one observation, with the numbers that decided it.
 struct ObservationOutcome {
   Outcome outcome = Outcome::ambiguous;
-  core::LandmarkId landmark = core::no_landmark;  ///< matched; of a dropped pair the landmark it was dropped from
+  /// Matched landmark; for an ambiguous observation the one it was dropped from, else the nearest.
+  core::LandmarkId landmark = core::no_landmark;
   int candidate = -1;  ///< index into InnovationProblem::ids
   int pair = -1;       ///< index into InnovationProblem::pairs
-  double nis = std::numeric_limits<double>::quiet_NaN();  ///< of the pair; without one of the nearest landmark in the gate
+  double nis = std::numeric_limits<double>::quiet_NaN();  ///< to the landmark named; NaN without
   int dof = 0;
   /// Likelihood-ratio cost of the best alternative minus that of the choice: for the likelihood-ratio methods of the
   /// whole scan's assignment, for the others of this observation alone; +inf without an alternative.

@@ -54,6 +54,7 @@ struct GatedObservation {
   int begin = 0;
   int end = 0;
   double nearest_nis = std::numeric_limits<double>::infinity();  ///< to any landmark; +inf beyond the gate for new ones
+  int nearest_candidate = -1;
 };
 
 /// Everything that data association knows of one scan. A value without a filter: pairs inside the gate with innovation

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/core/landmark_id.hpp"
+#include "helixnav/core/step_report.hpp"
+
+namespace helixnav::association {
+
+/// Evidence for a landmark's existence, in nats. A look is a scan taken at least `look_distance_m` from where the last
+/// look of the same kind at this landmark was taken: standing still, a sensor says the same thing again and again.
+struct LifeOptions {
+  double detection_probability = 0.7;   ///< that an expected landmark is seen in one look, occlusion included
+  double false_hit_probability = 0.1;   ///< that clutter stands in for one that does not exist
+  double look_distance_m = 0.25;
+  double birth_log_odds = 0.0;
+  double max_log_odds = 8.0;            ///< no history makes a landmark immortal
+  int mature_looks = 3;                 ///< hits, birth included, and
+  double mature_log_odds = 3.0;         ///< log-odds that make a tentative landmark mature
+  double tentative_death_log_odds = -2.0;
+  double tentative_patience_m = 30.0;   ///< a tentative landmark unseen over so long a drive dies
+  bool mature_may_die = true;
+  double mature_death_log_odds = -8.0;
+};
+
+/// What is known of one landmark's life.
+struct LandmarkRecord {
+  core::LandmarkId id = core::no_landmark;
+  core::LandmarkState state = core::LandmarkState::tentative;
+  double log_odds = 0.0;
+  int observations = 0;  ///< scans that saw it, looks or not
+  int hits = 0;          ///< looks that saw it, birth included
+  int misses = 0;        ///< looks that should have seen it
+  Eigen::Vector2d last_hit_at_m = Eigen::Vector2d::Zero();   ///< place of the sensor
+  Eigen::Vector2d last_miss_at_m = Eigen::Vector2d::Zero();
+  double last_seen_path_m = 0.0;                             ///< length of the drive then
+  std::vector<core::LandmarkId> seen_with;                   ///< ever in the same scan, ascending
+};
+
+/// What one scan changed. Whoever owns the filter removes the dead ones from it.
+struct LifeChanges {
+  std::vector<core::LandmarkId> matured;
+  std::vector<core::LandmarkId> died;
+};
+
+/// Who of the map is tentative, mature or dead: bookkeeping only, a value without a filter, copied with a snapshot.
+/// log-odds += ln(P_D/P_F) for a hit and ln((1−P_D)/(1−P_F)) for a miss. Dead landmarks leave the book.
+/// Cost of a scan O((seen + expected) log n + seen²). Test: association/landmark_life_test.cpp.
+class LandmarkLife {
+ public:
+  /// PreconditionError unless 0 < P_F < P_D < 1, deaths lie below birth and maturity above it.
+  explicit LandmarkLife(const LifeOptions& options = {});
+
+  /// One scan taken with the sensor at `sensor_m`, world frame. `seen`: matched landmarks. `born`: those that it began.
+  /// `expected`: those it should have seen, with a margin inside the field of view; who was seen may be among them. A
+  /// landmark beside an ambiguous observation belongs in neither list. PreconditionError, with the book as it was, for a
+  /// seen or expected id that is not in the book or a born one that is.
+  LifeChanges observe(const Eigen::Vector2d& sensor_m, const std::vector<core::LandmarkId>& seen,
+                      const std::vector<core::LandmarkId>& born, const std::vector<core::LandmarkId>& expected);
+
+  /// A landmark that the filter lost for another reason, as by a merge.
+  void remove(core::LandmarkId id);
+
+  bool contains(core::LandmarkId id) const;
+  const LandmarkRecord& record(core::LandmarkId id) const;  ///< PreconditionError when it is not in the book
+  core::LandmarkState state(core::LandmarkId id) const;     ///< dead when it is not in the book
+  const std::vector<LandmarkRecord>& records() const { return records_; }  ///< ascending by id
+
+  bool seen_together(core::LandmarkId a, core::LandmarkId b) const;
+
+ private:
+  LandmarkRecord* find(core::LandmarkId id);
+  const LandmarkRecord* find(core::LandmarkId id) const;
+  void check_scan(const std::vector<core::LandmarkId>& seen, const std::vector<core::LandmarkId>& born,
+                  const std::vector<core::LandmarkId>& expected) const;
+  void hit(LandmarkRecord& record, const Eigen::Vector2d& sensor_m);
+  void miss(LandmarkRecord& record, const Eigen::Vector2d& sensor_m);
+  void note_company(const std::vector<core::LandmarkId>& company);
+  bool is_dying(const LandmarkRecord& record) const;
+
+  LifeOptions options_;
+  double hit_nats_;
+  double miss_nats_;
+  std::vector<LandmarkRecord> records_;
+  Eigen::Vector2d last_sensor_m_ = Eigen::Vector2d::Zero();
+  double path_m_ = 0.0;
+  bool started_ = false;
+};
+
+}  // namespace helixnav::association

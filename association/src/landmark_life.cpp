@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/association/landmark_life.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "helixnav/core/errors.hpp"
+
+namespace helixnav::association {
+namespace {
+
+using core::LandmarkId;
+using core::LandmarkState;
+
+bool before(const LandmarkRecord& record, LandmarkId id) { return record.id < id; }
+
+void insert_sorted(std::vector<LandmarkId>& ids, LandmarkId id) {
+  const auto at = std::lower_bound(ids.begin(), ids.end(), id);
+  if (at == ids.end() || *at != id) ids.insert(at, id);
+}
+
+bool is_listed(const std::vector<LandmarkId>& ids, LandmarkId id) {
+  return std::find(ids.begin(), ids.end(), id) != ids.end();
+}
+
+}  // namespace
+
+LandmarkLife::LandmarkLife(const LifeOptions& options)
+    : options_(options),
+      hit_nats_(std::log(options.detection_probability / options.false_hit_probability)),
+      miss_nats_(std::log((1.0 - options.detection_probability) / (1.0 - options.false_hit_probability))) {
+  const bool ok = options.false_hit_probability > 0.0 &&
+                  options.false_hit_probability < options.detection_probability &&
+                  options.detection_probability < 1.0 && options.tentative_death_log_odds < options.birth_log_odds &&
+                  options.mature_death_log_odds < options.birth_log_odds &&
+                  options.birth_log_odds < options.mature_log_odds && options.mature_log_odds <= options.max_log_odds &&
+                  options.mature_looks >= 1 && options.look_distance_m >= 0.0 && options.tentative_patience_m > 0.0;
+  if (!ok) {
+    throw core::PreconditionError(
+        "landmark life: 0 < false_hit_probability < detection_probability < 1, death log-odds < birth < mature <= max, "
+        "mature_looks >= 1, look_distance_m >= 0 and tentative_patience_m > 0 expected");
+  }
+}
+
+LifeChanges LandmarkLife::observe(const Eigen::Vector2d& sensor_m, const std::vector<LandmarkId>& seen,
+                                  const std::vector<LandmarkId>& born, const std::vector<LandmarkId>& expected) {
+  check_scan(seen, born, expected);
+  if (started_) path_m_ += (sensor_m - last_sensor_m_).norm();
+  last_sensor_m_ = sensor_m;
+  started_ = true;
+
+  for (const LandmarkId id : seen) hit(*find(id), sensor_m);
+  for (const LandmarkId id : expected) {
+    if (!is_listed(seen, id)) miss(*find(id), sensor_m);
+  }
+  for (const LandmarkId id : born) {
+    LandmarkRecord record;
+    record.id = id;
+    record.log_odds = options_.birth_log_odds;
+    record.observations = record.hits = 1;
+    record.last_hit_at_m = record.last_miss_at_m = sensor_m;
+    record.last_seen_path_m = path_m_;
+    records_.insert(std::lower_bound(records_.begin(), records_.end(), id, before), record);
+  }
+  std::vector<LandmarkId> company = seen;
+  company.insert(company.end(), born.begin(), born.end());
+  note_company(company);
+
+  LifeChanges changes;
+  for (LandmarkRecord& record : records_) {
+    if (record.state == LandmarkState::tentative && record.hits >= options_.mature_looks &&
+        record.log_odds >= options_.mature_log_odds) {
+      record.state = LandmarkState::mature;
+      changes.matured.push_back(record.id);
+    } else if (is_dying(record)) {
+      changes.died.push_back(record.id);
+    }
+  }
+  for (const LandmarkId id : changes.died) remove(id);
+  return changes;
+}
+
+void LandmarkLife::check_scan(const std::vector<LandmarkId>& seen, const std::vector<LandmarkId>& born,
+                              const std::vector<LandmarkId>& expected) const {
+  const auto require = [](bool ok, LandmarkId id, const char* what) {
+    if (!ok) throw core::PreconditionError("landmark life: landmark " + std::to_string(id) + what);
+  };
+  for (const LandmarkId id : seen) require(contains(id), id, " was seen but never born");
+  for (const LandmarkId id : expected) require(contains(id) || is_listed(born, id), id, " is expected but unknown");
+  for (const LandmarkId id : born) {
+    require(!contains(id), id, " is born twice");
+    require(std::count(born.begin(), born.end(), id) == 1, id, " is born twice");
+  }
+}
+
+void LandmarkLife::hit(LandmarkRecord& record, const Eigen::Vector2d& sensor_m) {
+  ++record.observations;
+  record.last_seen_path_m = path_m_;
+  if ((sensor_m - record.last_hit_at_m).norm() < options_.look_distance_m) return;
+  ++record.hits;
+  record.last_hit_at_m = sensor_m;
+  record.log_odds = std::min(options_.max_log_odds, record.log_odds + hit_nats_);
+}
+
+void LandmarkLife::miss(LandmarkRecord& record, const Eigen::Vector2d& sensor_m) {
+  if ((sensor_m - record.last_miss_at_m).norm() < options_.look_distance_m) return;
+  ++record.misses;
+  record.last_miss_at_m = sensor_m;
+  record.log_odds += miss_nats_;
+}
+
+void LandmarkLife::note_company(const std::vector<LandmarkId>& company) {
+  for (const LandmarkId a : company) {
+    LandmarkRecord& record = *find(a);
+    for (const LandmarkId b : company) {
+      if (b != a) insert_sorted(record.seen_with, b);
+    }
+  }
+}
+
+bool LandmarkLife::is_dying(const LandmarkRecord& record) const {
+  if (record.state == LandmarkState::mature) {
+    return options_.mature_may_die && record.log_odds <= options_.mature_death_log_odds;
+  }
+  return record.log_odds <= options_.tentative_death_log_odds ||
+         path_m_ - record.last_seen_path_m > options_.tentative_patience_m;
+}
+
+void LandmarkLife::remove(LandmarkId id) {
+  LandmarkRecord* record = find(id);
+  if (record == nullptr) throw core::PreconditionError("landmark life: no landmark " + std::to_string(id));
+  for (const LandmarkId other : record->seen_with) {
+    if (LandmarkRecord* friend_record = find(other)) {
+      std::vector<LandmarkId>& ids = friend_record->seen_with;
+      const auto at = std::lower_bound(ids.begin(), ids.end(), id);
+      if (at != ids.end() && *at == id) ids.erase(at);
+    }
+  }
+  records_.erase(records_.begin() + (record - records_.data()));
+}
+
+LandmarkRecord* LandmarkLife::find(LandmarkId id) {
+  const auto at = std::lower_bound(records_.begin(), records_.end(), id, before);
+  return at != records_.end() && at->id == id ? &*at : nullptr;
+}
+
+const LandmarkRecord* LandmarkLife::find(LandmarkId id) const {
+  const auto at = std::lower_bound(records_.begin(), records_.end(), id, before);
+  return at != records_.end() && at->id == id ? &*at : nullptr;
+}
+
+bool LandmarkLife::contains(LandmarkId id) const { return find(id) != nullptr; }
+
+const LandmarkRecord& LandmarkLife::record(LandmarkId id) const {
+  const LandmarkRecord* record = find(id);
+  if (record == nullptr) throw core::PreconditionError("landmark life: no landmark " + std::to_string(id));
+  return *record;
+}
+
+LandmarkState LandmarkLife::state(LandmarkId id) const {
+  const LandmarkRecord* record = find(id);
+  return record == nullptr ? LandmarkState::dead : record->state;
+}
+
+bool LandmarkLife::seen_together(LandmarkId a, LandmarkId b) const {
+  const std::vector<LandmarkId>& company = record(a).seen_with;
+  return std::binary_search(company.begin(), company.end(), b);
+}
+
+}  // namespace helixnav::association
