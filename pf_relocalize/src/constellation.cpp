@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/pf_relocalize/constellation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels.hpp"
+#include "pair_sum.hpp"
+
+namespace helixnav::pf_relocalize {
+namespace {
+
+constexpr int unmatched = -1;
+
+struct Candidate {
+  int branch;
+  int old_landmark;
+  double distance_m;
+};
+
+/// Branch landmarks with enough hits, placed in the map.
+struct PlacedBranch {
+  std::vector<const BranchLandmark*> landmarks;
+  std::vector<Eigen::Vector2d> points_m;
+};
+
+PlacedBranch place(const Constellation& constellation, const core::Pose2& T_map_robot, int least_hits) {
+  PlacedBranch placed;
+  for (const BranchLandmark& landmark : constellation.branch) {
+    if (landmark.hits < least_hits) continue;
+    placed.landmarks.push_back(&landmark);
+    placed.points_m.push_back(core::transform(T_map_robot, landmark.point_robot_m));
+  }
+  return placed;
+}
+
+/// Pairs within tolerance, nearest first.
+std::vector<Candidate> candidates(const Constellation& constellation, const PlacedBranch& placed,
+                                  const ConstellationLimits& limits) {
+  std::vector<Candidate> pairs;
+  for (std::size_t i = 0; i < placed.points_m.size(); ++i) {
+    const double lever_m = limits.lever_rad * placed.landmarks[i]->point_robot_m.norm();
+    for (std::size_t j = 0; j < constellation.old_landmarks.size(); ++j) {
+      const core::PointGaussian& old = constellation.old_landmarks[j].point;
+      const double distance = (placed.points_m[i] - old.mean_m).norm();
+      if (distance >= limits.most_tolerance_m) continue;
+      const double variance = largest_variance(old.covariance_m2) + limits.branch_sigma_m * limits.branch_sigma_m;
+      if (distance < 3.0 * std::sqrt(variance) + lever_m) pairs.push_back({static_cast<int>(i), static_cast<int>(j), distance});
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.distance_m < b.distance_m; });
+  return pairs;
+}
+
+/// One-to-one matching: greedy, then augmenting paths until it is a largest one.
+class Matching {
+ public:
+  Matching(std::size_t branch, std::size_t old_landmarks, const std::vector<Candidate>& pairs)
+      : edges_(branch), old_of_(branch, unmatched), branch_of_(old_landmarks, unmatched) {
+    for (const Candidate& pair : pairs) {
+      edges_[index(pair.branch)].push_back(pair.old_landmark);
+      if (old_of_[index(pair.branch)] == unmatched && branch_of_[index(pair.old_landmark)] == unmatched) {
+        join(pair.branch, pair.old_landmark);
+      }
+    }
+    for (std::size_t i = 0; i < branch; ++i) {
+      if (old_of_[i] != unmatched) continue;
+      visited_.assign(old_landmarks, false);
+      augment(static_cast<int>(i));
+    }
+  }
+
+  int old_of(std::size_t branch) const { return old_of_[branch]; }
+  bool old_is_free(std::size_t old_landmark) const { return branch_of_[old_landmark] == unmatched; }
+
+ private:
+  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+  void join(int branch, int old_landmark) {
+    old_of_[index(branch)] = old_landmark;
+    branch_of_[index(old_landmark)] = branch;
+  }
+
+  /// Finds a partner for `branch`, moving others to their alternatives; false when there is none.
+  bool augment(int branch) {
+    for (const int old_landmark : edges_[index(branch)]) {
+      if (visited_[index(old_landmark)]) continue;
+      visited_[index(old_landmark)] = true;
+      const int holder = branch_of_[index(old_landmark)];
+      if (holder != unmatched && !augment(holder)) continue;
+      join(branch, old_landmark);
+      return true;
+    }
+    return false;
+  }
+
+  std::vector<std::vector<int>> edges_;  // old landmarks of each branch landmark, nearest first
+  std::vector<int> old_of_, branch_of_;
+  std::vector<bool> visited_;
+};
+
+bool counts(const ConstellationScore& rival, const ConstellationScore& winner, const ConstellationLimits& limits) {
+  return rival.matched >= limits.rival_least_matches && rival.matched >= limits.rival_match_share * winner.matched;
+}
+
+ConstellationReason reason_for(const ConstellationVerdict& verdict, const ConstellationLimits& limits) {
+  if (verdict.winner.matched < limits.least_matches) return ConstellationReason::too_few_matches;
+  if (verdict.winner.ratio <= limits.least_ratio) return ConstellationReason::ratio_too_low;
+  return verdict.rival_share >= limits.rival_ratio ? ConstellationReason::rival_too_good : ConstellationReason::accepted;
+}
+
+}  // namespace
+
+bool Coverage::covers(const Eigen::Vector2d& point_m) const {
+  core::FieldOfView shrunk = field_of_view;
+  shrunk.max_range_m *= range_share;
+  const bool all_around = shrunk.max_bearing_rad - shrunk.min_bearing_rad >= 2.0 * core::pi - 1e-9;
+  if (!all_around) {
+    shrunk.min_bearing_rad += bearing_margin_rad;
+    shrunk.max_bearing_rad -= bearing_margin_rad;
+  }
+  const double middle = 0.5 * (shrunk.min_bearing_rad + shrunk.max_bearing_rad);
+  const double half = 0.5 * (shrunk.max_bearing_rad - shrunk.min_bearing_rad);
+  int views = 0;
+  for (const core::Pose2& pose : T_frame_sensor) {
+    const Eigen::Vector2d d = point_m - pose.position_m();
+    const double range = d.norm();
+    if (range < shrunk.min_range_m || range > shrunk.max_range_m) continue;
+    const double bearing = std::atan2(d.y(), d.x()) - pose.heading_rad;
+    if (!all_around && std::abs(core::wrap_to_pi(bearing - middle)) > half) continue;
+    if (++views >= least_views) return true;
+  }
+  return false;
+}
+
+ConstellationScore score_constellation(const Constellation& constellation, const core::Pose2& T_map_robot,
+                                       const ConstellationLimits& limits) {
+  const PlacedBranch placed = place(constellation, T_map_robot, limits.least_hits);
+  const Matching matching(placed.points_m.size(), constellation.old_landmarks.size(),
+                          candidates(constellation, placed, limits));
+  ConstellationScore score;
+  score.T_map_robot = T_map_robot;
+  for (std::size_t i = 0; i < placed.points_m.size(); ++i) {
+    const int j = matching.old_of(i);
+    if (j == unmatched) {
+      score.unmatched_branch += constellation.old_drive.covers(placed.points_m[i]) ? 1 : 0;
+      continue;
+    }
+    const OldLandmark& old = constellation.old_landmarks[static_cast<std::size_t>(j)];
+    score.pairs.push_back({placed.landmarks[i]->id, old.id, (placed.points_m[i] - old.point.mean_m).norm()});
+  }
+  score.matched = static_cast<int>(score.pairs.size());
+  const core::Pose2 T_robot_map = core::inverse(T_map_robot);
+  for (std::size_t j = 0; j < constellation.old_landmarks.size(); ++j) {
+    const Eigen::Vector2d seen_from_now = core::transform(T_robot_map, constellation.old_landmarks[j].point.mean_m);
+    if (matching.old_is_free(j) && constellation.new_drive.covers(seen_from_now)) ++score.unmatched_old;
+  }
+  const double against = 0.5 * (score.unmatched_branch + score.unmatched_old);
+  score.ratio = score.matched == 0 ? 0.0 : score.matched / (score.matched + against);
+  return score;
+}
+
+ConstellationVerdict judge_constellation(const Constellation& constellation, const core::Pose2& winner,
+                                         const std::vector<core::Pose2>& rivals, const ConstellationLimits& limits) {
+  ConstellationVerdict verdict;
+  verdict.winner = score_constellation(constellation, winner, limits);
+  verdict.rivals_tried = static_cast<int>(rivals.size());
+  for (const core::Pose2& pose : rivals) {
+    ConstellationScore rival = score_constellation(constellation, pose, limits);
+    if (counts(rival, verdict.winner, limits) && rival.ratio > verdict.rival.ratio) verdict.rival = std::move(rival);
+  }
+  verdict.rival_share = verdict.winner.ratio > 0.0 ? verdict.rival.ratio / verdict.winner.ratio : 0.0;
+  verdict.reason = reason_for(verdict, limits);
+  verdict.accepted = verdict.reason == ConstellationReason::accepted;
+  return verdict;
+}
+
+}  // namespace helixnav::pf_relocalize
