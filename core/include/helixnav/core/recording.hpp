@@ -36,6 +36,13 @@ struct TruePosition {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
 };
 
+/// An observation that shows several objects at once, as a detector joins lines that it cannot part: all their labels.
+struct SharedObservation {
+  std::size_t scan = 0;
+  std::size_t observation = 0;
+  std::vector<Label> labels;
+};
+
 /// What a reader or a simulator hands out: the events, in time order, and beside them what only evaluation may see.
 /// Estimators never include this header (checked by the include-graph test).
 struct Recording {
@@ -44,6 +51,7 @@ struct Recording {
   std::vector<Event> events;  ///< in time order; an increment comes before the scan that ends it
 
   std::vector<std::vector<Label>> labels;  ///< [scan][observation]; empty when nobody labelled the log
+  std::vector<SharedObservation> shared_observations;  ///< `labels` holds the first label of each
   std::vector<TruePose> true_poses;
   std::vector<TrueLandmark> true_landmarks;
   std::vector<TruePosition> true_positions;
