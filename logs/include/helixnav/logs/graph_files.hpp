@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "helixnav/core/landmark_graph.hpp"
+#include "helixnav/core/recording.hpp"
+
+namespace helixnav::logs {
+
+/// Reads a planar landmark graph in g2o's text: VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_XY, EDGE_BEARING_SE2_XY, with the
+/// upper triangle of each information matrix by rows; FIX lines and comments are passed over. Vertices keep the file's
+/// numbers as names; edges may come before their vertices. Frames are the file's own: nothing is turned.
+/// Throws core::InputError naming file:line for an unknown tag, a field too few or too many, a number that is none, a vertex
+/// given twice, an edge to a vertex that is not there or of the wrong kind, an information matrix that is not positive
+/// definite. Test: logs/graph_files_test.cpp.
+core::LandmarkGraph read_g2o(const std::filesystem::path& path);
+
+/// Writers of the same graph for other solvers. All keep the names of poses and landmarks where no landmark is called like a
+/// pose, since these formats have one set of numbers for both; else landmarks are shifted beyond the last pose. Cartesian
+/// observations are exact, range and bearing become points to first order; bearings only in g2o, without a lever arm.
+/// What a format cannot hold (ranges alone, fixes) is a core::InputError. Test: logs/graph_files_test.cpp (round trips, χ²).
+void write_g2o(const core::LandmarkGraph& graph, const std::filesystem::path& path);
+/// iSAM: ODOMETRY and LANDMARK lines with the upper triangular square root U of the information, UᵀU = C⁻¹.
+void write_isam(const core::LandmarkGraph& graph, const std::filesystem::path& path);
+/// The same lines as GTSAM's example of Victoria Park has them: with the covariance.
+void write_gtsam(const core::LandmarkGraph& graph, const std::filesystem::path& path);
+
+/// The drive that a graph tells of, for programs that work step by step: the poses in the order of their odometry chain, one
+/// Odometry and one Scan per pose (t = index in seconds), labels = names of the landmarks. Throws core::InputError when
+/// pose-to-pose edges are not one chain.
+core::Recording recording_from_graph(const core::LandmarkGraph& graph, std::string name);
+
+/// Reads the one-step local maps of 2D-I-SLSJF (VicPark_clean_data.mat, matio): rows [1 from to dx dy dφ Cxx Cxy Cxφ Cyy Cyφ Cφφ]
+/// and [0 pose landmark x y Cxx Cxy Cyy 0 …]. One Odometry and one Scan per pose, t = pose number in seconds, labels from
+/// the file, true identities as its authors associated them. x ahead, y left as in the file.
+/// Throws core::InputError naming file and row. Test: logs/graph_vicpark_test.cpp.
+core::Recording read_vicpark_clean(const std::filesystem::path& path);
+
+}  // namespace helixnav::logs
