@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "helixnav/core/errors.hpp"
-#include "helixnav/core/gaussian.hpp"
 
 namespace helixnav::core {
 namespace {
@@ -45,7 +44,8 @@ struct Polar {
 Polar polar(const Eigen::Vector2d& point_m) {
   const double range_m = point_m.norm();
   if (!(range_m > nearest_range_m)) {
-    throw NumericalError("predict_observation: the landmark stands at the sensor; bearing and range have no derivative");
+    throw NumericalError(
+        "predict_observation: the landmark stands at the sensor; bearing and range have no derivative");
   }
   return {range_m, std::atan2(point_m.y(), point_m.x()), point_m.transpose() / range_m,
           Eigen::RowVector2d(-point_m.y(), point_m.x()) / (range_m * range_m)};
@@ -61,6 +61,21 @@ Observation make_scalar(ObservationKind kind, double value, double sigma) {
 
 bool has_range(ObservationKind kind) {
   return kind == ObservationKind::range_bearing || kind == ObservationKind::range;
+}
+
+/// is_symmetric_positive_definite for one or two rows, without the heap: every observation of every scan is checked.
+bool is_small_spd(const ObsMatrix& R) {
+  if (!R.allFinite() || !(R(0, 0) > 0.0)) return false;
+  if (R.rows() == 1) return true;
+  const double scale = R.cwiseAbs().maxCoeff();
+  return std::abs(R(0, 1) - R(1, 0)) <= 1e-9 * scale && R(0, 0) * R(1, 1) - R(0, 1) * R(1, 0) > 0.0;
+}
+
+[[noreturn]] void refuse(const Observation& observation, const char* problem) {
+  std::ostringstream message;
+  message << "observation: " << problem << "; z = [" << observation.z.transpose() << "], R = ["
+          << observation.R.reshaped().transpose() << "]";
+  throw PreconditionError(message.str());
 }
 
 }  // namespace
@@ -154,17 +169,15 @@ LocatedLandmark locate_landmark(const Observation& observation, const Pose2& T_w
 
 void check_observation(const Observation& observation) {
   const int d = dimension(observation.kind);
-  std::ostringstream problem;
   if (observation.z.size() != d || observation.R.rows() != d || observation.R.cols() != d) {
-    problem << "z and R must have " << d << " rows for this kind";
+    refuse(observation, "z and R must have as many rows as the kind");
   } else if (!observation.z.allFinite()) {
-    problem << "z is not finite: " << observation.z.transpose();
+    refuse(observation, "z is not finite");
   } else if (has_range(observation.kind) && observation.z[0] <= 0.0) {
-    problem << "range must be positive: " << observation.z[0] << " m";
-  } else if (!is_symmetric_positive_definite(observation.R)) {
-    problem << "R is not symmetric positive definite: " << observation.R.reshaped().transpose();
+    refuse(observation, "the range must be positive");
+  } else if (!is_small_spd(observation.R)) {
+    refuse(observation, "R is not symmetric positive definite");
   }
-  if (problem.tellp() > 0) throw PreconditionError("observation: " + problem.str());
 }
 
 }  // namespace helixnav::core

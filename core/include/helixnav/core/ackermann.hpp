@@ -26,6 +26,7 @@ struct AckermannSample {
 
 /// Body-frame increment of the rear axle with its covariance: v = v_e / (1 − H/L·tan α), ω = v/L·tan α, exact on the
 /// arc of constant v and ω. The covariance is J·diag(σ_v², σ_α²)·Jᵀ with the analytic J (3×2); it has rank two.
+/// Steering must stay below atan(L/H), where the encoder's wheel would stand still (75° by default).
 /// t_ns of the result is left 0 for the caller. Source: victoria_park README (vehicle), ACFR.
 /// Test: core/ackermann_test.cpp (Jacobian against central differences, arc against fine integration).
 Odometry ackermann_increment(const AckermannGeometry& geometry, const AckermannNoise& noise,

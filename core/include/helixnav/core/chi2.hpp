@@ -8,7 +8,7 @@ namespace helixnav::core {
 /// Test: core/chi2_test.cpp against tabulated values.
 double chi2_quantile(double probability, int dof);
 
-/// P(χ²_dof ≤ x).
+/// P(χ²_dof ≤ x); x ≥ 0, dof ≥ 1, else PreconditionError. Test: core/chi2_test.cpp.
 double chi2_cdf(double x, int dof);
 
 }  // namespace helixnav::core

@@ -36,6 +36,7 @@ struct JointGaussian {
 bool is_symmetric_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
 
 /// Same as is_symmetric_positive_definite but accepts eigenvalues down to −1e-9 of the largest element.
+/// Test: core/gaussian_test.cpp.
 bool is_symmetric_positive_semidefinite(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
 
 }  // namespace helixnav::core

@@ -52,7 +52,7 @@ struct PredictedObservation {
 PredictedObservation predict_observation(ObservationKind kind, const Pose2& T_world_robot, const Pose2& T_robot_sensor,
                                          const Eigen::Vector2d& landmark_world_m);
 
-/// ν = z − ẑ with its bearing in (-π, π].
+/// ν = z − ẑ with its bearing in (-π, π]. Test: core/observation_test.cpp.
 ObsVector innovation(ObservationKind kind, const ObsVector& z, const ObsVector& z_hat);
 
 /// The landmark m = g(T_world_robot, z) that an observation speaks of, with derivatives G_pose (2×3) and G_z (2×2).
@@ -63,12 +63,12 @@ struct LocatedLandmark {
 };
 
 /// Inverse of predict_observation for the kinds with two rows; PreconditionError for bearing and range alone, which do
-/// not fix a point.
+/// not fix a point. Test: core/observation_test.cpp.
 LocatedLandmark locate_landmark(const Observation& observation, const Pose2& T_world_robot,
                                 const Pose2& T_robot_sensor);
 
 /// Throws PreconditionError unless z is finite, ranges are positive, shapes fit the kind and R is symmetric positive
-/// definite.
+/// definite. No allocation unless it throws. Test: core/observation_test.cpp.
 void check_observation(const Observation& observation);
 
 }  // namespace helixnav::core
