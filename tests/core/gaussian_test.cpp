@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/core/gaussian.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <limits>
+
+#include "helixnav/core/random.hpp"
+
+namespace helixnav::core {
+namespace {
+
+/// Q·diag(eigenvalues)·Qᵀ with a random orthogonal Q.
+Eigen::MatrixXd with_eigenvalues(const Eigen::VectorXd& eigenvalues, RandomStream& random) {
+  const Eigen::Index n = eigenvalues.size();
+  Eigen::MatrixXd A(n, n);
+  for (double& a : A.reshaped()) a = random.normal();
+  const Eigen::MatrixXd Q = A.householderQr().householderQ();
+  const Eigen::MatrixXd M = Q * eigenvalues.asDiagonal() * Q.transpose();
+  return 0.5 * (M + M.transpose());
+}
+
+TEST(PositiveDefinite, IsDecidedByTheSmallestEigenvalue) {
+  RandomStream random(1, "gaussian");
+  for (const Eigen::Index n : {1, 2, 3, 8, 40}) {
+    Eigen::VectorXd eigenvalues = Eigen::VectorXd::LinSpaced(n, 1.0, 10.0);
+    for (const double smallest : {1.0, 1e-3, 1e-6}) {
+      eigenvalues[0] = smallest;
+      EXPECT_TRUE(is_symmetric_positive_definite(with_eigenvalues(eigenvalues, random))) << n << " " << smallest;
+      EXPECT_TRUE(is_symmetric_positive_semidefinite(with_eigenvalues(eigenvalues, random))) << n << " " << smallest;
+      eigenvalues[0] = -smallest;
+      EXPECT_FALSE(is_symmetric_positive_definite(with_eigenvalues(eigenvalues, random))) << n << " " << smallest;
+      EXPECT_FALSE(is_symmetric_positive_semidefinite(with_eigenvalues(eigenvalues, random))) << n << " " << smallest;
+    }
+  }
+}
+
+TEST(PositiveSemidefinite, AcceptsSingularMatricesAndRoundOff) {
+  RandomStream random(2, "gaussian");
+  EXPECT_TRUE(is_symmetric_positive_semidefinite(Eigen::Matrix3d::Zero()));
+  EXPECT_TRUE(is_symmetric_positive_semidefinite(with_eigenvalues(Eigen::Vector3d(0.0, 0.0, 5.0), random)));
+  EXPECT_TRUE(is_symmetric_positive_semidefinite(with_eigenvalues(Eigen::Vector3d(-1e-11, 1.0, 5.0), random)));
+  EXPECT_FALSE(is_symmetric_positive_definite(Eigen::Matrix3d::Zero()));
+}
+
+TEST(PositiveDefinite, IsIndependentOfUnits) {
+  RandomStream random(3, "gaussian");
+  const Eigen::MatrixXd M = with_eigenvalues(Eigen::Vector3d(1.0, 2.0, 3.0), random);
+  for (const double scale : {1e-12, 1e12}) {
+    EXPECT_TRUE(is_symmetric_positive_definite(scale * M));
+    EXPECT_TRUE(is_symmetric_positive_semidefinite(scale * M));
+    EXPECT_FALSE(is_symmetric_positive_semidefinite(-scale * M));
+  }
+}
+
+TEST(PositiveDefinite, RefusesWhatIsNotSymmetricNotSquareOrNotFinite) {
+  Eigen::MatrixXd M = Eigen::Matrix3d::Identity();
+  M(0, 2) = 1e-6;
+  EXPECT_FALSE(is_symmetric_positive_definite(M));
+  EXPECT_FALSE(is_symmetric_positive_semidefinite(M));
+  M(0, 2) = 1e-10;  // round-off
+  EXPECT_TRUE(is_symmetric_positive_definite(M));
+  EXPECT_FALSE(is_symmetric_positive_definite(Eigen::MatrixXd::Identity(2, 3)));
+  EXPECT_FALSE(is_symmetric_positive_semidefinite(Eigen::MatrixXd::Identity(2, 3)));
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    M = Eigen::Matrix3d::Identity();
+    M(1, 1) = bad;
+    EXPECT_FALSE(is_symmetric_positive_definite(M));
+    EXPECT_FALSE(is_symmetric_positive_semidefinite(M));
+  }
+}
+
+}  // namespace
+}  // namespace helixnav::core
