@@ -60,7 +60,7 @@ Scenario orchard() {
   s.world.loop_length_m = {620.0, 700.0};
   s.world.changed_share = 0.05;
   s.world.drive_on_m = 220.0;
-  s.true_noise.odometry = {1.6, 0.0184};
+  s.true_noise.odometry = {1.0, 0.0184};
   s.told_noise = s.true_noise;
   return s;
 }
@@ -101,7 +101,7 @@ Scenario occlusion() {
 
 Scenario blackout() {
   Scenario s;
-  s.world.blackout_length_m = 80.0;
+  s.world.blackout_length_m = 50.0;
   return s;
 }
 
@@ -167,7 +167,7 @@ constexpr std::array<Entry, 17> entries{{
     {"told-noise-half", "large-loop whose events claim half of the true noise", told_half},
     {"told-noise-double", "large-loop whose events claim twice the true noise", told_double},
     {"occlusion", "large-loop whose trunks of 0.5 m radius hide the trees behind them", occlusion},
-    {"blackout", "large-loop whose scanner sees nothing for 80 m of the first lap", blackout},
+    {"blackout", "large-loop whose scanner sees nothing for 50 m of the first lap", blackout},
     {"circuit", "circle of 50 m driven four times (800 scans) among 20 landmarks, moderate noise", circuit_moderate},
     {"circuit-large-noise", "circuit with 2 deg/step odometry, 0.3 m and 5 deg scanner noise", circuit_large},
     {"noise-free", "large-loop whose sensors are exact and miss nothing; the events claim the usual noise", noise_free},

@@ -69,12 +69,13 @@ World open_road_world(const WorldOptions& options, Dice& dice) {
   const double lap_m = draw(options.loop_length_m, dice.road);
   const double bare_m = draw(options.bare_length_m, dice.road);
   const double offset_m = dice.road.bernoulli(2.0 / 3.0) ? 50.0 : 120.0;
-  const Polyline road = spiral(lap_m, offset_m, 2 + static_cast<int>(options.drive_on_m / lap_m), dice.road);
+  const int laps = 2 + static_cast<int>(options.drive_on_m / lap_m);
+  const Polyline road = spiral(lap_m, offset_m, laps, dice.road);
   World world{route_from_origin(road), 0.0, {}, {}, {}};
   const Route& route = world.route;
-  // The way round travels counter-clockwise, so that outside is to the right of the start.
+  // The way round is counter-clockwise, so that outside is to the right of the start; the first lap is the shortest.
   const double beside_start_m =
-      route.nearest_along_m(route.at(0.0) + Eigen::Vector2d(0.0, -offset_m), {lap_m / 2.0, route.length_m()});
+      route.nearest_along_m(Eigen::Vector2d(0.0, -offset_m), {lap_m / 2.0, route.length_m() / laps});
   world.drive_m = beside_start_m + options.drive_on_m;
   Grove grove(route, options.road_clearance_m);
   grove.plant_along({0.0, beside_start_m - bare_m}, options, 1.0, always, dice.trees);
