@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "helixnav/association/associate.hpp"
+#include "helixnav/association/landmark_life.hpp"
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/events.hpp"
+#include "helixnav/core/step_report.hpp"
+
+namespace helixnav::supervisor {
+
+struct NavigatorOptions {
+  cekf::FilterOptions filter;
+  association::Method method = association::Method::likelihood_ratio;
+  association::Options association;
+  association::Gates gates;
+  association::LifeOptions life;
+  double extraneous_per_scan = 1.0;  ///< observations of no mapped landmark: clutter and new ones together
+  double candidate_sigmas = 4.0;     ///< how far the search for candidates reaches
+  double view_margin_m = 2.0;        ///< so far inside the field of view a landmark is expected to be seen
+};
+
+/// Navigates: keeps the pose and the landmark map up to date as events come in, with unknown data association.
+/// Every scan runs once through the paper's loop: predict, associate, update, augment, bury, switch region.
+/// The map frame is that of the start pose; nothing here knows of truth, files or screens.
+/// Throws what its filter throws (NumericalError, PreconditionError); the map is then as before the scan's failing verb.
+/// Test: supervisor/navigator_test.cpp.
+class Navigator {
+ public:
+  explicit Navigator(const core::PoseGaussian& start, const NavigatorOptions& options = {});
+
+  /// Collects motion; it reaches the filter with the next scan (exact, see core::chain).
+  void move(const core::Odometry& odometry);
+
+  /// One scan, association unknown.
+  core::StepReport observe(const core::Scan& scan);
+
+  /// One scan whose observations are known by name: the same identity is the same landmark, a negative one is none.
+  /// PreconditionError unless there is one identity an observation.
+  core::StepReport observe(const core::Scan& scan, const std::vector<std::int64_t>& identities);
+
+  /// Pose at the last scan.
+  core::PoseGaussian pose() const { return filter_.pose(); }
+
+  /// All landmarks with their state, in order of id. O(landmarks · q²): for the end of a run, not for every step.
+  std::vector<core::MapLandmark> map() const;
+
+  const cekf::CompressedEkf& filter() const { return filter_; }
+
+ private:
+  void predict();
+  std::vector<core::AssociationReport> associate(const core::Scan& scan) const;
+  std::vector<core::AssociationReport> known_associations(const core::Scan& scan,
+                                                          const std::vector<std::int64_t>& identities) const;
+  void update(const core::Scan& scan, core::StepReport& report);
+  void augment(const core::Scan& scan, core::StepReport& report);
+  void live_and_let_die(const core::Scan& scan, core::StepReport& report);
+  void remember(const std::vector<std::int64_t>& identities, const core::StepReport& report);
+  core::StepReport close_step(const core::Scan& scan, core::StepReport report);
+
+  NavigatorOptions options_;
+  cekf::CompressedEkf filter_;
+  association::LandmarkLife life_;
+  std::optional<core::Odometry> motion_;  ///< since the last scan
+  std::int64_t step_ = 0;
+
+  // Known association only: who is who, and how often it was seen.
+  std::map<std::int64_t, core::LandmarkId> landmark_of_identity_;
+  std::map<core::LandmarkId, int> observations_of_known_;
+};
+
+}  // namespace helixnav::supervisor

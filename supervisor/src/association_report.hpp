@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "helixnav/association/associate.hpp"
+#include "helixnav/cekf/match.hpp"
+#include "helixnav/core/events.hpp"
+#include "helixnav/core/step_report.hpp"
+
+namespace helixnav::supervisor {
+
+/// The fate of every observation as association decided it. Observations to augment carry no landmark yet.
+std::vector<core::AssociationReport> association_reports(const association::Assignment& assignment);
+
+/// The matched observations, as the filter wants them.
+std::vector<cekf::Match> matches(const core::Scan& scan, const std::vector<core::AssociationReport>& associations);
+
+/// Landmarks of all observations with this outcome, in the order of the scan.
+std::vector<core::LandmarkId> landmarks_with(core::Outcome outcome,
+                                             const std::vector<core::AssociationReport>& associations);
+
+}  // namespace helixnav::supervisor
