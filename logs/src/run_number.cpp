@@ -61,12 +61,12 @@ std::optional<core::Nanoseconds> parse_seconds(std::string_view text) {
   const std::size_t point = magnitude.find('.');
   const std::string_view whole = magnitude.substr(0, point);
   const std::string_view fraction = point == std::string_view::npos ? std::string_view{} : magnitude.substr(point + 1);
-  if (!whole.empty() && whole.size() <= 9 && fraction.size() <= 9 && only_digits(whole) && only_digits(fraction)) {
+  if (!whole.empty() && whole.size() <= 10 && fraction.size() <= 9 && only_digits(whole) && only_digits(fraction)) {
     std::string digits(whole);
     digits += fraction;
     digits.append(9 - fraction.size(), '0');
-    const std::int64_t t_ns = *parse_integer(digits);
-    return negative ? -t_ns : t_ns;
+    const std::optional<std::int64_t> t_ns = parse_integer(digits);
+    return t_ns && negative ? -*t_ns : t_ns;
   }
   const std::optional<double> t_s = parse_number(text);
   if (!t_s || !(std::abs(*t_s) < 9e9)) return std::nullopt;
