@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/cekf/reserved_matrix.hpp"
+#include "helixnav/core/landmark_id.hpp"
+#include "helixnav/core/se2.hpp"
+
+namespace helixnav::cekf {
+
+/// Everything that changes between two region switches: a copy of it is a snapshot.
+///
+/// The state is (vehicle; active landmarks; weights s). The error of a passive landmark is its error at the start of
+/// the phase plus E·s, E being its rows of the phase's basis; the weights are carried as further states of the same
+/// filter:
+///   mean of s = theta,  cov(s, active) = A,  cov(s, s) = M,
+/// so that P_ab = AᵀEᵀ, P_bb = P_bb0 + E·M·Eᵀ, x_b = x_b0 + E·theta. In THEORY §1 these are Φ = Aᵀ, Ψ = −M, θ = theta.
+/// One anchor coordinate (a coordinate of the active part at the start of the phase) has one weight in the standard
+/// filter and, in the right-invariant one, a pair of weights that turns like a landmark.
+struct ActivePart {
+  core::Pose2 pose;
+  std::vector<Eigen::Vector2d> points_m;  ///< active landmarks, parallel to ids
+  std::vector<core::LandmarkId> ids;
+  std::vector<int> slots;                      ///< place in the passive store, −1 for landmarks born in this phase
+  ReservedMatrix P;                            ///< (3+2n)², symmetric, both triangles
+  ReservedMatrix A;                            ///< q × (3+2n)
+  ReservedMatrix M;                            ///< q × q, lower triangle valid
+  Eigen::VectorXd theta;                       ///< q
+  std::vector<core::LandmarkId> left_passive;  ///< landmarks activated or removed from the passive part in this phase
+  std::vector<int> dead_slots;                 ///< slots of landmarks removed in this phase
+  std::vector<int> late_anchors;  ///< slots activated in this phase, in order: anchors behind the first ones
+  core::LandmarkId next_id = 0;
+
+  int dimension() const { return 3 + 2 * static_cast<int>(ids.size()); }
+  int weights() const { return static_cast<int>(theta.size()); }
+  static int column(int landmark_index) { return 3 + 2 * landmark_index; }
+};
+
+}  // namespace helixnav::cekf

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <deque>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/cekf/active_part.hpp"
+#include "helixnav/cekf/filter_options.hpp"
+#include "helixnav/cekf/match.hpp"
+#include "helixnav/cekf/passive_covariance.hpp"
+#include "helixnav/cekf/phase.hpp"
+#include "helixnav/cekf/snapshot.hpp"
+#include "helixnav/cekf/update_workspace.hpp"
+#include "helixnav/core/events.hpp"
+#include "helixnav/core/gaussian.hpp"
+
+namespace helixnav::cekf {
+
+/// EKF-SLAM over a pose and point landmarks, exactly, at a cost per step that does not depend on the size of the map:
+/// only the landmarks of the vehicle's neighbourhood are active; what the steps of a phase mean for all others is
+/// gathered in the weights of ActivePart and applied when the region switches.
+///
+/// Frames: everything is in the map frame; the pose is T_world_robot, covariances in (x, y, heading) [m, m, rad].
+/// Every call either succeeds or throws PreconditionError (arguments) or NumericalError (S not positive definite, a
+/// correction that is not finite) and leaves the filter as it was. Cost below with n active landmarks, q weights
+/// (2·3+4·n right-invariant, 3+2·n standard), m rows of innovation. Source: THEORY §1 and §1b. Test: tests/cekf (equal
+/// to a plain full EKF on random programs, both retractions).
+class CompressedEkf {
+ public:
+  /// Start covariance symmetric positive semidefinite; all zero is allowed (map frame = pose at start).
+  explicit CompressedEkf(const core::PoseGaussian& start, const FilterOptions& options = {});
+
+  const FilterOptions& options() const { return options_; }
+
+  /// Moves the vehicle: F and the noise from core::compose_jacobians. O(n + q).
+  void predict(const core::Odometry& odometry);
+
+  /// Joint EKF update with all matches. Passive landmarks are activated first: nothing is discarded. O((n + q)²·m).
+  UpdateResult update(const std::vector<Match>& matches);
+  /// Joint Gauss-Newton update to the minimum of the cost J = |x ⊖ x̂|²_P + |ν|²_R, for closings where one linearisation
+  /// is not enough; the covariance is that of an update linearised at the minimum. Result: J and its degrees of
+  /// freedom. At most `max_iterations`, until the step is below 1e-9; NumericalError when it does not settle.
+  UpdateResult update_iterated(const std::vector<Match>& matches, int max_iterations = 30);
+
+  /// νᵀS⁻¹ν of a fix of the position of a point on the robot, for the caller's gate.
+  UpdateResult position_innovation(const core::AbsoluteFix& fix) const;
+  /// Update with the fix; touches the vehicle only and so costs no more than one observation.
+  UpdateResult update_position(const core::AbsoluteFix& fix);
+
+  /// New active landmark where the observation (kind with two rows) sees it.
+  core::LandmarkId augment(const core::Observation& observation, const core::Pose2& T_robot_sensor);
+
+  /// Conditions on kept = removed (difference known to sigma_m, 0 for exactly) for all pairs at once, iterated in the
+  /// right-invariant filter, then removes the second of each pair. Result: J and dof = 2·pairs.
+  UpdateResult merge(const std::vector<std::pair<core::LandmarkId, core::LandmarkId>>& kept_removed,
+                     double sigma_m = 0.0);
+  UpdateResult merge(core::LandmarkId kept, core::LandmarkId removed, double sigma_m = 0.0) {
+    return merge({{kept, removed}}, sigma_m);
+  }
+  /// The result merge would have, without doing it.
+  UpdateResult merge_cost(const std::vector<std::pair<core::LandmarkId, core::LandmarkId>>& kept_removed,
+                          double sigma_m = 0.0) const;
+
+  /// Forgets a landmark, active or passive. O(n + q).
+  void remove(core::LandmarkId id);
+
+  /// Makes a passive landmark active in mid-phase, exactly and without a global update. No effect on an active one.
+  /// O(N·phases kept + q²).
+  void activate(core::LandmarkId id);
+
+  /// Switches to the region around the vehicle when it has left its cell by the hysteresis, or when more than
+  /// max_active_landmarks are active. True when it did.
+  bool switch_region_if_due();
+  /// Switches to the region around the vehicle.
+  void switch_region();
+  /// Switches to exactly these active landmarks.
+  void switch_region(const std::vector<core::LandmarkId>& active);
+  /// Brings the passive part up to date and keeps the active set. O(N²·q).
+  void global_update();
+
+  core::PoseGaussian pose() const;
+  /// Marginal of any landmark, read-only. O(1) active, O(q²) passive.
+  core::PointGaussian landmark(core::LandmarkId id) const;
+  /// Pose and the landmarks in the order given, active or passive, read-only.
+  core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;
+
+  bool contains(core::LandmarkId id) const;
+  bool is_active(core::LandmarkId id) const;
+  std::vector<core::LandmarkId> landmarks() const;
+  const std::vector<core::LandmarkId>& active_landmarks() const { return active_.ids; }
+  /// Landmarks whose mean is within radius_m of the point, in order of id. Cost O(landmarks near · q).
+  std::vector<core::LandmarkId> landmarks_within(const Eigen::Vector2d& point_m, double radius_m) const;
+  int active_count() const { return static_cast<int>(active_.ids.size()); }
+  int mapped_count() const { return mapped_; }
+
+  /// O((n + q)²) bytes, without the passive part.
+  Snapshot snapshot() const;
+  /// The filter as it was at the snapshot, bit for bit. PreconditionError when the snapshot's phase is out of reach.
+  void restore(const Snapshot& snapshot);
+  bool can_restore(const Snapshot& snapshot) const;
+  /// Phases from `phase` on are kept restorable instead of being absorbed when they close; each costs
+  /// 2N·(2q + 2n) doubles and lengthens switches and activations. Default: none but the open one.
+  void keep_since(long phase);
+  long phase() const { return phases_.back().number; }
+  int phases_kept() const { return static_cast<int>(phases_.size()); }
+
+ private:
+  enum class Whereabouts : unsigned char { nowhere, active, passive };
+  struct Place {
+    Whereabouts where = Whereabouts::nowhere;
+    int index = -1;  ///< in active_.ids, or the slot
+  };
+
+  const Place& place_of(core::LandmarkId id, const char* verb) const;
+  int weights_per_anchor() const { return options_.retraction == Retraction::right_invariant ? 2 : 1; }
+
+  // update.cpp, apply_correction.cpp
+  void check_matches(const std::vector<Match>& matches, const char* verb) const;
+  void collect_columns(const std::vector<Match>& matches, UpdateWorkspace& w) const;
+  void gather_involved(UpdateWorkspace& w) const;
+  void linearise(const std::vector<Match>& matches, UpdateWorkspace& w) const;
+  void factor_innovation(UpdateWorkspace& w, const char* verb) const;
+  void apply_correction(UpdateWorkspace& w, const char* verb);
+  void add_transport(UpdateWorkspace& w) const;
+  void move_means(const UpdateWorkspace& w);
+
+  // remove.cpp, activate.cpp, passive.cpp
+  void remove_active(int index);
+  void append_columns(Phase& phase, const Eigen::MatrixXd& start_columns) const;
+  void append_weights_for(int first_column);
+  Eigen::MatrixXd phase_start_columns(const std::vector<int>& slots) const;
+  Eigen::Matrix2d phase_start_block(int slot_i, int slot_j) const;
+  Eigen::Vector2d passive_mean(int slot) const;
+  Eigen::MatrixXd basis_rows(const std::vector<int>& slots) const;
+
+  // global_update.cpp, switch_region.cpp, snapshot.cpp
+  int assign_slots(Phase& phase);
+  Eigen::MatrixXd end_columns(const Phase& phase, int slots) const;
+  Eigen::MatrixXd close_phase(Phase& next);
+  void absorb_closed_phases();
+  void open_phase(Phase&& next, const Eigen::MatrixXd& columns, const std::vector<core::LandmarkId>& active);
+  void freeze_slots(Phase& phase, const std::vector<core::LandmarkId>& active) const;
+  void start_active_part(const Phase& phase, const Eigen::MatrixXd& anchors,
+                         const std::vector<core::LandmarkId>& active, const std::vector<int>& slots);
+  std::vector<core::LandmarkId> region_around_vehicle() const;
+  Eigen::Vector2i cell_of(const Eigen::Vector2d& point_m) const;
+  void return_slots(Phase& phase);
+  void align_late_anchors(Phase& phase);
+  void rebuild_places();
+
+  FilterOptions options_;
+  ActivePart active_;
+  std::deque<Phase> phases_;  ///< closed ones that are kept, then the open one
+  PassiveCovariance absorbed_;
+  std::vector<int> free_slots_;
+  std::vector<Place> places_;  ///< by landmark id
+  long last_phase_ = 0;        ///< numbers are never used twice, not even after a restore
+  long keep_since_;
+  int mapped_ = 0;
+  UpdateWorkspace workspace_;
+};
+
+}  // namespace helixnav::cekf

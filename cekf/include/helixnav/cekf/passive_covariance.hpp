@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace helixnav::cekf {
+
+/// Symmetric matrix that keeps only the tiles of its lower triangle and grows without being copied: the covariance of
+/// all landmarks that have a slot, as of the last absorbed phase. Memory 4·n² bytes for n rows.
+/// Test: tests/cekf/passive_covariance_test.cpp.
+class PassiveCovariance {
+ public:
+  static constexpr int tile = 128;
+
+  int rows() const { return rows_; }
+  /// New rows are zero.
+  void grow(int rows);
+  double at(int i, int j) const;
+  Eigen::Matrix2d block(int slot_i, int slot_j) const;
+  /// Columns 2s and 2s+1, rows() × 2.
+  void copy_columns(int slot, Eigen::Ref<Eigen::MatrixXd> columns) const;
+  /// this += left·rightᵀ, a product known to be symmetric, n × q each with n ≤ rows(). Cost n²·q flops.
+  void add_symmetric_product(const Eigen::Ref<const Eigen::MatrixXd>& left,
+                             const Eigen::Ref<const Eigen::MatrixXd>& right);
+  /// Overwrites rows and columns of the slots; columns is rows() × 2·|slots|.
+  void overwrite(const std::vector<int>& slots, const Eigen::Ref<const Eigen::MatrixXd>& columns);
+  std::size_t bytes() const { return tiles_.size() * tile * tile * sizeof(double); }
+
+ private:
+  using Tile = Eigen::Matrix<double, tile, tile>;
+  Tile& tile_at(int I, int J) { return tiles_[static_cast<std::size_t>(I * (I + 1) / 2 + J)]; }
+  const Tile& tile_at(int I, int J) const { return tiles_[static_cast<std::size_t>(I * (I + 1) / 2 + J)]; }
+  void set(int i, int j, double value);
+
+  std::vector<Tile, Eigen::aligned_allocator<Tile>> tiles_;
+  int rows_ = 0;
+};
+
+}  // namespace helixnav::cekf

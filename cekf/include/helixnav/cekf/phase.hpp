@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/cekf/reserved_matrix.hpp"
+#include "helixnav/core/landmark_id.hpp"
+
+namespace helixnav::cekf {
+
+/// What a phase froze when it began, and, once closed, what it did to the passive part. A landmark that has ever been
+/// passive has a slot s: rows 2s and 2s+1 below.
+struct Phase {
+  long number = 0;
+  Eigen::Vector2i cell = Eigen::Vector2i::Zero();  ///< of the vehicle when the phase began
+  int slots = 0;                                   ///< known when the phase began
+  std::vector<int> slot_of_id;                     ///< slot of each landmark that was passive then, else −1
+  Eigen::VectorXd mean_m;                          ///< 2·slots
+  Eigen::MatrixXd own_covariance_m2;               ///< 2·slots × 2: the 2×2 diagonal blocks of P_bb0
+  ReservedMatrix basis;                            ///< E, 2·slots × q; activation appends columns
+  std::vector<int> late_anchors;                   ///< slots whose columns were appended, in order
+
+  // Filled when the phase closes: P_bb += response·basisᵀ, then the rows and columns of `written` are overwritten.
+  Eigen::MatrixXd response;            ///< E·M, 2·slots × q
+  std::vector<int> written;            ///< slots of the landmarks active at the end
+  Eigen::MatrixXd written_covariance;  ///< 2·slots_after × 2·|written|
+  std::vector<int> dead;               ///< slots free once the phase can no longer be undone
+  std::vector<int> taken;              ///< slots taken from the free list when the phase closed
+};
+
+}  // namespace helixnav::cekf

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "add_outer.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace helixnav::cekf {
+namespace {
+
+using Index = Eigen::Index;
+
+// Unaligned vectors of two, four and eight doubles; the compiler lowers them to what the function's target has.
+using Vector2 = double __attribute__((vector_size(16), aligned(8), may_alias));
+using Vector4 = double __attribute__((vector_size(32), aligned(8), may_alias));
+using Vector8 = double __attribute__((vector_size(64), aligned(8), may_alias));
+
+struct Operands {
+  double* C;
+  Index stride_C;
+  const double* A;
+  Index stride_A;
+  const double* B;
+  Index stride_B;
+  Index depth;
+};
+
+/// One tile of Blocks·lanes rows × Cols columns, kept in registers through the whole depth.
+template <class Vector, int Blocks, int Cols>
+__attribute__((always_inline)) inline void tile(const Operands& o, Index i, Index j) {
+  constexpr Index lanes = sizeof(Vector) / sizeof(double);
+  Vector sum[Cols][Blocks];
+  double* const c = o.C + i + j * o.stride_C;
+  for (int q = 0; q < Cols; ++q) {
+    for (int b = 0; b < Blocks; ++b) sum[q][b] = *reinterpret_cast<const Vector*>(c + q * o.stride_C + b * lanes);
+  }
+  const double* a = o.A + i;
+  const double* bt = o.B + j;
+  for (Index k = 0; k < o.depth; ++k, a += o.stride_A, bt += o.stride_B) {
+    Vector left[Blocks];
+    for (int b = 0; b < Blocks; ++b) left[b] = *reinterpret_cast<const Vector*>(a + b * lanes);
+    for (int q = 0; q < Cols; ++q) {
+      const double right = bt[q];
+      for (int b = 0; b < Blocks; ++b) sum[q][b] += left[b] * right;
+    }
+  }
+  for (int q = 0; q < Cols; ++q) {
+    for (int b = 0; b < Blocks; ++b) *reinterpret_cast<Vector*>(c + q * o.stride_C + b * lanes) = sum[q][b];
+  }
+}
+
+template <class Vector, int Blocks, int Cols>
+__attribute__((always_inline)) inline void columns(const Operands& o, Index rows, Index j) {
+  constexpr Index tall = Blocks * static_cast<Index>(sizeof(Vector) / sizeof(double));
+  Index i = 0;
+  for (; i + tall <= rows; i += tall) tile<Vector, Blocks, Cols>(o, i, j);
+  constexpr int few = 8 * sizeof(double) / sizeof(Vector);  // blocks in eight rows
+  for (; i < rows; i += 8) tile<Vector, few, Cols>(o, i, j);
+}
+
+template <class Vector, int Blocks, int Cols>
+__attribute__((always_inline)) inline void all(const Operands& o, Index rows, Index cols) {
+  Index j = 0;
+  for (; j + Cols <= cols; j += Cols) columns<Vector, Blocks, Cols>(o, rows, j);
+  for (; j + 2 <= cols; j += 2) columns<Vector, Blocks, 2>(o, rows, j);
+  for (; j < cols; ++j) columns<Vector, Blocks, 1>(o, rows, j);
+}
+
+void all_baseline(const Operands& o, Index rows, Index cols) { all<Vector2, 4, 2>(o, rows, cols); }
+
+using Kernel = void (*)(const Operands&, Index, Index);
+
+#if defined(__x86_64__)
+__attribute__((target("avx2,fma"))) void all_avx2(const Operands& o, Index rows, Index cols) {
+  all<Vector4, 2, 4>(o, rows, cols);
+}
+__attribute__((target("avx512f,fma"))) void all_avx512(const Operands& o, Index rows, Index cols) {
+  all<Vector8, 2, 8>(o, rows, cols);
+}
+
+Kernel choose() {
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx512f")) return all_avx512;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return all_avx2;
+  return all_baseline;
+}
+#else
+Kernel choose() { return all_baseline; }
+#endif
+
+const Kernel kernel = choose();
+
+}  // namespace
+
+void add_outer(double* C, Index stride_C, Index rows, Index cols, const double* A, Index stride_A, const double* B,
+               Index stride_B, Index depth) {
+  if (rows == 0 || cols == 0 || depth == 0) return;
+  kernel({C, stride_C, A, stride_A, B, stride_B, depth}, rows, cols);
+}
+
+void add_outer_lower(double* C, Index stride_C, Index rows, Index cols, const double* A, Index stride_A,
+                     const double* B, Index stride_B, Index depth) {
+  constexpr Index panel = 32;
+  for (Index j = 0; j < cols; j += panel) {
+    add_outer(C + j + j * stride_C, stride_C, rows - j, std::min(panel, cols - j), A + j, stride_A, B + j, stride_B,
+              depth);
+  }
+}
+
+}  // namespace helixnav::cekf

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one place where a correction enters: means by the retraction, covariances of active part and weights by one
+// product left·rightᵀ of low rank.
+#include <algorithm>
+
+#include "add_outer.hpp"
+#include "checks.hpp"
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/errors.hpp"
+#include "retraction.hpp"
+
+namespace helixnav::cekf {
+namespace {
+
+using Index = Eigen::Index;
+
+void pick_columns(const ReservedMatrix& from, const std::vector<int>& columns, ReservedMatrix& to) {
+  to.resize(from.rows(), static_cast<Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    to.view().col(static_cast<Index>(k)) = from.view().col(columns[k]);
+  }
+}
+
+/// left = picked·Gᵀ with `extra` zero columns behind.
+void whiten(const ReservedMatrix& picked, const ReservedMatrix& G, Index extra, ReservedMatrix& left) {
+  left.resize(picked.rows(), G.rows() + extra);
+  left.set_zero();
+  if (picked.rows() == 0) return;
+  add_outer(left.col(0), left.stride(), left.padded_rows(), G.rows(), picked.col(0), picked.stride(), G.col(0),
+            G.stride(), G.cols());
+}
+
+/// right = [−W g n] from left = [W n g].
+void mirror_columns(const ReservedMatrix& left, bool transported, ReservedMatrix& right) {
+  right.resize(left.rows(), left.cols());
+  const Index m = left.cols() - (transported ? 2 : 0);
+  right.view().leftCols(m) = -left.view().leftCols(m);
+  if (!transported) return;
+  right.view().col(m) = left.view().col(m + 1);
+  right.view().col(m + 1) = left.view().col(m);
+}
+
+void add_to_lower(ReservedMatrix& target, const ReservedMatrix& left, const ReservedMatrix& right) {
+  if (target.rows() == 0) return;
+  add_outer_lower(target.col(0), target.stride(), target.padded_rows(), target.cols(), left.col(0), left.stride(),
+                  right.col(0), right.stride(), left.cols());
+}
+
+void copy_lower_to_upper(ReservedMatrix& target) {
+  auto T = target.view();
+  constexpr Index tile = 8;
+  for (Index j0 = 0; j0 < T.cols(); j0 += tile) {
+    const Index j1 = std::min(j0 + tile, T.cols());
+    for (Index i = j0; i < T.rows(); ++i) {
+      for (Index j = j0; j < std::min(j1, i); ++j) T(j, i) = T(i, j);
+    }
+  }
+}
+
+/// Points of the part become V·δ, in place: pairs of rows from `first` on.
+void turn_pairs(const Eigen::Matrix2d& V, Index first, ReservedMatrix& delta) {
+  auto d = delta.view();
+  for (Index i = first; i + 1 < d.rows(); i += 2) {
+    const Eigen::Vector2d turned = V * d.block<2, 1>(i, 0);
+    d.block<2, 1>(i, 0) = turned;
+  }
+}
+
+/// Column of n: J·Δ for pairs of rows from `first` on.
+template <class Column>
+void quarter_turns(const ReservedMatrix& delta, Index first, Column&& n) {
+  const auto d = delta.view();
+  for (Index i = first; i + 1 < d.rows(); i += 2) n.template segment<2>(i) = quarter_turn(d.block<2, 1>(i, 0));
+}
+
+}  // namespace
+
+void CompressedEkf::apply_correction(UpdateWorkspace& w, const char* verb) {
+  const bool transported = options_.retraction == Retraction::right_invariant;
+  pick_columns(active_.P, w.involved, w.picked_active);
+  pick_columns(active_.A, w.involved, w.picked_weights);
+  w.delta_active.resize(active_.P.rows(), 1);
+  w.delta_weights.resize(active_.A.rows(), 1);
+  w.delta_active.view().noalias() = w.picked_active.view().lazyProduct(w.gain.view());
+  w.delta_weights.view().noalias() = w.picked_weights.view().lazyProduct(w.gain.view());
+  if (!w.delta_active.view().allFinite() || !w.delta_weights.view().allFinite()) {
+    throw core::NumericalError(problem_with(w, verb, "the correction is not finite"));
+  }
+  const Index extra = transported ? 2 : 0;
+  whiten(w.picked_active, w.G, extra, w.left_active);
+  whiten(w.picked_weights, w.G, extra, w.left_weights);
+  if (transported) add_transport(w);
+  mirror_columns(w.left_active, transported, w.right_active);
+  mirror_columns(w.left_weights, transported, w.right_weights);
+
+  add_to_lower(active_.P, w.left_active, w.right_active);
+  copy_lower_to_upper(active_.P);
+  add_to_lower(active_.M, w.left_weights, w.right_weights);
+  if (active_.A.rows() > 0) {
+    add_outer(active_.A.col(0), active_.A.stride(), active_.A.padded_rows(), active_.A.cols(), w.left_weights.col(0),
+              w.left_weights.stride(), w.right_active.col(0), w.right_active.stride(), w.left_weights.cols());
+  }
+  move_means(w);
+}
+
+/// N = I + n·e_θᵀ with n = J·Δ carries the covariance to the corrected point (THEORY §1b): P' = N·P·Nᵀ = P + n·gᵀ +
+/// g·nᵀ, g = P(:, θ) + ½·P(θ, θ)·n, P after the update. Turns the corrections δ into displacements Δ.
+void CompressedEkf::add_transport(UpdateWorkspace& w) const {
+  const Eigen::Matrix2d V = turning_average(w.delta_active.view()(2, 0));
+  turn_pairs(V, 3, w.delta_active);
+  const Eigen::Vector2d vehicle = V * w.delta_active.view().topRows<2>();
+  w.delta_active.view().topRows<2>() = vehicle;
+  turn_pairs(V, 0, w.delta_weights);
+
+  const Index m = w.left_active.cols() - 2;
+  auto active = w.left_active.view();
+  auto weights = w.left_weights.view();
+  active.col(m).head<2>() = quarter_turn(vehicle);
+  quarter_turns(w.delta_active, 3, active.col(m));
+  quarter_turns(w.delta_weights, 0, weights.col(m));
+
+  active.col(m + 1) = active_.P.view().col(2);
+  weights.col(m + 1) = active_.A.view().col(2);
+  for (Index k = 0; k < m; ++k) {
+    const double w_theta = active(2, k);
+    active.col(m + 1) -= w_theta * active.col(k);
+    weights.col(m + 1) -= w_theta * weights.col(k);
+  }
+  const double half_variance = 0.5 * active(2, m + 1);
+  active.col(m + 1) += half_variance * active.col(m);
+  weights.col(m + 1) += half_variance * weights.col(m);
+}
+
+void CompressedEkf::move_means(const UpdateWorkspace& w) {
+  const auto delta = w.delta_active.view();
+  active_.pose = core::Pose2(active_.pose.vector() + delta.block<3, 1>(0, 0));
+  for (std::size_t i = 0; i < active_.points_m.size(); ++i) {
+    active_.points_m[i] += delta.block<2, 1>(ActivePart::column(static_cast<int>(i)), 0);
+  }
+  active_.theta += w.delta_weights.view().col(0);
+}
+
+}  // namespace helixnav::cekf

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The end of a phase: what its weights say is written down, and applied to the passive covariance when nothing needs to
+// be undone any more.
+#include "add_outer.hpp"
+#include "helixnav/cekf/compressed_ekf.hpp"
+
+namespace helixnav::cekf {
+namespace {
+
+/// Columns 2s, 2s+1 of left·rightᵀ in the rows 2s, 2s+1, for all slots.
+void add_own_blocks(const Eigen::MatrixXd& left, const ReservedMatrix& right, Eigen::MatrixXd& blocks) {
+  const auto r = right.view();
+  for (Eigen::Index k = 0; k < left.cols(); ++k) {
+    for (Eigen::Index i = 0; i + 1 < left.rows(); i += 2) {
+      blocks.block<2, 2>(i, 0) += left.block<2, 1>(i, k) * r.block<2, 1>(i, k).transpose();
+    }
+  }
+}
+
+}  // namespace
+
+void CompressedEkf::global_update() {
+  const std::vector<core::LandmarkId> same = active_.ids;
+  switch_region(same);
+}
+
+/// Gives every active landmark a slot.
+int CompressedEkf::assign_slots(Phase& phase) {
+  int slots = phase.slots;
+  for (int& slot : active_.slots) {
+    if (slot >= 0) continue;
+    if (free_slots_.empty()) {
+      slot = slots++;
+    } else {
+      slot = free_slots_.back();
+      free_slots_.pop_back();
+      phase.taken.push_back(slot);
+    }
+  }
+  return slots;
+}
+
+/// Covariance of all slots (rows) with the active part (columns), 2·slots × n.
+Eigen::MatrixXd CompressedEkf::end_columns(const Phase& phase, int slots) const {
+  const int n = active_.dimension();
+  ReservedMatrix columns(2 * slots, n);
+  if (active_.weights() > 0 && phase.slots > 0) {
+    const Eigen::MatrixXd weights = active_.A.view().transpose();
+    add_outer(columns.col(0), columns.stride(), phase.basis.padded_rows(), n, phase.basis.col(0), phase.basis.stride(),
+              weights.data(), weights.outerStride(), weights.cols());
+  }
+  const auto P = active_.P.view();
+  for (int i = 0; i < active_count(); ++i) {
+    columns.view().middleRows<2>(2 * active_.slots[static_cast<std::size_t>(i)]) =
+        P.middleRows<2>(ActivePart::column(i));
+  }
+  return columns.view();
+}
+
+/// Fills what only a closed phase has, and what the next one freezes.
+Eigen::MatrixXd CompressedEkf::close_phase(Phase& next) {
+  Phase& phase = phases_.back();
+  const int slots = assign_slots(phase);
+  Eigen::MatrixXd columns = end_columns(phase, slots);
+
+  ReservedMatrix response(2 * phase.slots, active_.weights());
+  if (response.rows() > 0 && response.cols() > 0) {
+    const Eigen::MatrixXd M = active_.M.view().selfadjointView<Eigen::Lower>();
+    add_outer(response.col(0), response.stride(), response.padded_rows(), response.cols(), phase.basis.col(0),
+              phase.basis.stride(), M.data(), M.outerStride(), M.cols());
+  }
+  phase.response = response.view();
+  phase.written = active_.slots;
+  phase.written_covariance = columns.rightCols(columns.cols() - 3);
+  phase.dead = active_.dead_slots;
+
+  next.number = ++last_phase_;
+  next.slots = slots;
+  next.mean_m = Eigen::VectorXd::Zero(2 * slots);
+  next.mean_m.head(2 * phase.slots) = phase.mean_m + phase.basis.view() * active_.theta;
+  next.own_covariance_m2 = Eigen::MatrixXd::Zero(2 * slots, 2);
+  next.own_covariance_m2.topRows(2 * phase.slots) = phase.own_covariance_m2;
+  add_own_blocks(phase.response, phase.basis, next.own_covariance_m2);
+  for (std::size_t i = 0; i < active_.slots.size(); ++i) {
+    const int row = 2 * active_.slots[i];
+    const int column = ActivePart::column(static_cast<int>(i));
+    next.mean_m.segment<2>(row) = active_.points_m[i];
+    next.own_covariance_m2.middleRows<2>(row) = active_.P.view().block<2, 2>(column, column);
+  }
+  return columns;
+}
+
+void CompressedEkf::absorb_closed_phases() {
+  while (phases_.size() > 1 && phases_.front().number < keep_since_) {
+    const Phase& phase = phases_.front();
+    absorbed_.grow(static_cast<int>(phase.written_covariance.rows()));
+    absorbed_.add_symmetric_product(phase.response, phase.basis.view());
+    absorbed_.overwrite(phase.written, phase.written_covariance);
+    free_slots_.insert(free_slots_.end(), phase.dead.begin(), phase.dead.end());
+    phases_.pop_front();
+  }
+}
+
+void CompressedEkf::keep_since(long phase) {
+  keep_since_ = phase;
+  absorb_closed_phases();
+}
+
+}  // namespace helixnav::cekf

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Read-only views of the estimate for association, display and tests.
+#include <algorithm>
+
+#include "helixnav/cekf/compressed_ekf.hpp"
+
+namespace helixnav::cekf {
+
+core::PoseGaussian CompressedEkf::pose() const { return {active_.pose, active_.P.view().topLeftCorner<3, 3>()}; }
+
+core::PointGaussian CompressedEkf::landmark(core::LandmarkId id) const {
+  const Place& place = place_of(id, "landmark");
+  if (place.where == Whereabouts::active) {
+    const int column = ActivePart::column(place.index);
+    return {active_.points_m[static_cast<std::size_t>(place.index)], active_.P.view().block<2, 2>(column, column)};
+  }
+  const Eigen::MatrixXd e = basis_rows({place.index});
+  const Eigen::Matrix2d own = phases_.back().own_covariance_m2.middleRows<2>(2 * place.index) +
+                              e * (active_.M.view().selfadjointView<Eigen::Lower>() * e.transpose());
+  return {passive_mean(place.index), 0.5 * (own + own.transpose())};
+}
+
+core::JointGaussian CompressedEkf::joint(const std::vector<core::LandmarkId>& ids) const {
+  core::JointGaussian result;
+  result.pose = active_.pose;
+  result.ids = ids;
+  const Eigen::Index n = 3 + 2 * static_cast<Eigen::Index>(ids.size());
+  result.covariance.resize(n, n);
+
+  // Where each row of the result comes from: a column of the active part, or a passive slot.
+  std::vector<int> active_rows = {0, 1, 2};
+  std::vector<int> active_columns = {0, 1, 2};
+  std::vector<int> passive_rows;
+  std::vector<int> passive_slots;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const Place& place = place_of(ids[i], "joint");
+    const int row = ActivePart::column(static_cast<int>(i));
+    if (place.where == Whereabouts::active) {
+      const int column = ActivePart::column(place.index);
+      active_rows.insert(active_rows.end(), {row, row + 1});
+      active_columns.insert(active_columns.end(), {column, column + 1});
+      result.points_m.push_back(active_.points_m[static_cast<std::size_t>(place.index)]);
+    } else {
+      passive_rows.insert(passive_rows.end(), {row, row + 1});
+      passive_slots.push_back(place.index);
+      result.points_m.push_back(passive_mean(place.index));
+    }
+  }
+  auto& C = result.covariance;
+  C(active_rows, active_rows) = active_.P.view()(active_columns, active_columns);
+  if (passive_slots.empty()) return result;
+
+  const Eigen::MatrixXd e = basis_rows(passive_slots);
+  const Eigen::MatrixXd cross = e * active_.A.view()(Eigen::all, active_columns);
+  C(passive_rows, active_rows) = cross;
+  C(active_rows, passive_rows) = cross.transpose();
+  Eigen::MatrixXd own = e * (active_.M.view().selfadjointView<Eigen::Lower>() * e.transpose());
+  for (std::size_t i = 0; i < passive_slots.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      own.block<2, 2>(2 * static_cast<Eigen::Index>(i), 2 * static_cast<Eigen::Index>(j)) +=
+          i == j ? Eigen::Matrix2d(phases_.back().own_covariance_m2.middleRows<2>(2 * passive_slots[i]))
+                 : phase_start_block(passive_slots[i], passive_slots[j]);
+    }
+  }
+  own.triangularView<Eigen::StrictlyUpper>() = own.transpose();
+  C(passive_rows, passive_rows) = own;
+  return result;
+}
+
+std::vector<core::LandmarkId> CompressedEkf::landmarks_within(const Eigen::Vector2d& point_m, double radius_m) const {
+  std::vector<core::LandmarkId> ids;
+  for (core::LandmarkId id = 0; id < active_.next_id; ++id) {
+    const Place& place = places_[static_cast<std::size_t>(id)];
+    if (place.where == Whereabouts::nowhere) continue;
+    const Eigen::Vector2d mean_m = place.where == Whereabouts::active
+                                       ? active_.points_m[static_cast<std::size_t>(place.index)]
+                                       : passive_mean(place.index);
+    if ((mean_m - point_m).norm() <= radius_m) ids.push_back(id);
+  }
+  return ids;
+}
+
+}  // namespace helixnav::cekf
