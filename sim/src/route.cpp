@@ -44,16 +44,17 @@ Eigen::Vector2d Route::direction(double along_m) const {
 double Route::nearest_along_m(const Eigen::Vector2d& point_m, const Stretch& stretch) const {
   double best_m = stretch.from_m;
   double best_distance_m2 = std::numeric_limits<double>::infinity();
-  const std::size_t last = segment_of(std::min(stretch.to_m, length_m()));
-  for (std::size_t i = segment_of(std::max(stretch.from_m, 0.0)); i <= last; ++i) {
-    const Eigen::Vector2d edge_m = points_m_[i + 1] - points_m_[i];
-    const double share = std::clamp((point_m - points_m_[i]).dot(edge_m) / edge_m.squaredNorm(), 0.0, 1.0);
-    const double along_m =
-        std::clamp(along_m_[i] + share * (along_m_[i + 1] - along_m_[i]), stretch.from_m, stretch.to_m);
-    const double distance_m2 = (point_m - at(along_m)).squaredNorm();
+  const std::size_t last = segment_of(stretch.to_m);
+  for (std::size_t i = segment_of(stretch.from_m); i <= last; ++i) {
+    const double length_m = along_m_[i + 1] - along_m_[i];
+    const Eigen::Vector2d forward = (points_m_[i + 1] - points_m_[i]) / length_m;
+    const double first_m = std::max(stretch.from_m - along_m_[i], 0.0);
+    const double last_m = std::min(stretch.to_m - along_m_[i], length_m);
+    const double step_m = std::max(first_m, std::min((point_m - points_m_[i]).dot(forward), last_m));
+    const double distance_m2 = (points_m_[i] + step_m * forward - point_m).squaredNorm();
     if (distance_m2 < best_distance_m2) {
       best_distance_m2 = distance_m2;
-      best_m = along_m;
+      best_m = along_m_[i] + step_m;
     }
   }
   return best_m;
