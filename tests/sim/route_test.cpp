@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/sim/route.hpp"
+
+#include <gtest/gtest.h>
+
+#include "helixnav/core/errors.hpp"
+
+namespace helixnav::sim {
+namespace {
+
+Route corner() { return Route({{0.0, 0.0}, {10.0, 0.0}, {10.0, 5.0}}); }
+
+TEST(Route, IsParametrisedByTheDistanceAlong) {
+  const Route route = corner();
+  EXPECT_DOUBLE_EQ(route.length_m(), 15.0);
+  EXPECT_EQ(route.at(4.0), Eigen::Vector2d(4.0, 0.0));
+  EXPECT_EQ(route.at(10.0), Eigen::Vector2d(10.0, 0.0));
+  EXPECT_EQ(route.at(12.0), Eigen::Vector2d(10.0, 2.0));
+}
+
+TEST(Route, EndsAtItsEnds) {
+  EXPECT_EQ(corner().at(-1.0), Eigen::Vector2d(0.0, 0.0));
+  EXPECT_EQ(corner().at(99.0), Eigen::Vector2d(10.0, 5.0));
+}
+
+TEST(Route, DirectionIsAUnitVectorOfTravel) {
+  EXPECT_EQ(corner().direction(5.0), Eigen::Vector2d(1.0, 0.0));
+  EXPECT_EQ(corner().direction(15.0), Eigen::Vector2d(0.0, 1.0));
+  EXPECT_LT((corner().direction(10.0) - Eigen::Vector2d(1.0, 1.0).normalized()).norm(), 1e-12);
+}
+
+TEST(Route, NearestPointIsSoughtOnTheStretchOnly) {
+  const Route route = corner();
+  EXPECT_NEAR(route.nearest_along_m({3.0, 2.0}, {0.0, 15.0}), 3.0, 1e-12);
+  EXPECT_NEAR(route.nearest_along_m({3.0, 2.0}, {5.0, 15.0}), 5.0, 1e-12);
+  EXPECT_NEAR(route.nearest_along_m({12.0, 3.0}, {0.0, 15.0}), 13.0, 1e-12);
+  EXPECT_NEAR(route.distance_m({12.0, 3.0}), 2.0, 1e-12);
+  EXPECT_NEAR(route.distance_m({-3.0, -4.0}), 5.0, 1e-12);
+}
+
+TEST(Route, FromOriginStartsAtTheOriginAlongX) {
+  const Route route = route_from_origin({{5.0, 5.0}, {5.0, 8.0}, {9.0, 8.0}});
+  EXPECT_LT(route.at(0.0).norm(), 1e-12);
+  EXPECT_LT((route.at(3.0) - Eigen::Vector2d(3.0, 0.0)).norm(), 1e-12);
+  EXPECT_LT((route.at(7.0) - Eigen::Vector2d(3.0, -4.0)).norm(), 1e-12);
+}
+
+TEST(Route, RefusesWhatIsNoPolyline) {
+  EXPECT_THROW(Route({{0.0, 0.0}}), core::PreconditionError);
+  EXPECT_THROW(Route({{0.0, 0.0}, {0.0, 0.0}}), core::PreconditionError);
+}
+
+}  // namespace
+}  // namespace helixnav::sim
