@@ -67,7 +67,8 @@ void find_modes(const Particles& particles, const ModeRadius& radius, std::size_
     modes.push_back({moments.mass, moments.gaussian(), static_cast<std::uint32_t>(best)});
     left -= moments.mass;
   }
-  std::stable_sort(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) { return a.mass > b.mass; });
+  std::sort(modes.begin(), modes.end(),
+            [](const Mode& a, const Mode& b) { return a.mass != b.mass ? a.mass > b.mass : a.best < b.best; });
 }
 
 core::PoseGaussian cloud_moments(const Particles& particles) {
