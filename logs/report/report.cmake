@@ -1,0 +1,19 @@
+# helixnav_embed_report(<target>): compiles the report's page, style, script and charting library into <target>.
+set(HELIXNAV_PLOTLY_JS ${CMAKE_CURRENT_LIST_DIR}/node_modules/plotly.js-basic-dist-min/plotly-basic.min.js
+  CACHE FILEPATH "Charting library of the report, from npm's plotly.js-basic-dist-min")
+
+function(helixnav_embed_report target)
+  set(folder ${CMAKE_CURRENT_FUNCTION_LIST_DIR})
+  if(NOT EXISTS ${HELIXNAV_PLOTLY_JS})
+    message(FATAL_ERROR "The report's charting library is not at ${HELIXNAV_PLOTLY_JS}.\n"
+      "./dev build fetches it; by hand: npm ci --ignore-scripts --prefix ${folder}\n"
+      "A copy elsewhere is named by -DHELIXNAV_PLOTLY_JS=<file>.")
+  endif()
+  set(inputs ${folder}/report.html.in ${folder}/report.css ${folder}/report.js ${HELIXNAV_PLOTLY_JS})
+  set(output ${CMAKE_CURRENT_BINARY_DIR}/report_assets.cpp)
+  add_custom_command(OUTPUT ${output}
+    COMMAND ${CMAKE_COMMAND} "-DINPUTS=${inputs}" -DOUTPUT=${output} -P ${folder}/embed.cmake
+    DEPENDS ${inputs} ${folder}/embed.cmake
+    COMMENT "Embedding the report page" VERBATIM)
+  target_sources(${target} PRIVATE ${output})
+endfunction()

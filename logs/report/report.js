@@ -1,0 +1,394 @@
+// Draws the report from the two JSON elements of the page. Frames: map frame, metres; times: seconds of the log.
+"use strict";
+(() => {
+  const parse = (id) => JSON.parse(document.getElementById(id).textContent);
+  const data = parse("run-data");
+  const clock = parse("wall-clock");
+  const summary = data.summary;
+  const byId = (id) => document.getElementById(id);
+
+  // --- text ---------------------------------------------------------------------------------------------------------
+  const element = (name, text, className) => {
+    const node = document.createElement(name);
+    if (text !== undefined) node.textContent = text;
+    if (className) node.className = className;
+    return node;
+  };
+  const known = (value) => value !== null && value !== undefined;
+  const fixed = (value, digits) => (known(value) ? value.toFixed(digits) : "–");
+  const metres = (value) => (known(value) ? `${value.toFixed(Math.abs(value) < 10 ? 3 : 2)} m` : "–");
+  const degrees = (radians) => (known(radians) ? `${(radians * 180 / Math.PI).toFixed(3)}°` : "–");
+  const percent = (value) => (known(value) ? `${(100 * value).toFixed(1)} %` : "–");
+  const count = (value) => (known(value) ? value.toLocaleString("en").replace(/,/g, "\u202f") : "–");
+  const microseconds = (value) => {
+    if (!known(value)) return "–";
+    return value < 1000 ? `${value.toFixed(0)} µs` : `${(value / 1000).toFixed(1)} ms`;
+  };
+  const duration = (seconds) => {
+    const minutes = Math.floor(seconds / 60);
+    return minutes > 0 ? `${minutes} min ${Math.round(seconds - 60 * minutes)} s` : `${seconds.toFixed(1)} s`;
+  };
+
+  const table = (title, rows) => {
+    const box = element("div");
+    if (title) box.append(element("h3", title));
+    const body = element("table");
+    for (const [name, value] of rows) {
+      const row = element("tr");
+      row.append(element("td", name), element("td", value, "number"));
+      body.append(row);
+    }
+    box.append(body);
+    return box;
+  };
+
+  const statisticsRows = (statistics, unit, show) => [
+    ["RMSE", show(statistics[`rmse_${unit}`])],
+    ["median", show(statistics[`median_${unit}`])],
+    ["95 %", show(statistics[`p95_${unit}`])],
+    ["maximum", show(statistics[`max_${unit}`])],
+  ];
+
+  const positionTable = (error) => {
+    const rows = statisticsRows(error, "m", metres);
+    const aligned = error.against === "positions";
+    rows.push([aligned ? "fixes used" : "instants compared", count(error.fixes_used)]);
+    if (aligned) {
+      rows.push([`fixes left out (beyond ${error.limit_m} m)`, count(error.fixes_left_out)]);
+      rows.push(["rotation of the alignment", degrees(error.alignment.heading_rad)]);
+    }
+    return table(aligned ? "Position against fixes, after rigid alignment" : "Position against the true pose", rows);
+  };
+
+  const poseTable = () => table("Heading and consistency of the pose", [
+    ...statisticsRows(summary.heading_error, "rad", degrees).slice(0, 3),
+    ["NEES, mean (3 when consistent)", fixed(summary.nees.mean, 2)],
+    ["NEES inside its 95 % band", percent(summary.nees.inside_95)],
+  ]);
+
+  const landmarkTable = (error) => table(`Landmarks against the true ones, by ${error.by}`, [
+    ...statisticsRows(error, "m", metres),
+    ["pairs", count(error.pairs)],
+    ["missing / duplicates / spurious", `${error.missing} / ${error.duplicates} / ${error.spurious}`],
+  ]);
+
+  const filterTable = () => table("Filter", [
+    ["updates", count(summary.nis.updates)],
+    ["NIS per degree of freedom (1 when consistent)", fixed(summary.nis.mean_per_dof, 3)],
+    ["NIS inside its 95 % band", percent(summary.nis.inside_95)],
+    ...Object.entries(summary.observations).map(([name, value]) => [`observations ${name}`, count(value)]),
+  ]);
+
+  const clockTable = () => table("Wall clock", Object.entries(clock.timing).map(([name, value]) => {
+    if (name.endsWith("_us")) return [`${name.slice(0, -3)} per step`.replace("_", " "), microseconds(value)];
+    if (name.endsWith("_s")) return [name.slice(0, -2).replace(/_/g, " "), `${fixed(value, 2)} s`];
+    return [name, String(value)];
+  }));
+
+  const card = (value, name) => {
+    const box = element("div", undefined, "card");
+    box.append(element("b", value), element("span", name));
+    byId("cards").append(box);
+  };
+
+  const writeSummary = () => {
+    const error = summary.error;
+    if (error) card(metres(error.rmse_m), "position error, RMSE");
+    if (error) card(metres(error.median_m), "position error, median");
+    if (summary.landmark_error) card(metres(summary.landmark_error.rmse_m), "landmark error, RMSE");
+    card(count(summary.landmarks.mature), `mature landmarks (${count(summary.landmarks.tentative)} tentative)`);
+    const closures = summary.closures;
+    card(`${closures.accepted} / ${closures.refused} / ${closures.undecided}`, "closures accepted / refused / undecided");
+    card(count(summary.steps), `scans in ${duration(data.duration_s)}`);
+    card(`${count(Math.round(data.length_m))} m`, "path");
+    card(microseconds(clock.timing.median_us), `per scan, median (99 %: ${microseconds(clock.timing.p99_us)})`);
+    const tables = byId("tables");
+    if (error) tables.append(positionTable(error));
+    if (summary.heading_error) tables.append(poseTable());
+    if (summary.landmark_error) tables.append(landmarkTable(summary.landmark_error));
+    tables.append(filterTable(), clockTable());
+  };
+
+  const writeHeader = () => {
+    const manifest = data.manifest;
+    const title = manifest.recording || "unnamed recording";
+    document.title = `${title} – HelixNav`;
+    byId("title").textContent = title;
+    byId("command").textContent = manifest.command;
+    const origin = [`HelixNav ${manifest.version}`];
+    if (manifest.commit) origin.push(`commit ${manifest.commit.slice(0, 12)}`);
+    origin.push(`seed ${data.seed}`);
+    if (!data.finished) origin.push("cut off before its end");
+    byId("origin").textContent = origin.join(" · ");
+    byId("config").textContent =
+      typeof manifest.config === "string" ? manifest.config : JSON.stringify(manifest.config, null, 2);
+    const rows = manifest.inputs.map((input) => [input.name, `SHA-256 ${input.sha256.slice(0, 16)}…`]);
+    byId("inputs").append(rows.length > 0 ? table("Input", rows) : element("p", "No input files.", "quiet"));
+  };
+
+  const decisionTable = (decisions, most) => {
+    const box = element("table");
+    const head = element("tr");
+    for (const name of ["step", "time [s]", "decision", "verdict", "numbers"]) head.append(element("th", name));
+    box.append(head);
+    for (const decision of decisions.slice(0, most)) {
+      const row = element("tr");
+      const numbers = decision.numbers.map(([name, value]) => `${name} = ${known(value) ? +value.toPrecision(5) : "–"}`);
+      const state = decision.verdict === "accepted" ? "accepted" : decision.verdict === "refused" ? "refused" : "";
+      row.append(element("td", count(decision.step)), element("td", fixed(decision.t, 2)), element("td", decision.kind),
+                 element("td", decision.verdict, state), element("td", numbers.join(", "), "numbers"));
+      box.append(row);
+    }
+    return box;
+  };
+
+  const writeDecisions = () => {
+    const closures = data.decisions.filter((decision) => decision.kind === "closure");
+    const others = data.decisions.filter((decision) => decision.kind !== "closure");
+    byId("closures").append(closures.length > 0 ? decisionTable(closures, closures.length)
+                                                : element("p", "No loop was closed or refused in this run.", "quiet"));
+    if (others.length === 0 && data.decisions_left_out === 0) {
+      byId("decisions").append(element("p", "None.", "quiet"));
+      return;
+    }
+    const details = element("details");
+    const left = data.decisions_left_out > 0 ? `; ${count(data.decisions_left_out)} more in decisions.csv` : "";
+    details.append(element("summary", `${count(others.length)} decisions${left}`), decisionTable(others, others.length));
+    byId("decisions").append(details);
+  };
+
+  // --- charts -------------------------------------------------------------------------------------------------------
+  const dark = window.matchMedia("(prefers-color-scheme: dark)");
+  const colours = () => (dark.matches
+    ? { paper: "#14181f", ink: "#e6eaf0", grid: "#2b333e", zero: "#4a5564", estimate: "#5aa9ee", truth: "#f0a04b",
+        landmark: "#5fc98f", faint: "#7d8896", bad: "#f2867e", band: "rgba(90,169,238,.18)", other: "#b79af0" }
+    : { paper: "#ffffff", ink: "#1b2330", grid: "#e7eaee", zero: "#b4bcc6", estimate: "#0b62a8", truth: "#d9730d",
+        landmark: "#1a7f4b", faint: "#8a94a1", bad: "#b3261e", band: "rgba(11,98,168,.14)", other: "#6b46c1" });
+  let c = colours();
+
+  const axis = (title, more) => ({
+    title: { text: title, standoff: 8 }, gridcolor: c.grid, zerolinecolor: c.zero, linecolor: c.zero, automargin: true,
+    ...more,
+  });
+  const timeAxis = (more) => axis("time in the log [s]", { zeroline: false, ...more });
+  const layout = (more) => ({
+    paper_bgcolor: c.paper, plot_bgcolor: c.paper, font: { color: c.ink, size: 13 }, dragmode: "pan",
+    margin: { l: 70, r: 20, t: 46, b: 56 }, hovermode: "closest", autosize: true,
+    legend: { orientation: "h", x: 0, xanchor: "left", y: 1.02, yanchor: "bottom", bgcolor: "rgba(0,0,0,0)" }, ...more,
+  });
+  const draw = (id, traces, more) => Plotly.react(byId(id), traces, layout(more), {
+    responsive: true, scrollZoom: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d"],
+    toImageButtonOptions: { filename: `helixnav-${id}`, scale: 2 },
+  });
+  const line = (name, x, y, colour, more) =>
+    ({ type: "scatter", mode: "lines", name, x, y, line: { color: colour, width: 1.6 }, ...more });
+  const dots = (name, x, y, colour, more) =>
+    ({ type: "scatter", mode: "markers", name, x, y, marker: { color: colour, size: 5 }, ...more });
+  // Two lines with the space between them filled; one entry in the legend.
+  const band = (name, x, low, high, more) => [
+    { type: "scatter", mode: "lines", x, y: low, line: { width: 0 }, hoverinfo: "skip", showlegend: false,
+      legendgroup: name, ...more },
+    { type: "scatter", mode: "lines", name, x, y: high, line: { width: 0 }, fill: "tonexty", fillcolor: c.band,
+      hoverinfo: "skip", legendgroup: name, ...more },
+  ];
+
+  // Outline of {e : eᵀP⁻¹e = 5.99}, the 95 % region of a Gaussian in the plane, all in one line with gaps.
+  const ellipses = (items) => {
+    const x = [];
+    const y = [];
+    const corners = 28;
+    for (const [mx, my, sxx, sxy, syy] of items) {
+      const l11 = Math.sqrt(Math.max(sxx, 0));
+      const l21 = l11 > 0 ? sxy / l11 : 0;
+      const l22 = Math.sqrt(Math.max(syy - l21 * l21, 0));
+      for (let k = 0; k <= corners; k++) {
+        const u = 2.4477 * Math.cos(2 * Math.PI * k / corners);
+        const v = 2.4477 * Math.sin(2 * Math.PI * k / corners);
+        x.push(+(mx + l11 * u).toFixed(4));
+        y.push(+(my + l21 * u + l22 * v).toFixed(4));
+      }
+      x.push(null);
+      y.push(null);
+    }
+    return { x, y };
+  };
+
+  // A range with a margin around all finite values of the lists.
+  const rangeOf = (lists) => {
+    let low = Infinity;
+    let high = -Infinity;
+    for (const list of lists) {
+      for (const value of list) {
+        if (value < low) low = value;
+        if (value > high) high = value;
+      }
+    }
+    if (!(low <= high)) return [-1, 1];
+    const margin = 0.04 * (high - low) + 1;
+    return [low - margin, high + margin];
+  };
+
+  const landmarkTraces = (state, colour, symbol) => {
+    const chosen = data.landmarks.filter((landmark) => landmark.state === state);
+    if (chosen.length === 0) return [];
+    const outline = ellipses(chosen.map((m) => [m.x, m.y, m.sxx, m.sxy, m.syy]));
+    const name = `${state} landmarks`;
+    const text = chosen.map((m) => `landmark ${m.id}<br>${m.observations} observations<br>σ ${
+      Math.sqrt(m.sxx).toFixed(3)} m, ${Math.sqrt(m.syy).toFixed(3)} m`);
+    return [
+      line(name, outline.x, outline.y, colour, { line: { color: colour, width: 1 }, hoverinfo: "skip", legendgroup: name,
+        showlegend: false }),
+      dots(name, chosen.map((m) => m.x), chosen.map((m) => m.y), colour,
+        { marker: { color: colour, size: 6, symbol }, text, hovertemplate: "%{text}<br>(%{x:.2f}, %{y:.2f}) m<extra></extra>",
+          legendgroup: name }),
+    ];
+  };
+
+  const truthTraces = () => {
+    const truth = data.truth;
+    if (!truth) return [];
+    if (!truth.aligned) return [line("true path", truth.x, truth.y, c.truth, { line: { color: c.truth, width: 1.6 } })];
+    return [
+      dots("fixes", truth.x, truth.y, c.truth, { marker: { color: c.truth, size: 3.5 }, hoverinfo: "x+y" }),
+      dots("fixes left out", truth.left_out_x, truth.left_out_y, c.bad, { marker: { color: c.bad, size: 7, symbol: "x-thin",
+        line: { color: c.bad, width: 1.5 } } }),
+    ].filter((trace) => trace.x.length > 0);
+  };
+
+  const closureTrace = () => {
+    const closures = data.decisions.filter((decision) => decision.kind === "closure");
+    if (closures.length === 0) return [];
+    return [dots("closures", closures.map((d) => d.x), closures.map((d) => d.y), c.other,
+      { marker: { color: c.other, size: 13, symbol: "star" }, text: closures.map((d) => `${d.verdict} at step ${d.step}`),
+        hovertemplate: "%{text}<extra></extra>" })];
+  };
+
+  const drawMap = () => {
+    const path = data.path;
+    const outline = ellipses(path.ellipses);
+    const truth = data.truth || { x: [], y: [] };
+    const known_x = data.true_landmarks.map((m) => m[1]);
+    const known_y = data.true_landmarks.map((m) => m[2]);
+    const last = path.x.length - 1;
+    const ends = last < 0 ? [] : [dots("start, end", [path.x[0], path.x[last]], [path.y[0], path.y[last]], c.ink,
+      { marker: { color: [c.paper, c.ink], size: 10, symbol: ["circle", "square"], line: { color: c.ink, width: 2 } },
+        text: ["start", "end"], hovertemplate: "%{text}<extra></extra>" })];
+    const near = data.map_extent;
+    draw("map", [
+      ...truthTraces(),
+      line("estimated path", path.x, path.y, c.estimate, { line: { color: c.estimate, width: 2 }, customdata: path.t,
+        hovertemplate: "%{customdata:.1f} s<br>(%{x:.2f}, %{y:.2f}) m<extra>estimate</extra>" }),
+      line("95 % ellipses", outline.x, outline.y, c.estimate, { line: { color: c.estimate, width: 1 }, opacity: .55,
+        hoverinfo: "skip" }),
+      ...(known_x.length > 0 ? [dots("true landmarks", known_x, known_y, c.truth,
+        { marker: { color: c.truth, size: 10, symbol: "circle-open" }, hoverinfo: "x+y" })] : []),
+      ...landmarkTraces("tentative", c.faint, "diamond"),
+      ...landmarkTraces("mature", c.landmark, "circle"),
+      ...closureTrace(),
+      ...ends,
+    ], {
+      xaxis: axis("x [m]", { range: near ? [near[0], near[1]] : rangeOf([path.x, truth.x]) }),
+      yaxis: axis("y [m]", { range: near ? [near[2], near[3]] : rangeOf([path.y, truth.y]), scaleanchor: "x" }),
+    });
+    byId("map-note").textContent = `Map frame (pose at the start). Ellipses hold the true position with 95 % if the filter
+      is right; those of the path stand every ${count(path.ellipse_stride)} scans.` +
+      (data.truth && data.truth.aligned ? " The fixes were brought into the map frame by the alignment." : "");
+  };
+
+  const errorRows = () => {
+    const e = data.errors;
+    const rows = e
+      ? [["x", "m", e.t, e.x, e.sx], ["y", "m", e.t, e.y, e.sy]]
+      : [["x", "m", data.health.t, null, data.health.sx], ["y", "m", data.health.t, null, data.health.sy]];
+    if (data.heading) rows.push(["heading", "°", data.heading.t, data.heading.e, data.heading.s]);
+    else if (!e) rows.push(["heading", "°", data.health.t, null, data.health.sh]);
+    return rows;
+  };
+
+  const drawErrors = () => {
+    const rows = errorRows();
+    const traces = [];
+    const more = { height: 200 * rows.length + 100, xaxis: timeAxis({ anchor: `y${rows.length > 1 ? rows.length : ""}` }) };
+    const gap = 0.05;
+    const height = (1 - gap * (rows.length - 1)) / rows.length;
+    rows.forEach(([name, unit, t, error, sigma], k) => {
+      const id = k === 0 ? "" : k + 1;
+      const top = 1 - k * (height + gap);
+      const here = { yaxis: `y${id}`, xaxis: "x" };
+      const three = sigma.map((s) => 3 * s);
+      traces.push(...band("±3σ of the filter", t, three.map((s) => -s), three,
+        { ...here, ...(k > 0 ? { showlegend: false } : {}) }));
+      if (error) {
+        traces.push((data.errors.aligned ? dots : line)("estimate − truth", t, error, c.estimate,
+          { ...here, showlegend: k === 0, legendgroup: "error", marker: { color: c.estimate, size: 3.5 },
+            line: { color: c.estimate, width: 1.3 }, hovertemplate: `%{x:.1f} s: %{y:.3f} ${unit}<extra></extra>` }));
+      }
+      more[`yaxis${id}`] = axis(`${name} [${unit}]`, { domain: [Math.max(0, top - height), top], anchor: "x" });
+    });
+    byId("errors").style.height = `${more.height}px`;
+    draw("errors", traces, more);
+    byId("errors-title").textContent = data.errors ? "Errors over time" : "Uncertainty over time";
+    byId("errors-note").textContent = !data.errors
+      ? "No truth is known: the band is what the filter believes of itself."
+      : data.errors.aligned
+        ? "Estimated antenna position minus fix, along the axes of the map frame, after the alignment. The band is that of the estimate; the noise of the fixes comes on top."
+        : "Estimate minus truth along the axes of the map frame, without any alignment.";
+  };
+
+  const drawNis = () => {
+    const n = data.nis;
+    const top = Math.max(2.5, 1.15 * Math.max(0, ...n.high, ...n.mean));
+    draw("nis", [
+      ...band("two-sided 95 % band", n.t, n.low, n.high),
+      dots("single updates", n.steps_t, n.steps, c.faint, { marker: { color: c.faint, size: 3 }, opacity: .55,
+        hovertemplate: "%{x:.1f} s: %{y:.2f}<extra></extra>" }),
+      line("mean of a block", n.t, n.mean, c.estimate, { hovertemplate: "%{x:.1f} s: %{y:.2f}<extra></extra>" }),
+    ], { xaxis: timeAxis(), yaxis: axis("NIS per degree of freedom [–]", { range: [0, top] }) });
+    byId("nis-note").textContent = n.t.length === 0 ? "No update was made in this run."
+      : `Normalised innovation squared of the joint updates, and its mean over blocks of ${count(n.block)} updates with
+         the band that such a mean keeps to with 95 % if the filter is consistent.`;
+  };
+
+  const drawLandmarks = () => {
+    const h = data.health;
+    draw("landmarks", [
+      line("in the map", h.t, h.mapped, c.landmark, { line: { color: c.landmark, width: 2, shape: "hv" } }),
+      line("active", h.t, h.active, c.estimate, { line: { color: c.estimate, width: 1.4, shape: "hv" } }),
+    ], { xaxis: timeAxis(), yaxis: axis("landmarks [count]", { rangemode: "tozero" }) });
+  };
+
+  const drawObservations = () => {
+    const o = data.observations;
+    const shade = { matched: c.landmark, augmented: c.estimate, ambiguous: c.truth, rejected: c.bad };
+    draw("observations", Object.keys(shade).map((name) => ({
+      type: "scatter", mode: "lines", name, x: o.t, y: o[name], stackgroup: "all",
+      line: { width: .5, color: shade[name], shape: "hv" }, hovertemplate: "%{y:.2f} a scan",
+    })), { xaxis: timeAxis(), yaxis: axis("observations per scan [count]", { rangemode: "tozero" }), hovermode: "x unified" });
+    byId("observations-note").textContent = `What became of the observations, mean over ${count(o.block)} scans.`;
+  };
+
+  const drawTiming = () => {
+    const w = clock.steps;
+    draw("timing", [
+      dots(w.block > 1 ? "slowest of a block" : "step", w.t, w.max_us, c.faint, { marker: { color: c.faint, size: 3.5 },
+        hovertemplate: "%{x:.1f} s: %{y:.0f} µs<extra></extra>" }),
+      ...(w.block > 1 ? [line("median of a block", w.t, w.median_us, c.estimate)] : []),
+    ], {
+      xaxis: timeAxis(), yaxis: axis("time per step [µs]", { type: "log", dtick: 1 }),
+    });
+    byId("timing-note").textContent = `Wall clock of the estimator: median ${microseconds(clock.timing.median_us)},
+      99 % ${microseconds(clock.timing.p99_us)}, maximum ${microseconds(clock.timing.max_us)}.` +
+      (w.block > 1 ? ` Blocks of ${w.block} scans.` : "");
+  };
+
+  const drawAll = () => {
+    c = colours();
+    for (const chart of [drawMap, drawErrors, drawNis, drawLandmarks, drawObservations, drawTiming]) chart();
+  };
+
+  writeHeader();
+  writeSummary();
+  writeDecisions();
+  drawAll();
+  dark.addEventListener("change", drawAll);
+})();
