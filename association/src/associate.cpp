@@ -27,14 +27,16 @@ bool is_whole_scan(Method method) {
   return method == Method::likelihood_ratio || method == Method::ihgr_likelihood_ratio;
 }
 
-/// Cheapest other choice of each observation, its own pairs and "none", minus the cost of its choice.
+/// Cheapest other choice that the other observations leave to each, "none" included, minus the cost of its choice.
 std::vector<double> margins_by_observation(const AssignmentProblem& costs, const std::vector<int>& pair) {
   std::vector<double> margins(pair.size());
+  std::vector<int> holders(costs.columns, 0);
+  for (const int e : matched_pairs(pair)) ++holders[costs.column[e]];
   for (int i = 0; i < costs.rows(); ++i) {
     double other = std::numeric_limits<double>::infinity();
     if (pair[i] != unmatched) other = costs.unassigned_cost[i];
     for (int e = costs.row_begin[i]; e < costs.row_begin[i + 1]; ++e) {
-      if (e != pair[i]) other = std::min(other, costs.cost[e]);
+      if (e != pair[i] && holders[costs.column[e]] == 0) other = std::min(other, costs.cost[e]);
     }
     margins[i] = other - (pair[i] == unmatched ? costs.unassigned_cost[i] : costs.cost[pair[i]]);
   }
@@ -114,8 +116,10 @@ Assignment associate(Method method, const InnovationProblem& problem, const Opti
       likelihood_ratio_costs(problem, options.detection_probability, options.extraneous);
   Proposal proposal = propose(method, problem, costs, options);
   std::vector<int>& pair = proposal.matching.pair;
-  for (std::size_t i = 0; i < pair.size(); ++i) {
-    if (proposal.margins[i] < options.min_margin_nats) pair[i] = unmatched;
+  if (options.min_margin_nats > 0.0) {  // at 0 even the methods that judge by other costs keep their choice
+    for (std::size_t i = 0; i < pair.size(); ++i) {
+      if (proposal.margins[i] < options.min_margin_nats) pair[i] = unmatched;
+    }
   }
   Guarded guarded = is_whole_scan(method) ? guard_by_alternatives(problem, costs, pair, options)
                                           : guard_by_dropping(problem, pair, options);

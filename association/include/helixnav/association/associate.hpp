@@ -30,7 +30,7 @@ struct Options {
   bool joint_test = true;              ///< false: let a set of pairs pass that is not jointly compatible
   double joint_probability = 0.999;    ///< the set's joint NIS must not exceed this χ² quantile
   int joint_alternatives = 10;         ///< likelihood-ratio assignments tried, best first, when the joint test fails
-  double min_margin_nats = 0.0;        ///< a match whose best alternative is nearer than this is ambiguous
+  double min_margin_nats = 0.0;        ///< a match whose best alternative is nearer is ambiguous; 0: none
   std::int64_t node_budget = 100'000;  ///< nodes of JCBB, combinations of IHGR's tie rule
 };
 
@@ -50,7 +50,8 @@ struct ObservationOutcome {
   double nis = std::numeric_limits<double>::quiet_NaN();  ///< to the landmark named; NaN without
   int dof = 0;
   /// Likelihood-ratio cost of the best alternative minus that of the choice: for the likelihood-ratio methods of the
-  /// whole scan's assignment, for the others of this observation alone; +inf without an alternative.
+  /// whole scan's assignment, for the others of what the other observations leave to this one, where it may be negative;
+  /// +inf without an alternative.
   double margin_nats = std::numeric_limits<double>::infinity();
   bool dropped_by_joint_test = false;
 };

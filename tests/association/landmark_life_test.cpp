@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/association/landmark_life.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "helixnav/core/errors.hpp"
+#include "helixnav/core/random.hpp"
+
+namespace helixnav::association {
+namespace {
+
+using core::LandmarkState;
+
+Eigen::Vector2d at(double x_m) { return {x_m, 0.0}; }
+
+TEST(LandmarkLife, MaturesWhenSeenFromSeveralPlaces) {
+  LandmarkLife life;
+  life.observe(at(0.0), {}, {4}, {});
+  EXPECT_EQ(life.state(4), LandmarkState::tentative);
+  EXPECT_TRUE(life.observe(at(1.0), {4}, {}, {4}).matured.empty());
+  EXPECT_EQ(life.observe(at(2.0), {4}, {}, {4}).matured, std::vector<core::LandmarkId>{4});
+  EXPECT_EQ(life.state(4), LandmarkState::mature);
+  EXPECT_EQ(life.record(4).hits, 3);
+}
+
+TEST(LandmarkLife, LearnsNothingWhileStandingStill) {
+  LandmarkLife life;
+  life.observe(at(0.0), {}, {4}, {});
+  for (int k = 0; k < 1000; ++k) life.observe(at(0.0), k % 2 == 0 ? std::vector{4} : std::vector<int>{}, {}, {4});
+  EXPECT_EQ(life.record(4).observations, 501);
+  EXPECT_EQ(life.record(4).hits, 1);
+  EXPECT_EQ(life.record(4).misses, 0);
+}
+
+TEST(LandmarkLife, TentativeOnesDieUnconfirmedAndLeaveNoTrace) {
+  LandmarkLife life;
+  life.observe(at(0.0), {}, {4, 5}, {});
+  EXPECT_TRUE(life.seen_together(4, 5));
+  LifeChanges changes;
+  for (int k = 1; k <= 2; ++k) changes = life.observe(at(k), {5}, {}, {4, 5});
+  EXPECT_EQ(changes.died, std::vector<core::LandmarkId>{4});
+  EXPECT_FALSE(life.contains(4));
+  EXPECT_EQ(life.state(4), LandmarkState::dead);
+  EXPECT_EQ(life.records().size(), 1u);
+  EXPECT_TRUE(life.record(5).seen_with.empty());
+}
+
+TEST(LandmarkLife, TentativeOnesDieWhenTheDriveLeavesThemBehind) {
+  LandmarkLife life;
+  life.observe(at(0.0), {}, {4}, {});
+  for (int k = 1; k <= 30; ++k) EXPECT_TRUE(life.observe(at(k), {}, {}, {}).died.empty());
+  EXPECT_EQ(life.observe(at(31.0), {}, {}, {}).died, std::vector<core::LandmarkId>{4});
+}
+
+LandmarkLife with_a_mature_landmark(const LifeOptions& options) {
+  LandmarkLife life(options);
+  life.observe(at(0.0), {}, {4}, {});
+  for (int k = 1; k <= 10; ++k) life.observe(at(k), {4}, {}, {4});
+  return life;
+}
+
+TEST(LandmarkLife, MatureOnesDieOfStrongEvidenceOnly) {
+  LandmarkLife life = with_a_mature_landmark({});
+  int misses = 0;
+  while (life.contains(4)) life.observe(at(11.0 + misses++), {}, {}, {4});
+  EXPECT_EQ(misses, 15);  // (8 + 8) / ln(0.9/0.3)
+}
+
+TEST(LandmarkLife, MatureOnesLiveForEverWhenToldSo) {
+  LifeOptions options;
+  options.mature_may_die = false;
+  LandmarkLife life = with_a_mature_landmark(options);
+  for (int k = 0; k < 1000; ++k) life.observe(at(11.0 + k), {}, {}, {4});
+  EXPECT_EQ(life.state(4), LandmarkState::mature);
+}
+
+TEST(LandmarkLife, KeepsATreeThatIsOftenHiddenAndDropsClutter) {
+  // A tree seen in half of its looks against a place where clutter falls in every tenth look: 200 lives each of 60 looks.
+  core::RandomStream random(20, "life");
+  int trees_kept = 0;
+  int phantoms_matured = 0;
+  for (int t = 0; t < 200; ++t) {
+    LandmarkLife life;
+    life.observe(at(0.0), {}, {0, 1}, {});
+    bool phantom_matured = false;
+    for (int k = 1; k <= 60; ++k) {
+      std::vector<core::LandmarkId> seen;
+      std::vector<core::LandmarkId> expected;
+      for (const LandmarkRecord& record : life.records()) expected.push_back(record.id);
+      if (life.contains(0) && (k <= 3 || random.bernoulli(0.5))) seen.push_back(0);
+      if (life.contains(1) && random.bernoulli(0.1)) seen.push_back(1);
+      for (const core::LandmarkId id : life.observe(at(k), seen, {}, expected).matured) phantom_matured |= id == 1;
+    }
+    trees_kept += life.state(0) == LandmarkState::mature;
+    phantoms_matured += phantom_matured;
+  }
+  EXPECT_GE(trees_kept, 195);       // drift per look +0.42 nats against a fall of 16
+  EXPECT_LE(phantoms_matured, 12);  // two hits before two net misses: about 0.01 + 0.01, here 2 % expected
+}
+
+TEST(LandmarkLife, KnowsWhoWasEverSeenTogether) {
+  LandmarkLife life;
+  life.observe(at(0.0), {}, {1, 2}, {});
+  life.observe(at(1.0), {2}, {3}, {});
+  EXPECT_TRUE(life.seen_together(1, 2));
+  EXPECT_TRUE(life.seen_together(3, 2));
+  EXPECT_FALSE(life.seen_together(1, 3));
+  life.remove(2);
+  EXPECT_FALSE(life.contains(2));
+  EXPECT_TRUE(life.record(1).seen_with.empty());
+}
+
+TEST(LandmarkLife, RefusesUnknownAndRebornLandmarksAndStaysAsItWas) {
+  LandmarkLife life;
+  life.observe(at(0.0), {}, {1}, {});
+  EXPECT_THROW(life.observe(at(1.0), {1, 2}, {}, {}), core::PreconditionError);
+  EXPECT_THROW(life.observe(at(1.0), {1}, {}, {2}), core::PreconditionError);
+  EXPECT_THROW(life.observe(at(1.0), {1}, {1}, {}), core::PreconditionError);
+  EXPECT_THROW(life.observe(at(1.0), {1}, {3, 3}, {}), core::PreconditionError);
+  EXPECT_THROW(life.remove(2), core::PreconditionError);
+  EXPECT_THROW(life.record(2), core::PreconditionError);
+  EXPECT_EQ(life.record(1).observations, 1);
+  LifeOptions options;
+  options.false_hit_probability = 0.9;
+  EXPECT_THROW(LandmarkLife{options}, core::PreconditionError);
+  options.false_hit_probability = std::nan("");
+  EXPECT_THROW(LandmarkLife{options}, core::PreconditionError);
+}
+
+}  // namespace
+}  // namespace helixnav::association
