@@ -8,6 +8,7 @@
 #include <matio.h>
 
 #include "helixnav/core/errors.hpp"
+#include "input_files.hpp"
 
 namespace helixnav::logs {
 namespace {
@@ -50,16 +51,44 @@ std::vector<double> numbers(const matvar_t& variable, std::size_t count) {
   }
 }
 
+std::size_t unsigned32(const std::string& content, std::size_t at, bool little_endian) {
+  std::size_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    value = (value << 8) | static_cast<unsigned char>(content[at + (little_endian ? 3 - i : i)]);
+  }
+  return value;
+}
+
 }  // namespace
 
 MatFile::MatFile(const std::filesystem::path& path) : path_(path) {
-  mat_t* file = std::filesystem::is_regular_file(path) ? Mat_Open(path.c_str(), MAT_ACC_RDONLY) : nullptr;
+  check_extent();
+  mat_t* file = Mat_Open(path.c_str(), MAT_ACC_RDONLY);
   if (file == nullptr) {
     fail("expected a MATLAB file that can be read");
   }
   file_ = std::shared_ptr<void>(file, [](void* opened) { Mat_Close(static_cast<mat_t*>(opened)); });
   while (const Variable next{Mat_VarReadNextInfo(file)}) {
     variables_.emplace_back(next->name != nullptr ? next->name : "");
+  }
+}
+
+/// matio takes a file that is cut off for one full of zeros; the lengths that stand before each variable tell.
+void MatFile::check_extent() const {
+  constexpr std::size_t header_bytes = 128;
+  constexpr std::size_t tag_bytes = 8;
+  const std::string content = read_file(path_);
+  const std::string mark = content.size() >= header_bytes ? content.substr(126, 2) : std::string();
+  if (mark != "IM" && mark != "MI") {
+    fail("expected a MATLAB file of version 5 to 7.2");
+  }
+  for (std::size_t at = header_bytes; at < content.size();) {
+    const std::size_t left = content.size() - at;
+    const std::size_t length = left < tag_bytes ? 0 : unsigned32(content, at + 4, mark == "IM");
+    if (left < tag_bytes || length > left - tag_bytes) {
+      fail("byte " + std::to_string(at) + ": expected a variable that ends before the end of the file");
+    }
+    at += tag_bytes + length;
   }
 }
 

@@ -19,7 +19,7 @@ struct MatMatrix {
   std::size_t size() const { return values.size(); }
 };
 
-/// A MATLAB file (.mat, versions 4 to 7.2), read by matio. Errors are core::InputError and name file and variable.
+/// A MATLAB file (.mat, version 5 to 7.2), read by matio. Errors are core::InputError and name file and variable.
 class MatFile {
  public:
   explicit MatFile(const std::filesystem::path& path);
@@ -36,6 +36,8 @@ class MatFile {
   [[noreturn]] void fail(const std::string& message) const;
 
  private:
+  void check_extent() const;
+
   std::filesystem::path path_;
   std::shared_ptr<void> file_;
   std::vector<std::string> variables_;

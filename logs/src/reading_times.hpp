@@ -12,7 +12,7 @@ class ReadingTimes {
  public:
   core::Nanoseconds next(TextCursor& cursor) {
     constexpr double longest_log_s = 4e9;
-    last_s_ = cursor.number_between_in_stream(last_s_, longest_log_s, "a time [s] that does not go backwards,");
+    last_s_ = cursor.number_between_in_stream(last_s_, longest_log_s, "a time [s] that does not go backwards");
     return core::nanoseconds_from_seconds(last_s_);
   }
 

@@ -119,7 +119,7 @@ double TextCursor::number_between(double low, double high, std::string_view what
   if (value < low || value > high) {
     const std::string_view field = text_.substr(begin_of_field, position_ - begin_of_field);
     position_ = begin_of_field;
-    fail_expected(std::string(what) + " in [" + to_text(low) + ", " + to_text(high) + "]",
+    fail_expected(std::string(what) + " (" + to_text(low) + " … " + to_text(high) + ")",
                   field.substr(0, field.find_first_of(" \t\r\n,")));
   }
   return value;
@@ -149,9 +149,13 @@ void TextCursor::fail(std::string_view message) const {
 }
 
 void TextCursor::fail_expected(std::string_view what, std::string_view found) {
-  const bool more_lines = place_ == Place::line && position_ < text_.size();
-  const std::string end_of = more_lines ? "the end of the line" : "the end of the file";
-  fail("expected " + std::string(what) + ", found " + (found.empty() ? end_of : quoted(found)));
+  std::string shown = quoted(found);
+  if (found.empty()) {
+    const bool more_lines = place_ == Place::line && position_ < text_.size();
+    const bool empty_field = separator_ != ' ' && peek() == separator_;
+    shown = empty_field ? "an empty field" : more_lines ? "the end of the line" : "the end of the file";
+  }
+  fail("expected " + std::string(what) + ", found " + shown);
 }
 
 }  // namespace helixnav::logs

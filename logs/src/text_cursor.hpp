@@ -23,6 +23,9 @@ class TextCursor {
   /// True when no field is left in this line; moves past spaces.
   bool at_line_end();
 
+  /// The character that comes next, '\0' at the end of the text.
+  char peek() const { return position_ < text_.size() ? text_[position_] : '\0'; }
+
   /// Next field of this line as a finite number; `what` names it in errors, with its unit.
   double number(std::string_view what);
   std::int64_t integer(std::string_view what);
