@@ -61,22 +61,26 @@ void HelixProposal::weigh_cells() {
   const Eigen::Matrix3d information = spread.inverse();
   weight_.assign(points.size() * table.size() * heading_cells, 0.0);
   double total = 0.0;
-  for (std::size_t pair = 0; pair < points.size() * table.size(); ++pair) {
-    const RobotPoint& point = points[pair / table.size()];
-    const Eigen::Vector2d landmark(table.x[pair % table.size()], table.y[pair % table.size()]);
-    bool any = false;
+  for (std::size_t j = 0; j < points.size(); ++j) {
+    std::array<Eigen::Vector3d, heading_cells> offset;  // pose minus (landmark, 0), minus the prior's mean
     for (std::size_t k = 0; k < heading_cells; ++k) {
       const double heading = heading_min_rad_ + (static_cast<double>(k) + 0.5) * heading_step_rad_;
-      const Eigen::Vector2d position = landmark - core::rotation(heading) * point.mean_m;
-      const Eigen::Vector3d d = pose_difference({position.x(), position.y(), heading}, map_.prior.mean);
-      const double d2 = d.dot(information * d);
-      if (d2 > options_.sigmas * options_.sigmas) continue;
-      weight_[pair * heading_cells + k] = std::exp(-0.5 * d2);
-      total += weight_[pair * heading_cells + k];
-      cells_.push_back({static_cast<std::uint32_t>(pair), static_cast<std::uint32_t>(k)});
-      any = true;
+      const Eigen::Vector2d position = -(core::rotation(heading) * points[j].mean_m);
+      offset[k] = pose_difference({position.x(), position.y(), heading}, map_.prior.mean);
     }
-    pairs_ += any ? 1 : 0;
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      const std::size_t pair = j * table.size() + i;
+      const std::size_t before = cells_.size();
+      for (std::size_t k = 0; k < heading_cells; ++k) {
+        const Eigen::Vector3d d = offset[k] + Eigen::Vector3d(table.x[i], table.y[i], 0.0);
+        const double d2 = d.dot(information * d);
+        if (d2 > options_.sigmas * options_.sigmas) continue;
+        weight_[pair * heading_cells + k] = std::exp(-0.5 * d2);
+        total += weight_[pair * heading_cells + k];
+        cells_.push_back({static_cast<std::uint32_t>(pair), static_cast<std::uint32_t>(k)});
+      }
+      pairs_ += cells_.size() > before ? 1 : 0;
+    }
   }
   for (double& weight : weight_) weight /= std::max(total, 1e-300);
 }

@@ -180,7 +180,7 @@ bool meets_paper_rule(const CloudState& state, const core::Odometry& motion) {
 }
 
 bool meets_gate(const CloudState& state, const GateLimits& limits) {
-  if (state.modes.empty() || state.scans < limits.least_scans) return false;
+  if (state.modes.empty() || state.scans < limits.least_scans || state.log_evidence <= limits.log_evidence) return false;
   const Mode& mode = state.modes.front();
   const Eigen::Vector3d sigma = mode.pose.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   return mode.mass > limits.least_mass && std::max(sigma.x(), sigma.y()) < limits.sigma_position_m &&

@@ -92,12 +92,14 @@ class Relocalizer {
 /// in x, y and heading. A baseline; it accepts false closings (PROTOTYPE §0).
 bool meets_paper_rule(const CloudState& state, const core::Odometry& motion);
 
-/// The cheap gate before verification: one mode, tight, seen by a few scans.
+/// The cheap gate before verification: one mode, tight, seen by a few scans, likelier than being off the map. It is no
+/// evidence: on the map of another crowded place it is met more often than not.
 struct GateLimits {
   double least_mass = 0.99;
   double sigma_position_m = 0.5;  ///< of x and of y
   double sigma_heading_rad = 2.0 * core::pi / 180.0;
   int least_scans = 3;
+  double log_evidence = 0.0;      ///< must be exceeded
 };
 bool meets_gate(const CloudState& state, const GateLimits& limits = {});
 
