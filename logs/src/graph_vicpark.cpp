@@ -97,6 +97,7 @@ class VicParkReader {
   void add_scan(std::int64_t pose) {
     core::Scan scan;
     scan.t_ns = core::nanoseconds_from_seconds(static_cast<double>(pose));
+    scan.field_of_view.max_range_m = 0.0;  // the file leaves out detections that its authors did not associate
     std::vector<core::Label> labels;
     for (const Seen& seen : seen_[pose]) {
       scan.observations.push_back(seen.observation);

@@ -7,7 +7,6 @@
 namespace helixnav::smoothing {
 namespace {
 
-constexpr double first_damping = 1e-4;
 constexpr double smallest_damping = 1e-12;
 constexpr double largest_damping = 1e12;
 /// A negligible promise counts as convergence only when damping does not explain it.
@@ -26,7 +25,7 @@ bool damped_step(Session& session, double damping, std::vector<double>& damped, 
 Reason levenberg_marquardt(Session& session) {
   std::vector<double> damped;
   Eigen::VectorXd step;
-  double damping = first_damping;
+  double damping = session.options.first_damping;
   double growth = 2.0;
   for (int i = 0; i < session.options.max_iterations; ++i) {
     session.linearize();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/smoothing/optimize.hpp"
 
-#include "helixnav/smoothing/smooth.hpp"
 #include "session.hpp"
 
 namespace helixnav::smoothing {
@@ -33,18 +32,6 @@ Report optimize(Problem& problem, const Options& options) {
   put_state(session.state, problem.graph);
   session.report.chi2 = session.chi2;
   return session.report;
-}
-
-Report smooth(Problem& problem, const SmoothOptions& options) {
-  if (!options.soften_sigma) return optimize(problem, options.solver);
-  Problem softened = problem;
-  soften_odometry(softened, *options.soften_sigma);
-  optimize(softened, options.solver);
-  Problem restarted = problem;
-  put_state(state_of(softened.graph), restarted.graph);
-  const Report report = optimize(restarted, options.solver);
-  put_state(state_of(restarted.graph), problem.graph);
-  return report;
 }
 
 Chi2 evaluate_chi2(const Problem& problem, const RobustKernel& kernel) {

@@ -28,13 +28,14 @@ void write_isam(const core::LandmarkGraph& graph, const std::filesystem::path& p
 void write_gtsam(const core::LandmarkGraph& graph, const std::filesystem::path& path);
 
 /// The drive that a graph tells of, for programs that work step by step: the poses in the order of their odometry chain, one
-/// Odometry and one Scan per pose (t = index in seconds), labels = names of the landmarks. Throws core::InputError when
+/// Odometry and one Scan per pose (t = index in seconds), labels = names of the landmarks. The field of view is empty
+/// (maximum range 0): a pose without observation says nothing about what stands there. Throws core::InputError when
 /// pose-to-pose edges are not one chain.
 core::Recording recording_from_graph(const core::LandmarkGraph& graph, std::string name);
 
 /// Reads the one-step local maps of 2D-I-SLSJF (VicPark_clean_data.mat, matio): rows [1 from to dx dy dφ Cxx Cxy Cxφ Cyy Cyφ Cφφ]
 /// and [0 pose landmark x y Cxx Cxy Cyy 0 …]. One Odometry and one Scan per pose, t = pose number in seconds, labels from
-/// the file, true identities as its authors associated them. x ahead, y left as in the file.
+/// the file, true identities as its authors associated them; the field of view is empty. x ahead, y left as in the file.
 /// Throws core::InputError naming file and row. Test: logs/graph_vicpark_test.cpp.
 core::Recording read_vicpark_clean(const std::filesystem::path& path);
 

@@ -27,6 +27,10 @@ struct Options {
   RobustKernel kernel;
   Ordering ordering = Ordering::least_fill;
   int max_iterations = 200;
+  /// λ of the first Levenberg–Marquardt step. From a good start (a filter's result) 1e-8 saves half of the steps: DLR from
+  /// odometry takes 11 instead of 36. From a bad one 1e-4 is safer: labelled Victoria Park with softened odometry ends at
+  /// χ² 9012.7 instead of 158 000.
+  double first_damping = 1e-4;
   double tolerance_chi2 = 1e-6;  ///< converged when the quadratic model promises less than this [χ²], or 1e-11 of the cost
 };
 

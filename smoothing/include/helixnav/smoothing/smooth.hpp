@@ -1,20 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
+#include <Eigen/Core>
 
 #include "helixnav/smoothing/optimize.hpp"
 #include "helixnav/smoothing/problem.hpp"
 
 namespace helixnav::smoothing {
 
-/// optimize() with a way out of a bad start: with `soften_sigma` the problem is first solved with softened odometry, then
-/// as given from where that ended. The report is of the second run; its start is the first one's end.
-/// Errors as optimize(). Test: smoothing/victoria_park_test.cpp.
+/// Where the solution starts from.
+enum class Start {
+  as_given,  ///< the values in the graph
+  softened,  ///< the solution of the same problem with soften_odometry, begun at the values in the graph
+  grown,     ///< grow_start: needs nothing but the measurements
+};
+
 struct SmoothOptions {
   Options solver;
-  std::optional<Eigen::Vector3d> soften_sigma;  ///< x, y, heading [m, m, rad]
+  Start start = Start::as_given;
+  Eigen::Vector3d soften_sigma{0.05, 0.05, 0.5 * core::pi / 180.0};  ///< x, y, heading [m, m, rad]
+  int poses_per_stage = 200;
 };
+
+/// optimize() from the start chosen; what `helixnav smooth` calls. Report::start is where the last solution began.
+/// Errors as optimize(); the problem is left as it was when anything is thrown.
+/// Test: smoothing/victoria_park_test.cpp (all three starts side by side).
 Report smooth(Problem& problem, const SmoothOptions& options = {});
 
 }  // namespace helixnav::smoothing
