@@ -1,5 +1,5 @@
 # Script: installs BUILD_DIR into WORK_DIR, moves what was installed, builds the consumer with find_package(helixnav) there
-# and runs it.
+# and runs it. The consumer is the program of the README, word for word.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(status)
@@ -9,6 +9,13 @@ function(run)
   endif()
   set(output "${output}" PARENT_SCOPE)
 endfunction()
+
+file(READ ${SOURCE_DIR}/README.md readme)
+file(READ ${CMAKE_CURRENT_LIST_DIR}/consumer/consumer.cpp program)
+string(FIND "${readme}" "${program}" position)
+if(position EQUAL -1)
+  message(FATAL_ERROR "README.md does not show consumer/consumer.cpp as it is")
+endif()
 
 file(REMOVE_RECURSE ${WORK_DIR})
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/first)
@@ -29,6 +36,6 @@ run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${
   -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build --parallel 2)
 run(${WORK_DIR}/build/consumer)
-if(NOT output MATCHES "^HelixNav ${VERSION} ")
+if(NOT output MATCHES "^[1-9][0-9]* landmarks, robot at ")
   message(FATAL_ERROR "the consumer said: ${output}")
 endif()

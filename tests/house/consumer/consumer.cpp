@@ -1,11 +1,15 @@
-// SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
 
-#include <helixnav/core/se2.hpp>
-#include <helixnav/core/version.hpp>
+#include <helixnav/sim/simulate.hpp>
+#include <helixnav/supervisor/navigator.hpp>
 
 int main() {
-  const helixnav::core::Pose2 T_world_robot(1.0, 2.0, 0.5);
-  const helixnav::core::Pose2 back = compose(T_world_robot, inverse(T_world_robot));
-  std::cout << "HelixNav " << helixnav::core::version() << " at " << back.vector().transpose() << '\n';
+  using namespace helixnav;
+  const core::Recording drive = sim::simulate(sim::named_scenario("large-loop"), /*seed=*/1);
+  supervisor::Navigator navigator(drive.start);
+  for (const core::Event& event : drive.events) {
+    if (const auto* odometry = std::get_if<core::Odometry>(&event)) navigator.move(*odometry);
+    if (const auto* scan = std::get_if<core::Scan>(&event)) navigator.observe(*scan);
+  }
+  std::cout << navigator.map().size() << " landmarks, robot at " << navigator.pose().mean.vector().transpose() << '\n';
 }
