@@ -8,8 +8,8 @@ namespace helixnav::core {
 /// Version of this library, "major.minor.patch".
 std::string_view version();
 
-/// Abbreviated git commit of the sources, read when the library is built; ends in "+changes" when tracked files differed
-/// from that commit, "unknown" when the sources were no git checkout.
+/// Abbreviated git commit of the sources, read when the library is built; ends in "+changes" when tracked files
+/// differed from that commit, "unknown" when the sources were no git checkout.
 std::string_view commit();
 
 }  // namespace helixnav::core
