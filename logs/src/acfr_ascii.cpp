@@ -2,10 +2,11 @@
 #include <cstddef>
 #include <string>
 
+#include "acfr_laser_text.hpp"
+#include "acfr_limits.hpp"
+#include "acfr_order.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/acfr_log.hpp"
-#include "acfr_laser_text.hpp"
-#include "acfr_order.hpp"
 #include "input_files.hpp"
 #include "reading_times.hpp"
 #include "text_cursor.hpp"
@@ -23,8 +24,8 @@ std::vector<DeadReckoning> parse_dead_reckoning(TextCursor cursor) {
   while (!cursor.at_end()) {
     DeadReckoning reading;
     reading.t_ns = times.next(cursor);
-    reading.wheel_speed_mps = cursor.number("a speed [m/s]");
-    reading.steering_rad = cursor.number("a steering angle [rad]");
+    reading.wheel_speed_mps = cursor.number_between(-most_speed_mps, most_speed_mps, "a speed [m/s]");
+    reading.steering_rad = cursor.number_between(-most_steering_rad, most_steering_rad, "a steering angle [rad]");
     cursor.end_line("time, speed, steering");
     readings.push_back(reading);
   }

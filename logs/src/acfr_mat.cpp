@@ -4,6 +4,7 @@
 #include <string>
 
 #include "acfr_laser_text.hpp"
+#include "acfr_limits.hpp"
 #include "acfr_order.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/acfr_log.hpp"
@@ -17,7 +18,8 @@ constexpr double seconds_per_millisecond = 1e-3;
 constexpr core::Nanoseconds mat_clock_ahead_ns = 20'967'000'000;
 
 /// A vector of times on the file's clock that never goes back.
-std::vector<core::Nanoseconds> times(const MatFile& file, const std::string& name, double unit_s, std::size_t length = 0) {
+std::vector<core::Nanoseconds> times(const MatFile& file, const std::string& name, double unit_s,
+                                     std::size_t length = 0) {
   std::vector<core::Nanoseconds> times_ns;
   for (const double t : file.vector(name, length)) {
     const double t_s = t * unit_s;
@@ -44,6 +46,11 @@ std::vector<DeadReckoning> dead_reckoning(const MatFile& file, const Columns& na
   const std::vector<double> steering_rad = file.vector(names.second, t_ns.size());
   std::vector<DeadReckoning> readings(t_ns.size());
   for (std::size_t i = 0; i < t_ns.size(); ++i) {
+    if (std::abs(speed_mps[i]) > most_speed_mps || std::abs(steering_rad[i]) > most_steering_rad) {
+      file.fail(std::string("variables ") + names.first + ", " + names.second + ", element " + std::to_string(i + 1) +
+                ": expected up to 100 m/s and 1.2 rad, found " + std::to_string(speed_mps[i]) + " and " +
+                std::to_string(steering_rad[i]));
+    }
     readings[i] = {t_ns[i], speed_mps[i], steering_rad[i]};
   }
   return readings;

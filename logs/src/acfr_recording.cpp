@@ -72,8 +72,8 @@ core::Scan observe(const SickScan& raw, const AcfrSettings& settings) {
   scan.T_robot_sensor = settings.T_robot_laser;
   scan.field_of_view = field_of_view(settings);
   for (const SickDetection& seen : detect(raw, settings)) {
-    scan.observations.push_back(core::make_range_bearing(seen.range_m, seen.bearing_rad, settings.sigma_range_m,
-                                                         settings.sigma_bearing_rad));
+    scan.observations.push_back(
+        core::make_range_bearing(seen.range_m, seen.bearing_rad, settings.sigma_range_m, settings.sigma_bearing_rad));
   }
   return scan;
 }

@@ -45,9 +45,9 @@ std::vector<Return> returns_within(const SickScan& scan, double max_range_m) {
 std::vector<Cluster> cluster(const std::vector<Return>& returns, const TreeRules& rules) {
   std::vector<Cluster> clusters;
   for (std::size_t i = 0; i < returns.size(); ++i) {
-    const bool joins = i > 0 && std::abs(returns[i].range_m - returns[i - 1].range_m) <= rules.max_range_jump_m &&
-                       beam_angle_rad(returns[i].beam) - beam_angle_rad(returns[i - 1].beam) <=
-                           beam_angle_rad(rules.max_gap_beams);
+    const bool joins =
+        i > 0 && std::abs(returns[i].range_m - returns[i - 1].range_m) <= rules.max_range_jump_m &&
+        beam_angle_rad(returns[i].beam) - beam_angle_rad(returns[i - 1].beam) <= beam_angle_rad(rules.max_gap_beams);
     if (joins) {
       clusters.back().last = i;
     } else {
@@ -60,7 +60,8 @@ std::vector<Cluster> cluster(const std::vector<Return>& returns, const TreeRules
 /// A trunk stands alone: where the end of one cluster and the beginning of a later one are close, both are rejected.
 void reject_crowded(const std::vector<Return>& returns, const TreeRules& rules, std::vector<Cluster>& clusters) {
   for (std::size_t i = 0; i < clusters.size(); ++i) {
-    for (std::size_t j = i + 1; j < clusters.size() && j <= i + static_cast<std::size_t>(rules.isolation_neighbours); ++j) {
+    for (std::size_t j = i + 1; j < clusters.size() && j <= i + static_cast<std::size_t>(rules.isolation_neighbours);
+         ++j) {
       const Eigen::Vector2d apart_m = returns[clusters[j].first].point_m - returns[clusters[i].last].point_m;
       if (apart_m.squaredNorm() < rules.isolation_m * rules.isolation_m) {
         clusters[i].rejected = clusters[j].rejected = true;

@@ -47,7 +47,8 @@ std::string content(const std::filesystem::path& path, archive* reader, archive_
   std::string text;
   if (archive_entry_size_is_set(entry) != 0) {
     constexpr std::int64_t reserved_at_most_bytes = 256 << 20;  // a size that lies does not take the memory
-    text.reserve(static_cast<std::size_t>(std::clamp<std::int64_t>(archive_entry_size(entry), 0, reserved_at_most_bytes)));
+    text.reserve(
+        static_cast<std::size_t>(std::clamp<std::int64_t>(archive_entry_size(entry), 0, reserved_at_most_bytes)));
   }
   std::string block(1 << 18, '\0');
   for (;;) {

@@ -117,7 +117,8 @@ MatMatrix MatFile::matrix(const std::string& name) const {
   if (matrix.values.size() != count) {
     fail("variable " + name + ": expected real numbers");
   }
-  const auto bad = std::find_if_not(matrix.values.begin(), matrix.values.end(), [](double v) { return std::isfinite(v); });
+  const auto bad =
+      std::find_if_not(matrix.values.begin(), matrix.values.end(), [](double v) { return std::isfinite(v); });
   if (bad != matrix.values.end()) {
     fail("variable " + name + ", element " + std::to_string(bad - matrix.values.begin() + 1) +
          ": expected a finite number");
@@ -129,8 +130,9 @@ std::vector<double> MatFile::vector(const std::string& name, std::size_t length)
   MatMatrix vector = matrix(name);
   const bool wrong_length = length != 0 && vector.size() != length;
   if (wrong_length || (vector.rows != 1 && vector.columns != 1)) {
-    fail("variable " + name + ": expected a vector" + (length != 0 ? " of " + std::to_string(length) + " numbers" : "") +
-         ", found " + std::to_string(vector.rows) + " by " + std::to_string(vector.columns));
+    fail("variable " + name + ": expected a vector" +
+         (length != 0 ? " of " + std::to_string(length) + " numbers" : "") + ", found " + std::to_string(vector.rows) +
+         " by " + std::to_string(vector.columns));
   }
   return std::move(vector.values);
 }

@@ -42,7 +42,8 @@ std::string run_prefix(const std::filesystem::path& folder_or_odometry) {
     for (const auto& entry : std::filesystem::directory_iterator(folder_or_odometry)) {
       if (ends_with(entry.path().string(), odometry_ending)) {
         if (!found.empty()) {
-          throw core::InputError(folder_or_odometry.string() + ": expected one …_odometry.csv, found several: name one");
+          throw core::InputError(folder_or_odometry.string() +
+                                 ": expected one …_odometry.csv, found several: name one");
         }
         found = entry.path().string();
       }
@@ -123,14 +124,15 @@ std::vector<core::TrueLandmark> read_true_beacons(const std::string& path) {
 }
 
 /// The part `share` in (0, 1] of an increment, on an arc, its variances in the same proportion.
-core::Odometry part_of(const Increment& increment, double share, core::Nanoseconds t_ns, const PlazaSettings& settings) {
+core::Odometry part_of(const Increment& increment, double share, core::Nanoseconds t_ns,
+                       const PlazaSettings& settings) {
   const double distance_m = share * increment.distance_m;
   const double half_turn_rad = share * increment.turn_rad / 2.0;
   const double chord_m = half_turn_rad == 0.0 ? distance_m : distance_m * std::sin(half_turn_rad) / half_turn_rad;
   core::Odometry odometry;
   odometry.t_ns = t_ns;
-  odometry.T_before_after = core::Pose2(chord_m * std::cos(half_turn_rad), chord_m * std::sin(half_turn_rad),
-                                        2.0 * half_turn_rad);
+  odometry.T_before_after =
+      core::Pose2(chord_m * std::cos(half_turn_rad), chord_m * std::sin(half_turn_rad), 2.0 * half_turn_rad);
   const Eigen::Vector3d sigmas(settings.sigma_distance_m_per_sqrt_m, settings.sigma_sideways_m_per_sqrt_m,
                                settings.sigma_heading_rad_per_sqrt_m);
   odometry.covariance = (std::abs(distance_m) * sigmas.cwiseAbs2()).asDiagonal();
@@ -152,12 +154,14 @@ std::vector<core::Event> weave(const std::vector<Increment>& increments, const s
                                const PlazaSettings& settings) {
   std::vector<core::Event> events;
   std::size_t next_range = 0;
-  core::Nanoseconds now_ns = increments.front().t_ns;  // the first increment has no known beginning: it is instantaneous
+  core::Nanoseconds now_ns =
+      increments.front().t_ns;  // the first increment has no known beginning: it is instantaneous
   for (const Increment& increment : increments) {
     const core::Nanoseconds begin_ns = now_ns;
     const auto move_until = [&](core::Nanoseconds t_ns) {
       const bool instantaneous = increment.t_ns == begin_ns;
-      const double share = instantaneous ? 1.0 : core::seconds(t_ns - now_ns) / core::seconds(increment.t_ns - begin_ns);
+      const double share =
+          instantaneous ? 1.0 : core::seconds(t_ns - now_ns) / core::seconds(increment.t_ns - begin_ns);
       if (share > 0.0) {
         events.emplace_back(part_of(increment, share, t_ns, settings));
       }

@@ -24,7 +24,9 @@ constexpr const char* looked_for =
     "LANDMARK lines (iSAM, GTSAM); text of VERTEX_SE2, EDGE_SE2 … lines (g2o); text of STEP, LANDMARK_C, LANDMARK_L "
     "lines (DLR); a folder with …_odometry.csv and …_ranges.csv (Plaza)";
 
-bool starts_with(std::string_view text, std::string_view beginning) { return text.substr(0, beginning.size()) == beginning; }
+bool starts_with(std::string_view text, std::string_view beginning) {
+  return text.substr(0, beginning.size()) == beginning;
+}
 bool ends_with(std::string_view text, std::string_view ending) {
   return text.size() >= ending.size() && text.substr(text.size() - ending.size()) == ending;
 }

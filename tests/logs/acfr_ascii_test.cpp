@@ -83,6 +83,11 @@ TEST_F(SmallRelease, NamesLineOrByteOfGarbage) {
             "DRS.txt:2: expected a speed [m/s], found 'NaN'");
 }
 
+TEST_F(SmallRelease, RefusesASteeringThatNoTruckCanDo) {
+  EXPECT_EQ(error_after_writing("DRS.txt", "0.1\t1\t57.0\n"),
+            "DRS.txt:1: expected a steering angle [rad] (-1.2 … 1.2), found '57.0'");
+}
+
 TEST_F(SmallRelease, NamesTheByteInTheLaserFile) {
   const std::string first = scan_text("0.15");
   EXPECT_EQ(error_after_writing("LASER.txt", first + "\t0.2\t2.50\t2,5\t1.0"),
@@ -92,8 +97,9 @@ TEST_F(SmallRelease, NamesTheByteInTheLaserFile) {
 
 TEST_F(SmallRelease, NamesTheByteWhereAScanIsCutOff) {
   const std::string text = scan_text("0.15") + "\t0.2\t2.50";
-  EXPECT_EQ(error_after_writing("LASER.txt", text), "LASER.txt: byte " + std::to_string(text.size()) +
-                                                        ": expected a range [m], one of 361 in a scan, found the end of the file");
+  EXPECT_EQ(error_after_writing("LASER.txt", text),
+            "LASER.txt: byte " + std::to_string(text.size()) +
+                ": expected a range [m], one of 361 in a scan, found the end of the file");
 }
 
 TEST_F(SmallRelease, RefusesARangeThatNoScannerGives) {
@@ -116,8 +122,9 @@ TEST_F(SmallRelease, RefusesColumnsTooFew) {
 }
 
 TEST_F(SmallRelease, RefusesAnOrderThatTheSensorsDoNotHave) {
-  EXPECT_EQ(error_after_writing("Sensors_manager.txt", "0.0\t1\t1\n0.1\t2\t2\n"),
-            "Sensors_manager.txt:2: expected row 1 of sensor 2 at the time that its table has, found row 2 at 0.100000 s");
+  EXPECT_EQ(
+      error_after_writing("Sensors_manager.txt", "0.0\t1\t1\n0.1\t2\t2\n"),
+      "Sensors_manager.txt:2: expected row 1 of sensor 2 at the time that its table has, found row 2 at 0.100000 s");
   EXPECT_EQ(error_after_writing("Sensors_manager.txt", "0.0\t4\t1\n"),
             "Sensors_manager.txt:1: expected a sensor 1 (GPS), 2 (dead reckoning) or 3 (laser), found 4");
 }
@@ -130,8 +137,9 @@ TEST_F(SmallRelease, RefusesAnEmptyLog) {
 }
 
 TEST_F(SmallRelease, RefusesOneThatNamesReadingsThatAreNotThere) {
-  EXPECT_EQ(error_after_writing("GPS.txt", ""),
-            "Sensors_manager.txt:1: expected row 1 of sensor 1 at the time that its table has, found row 1 at 0.000000 s");
+  EXPECT_EQ(
+      error_after_writing("GPS.txt", ""),
+      "Sensors_manager.txt:1: expected row 1 of sensor 1 at the time that its table has, found row 1 at 0.000000 s");
 }
 
 std::filesystem::path zip(const TemporaryFolder& folder) {

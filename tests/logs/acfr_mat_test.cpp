@@ -128,6 +128,11 @@ TEST(CarParkMat, NamesTheVariableThatIsWrong) {
   SmallCarPark nan;
   nan.speeds[1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(nan.error(), "variable Velocity, element 2: expected a finite number");
+  SmallCarPark wild;
+  wild.speeds[0] = 1e6;
+  EXPECT_EQ(
+      wild.error(),
+      "variables Velocity, Steering, element 1: expected up to 100 m/s and 1.2 rad, found 1000000.000000 and 0.100000");
   SmallCarPark backwards;
   backwards.dead_reckoning_times = {1.0, 0.5};
   EXPECT_EQ(backwards.error(),
@@ -163,8 +168,9 @@ TEST(CarParkMat, RefusesGarbageAndNothing) {
   const TemporaryFolder folder;
   const auto garbage = folder.write("data_set.mat", std::string(5000, '\xa7'));
   EXPECT_NE(input_error_of([&] { read_car_park_mat(garbage); }).find("data_set.mat: "), std::string::npos);
-  EXPECT_NE(input_error_of([&] { read_car_park_mat(folder.path() / "none.mat"); }).find("expected a file that can be read"),
-            std::string::npos);
+  EXPECT_NE(
+      input_error_of([&] { read_car_park_mat(folder.path() / "none.mat"); }).find("expected a file that can be read"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -69,8 +69,8 @@ TEST(PoseLandmarkText, InvertsAFullSquareRoot) {
 
 TEST(PoseLandmarkText, TakesAnObservationThatComesLaterThanItsPose) {
   const TemporaryFolder folder;
-  const auto path = folder.write("graph.txt",
-                                 "# two poses\r\nODOMETRY 3 1 1 0 0 .1 0 0 .1 0 .1\r\nLANDMARK 3 7 3 4 .1 0 .1\r\n");
+  const auto path =
+      folder.write("graph.txt", "# two poses\r\nODOMETRY 3 1 1 0 0 .1 0 0 .1 0 .1\r\nLANDMARK 3 7 3 4 .1 0 .1\r\n");
   const core::Recording recording = read_pose_landmark_text(path);
   EXPECT_EQ(recording.labels, (std::vector<std::vector<core::Label>>{{7}, {}}));
 }
@@ -92,7 +92,8 @@ TEST(PoseLandmarkText, NamesTheLineOfWhatIsWrong) {
     return message.substr(std::min(message.size(), path.string().size() + 1));
   };
   EXPECT_EQ(error_of(good + "ODOMETRY 1 2 1 0 nan .1 0 0 .1 0 .1\n"), "2: expected dheading [rad], found 'nan'");
-  EXPECT_EQ(error_of(good + "ODOMETRY 1 2 1 0 0 .1 0 0 .1 0\n"), "2: expected a noise column, found the end of the line");
+  EXPECT_EQ(error_of(good + "ODOMETRY 1 2 1 0 0 .1 0 0 .1 0\n"),
+            "2: expected a noise column, found the end of the line");
   EXPECT_EQ(error_of(good + "ODOMETRY 1 2 1 0 0 .1 0 0 .1 0 .1 7\n"),
             "2: more columns than from, to, dx, dy, dheading and 6 of noise");
   EXPECT_EQ(error_of(good + "ODOMETRY 0 2 1 0 0 .1 0 0 .1 0 .1\n"),

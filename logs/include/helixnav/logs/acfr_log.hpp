@@ -45,11 +45,11 @@ struct AcfrLog {
   std::vector<Reading> order;  ///< all readings as they came in
 };
 
-/// Reads ACFR's text release: a folder, or a zip, that holds DRS.txt, LASER.txt, GPS.txt and Sensors_manager.txt (at any
-/// depth in the zip). Seconds and metres in the files; LASER.txt is one line without ends. Victoria Park: 0.6 s.
-/// Throws core::InputError with file and line (LASER.txt: byte) for a missing or broken file, a number that is none, time
-/// going backwards, an index or time in Sensors_manager.txt that the other files do not have.
-/// Test: logs/acfr_ascii_test.cpp.
+/// Reads ACFR's text release: a folder, or a zip, that holds DRS.txt, LASER.txt, GPS.txt and Sensors_manager.txt (at
+/// any depth in the zip). Seconds and metres in the files; LASER.txt is one line without ends. Victoria Park: 0.6 s.
+/// Throws core::InputError with file and line (LASER.txt: byte) for a missing or broken file, a number that is none,
+/// time going backwards, an index or time in Sensors_manager.txt that the other files do not have. Test:
+/// logs/acfr_ascii_test.cpp.
 AcfrLog read_acfr_ascii(const std::filesystem::path& folder_or_zip);
 
 /// Reads Victoria Park from its MATLAB files in one folder: aa3_dr.mat and aa3_gpsx.mat; scans from aa3_lsr2.mat, else

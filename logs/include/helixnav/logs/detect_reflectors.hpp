@@ -10,9 +10,9 @@ namespace helixnav::logs {
 /// What makes a run of beams a pole with retroreflective tape.
 struct ReflectorRules {
   double max_range_m = 30.0;
-  int max_gap_beams = 3;             ///< between successive bright beams of one pole
-  std::uint8_t min_reflectivity = 1; ///< code of the scanner, 1 … 4
-  double pole_diameter_m = 0.06;     ///< range = mean of the surface ranges + half of this
+  int max_gap_beams = 3;              ///< between successive bright beams of one pole
+  std::uint8_t min_reflectivity = 1;  ///< code of the scanner, 1 … 4
+  double pole_diameter_m = 0.06;      ///< range = mean of the surface ranges + half of this
 };
 
 /// Finds poles by the scanner's reflectivity code: runs of bright beams. Range and bearing are means over the beams of

@@ -9,7 +9,7 @@ namespace helixnav::logs {
 
 /// What the last columns of ODOMETRY and LANDMARK lines are: the upper triangle, by rows, of …
 enum class NoiseColumns {
-  recognise,         ///< `square_root_information` when the first one of the file exceeds 1, else `covariance`
+  recognise,                ///< `square_root_information` when the first one of the file exceeds 1, else `covariance`
   square_root_information,  ///< R with RᵀR = C⁻¹ (iSAM)
   covariance,               ///< C (GTSAM's copy of the same file)
 };
@@ -18,11 +18,11 @@ enum class NoiseColumns {
 ///   ODOMETRY from to dx dy dheading + 6 noise columns      T_from_to [m, m, rad]
 ///   LANDMARK pose landmark x y + 3 noise columns           the landmark in the frame of the pose [m]
 /// Numbers of poses and landmarks share one count. Odometry is a chain; observations may come later than their pose.
-/// The recording has a Scan for every pose, so that scan k is pose k, at t = k seconds, as the file has no times; labels
-/// are the landmarks' numbers in the file. The field of view is empty (maximum range 0): a pose without observation says
-/// nothing about what stands there. Victoria Park: 15 ms.
-/// Throws core::InputError naming file:line for an unknown keyword, wrong columns, odometry that does not go on from the
-/// latest pose, an unknown pose, noise that is not positive definite. Test: logs/pose_landmark_text_test.cpp.
+/// The recording has a Scan for every pose, so that scan k is pose k, at t = k seconds, as the file has no times;
+/// labels are the landmarks' numbers in the file. The field of view is empty (maximum range 0): a pose without
+/// observation says nothing about what stands there. Victoria Park: 15 ms. Throws core::InputError naming file:line for
+/// an unknown keyword, wrong columns, odometry that does not go on from the latest pose, an unknown pose, noise that is
+/// not positive definite. Test: logs/pose_landmark_text_test.cpp.
 core::Recording read_pose_landmark_text(const std::filesystem::path& path,
                                         NoiseColumns columns = NoiseColumns::recognise);
 
