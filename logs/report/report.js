@@ -80,7 +80,9 @@
   ]);
 
   const clockTable = () => table("Wall clock", Object.entries(clock.timing).map(([name, value]) => {
-    if (name.endsWith("_us")) return [`${name.slice(0, -3)} per step`.replace("_", " "), microseconds(value)];
+    const quantile = { median_us: "median", p99_us: "99 %", max_us: "maximum" }[name];
+    if (quantile) return [`${quantile} per scan`, microseconds(value)];
+    if (name === "steps_s") return ["all scans", `${fixed(value, 2)} s`];
     if (name.endsWith("_s")) return [name.slice(0, -2).replace(/_/g, " "), `${fixed(value, 2)} s`];
     return [name, String(value)];
   }));
@@ -96,12 +98,13 @@
     if (error) card(metres(error.rmse_m), "position error, RMSE");
     if (error) card(metres(error.median_m), "position error, median");
     if (summary.landmark_error) card(metres(summary.landmark_error.rmse_m), "landmark error, RMSE");
-    card(count(summary.landmarks.mature), `mature landmarks (${count(summary.landmarks.tentative)} tentative)`);
+    card(count(summary.landmarks.mature), `mature landmarks, ${count(summary.landmarks.tentative)} tentative`);
     const closures = summary.closures;
-    card(`${closures.accepted} / ${closures.refused} / ${closures.undecided}`, "closures accepted / refused / undecided");
+    card(`${closures.accepted} / ${closures.refused} / ${closures.undecided}`,
+         "closures accepted / refused / undecided");
     card(count(summary.steps), `scans in ${duration(data.duration_s)}`);
     card(`${count(Math.round(data.length_m))} m`, "path");
-    card(microseconds(clock.timing.median_us), `per scan, median (99 %: ${microseconds(clock.timing.p99_us)})`);
+    card(microseconds(clock.timing.median_us), `per scan, median (99 % within ${microseconds(clock.timing.p99_us)})`);
     const tables = byId("tables");
     if (error) tables.append(positionTable(error));
     if (summary.heading_error) tables.append(poseTable());
@@ -133,7 +136,8 @@
     box.append(head);
     for (const decision of decisions.slice(0, most)) {
       const row = element("tr");
-      const numbers = decision.numbers.map(([name, value]) => `${name} = ${known(value) ? +value.toPrecision(5) : "–"}`);
+      const numbers = decision.numbers.map(([name, value]) =>
+        `${name} = ${known(value) ? +value.toPrecision(5) : "–"}`);
       const state = decision.verdict === "accepted" ? "accepted" : decision.verdict === "refused" ? "refused" : "";
       row.append(element("td", count(decision.step)), element("td", fixed(decision.t, 2)), element("td", decision.kind),
                  element("td", decision.verdict, state), element("td", numbers.join(", "), "numbers"));
@@ -153,7 +157,8 @@
     }
     const details = element("details");
     const left = data.decisions_left_out > 0 ? `; ${count(data.decisions_left_out)} more in decisions.csv` : "";
-    details.append(element("summary", `${count(others.length)} decisions${left}`), decisionTable(others, others.length));
+    details.append(element("summary", `${count(others.length)} decisions${left}`),
+                   decisionTable(others, others.length));
     byId("decisions").append(details);
   };
 
@@ -170,10 +175,10 @@
     title: { text: title, standoff: 8 }, gridcolor: c.grid, zerolinecolor: c.zero, linecolor: c.zero, automargin: true,
     ...more,
   });
-  const timeAxis = (more) => axis("time in the log [s]", { zeroline: false, ...more });
+  const timeAxis = (more) => axis("time in the log [s]", { zeroline: false, range: data.time_range_s, ...more });
   const layout = (more) => ({
     paper_bgcolor: c.paper, plot_bgcolor: c.paper, font: { color: c.ink, size: 13 }, dragmode: "pan",
-    margin: { l: 70, r: 20, t: 46, b: 56 }, hovermode: "closest", autosize: true,
+    margin: { l: 70, r: 20, t: 76, b: 56 }, hovermode: "closest", autosize: true,
     legend: { orientation: "h", x: 0, xanchor: "left", y: 1.02, yanchor: "bottom", bgcolor: "rgba(0,0,0,0)" }, ...more,
   });
   const draw = (id, traces, more) => Plotly.react(byId(id), traces, layout(more), {
@@ -213,21 +218,6 @@
     return { x, y };
   };
 
-  // A range with a margin around all finite values of the lists.
-  const rangeOf = (lists) => {
-    let low = Infinity;
-    let high = -Infinity;
-    for (const list of lists) {
-      for (const value of list) {
-        if (value < low) low = value;
-        if (value > high) high = value;
-      }
-    }
-    if (!(low <= high)) return [-1, 1];
-    const margin = 0.04 * (high - low) + 1;
-    return [low - margin, high + margin];
-  };
-
   const landmarkTraces = (state, colour, symbol) => {
     const chosen = data.landmarks.filter((landmark) => landmark.state === state);
     if (chosen.length === 0) return [];
@@ -236,11 +226,11 @@
     const text = chosen.map((m) => `landmark ${m.id}<br>${m.observations} observations<br>σ ${
       Math.sqrt(m.sxx).toFixed(3)} m, ${Math.sqrt(m.syy).toFixed(3)} m`);
     return [
-      line(name, outline.x, outline.y, colour, { line: { color: colour, width: 1 }, hoverinfo: "skip", legendgroup: name,
-        showlegend: false }),
+      line(name, outline.x, outline.y, colour,
+        { line: { color: colour, width: 1 }, hoverinfo: "skip", legendgroup: name, showlegend: false }),
       dots(name, chosen.map((m) => m.x), chosen.map((m) => m.y), colour,
-        { marker: { color: colour, size: 6, symbol }, text, hovertemplate: "%{text}<br>(%{x:.2f}, %{y:.2f}) m<extra></extra>",
-          legendgroup: name }),
+        { marker: { color: colour, size: 6, symbol }, text, legendgroup: name,
+          hovertemplate: "%{text}<br>(%{x:.2f}, %{y:.2f}) m<extra></extra>" }),
     ];
   };
 
@@ -250,8 +240,8 @@
     if (!truth.aligned) return [line("true path", truth.x, truth.y, c.truth, { line: { color: c.truth, width: 1.6 } })];
     return [
       dots("fixes", truth.x, truth.y, c.truth, { marker: { color: c.truth, size: 3.5 }, hoverinfo: "x+y" }),
-      dots("fixes left out", truth.left_out_x, truth.left_out_y, c.bad, { marker: { color: c.bad, size: 7, symbol: "x-thin",
-        line: { color: c.bad, width: 1.5 } } }),
+      dots("fixes left out", truth.left_out_x, truth.left_out_y, c.bad,
+        { marker: { color: c.bad, size: 7, symbol: "x-thin", line: { color: c.bad, width: 1.5 } } }),
     ].filter((trace) => trace.x.length > 0);
   };
 
@@ -259,21 +249,19 @@
     const closures = data.decisions.filter((decision) => decision.kind === "closure");
     if (closures.length === 0) return [];
     return [dots("closures", closures.map((d) => d.x), closures.map((d) => d.y), c.other,
-      { marker: { color: c.other, size: 13, symbol: "star" }, text: closures.map((d) => `${d.verdict} at step ${d.step}`),
-        hovertemplate: "%{text}<extra></extra>" })];
+      { marker: { color: c.other, size: 13, symbol: "star" }, hovertemplate: "%{text}<extra></extra>",
+        text: closures.map((d) => `${d.verdict} at step ${d.step}`) })];
   };
 
   const drawMap = () => {
     const path = data.path;
     const outline = ellipses(path.ellipses);
-    const truth = data.truth || { x: [], y: [] };
     const known_x = data.true_landmarks.map((m) => m[1]);
     const known_y = data.true_landmarks.map((m) => m[2]);
     const last = path.x.length - 1;
     const ends = last < 0 ? [] : [dots("start, end", [path.x[0], path.x[last]], [path.y[0], path.y[last]], c.ink,
       { marker: { color: [c.paper, c.ink], size: 10, symbol: ["circle", "square"], line: { color: c.ink, width: 2 } },
         text: ["start", "end"], hovertemplate: "%{text}<extra></extra>" })];
-    const near = data.map_extent;
     draw("map", [
       ...truthTraces(),
       line("estimated path", path.x, path.y, c.estimate, { line: { color: c.estimate, width: 2 }, customdata: path.t,
@@ -287,11 +275,11 @@
       ...closureTrace(),
       ...ends,
     ], {
-      xaxis: axis("x [m]", { range: near ? [near[0], near[1]] : rangeOf([path.x, truth.x]) }),
-      yaxis: axis("y [m]", { range: near ? [near[2], near[3]] : rangeOf([path.y, truth.y]), scaleanchor: "x" }),
+      xaxis: axis("x [m]", { range: data.map_extent.slice(0, 2) }),
+      yaxis: axis("y [m]", { range: data.map_extent.slice(2), scaleanchor: "x" }),
     });
-    byId("map-note").textContent = `Map frame (pose at the start). Ellipses hold the true position with 95 % if the filter
-      is right; those of the path stand every ${count(path.ellipse_stride)} scans.` +
+    byId("map-note").textContent = `Map frame (pose at the start). Ellipses hold the true position with 95 % if the
+      filter is right; those of the path stand every ${count(path.ellipse_stride)} scans.` +
       (data.truth && data.truth.aligned ? " The fixes were brought into the map frame by the alignment." : "");
   };
 
@@ -308,7 +296,9 @@
   const drawErrors = () => {
     const rows = errorRows();
     const traces = [];
-    const more = { height: 200 * rows.length + 100, xaxis: timeAxis({ anchor: `y${rows.length > 1 ? rows.length : ""}` }) };
+    const lowest = `y${rows.length}`;
+    const more = { height: 200 * rows.length + 100, xaxis: timeAxis({ anchor: lowest }) };
+    const what = data.errors ? "error in " : "±3σ of ";
     const gap = 0.05;
     const height = (1 - gap * (rows.length - 1)) / rows.length;
     rows.forEach(([name, unit, t, error, sigma], k) => {
@@ -323,7 +313,7 @@
           { ...here, showlegend: k === 0, legendgroup: "error", marker: { color: c.estimate, size: 3.5 },
             line: { color: c.estimate, width: 1.3 }, hovertemplate: `%{x:.1f} s: %{y:.3f} ${unit}<extra></extra>` }));
       }
-      more[`yaxis${id}`] = axis(`${name} [${unit}]`, { domain: [Math.max(0, top - height), top], anchor: "x" });
+      more[`yaxis${id}`] = axis(`${what}${name} [${unit}]`, { domain: [Math.max(0, top - height), top], anchor: "x" });
     });
     byId("errors").style.height = `${more.height}px`;
     draw("errors", traces, more);
@@ -331,13 +321,14 @@
     byId("errors-note").textContent = !data.errors
       ? "No truth is known: the band is what the filter believes of itself."
       : data.errors.aligned
-        ? "Estimated antenna position minus fix, along the axes of the map frame, after the alignment. The band is that of the estimate; the noise of the fixes comes on top."
+        ? "Estimated antenna position minus fix along the axes of the map frame, after the alignment. " +
+          "The band is that of the estimate; the noise of the fixes comes on top."
         : "Estimate minus truth along the axes of the map frame, without any alignment.";
   };
 
   const drawNis = () => {
     const n = data.nis;
-    const top = Math.max(2.5, 1.15 * Math.max(0, ...n.high, ...n.mean));
+    const top = Math.max(3, 1.15 * Math.max(0, ...n.high, ...n.mean));
     draw("nis", [
       ...band("two-sided 95 % band", n.t, n.low, n.high),
       dots("single updates", n.steps_t, n.steps, c.faint, { marker: { color: c.faint, size: 3 }, opacity: .55,
@@ -363,7 +354,9 @@
     draw("observations", Object.keys(shade).map((name) => ({
       type: "scatter", mode: "lines", name, x: o.t, y: o[name], stackgroup: "all",
       line: { width: .5, color: shade[name], shape: "hv" }, hovertemplate: "%{y:.2f} a scan",
-    })), { xaxis: timeAxis(), yaxis: axis("observations per scan [count]", { rangemode: "tozero" }), hovermode: "x unified" });
+    })), {
+      xaxis: timeAxis(), yaxis: axis("observations per scan [count]", { rangemode: "tozero" }), hovermode: "x unified",
+    });
     byId("observations-note").textContent = `What became of the observations, mean over ${count(o.block)} scans.`;
   };
 

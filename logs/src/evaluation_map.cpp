@@ -46,8 +46,8 @@ LabelCounts count_labels(const RunFolder& run, const RunTruth& truth) {
 }
 
 core::Label most_frequent(const std::map<core::Label, int>& counts) {
-  const auto most = std::max_element(counts.begin(), counts.end(),
-                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto most =
+      std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   return most == counts.end() ? core::no_label : most->first;
 }
 

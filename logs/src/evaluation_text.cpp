@@ -122,6 +122,6 @@ Json evaluation_to_json(const Evaluation& evaluation) {
   return json;
 }
 
-std::string evaluation_json(const Evaluation& evaluation) { return evaluation_to_json(evaluation).dump(2) + '\n'; }
+std::string evaluation_json(const Evaluation& evaluation) { return json_text(evaluation_to_json(evaluation)); }
 
 }  // namespace helixnav::logs

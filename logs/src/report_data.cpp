@@ -31,7 +31,9 @@ double sigma(double variance) { return std::sqrt(std::max(variance, 0.0)); }
 
 double degrees(double angle_rad) { return angle_rad * 180.0 / core::pi; }
 
-std::size_t stride_for(std::size_t count, std::size_t most) { return std::max<std::size_t>(1, (count + most - 1) / most); }
+std::size_t stride_for(std::size_t count, std::size_t most) {
+  return std::max<std::size_t>(1, (count + most - 1) / most);
+}
 
 // {"name": [value(item) of every stride-th item], …}
 template <typename Item>
@@ -155,8 +157,8 @@ Json nis_json(const std::vector<core::StepReport>& steps) {
   for (const core::StepReport& step : steps) {
     if (step.joint_dof > 0 && std::isfinite(step.joint_nis)) updates.push_back(&step);
   }
-  Json json = {{"t", Json::array()},       {"mean", Json::array()},  {"low", Json::array()}, {"high", Json::array()},
-               {"steps_t", Json::array()}, {"steps", Json::array()}};
+  Json json = {{"t", Json::array()},    {"mean", Json::array()},    {"low", Json::array()},
+               {"high", Json::array()}, {"steps_t", Json::array()}, {"steps", Json::array()}};
   const std::size_t block = stride_for(updates.size(), most_blocks);
   for (std::size_t begin = 0; begin < updates.size(); begin += block) {
     const std::size_t end = std::min(begin + block, updates.size());
@@ -219,7 +221,8 @@ void put_decisions(Json& json, const std::vector<core::StepReport>& steps) {
   json["decisions_left_out"] = others > most_decisions ? others - most_decisions : 0;
 }
 
-// What the map chart shows at first: the path, the truth and the landmarks, and not a fix left out or one seen from afar.
+// What the map chart shows at first: the path, the truth and the landmarks, and not a fix left out or one seen from
+// afar.
 Json map_extent(const RunFolder& run, const Evaluation& evaluation) {
   Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Array2d high = -low;
@@ -237,10 +240,18 @@ Json map_extent(const RunFolder& run, const Evaluation& evaluation) {
       if (error.used) hold(error.true_map_m);
     }
   }
-  if (!(low <= high).all()) return nullptr;
+  if (!(low <= high).all()) return {-10.0, 10.0, -10.0, 10.0};
   const double margin_m = 1.0 + 0.04 * (high - low).maxCoeff();
   return {rounded(low.x() - margin_m), rounded(high.x() + margin_m), rounded(low.y() - margin_m),
           rounded(high.y() + margin_m)};
+}
+
+Json time_range_s(const std::vector<core::StepReport>& steps) {
+  if (steps.empty()) return {0.0, 1.0};
+  const double begin_s = core::seconds(steps.front().t_ns);
+  const double end_s = core::seconds(steps.back().t_ns);
+  const double margin_s = 0.01 * (end_s - begin_s) + 1e-3;
+  return {rounded(begin_s - margin_s, 1e-3), rounded(end_s + margin_s, 1e-3)};
 }
 
 double path_length_m(const std::vector<core::StepReport>& steps) {
@@ -263,6 +274,7 @@ Json report_data(const RunFolder& run, const Evaluation& evaluation) {
   json["summary"] = summary_to_json(run, evaluation, {});
   json["duration_s"] = steps.empty() ? 0.0 : core::seconds(steps.back().t_ns - steps.front().t_ns);
   json["length_m"] = rounded(path_length_m(steps));
+  json["time_range_s"] = time_range_s(steps);
   json["map_extent"] = map_extent(run, evaluation);
   json["path"] = path_json(steps);
   json["truth"] = evaluation.position ? truth_json(*evaluation.position) : Json(nullptr);
@@ -273,8 +285,8 @@ Json report_data(const RunFolder& run, const Evaluation& evaluation) {
     json["heading"] = columns(errors, stride_for(errors.size(), most_line_points), heading_columns);
   }
   json["landmarks"] = landmarks_json(run.map);
-  json["true_landmarks"] = true_landmarks_json(
-      run.truth.landmarks, evaluation.position ? evaluation.position->T_truth_map : core::Pose2{});
+  json["true_landmarks"] =
+      true_landmarks_json(run.truth.landmarks, evaluation.position ? evaluation.position->T_truth_map : core::Pose2{});
   json["health"] = columns(steps, stride, health_columns);
   json["nis"] = nis_json(steps);
   json["observations"] = observations_json(steps);

@@ -54,6 +54,8 @@ Json observations_to_json(const RunFolder& run) {
 
 }  // namespace
 
+std::string json_text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n'; }
+
 Json manifest_to_json(const RunManifest& manifest) {
   Json inputs = Json::array();
   for (const InputFile& input : manifest.inputs) inputs.push_back({{"name", input.name}, {"sha256", input.sha256}});

@@ -15,6 +15,9 @@ namespace helixnav::logs {
 /// Keys keep the order in which they were put in.
 using Json = nlohmann::ordered_json;
 
+/// `json` over several lines; bytes that are not UTF-8 (from a file name, say) become U+FFFD.
+std::string json_text(const Json& json);
+
 Json manifest_to_json(const RunManifest& manifest);
 
 /// Reads what manifest_to_json made. InputError names `path`.

@@ -40,7 +40,8 @@ void append_number(std::string& text, std::int64_t value) { append_chars(text, v
 
 void append_seconds(std::string& text, core::Nanoseconds t_ns) {
   const bool negative = t_ns < 0;
-  const auto magnitude = negative ? std::uint64_t{0} - static_cast<std::uint64_t>(t_ns) : static_cast<std::uint64_t>(t_ns);
+  const auto magnitude =
+      negative ? std::uint64_t{0} - static_cast<std::uint64_t>(t_ns) : static_cast<std::uint64_t>(t_ns);
   if (negative) text += '-';
   append_chars(text, magnitude / 1000000000U);
   const std::uint64_t fraction = magnitude % 1000000000U;

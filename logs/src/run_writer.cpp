@@ -89,8 +89,8 @@ void append_decision(std::string& text, const core::StepReport& report, const co
 void append_trajectory(std::string& text, const core::StepReport& report) {
   const core::Pose2& pose = report.pose.mean;
   append_seconds(text, report.t_ns);
-  for (const double value : {pose.x_m, pose.y_m, 0.0, 0.0, 0.0, std::sin(0.5 * pose.heading_rad),
-                             std::cos(0.5 * pose.heading_rad)}) {
+  for (const double value :
+       {pose.x_m, pose.y_m, 0.0, 0.0, 0.0, std::sin(0.5 * pose.heading_rad), std::cos(0.5 * pose.heading_rad)}) {
     text += ' ';
     append_number(text, value);
   }
@@ -163,7 +163,7 @@ RunWriter::RunWriter(const std::string& folder, const RunManifest& manifest, con
   write_truth(folder_, recording);
   files_ = std::make_unique<Files>(folder_);
   // Last: where there is a manifest, all else is.
-  write_whole_file(folder_ + '/' + manifest_file, manifest_to_json(manifest).dump(2) + '\n');
+  write_whole_file(folder_ + '/' + manifest_file, json_text(manifest_to_json(manifest)));
 }
 
 RunWriter::~RunWriter() = default;
@@ -198,7 +198,7 @@ Evaluation RunWriter::finish(const std::vector<core::MapLandmark>& map, const Ru
   Json summary = summary_to_json(run, evaluation, end.numbers);
   summary["timing"] = timing_to_json(run.microseconds, end.timing);
   write_whole_file(folder_ + '/' + report_file, render_report(run, evaluation, end.timing));
-  write_whole_file(folder_ + '/' + summary_file, summary.dump(2) + '\n');
+  write_whole_file(folder_ + '/' + summary_file, json_text(summary));
   return evaluation;
 }
 

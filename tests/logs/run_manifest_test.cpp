@@ -28,8 +28,9 @@ TEST(Sha256, NamesAFileThatCannotBeRead) {
 }
 
 TEST(CommandText, LeavesOutWhereTheRunIsKeptAndQuotesForTheShell) {
-  EXPECT_EQ(command_text({"/usr/bin/helixnav", "replay", "a log's", "--out", "x", "--seed=7", "--out=y", "--overwrite"}),
-            "helixnav replay 'a log'\\''s' --seed=7");
+  EXPECT_EQ(
+      command_text({"/usr/bin/helixnav", "replay", "a log's", "--out", "x", "--seed=7", "--out=y", "--overwrite"}),
+      "helixnav replay 'a log'\\''s' --seed=7");
 }
 
 TEST(Numbers, RoundTripInTheFewestDigits) {

@@ -41,9 +41,9 @@ std::string without_wall_clock(const fs::path& file) {
 TEST(RunWriter, WritesEveryFileOfTheContract) {
   const TemporaryFolder folder;
   write_example((folder.path() / "run").string(), 20);
-  for (const char* name : {"manifest.json", "trajectory.tum", "map.csv", "associations.csv", "decisions.csv",
-                           "health.csv", "summary.json", "report.html", "truth_poses.csv", "truth_landmarks.csv",
-                           "truth_labels.csv"}) {
+  for (const char* name :
+       {"manifest.json", "trajectory.tum", "map.csv", "associations.csv", "decisions.csv", "health.csv", "summary.json",
+        "report.html", "truth_poses.csv", "truth_landmarks.csv", "truth_labels.csv"}) {
     EXPECT_TRUE(fs::exists(folder.path() / "run" / name)) << name;
   }
   EXPECT_FALSE(fs::exists(folder.path() / "run/truth_positions.csv")) << "the recording has none";

@@ -38,10 +38,10 @@ struct PositionError {
 
 /// Position of the reference point (against true poses) or of the antenna (against true positions).
 struct PositionEvaluation {
-  bool aligned = false;        ///< a rigid alignment stands between the frames; false: the truth is in the map frame
-  core::Pose2 T_truth_map;     ///< identity when not aligned
-  double limit_m = 0.0;        ///< beyond it a fix is left out; infinite against true poses
-  ErrorStatistics error_m;     ///< over the fixes used
+  bool aligned = false;     ///< a rigid alignment stands between the frames; false: the truth is in the map frame
+  core::Pose2 T_truth_map;  ///< identity when not aligned
+  double limit_m = 0.0;     ///< beyond it a fix is left out; infinite against true poses
+  ErrorStatistics error_m;  ///< over the fixes used
   std::size_t fixes_used = 0;
   std::size_t fixes_left_out = 0;  ///< farther than limit_m after the alignment
   std::size_t fixes_outside = 0;   ///< before the first or after the last step: nothing to compare with
@@ -52,26 +52,26 @@ struct HeadingError {
   core::Nanoseconds t_ns = 0;
   double error_rad = 0.0;  ///< estimate − truth, wrapped
   double sigma_rad = 0.0;
-  double nees = 0.0;       ///< eᵀP⁻¹e of (x, y, heading); NaN where P is singular
+  double nees = 0.0;  ///< eᵀP⁻¹e of (x, y, heading); NaN where P is singular
 };
 
 /// Against true poses only.
 struct PoseEvaluation {
   ErrorStatistics heading_error_rad;
   std::size_t nees_count = 0;
-  double nees_mean = 0.0;             ///< 3 when the filter is consistent
-  double nees_inside_95 = 0.0;        ///< fraction within the two-sided 95 % band of χ²₃
+  double nees_mean = 0.0;       ///< 3 when the filter is consistent
+  double nees_inside_95 = 0.0;  ///< fraction within the two-sided 95 % band of χ²₃
   std::vector<HeadingError> errors;
 };
 
 /// Mature landmarks against true landmarks, one to one.
 struct MapEvaluation {
-  bool by_label = false;      ///< paired by the labels of their observations; else by distance
-  double limit_m = 0.0;       ///< of pairing by distance
-  ErrorStatistics error_m;    ///< over the pairs
-  std::size_t missing = 0;    ///< true landmarks without partner; by label: of those in ≥ 10 observations
-  std::size_t duplicates = 0; ///< further landmarks on a true landmark that has its partner
-  std::size_t spurious = 0;   ///< landmarks that belong to no true landmark
+  bool by_label = false;       ///< paired by the labels of their observations; else by distance
+  double limit_m = 0.0;        ///< of pairing by distance
+  ErrorStatistics error_m;     ///< over the pairs
+  std::size_t missing = 0;     ///< true landmarks without partner; by label: of those in ≥ 10 observations
+  std::size_t duplicates = 0;  ///< further landmarks on a true landmark that has its partner
+  std::size_t spurious = 0;    ///< landmarks that belong to no true landmark
 };
 
 /// Innovations of the joint updates against χ² with their degrees of freedom.

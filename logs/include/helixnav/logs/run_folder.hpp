@@ -15,19 +15,19 @@ struct RunTruth {
   std::vector<core::TruePose> poses;          ///< of the reference point, in the map frame
   std::vector<core::TruePosition> positions;  ///< of the antenna, in a frame of their own
   Eigen::Vector2d antenna_robot_m = Eigen::Vector2d::Zero();
-  std::vector<core::TrueLandmark> landmarks;      ///< in the frame of the poses, or of the positions if there are any
-  std::vector<std::vector<core::Label>> labels;   ///< [step][observation]
+  std::vector<core::TrueLandmark> landmarks;     ///< in the frame of the poses, or of the positions if there are any
+  std::vector<std::vector<core::Label>> labels;  ///< [step][observation]
 };
 
 /// A run folder in memory: what RunWriter was told.
 struct RunFolder {
   std::string path;
   RunManifest manifest;
-  std::vector<core::StepReport> steps;   ///< in order of time; associations with their revisions applied
-  std::vector<double> microseconds;      ///< [step] wall clock
-  std::vector<core::MapLandmark> map;    ///< empty unless the run came to its end
+  std::vector<core::StepReport> steps;  ///< in order of time; associations with their revisions applied
+  std::vector<double> microseconds;     ///< [step] wall clock
+  std::vector<core::MapLandmark> map;   ///< empty unless the run came to its end
   RunTruth truth;
-  bool finished = false;                 ///< the run came to its end
+  bool finished = false;  ///< the run came to its end
 };
 
 /// Reads a run folder, also one whose run was killed: an incomplete last line of a table is dropped, and so is a step

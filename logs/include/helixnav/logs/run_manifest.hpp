@@ -16,11 +16,11 @@ struct InputFile {
 /// What made a run: enough to make it again. Holds no time of day and no host, so that the same command writes the
 /// same bytes.
 struct RunManifest {
-  std::string version;            ///< of HelixNav, such as 0.1.0
-  std::string commit;             ///< of the source tree; empty when unknown
-  std::string command;            ///< see command_text
-  std::string recording;          ///< Recording::name; title of the report
-  std::string config;             ///< every key in force; JSON stands in the file as JSON, other text as one string
+  std::string version;    ///< of HelixNav, such as 0.1.0
+  std::string commit;     ///< of the source tree; empty when unknown
+  std::string command;    ///< see command_text
+  std::string recording;  ///< Recording::name; title of the report
+  std::string config;     ///< every key in force; JSON stands in the file as JSON, other text as one string
   std::uint64_t seed = 0;
   std::vector<InputFile> inputs;
 };

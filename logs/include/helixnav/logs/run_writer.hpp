@@ -43,7 +43,7 @@ class RunWriter {
   RunWriter& operator=(const RunWriter&) = delete;
 
   /// Appends one step and hands it to the operating system. `microseconds` is the wall-clock cost of the step.
-  /// Cost: about 10 µs.
+  /// Cost: about 5 µs.
   void write(const core::StepReport& report, double microseconds);
 
   /// Says that the associations of an earlier step are now others, as after a replay. The rows go out with the next

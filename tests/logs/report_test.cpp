@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/logs/report.hpp"
+
+#include <regex>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "report_assets.hpp"
+#include "run_example.hpp"
+
+namespace helixnav::logs {
+namespace {
+
+RunFolder example_run(std::int64_t steps) {
+  RunFolder run;
+  run.manifest = example_manifest();
+  for (std::int64_t k = 0; k < steps; ++k) run.steps.push_back(example_step(k));
+  run.microseconds.assign(run.steps.size(), 12.3);
+  run.map = example_map();
+  const core::Recording recording = example_recording(steps);
+  run.truth.poses = recording.true_poses;
+  run.truth.landmarks = recording.true_landmarks;
+  return run;
+}
+
+std::string render(const RunFolder& run) { return render_report(run, evaluate(run), {{"total_s", 3.25}}); }
+
+nlohmann::json element(const std::string& page, const std::string& id) {
+  const std::string opening = "<script id=\"" + id + "\" type=\"application/json\">";
+  const std::size_t begin = page.find(opening) + opening.size();
+  return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+}
+
+TEST(Report, HoldsTheRunInItsDataElement) {
+  const nlohmann::json data = element(render(example_run(100)), "run-data");
+  EXPECT_EQ(data["manifest"]["command"], example_manifest().command);
+  EXPECT_EQ(data["seed"], "18446744073709551615");
+  EXPECT_EQ(data["path"]["x"].size(), 100u);
+  EXPECT_NEAR(data["path"]["x"][99].get<double>(), example_step(99).pose.mean.x_m, 1e-3);
+  EXPECT_EQ(data["landmarks"].size(), 3u);
+  EXPECT_EQ(data["true_landmarks"].size(), 2u);
+  EXPECT_EQ(data["errors"]["x"].size(), 100u);
+  EXPECT_EQ(data["heading"]["e"].size(), 100u);
+  EXPECT_EQ(data["summary"]["closures"]["accepted"], 2);
+  EXPECT_EQ(data["decisions"].size(), 6u);
+  EXPECT_EQ(data["decisions"][0]["numbers"][1][0], "foreign_expected");
+}
+
+TEST(Report, LoadsNothingFromElsewhere) {
+  std::string page = render(example_run(20));
+  const std::size_t charts = page.find(report_charts);
+  ASSERT_NE(charts, std::string::npos) << "the charting library is not inside";
+  page.erase(charts, report_charts.size());
+  EXPECT_EQ(page.find("http://"), std::string::npos);
+  EXPECT_EQ(page.find("https://"), std::string::npos);
+  EXPECT_FALSE(std::regex_search(page, std::regex(R"(<(script|img|iframe|link)[^>]*\s(src|href)=)")));
+  EXPECT_EQ(page.find("@import"), std::string::npos);
+  EXPECT_EQ(page.find("{{"), std::string::npos) << "a place of the template was left empty";
+}
+
+TEST(Report, KeepsWallClockFiguresInTheirElement) {
+  RunFolder fast = example_run(50);
+  RunFolder slow = fast;
+  slow.microseconds.assign(50, 99999.9);
+  std::string page = render(fast);
+  std::string other = render_report(slow, evaluate(slow), {{"total_s", 77.0}});
+  EXPECT_EQ(element(other, "wall-clock")["timing"]["total_s"], 77.0);
+  EXPECT_EQ(element(other, "wall-clock")["steps"]["max_us"][0], 99999.9);
+  for (std::string* text : {&page, &other}) {
+    const std::size_t begin = text->find("<script id=\"wall-clock\"");
+    text->erase(begin, text->find("</script>", begin) - begin);
+  }
+  EXPECT_TRUE(page == other);
+}
+
+TEST(Report, CannotBeBrokenByTextsOfTheUser) {
+  RunFolder run = example_run(20);
+  run.manifest.recording = "</script><b>\xff{{script}}";
+  run.steps[3].decisions.push_back({"<!--", "<script>", {{"</script>", 1.0}}});
+  const std::string page = render(run);
+  EXPECT_EQ(element(page, "run-data")["manifest"]["recording"], "</script><b>\xef\xbf\xbd{{script}}");
+  EXPECT_EQ(page.find("</script><b>"), std::string::npos);
+}
+
+TEST(Report, ThinsLongRunsAndStaysSmall) {
+  const std::string page = render(example_run(7300));
+  EXPECT_LT(page.size(), 3'000'000u);
+  const nlohmann::json data = element(page, "run-data");
+  EXPECT_LE(data["path"]["x"].size(), 3650u);
+  EXPECT_LE(data["nis"]["t"].size(), 240u);
+  EXPECT_LE(element(page, "wall-clock")["steps"]["t"].size(), 1200u);
+}
+
+TEST(Report, OfARunWithoutStepsIsAPageToo) {
+  RunFolder run;
+  run.manifest = example_manifest();
+  const nlohmann::json data = element(render(run), "run-data");
+  EXPECT_EQ(data["summary"]["steps"], 0);
+  EXPECT_TRUE(data["errors"].is_null());
+  EXPECT_FALSE(data["finished"]);
+}
+
+}  // namespace
+}  // namespace helixnav::logs
