@@ -185,7 +185,7 @@ TEST(Statistics, OdometryErrorsHaveTheCovarianceThatIsTold) {
 }
 
 /// Where the speed noise is a large share of the speed, the model's first order shows in the (tiny) lateral error given
-/// the other two: 3-dof NEES is 1 % (large-loop), 3 % (big-drift), 17 % (orchard) too high over 20 seeds.
+/// the other two: 3-dof NEES is 1 % (large-loop), 3 % (big-drift), 9 % (orchard) too high over 20 seeds.
 TEST(Statistics, OdometryErrorsInXAndHeadingHaveTheCovarianceThatIsToldAlsoWhenTheyAreLarge) {
   for (const std::string name : {"big-drift", "orchard", "circuit", "circuit-large-noise"}) {
     const OdometryNees nees = odometry_nees(named_scenario(name), 3);
