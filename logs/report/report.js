@@ -178,7 +178,7 @@
   const timeAxis = (more) => axis("time in the log [s]", { zeroline: false, range: data.time_range_s, ...more });
   const layout = (more) => ({
     paper_bgcolor: c.paper, plot_bgcolor: c.paper, font: { color: c.ink, size: 13 }, dragmode: "pan",
-    margin: { l: 70, r: 20, t: 76, b: 56 }, hovermode: "closest", autosize: true,
+    margin: { l: 70, r: 44, t: 46, b: 56 }, modebar: { orientation: "v" }, hovermode: "closest", autosize: true,
     legend: { orientation: "h", x: 0, xanchor: "left", y: 1.02, yanchor: "bottom", bgcolor: "rgba(0,0,0,0)" }, ...more,
   });
   const draw = (id, traces, more) => Plotly.react(byId(id), traces, layout(more), {
@@ -279,7 +279,7 @@
       yaxis: axis("y [m]", { range: data.map_extent.slice(2), scaleanchor: "x" }),
     });
     byId("map-note").textContent = `Map frame (pose at the start). Ellipses hold the true position with 95 % if the
-      filter is right; those of the path stand every ${count(path.ellipse_stride)} scans.` +
+      filter is right; those of the path stand ${count(path.ellipse_stride)} scans apart.` +
       (data.truth && data.truth.aligned ? " The fixes were brought into the map frame by the alignment." : "");
   };
 
