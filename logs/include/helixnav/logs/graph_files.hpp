@@ -36,7 +36,7 @@ core::Recording recording_from_graph(const core::LandmarkGraph& graph, std::stri
 /// Reads the one-step local maps of 2D-I-SLSJF (VicPark_clean_data.mat, matio): rows [1 from to dx dy dφ Cxx Cxy Cxφ Cyy Cyφ Cφφ]
 /// and [0 pose landmark x y Cxx Cxy Cyy 0 …]. One Odometry and one Scan per pose, t = pose number in seconds, labels from
 /// the file, true identities as its authors associated them; the field of view is empty. x ahead, y left as in the file.
-/// Throws core::InputError naming file and row. Test: logs/graph_vicpark_test.cpp.
+/// Throws core::InputError naming file and row. Test: logs/graph_files_test.cpp.
 core::Recording read_vicpark_clean(const std::filesystem::path& path);
 
 }  // namespace helixnav::logs
