@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+
 #include "helixnav/logs/dlr.hpp"
 #include "helixnav/logs/graph_files.hpp"
 #include "helixnav/smoothing/marginals.hpp"
