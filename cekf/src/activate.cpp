@@ -33,6 +33,31 @@ void CompressedEkf::activate(core::LandmarkId id) {
   append_weights_for(n);
 }
 
+/// Takes back the activations since `active_before` landmarks were active: an activation only appends.
+void CompressedEkf::undo_activations(int active_before) {
+  Phase& phase = phases_.back();
+  const int undone = active_count() - active_before;
+  if (undone == 0) return;
+  for (int i = active_before; i < active_count(); ++i) {
+    const std::size_t k = static_cast<std::size_t>(i);
+    places_[static_cast<std::size_t>(active_.ids[k])] = {Whereabouts::passive, active_.slots[k]};
+  }
+  const std::size_t n = static_cast<std::size_t>(active_before);
+  const std::size_t late = phase.late_anchors.size() - static_cast<std::size_t>(undone);
+  active_.ids.resize(n);
+  active_.slots.resize(n);
+  active_.points_m.resize(n);
+  active_.left_passive.resize(active_.left_passive.size() - static_cast<std::size_t>(undone));
+  active_.late_anchors.resize(late);
+  phase.late_anchors.resize(late);
+  const int q = active_.weights() - 2 * weights_per_anchor() * undone;
+  active_.P.resize(active_.dimension(), active_.dimension());
+  active_.A.resize(q, active_.dimension());
+  active_.M.resize(q, q);
+  active_.theta.conservativeResize(q);
+  phase.basis.resize(phase.basis.rows(), q);
+}
+
 /// New anchors, given how all slots were correlated with them when the phase began.
 void CompressedEkf::append_columns(Phase& phase, const Eigen::MatrixXd& start_columns) const {
   const int w = weights_per_anchor();

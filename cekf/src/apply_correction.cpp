@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "add_outer.hpp"
-#include "checks.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/errors.hpp"
+#include "innovation.hpp"
 #include "retraction.hpp"
 
 namespace helixnav::cekf {

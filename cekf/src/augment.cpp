@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "checks.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
-#include "helixnav/core/errors.hpp"
+#include "innovation.hpp"
 
 namespace helixnav::cekf {
 

@@ -45,6 +45,18 @@ void CompressedEkf::restore(const Snapshot& snapshot) {
   rebuild_places();
 }
 
+std::size_t CompressedEkf::kept_bytes() const {
+  std::size_t bytes = 0;
+  for (std::size_t p = 0; p + 1 < phases_.size(); ++p) {
+    const Phase& phase = phases_[p];
+    bytes += phase.basis.bytes() + phase.slot_of_id.size() * sizeof(int) +
+             static_cast<std::size_t>(phase.response.size() + phase.written_covariance.size() + phase.mean_m.size() +
+                                      phase.own_covariance_m2.size()) *
+                 sizeof(double);
+  }
+  return bytes;
+}
+
 void CompressedEkf::return_slots(Phase& phase) {
   free_slots_.insert(free_slots_.end(), phase.taken.rbegin(), phase.taken.rend());
   phase.taken.clear();

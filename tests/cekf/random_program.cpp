@@ -37,6 +37,7 @@ Differences compare(const CompressedEkf& filter, const support::FullEkf& oracle)
     const Eigen::Vector2d error = joint.points_m[i] - oracle.x.segment<2>(3 + 2 * static_cast<Eigen::Index>(i));
     result.mean = std::max(result.mean, error.cwiseAbs().maxCoeff());
   }
+  result.mean /= oracle.x.cwiseAbs().maxCoeff();
   return result;
 }
 
@@ -61,6 +62,14 @@ core::Observation RandomProgram::observe(const Eigen::Vector2d& point_m, bool ca
   }
   return core::make_range_bearing(std::max(0.1, p.norm() + random_.normal(0.0, 0.1)),
                                   core::wrap_to_pi(std::atan2(p.y(), p.x()) + random_.normal(0.0, 0.01)), 0.1, 0.01);
+}
+
+core::LandmarkId RandomProgram::map_again(core::LandmarkId id) {
+  const std::size_t landmark = static_cast<std::size_t>(std::find(ids_.begin(), ids_.end(), id) - ids_.begin());
+  const core::Observation z = observe(points_m_[landmark], false);
+  const core::LandmarkId again = filter.augment(z, T_robot_sensor_);
+  oracle.augment(again, z, T_robot_sensor_);
+  return again;
 }
 
 void RandomProgram::step() {
@@ -124,6 +133,15 @@ void RandomProgram::activate_some() {
     ++lazy_activations;
     return;
   }
+}
+
+void RandomProgram::start_oracle_from_filter() {
+  const core::JointGaussian joint = filter.joint(oracle.ids);
+  oracle.x.head<3>() = joint.pose.vector();
+  for (std::size_t i = 0; i < joint.points_m.size(); ++i) {
+    oracle.x.segment<2>(3 + 2 * static_cast<Eigen::Index>(i)) = joint.points_m[i];
+  }
+  oracle.P = joint.covariance;
 }
 
 void RandomProgram::switch_region_randomly() {

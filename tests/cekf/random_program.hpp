@@ -11,7 +11,7 @@
 namespace helixnav::cekf {
 
 struct Differences {
-  double mean = 0.0;        ///< largest |x − x_full|
+  double mean = 0.0;        ///< largest |x − x_full| over the largest |x_full|
   double covariance = 0.0;  ///< largest |P − P_full| over the largest |P_full|
 };
 
@@ -36,6 +36,10 @@ class RandomProgram {
   void remove_some();
   void switch_region_randomly();
   void activate_some();
+  /// Sees a mapped landmark and takes it for a new one: a duplicate, whose id is returned.
+  core::LandmarkId map_again(core::LandmarkId id);
+  /// Forgets the round-off between the two so far.
+  void start_oracle_from_filter();
 
   CompressedEkf filter;
   support::FullEkf oracle;
@@ -45,7 +49,6 @@ class RandomProgram {
 
  private:
   core::Observation observe(const Eigen::Vector2d& point_m, bool cartesian);
-  core::LandmarkId id_of(std::size_t landmark) const { return ids_[landmark]; }
 
   core::RandomStream random_;
   Settings settings_;

@@ -38,24 +38,23 @@ class FullEkf {
 
   void predict(const core::Odometry& odometry) {
     const core::ComposeJacobians J = core::compose_jacobians(pose(), odometry.T_before_after);
-    Eigen::MatrixXd F = Eigen::MatrixXd::Identity(x.size(), x.size());
-    F.topLeftCorner<3, 3>() = J.J_first;
     x.head<3>() = core::compose(pose(), odometry.T_before_after).vector();
-    P = F * P * F.transpose();
+    P.topRows(3) = (J.J_first * P.topRows(3)).eval();
+    P.leftCols(3) = (P.leftCols(3) * J.J_first.transpose()).eval();
     P.topLeftCorner<3, 3>() += J.J_second * odometry.covariance * J.J_second.transpose();
   }
 
   void augment(core::LandmarkId id, const core::Observation& observation, const core::Pose2& T_robot_sensor) {
     const core::LocatedLandmark located = core::locate_landmark(observation, pose(), T_robot_sensor);
     const Eigen::Index n = x.size();
-    Eigen::MatrixXd G = Eigen::MatrixXd::Zero(n + 2, n);
-    G.topRows(n).setIdentity();
-    G.bottomRows(2).leftCols(3) = located.G_pose;
     Eigen::VectorXd longer(n + 2);
     longer << x, located.point_world_m;
     x = longer;
-    P = G * P * G.transpose();
-    P.bottomRightCorner<2, 2>() += located.G_z * Eigen::Matrix2d(observation.R) * located.G_z.transpose();
+    P.conservativeResize(n + 2, n + 2);
+    P.bottomLeftCorner(2, n) = located.G_pose * P.topLeftCorner(3, n);
+    P.topRightCorner(n, 2) = P.bottomLeftCorner(2, n).transpose();
+    P.bottomRightCorner<2, 2>() = located.G_pose * P.topLeftCorner<3, 3>() * located.G_pose.transpose() +
+                                  located.G_z * Eigen::Matrix2d(observation.R) * located.G_z.transpose();
     ids.push_back(id);
   }
 
@@ -165,26 +164,27 @@ class FullEkf {
     return moved;
   }
 
-  /// N = I + (J·Δp)·e_θᵀ: errors at x become errors at x + Δ.
-  Eigen::MatrixXd transport(const Eigen::VectorXd& moved) const {
-    Eigen::MatrixXd N = Eigen::MatrixXd::Identity(x.size(), x.size());
-    if (!right_invariant_) return N;
+  /// n of N = I + n·e_θᵀ, which makes errors at x errors at x + Δ: n = J·Δp for every point.
+  Eigen::VectorXd transport(const Eigen::VectorXd& moved) const {
+    Eigen::VectorXd n = Eigen::VectorXd::Zero(x.size());
+    if (!right_invariant_) return n;
     for (Eigen::Index i = 0; i < x.size(); ++i) {
-      if (is_point_row(i)) N.col(2).segment<2>(i) += Eigen::Vector2d(-moved[i + 1], moved[i]);
+      if (is_point_row(i)) n.segment<2>(i) = Eigen::Vector2d(-moved[i + 1], moved[i]);
     }
-    return N;
+    return n;
   }
 
   /// Covariance of an update with H, taken at x; mean x ⊕ δ; then transport.
   void correct(const Eigen::MatrixXd& H, const Eigen::MatrixXd& R, const Eigen::VectorXd& delta) {
     const Eigen::MatrixXd S = H * P * H.transpose() + R;
     const Eigen::MatrixXd K = P * H.transpose() * S.inverse();
-    P -= K * S * K.transpose();
+    P -= K * (H * P);
     const Eigen::VectorXd moved = displacement(delta);
-    const Eigen::MatrixXd N = transport(moved);
+    const Eigen::VectorXd n = transport(moved);
     x += moved;
     x[2] = core::wrap_to_pi(x[2]);
-    P = N * P * N.transpose();
+    P += n * Eigen::RowVectorXd(P.row(2));
+    P += Eigen::VectorXd(P.col(2)) * n.transpose();
     P = (0.5 * (P + P.transpose())).eval();
   }
 
@@ -221,7 +221,8 @@ class FullEkf {
     // At the minimum R·λ is the residual.
     const Eigen::MatrixXd H = lin.H * retraction_jacobian(delta);
     const double cost = lambda.dot(H * P * H.transpose() * lambda) + lambda.dot(lin.R * lambda);
-    correct(lin.H * transport(displacement(delta)), lin.R, delta);
+    lin.H.col(2) += lin.H * transport(displacement(delta));
+    correct(lin.H, lin.R, delta);
     return cost;
   }
 

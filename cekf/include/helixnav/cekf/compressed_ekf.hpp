@@ -30,6 +30,9 @@ namespace helixnav::cekf {
 /// to a plain full EKF on random programs, both retractions).
 class CompressedEkf {
  public:
+  /// Two landmarks said to be one: the one that stays and the one that goes.
+  using LandmarkPair = std::pair<core::LandmarkId, core::LandmarkId>;
+
   /// Start covariance symmetric positive semidefinite; all zero is allowed (map frame = pose at start).
   explicit CompressedEkf(const core::PoseGaussian& start, const FilterOptions& options = {});
 
@@ -40,10 +43,12 @@ class CompressedEkf {
 
   /// Joint EKF update with all matches. Passive landmarks are activated first: nothing is discarded. O((n + q)²·m).
   UpdateResult update(const std::vector<Match>& matches);
-  /// Joint Gauss-Newton update to the minimum of the cost J = |x ⊖ x̂|²_P + |ν|²_R, for closings where one linearisation
-  /// is not enough; the covariance is that of an update linearised at the minimum. Result: J and its degrees of
-  /// freedom. At most `max_iterations`, until the step is below 1e-9; NumericalError when it does not settle.
-  UpdateResult update_iterated(const std::vector<Match>& matches, int max_iterations = 30);
+  /// Joint Gauss-Newton update to the minimum of J = |x ⊖ x̂|²_P + |ν|²_R, for closings where one linearisation is not
+  /// enough; the covariance is that of an update linearised at the minimum. Result: J and its degrees of freedom.
+  /// NumericalError when the iteration has not settled (step below 1e-9) after max_iterations.
+  UpdateResult update_iterated(const std::vector<Match>& matches, int max_iterations = 50);
+  /// J of update_iterated and the share of each match in it, without updating.
+  CostByPart iterated_cost(const std::vector<Match>& matches, int max_iterations = 50) const;
 
   /// νᵀS⁻¹ν of a fix of the position of a point on the robot, for the caller's gate.
   UpdateResult position_innovation(const core::AbsoluteFix& fix) const;
@@ -53,16 +58,15 @@ class CompressedEkf {
   /// New active landmark where the observation (kind with two rows) sees it.
   core::LandmarkId augment(const core::Observation& observation, const core::Pose2& T_robot_sensor);
 
-  /// Conditions on kept = removed (difference known to sigma_m, 0 for exactly) for all pairs at once, iterated in the
-  /// right-invariant filter, then removes the second of each pair. Result: J and dof = 2·pairs.
-  UpdateResult merge(const std::vector<std::pair<core::LandmarkId, core::LandmarkId>>& kept_removed,
-                     double sigma_m = 0.0);
-  UpdateResult merge(core::LandmarkId kept, core::LandmarkId removed, double sigma_m = 0.0) {
+  /// Conditions on kept = removed (difference known to sigma_m) for all pairs at once, iterated like update_iterated,
+  /// then removes the second of each pair. Result: J and dof = 2·pairs. sigma_m = 0 is allowed as long as S stays
+  /// positive definite.
+  UpdateResult merge(const std::vector<LandmarkPair>& kept_removed, double sigma_m = 0.02);
+  UpdateResult merge(core::LandmarkId kept, core::LandmarkId removed, double sigma_m = 0.02) {
     return merge({{kept, removed}}, sigma_m);
   }
-  /// The result merge would have, without doing it.
-  UpdateResult merge_cost(const std::vector<std::pair<core::LandmarkId, core::LandmarkId>>& kept_removed,
-                          double sigma_m = 0.0) const;
+  /// J of merge and the share of each pair in it, without merging.
+  CostByPart merge_cost(const std::vector<LandmarkPair>& kept_removed, double sigma_m = 0.02) const;
 
   /// Forgets a landmark, active or passive. O(n + q).
   void remove(core::LandmarkId id);
@@ -105,6 +109,8 @@ class CompressedEkf {
   /// 2N·(2q + 2n) doubles and lengthens switches and activations. Default: none but the open one.
   void keep_since(long phase);
   long phase() const { return phases_.back().number; }
+  /// Memory of the closed phases kept.
+  std::size_t kept_bytes() const;
   int phases_kept() const { return static_cast<int>(phases_.size()); }
 
  private:
@@ -117,18 +123,20 @@ class CompressedEkf {
   const Place& place_of(core::LandmarkId id, const char* verb) const;
   int weights_per_anchor() const { return options_.retraction == Retraction::right_invariant ? 2 : 1; }
 
-  // update.cpp, apply_correction.cpp
+  // update.cpp, update_iterated.cpp, merge.cpp, apply_correction.cpp
   void check_matches(const std::vector<Match>& matches, const char* verb) const;
-  void collect_columns(const std::vector<Match>& matches, UpdateWorkspace& w) const;
+  void check_pairs(const std::vector<LandmarkPair>& kept_removed, double sigma_m, const char* verb) const;
   void gather_involved(UpdateWorkspace& w) const;
-  void linearise(const std::vector<Match>& matches, UpdateWorkspace& w) const;
-  void factor_innovation(UpdateWorkspace& w, const char* verb) const;
+  void gather_involved_unactivated(UpdateWorkspace& w) const;
+  template <class Linearise>
+  UpdateResult iterate_and_apply(int max_iterations, const char* verb, const Linearise& linearise);
   void apply_correction(UpdateWorkspace& w, const char* verb);
   void add_transport(UpdateWorkspace& w) const;
   void move_means(const UpdateWorkspace& w);
 
   // remove.cpp, activate.cpp, passive.cpp
   void remove_active(int index);
+  void undo_activations(int active_before);
   void append_columns(Phase& phase, const Eigen::MatrixXd& start_columns) const;
   void append_weights_for(int first_column);
   Eigen::MatrixXd phase_start_columns(const std::vector<int>& slots) const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include "helixnav/core/landmark_id.hpp"
 #include "helixnav/core/observation.hpp"
 #include "helixnav/core/se2.hpp"
@@ -19,6 +21,13 @@ struct Match {
 struct UpdateResult {
   double nis = 0.0;
   int dof = 0;
+};
+
+/// The same with the share of each match (or pair) in the cost, for a caller who wants to drop the worst.
+struct CostByPart {
+  double cost = 0.0;
+  int dof = 0;
+  std::vector<double> parts;
 };
 
 }  // namespace helixnav::cekf

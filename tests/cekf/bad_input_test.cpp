@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whatever is refused leaves the filter byte for byte as it was, and says which landmark.
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "helixnav/core/errors.hpp"
+#include "random_program.hpp"
+#include "same_bytes.hpp"
+
+namespace helixnav::cekf {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+class BadInput : public testing::TestWithParam<Retraction> {
+ protected:
+  void SetUp() override {
+    for (int k = 0; k < 150; ++k) program_.step();
+    for (const core::LandmarkId id : filter_.landmarks()) (filter_.is_active(id) ? active_ : passive_) = id;
+    ASSERT_NE(active_, core::no_landmark);
+    ASSERT_NE(passive_, core::no_landmark);
+    before_ = bytes_of(filter_);
+  }
+
+  template <class Error, class Call>
+  void expect_refused(const Call& call, const std::string& named = {}) {
+    try {
+      call();
+      ADD_FAILURE() << "accepted";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(named), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(bytes_of(filter_), before_);
+  }
+
+  RandomProgram program_{31, {GetParam(), 220, 40, false}};
+  CompressedEkf& filter_ = program_.filter;
+  core::LandmarkId active_ = core::no_landmark;
+  core::LandmarkId passive_ = core::no_landmark;
+  std::string before_;
+};
+
+TEST_P(BadInput, AnInnovationCovarianceThatIsNotPositiveDefiniteIsANumericalError) {
+  const core::Observation exact = core::make_cartesian({5.0, 1.0}, 1e-40 * Eigen::Matrix2d::Identity());
+  for (const core::LandmarkId id : {active_, passive_}) {
+    const std::vector<Match> twice = {{id, exact, {}}, {id, exact, {}}};
+    expect_refused<core::NumericalError>([&] { filter_.update(twice); }, std::to_string(id));
+    expect_refused<core::NumericalError>([&] { filter_.update_iterated(twice); }, std::to_string(id));
+  }
+}
+
+TEST_P(BadInput, NanInAnObservationIsRefused) {
+  core::Observation z = core::make_range_bearing(5.0, nan, 0.1, 0.01);
+  expect_refused<core::PreconditionError>([&] { filter_.update({{passive_, z, {}}}); }, std::to_string(passive_));
+  expect_refused<core::PreconditionError>([&] { filter_.update_iterated({{passive_, z, {}}}); });
+  expect_refused<core::PreconditionError>([&] { filter_.augment(z, {}); });
+}
+
+TEST_P(BadInput, ANoiseCovarianceThatIsNotPositiveDefiniteIsRefused) {
+  core::Observation z = core::make_range_bearing(5.0, 0.1, 0.1, 0.01);
+  z.R(1, 1) = -1e-4;
+  expect_refused<core::PreconditionError>([&] { filter_.update({{active_, z, {}}}); }, std::to_string(active_));
+  z.R << 1.0, 2.0, 0.0, 1.0;
+  expect_refused<core::PreconditionError>([&] { filter_.update({{active_, z, {}}}); });
+  core::Odometry odometry;
+  odometry.covariance(0, 0) = -1.0;
+  expect_refused<core::PreconditionError>([&] { filter_.predict(odometry); });
+  odometry.covariance.setZero();
+  odometry.T_before_after.x_m = nan;
+  expect_refused<core::PreconditionError>([&] { filter_.predict(odometry); });
+  core::AbsoluteFix fix;
+  fix.covariance_m2(0, 0) = -1.0;
+  expect_refused<core::PreconditionError>([&] { filter_.update_position(fix); });
+}
+
+TEST_P(BadInput, AnUnknownOrRemovedLandmarkIsRefusedByName) {
+  const core::Observation z = core::make_range_bearing(5.0, 0.1, 0.1, 0.01);
+  const std::vector<core::LandmarkId> known = filter_.landmarks();
+  core::LandmarkId removed = 0;
+  while (filter_.contains(removed)) ++removed;
+  for (const core::LandmarkId id : {removed, 100000, -3}) {
+    const std::string name = std::to_string(id);
+    expect_refused<core::PreconditionError>([&] { filter_.update({{passive_, z, {}}, {id, z, {}}}); }, name);
+    expect_refused<core::PreconditionError>([&] { filter_.remove(id); }, name);
+    expect_refused<core::PreconditionError>([&] { filter_.activate(id); }, name);
+    expect_refused<core::PreconditionError>([&] { filter_.merge(active_, id); }, name);
+    expect_refused<core::PreconditionError>([&] { filter_.landmark(id); }, name);
+    expect_refused<core::PreconditionError>([&] { filter_.joint({active_, id}); }, name);
+    expect_refused<core::PreconditionError>([&] { filter_.switch_region({id}); }, name);
+  }
+}
+
+TEST_P(BadInput, AMergeThatContradictsItselfIsRefused) {
+  expect_refused<core::PreconditionError>([&] { filter_.merge(active_, active_); });
+  expect_refused<core::PreconditionError>([&] { filter_.merge({{active_, passive_}, {passive_, active_}}); });
+}
+
+TEST_P(BadInput, ABearingAloneDoesNotBeginALandmark) {
+  expect_refused<core::PreconditionError>([&] { filter_.augment(core::make_bearing(0.1, 0.01), {}); });
+}
+
+TEST(Start, MayBeExactlyKnownButNotIndefinite) {
+  EXPECT_NO_THROW(CompressedEkf(core::PoseGaussian{}));
+  core::PoseGaussian start;
+  start.covariance(0, 0) = -1.0;
+  EXPECT_THROW(CompressedEkf{start}, core::PreconditionError);
+}
+
+INSTANTIATE_TEST_SUITE_P(BothRetractions, BadInput, testing::Values(Retraction::standard, Retraction::right_invariant),
+                         [](const auto& tested) {
+                           return tested.param == Retraction::standard ? "Standard" : "RightInvariant";
+                         });
+
+}  // namespace
+}  // namespace helixnav::cekf

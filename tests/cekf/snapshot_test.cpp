@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/cekf/snapshot_ring.hpp"
+
+#include <gtest/gtest.h>
+
+#include "helixnav/core/errors.hpp"
+#include "random_program.hpp"
+#include "same_bytes.hpp"
+
+namespace helixnav::cekf {
+namespace {
+
+class Rewind : public testing::TestWithParam<Retraction> {};
+
+/// Goes on with the program; the oracle is left out of it.
+void go_on(RandomProgram& program, int steps) {
+  for (int k = 0; k < steps; ++k) program.step();
+}
+
+TEST_P(Rewind, RestoresBitForBitInsideAPhase) {
+  RandomProgram program(21, {GetParam(), 220, 0, false});
+  go_on(program, 250);
+  program.switch_region_randomly();
+  go_on(program, 20);
+  const Snapshot snapshot = program.filter.snapshot();
+  const std::string before = bytes_of(program.filter);
+  RandomProgram twin = program;
+  go_on(program, 60);
+  ASSERT_NE(bytes_of(program.filter), before);
+  program.filter.restore(snapshot);
+  EXPECT_EQ(bytes_of(program.filter), before);
+  // And the same future follows.
+  twin.filter = program.filter;
+  RandomProgram again = twin;
+  go_on(twin, 40);
+  go_on(again, 40);
+  EXPECT_EQ(bytes_of(twin.filter), bytes_of(again.filter));
+  const Differences d = compare(twin.filter, twin.oracle);
+  EXPECT_LE(d.covariance, 1e-8);
+}
+
+TEST_P(Rewind, ReachesBackAcrossRegionSwitchesBitForBit) {
+  RandomProgram program(22, {GetParam(), 220, 30, false});
+  go_on(program, 200);
+  program.filter.keep_since(program.filter.phase());
+  const Snapshot snapshot = program.filter.snapshot();
+  const std::string before = bytes_of(program.filter);
+  RandomProgram past = program;
+  const int switches_before = program.switches;
+  go_on(program, 200);
+  ASSERT_GE(program.switches, switches_before + 5);
+  program.filter.restore(snapshot);
+  EXPECT_EQ(bytes_of(program.filter), before);
+  past.filter = program.filter;
+  go_on(past, 100);
+  const Differences d = compare(past.filter, past.oracle);
+  EXPECT_LE(d.covariance, 1e-8);
+  EXPECT_LE(d.mean, 1e-8);
+}
+
+TEST_P(Rewind, OfALaterSnapshotWorksAfterAnEarlierOneInTheSamePhase) {
+  RandomProgram program(23, {GetParam(), 220, 0, false});
+  go_on(program, 250);
+  program.switch_region_randomly();
+  const Snapshot early = program.filter.snapshot();
+  go_on(program, 80);
+  const Snapshot late = program.filter.snapshot();
+  const std::string at_late = bytes_of(program.filter);
+  program.filter.restore(early);
+  program.filter.restore(late);
+  EXPECT_EQ(bytes_of(program.filter), at_late);
+}
+
+TEST_P(Rewind, OfASnapshotOutOfReachIsRefusedAndChangesNothing) {
+  RandomProgram program(24, {GetParam(), 220, 30, false});
+  go_on(program, 100);
+  const Snapshot snapshot = program.filter.snapshot();
+  go_on(program, 60);
+  const std::string before = bytes_of(program.filter);
+  EXPECT_FALSE(program.filter.can_restore(snapshot));
+  EXPECT_THROW(program.filter.restore(snapshot), core::PreconditionError);
+  EXPECT_EQ(bytes_of(program.filter), before);
+}
+
+TEST_P(Rewind, OfAPhaseThatWasUndoneIsRefused) {
+  RandomProgram program(25, {GetParam(), 220, 0, false});
+  go_on(program, 100);
+  const Snapshot early = program.filter.snapshot();
+  program.filter.keep_since(early.phase);
+  program.filter.switch_region();
+  const Snapshot undone = program.filter.snapshot();
+  program.filter.restore(early);
+  program.filter.switch_region();
+  EXPECT_THROW(program.filter.restore(undone), core::PreconditionError);
+}
+
+TEST_P(Rewind, ByTheRingReachesTwoHundredStepsBackAcrossSwitches) {
+  RandomProgram program(26, {GetParam(), 220, 40, false});
+  SnapshotRing ring(200, 10);
+  std::string at_210;
+  for (int k = 0; k < 420; ++k) {
+    program.step();
+    ring.offer(program.filter, k);
+    if (k == 210) at_210 = bytes_of(program.filter);
+  }
+  EXPECT_TRUE(ring.reaches(219));
+  EXPECT_FALSE(ring.reaches(150));
+  EXPECT_THROW(ring.rewind(program.filter, 150), core::PreconditionError);
+  EXPECT_EQ(ring.rewind(program.filter, 219), 210);
+  EXPECT_EQ(bytes_of(program.filter), at_210);
+}
+
+TEST(SnapshotSize, IsAtMostOneMegabyteAtFiftyActiveLandmarks) {
+  RandomProgram program(27, {Retraction::right_invariant, 400, 0, false});
+  go_on(program, 200);
+  std::vector<core::LandmarkId> ids = program.filter.landmarks();
+  ASSERT_GE(ids.size(), 50u);
+  ids.resize(50);
+  program.filter.switch_region(ids);
+  ASSERT_EQ(program.filter.active_count(), 50);
+  EXPECT_LE(program.filter.snapshot().bytes(), 1000000u);
+}
+
+INSTANTIATE_TEST_SUITE_P(BothRetractions, Rewind, testing::Values(Retraction::standard, Retraction::right_invariant),
+                         [](const auto& tested) {
+                           return tested.param == Retraction::standard ? "Standard" : "RightInvariant";
+                         });
+
+}  // namespace
+}  // namespace helixnav::cekf
