@@ -41,9 +41,8 @@ std::vector<int> best_origins(const core::JointGaussian& joint) {
   }
   std::vector<int> order(static_cast<std::size_t>(n));
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int i, int j) {
-    return cost[static_cast<std::size_t>(i)] < cost[static_cast<std::size_t>(j)];
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int i, int j) { return cost[static_cast<std::size_t>(i)] < cost[static_cast<std::size_t>(j)]; });
   order.resize(std::min(order.size(), origins_tried));
   return order;
 }
@@ -64,12 +63,11 @@ void check(const core::JointGaussian& joint, const Bases& bases) {
 }
 
 /// J·M for the Jacobian J of the change of frame; M has the rows of the joint state.
-Eigen::MatrixXd apply_jacobian(const core::JointGaussian& joint, const Bases& bases, const core::JointGaussian& relative,
-                               const Eigen::MatrixXd& M) {
+Eigen::MatrixXd apply_jacobian(const core::JointGaussian& joint, const Bases& bases,
+                               const core::JointGaussian& relative, const Eigen::MatrixXd& M) {
   const Matrix2d R_base_world = core::rotation(-base_frame(joint, bases).heading_rad);
   const auto of_a = M.middleRows<2>(3 + 2 * bases.a);
-  const Eigen::RowVectorXd dalpha =
-      heading_lever(joint, bases).transpose() * (M.middleRows<2>(3 + 2 * bases.b) - of_a);
+  const Eigen::RowVectorXd dalpha = heading_lever(joint, bases).transpose() * (M.middleRows<2>(3 + 2 * bases.b) - of_a);
   Eigen::MatrixXd out(M.rows(), M.cols());
   out.topRows<2>().noalias() = R_base_world * (M.topRows<2>() - of_a);
   out.topRows<2>().noalias() -= turned_left(relative.pose.position_m()) * dalpha;

@@ -199,8 +199,8 @@ LatentBound latent_bound(const ConstRef& P, int modes, int sweeps) {
       const Root W = root(blocks[static_cast<std::size_t>(i)]);
       const Eigen::Vector2d u = eigen.eigenvectors().block<2, 1>(2 * i, mode);
       V.block<2, 1>(2 * i, k) = kept * (W.half * u);
-      regression.block<2, 1>(2 * i, k) = kept > 0.0 ? Eigen::Vector2d(kept / lambda[mode] * (W.inverse_half * u))
-                                                    : Eigen::Vector2d::Zero();
+      regression.block<2, 1>(2 * i, k) =
+          kept > 0.0 ? Eigen::Vector2d(kept / lambda[mode] * (W.inverse_half * u)) : Eigen::Vector2d::Zero();
     }
   }
   const MatrixXd residual = P - V * V.transpose();

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels.hpp"
-#include "pair_sum.hpp"
+#include "tile_sum.hpp"
 
 namespace helixnav::pf_relocalize {
 namespace {
@@ -45,7 +44,8 @@ std::vector<Candidate> candidates(const Constellation& constellation, const Plac
       const double distance = (placed.points_m[i] - old.mean_m).norm();
       if (distance >= limits.most_tolerance_m) continue;
       const double variance = largest_variance(old.covariance_m2) + limits.branch_sigma_m * limits.branch_sigma_m;
-      if (distance < 3.0 * std::sqrt(variance) + lever_m) pairs.push_back({static_cast<int>(i), static_cast<int>(j), distance});
+      if (distance < 3.0 * std::sqrt(variance) + lever_m)
+        pairs.push_back({static_cast<int>(i), static_cast<int>(j), distance});
     }
   }
   std::stable_sort(pairs.begin(), pairs.end(),
@@ -107,7 +107,8 @@ bool counts(const ConstellationScore& rival, const ConstellationScore& winner, c
 ConstellationReason reason_for(const ConstellationVerdict& verdict, const ConstellationLimits& limits) {
   if (verdict.winner.matched < limits.least_matches) return ConstellationReason::too_few_matches;
   if (verdict.winner.ratio <= limits.least_ratio) return ConstellationReason::ratio_too_low;
-  return verdict.rival_share >= limits.rival_ratio ? ConstellationReason::rival_too_good : ConstellationReason::accepted;
+  return verdict.rival_share >= limits.rival_ratio ? ConstellationReason::rival_too_good
+                                                   : ConstellationReason::accepted;
 }
 
 }  // namespace

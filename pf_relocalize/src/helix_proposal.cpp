@@ -129,9 +129,12 @@ void HelixProposal::sample(Particles& particles, std::size_t begin, std::size_t 
     const Eigen::Vector2d position = landmark - core::rotation(heading) * seen;
     particles.set_pose(i, {position.x(), position.y(), heading});
   }
-  std::array<double, block_size> log_q;
-  for (std::size_t first = begin; first < end; first += block_size) {
-    const std::size_t last = std::min(first + block_size, end);
+}
+
+void HelixProposal::weigh(Particles& particles, std::size_t begin, std::size_t end) const {
+  TileArray log_q;
+  for (std::size_t first = begin; first < end; first += tile_size) {
+    const std::size_t last = std::min(first + tile_size, end);
     log_proposal(particles, first, last, log_q.data());
     for (std::size_t i = first; i < last; ++i) particles.log_weight[i] = log_prior(particles, i) - log_q[i - first];
   }
@@ -155,25 +158,25 @@ int HelixProposal::heading_cell(double heading_rad) const {
 void HelixProposal::log_proposal(const Particles& particles, std::size_t begin, std::size_t end, double* out) const {
   const ScanLikelihood::Impl& impl = *likelihood_.impl_;
   const double tube_share = (1.0 - prior_share_) / heading_step_rad_;
-  PairWorkspace work;
-  BlockArray density;
-  std::array<int, block_size> heading;
-  for (std::size_t first = begin; first < end; first += block_size) {
-    const ParticleBlock block(particles, first, std::min(first + block_size, end));
-    for (std::size_t p = 0; p < block.poses.n; ++p) {
+  TileArray density, factor{};
+  std::array<int, tile_size> heading;
+  for (std::size_t first = begin; first < end; first += tile_size) {
+    ParticleTile tile(impl.table, particles, first, std::min(first + tile_size, end));
+    for (std::size_t p = 0; p < tile.poses.n; ++p) {
       heading[p] = heading_cell(particles.heading_rad[first + p]);
       density[p] = prior_share_ * std::exp(log_prior(particles, first + p));
     }
     for (std::size_t j = 0; j < impl.points.size(); ++j) {
-      const double* weight = weight_.data() + j * impl.table.size() * heading_cells;
-      add_pair_densities(impl.table, block, impl.points[j], work,
-                         [&](std::size_t p, std::uint32_t i) {
-                           return heading[p] < 0 ? 0.0
-                                                 : tube_share * weight[i * heading_cells + static_cast<std::size_t>(heading[p])];
-                         },
-                         density.data());
+      const auto weight_of = [&](std::uint32_t i) {
+        const double* cells = weight_.data() + (j * impl.table.size() + i) * heading_cells;
+        for (std::size_t p = 0; p < tile.poses.n; ++p) {
+          factor[p] = heading[p] < 0 ? 0.0 : tube_share * cells[static_cast<std::size_t>(heading[p])];
+        }
+        return factor.data();
+      };
+      add_point_densities(tile, impl.points[j], weight_of, density.data());
     }
-    for (std::size_t p = 0; p < block.poses.n; ++p) out[first - begin + p] = std::log(std::max(density[p], 1e-300));
+    for (std::size_t p = 0; p < tile.poses.n; ++p) out[first - begin + p] = std::log(std::max(density[p], 1e-300));
   }
 }
 

@@ -4,26 +4,19 @@
 #include <cmath>
 #include <cstring>
 
-// One binary for all x86-64 machines, with the widest vectors that the machine at hand has. Results are the same bytes
-// on one machine; between machines with and without fused multiply-add they differ in the last digits.
-#if defined(__x86_64__) && defined(__has_attribute) && !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
-#if __has_attribute(target_clones)
-#define HELIXNAV_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#endif
-#endif
-#ifndef HELIXNAV_CLONES
-#define HELIXNAV_CLONES
-#endif
+#include "clones.hpp"
 
 namespace helixnav::pf_relocalize {
 namespace {
 
+constexpr TileArray no_shift{};
+
 /// e^x for x ≤ 0 in a form that vectorises: 2^k by exponent bits times a Taylor polynomial on |r| ≤ ln2/2.
-/// Relative error below 1e-11; below −700 the value at −700.
+/// Relative error below 1e-11; below −600 the value at −600.
 inline double exp_of_negative(double x) {
   constexpr double log2_e = 1.4426950408889634074, ln2_high = 6.93147180369123816490e-01,
                    ln2_low = 1.90821492927058770002e-10, shifter = 6755399441055744.0;  // 1.5·2^52
-  const double clamped = x < -700.0 ? -700.0 : x;
+  const double clamped = x < -600.0 ? -600.0 : x;
   const double shifted = clamped * log2_e + shifter;
   const double k = shifted - shifter;
   const double r = (clamped - k * ln2_high) - k * ln2_low;
@@ -47,7 +40,7 @@ inline double exp_of_negative(double x) {
 
 }  // namespace
 
-HELIXNAV_CLONES void place_points(const PoseBlock& poses, const RobotPoint& point, PlacedPoints& placed) {
+HELIXNAV_CLONES void place_points(const PoseTile& poses, const RobotPoint& point, PlacedPoints& placed) {
   const double bx = point.mean_m.x(), by = point.mean_m.y();
   const double bxx = point.covariance_m2(0, 0), bxy = point.covariance_m2(0, 1), byy = point.covariance_m2(1, 1);
   for (std::size_t i = 0; i < poses.n; ++i) {
@@ -61,24 +54,28 @@ HELIXNAV_CLONES void place_points(const PoseBlock& poses, const RobotPoint& poin
   }
 }
 
-HELIXNAV_CLONES void pair_densities(PairBuffer& pairs) {
+HELIXNAV_CLONES void add_densities(std::size_t n, const PlacedPoints& placed, const TileLandmark& landmark,
+                                   const double* factor, double* sum) {
   constexpr double inverse_two_pi = 0.15915494309189533577;
-  for (std::size_t k = 0; k < pairs.n; ++k) {
-    const double dx = pairs.dx[k], dy = pairs.dy[k];
-    const double sxx = pairs.sxx[k], sxy = pairs.sxy[k], syy = pairs.syy[k];
+  const double* shift_x = landmark.shift_x != nullptr ? landmark.shift_x : no_shift.data();
+  const double* shift_y = landmark.shift_y != nullptr ? landmark.shift_y : no_shift.data();
+  for (std::size_t p = 0; p < n; ++p) {
+    const double dx = landmark.x + shift_x[p] - placed.x[p], dy = landmark.y + shift_y[p] - placed.y[p];
+    const double sxx = landmark.sxx + placed.sxx[p], sxy = landmark.sxy + placed.sxy[p];
+    const double syy = landmark.syy + placed.syy[p];
     const double information = 1.0 / (sxx * syy - sxy * sxy);
     const double d2 = (dx * (dx * syy - 2.0 * dy * sxy) + dy * dy * sxx) * information;
-    pairs.value[k] = inverse_two_pi * pairs.factor[k] * std::sqrt(information) * exp_of_negative(-0.5 * d2);
+    sum[p] += inverse_two_pi * factor[p] * std::sqrt(information) * exp_of_negative(-0.5 * d2);
   }
 }
 
-HELIXNAV_CLONES void count_visible(const PoseBlock& poses, const ViewSector& sector, double x_m, double y_m,
-                                   const double* shift_x, const double* shift_y, double* count) {
-  static constexpr BlockArray none{};
-  if (shift_x == nullptr) shift_x = shift_y = none.data();
+HELIXNAV_CLONES void count_visible(const PoseTile& poses, const ViewSector& sector, const TileLandmark& landmark,
+                                   double* count) {
+  const double* shift_x = landmark.shift_x != nullptr ? landmark.shift_x : no_shift.data();
+  const double* shift_y = landmark.shift_y != nullptr ? landmark.shift_y : no_shift.data();
   for (std::size_t i = 0; i < poses.n; ++i) {
     const double c = poses.cos_heading[i], s = poses.sin_heading[i];
-    const double wx = x_m + shift_x[i] - poses.x[i], wy = y_m + shift_y[i] - poses.y[i];
+    const double wx = landmark.x + shift_x[i] - poses.x[i], wy = landmark.y + shift_y[i] - poses.y[i];
     const double u = c * wx + s * wy - sector.x_m, v = c * wy - s * wx - sector.y_m;
     const double range2 = u * u + v * v;
     const double along = u * sector.cos_middle + v * sector.sin_middle;

@@ -3,57 +3,54 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 
 #include "helixnav/core/events.hpp"
 #include "helixnav/pf_relocalize/scan_likelihood.hpp"
 
 namespace helixnav::pf_relocalize {
 
-/// Particles are worked on in blocks of this size: the unit of threads, of random streams and of the loops below.
-inline constexpr std::size_t block_size = 256;
-inline constexpr std::size_t pair_capacity = 1024;
+/// Particles are weighed in tiles of this size, neighbours in the cloud's order and therefore in space.
+inline constexpr std::size_t tile_size = 64;
 
-using BlockArray = std::array<double, block_size>;
+using TileArray = std::array<double, tile_size>;
 
-/// Poses of one block, n ≤ block_size of them.
-struct PoseBlock {
+/// Poses of one tile, n ≤ tile_size of them.
+struct PoseTile {
   std::size_t n = 0;
   const double* x = nullptr;
   const double* y = nullptr;
-  alignas(64) BlockArray cos_heading;
-  alignas(64) BlockArray sin_heading;
+  alignas(64) TileArray cos_heading;
+  alignas(64) TileArray sin_heading;
 };
 
-/// Where one observed point lies for every pose of a block, with its covariance in the map frame.
+/// Where one observed point lies for every pose of a tile, with its covariance in the map frame.
 struct PlacedPoints {
-  alignas(64) BlockArray x, y, sxx, sxy, syy;
+  alignas(64) TileArray x, y, sxx, sxy, syy;
 };
-void place_points(const PoseBlock& poses, const RobotPoint& point, PlacedPoints& placed);
+void place_points(const PoseTile& poses, const RobotPoint& point, PlacedPoints& placed);
 
-/// Pairs (particle, landmark) within reach: difference and summed covariance, and a factor on the density.
-struct PairBuffer {
-  std::size_t n = 0;
-  alignas(64) std::array<double, pair_capacity> dx, dy, sxx, sxy, syy, factor, value;
-  std::array<std::uint32_t, pair_capacity> particle;
+/// A landmark of the map, and for maps with latent modes its displacement for every particle of a tile, else nullptr.
+struct TileLandmark {
+  double x, y, sxx, sxy, syy;
+  const double* shift_x = nullptr;
+  const double* shift_y = nullptr;
 };
 
-/// value = factor · N((dx, dy); 0, S). Relative error below 1e-9. This loop is where the filter spends its arithmetic:
-/// about 45 flops a pair, two of them a division and a square root.
-void pair_densities(PairBuffer& pairs);
+/// sum[p] += factor[p] · N(placed point p; landmark, Σ + R_p) for the n particles of a tile. Relative error below 1e-9.
+/// This loop is where the filter spends its arithmetic: about 50 flops a pair, two of them a division and a square root.
+void add_densities(std::size_t n, const PlacedPoints& placed, const TileLandmark& landmark, const double* factor,
+                   double* sum);
 
 /// Region of the sensor in the frame of the robot, in the form that a comparison without atan2 needs.
 struct ViewSector {
-  double x_m, y_m;                    // sensor in the robot frame
-  double cos_middle, sin_middle;      // middle of the bearings in the robot frame
-  double cos_half;                    // cosine of half their width; −2 for all around
+  double x_m, y_m;                // sensor in the robot frame
+  double cos_middle, sin_middle;  // middle of the bearings in the robot frame
+  double cos_half;                // cosine of half their width; −2 for all around
   double min_range2_m2, max_range2_m2;
 };
 ViewSector view_sector(const core::FieldOfView& view, const core::Pose2& T_robot_sensor);
 
-/// count += 1 for every pose of the block that has (x, y) in its sector. (shift_x, shift_y): per-pose displacement of
-/// the landmark, or nullptr.
-void count_visible(const PoseBlock& poses, const ViewSector& sector, double x_m, double y_m, const double* shift_x,
-                   const double* shift_y, double* count);
+/// count[p] += 1 for every pose of the tile that has the landmark in its sector.
+void count_visible(const PoseTile& poses, const ViewSector& sector, const TileLandmark& landmark, double* count);
 
 }  // namespace helixnav::pf_relocalize

@@ -32,7 +32,8 @@ LandmarkGrid::LandmarkGrid(const std::vector<Eigen::Vector2d>& points_m) {
   for (std::size_t k = 1; k < starts_.size(); ++k) starts_[k] += starts_[k - 1];
   std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
   landmarks_.resize(points_m.size());
-  for (std::size_t i = 0; i < points_m.size(); ++i) landmarks_[next[cell_of(points_m[i])]++] = static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < points_m.size(); ++i)
+    landmarks_[next[cell_of(points_m[i])]++] = static_cast<std::uint32_t>(i);
 }
 
 }  // namespace helixnav::pf_relocalize

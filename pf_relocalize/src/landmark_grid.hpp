@@ -9,16 +9,17 @@
 namespace helixnav::pf_relocalize {
 
 /// Points in square cells of about one point each. Cells of a row are neighbours in memory, so that a look-up of a
-/// square is one run a row. A k-d tree answers the same question in about ten times the time at these sizes.
+/// rectangle is one run a row.
 class LandmarkGrid {
  public:
   explicit LandmarkGrid(const std::vector<Eigen::Vector2d>& points_m);
 
-  /// Calls f(landmark) for every landmark whose cell meets the square of half side `reach_m` about (x, y).
+  /// Calls f(landmark) for every landmark whose cell meets the rectangle.
   template <typename Function>
-  void visit(double x_m, double y_m, double reach_m, Function&& f) const {
-    const int first_column = cell(x_m - reach_m - origin_x_m_, columns_), last_column = cell(x_m + reach_m - origin_x_m_, columns_);
-    const int first_row = cell(y_m - reach_m - origin_y_m_, rows_), last_row = cell(y_m + reach_m - origin_y_m_, rows_);
+  void visit(const Eigen::Vector2d& low_m, const Eigen::Vector2d& high_m, Function&& f) const {
+    const int first_column = cell(low_m.x() - origin_x_m_, columns_);
+    const int last_column = cell(high_m.x() - origin_x_m_, columns_);
+    const int first_row = cell(low_m.y() - origin_y_m_, rows_), last_row = cell(high_m.y() - origin_y_m_, rows_);
     for (int row = first_row; row <= last_row; ++row) {
       const std::uint32_t* start = starts_.data() + row * columns_;
       for (std::uint32_t k = start[first_column]; k < start[last_column + 1]; ++k) f(landmarks_[k]);

@@ -21,7 +21,8 @@ core::Pose2 refine_pose(const LandmarkTable& table, const std::vector<RobotPoint
     Eigen::Matrix3d point_information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d point_force = Eigen::Vector3d::Zero();
     const double reach_m = 3.5 * std::sqrt(largest_variance(noise) + table.largest);
-    table.grid.visit(placed.x(), placed.y(), reach_m, [&](std::uint32_t i) {
+    const Eigen::Vector2d reach(reach_m, reach_m);
+    table.grid.visit(placed - reach, placed + reach, [&](std::uint32_t i) {
       const Eigen::Vector2d d(table.x[i] - placed.x(), table.y[i] - placed.y());
       Eigen::Matrix2d S = noise;
       S(0, 0) += table.sxx[i];
@@ -29,7 +30,8 @@ core::Pose2 refine_pose(const LandmarkTable& table, const std::vector<RobotPoint
       S(0, 1) += table.sxy[i];
       S(1, 0) += table.sxy[i];
       const Eigen::Matrix2d W = S.inverse();
-      const double value = density_ratio_m2 * std::exp(-0.5 * d.dot(W * d)) * std::sqrt(W.determinant()) / (2.0 * core::pi);
+      const double value =
+          density_ratio_m2 * std::exp(-0.5 * d.dot(W * d)) * std::sqrt(W.determinant()) / (2.0 * core::pi);
       total += value;
       point_information += value * J.transpose() * W * J;
       point_force += value * J.transpose() * W * d;

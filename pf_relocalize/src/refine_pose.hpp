@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pair_sum.hpp"
+#include "tile_sum.hpp"
 
 namespace helixnav::pf_relocalize {
 

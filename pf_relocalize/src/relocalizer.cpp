@@ -11,12 +11,14 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/random.hpp"
 #include "helixnav/pf_relocalize/resample.hpp"
-#include "kernels.hpp"
 #include "lineage.hpp"
 #include "worker_pool.hpp"
 
 namespace helixnav::pf_relocalize {
 namespace {
+
+/// Particles are shared out to threads, and fed by random streams, in blocks of this size: a multiple of tile_size.
+constexpr std::size_t block_size = 256;
 
 void check(const RelocalizerOptions& options) {
   const bool valid = options.least_particles >= 1 && options.most_particles >= options.least_particles &&
@@ -107,6 +109,10 @@ void Relocalizer::Impl::start(const core::Scan& scan) {
   proposal.allot(particles.size(), random.uniform());
   for_each_block([&](std::size_t block, std::size_t begin, std::size_t end) {
     proposal.sample(particles, begin, end, block_random[block]);
+  });
+  order_by_place(particles);
+  for_each_block([&](std::size_t, std::size_t begin, std::size_t end) {
+    proposal.weigh(particles, begin, end);
     likelihood.evaluate(particles, begin, end, log_likelihood.data() + begin);
     for (std::size_t i = begin; i < end; ++i) particles.log_weight[i] += log_likelihood[i];
   });
@@ -147,8 +153,8 @@ void Relocalizer::Impl::resample_when_due() {
   const double offset = random.uniform();
   systematic_parents(particles, particles.size(), offset, parents);
   const std::size_t bins = occupied_bins(particles, parents, options.bin_m, options.bin_rad, keys);
-  const std::size_t wanted = std::clamp(kld_sample_size(bins, options.kld_error), options.least_particles,
-                                        options.most_particles);
+  const std::size_t wanted =
+      std::clamp(kld_sample_size(bins, options.kld_error), options.least_particles, options.most_particles);
   systematic_parents(particles, wanted, offset, parents);
   take_parents(particles, parents, resampled);
   std::swap(particles, resampled);
@@ -180,7 +186,8 @@ bool meets_paper_rule(const CloudState& state, const core::Odometry& motion) {
 }
 
 bool meets_gate(const CloudState& state, const GateLimits& limits) {
-  if (state.modes.empty() || state.scans < limits.least_scans || state.log_evidence <= limits.log_evidence) return false;
+  if (state.modes.empty() || state.scans < limits.least_scans || state.log_evidence <= limits.log_evidence)
+    return false;
   const Mode& mode = state.modes.front();
   const Eigen::Vector3d sigma = mode.pose.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   return mode.mass > limits.least_mass && std::max(sigma.x(), sigma.y()) < limits.sigma_position_m &&

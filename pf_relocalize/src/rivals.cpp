@@ -114,6 +114,7 @@ RivalPoses find_rivals(const ReferenceMap& reference, const std::vector<BranchLa
   core::RandomStream random(seed, "rivals");
   proposal.allot(cloud.size(), random.uniform());
   proposal.sample(cloud, 0, cloud.size(), random);
+  order_by_place(cloud);
   weigh(likelihood, region, cloud);
 
   const std::vector<core::Pose2> starts =

@@ -42,9 +42,10 @@ std::vector<RobotPoint> robot_points(const core::Scan& scan) {
 ScanLikelihood::ScanLikelihood(const ReferenceMap& map, const SensorModel& sensor) {
   if (!(sensor.detection_probability > 0.0 && sensor.detection_probability < 1.0) ||
       !(sensor.extraneous_per_scan > 0.0)) {
-    throw core::PreconditionError("sensor model: detection_probability must lie in (0, 1), extraneous_per_scan above 0, "
-                                  "got " + std::to_string(sensor.detection_probability) + " and " +
-                                  std::to_string(sensor.extraneous_per_scan));
+    throw core::PreconditionError(
+        "sensor model: detection_probability must lie in (0, 1), extraneous_per_scan above 0, "
+        "got " +
+        std::to_string(sensor.detection_probability) + " and " + std::to_string(sensor.extraneous_per_scan));
   }
   impl_ = std::make_unique<Impl>(map, sensor);
   impl_->points.reserve(64);
@@ -62,6 +63,7 @@ void ScanLikelihood::set_scan(const core::Scan& scan) {
   }
   impl_->density_ratio_m2 = impl_->sensor.detection_probability / extraneous_per_m2;
   impl_->sector = view_sector(scan.field_of_view, scan.T_robot_sensor);
+  impl_->view_reach_m = scan.field_of_view.max_range_m + scan.T_robot_sensor.position_m().norm();
   impl_->with_visibility = true;
 }
 
@@ -71,59 +73,41 @@ void ScanLikelihood::set_points(const std::vector<RobotPoint>& points, double ex
   impl_->with_visibility = false;
 }
 
-void ScanLikelihood::Impl::subtract_expected(const ParticleBlock& block, double* out) const {
-  BlockArray count{}, shift_x, shift_y;
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    if (table.modes == 0) {
-      count_visible(block.poses, sector, table.x[i], table.y[i], nullptr, nullptr, count.data());
-      continue;
-    }
-    for (std::size_t p = 0; p < block.poses.n; ++p) {
-      const Eigen::Vector2d shift = block.displacement(table, i, p);
-      shift_x[p] = shift.x();
-      shift_y[p] = shift.y();
-    }
-    count_visible(block.poses, sector, table.x[i], table.y[i], shift_x.data(), shift_y.data(), count.data());
-  }
-  for (std::size_t p = 0; p < block.poses.n; ++p) out[p] -= sensor.detection_probability * count[p];
+void ScanLikelihood::Impl::subtract_expected(ParticleTile& tile, double* out) const {
+  TileArray count{};
+  const Box box(tile.poses.x, tile.poses.y, tile.poses.n);
+  const double reach_m = view_reach_m + table.latent_reach_m;
+  const Eigen::Vector2d reach(reach_m, reach_m);
+  table.grid.visit(box.low - reach, box.high + reach, [&](std::uint32_t i) {
+    if (box.squared_distance(table.x[i], table.y[i]) > reach_m * reach_m) return;
+    count_visible(tile.poses, sector, tile.landmark(i), count.data());
+  });
+  for (std::size_t p = 0; p < tile.poses.n; ++p) out[p] -= sensor.detection_probability * count[p];
 }
 
-void ScanLikelihood::Impl::evaluate_block(const ParticleBlock& block, double* out) const {
-  PairWorkspace work;
-  BlockArray product, sum;
-  std::fill_n(out, block.poses.n, 0.0);
+void ScanLikelihood::Impl::evaluate_tile(ParticleTile& tile, double* out) const {
+  const std::size_t n = tile.poses.n;
+  TileArray ratio, product, sum;
+  ratio.fill(density_ratio_m2);
+  std::fill_n(out, n, 0.0);
   for (std::size_t first = 0; first < points.size(); first += factors_a_logarithm) {
-    std::fill_n(product.begin(), block.poses.n, 1.0);
+    product.fill(1.0);
     for (std::size_t j = first; j < std::min(first + factors_a_logarithm, points.size()); ++j) {
-      std::fill_n(sum.begin(), block.poses.n, 1.0);
-      add_pair_densities(table, block, points[j], work,
-                         [&](std::size_t, std::uint32_t) { return density_ratio_m2; }, sum.data());
-      for (std::size_t p = 0; p < block.poses.n; ++p) product[p] *= sum[p];
+      sum.fill(1.0);
+      add_point_densities(
+          tile, points[j], [&](std::uint32_t) { return ratio.data(); }, sum.data());
+      for (std::size_t p = 0; p < n; ++p) product[p] *= sum[p];
     }
-    for (std::size_t p = 0; p < block.poses.n; ++p) out[p] += std::log(product[p]);
+    for (std::size_t p = 0; p < n; ++p) out[p] += std::log(product[p]);
   }
-  if (with_visibility) subtract_expected(block, out);
+  if (with_visibility) subtract_expected(tile, out);
 }
 
 void ScanLikelihood::evaluate(const Particles& particles, std::size_t begin, std::size_t end, double* out) const {
-  for (std::size_t first = begin; first < end; first += block_size) {
-    const ParticleBlock block(particles, first, std::min(first + block_size, end));
-    impl_->evaluate_block(block, out + (first - begin));
+  for (std::size_t first = begin; first < end; first += tile_size) {
+    ParticleTile tile(impl_->table, particles, first, std::min(first + tile_size, end));
+    impl_->evaluate_tile(tile, out + (first - begin));
   }
-}
-
-std::size_t ScanLikelihood::pairs_within_reach(const Particles& particles) const {
-  std::size_t pairs = 0;
-  PairWorkspace work;
-  BlockArray sum{};
-  for (std::size_t first = 0; first < particles.size(); first += block_size) {
-    const ParticleBlock block(particles, first, std::min(first + block_size, particles.size()));
-    for (const RobotPoint& point : impl_->points) {
-      add_pair_densities(impl_->table, block, point, work,
-                         [&](std::size_t, std::uint32_t) { return static_cast<double>(++pairs); }, sum.data());
-    }
-  }
-  return pairs;
 }
 
 }  // namespace helixnav::pf_relocalize

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <functional>
 
+#include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <gtest/gtest.h>
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/random.hpp"

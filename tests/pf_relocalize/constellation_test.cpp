@@ -34,9 +34,9 @@ Constellation random_constellation(core::RandomStream& random) {
   }
   for (int j = 0; j < 8; ++j) {
     const double sigma = random.uniform(0.05, 0.3);
-    c.old_landmarks.push_back({100 + j,
-                               {{10.0 + random.uniform(-4.0, 4.0), random.uniform(-4.0, 4.0)},
-                                sigma * sigma * Eigen::Matrix2d::Identity()}});
+    c.old_landmarks.push_back(
+        {100 + j,
+         {{10.0 + random.uniform(-4.0, 4.0), random.uniform(-4.0, 4.0)}, sigma * sigma * Eigen::Matrix2d::Identity()}});
   }
   c.old_drive.T_frame_sensor = {{8.0, 0.0, 0.0}, {10.0, 1.0, 0.5}};
   c.old_drive.field_of_view = {0.0, 5.0, -core::pi / 2, core::pi / 2};
@@ -60,8 +60,8 @@ TEST(Constellation, CountsTheLargestMatchingAndContradictionsAsBruteForceDoes) {
       partners.emplace_back();
       on_old_ground += c.old_drive.covers(p) ? 1 : 0;
       for (const OldLandmark& old : c.old_landmarks) {
-        const double tolerance = std::min(1.5, 3.0 * std::sqrt(old.point.covariance_m2(0, 0) + 0.15 * 0.15) +
-                                                   0.012 * b.point_robot_m.norm());
+        const double tolerance = std::min(
+            1.5, 3.0 * std::sqrt(old.point.covariance_m2(0, 0) + 0.15 * 0.15) + 0.012 * b.point_robot_m.norm());
         if ((p - old.point.mean_m).norm() < tolerance) partners.back().push_back(old.id);
       }
     }
@@ -94,7 +94,7 @@ TEST(Constellation, CoverageShrinksTheViewAndCountsViews) {
   coverage.field_of_view = {0.5, 20.0, -core::pi / 2, core::pi / 2};
   EXPECT_TRUE(coverage.covers({16.9, 0.0}));
   EXPECT_FALSE(coverage.covers({17.1, 0.0}));
-  EXPECT_TRUE(coverage.covers({-3.0, 0.0}));  // seen from the second pose, behind the first
+  EXPECT_TRUE(coverage.covers({-3.0, 0.0}));    // seen from the second pose, behind the first
   EXPECT_FALSE(coverage.covers({0.05, 10.0}));  // within the bearing margin of both
   EXPECT_FALSE(coverage.covers({0.2, 0.0}) && coverage.least_views > 1);
   coverage.least_views = 2;
@@ -109,7 +109,7 @@ TEST(Constellation, GroundThatOnlyOneDriveCoveredIsNeutral) {
   Constellation c = lattice.constellation();
   const ConstellationScore before = score_constellation(c, lattice.truth());
   EXPECT_DOUBLE_EQ(before.ratio, 1.0);
-  c.branch.push_back({5000, {0.0, 60.0}, 9});                            // far off what the old drive saw
+  c.branch.push_back({5000, {0.0, 60.0}, 9});  // far off what the old drive saw
   c.old_landmarks.push_back({5001, {{lattice.now_m, -60.0}, Eigen::Matrix2d::Identity()}});
   const ConstellationScore after = score_constellation(c, lattice.truth());
   EXPECT_EQ(after.matched, before.matched);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/random.hpp"
@@ -29,7 +29,8 @@ struct Draw {
   std::size_t pairs = 0;
 };
 
-Draw draw(const ReferenceMap& map, const core::Scan& scan, const HelixOptions& options, std::size_t n, std::uint64_t seed) {
+Draw draw(const ReferenceMap& map, const core::Scan& scan, const HelixOptions& options, std::size_t n,
+          std::uint64_t seed) {
   ScanLikelihood likelihood(map, sensor);
   likelihood.set_scan(scan);
   HelixProposal proposal(map, likelihood, options);
@@ -40,6 +41,7 @@ Draw draw(const ReferenceMap& map, const core::Scan& scan, const HelixOptions& o
   result.cloud.resize(n);
   proposal.allot(n, random.uniform());
   proposal.sample(result.cloud, 0, n, random);
+  proposal.weigh(result.cloud, 0, n);
   return result;
 }
 

@@ -59,8 +59,9 @@ struct Lattice {
       map.landmarks.push_back(old.point);
     }
     map.prior.mean = truth();
-    map.prior.covariance = Eigen::Vector3d(sigma_along_m * sigma_along_m, sigma_across_m * sigma_across_m,
-                                           sigma_rad * sigma_rad).asDiagonal();
+    map.prior.covariance =
+        Eigen::Vector3d(sigma_along_m * sigma_along_m, sigma_across_m * sigma_across_m, sigma_rad * sigma_rad)
+            .asDiagonal();
     map.latent.resize(2 * static_cast<Eigen::Index>(map.landmarks.size()), 0);
     map.prior_by_latent.resize(3, 0);
     return map;

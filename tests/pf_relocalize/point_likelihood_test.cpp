@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
+#include <gtest/gtest.h>
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <gtest/gtest.h>
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/random.hpp"
@@ -47,12 +47,13 @@ Sample draw(const Case& row, core::RandomStream& random) {
                               random.uniform(row.least_map_sigma_m, row.most_map_sigma_m));
   sample.landmark.covariance_m2 = Q * sigma.cwiseAbs2().asDiagonal() * Q.transpose();
   const double range = random.uniform(row.least_range_m, row.most_range_m), bearing = random.uniform(-1.5, 1.5);
-  const Eigen::Vector2d seen = core::transform(sample.pose, range * Eigen::Vector2d(std::cos(bearing), std::sin(bearing)));
+  const Eigen::Vector2d seen =
+      core::transform(sample.pose, range * Eigen::Vector2d(std::cos(bearing), std::sin(bearing)));
   const Eigen::Vector2d error(random.normal(), random.normal());
   sample.landmark.mean_m = seen + 1.5 * Q * sigma.cwiseProduct(error);
   sample.observation = core::make_range_bearing(range + random.normal(0.0, row.sigma_range_m),
-                                                bearing + random.normal(0.0, row.sigma_bearing_rad),
-                                                row.sigma_range_m, row.sigma_bearing_rad);
+                                                bearing + random.normal(0.0, row.sigma_bearing_rad), row.sigma_range_m,
+                                                row.sigma_bearing_rad);
   return sample;
 }
 
@@ -91,9 +92,12 @@ Errors errors_of(const Case& row, int runs) {
     const double exact = log_quadrature(s, nodes_for(row));
     if (exact < std::log(1e-12)) continue;
     const core::Pose2 at_robot;
-    errors.linearised.push_back(std::abs(log_likelihood_linearised(s.observation, s.pose, at_robot, s.landmark) - exact));
-    errors.order3.push_back(std::abs(log_likelihood_gauss_hermite(s.observation, s.pose, at_robot, s.landmark, 3) - exact));
-    errors.order5.push_back(std::abs(log_likelihood_gauss_hermite(s.observation, s.pose, at_robot, s.landmark, 5) - exact));
+    errors.linearised.push_back(
+        std::abs(log_likelihood_linearised(s.observation, s.pose, at_robot, s.landmark) - exact));
+    errors.order3.push_back(
+        std::abs(log_likelihood_gauss_hermite(s.observation, s.pose, at_robot, s.landmark, 3) - exact));
+    errors.order5.push_back(
+        std::abs(log_likelihood_gauss_hermite(s.observation, s.pose, at_robot, s.landmark, 5) - exact));
   }
   for (auto* column : {&errors.linearised, &errors.order3, &errors.order5}) std::sort(column->begin(), column->end());
   return errors;

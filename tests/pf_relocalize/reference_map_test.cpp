@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/pf_relocalize/conservative_bound.hpp"
@@ -41,7 +41,8 @@ TEST(BaseFrame, TransformsTheCovarianceByTheJacobianThatCentralDifferencesGive) 
   for (Eigen::Index k = 0; k < x.size(); ++k) {
     const Eigen::VectorXd e = h * Eigen::VectorXd::Unit(x.size(), k);
     J.col(k) = (stacked(in_base_frame(unstacked(x + e, joint), bases)) -
-                stacked(in_base_frame(unstacked(x - e, joint), bases))) / (2.0 * h);
+                stacked(in_base_frame(unstacked(x - e, joint), bases))) /
+               (2.0 * h);
   }
   const Eigen::MatrixXd expected = J * joint.covariance * J.transpose();
   const core::JointGaussian relative = in_base_frame(joint, bases);
@@ -82,7 +83,8 @@ TEST(ChooseBases, ScoresAPairByTheTraceOfTheRelativeMap) {
   const core::JointGaussian joint = test::drive_map(9, 5);
   for (const Bases bases : {Bases{0, 8}, Bases{4, 3}}) {
     const core::JointGaussian relative = in_base_frame(joint, bases);
-    EXPECT_NEAR(mean_relative_variance_m2(joint, bases), relative.covariance.bottomRightCorner(18, 18).trace() / 9.0, 1e-9);
+    EXPECT_NEAR(mean_relative_variance_m2(joint, bases), relative.covariance.bottomRightCorner(18, 18).trace() / 9.0,
+                1e-9);
   }
 }
 
@@ -106,7 +108,8 @@ Bases nearest_pair(const core::JointGaussian& joint) {
     int best = -1;
     for (std::size_t i = 0; i < joint.points_m.size(); ++i) {
       const double d = (joint.points_m[i] - p).norm();
-      if (d > least && (best < 0 || d < (joint.points_m[static_cast<std::size_t>(best)] - p).norm())) best = static_cast<int>(i);
+      if (d > least && (best < 0 || d < (joint.points_m[static_cast<std::size_t>(best)] - p).norm()))
+        best = static_cast<int>(i);
     }
     return best;
   };
@@ -119,7 +122,8 @@ Bases furthest_pair(const core::JointGaussian& joint) {
   double most = -1.0;
   for (int a = 0; a < 30; ++a) {
     for (int b = 0; b < a; ++b) {
-      const double d = (joint.points_m[static_cast<std::size_t>(a)] - joint.points_m[static_cast<std::size_t>(b)]).norm();
+      const double d =
+          (joint.points_m[static_cast<std::size_t>(a)] - joint.points_m[static_cast<std::size_t>(b)]).norm();
       if (d > most) {
         most = d;
         best = {a, b};
@@ -176,9 +180,9 @@ TEST(ReferenceMap, KeepsTheCorrelationOfPriorAndLatentModesPossible) {
 }
 
 TEST(ReferenceMap, NamesOfRulesLeadBackToThem) {
-  for (const Decorrelation rule : {Decorrelation::relative_marginals, Decorrelation::scalar_bound,
-                                   Decorrelation::trace_bound, Decorrelation::whitened_bound,
-                                   Decorrelation::constellations, Decorrelation::latent_modes}) {
+  for (const Decorrelation rule :
+       {Decorrelation::relative_marginals, Decorrelation::scalar_bound, Decorrelation::trace_bound,
+        Decorrelation::whitened_bound, Decorrelation::constellations, Decorrelation::latent_modes}) {
     EXPECT_EQ(decorrelation_from(name_of(rule)), rule);
   }
   EXPECT_THROW(decorrelation_from("marginals"), core::InputError);

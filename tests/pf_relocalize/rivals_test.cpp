@@ -14,7 +14,8 @@ namespace {
 
 bool has_pose_near(const std::vector<core::Pose2>& poses, const core::Pose2& pose) {
   return std::any_of(poses.begin(), poses.end(), [&](const core::Pose2& p) {
-    return (p.position_m() - pose.position_m()).norm() < 0.5 && std::abs(core::wrap_to_pi(p.heading_rad - pose.heading_rad)) < 0.05;
+    return (p.position_m() - pose.position_m()).norm() < 0.5 &&
+           std::abs(core::wrap_to_pi(p.heading_rad - pose.heading_rad)) < 0.05;
   });
 }
 
@@ -52,8 +53,10 @@ TEST(Rivals, RefineTheWinnerOntoTheMap) {
   test::Lattice lattice;
   core::RandomStream random(3, "rivals");
   for (int run = 0; run < 20; ++run) {
-    const core::Pose2 off = core::compose(lattice.truth(), {random.normal(0.0, 0.3), random.normal(0.0, 0.3), random.normal(0.0, 0.01)});
-    const RivalPoses poses = find_rivals(lattice.map(5.0, 3.0, 0.1), lattice.constellation().branch, off, {100, 5, 5}, 1);
+    const core::Pose2 off =
+        core::compose(lattice.truth(), {random.normal(0.0, 0.3), random.normal(0.0, 0.3), random.normal(0.0, 0.01)});
+    const RivalPoses poses =
+        find_rivals(lattice.map(5.0, 3.0, 0.1), lattice.constellation().branch, off, {100, 5, 5}, 1);
     EXPECT_LT(core::between(lattice.truth(), poses.winner).vector().norm(), 0.05);
   }
 }
@@ -73,7 +76,8 @@ TEST(Rivals, WithConstellationTestRefuseLatticesAndAcceptScatteredTrees) {
       const Eigen::Vector2d move(random.uniform(-2.5, 2.5), random.uniform(-3.0, 3.0));
       c.old_landmarks[i].point.mean_m += move;
       map.landmarks[i].mean_m += move;
-      for (BranchLandmark& b : c.branch) b.point_robot_m += b.id - 1000 == c.old_landmarks[i].id ? move : Eigen::Vector2d(0, 0);
+      for (BranchLandmark& b : c.branch)
+        b.point_robot_m += b.id - 1000 == c.old_landmarks[i].id ? move : Eigen::Vector2d(0, 0);
     }
     const RivalPoses scattered = find_rivals(map, c.branch, lattice.truth(), {}, 5);
     accepted += judge_constellation(c, scattered.winner, scattered.rivals).accepted ? 1 : 0;

@@ -16,7 +16,8 @@ namespace {
 constexpr SensorModel sensor{0.8, 2.5};
 
 /// The same sum written out: every observation with every landmark, visibility by predict_observation.
-double brute_force(const ReferenceMap& map, const core::Scan& scan, const core::Pose2& pose, const Eigen::VectorXd& xi) {
+double brute_force(const ReferenceMap& map, const core::Scan& scan, const core::Pose2& pose,
+                   const Eigen::VectorXd& xi) {
   const core::FieldOfView& view = scan.field_of_view;
   const double area = 0.5 * (view.max_bearing_rad - view.min_bearing_rad) *
                       (view.max_range_m * view.max_range_m - view.min_range_m * view.min_range_m);
@@ -30,17 +31,17 @@ double brute_force(const ReferenceMap& map, const core::Scan& scan, const core::
     const double extraneous = sensor.extraneous_per_scan / area * jacobian;
     double density = extraneous;
     for (const core::PointGaussian& m : landmarks) {
-      density += sensor.detection_probability *
-                 std::exp(log_likelihood_linearised(z, pose, scan.T_robot_sensor, m));
+      density += sensor.detection_probability * std::exp(log_likelihood_linearised(z, pose, scan.T_robot_sensor, m));
     }
     sum += std::log(density / extraneous);
   }
   for (const core::PointGaussian& m : landmarks) {
-    const auto seen = core::predict_observation(core::ObservationKind::range_bearing, pose, scan.T_robot_sensor, m.mean_m);
+    const auto seen =
+        core::predict_observation(core::ObservationKind::range_bearing, pose, scan.T_robot_sensor, m.mean_m);
     const double middle = 0.5 * (view.min_bearing_rad + view.max_bearing_rad);
-    const bool in_view = seen.z_hat[0] >= view.min_range_m && seen.z_hat[0] <= view.max_range_m &&
-                         std::abs(core::wrap_to_pi(seen.z_hat[1] - middle)) <=
-                             0.5 * (view.max_bearing_rad - view.min_bearing_rad);
+    const bool in_view =
+        seen.z_hat[0] >= view.min_range_m && seen.z_hat[0] <= view.max_range_m &&
+        std::abs(core::wrap_to_pi(seen.z_hat[1] - middle)) <= 0.5 * (view.max_bearing_rad - view.min_bearing_rad);
     if (in_view) sum -= sensor.detection_probability;
   }
   return sum;
@@ -69,7 +70,8 @@ void expect_brute_force(const ReferenceMap& map, const core::Scan& scan, const c
   for (std::size_t i = 0; i < cloud.size(); i += 7) {
     Eigen::VectorXd xi(map.latent_modes());
     for (Eigen::Index k = 0; k < xi.size(); ++k) xi[k] = cloud.latent[static_cast<std::size_t>(k)][i];
-    EXPECT_NEAR(out[i], brute_force(map, scan, cloud.pose(i), xi), 1e-9 + 2e-4 * static_cast<double>(scan.observations.size()))
+    EXPECT_NEAR(out[i], brute_force(map, scan, cloud.pose(i), xi),
+                1e-9 + 2e-4 * static_cast<double>(scan.observations.size()))
         << i;
   }
 }

@@ -17,9 +17,9 @@ namespace helixnav::pf_relocalize::test {
 struct ScatterOptions {
   double spacing_m = 8.0;
   double side_m = 120.0;
-  double unmapped = 0.0;          // share of the landmarks that the map lacks
-  double map_sigma_m = 0.3;       // of x and of y
-  double prior_sigma_m = 10.0;    // of x and of y
+  double unmapped = 0.0;        // share of the landmarks that the map lacks
+  double map_sigma_m = 0.3;     // of x and of y
+  double prior_sigma_m = 10.0;  // of x and of y
   double prior_sigma_rad = 10.0 * core::pi / 180.0;
   double detection_probability = 0.85;
   double clutter_per_scan = 2.0;
@@ -38,12 +38,14 @@ struct ScatterWorld {
       const Eigen::Vector2d error(random.normal(0.0, options.map_sigma_m), random.normal(0.0, options.map_sigma_m));
       if (random.bernoulli(options.unmapped)) continue;
       map.ids.push_back(i);
-      map.landmarks.push_back({landmarks.back() + error, std::pow(options.map_sigma_m, 2) * Eigen::Matrix2d::Identity()});
+      map.landmarks.push_back(
+          {landmarks.back() + error, std::pow(options.map_sigma_m, 2) * Eigen::Matrix2d::Identity()});
     }
     map.latent.resize(2 * static_cast<Eigen::Index>(map.landmarks.size()), 0);
     truth = core::Pose2(random.uniform(-15.0, 15.0), random.uniform(-15.0, 15.0), random.uniform(-3.0, 3.0));
     map.prior.covariance = Eigen::Vector3d(std::pow(options.prior_sigma_m, 2), std::pow(options.prior_sigma_m, 2),
-                                           std::pow(options.prior_sigma_rad, 2)).asDiagonal();
+                                           std::pow(options.prior_sigma_rad, 2))
+                               .asDiagonal();
     map.prior.mean = core::Pose2(truth.vector() + random.normal3(map.prior.covariance));
   }
 
@@ -64,8 +66,8 @@ struct ScatterWorld {
     const int clutter = random.poisson(options.clutter_per_scan);
     for (int k = 0; k < clutter; ++k) {
       const double range = options.range_m * std::sqrt(random.uniform(1e-4, 1.0));
-      scan.observations.push_back(core::make_range_bearing(range, random.uniform(-core::pi / 2, core::pi / 2),
-                                                           sigma_range, sigma_bearing));
+      scan.observations.push_back(
+          core::make_range_bearing(range, random.uniform(-core::pi / 2, core::pi / 2), sigma_range, sigma_bearing));
     }
     return scan;
   }

@@ -33,7 +33,8 @@ Blocks whitened_bound(const Eigen::Ref<const Eigen::MatrixXd>& P, int sweeps = 5
 /// by whitened_bound. A realisation of the map is mean + V ξ + independent block errors, ξ ~ N(0, I).
 struct LatentBound {
   Eigen::MatrixXd V;
-  Eigen::MatrixXd regression;  ///< 2n×modes, P⁻¹V: Cov(u, ξ) = Cov(u, map)·regression for any u jointly Gaussian with the map
+  Eigen::MatrixXd
+      regression;  ///< 2n×modes, P⁻¹V: Cov(u, ξ) = Cov(u, map)·regression for any u jointly Gaussian with the map
   Blocks residual;
 };
 LatentBound latent_bound(const Eigen::Ref<const Eigen::MatrixXd>& P, int modes, int sweeps = 5);

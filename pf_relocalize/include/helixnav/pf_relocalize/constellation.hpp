@@ -29,8 +29,8 @@ struct OldLandmark {
 struct Coverage {
   std::vector<core::Pose2> T_frame_sensor;
   core::FieldOfView field_of_view;
-  double range_share = 0.85;         ///< of max_range_m
-  double bearing_margin_rad = 0.1;   ///< off both sides, unless the view is all around
+  double range_share = 0.85;        ///< of max_range_m
+  double bearing_margin_rad = 0.1;  ///< off both sides, unless the view is all around
   int least_views = 1;
 
   /// True when `point_m` lies in the shrunk view of at least least_views poses. Cost: linear in poses.
@@ -39,16 +39,16 @@ struct Coverage {
 
 /// Everything that the test compares. Values only: no filter, no map.
 struct Constellation {
-  std::vector<BranchLandmark> branch;       ///< all that were seen lately, whatever their hits
-  std::vector<OldLandmark> old_landmarks;   ///< map frame
-  Coverage old_drive;                       ///< map frame
-  Coverage new_drive;                       ///< frame of the vehicle now; usually least_views = 2
+  std::vector<BranchLandmark> branch;      ///< all that were seen lately, whatever their hits
+  std::vector<OldLandmark> old_landmarks;  ///< map frame
+  Coverage old_drive;                      ///< map frame
+  Coverage new_drive;                      ///< frame of the vehicle now; usually least_views = 2
 };
 
 struct ConstellationLimits {
-  int least_hits = 3;              ///< a branch landmark seen less often is left out
-  double branch_sigma_m = 0.15;    ///< of a branch landmark relative to the vehicle
-  double lever_rad = 0.012;        ///< tolerance per metre of distance from the vehicle
+  int least_hits = 3;            ///< a branch landmark seen less often is left out
+  double branch_sigma_m = 0.15;  ///< of a branch landmark relative to the vehicle
+  double lever_rad = 0.012;      ///< tolerance per metre of distance from the vehicle
   double most_tolerance_m = 1.5;
   int least_matches = 5;
   double least_ratio = 0.4;
@@ -67,10 +67,10 @@ struct ConstellationPair {
 /// The evidence at one pose, every landmark counted once.
 struct ConstellationScore {
   core::Pose2 T_map_robot;
-  int matched = 0;            ///< M: largest one-to-one matching within min(3σ + lever·r, most_tolerance)
-  int unmatched_branch = 0;   ///< u1: branch landmarks without partner on ground that the old drive covered
-  int unmatched_old = 0;      ///< u2: old landmarks without partner on ground that the new drive covered
-  double ratio = 0.0;         ///< M / (M + (u1 + u2)/2), 0 when M is 0; ground not covered by both is neutral
+  int matched = 0;           ///< M: largest one-to-one matching within min(3σ + lever·r, most_tolerance)
+  int unmatched_branch = 0;  ///< u1: branch landmarks without partner on ground that the old drive covered
+  int unmatched_old = 0;     ///< u2: old landmarks without partner on ground that the new drive covered
+  double ratio = 0.0;        ///< M / (M + (u1 + u2)/2), 0 when M is 0; ground not covered by both is neutral
   std::vector<ConstellationPair> pairs;
 };
 
@@ -86,9 +86,9 @@ struct ConstellationVerdict {
   bool accepted = false;
   ConstellationReason reason = ConstellationReason::too_few_matches;
   ConstellationScore winner;
-  ConstellationScore rival;     ///< best ratio among those that count; matched = 0 when none does
+  ConstellationScore rival;  ///< best ratio among those that count; matched = 0 when none does
   int rivals_tried = 0;
-  double rival_share = 0.0;     ///< rival.ratio / winner.ratio, to be kept below limits.rival_ratio
+  double rival_share = 0.0;  ///< rival.ratio / winner.ratio, to be kept below limits.rival_ratio
 };
 
 /// Winner against rivals. A rival is beaten only by contradictions on ground that both maps cover, never by lack of

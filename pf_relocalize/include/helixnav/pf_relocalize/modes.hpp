@@ -13,8 +13,8 @@ namespace helixnav::pf_relocalize {
 /// One hypothesis: the particles near a centre, their share of the weight, their mean and covariance.
 struct Mode {
   double mass = 0.0;
-  core::PoseGaussian pose;    ///< T_base_robot
-  std::uint32_t best = 0;     ///< the particle of greatest weight in it
+  core::PoseGaussian pose;  ///< T_base_robot
+  std::uint32_t best = 0;   ///< the particle of greatest weight in it
 };
 
 struct ModeRadius {

@@ -29,4 +29,8 @@ struct Particles {
   }
 };
 
+/// Sorts a cloud along a space-filling curve through (x, y, heading), coordinates scaled by the cloud's extent, so that
+/// neighbours in memory stand together. Resampling keeps that order. Cost O(n log n), allocates; for starts.
+void order_by_place(Particles& particles);
+
 }  // namespace helixnav::pf_relocalize

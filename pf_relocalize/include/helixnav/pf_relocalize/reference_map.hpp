@@ -27,7 +27,7 @@ Decorrelation decorrelation_from(std::string_view name);
 
 struct ReferenceMapOptions {
   Decorrelation decorrelation = Decorrelation::relative_marginals;
-  int latent_modes = 6;        ///< columns kept exactly; THEORY §2: trace × 1.5 at 24 landmarks
+  int latent_modes = 6;  ///< columns kept exactly; THEORY §2: trace × 1.5 at 24 landmarks
   int constellation_size = 8;
   int sweeps = 5;
 };

@@ -23,24 +23,24 @@ struct RelocalizerOptions {
   double bin_m = 0.5;                  ///< bins that the number is adapted by (kld_sample_size)
   double bin_rad = 3.0 * core::pi / 180.0;
   double kld_error = 0.05;
-  double resample_below = 0.5;         ///< resample when ESS / n falls below this
-  double motion_noise_scale = 1.3;     ///< factor on σ of the odometry
+  double resample_below = 0.5;      ///< resample when ESS / n falls below this
+  double motion_noise_scale = 1.3;  ///< factor on σ of the odometry
   ModeRadius mode_radius;
   std::size_t most_modes = 8;
-  std::size_t lineage_scans = 128;     ///< scans that lineage() can look back
-  unsigned threads = 2;                ///< results do not depend on it
+  std::size_t lineage_scans = 128;  ///< scans that lineage() can look back
+  unsigned threads = 2;             ///< results do not depend on it
 };
 
 /// What one scan left behind.
 struct CloudState {
   core::Nanoseconds t_ns = 0;
-  int scans = 0;                   ///< used so far, the first included
-  std::size_t particles = 0;       ///< before resampling
-  double effective_size = 0.0;     ///< ESS before resampling
+  int scans = 0;                ///< used so far, the first included
+  std::size_t particles = 0;    ///< before resampling
+  double effective_size = 0.0;  ///< ESS before resampling
   bool resampled = false;
-  double log_evidence = 0.0;       ///< Σ over scans of log(mean Λ): nats against "nothing here is in the map"
-  core::PoseGaussian cloud;        ///< of all particles, T_base_robot
-  std::vector<Mode> modes;         ///< heaviest first, most_modes at the most
+  double log_evidence = 0.0;  ///< Σ over scans of log(mean Λ): nats against "nothing here is in the map"
+  core::PoseGaussian cloud;   ///< of all particles, T_base_robot
+  std::vector<Mode> modes;    ///< heaviest first, most_modes at the most
 };
 
 /// A pose of the past on the line of descent of one particle.
@@ -57,7 +57,7 @@ struct LineagePose {
 ///
 /// The result is for association only. Its covariance leaves out that map errors are the same in every scan and must not
 /// be fused into the map (THEORY §3.3). Poses are in the frame of the reference map; map().T_world_base leads back.
-/// step() allocates nothing once it has seen its largest scan (up to 64 observations) and costs about 1 ms for 5000 particles and
+/// step() allocates nothing (scans of up to 64 observations) and costs about 0.3 µs of one core a particle with
 /// 10 observations. The same input and seed give the same bytes, for any number of threads.
 /// Source: hybrid_masson2003 §2.1, §3.1; THEORY §3. Test: pf_relocalize/relocalizer_test.cpp.
 class Relocalizer {
@@ -99,7 +99,7 @@ struct GateLimits {
   double sigma_position_m = 0.5;  ///< of x and of y
   double sigma_heading_rad = 2.0 * core::pi / 180.0;
   int least_scans = 3;
-  double log_evidence = 0.0;      ///< must be exceeded
+  double log_evidence = 0.0;  ///< must be exceeded
 };
 bool meets_gate(const CloudState& state, const GateLimits& limits = {});
 

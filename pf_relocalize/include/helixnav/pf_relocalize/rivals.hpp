@@ -11,15 +11,15 @@
 namespace helixnav::pf_relocalize {
 
 struct RivalOptions {
-  std::size_t helices = 6000;       ///< poses sampled on the helices of all branch landmarks
-  std::size_t starts = 60;          ///< best of them that are refined
+  std::size_t helices = 6000;  ///< poses sampled on the helices of all branch landmarks
+  std::size_t starts = 60;     ///< best of them that are refined
   std::size_t most_rivals = 25;
-  double prior_chi2 = 16.0;         ///< rivals stay inside this squared distance from the map's prior (3 dof)
-  double apart_m = 2.5;             ///< further than this from the winner, or turned further …
+  double prior_chi2 = 16.0;  ///< rivals stay inside this squared distance from the map's prior (3 dof)
+  double apart_m = 2.5;      ///< further than this from the winner, or turned further …
   double apart_rad = 8.0 * core::pi / 180.0;
-  double distinct_m = 1.0;          ///< rivals are at least this far from one another
-  double branch_sigma_m = 0.15;     ///< of a branch landmark relative to the vehicle
-  double lever_rad = 0.004;         ///< its σ across, per metre of distance
+  double distinct_m = 1.0;            ///< rivals are at least this far from one another
+  double branch_sigma_m = 0.15;       ///< of a branch landmark relative to the vehicle
+  double lever_rad = 0.004;           ///< its σ across, per metre of distance
   double extraneous_per_m2 = 1.4e-3;  ///< unmapped landmarks (2 in a half disc of 30 m)
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pair_sum.hpp"
+#include "tile_sum.hpp"
 
 namespace helixnav::pf_relocalize {
 namespace {
@@ -29,15 +29,34 @@ LandmarkTable::LandmarkTable(const ReferenceMap& map)
   }
 }
 
-ParticleBlock::ParticleBlock(const Particles& particles, std::size_t begin, std::size_t end)
-    : source(particles), first(begin) {
+ParticleTile::ParticleTile(const LandmarkTable& landmarks, const Particles& particles, std::size_t begin,
+                           std::size_t end)
+    : table(landmarks), source(particles), first(begin) {
   poses.n = end - begin;
   poses.x = particles.x_m.data() + begin;
   poses.y = particles.y_m.data() + begin;
-  for (std::size_t i = 0; i < poses.n; ++i) {
-    poses.cos_heading[i] = std::cos(particles.heading_rad[begin + i]);
-    poses.sin_heading[i] = std::sin(particles.heading_rad[begin + i]);
+  for (std::size_t p = 0; p < poses.n; ++p) {
+    poses.cos_heading[p] = std::cos(particles.heading_rad[begin + p]);
+    poses.sin_heading[p] = std::sin(particles.heading_rad[begin + p]);
   }
+}
+
+TileLandmark ParticleTile::landmark(std::uint32_t i) {
+  TileLandmark landmark{table.x[i], table.y[i], table.sxx[i], table.sxy[i], table.syy[i]};
+  if (table.modes == 0) return landmark;
+  shift_x.fill(0.0);
+  shift_y.fill(0.0);
+  const double* V = table.latent.data() + 2 * table.modes * i;
+  for (std::size_t k = 0; k < table.modes; ++k) {
+    const double* xi = source.latent[k].data() + first;
+    for (std::size_t p = 0; p < poses.n; ++p) {
+      shift_x[p] += V[2 * k] * xi[p];
+      shift_y[p] += V[2 * k + 1] * xi[p];
+    }
+  }
+  landmark.shift_x = shift_x.data();
+  landmark.shift_y = shift_y.data();
+  return landmark;
 }
 
 }  // namespace helixnav::pf_relocalize
