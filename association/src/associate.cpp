@@ -57,6 +57,10 @@ Proposal propose(Method method, const InnovationProblem& problem, const Assignme
     case Method::jcbb:
       proposal.matching = jcbb(problem, options.joint_probability, options.node_budget);
       break;
+    case Method::joint_likelihood_ratio:
+      proposal.matching = joint_likelihood_ratio(problem, costs, options.node_budget);
+      proposal.margins = joint_margins(problem, costs, proposal.matching.pair);
+      return proposal;
     case Method::ihgr_published: proposal.matching = ihgr_published(problem, options.node_budget); break;
     case Method::ihgr_likelihood_ratio:
       proposal.matching = ihgr_likelihood_ratio(costs, options.node_budget);
@@ -105,6 +109,7 @@ std::string_view name(Method method) {
     case Method::nearest_neighbour_unique: return "nearest-neighbour-unique";
     case Method::likelihood_ratio: return "likelihood-ratio";
     case Method::jcbb: return "jcbb";
+    case Method::joint_likelihood_ratio: return "joint-likelihood-ratio";
     case Method::ihgr_published: return "ihgr-published";
     default: return "ihgr-likelihood-ratio";
   }

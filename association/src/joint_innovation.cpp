@@ -57,26 +57,35 @@ JointInnovation joint_innovation(const InnovationProblem& problem, const std::ve
 }
 
 JointNis joint_nis(const InnovationProblem& problem, const std::vector<int>& pairs) {
-  JointNis result;
-  result.share.resize(pairs.size());
-  if (pairs.empty()) return result;
-  const JointInnovation joint = joint_innovation(problem, pairs);
-  const Eigen::LLT<Eigen::MatrixXd> llt(joint.S);
+  if (pairs.empty()) return {};
+  JointInnovation joint = joint_innovation(problem, pairs);
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> llt(joint.S);  // in place
   if (llt.info() != Eigen::Success) throw_not_positive_definite(problem, pairs);
-  const Eigen::VectorXd r = llt.solve(joint.nu);
-  const Eigen::MatrixXd S_inverse = llt.solve(Eigen::MatrixXd::Identity(joint.S.rows(), joint.S.cols()));
+  llt.matrixL().solveInPlace(joint.nu);
+  JointNis result;
   result.dof = joint.dof;
-  result.nis = joint.nu.dot(r);
+  result.nis = joint.nu.squaredNorm();
   const double log_determinant = 2.0 * llt.matrixLLT().diagonal().array().log().sum();
   result.log_likelihood = -0.5 * (result.nis + log_determinant + joint.dof * ln_2pi);
   if (!std::isfinite(result.log_likelihood)) throw_not_positive_definite(problem, pairs);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(2 * i);
+  return result;
+}
+
+std::vector<double> joint_nis_shares(const InnovationProblem& problem, const std::vector<int>& pairs) {
+  std::vector<double> shares;
+  if (pairs.empty()) return shares;
+  const JointInnovation joint = joint_innovation(problem, pairs);
+  const Eigen::LLT<Eigen::MatrixXd> llt(joint.S);
+  if (llt.info() != Eigen::Success) throw_not_positive_definite(problem, pairs);
+  const Eigen::MatrixXd S_inverse = llt.solve(Eigen::MatrixXd::Identity(joint.S.rows(), joint.S.cols()));
+  const Eigen::VectorXd r = S_inverse * joint.nu;
+  shares.reserve(pairs.size());
+  for (Eigen::Index row = 0; row < joint.nu.size(); row += 2) {
     const Eigen::Matrix2d M = S_inverse.block<2, 2>(row, row);
     const Eigen::Vector2d r_i = r.segment<2>(row);
-    result.share[i] = r_i.dot(M.inverse() * r_i);
+    shares.push_back(r_i.dot(M.inverse() * r_i));
   }
-  return result;
+  return shares;
 }
 
 }  // namespace helixnav::association

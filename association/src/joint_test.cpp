@@ -71,7 +71,8 @@ Guarded guard_by_dropping(const InnovationProblem& problem, const std::vector<in
   guarded.first_nis = joint.nis;
   guarded.first_dof = joint.dof;
   while (options.joint_test && !passes(joint, options)) {
-    const auto worst = std::max_element(joint.share.begin(), joint.share.end()) - joint.share.begin();
+    const std::vector<double> shares = joint_nis_shares(problem, pairs);
+    const auto worst = std::max_element(shares.begin(), shares.end()) - shares.begin();
     const int observation = problem.pairs[pairs[worst]].observation;
     guarded.dropped[observation] = pairs[worst];
     guarded.pair[observation] = unmatched;

@@ -25,6 +25,19 @@ Matching jcbb(const InnovationProblem& problem, double joint_probability, std::i
 Matching ihgr_published(const InnovationProblem& problem, std::int64_t combination_budget);
 Matching ihgr_likelihood_ratio(const AssignmentProblem& costs, std::int64_t combination_budget);
 
+Matching joint_likelihood_ratio(const InnovationProblem& problem, const AssignmentProblem& costs,
+                                std::int64_t node_budget);
+
+/// For each observation the joint cost of its best other choice, all others staying, minus that of its choice.
+std::vector<double> joint_margins(const InnovationProblem& problem, const AssignmentProblem& costs,
+                                  const std::vector<int>& pair);
+
+/// Observations with a pair, those with the fewest first: a search tree is narrow where it is cut most.
+std::vector<int> observations_by_choice(const InnovationProblem& problem);
+
+Matching matching_of(const InnovationProblem& problem, const std::vector<int>& pairs, std::int64_t nodes,
+                     bool budget_hit);
+
 /// Indices of the matched pairs, by observation.
 std::vector<int> matched_pairs(const std::vector<int>& pair_of_observation);
 

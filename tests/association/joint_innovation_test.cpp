@@ -61,10 +61,12 @@ TEST(JointInnovation, NisAndSharesEqualDenseInversesWithAndWithoutThePair) {
           -0.5 * (joint.nis + std::log(dense.S.determinant()) + joint.dof * std::log(2.0 * core::pi));
       ASSERT_NEAR(joint.log_likelihood, log_likelihood, 1e-8);
     }
+    const std::vector<double> shares = joint_nis_shares(problem, pairs);
+    ASSERT_EQ(shares.size(), pairs.size());
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       std::vector<int> rest = pairs;
       rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
-      ASSERT_NEAR(joint.share[i], joint.nis - joint_nis(problem, rest).nis, 1e-8 * (1.0 + joint.nis));
+      ASSERT_NEAR(shares[i], joint.nis - joint_nis(problem, rest).nis, 1e-8 * (1.0 + joint.nis));
     }
   }
 }

@@ -17,6 +17,7 @@ enum class Method {
   nearest_neighbour_unique,  ///< the nearest pair of all first, then the nearest of the rest
   likelihood_ratio,          ///< optimal assignment with likelihood-ratio costs
   jcbb,                      ///< most pairs that are jointly compatible, then least joint NIS
+  joint_likelihood_ratio,    ///< assignment with the best likelihood ratio of all pairs together
   ihgr_published,            ///< linear programme with the cost and the gate 6.63 of ihgr_zhang2005
   ihgr_likelihood_ratio,     ///< the same linear programme with likelihood-ratio costs
 };
@@ -28,7 +29,7 @@ struct Options {
   double detection_probability = 0.9;  ///< P_D of a landmark of the map in one scan
   ExtraneousDensity extraneous;
   bool joint_test = true;              ///< false: let a set of pairs pass that is not jointly compatible
-  double joint_probability = 0.999;    ///< the set's joint NIS must not exceed this χ² quantile
+  double joint_probability = 0.99;     ///< the set's joint NIS must not exceed this χ² quantile
   int joint_alternatives = 10;         ///< likelihood-ratio assignments tried, best first, when the joint test fails
   double min_margin_nats = 0.0;        ///< a match whose best alternative is nearer is ambiguous; 0: none
   std::int64_t node_budget = 100'000;  ///< nodes of JCBB, combinations of IHGR's tie rule
