@@ -65,7 +65,8 @@ DlrCamera read_dlr_camera(const std::filesystem::path& path) {
   DlrCamera camera;
   while (!cursor.at_end()) {
     const std::string key(cursor.word());
-    if (!read_value(cursor, key, camera)) cursor.fail("unknown key '" + key.substr(0, 24) + "' of a camera calibration");
+    if (!read_value(cursor, key, camera))
+      cursor.fail("unknown key '" + key.substr(0, 24) + "' of a camera calibration");
   }
   if (camera.T_robot_camera.isZero()) cursor.fail("the camera calibration has no sensor2World");
   return camera;

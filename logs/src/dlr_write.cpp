@@ -71,8 +71,8 @@ class DlrWriter {
     const Eigen::Vector2d motion_m = to_dlr_axes(motion_.T_before_after.position_m());
     const Eigen::Matrix3d C = to_dlr_axes(motion_.covariance);
     text_ += "STEP step." + std::to_string(scan_);
-    for (const double value : {motion_m.x(), motion_m.y(), motion_.T_before_after.heading_rad, C(0, 0), C(0, 1), C(1, 1),
-                               C(0, 2), C(1, 2), C(2, 2)}) {
+    for (const double value : {motion_m.x(), motion_m.y(), motion_.T_before_after.heading_rad, C(0, 0), C(0, 1),
+                               C(1, 1), C(0, 2), C(1, 2), C(2, 2)}) {
       number(value);
     }
     text_ += '\n';

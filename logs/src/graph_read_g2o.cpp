@@ -93,9 +93,11 @@ class G2oReader {
   Eigen::Matrix<double, N, N> covariance(TextCursor& cursor) {
     Eigen::Matrix<double, N, N> information;
     for (int r = 0; r < N; ++r) {
-      for (int c = r; c < N; ++c) information(r, c) = information(c, r) = cursor.number("an element of the information");
+      for (int c = r; c < N; ++c)
+        information(r, c) = information(c, r) = cursor.number("an element of the information");
     }
-    if (!core::is_symmetric_positive_definite(information)) cursor.fail("the information matrix is not positive definite");
+    if (!core::is_symmetric_positive_definite(information))
+      cursor.fail("the information matrix is not positive definite");
     const Eigen::Matrix<double, N, N> C = information.inverse();
     return 0.5 * (C + C.transpose());
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 #include <utility>
@@ -20,7 +20,8 @@ constexpr const char* variable = "VicPark_clean_data";
 class VicParkReader {
  public:
   explicit VicParkReader(const std::filesystem::path& path) : file_(path), rows_(file_.matrix(variable)) {
-    if (rows_.columns != 12) file_.fail(std::string(variable) + ": expected 12 columns, found " + std::to_string(rows_.columns));
+    if (rows_.columns != 12)
+      file_.fail(std::string(variable) + ": expected 12 columns, found " + std::to_string(rows_.columns));
     recording_.name = path.filename().string();
   }
 
@@ -69,7 +70,8 @@ class VicParkReader {
     for (int r = 0; r < 3; ++r) {
       for (int c = r; c < 3; ++c) odometry.covariance(r, c) = odometry.covariance(c, r) = rows_(row, column++);
     }
-    if (!core::is_symmetric_positive_definite(odometry.covariance)) fail(row, "the covariance is not positive definite");
+    if (!core::is_symmetric_positive_definite(odometry.covariance))
+      fail(row, "the covariance is not positive definite");
     if (!motions_.emplace(to, odometry).second) fail(row, "a second motion to pose " + std::to_string(to));
   }
 

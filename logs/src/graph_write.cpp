@@ -180,7 +180,8 @@ void write_isam(const core::LandmarkGraph& graph, const std::filesystem::path& p
 }
 
 void write_gtsam(const core::LandmarkGraph& graph, const std::filesystem::path& path) {
-  write_whole_file(path.string(), chronological_text(graph, [](const Eigen::MatrixXd& covariance) { return covariance; }));
+  write_whole_file(path.string(),
+                   chronological_text(graph, [](const Eigen::MatrixXd& covariance) { return covariance; }));
 }
 
 }  // namespace helixnav::logs

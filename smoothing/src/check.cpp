@@ -117,7 +117,8 @@ void check_pose_edges(const Problem& problem, Observability& observability) {
   for (const auto& edge : problem.graph.pose_edges) {
     check_index(edge.from, n, "an odometry measurement's first pose");
     check_index(edge.to, n, "an odometry measurement's second pose");
-    const std::string what = "the odometry from " + pose_name(problem, edge.from) + " to " + pose_name(problem, edge.to);
+    const std::string what =
+        "the odometry from " + pose_name(problem, edge.from) + " to " + pose_name(problem, edge.to);
     if (edge.from == edge.to) fail(what + " ties a pose to itself");
     if (!edge.T_from_to.vector().allFinite()) fail(what + " is not finite");
     check_covariance(edge.covariance, what);

@@ -78,7 +78,8 @@ void NormalEquations::analyse() {
     odometry_slot_.push_back(slot(layout_.pose_column[index(edge.from)], layout_.pose_column[index(edge.to)]));
   }
   for (const auto& edge : graph.landmark_edges) {
-    landmark_slot_.push_back(slot(layout_.pose_column[index(edge.pose)], layout_.landmark_column[index(edge.landmark)]));
+    landmark_slot_.push_back(
+        slot(layout_.pose_column[index(edge.pose)], layout_.landmark_column[index(edge.landmark)]));
   }
 }
 
@@ -143,7 +144,8 @@ Chi2 NormalEquations::visit(const State& state, Visitor&& visitor) const {
   }
   for (std::size_t i = 0; i < problem_.pose_priors.size(); ++i) {
     const PosePrior& prior = problem_.pose_priors[i];
-    unary(prior_factor(prior, state.poses[index(prior.pose)]), W_pose_prior_[i], layout_.pose_column[index(prior.pose)]);
+    unary(prior_factor(prior, state.poses[index(prior.pose)]), W_pose_prior_[i],
+          layout_.pose_column[index(prior.pose)]);
   }
   for (std::size_t i = 0; i < problem_.landmark_priors.size(); ++i) {
     const LandmarkPrior& prior = problem_.landmark_priors[i];

@@ -24,8 +24,9 @@ Scan scan_of(std::vector<Observation> observations) {
 Observation cartesian(double x_m, double y_m) { return make_cartesian({x_m, y_m}, Eigen::Matrix2d::Identity()); }
 
 TEST(GraphFromEvents, OpensAPoseForEveryScanThatFollowsMotion) {
-  const std::vector<Event> events{scan_of({}), step(1.0, 0.0), step(1.0, pi / 2), scan_of({cartesian(1.0, 0.0)}),
-                                  scan_of({cartesian(2.0, 0.0)}), step(1.0, 0.0), AbsoluteFix(), step(5.0, 0.0)};
+  const std::vector<Event> events{
+      scan_of({}),    step(1.0, 0.0), step(1.0, pi / 2), scan_of({cartesian(1.0, 0.0)}), scan_of({cartesian(2.0, 0.0)}),
+      step(1.0, 0.0), AbsoluteFix(),  step(5.0, 0.0)};
   const GraphFromEvents made = graph_from_events(events, {{}, {7}, {-1}});
   ASSERT_EQ(made.graph.poses.size(), 3u);
   EXPECT_EQ(made.pose_of_scan, (std::vector<int>{0, 1, 1}));

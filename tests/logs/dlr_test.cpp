@@ -122,11 +122,13 @@ TEST(ReadDlr, RecognisesBearingsByThePapersEquationInTheFilesAxes) {
   std::vector<double> expected;
   for (int step = 0; step < 20; ++step) {
     text << "STEP s 0 -0.2 0 1e-4 0 1e-4 0 0 1e-4\n";
-    const Eigen::Vector2d m(random.uniform(-1.5, 1.5), random.uniform(-5.0, -2.5));  // of the line's foot, X left, Y back
+    const Eigen::Vector2d m(random.uniform(-1.5, 1.5),
+                            random.uniform(-5.0, -2.5));  // of the line's foot, X left, Y back
     const Eigen::Vector2d c(0.0179777, -0.0808609);
     text << "LANDMARK_L 0 0 0 0 " << std::atan2(m.y() - c.y(), m.x() - c.x()) << " 0 0 0.003 " << step << "\n";
     const core::Pose2 T_robot_sensor(0.0808609, 0.0179777, 0.0);
-    expected.push_back(core::predict_observation(core::ObservationKind::bearing, {}, T_robot_sensor, {-m.y(), m.x()}).z_hat[0]);
+    expected.push_back(
+        core::predict_observation(core::ObservationKind::bearing, {}, T_robot_sensor, {-m.y(), m.x()}).z_hat[0]);
   }
   const core::Recording recording = read(text.str());
   for (std::size_t step = 0; step < expected.size(); ++step) {
@@ -155,8 +157,9 @@ TEST(ReadDlr, NamesFileAndLineOfWhatIsWrong) {
             "map.txt:1: the covariance of the step is not positive definite");
   EXPECT_EQ(error(step + "\nLANDMARK_C 1 1 1 1 2 1 5\n"),
             "map.txt:3: the covariance of the circle is not positive definite");
-  EXPECT_NE(error(step + "LANDMARK_C 1 1 1 1 0 1\n").find("map.txt:2: expected an identifier of the landmark (-1: none)"),
-            std::string::npos);
+  EXPECT_NE(
+      error(step + "LANDMARK_C 1 1 1 1 0 1\n").find("map.txt:2: expected an identifier of the landmark (-1: none)"),
+      std::string::npos);
   EXPECT_EQ(error(step + "LANDMARK_C 1 1 1 1 0 1 -2\n"),
             "map.txt:2: identifiers are -1 (none) or not negative, found -2");
   EXPECT_NE(error(step + "LANDMARK_C 1 one 1 1 0 1 5\n").find("map.txt:2: expected pY of the circle [m], found 'one'"),

@@ -112,7 +112,8 @@ TEST(G2o, NamesFileAndLineOfWhatIsWrong) {
   EXPECT_EQ(error("EDGE_SE2 1 2 0 0 0 1 0 0 1 0 1\n"), "a.g2o:3: there is no VERTEX_SE2 2");
   EXPECT_EQ(error("EDGE_SE2_XY 1 2 0 0 1 2 1\n"), "a.g2o:3: the information matrix is not positive definite");
   EXPECT_EQ(error("EDGE_SE2_XY 1 2 0 0 1 0 1 5\n"), "a.g2o:3: more columns than EDGE_SE2_XY has (7 after the tag)");
-  EXPECT_NE(error("EDGE_SE2_XY 1 2 0 0 1 0\n").find("a.g2o:3: expected an element of the information"), std::string::npos);
+  EXPECT_NE(error("EDGE_SE2_XY 1 2 0 0 1 0\n").find("a.g2o:3: expected an element of the information"),
+            std::string::npos);
 }
 
 TEST(ISamAndGtsamText, ReadBackTheSameDrive) {

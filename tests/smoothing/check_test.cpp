@@ -27,12 +27,16 @@ std::string error_after(Change&& change) {
 TEST(CheckProblem, AcceptsAGoodOne) { EXPECT_NO_THROW(check_problem(good_problem())); }
 
 TEST(CheckProblem, NamesALandmarkThatNobodySees) {
-  EXPECT_EQ(error_after([](Problem& p) { p.graph.landmarks.push_back({17, {1.0, 1.0}}); }),
+  EXPECT_EQ(error_after([](Problem& p) {
+              p.graph.landmarks.push_back({17, {1.0, 1.0}});
+            }),
             "smoothing: landmark 17 is not observed by any measurement");
 }
 
 TEST(CheckProblem, NamesAPoseThatNothingSpeaksOf) {
-  EXPECT_EQ(error_after([](Problem& p) { p.graph.poses.push_back({203, {}}); }),
+  EXPECT_EQ(error_after([](Problem& p) {
+              p.graph.poses.push_back({203, {}});
+            }),
             "smoothing: pose 203 is not observed by any measurement");
 }
 
@@ -45,9 +49,10 @@ TEST(CheckProblem, NamesALandmarkWithOneBearing) {
 }
 
 TEST(CheckProblem, NamesAPoseWithoutGauge) {
-  EXPECT_EQ(error_after([](Problem& p) { p.fixed_poses.clear(); }),
-            "smoothing: no gauge: nothing fixes pose 100 and the 8 variables tied to it in the world; fix a pose or give "
-            "a prior");
+  EXPECT_EQ(
+      error_after([](Problem& p) { p.fixed_poses.clear(); }),
+      "smoothing: no gauge: nothing fixes pose 100 and the 8 variables tied to it in the world; fix a pose or give "
+      "a prior");
 }
 
 TEST(CheckProblem, NamesASecondPartWithoutGauge) {
@@ -68,14 +73,15 @@ TEST(CheckProblem, WantsMoreThanOneFixForGauge) {
 }
 
 TEST(CheckProblem, NamesOdometryWithASingularCovariance) {
-  EXPECT_EQ(error_after([](Problem& p) { p.graph.pose_edges[2].covariance.row(1).setZero(), p.graph.pose_edges[2].covariance.col(1).setZero(); }),
+  EXPECT_EQ(error_after([](Problem& p) {
+              p.graph.pose_edges[2].covariance.row(1).setZero(), p.graph.pose_edges[2].covariance.col(1).setZero();
+            }),
             "smoothing: the covariance of the odometry from pose 102 to pose 103 is not symmetric positive definite");
 }
 
 TEST(CheckProblem, NamesAnObservationThatIsNone) {
-  const std::string error = error_after([](Problem& p) {
-    p.graph.landmark_edges[0].observation.z[0] = std::numeric_limits<double>::quiet_NaN();
-  });
+  const std::string error = error_after(
+      [](Problem& p) { p.graph.landmark_edges[0].observation.z[0] = std::numeric_limits<double>::quiet_NaN(); });
   EXPECT_EQ(error.rfind("smoothing: pose 100 sees landmark ", 0), 0u) << error;
 }
 

@@ -35,7 +35,8 @@ class DenseTwin {
     }
     for (const auto& edge : problem_.graph.landmark_edges) {
       const auto& z = edge.observation;
-      const auto predicted = core::predict_observation(z.kind, pose(edge.pose), edge.T_robot_sensor, point(edge.landmark));
+      const auto predicted =
+          core::predict_observation(z.kind, pose(edge.pose), edge.T_robot_sensor, point(edge.landmark));
       push(-core::innovation(z.kind, z.z, predicted.z_hat), z.R);
     }
     for (const auto& edge : problem_.graph.fix_edges) {

@@ -21,8 +21,10 @@ Eigen::MatrixXd dense_inverse(const Problem& problem, const Layout& layout) {
   equations.linearize(state_of(problem.graph));
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(layout.columns, layout.columns);
   for (int c = 0; c < layout.columns; ++c) {
-    for (int k = equations.column_start[static_cast<std::size_t>(c)]; k < equations.column_start[static_cast<std::size_t>(c) + 1]; ++k) {
-      H(equations.row_index[static_cast<std::size_t>(k)], c) = H(c, equations.row_index[static_cast<std::size_t>(k)]) = equations.values[static_cast<std::size_t>(k)];
+    for (int k = equations.column_start[static_cast<std::size_t>(c)];
+         k < equations.column_start[static_cast<std::size_t>(c) + 1]; ++k) {
+      H(equations.row_index[static_cast<std::size_t>(k)], c) = H(c, equations.row_index[static_cast<std::size_t>(k)]) =
+          equations.values[static_cast<std::size_t>(k)];
     }
   }
   return H.inverse();

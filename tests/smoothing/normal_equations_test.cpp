@@ -31,7 +31,8 @@ Eigen::MatrixXd dense(const NormalEquations& equations) {
   const Eigen::Index n = equations.gradient.size();
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index c = 0; c < n; ++c) {
-    for (int k = equations.column_start[static_cast<std::size_t>(c)]; k < equations.column_start[static_cast<std::size_t>(c) + 1]; ++k) {
+    for (int k = equations.column_start[static_cast<std::size_t>(c)];
+         k < equations.column_start[static_cast<std::size_t>(c) + 1]; ++k) {
       const int r = equations.row_index[static_cast<std::size_t>(k)];
       H(r, c) = H(c, r) = equations.values[static_cast<std::size_t>(k)];
     }
@@ -71,7 +72,8 @@ TEST(Factors, OdometryHasThePapersJacobians) {
     Eigen::VectorXd x(6);
     for (double& value : x) value = random.uniform(-3.0, 3.0);
     const auto factor_at = [&edge](const Eigen::VectorXd& v) {
-      return odometry_factor(edge, core::Pose2(Eigen::Vector3d(v.head<3>())), core::Pose2(Eigen::Vector3d(v.tail<3>())));
+      return odometry_factor(edge, core::Pose2(Eigen::Vector3d(v.head<3>())),
+                             core::Pose2(Eigen::Vector3d(v.tail<3>())));
     };
     const Eigen::MatrixXd J = helixnav::testing::central_differences(
         [&](const Eigen::VectorXd& v) { return Eigen::VectorXd(factor_at(v).e); }, x,

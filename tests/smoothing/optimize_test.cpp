@@ -142,7 +142,8 @@ TEST(Optimize, TakesTwoFixesForGauge) {
   for (const int pose : {3, 20}) {
     core::AbsoluteFix fix;
     fix.antenna_robot_m = {0.5, 0.1};
-    fix.position_world_m = core::transform(made.truth.poses[static_cast<std::size_t>(pose)].T_world_robot, fix.antenna_robot_m);
+    fix.position_world_m =
+        core::transform(made.truth.poses[static_cast<std::size_t>(pose)].T_world_robot, fix.antenna_robot_m);
     made.problem.graph.fix_edges.push_back({pose, fix});
   }
   const Report report = optimize(made.problem);
@@ -173,7 +174,8 @@ TEST(Optimize, SurvivesWrongAssociationsWithARobustKernel) {
 TEST(Optimize, KeepsTheBestStateWhenGaussNewtonWanders) {
   // Poses on one spot with wrong headings: full steps fly away.
   RandomProblem made = random_problem(10);
-  for (auto& pose : made.problem.graph.poses) pose.T_world_robot = core::Pose2(0.0, 0.0, 3.0 * pose.T_world_robot.heading_rad);
+  for (auto& pose : made.problem.graph.poses)
+    pose.T_world_robot = core::Pose2(0.0, 0.0, 3.0 * pose.T_world_robot.heading_rad);
   const double before = evaluate_chi2(made.problem).cost;
   Options options;
   options.method = Method::gauss_newton;

@@ -47,7 +47,8 @@ inline RandomProblem random_problem(std::uint64_t seed, const RandomProblemSetti
     truth.landmarks.push_back({i, {distance_m * std::cos(angle), radius_m + distance_m * std::sin(angle)}});
   }
   for (int i = 0; i + 1 < settings.poses; ++i) {
-    const core::Pose2 step = core::between(truth.poses[static_cast<std::size_t>(i)].T_world_robot, truth.poses[static_cast<std::size_t>(i + 1)].T_world_robot);
+    const core::Pose2 step = core::between(truth.poses[static_cast<std::size_t>(i)].T_world_robot,
+                                           truth.poses[static_cast<std::size_t>(i + 1)].T_world_robot);
     const Eigen::Matrix3d C = random_covariance(random, 0.05, 0.02);
     const Eigen::Vector3d noise = settings.noise * random.normal3(C);
     truth.pose_edges.push_back({i, i + 1, core::Pose2(step.vector() + noise), C});
@@ -65,7 +66,8 @@ inline RandomProblem random_problem(std::uint64_t seed, const RandomProblemSetti
       const int d = core::dimension(kind);
       observation.R = core::ObsMatrix::Zero(d, d);
       for (int k = 0; k < d; ++k) {
-        const bool is_angle = kind == core::ObservationKind::bearing || (kind == core::ObservationKind::range_bearing && k == 1);
+        const bool is_angle =
+            kind == core::ObservationKind::bearing || (kind == core::ObservationKind::range_bearing && k == 1);
         const double sigma = is_angle ? 0.02 : 0.1;
         observation.R(k, k) = sigma * sigma;
         observation.z[k] += settings.noise * sigma * random.normal();

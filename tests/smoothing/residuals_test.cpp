@@ -18,7 +18,8 @@ TEST(LargestResiduals, PutAWrongObservationFirstAndNameIt) {
   ASSERT_EQ(worst.size(), 3u);
   EXPECT_EQ(worst[0].edge, 40);
   EXPECT_EQ(worst[0].name, pose_name(problem, edge.pose) + " sees " + landmark_name(problem, edge.landmark));
-  EXPECT_GE(worst[0].nis / static_cast<double>(worst[0].e.size()), worst[1].nis / static_cast<double>(worst[1].e.size()));
+  EXPECT_GE(worst[0].nis / static_cast<double>(worst[0].e.size()),
+            worst[1].nis / static_cast<double>(worst[1].e.size()));
 }
 
 TEST(LargestResiduals, AddUpToChi2) {

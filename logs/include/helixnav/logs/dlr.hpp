@@ -40,7 +40,8 @@ enum class DlrBearingZero {
 };
 
 struct DlrOptions {
-  std::optional<DlrCamera> camera;  ///< without: the .cam file of the folder if it has exactly one, else the paper's offset
+  std::optional<DlrCamera>
+      camera;  ///< without: the .cam file of the folder if it has exactly one, else the paper's offset
   DlrBearingZero bearing_zero = DlrBearingZero::from_file;
 };
 

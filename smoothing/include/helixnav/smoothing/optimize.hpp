@@ -31,7 +31,8 @@ struct Options {
   /// odometry takes 11 instead of 36. From a bad one 1e-4 is safer: labelled Victoria Park with softened odometry ends at
   /// χ² 9012.7 instead of 158 000.
   double first_damping = 1e-4;
-  double tolerance_chi2 = 1e-6;  ///< converged when the quadratic model promises less than this [χ²], or 1e-11 of the cost
+  double tolerance_chi2 =
+      1e-6;  ///< converged when the quadratic model promises less than this [χ²], or 1e-11 of the cost
 };
 
 /// χ² of a state, by kind. `cost` is what is minimised: landmarks pass through the robust kernel.
@@ -52,9 +53,9 @@ struct Iteration {
 };
 
 enum class Reason {
-  converged,       ///< the quadratic model promises nothing more
-  stalled,         ///< no damping gives a decrease although the model promises one
-  diverged,        ///< Gauss–Newton: the cost grew beyond all bounds; the best state is kept
+  converged,  ///< the quadratic model promises nothing more
+  stalled,    ///< no damping gives a decrease although the model promises one
+  diverged,   ///< Gauss–Newton: the cost grew beyond all bounds; the best state is kept
   max_iterations,
 };
 
