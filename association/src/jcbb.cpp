@@ -17,7 +17,7 @@ class CompatibilitySearch {
  public:
   CompatibilitySearch(const InnovationProblem& problem, double joint_probability, std::int64_t node_budget)
       : problem_(problem), budget_(node_budget), order_(observations_by_choice(problem)),
-        factor_(problem, order_.size()), taken_(problem.ids.size(), 0) {
+        factor_(problem, order_.size()), taken_(problem.ids.size(), 0), choices_(order_.size()) {
     max_dof_after_.assign(order_.size() + 1, 0);
     for (std::size_t i = order_.size(); i-- > 0;) {
       max_dof_after_[i] = max_dof_after_[i + 1] + problem.observations[order_[i]].dof;
@@ -45,24 +45,42 @@ class CompatibilitySearch {
     best_nis_ = nis;
   }
 
-  void descend(std::size_t depth, double nis, int dof) {
-    if (depth == order_.size() || !can_still_win(depth, nis)) return;
+  struct Choice {
+    double nis;  // of the set with it
+    int pair;
+  };
+
+  /// Pairs of the observation that the gate may still hold, least joint NIS first: the first descent is greedy, and what
+  /// it finds cuts the rest.
+  void weigh_choices(std::size_t depth, double nis, int dof) {
     const GatedObservation& observation = problem_.observations[order_[depth]];
-    for (int p = observation.begin; p < observation.end; ++p) {
-      const int candidate = problem_.pairs[p].candidate;
-      if (taken_[candidate]) continue;
-      if (nodes_ >= budget_) return;
+    std::vector<Choice>& choices = choices_[depth];
+    choices.clear();
+    for (int p = observation.begin; p < observation.end && nodes_ < budget_; ++p) {
+      if (taken_[problem_.pairs[p].candidate]) continue;
       ++nodes_;
       const double next_nis = nis + factor_.weigh(p).nis;
-      if (next_nis > threshold_[dof + max_dof_after_[depth]]) continue;
-      taken_[candidate] = 1;
-      factor_.keep(p);
-      keep_if_best(next_nis, dof + observation.dof);
-      descend(depth + 1, next_nis, dof + observation.dof);
-      factor_.drop();
-      taken_[candidate] = 0;
+      if (next_nis <= threshold_[dof + max_dof_after_[depth]]) choices.push_back({next_nis, p});
     }
-    descend(depth + 1, nis, dof);  // without this observation
+    std::stable_sort(choices.begin(), choices.end(), [](const Choice& a, const Choice& b) { return a.nis < b.nis; });
+  }
+
+  void descend(std::size_t depth, double nis, int dof) {
+    if (depth == order_.size() || !can_still_win(depth, nis)) return;
+    weigh_choices(depth, nis, dof);
+    const int next_dof = dof + problem_.observations[order_[depth]].dof;
+    for (const Choice& choice : choices_[depth]) {
+      if (!can_still_win(depth, choice.nis)) break;
+      char& taken = taken_[problem_.pairs[choice.pair].candidate];
+      taken = 1;
+      factor_.weigh(choice.pair);  // the last weighed is the one that is kept
+      factor_.keep(choice.pair);
+      keep_if_best(choice.nis, next_dof);
+      descend(depth + 1, choice.nis, next_dof);
+      factor_.drop();
+      taken = 0;
+    }
+    if (nodes_ < budget_) descend(depth + 1, nis, dof);  // without this observation
   }
 
   const InnovationProblem& problem_;
@@ -71,6 +89,7 @@ class CompatibilitySearch {
   std::vector<int> order_;
   JointFactor factor_;
   std::vector<char> taken_;
+  std::vector<std::vector<Choice>> choices_;
   std::vector<int> max_dof_after_;
   std::vector<double> threshold_;
   std::vector<int> best_;
