@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "exit_code.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace helixnav::apps {
+
+/// Each adds one subcommand to `app`; when the user calls it, it runs within app.parse() and leaves its verdict in
+/// `code`, which outlives the parse.
+void add_replay_command(CLI::App& app, ExitCode& code);
+void add_simulate_command(CLI::App& app, ExitCode& code);
+void add_evaluate_command(CLI::App& app, ExitCode& code);
+void add_config_command(CLI::App& app, ExitCode& code);
+
+}  // namespace helixnav::apps

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "config_file.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include <CLI/CLI.hpp>
+
+#include "helixnav/core/nearest_name.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+std::string key_of(const CLI::Option& option) { return option.get_lnames().front(); }
+
+std::string section_of(const std::string& key) { return key.substr(0, key.find('.')); }
+
+/// Line of the file, from 1, that begins with the last part of `key`: CLI11's parser keeps no line numbers.
+int line_of(const std::string& path, const std::string& section, const std::string& name) {
+  std::ifstream file(path);
+  std::string line;
+  std::string current;
+  for (int number = 1; std::getline(file, line); ++number) {
+    const std::size_t first = line.find_first_not_of(" \t");
+    if (first == std::string::npos) continue;
+    if (line[first] == '[') current = line.substr(first + 1, line.find(']') - first - 1);
+    const bool starts_with_name = line.compare(first, name.size(), name) == 0;
+    if (starts_with_name && (current == section || section.empty())) return number;
+  }
+  return 0;
+}
+
+CLI::ValidationError config_error(const std::string& path, int line, const std::string& what) {
+  return CLI::ValidationError(path + ":" + std::to_string(line), what);
+}
+
+void apply_item(const std::vector<CLI::Option*>& options, const CLI::ConfigItem& item, const std::string& path) {
+  const std::string key = item.fullname();
+  const std::string section = item.parents.empty() ? "" : item.parents.front();
+  const auto found =
+      std::find_if(options.begin(), options.end(), [&](const CLI::Option* o) { return key_of(*o) == key; });
+  if (found == options.end()) {
+    std::vector<std::string> keys;
+    for (const CLI::Option* option : options) keys.push_back(key_of(*option));
+    throw config_error(path, line_of(path, section, item.name),
+                       "unknown key '" + key + "'; the nearest is '" + core::nearest_name(key, keys) + "'");
+  }
+  CLI::Option& option = **found;
+  if (option.count() > 0) return;  // the command line wins
+  try {
+    option.add_result(item.inputs);
+    option.run_callback();
+  } catch (const CLI::ParseError& error) {
+    throw config_error(path, line_of(path, section, item.name), error.what());
+  }
+}
+
+}  // namespace
+
+std::vector<CLI::Option*> configurable_options(const CLI::App& app) {
+  std::vector<CLI::Option*> options;
+  for (CLI::Option* option : const_cast<CLI::App&>(app).get_options()) {
+    if (!option->get_lnames().empty() && key_of(*option).find('.') != std::string::npos) options.push_back(option);
+  }
+  return options;
+}
+
+void apply_config_file(CLI::App& app, const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw CLI::FileError::Missing(path);
+  const std::vector<CLI::Option*> options = configurable_options(app);
+  std::vector<CLI::ConfigItem> items;
+  try {
+    items = CLI::ConfigTOML().from_config(file);
+  } catch (const CLI::ParseError& error) {
+    throw CLI::ValidationError(path, error.what());
+  }
+  for (const CLI::ConfigItem& item : items) {
+    if (item.name == "++" || item.name == "--") continue;  // CLI11's marks of section begin and end
+    apply_item(options, item, path);
+  }
+}
+
+std::string dump_config(const CLI::App& app) {
+  std::ostringstream text;
+  std::string section;
+  for (const CLI::Option* option : configurable_options(app)) {
+    const std::string key = key_of(*option);
+    if (section_of(key) != section) {
+      section = section_of(key);
+      text << (text.tellp() > 0 ? "\n" : "") << '[' << section << "]\n";
+    }
+    const std::string value = option->count() > 0 ? option->results().back() : option->get_default_str();
+    const bool is_text = value.find_first_not_of("0123456789+-.eE") != std::string::npos && value != "true" &&
+                         value != "false" && value != "inf";
+    text << "# " << option->get_description() << '\n';
+    text << key.substr(section.size() + 1) << " = " << (is_text ? '"' + value + '"' : value) << '\n';
+  }
+  return text.str();
+}
+
+}  // namespace helixnav::apps

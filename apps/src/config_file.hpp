@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace helixnav::apps {
+
+/// The options of `app` that a configuration file may set: those whose name holds a dot, `--section.key`.
+std::vector<CLI::Option*> configurable_options(const CLI::App& app);
+
+/// Sets from an INI or TOML file every configurable option that the command line left alone. Throws CLI::ValidationError
+/// that names file, line, key and the nearest key for an unknown one, or the allowed range for a bad value.
+void apply_config_file(CLI::App& app, const std::string& path);
+
+/// All configurable options with their present values, as a file that apply_config_file reads back, one comment a key.
+/// Test: apps/config_test.cpp (round trip).
+std::string dump_config(const CLI::App& app);
+
+}  // namespace helixnav::apps

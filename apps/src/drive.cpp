@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drive.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <variant>
+#include <vector>
+
+#include "helixnav/core/errors.hpp"
+#include "helixnav/logs/run_writer.hpp"
+#include "interrupt.hpp"
+#include "progress_bar.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+/// Value below which the given fraction of the times lies; 0 without times.
+double quantile(std::vector<double> times, double fraction) {
+  if (times.empty()) return 0.0;
+  const auto nth = times.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(times.size() - 1));
+  std::nth_element(times.begin(), nth, times.end());
+  return *nth;
+}
+
+void check_labels(const Drive& job) {
+  if (job.known_association && job.recording.labels.empty()) {
+    throw core::InputError(job.recording.name + ": --association known needs a labelled log, and this one has no labels");
+  }
+}
+
+/// Feeds all events; returns the microseconds of each scan's step.
+std::vector<double> navigate(const Drive& job, supervisor::Navigator& navigator, logs::RunWriter& writer) {
+  std::vector<double> step_us;
+  ProgressBar progress("navigating", job.recording.events.size(), job.quiet);
+  for (std::size_t i = 0; i < job.recording.events.size() && !interrupted(); ++i) {
+    const core::Event& event = job.recording.events[i];
+    if (const auto* odometry = std::get_if<core::Odometry>(&event)) navigator.move(*odometry);
+    if (const auto* scan = std::get_if<core::Scan>(&event)) {
+      const Clock::time_point begin = Clock::now();
+      const core::StepReport report = job.known_association
+                                          ? navigator.observe(*scan, job.recording.labels[step_us.size()])
+                                          : navigator.observe(*scan);
+      step_us.push_back(1e6 * seconds_since(begin));
+      writer.write(report, step_us.back());
+    }
+    progress.advance_to(i);
+  }
+  return step_us;
+}
+
+}  // namespace
+
+ExitCode drive(const Drive& job) {
+  check_labels(job);
+  catch_interrupts();
+  const Clock::time_point begin = Clock::now();
+  using IfNotEmpty = logs::RunWriter::IfNotEmpty;
+  logs::RunWriter writer(job.out, job.manifest, job.recording,
+                         job.overwrite ? IfNotEmpty::overwrite : IfNotEmpty::refuse);
+  supervisor::Navigator navigator(job.recording.start, job.navigator);
+  const std::vector<double> step_us = navigate(job, navigator, writer);
+
+  logs::RunEnd end;
+  end.timing = {{"median_us", quantile(step_us, 0.5)},
+                {"p99_us", quantile(step_us, 0.99)},
+                {"max_us", quantile(step_us, 1.0)},
+                {"reading_s", job.reading_s},
+                {"navigating_s", seconds_since(begin)}};
+  const logs::Evaluation evaluation = writer.finish(navigator.map(), end);
+  std::fputs(logs::evaluation_text(evaluation).c_str(), stdout);
+  std::printf("run folder: %s   report: %s/report.html\n", job.out.c_str(), job.out.c_str());
+  if (!interrupted()) return ExitCode::ok;
+  std::fprintf(stderr, "helixnav: interrupted after step %zu; the run folder is complete up to there\n", step_us.size());
+  return ExitCode::interrupted;
+}
+
+}  // namespace helixnav::apps

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "exit_code.hpp"
+#include "helixnav/core/recording.hpp"
+#include "helixnav/logs/run_manifest.hpp"
+#include "helixnav/supervisor/navigator.hpp"
+
+namespace helixnav::apps {
+
+/// What replay and simulate have in common: a recording is driven through the navigator into a run folder.
+struct Drive {
+  core::Recording recording;
+  supervisor::NavigatorOptions navigator;
+  bool known_association = false;  ///< use the recording's labels as identities
+  std::string out;
+  bool overwrite = false;
+  bool quiet = false;
+  logs::RunManifest manifest;
+  double reading_s = 0.0;  ///< wall clock spent before the drive
+};
+
+/// Runs it, prints the evaluation on stdout and where the report is. On SIGINT the run ends after the present step, its
+/// folder is closed properly and the code is `interrupted`.
+ExitCode drive(const Drive& job);
+
+}  // namespace helixnav::apps

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "commands.hpp"
+#include "helixnav/logs/evaluation.hpp"
+#include "helixnav/logs/run_folder.hpp"
+#include "truth_file.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+struct EvaluateJob {
+  std::string folder;
+  std::string truth;
+  double truth_offset_s = 0.0;
+  bool json = false;
+  logs::EvaluationOptions options;
+};
+
+void evaluate(const EvaluateJob& job) {
+  logs::RunFolder run = logs::read_run(job.folder);
+  if (!job.truth.empty()) run.truth = read_truth_file(job.truth, job.truth_offset_s, run.truth);
+  const logs::Evaluation evaluation = logs::evaluate(run, job.options);
+  const std::string text = job.json ? logs::evaluation_json(evaluation) : logs::evaluation_text(evaluation);
+  std::fputs(text.c_str(), stdout);
+}
+
+}  // namespace
+
+void add_evaluate_command(CLI::App& app, ExitCode&) {
+  CLI::App* command = app.add_subcommand("evaluate", "Compare a run folder with truth");
+  const auto job = std::make_shared<EvaluateJob>();
+  command->add_option("DIR", job->folder, "Run folder, also one whose run was killed")->required();
+  command->add_option("--truth", job->truth,
+                      "Truth instead of the run folder's: truth_*.csv, a folder of them, or Victoria Park's aa3_gpsx.mat");
+  command->add_option("--truth-offset-s", job->truth_offset_s, "Added to the times of --truth")->capture_default_str();
+  command
+      ->add_option("--fix-limit-m", job->options.fix_limit_m,
+                   "Fixes farther than this after the rigid alignment are left out and counted")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--json", job->json, "Print JSON");
+  command->footer(
+      "Examples:\n"
+      "  helixnav evaluate runs/vp\n"
+      "  helixnav evaluate runs/vp --truth aa3_gpsx.mat      # all 4466 GPS fixes\n");
+  command->callback([job] { evaluate(*job); });
+}
+
+}  // namespace helixnav::apps

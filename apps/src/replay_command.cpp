@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "commands.hpp"
+#include "config_file.hpp"
+#include "drive.hpp"
+#include "helixnav/logs/read_recording.hpp"
+#include "run_options.hpp"
+#include "settings.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+struct ReplayJob {
+  std::string path;
+  RunOptions run;
+  Settings settings;
+};
+
+/// The file, or the files of the folder in order of name, with their digests.
+std::vector<logs::InputFile> input_files(const std::string& path) {
+  std::vector<std::string> names;
+  if (std::filesystem::is_directory(path)) {
+    for (const auto& entry : std::filesystem::directory_iterator(path)) {
+      if (entry.is_regular_file()) names.push_back(entry.path().string());
+    }
+    std::sort(names.begin(), names.end());
+  } else {
+    names.push_back(path);
+  }
+  std::vector<logs::InputFile> inputs;
+  for (const std::string& name : names) inputs.push_back({name, logs::sha256_of_file(name)});
+  return inputs;
+}
+
+ExitCode replay(CLI::App& command, ReplayJob& job) {
+  if (!job.run.config.empty()) apply_config_file(command, job.run.config);
+  const auto begin = std::chrono::steady_clock::now();
+  Drive task;
+  task.recording = logs::read_recording(job.path, job.settings.logs);
+  task.navigator = job.settings.navigator;
+  fill_drive(task, job.run, dump_config(command));
+  task.known_association = job.settings.known_association;
+  task.manifest.inputs = input_files(job.path);
+  task.reading_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return drive(task);
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app, ExitCode& code) {
+  CLI::App* command = app.add_subcommand("replay", "Navigate along a recorded log");
+  const auto job = std::make_shared<ReplayJob>();
+  command->add_option("PATH", job->path, "Log: file, folder or zip; the format is recognised")->required();
+  add_run_options(*command, job->run);
+  add_settings(*command, job->settings);
+  command->footer(
+      "Formats: ACFR text release (folder, zip) and .mat, iSAM/GTSAM and g2o landmark graphs, 2D-I-SLSJF .mat,\n"
+      "DLR text, Plaza.\n\n"
+      "Examples:\n"
+      "  helixnav replay victoria_park_ascii.zip --out runs/vp\n"
+      "  helixnav replay isam_victoriaPark.txt --association known --out runs/graph\n"
+      "  helixnav replay data_set.mat --out runs/carpark --config mine.toml\n");
+  command->callback([command, job, &code] { code = replay(*command, *job); });
+}
+
+}  // namespace helixnav::apps

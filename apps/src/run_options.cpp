@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <vector>
+
+#include "drive.hpp"
+#include "helixnav/core/version.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+std::vector<std::string>& command_line() {
+  static std::vector<std::string> words;
+  return words;
+}
+
+}  // namespace
+
+void remember_command_line(int argc, char** argv) { command_line().assign(argv, argv + argc); }
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  command.add_option("--out", options.out, "Run folder to write; must be empty or new")->required();
+  command.add_flag("--overwrite", options.overwrite, "Replace the files of an earlier run in --out");
+  command.add_flag("--quiet", options.quiet, "No progress bar");
+  command.add_option("--config", options.config, "INI or TOML file of the settings below (helixnav config --dump)");
+}
+
+void fill_drive(Drive& drive, const RunOptions& options, const std::string& config) {
+  drive.out = options.out;
+  drive.overwrite = options.overwrite;
+  drive.quiet = options.quiet;
+  drive.manifest.version = core::version();
+  drive.manifest.commit = core::commit();
+  drive.manifest.command = logs::command_text(command_line());
+  drive.manifest.recording = drive.recording.name;
+  drive.manifest.config = config;
+}
+
+}  // namespace helixnav::apps

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace helixnav::apps {
+
+struct Drive;
+
+/// Options of every command that writes a run folder.
+struct RunOptions {
+  std::string out;
+  std::string config;
+  bool overwrite = false;
+  bool quiet = false;
+};
+
+void add_run_options(CLI::App& command, RunOptions& options);
+
+/// Copies the options into the drive and begins its manifest; `config` is the configuration in force.
+void fill_drive(Drive& drive, const RunOptions& options, const std::string& config);
+
+/// The words of this process's command line, for the manifest.
+void remember_command_line(int argc, char** argv);
+
+}  // namespace helixnav::apps

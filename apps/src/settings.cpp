@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "settings.hpp"
+
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace helixnav::apps {
+namespace {
+
+const char* const group = "Settings (keys of --config)";
+
+template <typename T>
+CLI::Option* add_number(CLI::App& command, const char* name, T& value, T low, T high, const char* help) {
+  return command.add_option(name, value, help)->capture_default_str()->check(CLI::Range(low, high))->group(group);
+}
+
+std::vector<association::Method> methods() {
+  using association::Method;
+  return {Method::nearest_neighbour, Method::nearest_neighbour_unique, Method::likelihood_ratio,
+          Method::joint_likelihood_ratio, Method::jcbb, Method::ihgr_published, Method::ihgr_likelihood_ratio};
+}
+
+void choose_method(const std::string& chosen, Settings& settings) {
+  settings.known_association = chosen == "known";
+  for (const association::Method method : methods()) {
+    if (association::name(method) == chosen) settings.navigator.method = method;
+  }
+}
+
+void add_filter(CLI::App& command, cekf::FilterOptions& filter) {
+  const auto set_retraction = [&filter](const std::string& word) {
+    filter.retraction = word == "standard" ? cekf::Retraction::standard : cekf::Retraction::right_invariant;
+  };
+  command.add_option_function<std::string>("--filter.retraction", set_retraction, "How a correction is applied")
+      ->check(CLI::IsMember({"right-invariant", "standard"}))
+      ->default_str("right-invariant")
+      ->group(group);
+  add_number(command, "--filter.cell_side_m", filter.cell_side_m, 1.0, 1e6,
+             "Side of a cell; the cell of the vehicle and its 8 neighbours are active");
+  add_number(command, "--filter.hysteresis_m", filter.hysteresis_m, 0.0, 1e6,
+             "So far beyond its cell the vehicle goes before the region switches");
+  add_number(command, "--filter.max_active_landmarks", filter.max_active_landmarks, 1, 100000,
+             "More active landmarks than this make a switch due");
+}
+
+void add_association(CLI::App& command, Settings& settings) {
+  std::vector<std::string> names{"known"};
+  for (const association::Method method : methods()) names.emplace_back(association::name(method));
+  command
+      .add_option_function<std::string>(
+          "--association.method,--association", [&settings](const std::string& word) { choose_method(word, settings); },
+          "Which observation belongs to which landmark; known: by the log's labels")
+      ->check(CLI::IsMember(names))
+      ->default_str(std::string(association::name(settings.navigator.method)))
+      ->group(group);
+  supervisor::NavigatorOptions& navigator = settings.navigator;
+  add_number(command, "--association.detection_probability", navigator.association.detection_probability, 0.01, 0.999,
+             "P_D that a landmark in view is seen in one scan");
+  add_number(command, "--association.extraneous_per_scan", navigator.extraneous_per_scan, 0.01, 100.0,
+             "Expected observations of no mapped landmark in a scan: clutter and new ones");
+  add_number(command, "--association.match_probability", navigator.gates.match_probability, 0.5, 0.999999,
+             "Gate within which an observation may be matched, as the probability that a right pair is inside");
+  add_number(command, "--association.new_probability", navigator.gates.new_probability, 0.5, 0.99999999,
+             "Gate beyond which, from every landmark, an observation begins a new one");
+  add_number(command, "--association.joint_probability", navigator.association.joint_probability, 0.5, 0.999999,
+             "Gate of the joint NIS of all pairs of a scan");
+  add_number(command, "--association.min_margin_nats", navigator.association.min_margin_nats, 0.0, 100.0,
+             "A match whose best alternative is nearer than this is ambiguous and not used");
+}
+
+void add_landmarks(CLI::App& command, supervisor::NavigatorOptions& navigator) {
+  association::LifeOptions& life = navigator.life;
+  add_number(command, "--landmarks.mature_looks", life.mature_looks, 1, 1000,
+             "Looks from different places that make a landmark mature");
+  add_number(command, "--landmarks.tentative_patience_m", life.tentative_patience_m, 0.1, 1e6,
+             "A tentative landmark unseen over so long a drive dies");
+  add_number(command, "--landmarks.detection_probability", life.detection_probability, 0.01, 0.999,
+             "That an expected landmark is seen in one look, occlusion included");
+}
+
+void add_truck(CLI::App& command, const std::string& section, logs::AcfrSettings& truck) {
+  const auto name = [&section](const char* key) { return "--" + section + "." + key; };
+  add_number(command, name("sigma_speed_mps").c_str(), truck.noise.sigma_speed_mps, 1e-3, 10.0,
+             "Noise of one sample of the wheel's speed");
+  add_number(command, name("sigma_steering_rad").c_str(), truck.noise.sigma_steering_rad, 1e-4, 1.0,
+             "Noise of one sample of the steering angle");
+  add_number(command, name("steering_offset_rad").c_str(), truck.steering_offset_rad, -0.5, 0.5,
+             "Added to every recorded steering angle");
+  add_number(command, name("sigma_range_m").c_str(), truck.sigma_range_m, 1e-3, 100.0, "Noise of a detection's range");
+  add_number(command, name("sigma_bearing_rad").c_str(), truck.sigma_bearing_rad, 1e-4, 1.0,
+             "Noise of a detection's bearing");
+}
+
+}  // namespace
+
+void add_settings(CLI::App& command, Settings& settings) {
+  add_filter(command, settings.navigator.filter);
+  add_association(command, settings);
+  add_landmarks(command, settings.navigator);
+  add_truck(command, "victoria_park", settings.logs.victoria_park);
+  add_truck(command, "car_park", settings.logs.car_park);
+}
+
+}  // namespace helixnav::apps

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "helixnav/logs/read_recording.hpp"
+#include "helixnav/supervisor/navigator.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace helixnav::apps {
+
+/// Everything that a configuration file may set, bound to the options --section.key of a command.
+struct Settings {
+  supervisor::NavigatorOptions navigator;
+  bool known_association = false;  ///< association.method is "known": the log's labels are the identities
+  logs::RecordingSettings logs;
+};
+
+/// Adds one option a key, with unit, range and default in its help.
+void add_settings(CLI::App& command, Settings& settings);
+
+}  // namespace helixnav::apps

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "usage_error.hpp"
+
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "helixnav/core/nearest_name.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+/// The subcommand that was being parsed, else the program itself.
+const CLI::App& parsed_app(const CLI::App& app) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  return chosen.empty() ? app : *chosen.front();
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  return names;
+}
+
+std::string unknown_word(const CLI::App& app, const std::string& word) {
+  const bool is_option = word.rfind("--", 0) == 0;
+  const std::string name = is_option ? word.substr(0, word.find('=')) : word;
+  const std::string nearest = core::nearest_name(name, is_option ? option_names(app) : command_names(app));
+  std::string message = (is_option ? "unknown option '" : "unexpected argument '") + name + "'";
+  if (!nearest.empty()) message += "; did you mean '" + nearest + "'?";
+  return message;
+}
+
+}  // namespace
+
+std::string explain_usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App& parsed = parsed_app(app);
+  std::vector<std::string> unknown = parsed.remaining();
+  if (unknown.empty()) unknown = app.remaining();
+  // A misspelt option also leaves its value or a required one missing: the word nobody knows is the cause.
+  const std::string what = unknown.empty() ? error.what() : unknown_word(parsed, unknown.front());
+  const std::string command = &parsed == &app ? "helixnav" : "helixnav " + parsed.get_name();
+  return what + "\nTry '" + command + " --help'.";
+}
+
+}  // namespace helixnav::apps
