@@ -11,7 +11,10 @@
 
 namespace helixnav::pf_relocalize {
 
-/// How the errors that landmarks share are treated before a filter that knows independent landmarks sees them.
+/// How the errors that landmarks share are treated before a filter that knows independent landmarks sees them. Share of 60
+/// searches at the right pose / at a wrong one / still open after 20 scans, on a dense and on a sparse road
+/// (bench/decorrelation_study.cpp): marginals 98/2/0 and 98/2/0 %, constellations 97/2/2 and 97/2/2, whitened 90/0/10
+/// and 78/0/22, trace 87/2/12 and 77/0/23, scalar 83/3/13 and 77/0/23, latent modes 88/3/8 and 75/0/25.
 enum class Decorrelation {
   relative_marginals,  ///< dropped after the change of frame (no bound; no false closing in the prototype's worlds)
   scalar_bound,        ///< eq (11) of the paper
