@@ -52,8 +52,12 @@ Proposal propose(Method method, const InnovationProblem& problem, const Assignme
                  const Options& options) {
   Proposal proposal;
   switch (method) {
-    case Method::nearest_neighbour: proposal.matching = nearest_neighbour(problem); break;
-    case Method::nearest_neighbour_unique: proposal.matching = nearest_neighbour_unique(problem); break;
+    case Method::nearest_neighbour:
+      proposal.matching = nearest_neighbour(problem);
+      break;
+    case Method::nearest_neighbour_unique:
+      proposal.matching = nearest_neighbour_unique(problem);
+      break;
     case Method::jcbb:
       proposal.matching = jcbb(problem, options.joint_probability, options.node_budget);
       break;
@@ -61,7 +65,9 @@ Proposal propose(Method method, const InnovationProblem& problem, const Assignme
       proposal.matching = joint_likelihood_ratio(problem, costs, options.node_budget);
       proposal.margins = joint_margins(problem, costs, proposal.matching.pair);
       return proposal;
-    case Method::ihgr_published: proposal.matching = ihgr_published(problem, options.node_budget); break;
+    case Method::ihgr_published:
+      proposal.matching = ihgr_published(problem, options.node_budget);
+      break;
     case Method::ihgr_likelihood_ratio:
       proposal.matching = ihgr_likelihood_ratio(costs, options.node_budget);
       proposal.margins = assignment_margins(costs, solve_assignment(costs));
@@ -105,20 +111,26 @@ ObservationOutcome outcome_of(const InnovationProblem& problem, int observation,
 
 std::string_view name(Method method) {
   switch (method) {
-    case Method::nearest_neighbour: return "nearest-neighbour";
-    case Method::nearest_neighbour_unique: return "nearest-neighbour-unique";
-    case Method::likelihood_ratio: return "likelihood-ratio";
-    case Method::jcbb: return "jcbb";
-    case Method::joint_likelihood_ratio: return "joint-likelihood-ratio";
-    case Method::ihgr_published: return "ihgr-published";
-    default: return "ihgr-likelihood-ratio";
+    case Method::nearest_neighbour:
+      return "nearest-neighbour";
+    case Method::nearest_neighbour_unique:
+      return "nearest-neighbour-unique";
+    case Method::likelihood_ratio:
+      return "likelihood-ratio";
+    case Method::jcbb:
+      return "jcbb";
+    case Method::joint_likelihood_ratio:
+      return "joint-likelihood-ratio";
+    case Method::ihgr_published:
+      return "ihgr-published";
+    default:
+      return "ihgr-likelihood-ratio";
   }
 }
 
 Assignment associate(Method method, const InnovationProblem& problem, const Options& options) {
   check(options);
-  const AssignmentProblem costs =
-      likelihood_ratio_costs(problem, options.detection_probability, options.extraneous);
+  const AssignmentProblem costs = likelihood_ratio_costs(problem, options.detection_probability, options.extraneous);
   Proposal proposal = propose(method, problem, costs, options);
   std::vector<int>& pair = proposal.matching.pair;
   if (options.min_margin_nats > 0.0) {  // at 0 even the methods that judge by other costs keep their choice
@@ -132,8 +144,8 @@ Assignment associate(Method method, const InnovationProblem& problem, const Opti
   Assignment assignment;
   assignment.observations.reserve(pair.size());
   for (std::size_t i = 0; i < pair.size(); ++i) {
-    assignment.observations.push_back(outcome_of(problem, static_cast<int>(i), guarded.pair[i], guarded.dropped[i],
-                                                 proposal.margins[i]));
+    assignment.observations.push_back(
+        outcome_of(problem, static_cast<int>(i), guarded.pair[i], guarded.dropped[i], proposal.margins[i]));
     assignment.dropped_pairs += guarded.dropped[i] != unmatched;
   }
   assignment.pairs = matched_pairs(guarded.pair);

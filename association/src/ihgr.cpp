@@ -13,8 +13,8 @@
 namespace helixnav::association {
 namespace {
 
-constexpr double whole = 1e-6;           // nearer than this to 0 or 1 is 0 or 1
-constexpr double predominant = 0.5;      // above it a variable has no equal in its row and column
+constexpr double whole = 1e-6;       // nearer than this to 0 or 1 is 0 or 1
+constexpr double predominant = 0.5;  // above it a variable has no equal in its row and column
 constexpr int undecided = -2;
 
 /// Rounding in progress: rows still undecided, columns still free, and the x of what is left.
@@ -175,8 +175,8 @@ RoundedAssignment round_greedily(const AssignmentProblem& problem, std::vector<d
                                  std::int64_t combination_budget) {
   check_feasible(problem, x);
   if (combination_budget < 1) throw core::PreconditionError("round_greedily: combination_budget must be at least 1");
-  Rounding r{problem, std::move(x), std::vector<int>(problem.rows(), undecided),
-             std::vector<char>(problem.columns, 0), {}};
+  Rounding r{
+      problem, std::move(x), std::vector<int>(problem.rows(), undecided), std::vector<char>(problem.columns, 0), {}};
   keep_whole(r);
   for (Largest next = largest(r); next.row >= 0; next = largest(r)) {
     if (next.x <= predominant + whole) {

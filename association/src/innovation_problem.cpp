@@ -62,8 +62,7 @@ Thresholds thresholds(const Gates& gates, int dof) {
 bool predict_mean(ObservationKind kind, const core::Pose2& T_world_robot, const core::Scan& scan,
                   const Eigen::Vector2d& point_m, Prediction& out) {
   try {
-    const core::PredictedObservation p =
-        core::predict_observation(kind, T_world_robot, scan.T_robot_sensor, point_m);
+    const core::PredictedObservation p = core::predict_observation(kind, T_world_robot, scan.T_robot_sensor, point_m);
     const int d = core::dimension(kind);
     out.kind = kind;
     out.z_hat.setZero();

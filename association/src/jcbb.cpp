@@ -16,8 +16,12 @@ namespace {
 class CompatibilitySearch {
  public:
   CompatibilitySearch(const InnovationProblem& problem, double joint_probability, std::int64_t node_budget)
-      : problem_(problem), budget_(node_budget), order_(observations_by_choice(problem)),
-        factor_(problem, order_.size()), taken_(problem.ids.size(), 0), choices_(order_.size()) {
+      : problem_(problem),
+        budget_(node_budget),
+        order_(observations_by_choice(problem)),
+        factor_(problem, order_.size()),
+        taken_(problem.ids.size(), 0),
+        choices_(order_.size()) {
     max_dof_after_.assign(order_.size() + 1, 0);
     for (std::size_t i = order_.size(); i-- > 0;) {
       max_dof_after_[i] = max_dof_after_[i + 1] + problem.observations[order_[i]].dof;

@@ -33,8 +33,13 @@ double cost_given(JointFactor& factor, const InnovationProblem& problem, const A
 class PosteriorSearch {
  public:
   PosteriorSearch(const InnovationProblem& problem, const AssignmentProblem& costs, std::int64_t node_budget)
-      : problem_(problem), costs_(costs), budget_(node_budget), order_(observations_by_choice(problem)),
-        factor_(problem, order_.size()), taken_(problem.ids.size(), 0), choices_(order_.size()),
+      : problem_(problem),
+        costs_(costs),
+        budget_(node_budget),
+        order_(observations_by_choice(problem)),
+        factor_(problem, order_.size()),
+        taken_(problem.ids.size(), 0),
+        choices_(order_.size()),
         least_after_(order_.size() + 1, 0.0) {
     for (std::size_t i = order_.size(); i-- > 0;) {
       least_after_[i] = least_after_[i + 1] + std::min(costs.unassigned_cost[order_[i]], least_cost(order_[i]));
@@ -87,7 +92,9 @@ class PosteriorSearch {
     weigh_choices(depth);
     for (const Choice& choice : choices_[depth]) {
       // The first descent always ends, whatever the budget.
-      if (cost + choice.cost + least_after_[depth + 1] >= best_cost_ || (nodes_ >= budget_ && std::isfinite(best_cost_))) return;
+      if (cost + choice.cost + least_after_[depth + 1] >= best_cost_ ||
+          (nodes_ >= budget_ && std::isfinite(best_cost_)))
+        return;
       if (choice.pair == unmatched) {
         descend(depth + 1, cost + choice.cost);
         continue;

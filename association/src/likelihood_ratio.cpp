@@ -10,10 +10,14 @@ namespace helixnav::association {
 
 double ExtraneousDensity::of(core::ObservationKind kind) const {
   switch (kind) {
-    case core::ObservationKind::range_bearing: return range_bearing_per_m_rad;
-    case core::ObservationKind::cartesian: return cartesian_per_m2;
-    case core::ObservationKind::bearing: return bearing_per_rad;
-    default: return range_per_m;
+    case core::ObservationKind::range_bearing:
+      return range_bearing_per_m_rad;
+    case core::ObservationKind::cartesian:
+      return cartesian_per_m2;
+    case core::ObservationKind::bearing:
+      return bearing_per_rad;
+    default:
+      return range_per_m;
   }
 }
 
@@ -22,8 +26,9 @@ ExtraneousDensity uniform_density(const core::FieldOfView& field_of_view, double
   const double width_rad = field_of_view.max_bearing_rad - field_of_view.min_bearing_rad;
   const double area_m2 = 0.5 * width_rad * depth_m * (field_of_view.max_range_m + field_of_view.min_range_m);
   if (!(area_m2 > 0.0) || !std::isfinite(area_m2) || !(expected_per_scan > 0.0)) {
-    throw core::PreconditionError("uniform_density: a bounded field of view with an area and a positive number per scan "
-                                  "expected");
+    throw core::PreconditionError(
+        "uniform_density: a bounded field of view with an area and a positive number per scan "
+        "expected");
   }
   return {expected_per_scan / (depth_m * width_rad), expected_per_scan / area_m2, expected_per_scan / width_rad,
           expected_per_scan / depth_m};

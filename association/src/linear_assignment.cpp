@@ -42,8 +42,14 @@ void check(const AssignmentProblem& problem) {
 class Solver {
  public:
   explicit Solver(const AssignmentProblem& problem)
-      : problem_(problem), rows_(problem.rows()), columns_(problem.columns + rows_), row_of_column_(columns_, -1),
-        distance_(columns_), from_row_(columns_), from_entry_(columns_), scanned_(columns_) {
+      : problem_(problem),
+        rows_(problem.rows()),
+        columns_(problem.columns + rows_),
+        row_of_column_(columns_, -1),
+        distance_(columns_),
+        from_row_(columns_),
+        from_entry_(columns_),
+        scanned_(columns_) {
     solution_.entry.assign(rows_, unvisited);
     solution_.row_price.assign(rows_, 0.0);
     solution_.column_price.assign(columns_, 0.0);

@@ -40,9 +40,7 @@ double joint_nis(const Eigen::MatrixXd& P, const std::vector<Pair>& pairs) {
   return difference.dot(llt.solve(difference));
 }
 
-bool is_mature(const LandmarkLife& life, core::LandmarkId id) {
-  return life.state(id) == core::LandmarkState::mature;
-}
+bool is_mature(const LandmarkLife& life, core::LandmarkId id) { return life.state(id) == core::LandmarkState::mature; }
 
 std::vector<Pair> compatible_pairs(const core::JointGaussian& landmarks, const LandmarkLife& life,
                                    const MergeOptions& options) {

@@ -13,8 +13,13 @@ constexpr int fixed = -2;  // held by a row that keeps what it has
 }  // namespace
 
 ResidualPath::ResidualPath(const AssignmentProblem& problem)
-    : problem_(problem), columns_(problem.columns + problem.rows()), row_of_column_(columns_), distance_(columns_),
-      from_row_(columns_), from_entry_(columns_), done_(columns_) {}
+    : problem_(problem),
+      columns_(problem.columns + problem.rows()),
+      row_of_column_(columns_),
+      distance_(columns_),
+      from_row_(columns_),
+      from_entry_(columns_),
+      done_(columns_) {}
 
 bool ResidualPath::search(const AssignmentSolution& solution, int first_row, int row,
                           const std::vector<int>& forbidden) {

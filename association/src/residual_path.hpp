@@ -50,7 +50,7 @@ class ResidualPath {
   bool sink_done_ = false;
   std::vector<int> row_of_column_;
   std::vector<double> distance_;
-  std::vector<int> from_row_;    // row that reached the column, or −1 for the sink
+  std::vector<int> from_row_;  // row that reached the column, or −1 for the sink
   std::vector<int> from_entry_;
   std::vector<char> done_;
 };

@@ -13,9 +13,9 @@
 namespace helixnav::association {
 namespace {
 
-constexpr Method all_methods[] = {Method::nearest_neighbour, Method::nearest_neighbour_unique,
-                                  Method::likelihood_ratio,  Method::jcbb, Method::joint_likelihood_ratio,
-                                  Method::ihgr_published,    Method::ihgr_likelihood_ratio};
+constexpr Method all_methods[] = {
+    Method::nearest_neighbour,      Method::nearest_neighbour_unique, Method::likelihood_ratio,     Method::jcbb,
+    Method::joint_likelihood_ratio, Method::ihgr_published,           Method::ihgr_likelihood_ratio};
 
 core::Scan scan_at(std::initializer_list<std::pair<double, double>> ranges_and_bearings) {
   core::Scan scan;

@@ -45,8 +45,7 @@ AssignmentProblem tie(int size) {
 TEST(Ihgr, RoundsAnInteriorSolutionOfATieByPricingAllCombinations) {
   for (const int size : {2, 3, 4}) {
     const AssignmentProblem problem = tie(size);
-    const RoundedAssignment rounded =
-        round_greedily(problem, std::vector<double>(size * size, 1.0 / size), 100'000);
+    const RoundedAssignment rounded = round_greedily(problem, std::vector<double>(size * size, 1.0 / size), 100'000);
     EXPECT_EQ(rounded.roundings, size);
     EXPECT_GT(rounded.combinations, 1);
     EXPECT_FALSE(rounded.budget_hit);

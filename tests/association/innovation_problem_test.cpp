@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Dense>
 #include <gtest/gtest.h>
+#include <Eigen/Dense>
 
 #include "helixnav/association/associate.hpp"
 #include "helixnav/core/errors.hpp"
@@ -150,8 +150,8 @@ TEST_F(BadInput, AScanOfThreeHundredObservationsEndsWithAnAnswer) {
   const InnovationProblem problem = make_innovation_problem(scene.map, scene.scan);
   Options options;
   options.node_budget = 2000;
-  for (const Method method : {Method::nearest_neighbour, Method::likelihood_ratio, Method::jcbb,
-                              Method::ihgr_likelihood_ratio}) {
+  for (const Method method :
+       {Method::nearest_neighbour, Method::likelihood_ratio, Method::jcbb, Method::ihgr_likelihood_ratio}) {
     EXPECT_EQ(associate(method, problem, options).observations.size(), 150u);
   }
 }

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
+#include <Eigen/Cholesky>
 
 #include "enumeration.hpp"
 #include "helixnav/association/associate.hpp"

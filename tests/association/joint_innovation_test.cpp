@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include <Eigen/Dense>
 #include <gtest/gtest.h>
+#include <Eigen/Dense>
 
 #include "helixnav/core/errors.hpp"
 #include "scenes.hpp"
@@ -15,9 +15,8 @@ namespace {
 /// H of one pair over the whole state, from core's model, padded with a zero row.
 Eigen::MatrixXd dense_row(const Scene& scene, const GatedPair& pair) {
   const core::Observation& observation = scene.scan.observations[pair.observation];
-  const core::PredictedObservation p = core::predict_observation(observation.kind, scene.map.pose,
-                                                                 scene.scan.T_robot_sensor,
-                                                                 scene.map.points_m[pair.candidate]);
+  const core::PredictedObservation p = core::predict_observation(
+      observation.kind, scene.map.pose, scene.scan.T_robot_sensor, scene.map.points_m[pair.candidate]);
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(2, scene.map.covariance.rows());
   H.block(0, 0, pair.dof, 3) = p.H_pose;
   H.block(0, 3 + 2 * pair.candidate, pair.dof, 2) = p.H_landmark;

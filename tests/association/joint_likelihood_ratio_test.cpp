@@ -43,7 +43,8 @@ TEST(JointLikelihoodRatio, EqualsBruteForceOnTenThousandScansOfMixedKinds) {
     const InnovationProblem problem = make_innovation_problem(scene.map, scene.scan);
     const AssignmentProblem costs = likelihood_ratio_costs(problem, options.detection_probability, options.extraneous);
     double best = 1e300;
-    for_each_assignment(costs, [&](const std::vector<int>& e) { best = std::min(best, joint_cost(problem, costs, e)); });
+    for_each_assignment(costs,
+                        [&](const std::vector<int>& e) { best = std::min(best, joint_cost(problem, costs, e)); });
     const Assignment found = associate(Method::joint_likelihood_ratio, problem, options);
     ASSERT_NEAR(joint_cost(problem, costs, entries(problem, found)), best, 1e-7);
     ASSERT_FALSE(found.budget_hit);

@@ -79,7 +79,8 @@ TEST(LikelihoodRatio, TakesThePosteriorsModeAmongAllAssignmentsOfTenThousandScan
   Options options;
   options.joint_test = false;
   for (int t = 0; t < 10'000; ++t) {
-    const Scene scene = crowded_scene(random, static_cast<int>(random.below(7)), static_cast<int>(random.below(7)), 0.2);
+    const Scene scene =
+        crowded_scene(random, static_cast<int>(random.below(7)), static_cast<int>(random.below(7)), 0.2);
     const InnovationProblem problem = make_innovation_problem(scene.map, scene.scan);
     const Assignment assignment = associate(Method::likelihood_ratio, problem, options);
     // ln of the posterior, written down from P_D, λ and the Gaussians, landmarks not seen counting 1 − P_D.

@@ -56,9 +56,7 @@ TEST_F(MergeCandidates, NeverStoodInOneScan) {
   EXPECT_EQ(found[0].merged, 3);
 }
 
-TEST_F(MergeCandidates, AreMature) {
-  EXPECT_TRUE(merge_candidates(map, LandmarkLife{}).empty());
-}
+TEST_F(MergeCandidates, AreMature) { EXPECT_TRUE(merge_candidates(map, LandmarkLife{}).empty()); }
 
 TEST_F(MergeCandidates, NeedACovarianceThatIsOne) {
   map.covariance = -map.covariance;

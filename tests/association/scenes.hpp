@@ -35,8 +35,8 @@ inline Eigen::MatrixXd random_covariance(core::RandomStream& random, int n, doub
 
 /// `landmarks` spread over a small patch ahead of a robot at a random pose, so that several stand in each gate;
 /// `observed` of them are seen, one observation in ten is clutter instead.
-inline Scene crowded_scene(core::RandomStream& random, int observed, int landmarks, double sigma,
-                           double patch_m = 4.0, bool mixed_kinds = false) {
+inline Scene crowded_scene(core::RandomStream& random, int observed, int landmarks, double sigma, double patch_m = 4.0,
+                           bool mixed_kinds = false) {
   Scene scene;
   scene.map.pose = core::Pose2(random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-4, 4));
   const int n = 3 + 2 * landmarks;
@@ -60,8 +60,8 @@ inline Scene crowded_scene(core::RandomStream& random, int observed, int landmar
     const bool clutter = i >= landmarks || random.bernoulli(0.1);
     const Eigen::Vector2d local_m(8.0 + random.uniform(0, patch_m), random.uniform(-patch_m / 2, patch_m / 2));
     const Eigen::Vector2d point_m = clutter ? core::transform(T_world_robot, local_m) : truth_m[i];
-    const auto kind = mixed_kinds ? static_cast<core::ObservationKind>(random.below(4))
-                                  : core::ObservationKind::range_bearing;
+    const auto kind =
+        mixed_kinds ? static_cast<core::ObservationKind>(random.below(4)) : core::ObservationKind::range_bearing;
     core::Observation observation;
     observation.kind = kind;
     const core::ObsVector z = core::predict_observation(kind, T_world_robot, {}, point_m).z_hat;

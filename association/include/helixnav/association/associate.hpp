@@ -28,11 +28,11 @@ std::string_view name(Method method);
 struct Options {
   double detection_probability = 0.9;  ///< P_D of a landmark of the map in one scan
   ExtraneousDensity extraneous;
-  bool joint_test = true;              ///< false: let a set of pairs pass that is not jointly compatible
-  double joint_probability = 0.99;     ///< the set's joint NIS must not exceed this χ² quantile
-  int joint_alternatives = 10;         ///< likelihood-ratio assignments tried, best first, when the joint test fails
-  double min_margin_nats = 0.0;        ///< a match whose best alternative is nearer is ambiguous; 0: none
-  std::int64_t node_budget = 50'000;   ///< nodes of JCBB, combinations of IHGR's tie rule
+  bool joint_test = true;             ///< false: let a set of pairs pass that is not jointly compatible
+  double joint_probability = 0.99;    ///< the set's joint NIS must not exceed this χ² quantile
+  int joint_alternatives = 10;        ///< likelihood-ratio assignments tried, best first, when the joint test fails
+  double min_margin_nats = 0.0;       ///< a match whose best alternative is nearer is ambiguous; 0: none
+  std::int64_t node_budget = 50'000;  ///< nodes of JCBB, combinations of IHGR's tie rule
 };
 
 enum class Outcome {
@@ -46,8 +46,8 @@ struct ObservationOutcome {
   Outcome outcome = Outcome::ambiguous;
   /// Matched landmark; for an ambiguous observation the one it was dropped from, else the nearest.
   core::LandmarkId landmark = core::no_landmark;
-  int candidate = -1;  ///< index into InnovationProblem::ids
-  int pair = -1;       ///< index into InnovationProblem::pairs
+  int candidate = -1;                                     ///< index into InnovationProblem::ids
+  int pair = -1;                                          ///< index into InnovationProblem::pairs
   double nis = std::numeric_limits<double>::quiet_NaN();  ///< to the landmark named; NaN without
   int dof = 0;
   /// Likelihood-ratio cost of the best alternative minus that of the choice: for the likelihood-ratio methods of the
@@ -59,16 +59,16 @@ struct ObservationOutcome {
 
 struct Assignment {
   std::vector<ObservationOutcome> observations;  ///< in the order of the scan
-  std::vector<int> pairs;       ///< the matched pairs, indices into InnovationProblem::pairs, by observation
-  double joint_nis = 0.0;       ///< of the matched set
+  std::vector<int> pairs;  ///< the matched pairs, indices into InnovationProblem::pairs, by observation
+  double joint_nis = 0.0;  ///< of the matched set
   int joint_dof = 0;
-  double first_joint_nis = 0.0; ///< of the set before the joint test changed it
+  double first_joint_nis = 0.0;  ///< of the set before the joint test changed it
   int first_joint_dof = 0;
-  int dropped_pairs = 0;        ///< by the joint test
-  int alternative = 0;          ///< 0: the method's own first choice; k: its k-th alternative passed the joint test
-  std::int64_t nodes = 0;       ///< of the search, where there was one
-  bool budget_hit = false;      ///< the search ended early: best found, not proven best
-  int roundings = 0;            ///< variables that IHGR rounded; 0 for a whole-numbered solution
+  int dropped_pairs = 0;    ///< by the joint test
+  int alternative = 0;      ///< 0: the method's own first choice; k: its k-th alternative passed the joint test
+  std::int64_t nodes = 0;   ///< of the search, where there was one
+  bool budget_hit = false;  ///< the search ended early: best found, not proven best
+  int roundings = 0;        ///< variables that IHGR rounded; 0 for a whole-numbered solution
 };
 
 /// Which observation belongs to which landmark. An empty scan gives an empty assignment; no candidates make every

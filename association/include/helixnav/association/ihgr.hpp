@@ -31,9 +31,9 @@ std::vector<double> relaxed_assignment(const AssignmentProblem& problem);
 struct RoundedAssignment {
   std::vector<int> entry;  ///< for each row the entry, or −1 for the dummy
   double cost = 0.0;
-  int roundings = 0;       ///< fractional variables set to 1, singly or by a tie; 0 for a whole-numbered x
+  int roundings = 0;  ///< fractional variables set to 1, singly or by a tie; 0 for a whole-numbered x
   std::int64_t combinations = 0;
-  bool budget_hit = false; ///< the tie rule saw only the first `budget` combinations
+  bool budget_hit = false;  ///< the tie rule saw only the first `budget` combinations
 };
 
 /// Iterative heuristic greedy rounding, ihgr_zhang2005 §III.B. Variables at 1 are kept and what they imply removed; then

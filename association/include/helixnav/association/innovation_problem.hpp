@@ -29,10 +29,10 @@ struct Prediction {
   Eigen::Vector2d z_hat;
   Eigen::Matrix<double, 2, 3> H_pose;
   Eigen::Matrix2d H_landmark;
-  Eigen::Matrix<double, 2, 3> C_pose;      ///< cov(h, pose) = H_pose P_vv + H_landmark P_mv
-  Eigen::Matrix<double, 3, 2> P_vm_Hm;     ///< P_vm H_landmarkᵀ
-  Eigen::Matrix2d P_mm_Hm;                 ///< P_mm H_landmarkᵀ
-  Eigen::Matrix2d HPHt;                    ///< innovation covariance without the noise of the observation
+  Eigen::Matrix<double, 2, 3> C_pose;   ///< cov(h, pose) = H_pose P_vv + H_landmark P_mv
+  Eigen::Matrix<double, 3, 2> P_vm_Hm;  ///< P_vm H_landmarkᵀ
+  Eigen::Matrix2d P_mm_Hm;              ///< P_mm H_landmarkᵀ
+  Eigen::Matrix2d HPHt;                 ///< innovation covariance without the noise of the observation
 };
 
 /// One observation and one landmark that may be its origin. Rows of nu and S beyond `dof` are padding (0 and 1).
@@ -60,9 +60,9 @@ struct GatedObservation {
 /// Everything that data association knows of one scan. A value without a filter: pairs inside the gate with innovation
 /// and covariance, and what is needed for covariances between pairs on demand (joint_innovation.hpp).
 struct InnovationProblem {
-  std::vector<core::LandmarkId> ids;          ///< candidates, in the order of the JointGaussian
-  std::vector<GatedObservation> observations; ///< in the order of the scan
-  std::vector<GatedPair> pairs;               ///< by observation, then by NIS, then by candidate
+  std::vector<core::LandmarkId> ids;           ///< candidates, in the order of the JointGaussian
+  std::vector<GatedObservation> observations;  ///< in the order of the scan
+  std::vector<GatedPair> pairs;                ///< by observation, then by NIS, then by candidate
   std::vector<Prediction> predictions;
   /// Joint covariance of pose and candidates, owned by the caller and to outlive the problem; null when the landmarks
   /// are independent of each other and of the pose.

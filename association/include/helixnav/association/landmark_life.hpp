@@ -13,15 +13,15 @@ namespace helixnav::association {
 /// Evidence for a landmark's existence, in nats. A look is a scan taken at least `look_distance_m` from where the last
 /// look of the same kind at this landmark was taken: standing still, a sensor says the same thing again and again.
 struct LifeOptions {
-  double detection_probability = 0.7;   ///< that an expected landmark is seen in one look, occlusion included
-  double false_hit_probability = 0.1;   ///< that clutter stands in for one that does not exist
+  double detection_probability = 0.7;  ///< that an expected landmark is seen in one look, occlusion included
+  double false_hit_probability = 0.1;  ///< that clutter stands in for one that does not exist
   double look_distance_m = 0.25;
   double birth_log_odds = 0.0;
-  double max_log_odds = 8.0;            ///< no history makes a landmark immortal
-  int mature_looks = 3;                 ///< hits, birth included, and
-  double mature_log_odds = 3.0;         ///< log-odds that make a tentative landmark mature
+  double max_log_odds = 8.0;     ///< no history makes a landmark immortal
+  int mature_looks = 3;          ///< hits, birth included, and
+  double mature_log_odds = 3.0;  ///< log-odds that make a tentative landmark mature
   double tentative_death_log_odds = -2.0;
-  double tentative_patience_m = 30.0;   ///< a tentative landmark unseen over so long a drive dies
+  double tentative_patience_m = 30.0;  ///< a tentative landmark unseen over so long a drive dies
   bool mature_may_die = true;
   double mature_death_log_odds = -8.0;
 };
@@ -31,13 +31,13 @@ struct LandmarkRecord {
   core::LandmarkId id = core::no_landmark;
   core::LandmarkState state = core::LandmarkState::tentative;
   double log_odds = 0.0;
-  int observations = 0;  ///< scans that saw it, looks or not
-  int hits = 0;          ///< looks that saw it, birth included
-  int misses = 0;        ///< looks that should have seen it
-  Eigen::Vector2d last_hit_at_m = Eigen::Vector2d::Zero();   ///< place of the sensor
+  int observations = 0;                                     ///< scans that saw it, looks or not
+  int hits = 0;                                             ///< looks that saw it, birth included
+  int misses = 0;                                           ///< looks that should have seen it
+  Eigen::Vector2d last_hit_at_m = Eigen::Vector2d::Zero();  ///< place of the sensor
   Eigen::Vector2d last_miss_at_m = Eigen::Vector2d::Zero();
-  double last_seen_path_m = 0.0;                             ///< length of the drive then
-  std::vector<core::LandmarkId> seen_with;                   ///< ever in the same scan, ascending
+  double last_seen_path_m = 0.0;            ///< length of the drive then
+  std::vector<core::LandmarkId> seen_with;  ///< ever in the same scan, ascending
 };
 
 /// What one scan changed. Whoever owns the filter removes the dead ones from it.

@@ -15,7 +15,7 @@ struct MergeOptions {
 
 /// Two landmarks that may be one: their difference with its covariance, correlations included.
 struct MergeCandidate {
-  core::LandmarkId kept = core::no_landmark;    ///< the older
+  core::LandmarkId kept = core::no_landmark;  ///< the older
   core::LandmarkId merged = core::no_landmark;
   double distance_m = 0.0;
   double nis = 0.0;        ///< of this pair alone, 2 degrees of freedom
