@@ -62,8 +62,7 @@ std::vector<SickDetection> detect(const SickScan& scan, const AcfrSettings& sett
 core::FieldOfView field_of_view(const AcfrSettings& settings) {
   const bool trees = settings.detector == AcfrSettings::Detector::trees;
   const double half_rad = core::pi / 2.0 - (trees ? settings.trees.edge_margin_rad : 0.0);
-  return {trees ? settings.trees.min_range_m : 0.0,
-          trees ? settings.trees.max_range_m : settings.reflectors.max_range_m, -half_rad, half_rad};
+  return {trees ? settings.trees.min_range_m : 0.0, settings.view_range_m, -half_rad, half_rad};
 }
 
 core::Scan observe(const SickScan& raw, const AcfrSettings& settings) {

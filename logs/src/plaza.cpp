@@ -142,7 +142,6 @@ core::Odometry part_of(const Increment& increment, double share, core::Nanosecon
 core::Scan scan_of(const Range& range, const PlazaSettings& settings) {
   core::Scan scan;
   scan.t_ns = range.t_ns;
-  scan.field_of_view.max_range_m = 0.0;  // a beacon that is silent says nothing
   constexpr double smallest_m = 0.01;
   const double range_m = std::max(smallest_m, range.range_m / settings.range_scale);
   scan.observations.push_back(core::make_range(range_m, settings.sigma_range_m));

@@ -18,7 +18,6 @@ core::Nanoseconds time_of_pose(std::size_t pose) { return static_cast<core::Nano
 core::Scan scan_of_pose(std::size_t pose) {
   core::Scan scan;
   scan.t_ns = time_of_pose(pose);
-  scan.field_of_view.max_range_m = 0.0;
   return scan;
 }
 

@@ -23,8 +23,11 @@ struct AcfrSettings {
   TreeRules trees;
   ReflectorRules reflectors;
 
-  double sigma_range_m = 0.5;
+  double sigma_range_m = 0.3;
   double sigma_bearing_rad = 0.02;
+  /// Field of view: a landmark nearer than this is expected to be seen. Far short of the detector's reach, because far
+  /// trunks are mostly hidden or missed: with the reach itself negative information kills the map.
+  double view_range_m = 30.0;
 };
 
 /// Noise and detector for ACFR's car park: poles with reflecting tape, surveyed by hand.
