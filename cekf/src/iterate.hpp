@@ -7,7 +7,6 @@
 #include "helixnav/cekf/filter_options.hpp"
 #include "helixnav/cekf/match.hpp"
 #include "helixnav/cekf/update_workspace.hpp"
-#include "helixnav/core/errors.hpp"
 #include "innovation.hpp"
 #include "retraction.hpp"
 
@@ -42,7 +41,8 @@ class InvolvedCorrection {
 };
 
 /// Gauss-Newton to the minimum of |δ|²_P + |ν(x ⊕ δ)|²_R over what is involved, `linearise` filling H, R, ν at w.pose and
-/// w.points_m. A step that raises the cost is halved. Returns the cost at the minimum, with w solved there.
+/// w.points_m. A step that raises the cost is halved. Returns the cost at the minimum, with w solved there; infinity when
+/// the iteration does not settle.
 template <class Linearise>
 double iterate_to_minimum(InvolvedCorrection& correction, UpdateWorkspace& w, int max_iterations, const char* verb,
                           const Linearise& linearise) {
@@ -66,7 +66,7 @@ double iterate_to_minimum(InvolvedCorrection& correction, UpdateWorkspace& w, in
     }
     cost = next;
   }
-  throw core::NumericalError(problem_with(w, verb, "the iteration does not settle"));
+  return std::numeric_limits<double>::infinity();
 }
 
 /// G and L of an update linearised at the minimum, with the gain found there kept.

@@ -67,17 +67,4 @@ core::JointGaussian CompressedEkf::joint(const std::vector<core::LandmarkId>& id
   return result;
 }
 
-std::vector<core::LandmarkId> CompressedEkf::landmarks_within(const Eigen::Vector2d& point_m, double radius_m) const {
-  std::vector<core::LandmarkId> ids;
-  for (core::LandmarkId id = 0; id < active_.next_id; ++id) {
-    const Place& place = places_[static_cast<std::size_t>(id)];
-    if (place.where == Whereabouts::nowhere) continue;
-    const Eigen::Vector2d mean_m = place.where == Whereabouts::active
-                                       ? active_.points_m[static_cast<std::size_t>(place.index)]
-                                       : passive_mean(place.index);
-    if ((mean_m - point_m).norm() <= radius_m) ids.push_back(id);
-  }
-  return ids;
-}
-
 }  // namespace helixnav::cekf

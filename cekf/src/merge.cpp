@@ -51,6 +51,7 @@ CostByPart CompressedEkf::merge_cost(const std::vector<LandmarkPair>& kept_remov
   InvolvedCorrection correction(options_.retraction, w);
   const double cost = iterate_to_minimum(correction, w, max_iterations, "merge_cost",
                                          [&](UpdateWorkspace& at) { linearise_pairs(sigma_m, at); });
+  if (!std::isfinite(cost)) return {cost, static_cast<int>(w.nu.rows()), {}};
   return {cost, static_cast<int>(w.nu.rows()), cost_by_part(w, std::vector<int>(kept_removed.size(), 2))};
 }
 

@@ -104,6 +104,14 @@ void CompressedEkf::freeze_slots(Phase& phase, const std::vector<core::LandmarkI
     if (place.where == Whereabouts::active) phase.slot_of_id[id] = active_.slots[static_cast<std::size_t>(place.index)];
   }
   for (const core::LandmarkId id : active) phase.slot_of_id[static_cast<std::size_t>(id)] = -1;
+  phase.by_cell.clear();
+  for (std::size_t id = 0; id < places_.size(); ++id) {
+    const int slot = phase.slot_of_id[id];
+    if (slot < 0) continue;
+    const Eigen::Vector2i cell = cell_of(phase.mean_m.segment<2>(2 * slot));
+    phase.by_cell.push_back({{cell.x(), cell.y()}, static_cast<core::LandmarkId>(id)});
+  }
+  std::sort(phase.by_cell.begin(), phase.by_cell.end());
 }
 
 void CompressedEkf::start_active_part(const Phase& phase, const Eigen::MatrixXd& anchors,

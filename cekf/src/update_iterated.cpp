@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "iterate_and_apply.hpp"
 
@@ -29,6 +31,7 @@ CostByPart CompressedEkf::iterated_cost(const std::vector<Match>& matches, int m
   InvolvedCorrection correction(options_.retraction, w);
   const double cost = iterate_to_minimum(correction, w, max_iterations, verb,
                                          [&](UpdateWorkspace& at) { linearise_sightings(matches, at, verb); });
+  if (!std::isfinite(cost)) return {cost, static_cast<int>(w.nu.rows()), {}};
   std::vector<int> rows;
   for (const Match& match : matches) rows.push_back(core::dimension(match.observation.kind));
   return {cost, static_cast<int>(w.nu.rows()), cost_by_part(w, rows)};

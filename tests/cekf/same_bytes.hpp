@@ -8,8 +8,10 @@
 
 namespace helixnav::cekf {
 
+enum class Passive { with_covariances, means_only };
+
 /// Everything a caller can learn of the filter, and its weights, as bytes.
-inline std::string bytes_of(const CompressedEkf& filter) {
+inline std::string bytes_of(const CompressedEkf& filter, Passive passive = Passive::with_covariances) {
   std::string bytes;
   const auto add = [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); };
   const auto add_matrix = [&](const Eigen::MatrixXd& m) { add(m.data(), static_cast<std::size_t>(m.size()) * 8); };
@@ -19,7 +21,7 @@ inline std::string bytes_of(const CompressedEkf& filter) {
   add(filter.active_landmarks().data(), filter.active_landmarks().size() * sizeof(core::LandmarkId));
   add_matrix(joint.pose.vector());
   for (const Eigen::Vector2d& p : joint.points_m) add_matrix(p);
-  add_matrix(joint.covariance);
+  if (passive == Passive::with_covariances) add_matrix(joint.covariance);
   const ActivePart active = filter.snapshot().active;
   add_matrix(active.P.view());
   add_matrix(active.A.view());

@@ -26,15 +26,15 @@ TEST_P(Rewind, RestoresBitForBitInsideAPhase) {
   const std::string before = bytes_of(program.filter);
   RandomProgram twin = program;
   go_on(program, 60);
-  ASSERT_NE(bytes_of(program.filter), before);
+  ASSERT_FALSE(bytes_of(program.filter) == before);
   program.filter.restore(snapshot);
-  EXPECT_EQ(bytes_of(program.filter), before);
+  EXPECT_TRUE(bytes_of(program.filter) == before);
   // And the same future follows.
   twin.filter = program.filter;
   RandomProgram again = twin;
   go_on(twin, 40);
   go_on(again, 40);
-  EXPECT_EQ(bytes_of(twin.filter), bytes_of(again.filter));
+  EXPECT_TRUE(bytes_of(twin.filter) == bytes_of(again.filter));
   const Differences d = compare(twin.filter, twin.oracle);
   EXPECT_LE(d.covariance, 1e-8);
 }
@@ -50,7 +50,7 @@ TEST_P(Rewind, ReachesBackAcrossRegionSwitchesBitForBit) {
   go_on(program, 200);
   ASSERT_GE(program.switches, switches_before + 5);
   program.filter.restore(snapshot);
-  EXPECT_EQ(bytes_of(program.filter), before);
+  EXPECT_TRUE(bytes_of(program.filter) == before);
   past.filter = program.filter;
   go_on(past, 100);
   const Differences d = compare(past.filter, past.oracle);
@@ -68,7 +68,7 @@ TEST_P(Rewind, OfALaterSnapshotWorksAfterAnEarlierOneInTheSamePhase) {
   const std::string at_late = bytes_of(program.filter);
   program.filter.restore(early);
   program.filter.restore(late);
-  EXPECT_EQ(bytes_of(program.filter), at_late);
+  EXPECT_TRUE(bytes_of(program.filter) == at_late);
 }
 
 TEST_P(Rewind, OfASnapshotOutOfReachIsRefusedAndChangesNothing) {
@@ -79,7 +79,7 @@ TEST_P(Rewind, OfASnapshotOutOfReachIsRefusedAndChangesNothing) {
   const std::string before = bytes_of(program.filter);
   EXPECT_FALSE(program.filter.can_restore(snapshot));
   EXPECT_THROW(program.filter.restore(snapshot), core::PreconditionError);
-  EXPECT_EQ(bytes_of(program.filter), before);
+  EXPECT_TRUE(bytes_of(program.filter) == before);
 }
 
 TEST_P(Rewind, OfAPhaseThatWasUndoneIsRefused) {
@@ -101,13 +101,13 @@ TEST_P(Rewind, ByTheRingReachesTwoHundredStepsBackAcrossSwitches) {
   for (int k = 0; k < 420; ++k) {
     program.step();
     ring.offer(program.filter, k);
-    if (k == 210) at_210 = bytes_of(program.filter);
+    if (k == 210) at_210 = bytes_of(program.filter, Passive::means_only);
   }
   EXPECT_TRUE(ring.reaches(219));
   EXPECT_FALSE(ring.reaches(150));
   EXPECT_THROW(ring.rewind(program.filter, 150), core::PreconditionError);
   EXPECT_EQ(ring.rewind(program.filter, 219), 210);
-  EXPECT_EQ(bytes_of(program.filter), at_210);
+  EXPECT_TRUE(bytes_of(program.filter, Passive::means_only) == at_210);
 }
 
 TEST(SnapshotSize, IsAtMostOneMegabyteAtFiftyActiveLandmarks) {

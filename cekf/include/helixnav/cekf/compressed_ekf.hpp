@@ -47,7 +47,7 @@ class CompressedEkf {
   /// enough; the covariance is that of an update linearised at the minimum. Result: J and its degrees of freedom.
   /// NumericalError when the iteration has not settled (step below 1e-9) after max_iterations.
   UpdateResult update_iterated(const std::vector<Match>& matches, int max_iterations = 50);
-  /// J of update_iterated and the share of each match in it, without updating.
+  /// J of update_iterated and the share of each match in it, without updating; infinite when it does not settle.
   CostByPart iterated_cost(const std::vector<Match>& matches, int max_iterations = 50) const;
 
   /// νᵀS⁻¹ν of a fix of the position of a point on the robot, for the caller's gate.
@@ -65,7 +65,7 @@ class CompressedEkf {
   UpdateResult merge(core::LandmarkId kept, core::LandmarkId removed, double sigma_m = 0.02) {
     return merge({{kept, removed}}, sigma_m);
   }
-  /// J of merge and the share of each pair in it, without merging.
+  /// J of merge and the share of each pair in it, without merging; infinite when the iteration does not settle.
   CostByPart merge_cost(const std::vector<LandmarkPair>& kept_removed, double sigma_m = 0.02) const;
 
   /// Forgets a landmark, active or passive. O(n + q).
@@ -95,14 +95,16 @@ class CompressedEkf {
   bool is_active(core::LandmarkId id) const;
   std::vector<core::LandmarkId> landmarks() const;
   const std::vector<core::LandmarkId>& active_landmarks() const { return active_.ids; }
-  /// Landmarks whose mean is within radius_m of the point, in order of id. Cost O(landmarks near · q).
+  /// Landmarks whose mean is within radius_m of the point, in order of id. Looks only where the passive landmarks were
+  /// when the phase began, widened by how far those found there have moved since: cost O(landmarks near · q).
   std::vector<core::LandmarkId> landmarks_within(const Eigen::Vector2d& point_m, double radius_m) const;
   int active_count() const { return static_cast<int>(active_.ids.size()); }
   int mapped_count() const { return mapped_; }
 
   /// O((n + q)²) bytes, without the passive part.
   Snapshot snapshot() const;
-  /// The filter as it was at the snapshot, bit for bit. PreconditionError when the snapshot's phase is out of reach.
+  /// The filter as it was at the snapshot, bit for bit; covariances between two passive landmarks to round-off when a
+  /// phase older than the snapshot's has been absorbed in between. PreconditionError when the snapshot's phase is out of reach.
   void restore(const Snapshot& snapshot);
   bool can_restore(const Snapshot& snapshot) const;
   /// Phases from `phase` on are kept restorable instead of being absorbed when they close; each costs
@@ -142,6 +144,7 @@ class CompressedEkf {
   Eigen::MatrixXd phase_start_columns(const std::vector<int>& slots) const;
   Eigen::Matrix2d phase_start_block(int slot_i, int slot_j) const;
   Eigen::Vector2d passive_mean(int slot) const;
+  std::vector<core::LandmarkId> passive_in_cells(const Eigen::Vector2d& point_m, double reach_m) const;
   Eigen::MatrixXd basis_rows(const std::vector<int>& slots) const;
 
   // global_update.cpp, switch_region.cpp, snapshot.cpp

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -20,7 +21,8 @@ struct Phase {
   Eigen::VectorXd mean_m;                          ///< 2·slots
   Eigen::MatrixXd own_covariance_m2;               ///< 2·slots × 2: the 2×2 diagonal blocks of P_bb0
   ReservedMatrix basis;                            ///< E, 2·slots × q; activation appends columns
-  std::vector<int> late_anchors;                   ///< slots whose columns were appended, in order
+  std::vector<std::pair<std::pair<int, int>, core::LandmarkId>> by_cell;  ///< passive landmarks by cell, sorted
+  std::vector<int> late_anchors;  ///< slots whose columns were appended, in order
 
   // Filled when the phase closes: P_bb += response·basisᵀ, then the rows and columns of `written` are overwritten.
   Eigen::MatrixXd response;            ///< E·M, 2·slots × q

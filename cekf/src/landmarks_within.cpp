@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <limits>
+
+#include "helixnav/cekf/compressed_ekf.hpp"
+
+namespace helixnav::cekf {
+
+/// Landmarks passive now that began the phase in a cell closer to the point than reach_m.
+std::vector<core::LandmarkId> CompressedEkf::passive_in_cells(const Eigen::Vector2d& point_m, double reach_m) const {
+  const auto& by_cell = phases_.back().by_cell;
+  const Eigen::Vector2i low = cell_of(point_m - Eigen::Vector2d::Constant(reach_m));
+  const Eigen::Vector2i high = cell_of(point_m + Eigen::Vector2d::Constant(reach_m));
+  std::vector<core::LandmarkId> ids;
+  constexpr core::LandmarkId before_all = std::numeric_limits<core::LandmarkId>::min();
+  auto entry = std::lower_bound(by_cell.begin(), by_cell.end(), std::pair(std::pair(low.x(), low.y()), before_all));
+  while (entry != by_cell.end() && entry->first.first <= high.x()) {
+    const auto [x, y] = entry->first;
+    if (y < low.y() || y > high.y()) {  // on to the first cell of interest of this column, or of the next
+      const std::pair<int, int> next = y < low.y() ? std::pair(x, low.y()) : std::pair(x + 1, low.y());
+      entry = std::lower_bound(entry, by_cell.end(), std::pair(next, before_all));
+      continue;
+    }
+    const Place& place = places_[static_cast<std::size_t>(entry->second)];
+    if (place.where == Whereabouts::passive) ids.push_back(entry->second);
+    ++entry;
+  }
+  return ids;
+}
+
+std::vector<core::LandmarkId> CompressedEkf::landmarks_within(const Eigen::Vector2d& point_m, double radius_m) const {
+  std::vector<core::LandmarkId> found;
+  for (double slack_m = options_.hysteresis_m + 1.0;;) {
+    found.clear();
+    double moved_m = 0.0;
+    for (const core::LandmarkId id : passive_in_cells(point_m, radius_m + slack_m)) {
+      const int slot = places_[static_cast<std::size_t>(id)].index;
+      const Eigen::Vector2d mean_m = passive_mean(slot);
+      moved_m = std::max(moved_m, (mean_m - phases_.back().mean_m.segment<2>(2 * slot)).norm());
+      if ((mean_m - point_m).norm() <= radius_m) found.push_back(id);
+    }
+    if (moved_m <= 0.5 * slack_m) break;
+    slack_m = 3.0 * moved_m;
+  }
+  for (std::size_t i = 0; i < active_.ids.size(); ++i) {
+    if ((active_.points_m[i] - point_m).norm() <= radius_m) found.push_back(active_.ids[i]);
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+}  // namespace helixnav::cekf

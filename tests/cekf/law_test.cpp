@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What must hold after any operation, and the pieces the filter is made of.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "helixnav/cekf/passive_covariance.hpp"
+#include "helixnav/core/random.hpp"
+#include "random_program.hpp"
+
+namespace helixnav::cekf {
+namespace {
+
+class Law : public testing::TestWithParam<Retraction> {};
+
+void expect_covariance(const CompressedEkf& filter, const char* after) {
+  const Eigen::MatrixXd P = filter.joint(filter.landmarks()).covariance;
+  ASSERT_EQ(P, Eigen::MatrixXd(P.transpose())) << after;
+  ASSERT_TRUE(core::is_symmetric_positive_semidefinite(P)) << after;
+}
+
+TEST_P(Law, TheCovarianceIsSymmetricPositiveSemidefiniteAfterAnyOperation) {
+  RandomProgram program(41, {GetParam(), 220, 0, true});
+  for (int k = 0; k < 240; ++k) {
+    program.step();
+    if (k % 20 == 0) expect_covariance(program.filter, "step");
+    if (k % 40 == 39) {
+      program.switch_region_randomly();
+      expect_covariance(program.filter, "switch");
+      program.remove_some();
+      expect_covariance(program.filter, "remove");
+      program.activate_some();
+      expect_covariance(program.filter, "activate");
+    }
+  }
+  const core::LandmarkId old = program.filter.active_landmarks().front();
+  program.filter.merge(old, program.map_again(old));
+  expect_covariance(program.filter, "merge");
+  program.filter.global_update();
+  expect_covariance(program.filter, "global update");
+}
+
+TEST_P(Law, LandmarksWithinAreThoseWhoseMeanIsNear) {
+  RandomProgram program(42, {GetParam(), 220, 30, false});
+  for (int k = 0; k < 250; ++k) program.step();
+  const CompressedEkf& filter = program.filter;
+  const Eigen::Vector2d here = filter.pose().mean.position_m();
+  for (const double radius_m : {5.0, 30.0, 70.0, 500.0}) {
+    std::vector<core::LandmarkId> expected;
+    for (const core::LandmarkId id : filter.landmarks()) {
+      if ((filter.landmark(id).mean_m - here).norm() <= radius_m) expected.push_back(id);
+    }
+    EXPECT_EQ(filter.landmarks_within(here, radius_m), expected) << radius_m;
+  }
+}
+
+TEST_P(Law, ARegionHoldsTheNeighbourhoodAndNoMoreThanAllowed) {
+  FilterOptions options;
+  options.retraction = GetParam();
+  options.cell_side_m = 20.0;
+  options.hysteresis_m = 5.0;
+  options.max_active_landmarks = 10;
+  CompressedEkf filter({}, options);
+  const Eigen::Matrix2d R = 0.01 * Eigen::Matrix2d::Identity();
+  for (int i = 0; i < 15; ++i) filter.augment(core::make_cartesian({2.0 * i, 1.0}, R), {});
+  EXPECT_TRUE(filter.switch_region_if_due()) << "crowded";
+  EXPECT_EQ(filter.active_count(), 10);
+  EXPECT_TRUE(filter.is_active(0));
+  EXPECT_FALSE(filter.is_active(14));
+  core::Odometry odometry;
+  odometry.T_before_after = core::Pose2(24.0, 0.0, 0.0);
+  filter.predict(odometry);
+  EXPECT_FALSE(filter.switch_region_if_due()) << "still within the hysteresis";
+  odometry.T_before_after = core::Pose2(2.0, 0.0, 0.0);
+  filter.predict(odometry);
+  EXPECT_TRUE(filter.switch_region_if_due());
+  EXPECT_TRUE(filter.is_active(14));
+  EXPECT_EQ(filter.mapped_count(), 15);
+}
+
+INSTANTIATE_TEST_SUITE_P(BothRetractions, Law, testing::Values(Retraction::standard, Retraction::right_invariant),
+                         [](const auto& tested) {
+                           return tested.param == Retraction::standard ? "Standard" : "RightInvariant";
+                         });
+
+TEST(PassiveCovariance, AddsAProductAndReadsItBack) {
+  core::RandomStream random(1);
+  const auto random_matrix = [&](int rows, int cols) {
+    return Eigen::MatrixXd::NullaryExpr(rows, cols, [&] { return random.normal(); }).eval();
+  };
+  PassiveCovariance store;
+  store.grow(300);
+  const Eigen::MatrixXd E = random_matrix(300, 21);
+  const Eigen::MatrixXd half = random_matrix(21, 21);
+  const Eigen::MatrixXd response = E * (half + half.transpose());
+  store.add_symmetric_product(response, E);
+  Eigen::MatrixXd dense = response * E.transpose();
+  const std::vector<int> slots = {3, 140, 64};
+  Eigen::MatrixXd columns = random_matrix(300, 6);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {  // what is written must itself be symmetric
+      const Eigen::Index ci = 2 * static_cast<Eigen::Index>(i);
+      const Eigen::Index cj = 2 * static_cast<Eigen::Index>(j);
+      columns.block<2, 2>(2 * slots[i], cj).setConstant(static_cast<double>(1 + i + j));
+      columns.block<2, 2>(2 * slots[j], ci).setConstant(static_cast<double>(1 + i + j));
+    }
+  }
+  store.overwrite(slots, columns);
+  for (std::size_t k = 0; k < 3; ++k) {
+    dense.middleCols<2>(2 * slots[k]) = columns.middleCols<2>(2 * static_cast<Eigen::Index>(k));
+    dense.middleRows<2>(2 * slots[k]) = columns.middleCols<2>(2 * static_cast<Eigen::Index>(k)).transpose();
+  }
+  Eigen::MatrixXd read(300, 2);
+  for (const int slot : {0, 3, 63, 64, 149}) {
+    store.copy_columns(slot, read);
+    EXPECT_LE((read - dense.middleCols<2>(2 * slot)).cwiseAbs().maxCoeff(), 1e-11) << slot;
+    EXPECT_LE((store.block(slot, 70) - dense.block<2, 2>(2 * slot, 140)).cwiseAbs().maxCoeff(), 1e-11) << slot;
+  }
+}
+
+}  // namespace
+}  // namespace helixnav::cekf
