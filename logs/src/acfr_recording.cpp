@@ -82,8 +82,11 @@ core::Scan observe(const SickScan& raw, const AcfrSettings& settings) {
 AcfrSettings car_park_settings() {
   AcfrSettings settings;
   settings.detector = AcfrSettings::Detector::reflectors;
-  settings.sigma_range_m = 0.1;
+  settings.noise.sigma_steering_rad = 0.15;
+  settings.steering_offset_rad = 0.0075;
+  settings.sigma_range_m = 0.05;
   settings.sigma_bearing_rad = 0.01;
+  settings.view_range_m = 5.0;
   return settings;
 }
 

@@ -25,12 +25,14 @@ struct AcfrSettings {
 
   double sigma_range_m = 0.3;
   double sigma_bearing_rad = 0.02;
-  /// Field of view: a landmark nearer than this is expected to be seen. Far short of the detector's reach, because far
-  /// trunks are mostly hidden or missed: with the reach itself negative information kills the map.
+  /// Field of view: a landmark nearer than this is expected to be seen. Far short of the detector's reach, with which
+  /// negative information kills the map. Of the mapped trees in front, 67 % are seen at 5 … 20 m, 40 % at 25 … 30 m,
+  /// 14 % at 35 … 40 m, 1 % beyond 50 m.
   double view_range_m = 30.0;
 };
 
-/// Noise and detector for ACFR's car park: poles with reflecting tape, surveyed by hand.
+/// For ACFR's car park: poles with reflecting tape, of which 44 % are seen within 5 m and 22 % at 5 … 10 m. The steering
+/// offset is where the innovations of the filter are smallest (NIS); no GPS went into it.
 AcfrSettings car_park_settings();
 
 /// Dead reckoning as increments, scans as observations, GPS and beacons as truth (the antenna is taken to be at the
