@@ -32,7 +32,8 @@ struct AcfrSettings {
 };
 
 /// For ACFR's car park: poles with reflecting tape, of which 44 % are seen within 5 m and 22 % at 5 … 10 m. The steering
-/// offset is where the innovations of the filter are smallest (NIS); no GPS went into it.
+/// offset is where the filter's own innovations are smallest (NIS, offsets of −0.01 … 0.01 rad tried); the noise was
+/// compared on this one log by the error of the beacons, about 30 combinations, so expect less elsewhere.
 AcfrSettings car_park_settings();
 
 /// Dead reckoning as increments, scans as observations, GPS and beacons as truth (the antenna is taken to be at the
