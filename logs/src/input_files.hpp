@@ -16,9 +16,9 @@ using TextByName = std::map<std::string, std::string>;
 
 /// The files called `names` (without folders, any depth) of a zip or tar, by libarchive; those not there are left out.
 /// Throws core::InputError for an archive that is none or is cut off.
-TextByName read_archive(const std::filesystem::path& archive, const std::vector<std::string>& names);
+TextByName read_archive(const std::filesystem::path& path, const std::vector<std::string>& names);
 
 /// The names (without folders) of all files in an archive; empty when it is no archive.
-std::vector<std::string> names_in_archive(const std::filesystem::path& archive);
+std::vector<std::string> names_in_archive(const std::filesystem::path& path);
 
 }  // namespace helixnav::logs

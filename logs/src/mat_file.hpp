@@ -28,9 +28,9 @@ class MatFile {
   bool has(const std::string& variable) const;
 
   /// A numeric matrix without NaN and infinities.
-  MatMatrix matrix(const std::string& variable) const;
+  MatMatrix matrix(const std::string& name) const;
   /// A row or column vector of `length` numbers; of any length when that is 0.
-  std::vector<double> vector(const std::string& variable, std::size_t length = 0) const;
+  std::vector<double> vector(const std::string& name, std::size_t length = 0) const;
 
   /// Throws core::InputError: "file: message".
   [[noreturn]] void fail(const std::string& message) const;
