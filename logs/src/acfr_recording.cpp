@@ -82,7 +82,7 @@ core::Scan observe(const SickScan& raw, const AcfrSettings& settings) {
 AcfrSettings car_park_settings() {
   AcfrSettings settings;
   settings.detector = AcfrSettings::Detector::reflectors;
-  settings.noise.sigma_steering_rad = 0.15;
+  settings.noise = {1.0, 0.15};
   settings.steering_offset_rad = 0.0075;
   settings.sigma_range_m = 0.05;
   settings.sigma_bearing_rad = 0.01;

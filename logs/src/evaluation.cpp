@@ -145,6 +145,27 @@ NisEvaluation evaluate_nis(const std::vector<core::StepReport>& steps) {
   return result;
 }
 
+RevisitEvaluation evaluate_revisits(const std::vector<core::StepReport>& steps) {
+  RevisitEvaluation result;
+  std::map<core::LandmarkId, std::int64_t> last_seen;
+  double nis = 0.0;
+  double dof = 0.0;
+  for (const core::StepReport& step : steps) {
+    for (const core::AssociationReport& a : step.associations) {
+      if (a.outcome != core::Outcome::matched && a.outcome != core::Outcome::augmented) continue;
+      const auto [seen, first] = last_seen.try_emplace(a.landmark, step.step);
+      if (!first && a.dof > 0 && step.step - seen->second > RevisitEvaluation::unseen_steps) {
+        ++result.revisits;
+        nis += a.nis;
+        dof += a.dof;
+      }
+      seen->second = step.step;
+    }
+  }
+  result.mean_nis_per_dof = result.revisits == 0 ? nan : nis / dof;
+  return result;
+}
+
 }  // namespace
 
 double quantile_of_sorted(const std::vector<double>& sorted, double fraction) {
@@ -172,6 +193,7 @@ Evaluation evaluate(const RunFolder& run, const RunTruth& truth, const Evaluatio
   const core::Pose2 T_truth_map = evaluation.position ? evaluation.position->T_truth_map : core::Pose2{};
   if (!truth.landmarks.empty()) evaluation.map = evaluate_map(run, truth, T_truth_map, options.landmark_limit_m);
   evaluation.nis = evaluate_nis(run.steps);
+  evaluation.revisits = evaluate_revisits(run.steps);
   return evaluation;
 }
 

@@ -102,6 +102,11 @@ std::string evaluation_text(const Evaluation& evaluation) {
     text += format("NIS                  mean %.3f per degree of freedom, %.1f %% inside the 95 %% band, %zu updates\n",
                    evaluation.nis.mean_per_dof, 100.0 * evaluation.nis.inside_95, evaluation.nis.updates);
   }
+  if (evaluation.revisits.revisits > 0) {
+    text += format("NIS of revisits      mean %.3f per degree of freedom, %zu landmarks unseen for %d steps\n",
+                   evaluation.revisits.mean_nis_per_dof, evaluation.revisits.revisits,
+                   static_cast<int>(RevisitEvaluation::unseen_steps));
+  }
   return text;
 }
 
@@ -119,6 +124,8 @@ Json evaluation_to_json(const Evaluation& evaluation) {
   json["nis"] = {{"updates", evaluation.nis.updates},
                  {"mean_per_dof", evaluation.nis.mean_per_dof},
                  {"inside_95", evaluation.nis.inside_95}};
+  json["revisits"] = {{"count", evaluation.revisits.revisits},
+                      {"mean_nis_per_dof", evaluation.revisits.mean_nis_per_dof}};
   return json;
 }
 

@@ -58,13 +58,13 @@ std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, cons
 }
 
 std::vector<core::LandmarkId> expected_in_view(const cekf::CompressedEkf& filter, const core::Scan& scan,
-                                               double margin_m, double reliable_range_m) {
+                                               double margin_m) {
   const core::FieldOfView& view = scan.field_of_view;
   const core::Pose2 T_world_sensor = core::compose(filter.pose().mean, scan.T_robot_sensor);
   const core::Pose2 T_sensor_world = core::inverse(T_world_sensor);
   std::vector<core::LandmarkId> expected;
-  const double reach_m = std::min(view.max_range_m - margin_m, reliable_range_m);
-  for (const core::LandmarkId id : filter.landmarks_within(T_world_sensor.position_m(), reach_m)) {
+  if (!std::isfinite(view.max_range_m)) return expected;
+  for (const core::LandmarkId id : filter.landmarks_within(T_world_sensor.position_m(), view.max_range_m - margin_m)) {
     const Eigen::Vector2d point_m = core::transform(T_sensor_world, filter.landmark(id).mean_m);
     const double range_m = point_m.norm();
     const double bearing_rad = std::atan2(point_m.y(), point_m.x());

@@ -15,9 +15,9 @@ namespace helixnav::supervisor {
 /// row) take every landmark within the range of the field of view.
 std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, const core::Scan& scan, double sigmas);
 
-/// Landmarks whose estimated position lies inside the field of view, at least `margin_m` from its edge, and no farther
-/// than `reliable_range_m`: those that should have been seen.
+/// Landmarks whose estimated position lies inside the field of view, at least `margin_m` from its edge: those that
+/// should have been seen.
 std::vector<core::LandmarkId> expected_in_view(const cekf::CompressedEkf& filter, const core::Scan& scan,
-                                               double margin_m, double reliable_range_m);
+                                               double margin_m);
 
 }  // namespace helixnav::supervisor

@@ -104,7 +104,7 @@ void Navigator::augment(const Scan& scan, StepReport& report) {
 void Navigator::live_and_let_die(const Scan& scan, StepReport& report) {
   const std::vector<LandmarkId> seen = landmarks_with(Outcome::matched, report.associations);
   const std::vector<LandmarkId> born = landmarks_with(Outcome::augmented, report.associations);
-  std::vector<LandmarkId> expected = expected_in_view(filter_, scan, options_.view_margin_m, options_.reliable_range_m);
+  std::vector<LandmarkId> expected = expected_in_view(filter_, scan, options_.view_margin_m);
   for (const Outcome no_miss : {Outcome::ambiguous, Outcome::rejected, Outcome::augmented}) {
     for (const LandmarkId id : landmarks_with(no_miss, report.associations)) {
       expected.erase(std::remove(expected.begin(), expected.end(), id), expected.end());

@@ -65,7 +65,7 @@ TEST(LandmarkLife, MatureOnesDieOfStrongEvidenceOnly) {
   LandmarkLife life = with_a_mature_landmark({});
   int misses = 0;
   while (life.contains(4)) life.observe(at(11.0 + misses++), {}, {}, {4});
-  EXPECT_EQ(misses, 15);  // (8 + 8) / ln(0.9/0.3)
+  EXPECT_EQ(misses, 13);  // (8 + 6) / ln(0.9/0.3)
 }
 
 TEST(LandmarkLife, MatureOnesLiveForEverWhenToldSo) {

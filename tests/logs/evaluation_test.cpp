@@ -125,6 +125,27 @@ TEST(Evaluation, CountsNisAgainstItsTwoSidedBand) {
   EXPECT_NEAR(evaluation.nis.mean_per_dof, (low + high) * 2.0 / 16.0, 1e-12);
 }
 
+TEST(Evaluation, CountsARevisitOnlyAfterALongAbsence) {
+  RunFolder run;
+  const auto match_at = [&run](std::int64_t step, double nis) {
+    core::StepReport report;
+    report.step = step;
+    core::AssociationReport match;
+    match.outcome = core::Outcome::matched;
+    match.landmark = 7;
+    match.nis = nis;
+    match.dof = 2;
+    report.associations = {match};
+    run.steps.push_back(report);
+  };
+  match_at(0, 100.0);    // first sight of all
+  match_at(150, 100.0);  // 150 steps later: not yet
+  match_at(301, 3.0);    // 151 steps later
+  const Evaluation evaluation = evaluate(run);
+  EXPECT_EQ(evaluation.revisits.revisits, 1u);
+  EXPECT_DOUBLE_EQ(evaluation.revisits.mean_nis_per_dof, 1.5);
+}
+
 TEST(Evaluation, OfARunWithoutStepsOrTruthSaysSo) {
   const Evaluation evaluation = evaluate(RunFolder{});
   EXPECT_FALSE(evaluation.position);

@@ -23,7 +23,7 @@ struct LifeOptions {
   double tentative_death_log_odds = -2.0;
   double tentative_patience_m = 30.0;  ///< a tentative landmark unseen over so long a drive dies
   bool mature_may_die = true;
-  double mature_death_log_odds = -8.0;
+  double mature_death_log_odds = -6.0;
 };
 
 /// What is known of one landmark's life.

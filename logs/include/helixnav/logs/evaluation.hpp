@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -81,12 +82,21 @@ struct NisEvaluation {
   double inside_95 = 0.0;     ///< fraction within the two-sided 95 % band
 };
 
+/// First matches of landmarks that had not been seen for `unseen_steps` steps: what the map says after a detour, before it
+/// is corrected. Needs no truth, and systematic errors of odometry and sensor show in it first.
+struct RevisitEvaluation {
+  static constexpr std::int64_t unseen_steps = 150;
+  std::size_t revisits = 0;
+  double mean_nis_per_dof = 0.0;  ///< NaN without revisits
+};
+
 struct Evaluation {
   std::size_t steps = 0;
   std::optional<PositionEvaluation> position;
   std::optional<PoseEvaluation> pose;
   std::optional<MapEvaluation> map;
   NisEvaluation nis;
+  RevisitEvaluation revisits;
 };
 
 struct EvaluationOptions {

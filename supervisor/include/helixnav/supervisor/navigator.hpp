@@ -23,7 +23,6 @@ struct NavigatorOptions {
   double extraneous_per_scan = 1.0;  ///< observations of no mapped landmark: clutter and new ones together
   double candidate_sigmas = 4.0;     ///< how far the search for candidates reaches
   double view_margin_m = 2.0;        ///< so far inside the field of view a landmark is expected to be seen
-  double reliable_range_m = 25.0;    ///< farther away, not being seen says nothing against a landmark
 };
 
 /// Navigates: keeps the pose and the landmark map up to date as events come in, with unknown data association.
