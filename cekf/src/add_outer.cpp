@@ -77,19 +77,42 @@ __attribute__((target("avx512f,fma"))) void all_avx512(const Operands& o, Index 
   all<Vector8, 2, 8>(o, rows, cols);
 }
 
-Kernel choose() {
-  __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f")) return all_avx512;
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return all_avx2;
-  return all_baseline;
-}
 #else
-Kernel choose() { return all_baseline; }
+constexpr Kernel all_avx2 = all_baseline;
+constexpr Kernel all_avx512 = all_baseline;
 #endif
 
-const Kernel kernel = choose();
+Kernel kernel_for(Instructions instructions) {
+  if (instructions == Instructions::avx512) return all_avx512;
+  return instructions == Instructions::avx2 ? all_avx2 : all_baseline;
+}
+
+Kernel best_kernel() {
+  for (const Instructions instructions : {Instructions::avx512, Instructions::avx2}) {
+    if (is_supported(instructions)) return kernel_for(instructions);
+  }
+  return all_baseline;
+}
+
+const Kernel kernel = best_kernel();
 
 }  // namespace
+
+bool is_supported([[maybe_unused]] Instructions instructions) {
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  if (instructions == Instructions::avx512) return __builtin_cpu_supports("avx512f") != 0;
+  if (instructions == Instructions::avx2)
+    return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
+#endif
+  return instructions == Instructions::baseline;
+}
+
+void add_outer_with(Instructions instructions, double* C, Index stride_C, Index rows, Index cols, const double* A,
+                    Index stride_A, const double* B, Index stride_B, Index depth) {
+  if (rows == 0 || cols == 0 || depth == 0) return;
+  kernel_for(instructions)({C, stride_C, A, stride_A, B, stride_B, depth}, rows, cols);
+}
 
 void add_outer(double* C, Index stride_C, Index rows, Index cols, const double* A, Index stride_A, const double* B,
                Index stride_B, Index depth) {

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What must hold after any operation, and the pieces the filter is made of.
-#include <cmath>
-
+// What must hold after any operation.
 #include <gtest/gtest.h>
 
-#include "helixnav/cekf/passive_covariance.hpp"
-#include "helixnav/core/random.hpp"
 #include "random_program.hpp"
 
 namespace helixnav::cekf {
@@ -82,41 +78,6 @@ INSTANTIATE_TEST_SUITE_P(BothRetractions, Law, testing::Values(Retraction::stand
                          [](const auto& tested) {
                            return tested.param == Retraction::standard ? "Standard" : "RightInvariant";
                          });
-
-TEST(PassiveCovariance, AddsAProductAndReadsItBack) {
-  core::RandomStream random(1);
-  const auto random_matrix = [&](int rows, int cols) {
-    return Eigen::MatrixXd::NullaryExpr(rows, cols, [&] { return random.normal(); }).eval();
-  };
-  PassiveCovariance store;
-  store.grow(300);
-  const Eigen::MatrixXd E = random_matrix(300, 21);
-  const Eigen::MatrixXd half = random_matrix(21, 21);
-  const Eigen::MatrixXd response = E * (half + half.transpose());
-  store.add_symmetric_product(response, E);
-  Eigen::MatrixXd dense = response * E.transpose();
-  const std::vector<int> slots = {3, 140, 64};
-  Eigen::MatrixXd columns = random_matrix(300, 6);
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {  // what is written must itself be symmetric
-      const Eigen::Index ci = 2 * static_cast<Eigen::Index>(i);
-      const Eigen::Index cj = 2 * static_cast<Eigen::Index>(j);
-      columns.block<2, 2>(2 * slots[i], cj).setConstant(static_cast<double>(1 + i + j));
-      columns.block<2, 2>(2 * slots[j], ci).setConstant(static_cast<double>(1 + i + j));
-    }
-  }
-  store.overwrite(slots, columns);
-  for (std::size_t k = 0; k < 3; ++k) {
-    dense.middleCols<2>(2 * slots[k]) = columns.middleCols<2>(2 * static_cast<Eigen::Index>(k));
-    dense.middleRows<2>(2 * slots[k]) = columns.middleCols<2>(2 * static_cast<Eigen::Index>(k)).transpose();
-  }
-  Eigen::MatrixXd read(300, 2);
-  for (const int slot : {0, 3, 63, 64, 149}) {
-    store.copy_columns(slot, read);
-    EXPECT_LE((read - dense.middleCols<2>(2 * slot)).cwiseAbs().maxCoeff(), 1e-11) << slot;
-    EXPECT_LE((store.block(slot, 70) - dense.block<2, 2>(2 * slot, 140)).cwiseAbs().maxCoeff(), 1e-11) << slot;
-  }
-}
 
 }  // namespace
 }  // namespace helixnav::cekf

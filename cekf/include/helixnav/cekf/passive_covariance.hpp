@@ -9,7 +9,7 @@ namespace helixnav::cekf {
 
 /// Symmetric matrix that keeps only the tiles of its lower triangle and grows without being copied: the covariance of
 /// all landmarks that have a slot, as of the last absorbed phase. Memory 4·n² bytes for n rows.
-/// Test: tests/cekf/passive_covariance_test.cpp.
+/// Test: tests/cekf/pieces_test.cpp.
 class PassiveCovariance {
  public:
   static constexpr int tile = 128;

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The pieces the filter is made of.
+#include <gtest/gtest.h>
+
+#include "add_outer.hpp"
+#include "helixnav/cekf/passive_covariance.hpp"
+#include "helixnav/cekf/reserved_matrix.hpp"
+#include "helixnav/core/random.hpp"
+
+namespace helixnav::cekf {
+namespace {
+
+Eigen::MatrixXd random_matrix(core::RandomStream& random, int rows, int cols) {
+  return Eigen::MatrixXd::NullaryExpr(rows, cols, [&] { return random.normal(); });
+}
+
+class AddOuter : public testing::TestWithParam<Instructions> {};
+
+TEST_P(AddOuter, EqualsThePlainProductForAnyShape) {
+  if (!is_supported(GetParam())) GTEST_SKIP() << "the processor lacks these instructions";
+  core::RandomStream random(7);
+  for (const int rows : {8, 16, 24, 88}) {
+    for (const int cols : {1, 2, 3, 7, 8, 19, 83}) {
+      for (const int depth : {1, 2, 18, 131}) {
+        const Eigen::MatrixXd A = random_matrix(random, rows + 8, depth);
+        const Eigen::MatrixXd B = random_matrix(random, cols + 3, depth);
+        Eigen::MatrixXd C = random_matrix(random, rows + 16, cols);
+        Eigen::MatrixXd expected = C;
+        expected.topRows(rows) += A.topRows(rows) * B.topRows(cols).transpose();
+        add_outer_with(GetParam(), C.data(), C.outerStride(), rows, cols, A.data(), A.outerStride(), B.data(),
+                       B.outerStride(), depth);
+        ASSERT_LE((C - expected).cwiseAbs().maxCoeff(), 1e-12) << rows << ' ' << cols << ' ' << depth;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllInstructions, AddOuter,
+                         testing::Values(Instructions::baseline, Instructions::avx2, Instructions::avx512));
+
+TEST(ReservedMatrix, KeepsWhatIsCommonAndZeroesTheRest) {
+  ReservedMatrix matrix(5, 4);
+  matrix.view().setConstant(2.0);
+  const double* const storage = matrix.col(0);
+  matrix.resize(3, 2);
+  matrix.resize(5, 4);
+  EXPECT_EQ(matrix.col(0), storage);
+  EXPECT_EQ(matrix.view().sum(), 2.0 * 6);
+  matrix.resize(40, 30);
+  EXPECT_EQ(matrix.view().sum(), 2.0 * 6);
+  EXPECT_EQ(matrix.stride() % 8, 0);
+  const ReservedMatrix copy = matrix;
+  matrix.resize(2, 1);
+  EXPECT_EQ(copy.view().sum(), 2.0 * 6);
+  matrix = copy;
+  EXPECT_EQ(matrix.view(), copy.view());
+}
+
+TEST(PassiveCovariance, AddsAProductAndReadsItBack) {
+  core::RandomStream random(1);
+  PassiveCovariance store;
+  store.grow(300);
+  const Eigen::MatrixXd E = random_matrix(random, 300, 21);
+  const Eigen::MatrixXd half = random_matrix(random, 21, 21);
+  const Eigen::MatrixXd response = E * (half + half.transpose());
+  store.add_symmetric_product(response, E);
+  Eigen::MatrixXd dense = response * E.transpose();
+  const std::vector<int> slots = {3, 140, 64};
+  Eigen::MatrixXd columns = random_matrix(random, 300, 6);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {  // what is written must itself be symmetric
+      const Eigen::Index ci = 2 * static_cast<Eigen::Index>(i);
+      const Eigen::Index cj = 2 * static_cast<Eigen::Index>(j);
+      columns.block<2, 2>(2 * slots[i], cj).setConstant(static_cast<double>(1 + i + j));
+      columns.block<2, 2>(2 * slots[j], ci).setConstant(static_cast<double>(1 + i + j));
+    }
+  }
+  store.overwrite(slots, columns);
+  for (std::size_t k = 0; k < 3; ++k) {
+    dense.middleCols<2>(2 * slots[k]) = columns.middleCols<2>(2 * static_cast<Eigen::Index>(k));
+    dense.middleRows<2>(2 * slots[k]) = columns.middleCols<2>(2 * static_cast<Eigen::Index>(k)).transpose();
+  }
+  Eigen::MatrixXd read(300, 2);
+  for (const int slot : {0, 3, 63, 64, 149}) {
+    store.copy_columns(slot, read);
+    EXPECT_LE((read - dense.middleCols<2>(2 * slot)).cwiseAbs().maxCoeff(), 1e-11) << slot;
+    EXPECT_LE((store.block(slot, 70) - dense.block<2, 2>(2 * slot, 140)).cwiseAbs().maxCoeff(), 1e-11) << slot;
+  }
+}
+
+}  // namespace
+}  // namespace helixnav::cekf
