@@ -52,7 +52,7 @@ LifeChanges LandmarkLife::observe(const Eigen::Vector2d& sensor_m, const std::ve
 
   for (const LandmarkId id : seen) hit(*find(id), sensor_m);
   for (const LandmarkId id : expected) {
-    if (!is_listed(seen, id)) miss(*find(id), sensor_m);
+    if (!is_listed(seen, id) && !is_listed(born, id)) miss(*find(id), sensor_m);
   }
   for (const LandmarkId id : born) {
     LandmarkRecord record;

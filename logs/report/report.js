@@ -334,7 +334,7 @@
       dots("single updates", n.steps_t, n.steps, c.faint, { marker: { color: c.faint, size: 3 }, opacity: .55,
         hovertemplate: "%{x:.1f} s: %{y:.2f}<extra></extra>" }),
       line("mean of a block", n.t, n.mean, c.estimate, { hovertemplate: "%{x:.1f} s: %{y:.2f}<extra></extra>" }),
-    ], { xaxis: timeAxis(), yaxis: axis("NIS per degree of freedom [–]", { range: [0, top] }) });
+    ], { xaxis: timeAxis(), yaxis: axis("NIS / dof [–]", { range: [0, top] }) });
     byId("nis-note").textContent = n.t.length === 0 ? "No update was made in this run."
       : `Normalised innovation squared of the joint updates, and its mean over blocks of ${count(n.block)} updates with
          the band that such a mean keeps to with 95 % if the filter is consistent.`;

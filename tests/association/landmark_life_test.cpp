@@ -61,6 +61,13 @@ LandmarkLife with_a_mature_landmark(const LifeOptions& options) {
   return life;
 }
 
+TEST(LandmarkLife, BeingBornIsNoMiss) {
+  LandmarkLife life;
+  life.observe(at(0.0), {}, {7}, {7});
+  EXPECT_EQ(life.record(7).misses, 0);
+  EXPECT_EQ(life.record(7).hits, 1);
+}
+
 TEST(LandmarkLife, MatureOnesDieOfStrongEvidenceOnly) {
   LandmarkLife life = with_a_mature_landmark({});
   int misses = 0;
