@@ -33,7 +33,8 @@ void add_config_command(CLI::App& app, ExitCode&) {
   CLI::App* command = app.add_subcommand("config", "Print the settings, or check a configuration file");
   const auto job = std::make_shared<ConfigJob>();
   command->add_flag("--dump", job->dump, "Print all settings with their values as a file for --config");
-  command->add_option("--check", job->check, "Read FILE and say whether every key is known and in range");
+  command->add_option("--check", job->check, "Read FILE and say whether every key is known and in range")
+      ->type_name("FILE");
   add_settings(*command, job->settings);
   command->footer(
       "Examples:\n"

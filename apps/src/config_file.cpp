@@ -2,6 +2,7 @@
 #include "config_file.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -68,7 +69,8 @@ std::vector<CLI::Option*> configurable_options(const CLI::App& app) {
 
 void apply_config_file(CLI::App& app, const std::string& path) {
   std::ifstream file(path);
-  if (!file) throw CLI::FileError::Missing(path);
+  if (!file || std::filesystem::is_directory(path))
+    throw CLI::FileError(path + ": cannot read this configuration file");
   const std::vector<CLI::Option*> options = configurable_options(app);
   std::vector<CLI::ConfigItem> items;
   try {

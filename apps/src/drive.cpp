@@ -29,7 +29,8 @@ double quantile(std::vector<double> times, double fraction) {
 
 void check_labels(const Drive& job) {
   if (job.known_association && job.recording.labels.empty()) {
-    throw core::InputError(job.recording.name + ": --association known needs a labelled log, and this one has no labels");
+    throw core::InputError(job.recording.name +
+                           ": --association known needs a labelled log, and this one has no labels");
   }
 }
 
@@ -75,7 +76,8 @@ ExitCode drive(const Drive& job) {
   std::fputs(logs::evaluation_text(evaluation).c_str(), stdout);
   std::printf("run folder: %s   report: %s/report.html\n", job.out.c_str(), job.out.c_str());
   if (!interrupted()) return ExitCode::ok;
-  std::fprintf(stderr, "helixnav: interrupted after step %zu; the run folder is complete up to there\n", step_us.size());
+  std::fprintf(stderr, "helixnav: interrupted after %zu steps; the run folder is complete up to there\n",
+               step_us.size());
   return ExitCode::interrupted;
 }
 

@@ -9,6 +9,7 @@
 #include "helixnav/logs/evaluation.hpp"
 #include "helixnav/logs/run_folder.hpp"
 #include "truth_file.hpp"
+#include "validators.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -35,14 +36,17 @@ void add_evaluate_command(CLI::App& app, ExitCode&) {
   CLI::App* command = app.add_subcommand("evaluate", "Compare a run folder with truth");
   const auto job = std::make_shared<EvaluateJob>();
   command->add_option("DIR", job->folder, "Run folder, also one whose run was killed")->required();
-  command->add_option("--truth", job->truth,
-                      "Truth instead of the run folder's: truth_*.csv, a folder of them, or Victoria Park's aa3_gpsx.mat");
-  command->add_option("--truth-offset-s", job->truth_offset_s, "Added to the times of --truth")->capture_default_str();
+  command->add_option(
+      "--truth", job->truth,
+      "Truth instead of the run folder's: truth_*.csv, a folder of them, or Victoria Park's aa3_gpsx.mat");
+  command->add_option("--truth-offset-s", job->truth_offset_s, "Added to the times of --truth")
+      ->capture_default_str()
+      ->check(number_between(-1e9, 1e9));
   command
       ->add_option("--fix-limit-m", job->options.fix_limit_m,
                    "Fixes farther than this after the rigid alignment are left out and counted")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(number_between(1e-3, 1e9));
   command->add_flag("--json", job->json, "Print JSON");
   command->footer(
       "Examples:\n"

@@ -22,11 +22,18 @@ ExitCode fail(ExitCode code, const char* what) {
 
 ExitCode run(int argc, char** argv) {
   CLI::App app{"Landmark navigation with an exact compressed EKF.", "helixnav"};
-  app.set_version_flag("--version",
-                       "helixnav " + std::string(core::version()) + " (" + std::string(core::commit()) + ")");
+  const std::string version = "helixnav " + std::string(core::version()) + " (" + std::string(core::commit()) + ")";
+  app.set_version_flag("--version", version, "Print the version and exit");
   app.require_subcommand(1);
   app.fallthrough(false);
-  app.footer("helixnav COMMAND --help says more.  Exit codes: 0 ok, 2 usage, 3 data, 4 numerical, 130 interrupted.");
+  app.footer(
+      "helixnav COMMAND --help says more.\n\n"
+      "Exit codes:\n"
+      "  0    done\n"
+      "  2    usage: the command line or the configuration file is wrong\n"
+      "  3    data: a log, run folder or truth cannot be used, or --out is not empty\n"
+      "  4    numerical: the mathematics broke down\n"
+      "  130  interrupted: the run folder is complete up to the last step\n");
 
   remember_command_line(argc, argv);
   ExitCode code = ExitCode::ok;
@@ -34,6 +41,10 @@ ExitCode run(int argc, char** argv) {
   add_simulate_command(app, code);
   add_evaluate_command(app, code);
   add_config_command(app, code);
+  for (CLI::App* command : app.get_subcommands({})) {
+    command->set_version_flag("--version", version, "Print the version and exit");
+  }
+  if (argc < 2) return fail(ExitCode::usage, ("a command is missing\n\n" + app.help()).c_str());
   try {
     app.parse(argc, argv);
     return code;

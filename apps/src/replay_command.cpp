@@ -41,7 +41,7 @@ std::vector<logs::InputFile> input_files(const std::string& path) {
 }
 
 ExitCode replay(CLI::App& command, ReplayJob& job) {
-  if (!job.run.config.empty()) apply_config_file(command, job.run.config);
+  prepare_run(command, job.run);
   const auto begin = std::chrono::steady_clock::now();
   Drive task;
   task.recording = logs::read_recording(job.path, job.settings.logs);

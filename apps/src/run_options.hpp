@@ -21,6 +21,9 @@ struct RunOptions {
 
 void add_run_options(CLI::App& command, RunOptions& options);
 
+/// Applies --config and refuses an --out that is taken, before anything is read or computed. InputError for --out.
+void prepare_run(CLI::App& command, const RunOptions& options);
+
 /// Copies the options into the drive and begins its manifest; `config` is the configuration in force.
 void fill_drive(Drive& drive, const RunOptions& options, const std::string& config);
 

@@ -5,6 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "validators.hpp"
+
 namespace helixnav::apps {
 namespace {
 
@@ -12,13 +14,18 @@ const char* const group = "Settings (keys of --config)";
 
 template <typename T>
 CLI::Option* add_number(CLI::App& command, const char* name, T& value, T low, T high, const char* help) {
-  return command.add_option(name, value, help)->capture_default_str()->check(CLI::Range(low, high))->group(group);
+  return command.add_option(name, value, help)->capture_default_str()->check(number_between(low, high))->group(group);
 }
 
 std::vector<association::Method> methods() {
   using association::Method;
-  return {Method::nearest_neighbour, Method::nearest_neighbour_unique, Method::likelihood_ratio,
-          Method::joint_likelihood_ratio, Method::jcbb, Method::ihgr_published, Method::ihgr_likelihood_ratio};
+  return {Method::nearest_neighbour,
+          Method::nearest_neighbour_unique,
+          Method::likelihood_ratio,
+          Method::joint_likelihood_ratio,
+          Method::jcbb,
+          Method::ihgr_published,
+          Method::ihgr_likelihood_ratio};
 }
 
 void choose_method(const std::string& chosen, Settings& settings) {
@@ -33,7 +40,7 @@ void add_filter(CLI::App& command, cekf::FilterOptions& filter) {
     filter.retraction = word == "standard" ? cekf::Retraction::standard : cekf::Retraction::right_invariant;
   };
   command.add_option_function<std::string>("--filter.retraction", set_retraction, "How a correction is applied")
-      ->check(CLI::IsMember({"right-invariant", "standard"}))
+      ->check(one_of({"right-invariant", "standard"}))
       ->default_str("right-invariant")
       ->group(group);
   add_number(command, "--filter.cell_side_m", filter.cell_side_m, 1.0, 1e6,
@@ -51,7 +58,7 @@ void add_association(CLI::App& command, Settings& settings) {
       .add_option_function<std::string>(
           "--association.method,--association", [&settings](const std::string& word) { choose_method(word, settings); },
           "Which observation belongs to which landmark; known: by the log's labels")
-      ->check(CLI::IsMember(names))
+      ->check(one_of(names))
       ->default_str(std::string(association::name(settings.navigator.method)))
       ->group(group);
   supervisor::NavigatorOptions& navigator = settings.navigator;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -11,6 +12,7 @@
 #include "helixnav/sim/simulate.hpp"
 #include "run_options.hpp"
 #include "settings.hpp"
+#include "validators.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -25,13 +27,14 @@ struct SimulateJob {
 std::string scenario_list() {
   std::string list = "Scenarios:\n";
   for (const std::string& name : sim::scenario_names()) {
-    list += "  " + name + std::string(name.size() < 22 ? 22 - name.size() : 1, ' ') + sim::named_scenario(name).description + '\n';
+    list += "  " + name + std::string(name.size() < 22 ? 22 - name.size() : 1, ' ') +
+            sim::named_scenario(name).description + '\n';
   }
   return list;
 }
 
 ExitCode simulate(CLI::App& command, SimulateJob& job) {
-  if (!job.run.config.empty()) apply_config_file(command, job.run.config);
+  prepare_run(command, job.run);
   Drive task;
   task.recording = sim::simulate(sim::named_scenario(job.scenario), job.seed);
   task.navigator = job.settings.navigator;
@@ -46,8 +49,12 @@ ExitCode simulate(CLI::App& command, SimulateJob& job) {
 void add_simulate_command(CLI::App& app, ExitCode& code) {
   CLI::App* command = app.add_subcommand("simulate", "Drive through a world with known truth");
   const auto job = std::make_shared<SimulateJob>();
-  command->add_option("SCENARIO", job->scenario, "One of the scenarios below")->capture_default_str();
-  command->add_option("--seed", job->seed, "Seed of every random stream")->capture_default_str();
+  command->add_option("SCENARIO", job->scenario, "One of the scenarios below")
+      ->capture_default_str()
+      ->check(one_of(sim::scenario_names()));
+  command->add_option("--seed", job->seed, "Seed of every random stream")
+      ->capture_default_str()
+      ->check(number_between(std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max()));
   add_run_options(*command, job->run);
   add_settings(*command, job->settings);
   command->footer(scenario_list() + "\nExample:\n  helixnav simulate large-loop --seed 1 --out runs/loop\n");

@@ -33,12 +33,15 @@ std::vector<std::string> command_names(const CLI::App& app) {
 }
 
 std::string unknown_word(const CLI::App& app, const std::string& word) {
-  const bool is_option = word.rfind("--", 0) == 0;
+  const bool is_option = word.rfind('-', 0) == 0;
   const std::string name = is_option ? word.substr(0, word.find('=')) : word;
-  const std::string nearest = core::nearest_name(name, is_option ? option_names(app) : command_names(app));
-  std::string message = (is_option ? "unknown option '" : "unexpected argument '") + name + "'";
-  if (!nearest.empty()) message += "; did you mean '" + nearest + "'?";
-  return message;
+  const std::vector<std::string> known = is_option ? option_names(app) : command_names(app);
+  const std::string nearest = core::nearest_name(name, known);
+  if (nearest.empty()) return "unexpected argument '" + name + "'";
+  if (nearest == name) return "option '" + name + "' belongs after the command";
+  const std::string question = " '" + name + "'; did you mean '" + nearest + "'?";
+  if (is_option) return "unknown option" + question;
+  return "unknown command" + question + " Known are: " + CLI::detail::join(known, ", ");
 }
 
 }  // namespace
