@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cstddef>
+
 #include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/errors.hpp"
 #include "innovation.hpp"
 
 namespace helixnav::cekf {
@@ -21,11 +24,53 @@ core::LandmarkId CompressedEkf::augment(const core::Observation& observation, co
   P.block<2, 2>(n, n) = 0.5 * (own + own.transpose());
   A.rightCols<2>().noalias() = A.leftCols<3>().lazyProduct(G);
 
+  return name_newest(located.point_world_m);
+}
+
+core::LandmarkId CompressedEkf::augment(const DerivedPoint& point) {
+  check_derived_point(point);
+  for (const core::LandmarkId id : point.ids) activate(id);
+
+  const int n = active_.dimension();
+  active_.P.resize(n + 2, n + 2);
+  active_.A.resize(active_.weights(), n + 2);
+  auto P = active_.P.view();
+  auto A = active_.A.view();
+  const auto add = [&](int column, int width, const Eigen::Ref<const Eigen::MatrixXd>& G) {
+    P.block(0, n, n, 2).noalias() += P.block(0, column, n, width).lazyProduct(G.transpose());
+    A.rightCols<2>().noalias() += A.middleCols(column, width).lazyProduct(G.transpose());
+  };
+  P.rightCols<2>().setZero();
+  A.rightCols<2>().setZero();
+  add(0, 3, point.G.leftCols(3));
+  for (std::size_t k = 0; k < point.ids.size(); ++k) {
+    add(ActivePart::column(place_of(point.ids[k], "augment").index), 2,
+        point.G.middleCols(3 + 2 * static_cast<Eigen::Index>(k), 2));
+  }
+  Eigen::Matrix2d own = point.noise_m2 + point.G.leftCols(3) * P.block(0, n, 3, 2);
+  for (std::size_t k = 0; k < point.ids.size(); ++k) {
+    const int column = ActivePart::column(place_of(point.ids[k], "augment").index);
+    own += point.G.middleCols(3 + 2 * static_cast<Eigen::Index>(k), 2) * P.block(column, n, 2, 2);
+  }
+  P.block(n, 0, 2, n) = P.block(0, n, n, 2).transpose();
+  P.block<2, 2>(n, n) = 0.5 * (own + own.transpose());
+  return name_newest(point.point_m);
+}
+
+void CompressedEkf::check_derived_point(const DerivedPoint& point) const {
+  for (const core::LandmarkId id : point.ids) place_of(id, "augment");
+  if (point.G.cols() != 3 + 2 * static_cast<Eigen::Index>(point.ids.size()) || !point.G.allFinite() ||
+      !point.point_m.allFinite() || !core::is_symmetric_positive_semidefinite(point.noise_m2)) {
+    throw core::PreconditionError("augment: a derived point needs a finite 2×(3+2·ids) G and a covariance of its noise");
+  }
+}
+
+core::LandmarkId CompressedEkf::name_newest(const Eigen::Vector2d& point_m) {
   const core::LandmarkId id = active_.next_id++;
   places_.push_back({Whereabouts::active, active_count()});
   active_.ids.push_back(id);
   active_.slots.push_back(-1);
-  active_.points_m.push_back(located.point_world_m);
+  active_.points_m.push_back(point_m);
   ++mapped_;
   return id;
 }

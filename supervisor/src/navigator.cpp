@@ -7,6 +7,7 @@
 
 #include "association_report.hpp"
 #include "candidates.hpp"
+#include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/odometry.hpp"
 
@@ -19,7 +20,7 @@ using core::Scan;
 using core::StepReport;
 
 Navigator::Navigator(const core::PoseGaussian& start, const NavigatorOptions& options)
-    : options_(options), filter_(start, options.filter), life_(options.life) {}
+    : options_(options), filter_(start, options.filter), life_(options.life), delayed_(options.delayed) {}
 
 void Navigator::move(const core::Odometry& odometry) {
   motion_ = motion_ ? core::chain(*motion_, odometry) : odometry;
@@ -41,10 +42,27 @@ StepReport Navigator::observe(const Scan& scan, const std::vector<std::int64_t>&
   StepReport report;
   report.associations = known_associations(scan, identities);
   update(scan, report);
-  augment(scan, report);
+  augment_known(scan, identities, report);
   remember(identities, report);
   report.switched_region = filter_.switch_region_if_due();
   return close_step(scan, report);
+}
+
+bool Navigator::fix(const core::AbsoluteFix& fix) {
+  predict();
+  const double nis = filter_.position_innovation(fix).nis;
+  const double limit = core::chi2_quantile(options_.fix_probability, 2);
+  const bool accepted = nis <= limit;
+  if (accepted) filter_.update_position(fix);
+  const core::PoseGaussian now = filter_.pose();
+  decisions_.push_back({"fix",
+                        accepted ? "accepted" : "refused",
+                        {{"nis", nis},
+                         {"gate", limit},
+                         {"x_m", fix.position_world_m.x()},
+                         {"y_m", fix.position_world_m.y()},
+                         {"pose_sigma_m", std::sqrt(now.covariance.topLeftCorner<2, 2>().trace())}}});
+  return accepted;
 }
 
 void Navigator::predict() {
@@ -97,7 +115,29 @@ void Navigator::augment(const Scan& scan, StepReport& report) {
   for (AssociationReport& association : report.associations) {
     if (association.outcome != Outcome::augmented) continue;
     const core::Observation& observation = scan.observations[static_cast<std::size_t>(association.observation)];
+    if (core::dimension(observation.kind) == 1) {
+      association.outcome = Outcome::ambiguous;  // without a name nobody can gather its sightings
+      continue;
+    }
     association.landmark = filter_.augment(observation, scan.T_robot_sensor);
+  }
+}
+
+void Navigator::augment_known(const Scan& scan, const std::vector<std::int64_t>& identities, StepReport& report) {
+  for (AssociationReport& association : report.associations) {
+    if (association.outcome != Outcome::augmented) continue;
+    const auto index = static_cast<std::size_t>(association.observation);
+    const core::Observation& observation = scan.observations[index];
+    if (core::dimension(observation.kind) == 2) {
+      association.landmark = filter_.augment(observation, scan.T_robot_sensor);
+      continue;
+    }
+    const auto entered = delayed_.sight(filter_, identities[index], observation, scan.T_robot_sensor);
+    if (entered) {
+      association.landmark = *entered;
+    } else {
+      association.outcome = Outcome::ambiguous;
+    }
   }
 }
 
@@ -128,13 +168,16 @@ StepReport Navigator::close_step(const Scan& scan, StepReport report) {
   report.t_ns = scan.t_ns;
   report.pose = filter_.pose();
   report.active_landmarks = filter_.active_count();
-  report.mapped_landmarks = filter_.mapped_count();
+  report.mapped_landmarks = filter_.mapped_count() - delayed_.clones();
+  report.decisions.insert(report.decisions.begin(), decisions_.begin(), decisions_.end());
+  decisions_.clear();
   return report;
 }
 
 std::vector<core::MapLandmark> Navigator::map() const {
   std::vector<core::MapLandmark> landmarks;
   for (const LandmarkId id : filter_.landmarks()) {
+    if (delayed_.is_clone(id)) continue;
     core::MapLandmark landmark;
     landmark.id = id;
     landmark.point = filter_.landmark(id);

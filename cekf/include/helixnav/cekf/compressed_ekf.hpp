@@ -57,6 +57,10 @@ class CompressedEkf {
 
   /// New active landmark where the observation (kind with two rows) sees it.
   core::LandmarkId augment(const core::Observation& observation, const core::Pose2& T_robot_sensor);
+  /// New active landmark as a linear function of pose and landmarks, with all its correlations; the landmarks it
+  /// depends on are activated first. Its mean is the caller's, who linearised there. O((n + q)·ids).
+  /// Test: supervisor/delayed_landmarks_test.cpp.
+  core::LandmarkId augment(const DerivedPoint& point);
 
   /// Conditions on kept = removed (difference known to sigma_m) for all pairs at once, iterated like update_iterated,
   /// then removes the second of each pair. Result: J and dof = 2·pairs. sigma_m = 0 is allowed as long as S stays
@@ -88,6 +92,12 @@ class CompressedEkf {
   core::PoseGaussian pose() const;
   /// Marginal of any landmark, read-only. O(1) active, O(q²) passive.
   core::PointGaussian landmark(core::LandmarkId id) const;
+  /// Mean of any landmark. O(1) active, O(q) passive.
+  Eigen::Vector2d landmark_mean(core::LandmarkId id) const;
+  /// At least the standard deviation in any direction (root of the trace), for searches that must not cost a marginal.
+  /// A passive landmark's is that of the phase's begin times 1.5: it shrinks with every update of the phase, and only the
+  /// right-invariant transport may turn it. O(1). Test: cekf/law_test.cpp.
+  double landmark_sigma_bound_m(core::LandmarkId id) const;
   /// Pose and the landmarks in the order given, active or passive, read-only.
   core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;
 
@@ -124,6 +134,10 @@ class CompressedEkf {
 
   const Place& place_of(core::LandmarkId id, const char* verb) const;
   int weights_per_anchor() const { return options_.retraction == Retraction::right_invariant ? 2 : 1; }
+
+  // augment.cpp
+  core::LandmarkId name_newest(const Eigen::Vector2d& point_m);
+  void check_derived_point(const DerivedPoint& point) const;
 
   // update.cpp, update_iterated.cpp, merge.cpp, apply_correction.cpp
   void check_matches(const std::vector<Match>& matches, const char* verb) const;

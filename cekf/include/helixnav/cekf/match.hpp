@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "helixnav/core/landmark_id.hpp"
 #include "helixnav/core/observation.hpp"
 #include "helixnav/core/se2.hpp"
@@ -14,6 +16,15 @@ struct Match {
   core::LandmarkId landmark = core::no_landmark;
   core::Observation observation;
   core::Pose2 T_robot_sensor;
+};
+
+/// A point that is known as a function of the pose and of points of the map: its error is G times their errors (pose in
+/// (x, y, heading) first, then (x, y) of each landmark in the order of `ids`) plus independent noise.
+struct DerivedPoint {
+  Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
+  std::vector<core::LandmarkId> ids;
+  Eigen::Matrix<double, 2, Eigen::Dynamic> G;  ///< 2×(3 + 2·ids)
+  Eigen::Matrix2d noise_m2 = Eigen::Matrix2d::Zero();  ///< symmetric positive semidefinite
 };
 
 /// What an update says of itself: nis is νᵀS⁻¹ν, or, of an iterated update, the cost J at its minimum; either is

@@ -11,6 +11,7 @@
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/step_report.hpp"
+#include "helixnav/supervisor/delayed_landmarks.hpp"
 
 namespace helixnav::supervisor {
 
@@ -20,6 +21,8 @@ struct NavigatorOptions {
   association::Options association;
   association::Gates gates;
   association::LifeOptions life;
+  DelayedOptions delayed;            ///< of landmarks known by name and seen as a range or a bearing only
+  double fix_probability = 0.999;    ///< χ² gate of an absolute fix
   double extraneous_per_scan = 1.0;  ///< observations of no mapped landmark: clutter and new ones together
   double candidate_sigmas = 4.0;     ///< how far the search for candidates reaches
   double view_margin_m = 2.0;        ///< so far inside the field of view a landmark is expected to be seen
@@ -44,7 +47,11 @@ class Navigator {
   /// PreconditionError unless there is one identity an observation.
   core::StepReport observe(const core::Scan& scan, const std::vector<std::int64_t>& identities);
 
-  /// Pose at the last scan.
+  /// A position fix in the map frame: motion pending is predicted, then the fix updates the pose when its NIS passes the
+  /// gate. The decision (kind "fix") goes into the report of the next scan. True when it was used.
+  bool fix(const core::AbsoluteFix& fix);
+
+  /// Pose at the last scan or fix.
   core::PoseGaussian pose() const { return filter_.pose(); }
 
   /// All landmarks with their state, in order of id. O(landmarks · q²): for the end of a run, not for every step.
@@ -59,6 +66,7 @@ class Navigator {
                                                           const std::vector<std::int64_t>& identities) const;
   void update(const core::Scan& scan, core::StepReport& report);
   void augment(const core::Scan& scan, core::StepReport& report);
+  void augment_known(const core::Scan& scan, const std::vector<std::int64_t>& identities, core::StepReport& report);
   void live_and_let_die(const core::Scan& scan, core::StepReport& report);
   void remember(const std::vector<std::int64_t>& identities, const core::StepReport& report);
   core::StepReport close_step(const core::Scan& scan, core::StepReport report);
@@ -67,11 +75,13 @@ class Navigator {
   cekf::CompressedEkf filter_;
   association::LandmarkLife life_;
   std::optional<core::Odometry> motion_;  ///< since the last scan
+  std::vector<core::Decision> decisions_;  ///< since the last scan
   std::int64_t step_ = 0;
 
   // Known association only: who is who, and how often it was seen.
   std::map<std::int64_t, core::LandmarkId> landmark_of_identity_;
   std::map<core::LandmarkId, int> observations_of_known_;
+  DelayedLandmarks delayed_;
 };
 
 }  // namespace helixnav::supervisor

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/core/observation.hpp"
+#include "helixnav/core/se2.hpp"
+
+namespace helixnav::supervisor {
+
+/// One row of a fit: where the sensor stood, and how its pose depends on the coordinates that `P` speaks of.
+struct FitRow {
+  core::ObservationKind kind = core::ObservationKind::range;
+  double z = 0.0;
+  double variance = 0.0;
+  core::Pose2 sensor;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> J;  ///< 3×size of P: (x, y, heading) of the sensor by those coordinates
+};
+
+/// A point with its dependence: error = G · error of the coordinates + noise. `cost` is νᵀS⁻¹ν + ln|S|, twice the negative
+/// log-likelihood but for a constant.
+struct FittedPoint {
+  Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Zero();
+  Eigen::Matrix<double, 2, Eigen::Dynamic> G;
+  Eigen::Matrix2d noise_m2 = Eigen::Matrix2d::Zero();
+  double nis = 0.0;
+  double cost = 0.0;
+};
+
+/// Weighted least squares by Levenberg-Marquardt, S = H·P·Hᵀ + R taken anew at every step. Nothing when it has not settled
+/// or the point is not determined.
+std::optional<FittedPoint> fit_point(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P,
+                                     const Eigen::Vector2d& start_m);
+
+/// The distinct solutions from starts all around (ranges) or along the ray (bearings) of the last row, best first.
+std::vector<FittedPoint> fit_from_everywhere(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P);
+
+}  // namespace helixnav::supervisor
