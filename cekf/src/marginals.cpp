@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Read-only views of the estimate for association, display and tests.
 #include <algorithm>
+#include <cmath>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
 
@@ -18,6 +19,23 @@ core::PointGaussian CompressedEkf::landmark(core::LandmarkId id) const {
   const Eigen::Matrix2d own = phases_.back().own_covariance_m2.middleRows<2>(2 * place.index) +
                               e * (active_.M.view().selfadjointView<Eigen::Lower>() * e.transpose());
   return {passive_mean(place.index), 0.5 * (own + own.transpose())};
+}
+
+Eigen::Vector2d CompressedEkf::landmark_mean(core::LandmarkId id) const {
+  const Place& place = place_of(id, "landmark_mean");
+  return place.where == Whereabouts::active ? active_.points_m[static_cast<std::size_t>(place.index)]
+                                            : passive_mean(place.index);
+}
+
+double CompressedEkf::landmark_sigma_bound_m(core::LandmarkId id) const {
+  constexpr double margin = 1.5;
+  const Place& place = place_of(id, "landmark_sigma_bound_m");
+  if (place.where == Whereabouts::active) {
+    const int column = ActivePart::column(place.index);
+    return std::sqrt(std::max(0.0, active_.P.view().block<2, 2>(column, column).trace()));
+  }
+  const auto own = phases_.back().own_covariance_m2.middleRows<2>(2 * place.index);
+  return margin * std::sqrt(std::max(0.0, own(0, 0) + own(1, 1)));
 }
 
 core::JointGaussian CompressedEkf::joint(const std::vector<core::LandmarkId>& ids) const {

@@ -47,10 +47,10 @@ std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, cons
 
   std::vector<core::LandmarkId> chosen;
   for (const core::LandmarkId id : filter.landmarks_within(sensor_m, reach_m)) {
-    const core::PointGaussian landmark = filter.landmark(id);
-    const double sigma_m = sigma_bound(landmark.covariance_m2);
+    const Eigen::Vector2d mean_m = filter.landmark_mean(id);
+    const double sigma_m = filter.landmark_sigma_bound_m(id);
     const bool near = std::any_of(seen.begin(), seen.end(), [&](const SeenPoint& s) {
-      return (s.point_m - landmark.mean_m).norm() < sigmas * (s.sigma_m + sigma_m);
+      return (s.point_m - mean_m).norm() < sigmas * (s.sigma_m + sigma_m);
     });
     if (near) chosen.push_back(id);
   }
@@ -65,7 +65,7 @@ std::vector<core::LandmarkId> expected_in_view(const cekf::CompressedEkf& filter
   std::vector<core::LandmarkId> expected;
   if (!std::isfinite(view.max_range_m)) return expected;
   for (const core::LandmarkId id : filter.landmarks_within(T_world_sensor.position_m(), view.max_range_m - margin_m)) {
-    const Eigen::Vector2d point_m = core::transform(T_sensor_world, filter.landmark(id).mean_m);
+    const Eigen::Vector2d point_m = core::transform(T_sensor_world, filter.landmark_mean(id));
     const double range_m = point_m.norm();
     const double bearing_rad = std::atan2(point_m.y(), point_m.x());
     const double margin_rad = margin_m / std::max(range_m, margin_m);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What must hold after any operation.
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "random_program.hpp"
@@ -48,6 +50,22 @@ TEST_P(Law, LandmarksWithinAreThoseWhoseMeanIsNear) {
     }
     EXPECT_EQ(filter.landmarks_within(here, radius_m), expected) << radius_m;
   }
+}
+
+TEST_P(Law, TheCheapMeanIsTheMarginalsAndTheSigmaBoundHolds) {
+  RandomProgram program(43, {GetParam(), 220, 30, false});
+  int passive = 0;
+  for (int k = 0; k < 250; ++k) {
+    program.step();
+    const CompressedEkf& filter = program.filter;
+    for (const core::LandmarkId id : filter.landmarks()) {
+      const core::PointGaussian marginal = filter.landmark(id);
+      EXPECT_EQ(filter.landmark_mean(id), marginal.mean_m) << id;
+      EXPECT_GE(filter.landmark_sigma_bound_m(id), std::sqrt(marginal.covariance_m2.trace()) * (1.0 - 1e-12)) << id;
+      passive += filter.is_active(id) ? 0 : 1;
+    }
+  }
+  EXPECT_GT(passive, 1000);
 }
 
 TEST_P(Law, ARegionHoldsTheNeighbourhoodAndNoMoreThanAllowed) {
