@@ -61,7 +61,8 @@ void CompressedEkf::check_derived_point(const DerivedPoint& point) const {
   for (const core::LandmarkId id : point.ids) place_of(id, "augment");
   if (point.G.cols() != 3 + 2 * static_cast<Eigen::Index>(point.ids.size()) || !point.G.allFinite() ||
       !point.point_m.allFinite() || !core::is_symmetric_positive_semidefinite(point.noise_m2)) {
-    throw core::PreconditionError("augment: a derived point needs a finite 2×(3+2·ids) G and a covariance of its noise");
+    throw core::PreconditionError(
+        "augment: a derived point needs a finite 2×(3+2·ids) G and a covariance of its noise");
   }
 }
 

@@ -36,8 +36,7 @@ Odometry ackermann_increment(const AckermannGeometry& geometry, const AckermannN
   const double length_m = sample.wheel_speed_mps * wheel_ratio * sample.duration_s;
   const double turn_rad = length_m * curvature_per_m;
   const double d_length_d_speed = wheel_ratio * sample.duration_s;
-  const double d_length_d_steering =
-      length_m * wheel_ratio * geometry.encoder_offset_m / geometry.wheelbase_m * d_tan;
+  const double d_length_d_steering = length_m * wheel_ratio * geometry.encoder_offset_m / geometry.wheelbase_m * d_tan;
   const double d_turn_d_speed = d_length_d_speed * curvature_per_m;
   const double d_turn_d_steering = d_length_d_steering * curvature_per_m + length_m * d_tan / geometry.wheelbase_m;
 

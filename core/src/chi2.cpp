@@ -19,8 +19,8 @@ double chi2_quantile(double probability, int dof) {
 
 double chi2_cdf(double x, int dof) {
   if (!(x >= 0.0) || dof < 1) {
-    throw PreconditionError("chi2_cdf: x must not be negative and dof be at least 1, got " + std::to_string(x) + " and " +
-                            std::to_string(dof));
+    throw PreconditionError("chi2_cdf: x must not be negative and dof be at least 1, got " + std::to_string(x) +
+                            " and " + std::to_string(dof));
   }
   return boost::math::cdf(boost::math::chi_squared(dof), x);
 }

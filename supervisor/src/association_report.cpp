@@ -50,7 +50,8 @@ std::vector<core::LandmarkId> landmarks_with(core::Outcome outcome,
                                              const std::vector<core::AssociationReport>& associations) {
   std::vector<core::LandmarkId> ids;
   for (const core::AssociationReport& association : associations) {
-    if (association.outcome == outcome && association.landmark != core::no_landmark) ids.push_back(association.landmark);
+    if (association.outcome == outcome && association.landmark != core::no_landmark)
+      ids.push_back(association.landmark);
   }
   return ids;
 }

@@ -22,9 +22,7 @@ using core::StepReport;
 Navigator::Navigator(const core::PoseGaussian& start, const NavigatorOptions& options)
     : options_(options), filter_(start, options.filter), life_(options.life), delayed_(options.delayed) {}
 
-void Navigator::move(const core::Odometry& odometry) {
-  motion_ = motion_ ? core::chain(*motion_, odometry) : odometry;
-}
+void Navigator::move(const core::Odometry& odometry) { motion_ = motion_ ? core::chain(*motion_, odometry) : odometry; }
 
 StepReport Navigator::observe(const Scan& scan) {
   predict();

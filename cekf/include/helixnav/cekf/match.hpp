@@ -23,7 +23,7 @@ struct Match {
 struct DerivedPoint {
   Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
   std::vector<core::LandmarkId> ids;
-  Eigen::Matrix<double, 2, Eigen::Dynamic> G;  ///< 2×(3 + 2·ids)
+  Eigen::Matrix<double, 2, Eigen::Dynamic> G;          ///< 2×(3 + 2·ids)
   Eigen::Matrix2d noise_m2 = Eigen::Matrix2d::Zero();  ///< symmetric positive semidefinite
 };
 

@@ -20,7 +20,7 @@ struct Phase {
   std::vector<int> slot_of_id;                     ///< slot of each landmark that was passive then, else −1
   Eigen::VectorXd mean_m;                          ///< 2·slots
   Eigen::MatrixXd own_covariance_m2 = Eigen::MatrixXd::Zero(0, 2);  ///< 2·slots × 2: the 2×2 diagonal blocks of P_bb0
-  ReservedMatrix basis;                            ///< E, 2·slots × q; activation appends columns
+  ReservedMatrix basis;                                             ///< E, 2·slots × q; activation appends columns
   std::vector<std::pair<std::pair<int, int>, core::LandmarkId>> by_cell;  ///< passive landmarks by cell, sorted
   std::vector<int> late_anchors;  ///< slots whose columns were appended, in order
 

@@ -17,13 +17,13 @@ class RandomStream {
  public:
   explicit RandomStream(std::uint64_t seed, std::string_view name = {});
 
-  std::uint64_t bits();                               ///< 64 uniform bits
-  double uniform();                                   ///< in [0, 1)
-  double uniform(double low, double high);            ///< in [low, high); rounding may give high in a tiny interval
-  std::uint64_t below(std::uint64_t bound);           ///< uniform in {0 … bound−1}, bound ≥ 1; no modulo bias
-  double normal();                                    ///< N(0, 1)
+  std::uint64_t bits();                      ///< 64 uniform bits
+  double uniform();                          ///< in [0, 1)
+  double uniform(double low, double high);   ///< in [low, high); rounding may give high in a tiny interval
+  std::uint64_t below(std::uint64_t bound);  ///< uniform in {0 … bound−1}, bound ≥ 1; no modulo bias
+  double normal();                           ///< N(0, 1)
   double normal(double mean, double sigma);
-  int poisson(double mean);                           ///< mean in [0, 500]; 0 for a mean below
+  int poisson(double mean);  ///< mean in [0, 500]; 0 for a mean below
   bool bernoulli(double probability);
 
   /// N(0, covariance) for a symmetric positive semidefinite 3×3 matrix. Always three normal draws.

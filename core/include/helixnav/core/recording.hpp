@@ -50,7 +50,7 @@ struct Recording {
   PoseGaussian start;         ///< of the robot in the map frame; DESIGN: identity with zero covariance
   std::vector<Event> events;  ///< in time order; an increment comes before the scan that ends it
 
-  std::vector<std::vector<Label>> labels;  ///< [scan][observation]; empty when nobody labelled the log
+  std::vector<std::vector<Label>> labels;              ///< [scan][observation]; empty when nobody labelled the log
   std::vector<SharedObservation> shared_observations;  ///< `labels` holds the first label of each
   std::vector<TruePose> true_poses;
   std::vector<TrueLandmark> true_landmarks;

@@ -29,9 +29,9 @@ struct AssociationReport {
   int observation = 0;  ///< index in the scan, from 0
   Outcome outcome = Outcome::ambiguous;
   LandmarkId landmark = no_landmark;
-  double nis = 0.0;         ///< νᵀS⁻¹ν of the pair chosen; NaN when there was none
-  int dof = 0;              ///< rows of ν; 0 when there was none
-  double margin_nats = 0.0; ///< cost of the best alternative minus cost of the choice; +inf when there was none
+  double nis = 0.0;          ///< νᵀS⁻¹ν of the pair chosen; NaN when there was none
+  int dof = 0;               ///< rows of ν; 0 when there was none
+  double margin_nats = 0.0;  ///< cost of the best alternative minus cost of the choice; +inf when there was none
 };
 
 /// A decision worth a sentence: trigger, relocalisation, verification, closure, refusal, landmark death. `numbers` are
@@ -47,9 +47,9 @@ struct StepReport {
   std::int64_t step = 0;  ///< index of the scan, from 0
   Nanoseconds t_ns = 0;
   Mode mode = Mode::mapping;
-  PoseGaussian pose;      ///< T_world_robot after the scan
+  PoseGaussian pose;  ///< T_world_robot after the scan
   std::vector<AssociationReport> associations;
-  double joint_nis = 0.0; ///< of the joint update; 0 with joint_dof 0 when nothing matched
+  double joint_nis = 0.0;  ///< of the joint update; 0 with joint_dof 0 when nothing matched
   int joint_dof = 0;
   int active_landmarks = 0;
   int mapped_landmarks = 0;

@@ -12,11 +12,11 @@
 namespace helixnav::supervisor {
 
 struct DelayedOptions {
-  int window = 16;           ///< sightings kept of one landmark; when full, every second one goes and the spacing doubles
-  double spacing_m = 1.0;    ///< so far the sensor moves between two sightings that are kept
-  double max_relative_sigma = 0.1;   ///< largest σ of the landmark, relative to the robot, by its distance
-  double fit_probability = 0.999;    ///< χ² gate of the fit to all sightings kept
-  double min_rival_margin = 14.0;    ///< twice the log-likelihood by which every other solution must be worse
+  int window = 16;         ///< sightings kept of one landmark; when full, every second one goes and the spacing doubles
+  double spacing_m = 1.0;  ///< so far the sensor moves between two sightings that are kept
+  double max_relative_sigma = 0.1;  ///< largest σ of the landmark, relative to the robot, by its distance
+  double fit_probability = 0.999;   ///< χ² gate of the fit to all sightings kept
+  double min_rival_margin = 14.0;   ///< twice the log-likelihood by which every other solution must be worse
 };
 
 /// Landmarks seen as a bearing or a range only: they enter the filter when the sightings from several places fix them as

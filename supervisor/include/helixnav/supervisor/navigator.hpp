@@ -74,7 +74,7 @@ class Navigator {
   NavigatorOptions options_;
   cekf::CompressedEkf filter_;
   association::LandmarkLife life_;
-  std::optional<core::Odometry> motion_;  ///< since the last scan
+  std::optional<core::Odometry> motion_;   ///< since the last scan
   std::vector<core::Decision> decisions_;  ///< since the last scan
   std::int64_t step_ = 0;
 
