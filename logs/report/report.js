@@ -374,9 +374,35 @@
       (w.block > 1 ? ` Blocks of ${w.block} scans.` : "");
   };
 
+  const drawSmoothing = () => {
+    const s = data.smoothing;
+    if (!s) return;
+    byId("smoothing").hidden = false;
+    byId("smoothing-note").textContent = `Path and map before and after ${count(s.chi2.length - 1)} iterations: χ² ${
+      fixed(s.chi2[0], 1)} to ${fixed(s.chi2[s.chi2.length - 1], 1)}.`;
+    draw("smoothing-map", [
+      line("path before", data.path.x, data.path.y, c.faint),
+      line("path after", s.path.x, s.path.y, c.estimate),
+      dots("landmarks before", s.before.x, s.before.y, c.faint, { text: s.before.id }),
+      dots("landmarks after", s.after.x, s.after.y, c.landmark, { text: s.after.id }),
+    ], { xaxis: axis("x [m]"), yaxis: axis("y [m]", { scaleanchor: "x" }) });
+    draw("smoothing-chi2", [{ ...line("χ²", s.chi2.map((_, k) => k), s.chi2, c.estimate), mode: "lines+markers" }],
+      { xaxis: axis("iteration [count]"), yaxis: axis("χ² [–]", { type: "log" }) });
+    const r = s.residuals;
+    const ends = r.step.length > 0 ? [r.step[0], r.step[r.step.length - 1]] : [];
+    draw("smoothing-residuals", [
+      ...band("±2σ", ends, ends.map(() => -2), ends.map(() => 2)),
+      dots("residual", r.step, r.value, c.estimate, { marker: { color: c.estimate, size: 3 } }),
+    ], { xaxis: axis("step [index]"), yaxis: axis("residual / σ [–]") });
+    byId("smoothing-residuals-note").textContent =
+      `${fixed(100 * r.inside_2sigma, 1)} % lie within 2σ; 95.4 % would if the covariances were right.`;
+    byId("smoothing-largest").replaceChildren(table("Largest residuals",
+      s.largest.map((e) => [`step ${e.step}: ${e.name}`, `NIS ${fixed(e.nis, 1)} of ${e.rows} rows`])));
+  };
+
   const drawAll = () => {
     c = colours();
-    for (const chart of [drawMap, drawErrors, drawNis, drawLandmarks, drawObservations, drawTiming]) chart();
+    for (const chart of [drawMap, drawErrors, drawNis, drawLandmarks, drawObservations, drawTiming, drawSmoothing]) chart();
   };
 
   writeHeader();

@@ -5,6 +5,7 @@
 
 #include "report_assets.hpp"
 #include "report_data.hpp"
+#include "report_smoothing.hpp"
 
 namespace helixnav::logs {
 
@@ -49,8 +50,10 @@ std::string for_script(const Json& json) {
 }  // namespace
 
 std::string render_report(const RunFolder& run, const Evaluation& evaluation,
-                          const std::vector<std::pair<std::string, double>>& timing) {
-  const std::string data = for_script(report_data(run, evaluation));
+                          const std::vector<std::pair<std::string, double>>& timing, const SmoothedRun* smoothed) {
+  Json json = report_data(run, evaluation);
+  if (smoothed != nullptr) json["smoothing"] = smoothing_data(*smoothed);
+  const std::string data = for_script(json);
   const std::string wall_clock = for_script(report_wall_clock(run, timing));
   return fill(report_page, {{"style", report_style},
                             {"data", data},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/logs/run_writer.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <initializer_list>
@@ -86,9 +87,8 @@ void append_decision(std::string& text, const core::StepReport& report, const co
   text += decision.numbers.empty() ? ",\n" : "\n";
 }
 
-void append_trajectory(std::string& text, const core::StepReport& report) {
-  const core::Pose2& pose = report.pose.mean;
-  append_seconds(text, report.t_ns);
+void append_trajectory(std::string& text, core::Nanoseconds t_ns, const core::Pose2& pose) {
+  append_seconds(text, t_ns);
   for (const double value :
        {pose.x_m, pose.y_m, 0.0, 0.0, 0.0, std::sin(0.5 * pose.heading_rad), std::cos(0.5 * pose.heading_rad)}) {
     text += ' ';
@@ -122,6 +122,14 @@ std::string map_text(const std::vector<core::MapLandmark>& map) {
     text += word_of(state_words, landmark.state);
     text += '\n';
   }
+  return text;
+}
+
+std::string final_trajectory_text(const std::vector<core::StepReport>& steps, const std::vector<core::Pose2>& poses) {
+  std::string text(trajectory_table.header);
+  text += '\n';
+  const std::size_t n = std::min(steps.size(), poses.size());
+  for (std::size_t i = 0; i < n; ++i) append_trajectory(text, steps[i].t_ns, poses[i]);
   return text;
 }
 
@@ -174,7 +182,7 @@ void RunWriter::write(const core::StepReport& report, double microseconds) {
     append_association(f.associations.block, report.step, a, false);
   }
   for (const core::Decision& decision : report.decisions) append_decision(f.decisions.block, report, decision);
-  append_trajectory(f.trajectory.block, report);
+  append_trajectory(f.trajectory.block, report.t_ns, report.pose.mean);
   const auto rows = f.revised_rows + static_cast<std::int64_t>(report.associations.size());
   append_health(f.health.block, report, rows, microseconds);
   f.revised_rows = 0;
@@ -194,10 +202,13 @@ Evaluation RunWriter::finish(const std::vector<core::MapLandmark>& map, const Ru
   write_whole_file(folder_ + "/map.csv", map_text(map));
   RunFolder run = read_run(folder_);
   run.finished = true;
+  if (end.smoothed) {
+    write_whole_file(folder_ + "/trajectory_final.tum", final_trajectory_text(run.steps, end.smoothed->poses));
+  }
   const Evaluation evaluation = evaluate(run);
   Json summary = summary_to_json(run, evaluation, end.numbers);
   summary["timing"] = timing_to_json(run.microseconds, end.timing);
-  write_whole_file(folder_ + '/' + report_file, render_report(run, evaluation, end.timing));
+  write_whole_file(folder_ + '/' + report_file, render_report(run, evaluation, end.timing, end.smoothed ? &*end.smoothed : nullptr));
   write_whole_file(folder_ + '/' + summary_file, json_text(summary));
   return evaluation;
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/logs/evaluation.hpp"
 #include "helixnav/logs/run_manifest.hpp"
+#include "helixnav/logs/smoothed_run.hpp"
 
 namespace helixnav::logs {
 
@@ -19,6 +21,7 @@ namespace helixnav::logs {
 struct RunEnd {
   std::vector<std::pair<std::string, double>> numbers;  ///< into summary.json, such as chi2 and dof of a smoother
   std::vector<std::pair<std::string, double>> timing;   ///< wall clock, into summary.json under "timing"
+  std::optional<SmoothedRun> smoothed;                    ///< into trajectory_final.tum and the report
 };
 
 /// Writes a run folder (docs/run-folder.md) as the run goes. After the constructor the manifest, the headers and the
@@ -50,7 +53,7 @@ class RunWriter {
   /// `write` and replace those with the same (step, observation) when read.
   void revise(std::int64_t step, const std::vector<core::AssociationReport>& associations);
 
-  /// Writes map.csv, evaluates, writes summary.json and report.html. Each appears whole or not at all.
+  /// Writes map.csv, trajectory_final.tum when a smoother ran, evaluates, writes summary.json and report.html. Each appears whole or not at all.
   Evaluation finish(const std::vector<core::MapLandmark>& map, const RunEnd& end = {});
 
  private:

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/core/se2.hpp"
+#include "helixnav/core/step_report.hpp"
+
+namespace helixnav::logs {
+
+/// What a smoother made of a run, for trajectory_final.tum and the report. Map frame, metres, radians.
+struct SmoothedRun {
+  struct LargeResidual {
+    std::int64_t step = 0;
+    std::string name;  ///< "pose 203 sees landmark 17"
+    double nis = 0.0;  ///< eᵀC⁻¹e
+    int rows = 0;
+  };
+  /// One row of a landmark residual over its own σ.
+  struct Normalised {
+    std::int64_t step = 0;
+    double value = 0.0;
+  };
+
+  std::vector<core::Pose2> poses;  ///< [step] as known at the end
+  std::vector<core::MapLandmark> map_before;
+  std::vector<core::MapLandmark> map_after;
+  std::vector<double> chi2;                     ///< of the start, then after every iteration
+  std::vector<LargeResidual> largest;           ///< largest nis per row first
+  std::vector<Normalised> normalised_residuals;
+};
+
+}  // namespace helixnav::logs
