@@ -41,6 +41,7 @@ std::vector<double> navigate(const Drive& job, supervisor::Navigator& navigator,
   for (std::size_t i = 0; i < job.recording.events.size() && !interrupted(); ++i) {
     const core::Event& event = job.recording.events[i];
     if (const auto* odometry = std::get_if<core::Odometry>(&event)) navigator.move(*odometry);
+    if (const auto* fix = std::get_if<core::AbsoluteFix>(&event)) navigator.fix(*fix);
     if (const auto* scan = std::get_if<core::Scan>(&event)) {
       const Clock::time_point begin = Clock::now();
       const core::StepReport report = job.known_association

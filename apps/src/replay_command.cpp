@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -11,6 +12,8 @@
 #include "commands.hpp"
 #include "config_file.hpp"
 #include "drive.hpp"
+#include "estimate_range_scale.hpp"
+#include "fuse_gps.hpp"
 #include "helixnav/logs/read_recording.hpp"
 #include "run_options.hpp"
 #include "settings.hpp"
@@ -40,12 +43,26 @@ std::vector<logs::InputFile> input_files(const std::string& path) {
   return inputs;
 }
 
+/// Ranges that read long are made right: by the scale given, or by one estimated from the log itself.
+void scale_ranges(core::Recording& recording, const Settings& settings) {
+  double scale = settings.plaza_range_scale;
+  if (scale == 0.0 && !settings.known_association) return;  // the scale needs names; drive says what is missing
+  if (scale == 0.0) {
+    scale = estimate_range_scale(recording, settings.navigator);
+    std::printf("range scale estimated from the log: %.4f\n", scale);
+  }
+  divide_ranges(recording, scale);
+}
+
 ExitCode replay(CLI::App& command, ReplayJob& job) {
   prepare_run(command, job.run);
   const auto begin = std::chrono::steady_clock::now();
   Drive task;
+  job.settings.logs.plaza.range_scale = 1.0;  // see scale_ranges
   task.recording = logs::read_recording(job.path, job.settings.logs);
   task.navigator = job.settings.navigator;
+  if (logs::recognise(job.path) == logs::LogFormat::plaza) scale_ranges(task.recording, job.settings);
+  if (job.settings.gps.fuse) fuse_gps(task.recording, job.settings.gps);
   fill_drive(task, job.run, dump_config(command));
   task.known_association = job.settings.known_association;
   task.manifest.inputs = input_files(job.path);

@@ -99,6 +99,28 @@ void add_truck(CLI::App& command, const std::string& section, logs::AcfrSettings
              "Noise of a detection's bearing");
 }
 
+void add_plaza(CLI::App& command, Settings& settings) {
+  add_number(command, "--plaza.range_scale", settings.plaza_range_scale, 0.0, 2.0,
+             "Recorded range over true one; 0: estimated from the log by the least innovations (known association)");
+  add_number(command, "--plaza.sigma_range_m", settings.logs.plaza.sigma_range_m, 1e-3, 100.0, "Noise of a range");
+}
+
+void add_gps(CLI::App& command, Settings& settings) {
+  GpsSettings& gps = settings.gps;
+  command
+      .add_option_function<std::string>(
+          "--gps.use,--gps", [&gps](const std::string& word) { gps.fuse = word == "fuse"; },
+          "truth: GPS is only compared with; fuse: it updates the pose, and the map frame is that of the GPS, the start "
+          "pose being aligned with the fixes of the first gps.start_m metres. Errors against GPS are then no truth")
+      ->check(one_of({"truth", "fuse"}))
+      ->default_str("truth")
+      ->group(group);
+  add_number(command, "--gps.sigma_m", gps.sigma_m, 1e-3, 1000.0, "Noise of a fix in x and in y (fuse)");
+  add_number(command, "--gps.start_m", gps.start_m, 1.0, 1e5, "Drive that aligns the start with the GPS frame (fuse)");
+  add_number(command, "--gps.gate_probability", settings.navigator.fix_probability, 0.5, 0.999999,
+             "Gate of a fix, as the probability that a right one is inside (fuse)");
+}
+
 }  // namespace
 
 void add_settings(CLI::App& command, Settings& settings) {
@@ -107,6 +129,8 @@ void add_settings(CLI::App& command, Settings& settings) {
   add_landmarks(command, settings.navigator);
   add_truck(command, "victoria_park", settings.logs.victoria_park);
   add_truck(command, "car_park", settings.logs.car_park);
+  add_plaza(command, settings);
+  add_gps(command, settings);
 }
 
 }  // namespace helixnav::apps

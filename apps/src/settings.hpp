@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "fuse_gps.hpp"
 #include "helixnav/logs/read_recording.hpp"
 #include "helixnav/supervisor/navigator.hpp"
 
@@ -17,6 +18,8 @@ struct Settings {
   supervisor::NavigatorOptions navigator;
   bool known_association = false;  ///< association.method is "known": the log's labels are the identities
   logs::RecordingSettings logs;
+  double plaza_range_scale = 0.0;  ///< 0: estimate it from the log
+  GpsSettings gps;
 };
 
 /// Adds one option a key, with unit, range and default in its help.
