@@ -43,6 +43,7 @@ void apply_item(const std::vector<CLI::Option*>& options, const CLI::ConfigItem&
       std::find_if(options.begin(), options.end(), [&](const CLI::Option* o) { return key_of(*o) == key; });
   if (found == options.end()) {
     std::vector<std::string> keys;
+    keys.reserve(options.size());
     for (const CLI::Option* option : options) keys.push_back(key_of(*option));
     throw config_error(path, line_of(path, section, item.name),
                        "unknown key '" + key + "'; the nearest is '" + core::nearest_name(key, keys) + "'");

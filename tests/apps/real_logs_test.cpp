@@ -55,7 +55,7 @@ TEST_F(RealLog, OfTheCarParkIsNavigatedWithinItsLimits) {
   replay(path_);
   const json evaluation = evaluate({});
   EXPECT_LE(evaluation.at("error").at("rmse_m"), 0.30);
-  const json beacons = evaluation.at("landmark_error");
+  const json& beacons = evaluation.at("landmark_error");
   EXPECT_LE(beacons.at("rmse_m"), 0.15);
   EXPECT_EQ(beacons.at("pairs"), 15);
   EXPECT_EQ(beacons.at("missing"), 0);

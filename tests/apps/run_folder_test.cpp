@@ -106,7 +106,7 @@ class CutRun : public RunFolder {
     constexpr int patience_ms = 30'000;
     for (int ms = 0; ms < patience_ms && complete_lines(out("run") / "health.csv") < 20; ++ms) ::usleep(1000);
     program.send(signal);
-    const Outcome outcome = program.wait();
+    Outcome outcome = program.wait();
     written_ = complete_lines(out("run") / "health.csv") - 1;
     return outcome;
   }
