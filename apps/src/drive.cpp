@@ -11,6 +11,7 @@
 #include "helixnav/logs/run_writer.hpp"
 #include "interrupt.hpp"
 #include "progress_bar.hpp"
+#include "smooth_drive.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -73,10 +74,12 @@ ExitCode drive(const Drive& job) {
                 {"max_us", quantile(step_us, 1.0)},
                 {"reading_s", job.reading_s},
                 {"navigating_s", seconds_since(begin)}};
-  const logs::Evaluation evaluation = writer.finish(navigator.map(), end);
+  const std::vector<core::MapLandmark> map = navigator.map();
+  const ExitCode smoothed = job.smooth && !interrupted() ? smooth_drive(job, map, end) : ExitCode::ok;
+  const logs::Evaluation evaluation = writer.finish(map, end);
   std::fputs(logs::evaluation_text(evaluation).c_str(), stdout);
   std::printf("run folder: %s   report: %s/report.html\n", job.out.c_str(), job.out.c_str());
-  if (!interrupted()) return ExitCode::ok;
+  if (!interrupted()) return smoothed;
   std::fprintf(stderr, "helixnav: interrupted after %zu steps; the run folder is complete up to there\n",
                step_us.size());
   return ExitCode::interrupted;

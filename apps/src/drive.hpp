@@ -15,6 +15,7 @@ struct Drive {
   core::Recording recording;
   supervisor::NavigatorOptions navigator;
   bool known_association = false;  ///< use the recording's labels as identities
+  bool smooth = false;             ///< afterwards, with the filter's own associations
   std::string out;
   bool overwrite = false;
   bool quiet = false;

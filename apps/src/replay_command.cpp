@@ -23,6 +23,7 @@ namespace {
 
 struct ReplayJob {
   std::string path;
+  bool smooth = false;
   RunOptions run;
   Settings settings;
 };
@@ -64,6 +65,7 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   if (logs::recognise(job.path) == logs::LogFormat::plaza) scale_ranges(task.recording, job.settings);
   if (job.settings.gps.fuse) fuse_gps(task.recording, job.settings.gps);
   fill_drive(task, job.run, dump_config(command));
+  task.smooth = job.smooth;
   task.known_association = job.settings.known_association;
   task.manifest.inputs = input_files(job.path);
   task.reading_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -76,6 +78,8 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
   CLI::App* command = app.add_subcommand("replay", "Navigate along a recorded log");
   const auto job = std::make_shared<ReplayJob>();
   command->add_option("PATH", job->path, "Log: file, folder or zip; the format is recognised")->required();
+  command->add_flag("--smooth", job->smooth,
+                    "Then smooth with the filter's associations: trajectory_final.tum, chi2 and dof (GPS fixes left out)");
   add_run_options(*command, job->run);
   add_settings(*command, job->settings);
   command->footer(
