@@ -148,10 +148,17 @@ core::Scan scan_of(const Range& range, const PlazaSettings& settings) {
   return scan;
 }
 
-/// Weaves increments and ranges together in time, splitting the increments.
-std::vector<core::Event> weave(const std::vector<Increment>& increments, const std::vector<Range>& ranges,
-                               const PlazaSettings& settings) {
-  std::vector<core::Event> events;
+/// Weaves increments and ranges together in time, splitting the increments; labels go along with the scans. Where no
+/// range came for a while, an empty scan lets the run tell where the robot is.
+void weave(const std::vector<Increment>& increments, const std::vector<Range>& ranges, const PlazaSettings& settings,
+           core::Recording& recording) {
+  std::vector<core::Event>& events = recording.events;
+  core::Nanoseconds last_scan_ns = increments.front().t_ns;
+  const auto add_scan = [&](const core::Scan& scan, const std::vector<core::Label>& labels) {
+    events.emplace_back(scan);
+    recording.labels.push_back(labels);
+    last_scan_ns = scan.t_ns;
+  };
   std::size_t next_range = 0;
   core::Nanoseconds now_ns =
       increments.front().t_ns;  // the first increment has no known beginning: it is instantaneous
@@ -170,14 +177,18 @@ std::vector<core::Event> weave(const std::vector<Increment>& increments, const s
       if (ranges[next_range].t_ns > now_ns) {
         move_until(ranges[next_range].t_ns);
       }
-      events.emplace_back(scan_of(ranges[next_range], settings));
+      add_scan(scan_of(ranges[next_range], settings), {ranges[next_range].beacon});
     }
     move_until(increment.t_ns);
+    if (core::seconds(increment.t_ns - last_scan_ns) >= settings.empty_scan_after_s) {
+      core::Scan nothing;
+      nothing.t_ns = increment.t_ns;
+      add_scan(nothing, {});
+    }
   }
   for (; next_range < ranges.size(); ++next_range) {
-    events.emplace_back(scan_of(ranges[next_range], settings));
+    add_scan(scan_of(ranges[next_range], settings), {ranges[next_range].beacon});
   }
-  return events;
 }
 
 }  // namespace
@@ -187,10 +198,7 @@ core::Recording read_plaza(const std::filesystem::path& folder_or_odometry, cons
   const std::vector<Range> ranges = read_ranges(prefix + "_ranges.csv");
   core::Recording recording;
   recording.name = std::filesystem::path(prefix).filename().string();
-  recording.events = weave(read_increments(prefix + "_odometry.csv"), ranges, settings);
-  for (const Range& range : ranges) {
-    recording.labels.push_back({range.beacon});
-  }
+  weave(read_increments(prefix + "_odometry.csv"), ranges, settings, recording);
   if (std::filesystem::exists(prefix + "_groundtruth.csv")) {
     recording.true_positions = read_true_positions(prefix + "_groundtruth.csv");
   }
