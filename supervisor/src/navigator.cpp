@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 
 #include "association_report.hpp"
@@ -36,9 +37,9 @@ StepReport Navigator::observe(const Scan& scan) {
 }
 
 StepReport Navigator::observe(const Scan& scan, const std::vector<std::int64_t>& identities) {
-  predict();
   StepReport report;
   report.associations = known_associations(scan, identities);
+  predict();
   update(scan, report);
   augment_known(scan, identities, report);
   remember(identities, report);
@@ -86,13 +87,15 @@ std::vector<AssociationReport> Navigator::known_associations(const Scan& scan,
                                   std::to_string(scan.observations.size()) + " observations");
   }
   std::vector<AssociationReport> reports(identities.size());
+  std::set<std::int64_t> born;
   for (std::size_t i = 0; i < identities.size(); ++i) {
     reports[i].observation = static_cast<int>(i);
     const auto known = landmark_of_identity_.find(identities[i]);
     if (identities[i] < 0) {
       reports[i].outcome = Outcome::rejected;
     } else if (known == landmark_of_identity_.end()) {
-      reports[i].outcome = Outcome::augmented;
+      const bool first = born.insert(identities[i]).second;
+      reports[i].outcome = first ? Outcome::augmented : Outcome::rejected;
     } else {
       reports[i].outcome = Outcome::matched;
       reports[i].landmark = known->second;

@@ -197,6 +197,7 @@ TEST(Navigator, RefusesAWrongNumberOfIdentitiesAndStaysAsItWas) {
   navigator.move(one_metre(1));
   navigator.observe(one_look(1), {4});
   const core::PoseGaussian before = navigator.pose();
+  navigator.move(one_metre(2));  // pending motion waits for the next scan that is taken
   const std::vector<std::int64_t> none;
   const std::vector<std::int64_t> two{4, 5};
   EXPECT_THROW(navigator.observe(one_look(2), none), core::PreconditionError);
@@ -220,6 +221,16 @@ TEST(Navigator, LosesNoMotionToACallThatItRefused) {
   EXPECT_EQ(a.step, b.step);
   EXPECT_EQ(a.pose.mean.vector(), b.pose.mean.vector());
   EXPECT_EQ(a.pose.covariance, b.pose.covariance);
+}
+
+TEST(Navigator, TakesANewIdentityOnceAScan) {
+  Navigator navigator(core::PoseGaussian{});
+  core::Scan scan = one_look(0);
+  scan.observations.push_back(scan.observations.front());
+  const core::StepReport report = navigator.observe(scan, {4, 4});
+  EXPECT_EQ(report.associations[0].outcome, Outcome::augmented);
+  EXPECT_EQ(report.associations[1].outcome, Outcome::rejected);
+  EXPECT_EQ(navigator.filter().mapped_count(), 1);
 }
 
 TEST(Navigator, ReportsEveryObservationOnceAndInOrder) {

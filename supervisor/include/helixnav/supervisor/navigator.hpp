@@ -43,8 +43,9 @@ class Navigator {
   /// One scan, association unknown.
   core::StepReport observe(const core::Scan& scan);
 
-  /// One scan whose observations are known by name: the same identity is the same landmark, a negative one is none.
-  /// PreconditionError unless there is one identity an observation.
+  /// One scan whose observations are known by name: the same identity is the same landmark, a negative one is none;
+  /// of a new identity twice in one scan the first counts. PreconditionError unless there is one identity an observation,
+  /// with everything as it was.
   core::StepReport observe(const core::Scan& scan, const std::vector<std::int64_t>& identities);
 
   /// A position fix in the map frame: motion pending is predicted, then the fix updates the pose when its NIS passes the
