@@ -127,7 +127,8 @@ std::optional<cekf::DerivedPoint> locate(const cekf::CompressedEkf& filter, cons
     first += sighting.ahead == core::no_landmark ? 2 : 4;
   }
   const std::vector<FittedPoint> solutions = fit_from_everywhere(rows, relative.P);
-  if (!is_settled(solutions, rows, options)) return std::nullopt;
+  if (!is_settled(solutions, rows, options) || !looks_gaussian(rows, relative.P, solutions.front()))
+    return std::nullopt;
   return in_map(solutions.front(), joint, relative);
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include "helixnav/core/angle.hpp"
@@ -101,9 +102,10 @@ std::optional<FittedPoint> fit_point(const std::vector<FitRow>& rows, const Eige
     damped.diagonal().array() += damping * information.trace();
     const Eigen::Vector2d move_m = damped.inverse() * gradient;
     if (!move_m.allFinite()) return std::nullopt;
-    if (move_m.norm() < 1e-4) return finish(rows, now, point_m, information);
+    if ((information.inverse() * gradient).norm() < 1e-4) return finish(rows, now, point_m, information);
     const Linearised next = linearise(rows, P, point_m + move_m);
-    if (next.good && next.nis <= now.nis) {
+    // S is held while steps are judged: its own dependence on the point is no part of the Gauss-Newton descent.
+    if (next.good && next.nu.dot(now.S.solve(next.nu)) <= now.nis) {
       point_m += move_m;
       now = next;
       damping = std::max(1e-9, 0.1 * damping);
@@ -112,6 +114,22 @@ std::optional<FittedPoint> fit_point(const std::vector<FitRow>& rows, const Eige
     }
   }
   return std::nullopt;
+}
+
+bool looks_gaussian(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P, const FittedPoint& fitted) {
+  constexpr double sigmas = 3.0;
+  constexpr double expected = sigmas * sigmas;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(fitted.covariance_m2);
+  for (const double side_sigmas : {-sigmas, sigmas}) {
+    for (Index axis = 0; axis < 2; ++axis) {
+      const Eigen::Vector2d away_m = side_sigmas * std::sqrt(axes.eigenvalues()[axis]) * axes.eigenvectors().col(axis);
+      const Linearised there = linearise(rows, P, fitted.point_m + away_m);
+      if (!there.good) return false;
+      const double rise = there.cost - fitted.cost;
+      if (rise < expected / 1.6 || rise > expected * 1.6) return false;
+    }
+  }
+  return true;
 }
 
 std::vector<FittedPoint> fit_from_everywhere(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P) {

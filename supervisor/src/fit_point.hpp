@@ -39,4 +39,8 @@ std::optional<FittedPoint> fit_point(const std::vector<FitRow>& rows, const Eige
 /// The distinct solutions from starts all around (ranges) or along the ray (bearings) of the last row, best first.
 std::vector<FittedPoint> fit_from_everywhere(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P);
 
+/// True when the cost three standard deviations from the point, along both axes of its ellipse and to both sides, rises
+/// by 9 as a Gaussian's does, within a factor of 1.6. Two basins that have run together do not pass.
+bool looks_gaussian(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P, const FittedPoint& fitted);
+
 }  // namespace helixnav::supervisor

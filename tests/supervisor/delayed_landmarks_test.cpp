@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/supervisor/delayed_landmarks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <Eigen/LU>
+
+#include "circuits.hpp"
+#include "helixnav/core/chi2.hpp"
+#include "helixnav/core/odometry.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+using core::ObservationKind;
+
+/// What remains of a scan when the sensor gives one number, and sees `landmarks` landmarks only.
+struct Reduced {
+  core::Scan scan;
+  std::vector<std::int64_t> identities;
+};
+
+Reduced reduced(const core::Scan& scan, const std::vector<core::Label>& labels, ObservationKind kind, int landmarks) {
+  Reduced kept;
+  kept.scan = scan;
+  kept.scan.observations.clear();
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] < 0 || labels[i] >= landmarks) continue;
+    const core::Observation& o = scan.observations[i];
+    kept.scan.observations.push_back(kind == ObservationKind::range ? core::make_range(o.z[0], std::sqrt(o.R(0, 0)))
+                                                                    : core::make_bearing(o.z[1], std::sqrt(o.R(1, 1))));
+    kept.identities.push_back(labels[i]);
+  }
+  return kept;
+}
+
+/// Landmarks as they enter in a lap, over 60 seeds: eᵀP⁻¹e of the first of each run (independent of each other).
+struct Entrances {
+  std::vector<double> first_nees;
+  int entered = 0;
+  double worst_error_m = 0.0;
+};
+
+Entrances entrances(ObservationKind kind) {
+  constexpr int landmarks = 4;
+  Entrances seen;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const core::Recording run = sim::simulate(wide_circuit(), seed);
+    Navigator navigator(run.start);
+    bool first = true;
+    drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
+      if (i > 200) return;
+      const Reduced kept = reduced(scan, run.labels[i], kind, landmarks);
+      const core::StepReport report = navigator.observe(kept.scan, kept.identities);
+      for (const core::AssociationReport& association : report.associations) {
+        if (association.outcome != core::Outcome::augmented) continue;
+        const core::PointGaussian landmark = navigator.filter().landmark(association.landmark);
+        const auto label = static_cast<std::size_t>(kept.identities[static_cast<std::size_t>(association.observation)]);
+        const Eigen::Vector2d error_m = landmark.mean_m - run.true_landmarks[label].point_m;
+        if (first) seen.first_nees.push_back(error_m.dot(landmark.covariance_m2.inverse() * error_m));
+        first = false;
+        seen.worst_error_m = std::max(seen.worst_error_m, error_m.norm());
+        ++seen.entered;
+      }
+      EXPECT_EQ(report.mapped_landmarks, static_cast<int>(navigator.map().size()));
+    });
+  }
+  return seen;
+}
+
+/// The mean of n values of χ²₂ lies inside with probability 0.998.
+void expect_consistent(const std::vector<double>& nees) {
+  const int dof = 2 * static_cast<int>(nees.size());
+  double sum = 0.0;
+  for (const double value : nees) sum += value;
+  EXPECT_GT(sum, core::chi2_quantile(0.001, dof)) << "mean " << sum / static_cast<double>(nees.size());
+  EXPECT_LT(sum, core::chi2_quantile(0.999, dof)) << "mean " << sum / static_cast<double>(nees.size());
+}
+
+TEST(DelayedLandmarks, SeenAsRangesEnterInsideTheirEllipse) {
+  const Entrances seen = entrances(ObservationKind::range);
+  EXPECT_GE(seen.first_nees.size(), 55u);
+  EXPECT_LT(seen.worst_error_m, 20.0) << "15 m are the drift of the worst run; mirror images gave 30 to 70 m";
+  expect_consistent(seen.first_nees);
+}
+
+TEST(DelayedLandmarks, SeenAsBearingsEnterInsideTheirEllipse) {
+  const Entrances seen = entrances(ObservationKind::bearing);
+  EXPECT_GE(seen.first_nees.size(), 55u);
+  expect_consistent(seen.first_nees);
+}
+
+TEST(DelayedLandmarks, WaitOnAStraightPathUntilATurnTellsTheMirrorImageFromTheLandmark) {
+  const Eigen::Vector2d landmark_m(25.0, 15.0);
+  Navigator navigator(core::PoseGaussian{});
+  core::Pose2 truth;
+  bool entered = false;
+  for (int i = 0; i < 90; ++i) {
+    core::Odometry odometry = core::no_motion(i);
+    odometry.T_before_after = core::Pose2(1.0, 0.0, i >= 50 ? 0.03 : 0.0);
+    odometry.covariance = Eigen::Vector3d(1e-4, 1e-4, 1e-8).asDiagonal();
+    truth = core::compose(truth, odometry.T_before_after);
+    navigator.move(odometry);
+    core::Scan scan;
+    scan.observations.push_back(core::make_range((landmark_m - truth.position_m()).norm(), 0.1));
+    const core::StepReport report = navigator.observe(scan, {7});
+    if (report.associations[0].outcome == core::Outcome::augmented) {
+      EXPECT_GT(i, 50);
+      entered = true;
+    }
+  }
+  ASSERT_TRUE(entered);
+  ASSERT_EQ(navigator.map().size(), 1u);
+  EXPECT_LT((navigator.map()[0].point.mean_m - landmark_m).norm(), 0.5);
+}
+
+TEST(DelayedLandmarks, KeepNoMoreClonesThanTheWindowHowEverLongTheyWait) {
+  cekf::CompressedEkf filter(core::PoseGaussian{});
+  DelayedOptions options;
+  options.window = 8;
+  DelayedLandmarks delayed(options);
+  for (int i = 0; i < 200; ++i) {
+    core::Odometry odometry = core::no_motion(i);
+    odometry.T_before_after = core::Pose2(1.0, 0.0, 0.0);
+    odometry.covariance = Eigen::Vector3d(1e-4, 1e-4, 1e-8).asDiagonal();
+    filter.predict(odometry);
+    const double range_m = std::hypot(100.0 - (i + 1.0), 40.0);
+    EXPECT_FALSE(delayed.sight(filter, 1, core::make_range(range_m, 0.1), {}).has_value());
+    EXPECT_LE(delayed.clones(), 8);
+    EXPECT_EQ(filter.mapped_count(), delayed.clones());
+  }
+}
+
+}  // namespace
+}  // namespace helixnav::supervisor
