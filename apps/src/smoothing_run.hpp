@@ -20,9 +20,9 @@ using Ids = std::vector<std::vector<std::int64_t>>;
 /// A recording whose associations are settled, as a least-squares problem.
 struct SmoothingTask {
   smoothing::Problem problem;
-  std::vector<core::Nanoseconds> times;         ///< [step]
-  std::vector<int> pose_of_step;                ///< [step] index of its pose
-  std::vector<std::vector<int>> edge_of;        ///< [step][observation] index of its landmark edge, −1 when left out
+  std::vector<core::Nanoseconds> times;   ///< [step]
+  std::vector<int> pose_of_step;          ///< [step] index of its pose
+  std::vector<std::vector<int>> edge_of;  ///< [step][observation] index of its landmark edge, −1 when left out
   int unlabelled_observations = 0;
   int unlocated_landmarks = 0;
   bool softened_odometry = false;  ///< covariances of rank two got `rank_sigma` on the diagonal

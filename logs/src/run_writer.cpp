@@ -208,7 +208,8 @@ Evaluation RunWriter::finish(const std::vector<core::MapLandmark>& map, const Ru
   const Evaluation evaluation = evaluate(run);
   Json summary = summary_to_json(run, evaluation, end.numbers);
   summary["timing"] = timing_to_json(run.microseconds, end.timing);
-  write_whole_file(folder_ + '/' + report_file, render_report(run, evaluation, end.timing, end.smoothed ? &*end.smoothed : nullptr));
+  write_whole_file(folder_ + '/' + report_file,
+                   render_report(run, evaluation, end.timing, end.smoothed ? &*end.smoothed : nullptr));
   write_whole_file(folder_ + '/' + summary_file, json_text(summary));
   return evaluation;
 }

@@ -121,8 +121,7 @@ TEST_F(Smooth, FollowsAReplayWithTheFiltersOwnAssociations) {
   EXPECT_GT(summary("run").at("chi2"), 6183.9);
   EXPECT_LT(summary("run").at("chi2"), 6184.2);
   EXPECT_EQ(summary("run").at("dof"), 6978);
-  EXPECT_EQ(complete_lines(folder("run") / "trajectory_final.tum"),
-            complete_lines(folder("run") / "trajectory.tum"));
+  EXPECT_EQ(complete_lines(folder("run") / "trajectory_final.tum"), complete_lines(folder("run") / "trajectory.tum"));
 }
 
 TEST_F(Smooth, NamesTheVariableThatNothingFixes) {

@@ -21,7 +21,7 @@ namespace helixnav::logs {
 struct RunEnd {
   std::vector<std::pair<std::string, double>> numbers;  ///< into summary.json, such as chi2 and dof of a smoother
   std::vector<std::pair<std::string, double>> timing;   ///< wall clock, into summary.json under "timing"
-  std::optional<SmoothedRun> smoothed;                    ///< into trajectory_final.tum and the report
+  std::optional<SmoothedRun> smoothed;                  ///< into trajectory_final.tum and the report
 };
 
 /// Writes a run folder (docs/run-folder.md) as the run goes. After the constructor the manifest, the headers and the

@@ -30,8 +30,8 @@ struct SmoothedRun {
   std::vector<core::Pose2> poses;  ///< [step] as known at the end
   std::vector<core::MapLandmark> map_before;
   std::vector<core::MapLandmark> map_after;
-  std::vector<double> chi2;                     ///< of the start, then after every iteration
-  std::vector<LargeResidual> largest;           ///< largest nis per row first
+  std::vector<double> chi2;            ///< of the start, then after every iteration
+  std::vector<LargeResidual> largest;  ///< largest nis per row first
   std::vector<Normalised> normalised_residuals;
 };
 
