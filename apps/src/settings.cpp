@@ -110,7 +110,8 @@ void add_gps(CLI::App& command, Settings& settings) {
   command
       .add_option_function<std::string>(
           "--gps.use,--gps", [&gps](const std::string& word) { gps.fuse = word == "fuse"; },
-          "truth: GPS is only compared with; fuse: it updates the pose, and the map frame is that of the GPS, the start "
+          "truth: GPS is only compared with; fuse: it updates the pose, and the map frame is that of the GPS, the "
+          "start "
           "pose being aligned with the fixes of the first gps.start_m metres. Errors against GPS are then no truth")
       ->check(one_of({"truth", "fuse"}))
       ->default_str("truth")
