@@ -13,7 +13,7 @@ Consistency thirty_runs(Retraction retraction, const CircuitNoise& noise) {
 }
 
 // Errors of one run are strongly correlated over the last quarter, so that 30 runs count as 30 draws of χ²₃:
-// mean in 3 ± 2.58·√(6/30), false alarm 1 %. The 100-run figures are printed by bench/cekf_consistency.
+// mean in 3 ± 2.58·√(6/30), false alarm 1 %. The 100-run figures are printed by bench/consistency_study.
 constexpr double low = 3.0 - 2.58 * 0.4472;
 constexpr double high = 3.0 + 2.58 * 0.4472;
 
