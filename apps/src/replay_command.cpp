@@ -78,8 +78,9 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
   CLI::App* command = app.add_subcommand("replay", "Navigate along a recorded log");
   const auto job = std::make_shared<ReplayJob>();
   command->add_option("PATH", job->path, "Log: file, folder or zip; the format is recognised")->required();
-  command->add_flag("--smooth", job->smooth,
-                    "Then smooth with the filter's associations: trajectory_final.tum, chi2 and dof (GPS fixes left out)");
+  command->add_flag(
+      "--smooth", job->smooth,
+      "Then smooth with the filter's associations: trajectory_final.tum, chi2 and dof (GPS fixes left out)");
   add_run_options(*command, job->run);
   add_settings(*command, job->settings);
   command->footer(
