@@ -8,6 +8,7 @@
 
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/landmark_id.hpp"
+#include "helixnav/core/se2.hpp"
 #include "helixnav/core/time.hpp"
 
 namespace helixnav::core {
@@ -42,6 +43,12 @@ struct Decision {
   std::vector<std::pair<std::string, double>> numbers;
 };
 
+/// Two landmarks that turned out to be one: `removed` is gone, and what was seen of it was `kept`.
+struct MergedLandmarks {
+  LandmarkId kept = no_landmark;
+  LandmarkId removed = no_landmark;
+};
+
 /// Everything one scan did to the map and the pose. Filled by supervisor::Navigator, written by logs::RunWriter.
 struct StepReport {
   std::int64_t step = 0;  ///< index of the scan, from 0
@@ -55,6 +62,8 @@ struct StepReport {
   int mapped_landmarks = 0;
   bool switched_region = false;
   std::vector<Decision> decisions;
+  std::vector<MergedLandmarks> merged;  ///< by a closure in this step
+  std::vector<Pose2> cloud;  ///< T_world_robot of particles of a search, thinned out for pictures; empty without
 };
 
 /// One landmark of the map as known now.
