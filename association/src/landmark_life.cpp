@@ -60,7 +60,7 @@ LifeChanges LandmarkLife::observe(const Eigen::Vector2d& sensor_m, const std::ve
     record.log_odds = options_.birth_log_odds;
     record.observations = record.hits = 1;
     record.last_hit_at_m = record.last_miss_at_m = sensor_m;
-    record.last_seen_path_m = path_m_;
+    record.born_path_m = record.last_seen_path_m = path_m_;
     records_.insert(std::lower_bound(records_.begin(), records_.end(), id, before), record);
   }
   std::vector<LandmarkId> company = seen;
@@ -138,6 +138,32 @@ void LandmarkLife::remove(LandmarkId id) {
     }
   }
   records_.erase(records_.begin() + (record - records_.data()));
+}
+
+void LandmarkLife::merge(LandmarkId kept, LandmarkId removed) {
+  if (kept == removed)
+    throw core::PreconditionError("landmark life: landmark " + std::to_string(kept) + " with itself");
+  record(kept);
+  const LandmarkRecord gone = record(removed);
+  remove(removed);
+  LandmarkRecord& one = *find(kept);
+  one.observations += gone.observations;
+  one.hits += gone.hits;
+  one.misses += gone.misses;
+  one.log_odds = std::min(options_.max_log_odds, one.log_odds + std::max(0.0, gone.log_odds));
+  if (gone.state == LandmarkState::mature) one.state = LandmarkState::mature;
+  one.born_path_m = std::min(one.born_path_m, gone.born_path_m);
+  if (gone.last_seen_path_m > one.last_seen_path_m) {
+    one.last_seen_path_m = gone.last_seen_path_m;
+    one.last_hit_at_m = gone.last_hit_at_m;
+    one.last_miss_at_m = gone.last_miss_at_m;
+  }
+  for (const LandmarkId other : gone.seen_with) {
+    LandmarkRecord* friend_record = other == kept ? nullptr : find(other);
+    if (friend_record == nullptr) continue;
+    insert_sorted(one.seen_with, other);
+    insert_sorted(friend_record->seen_with, kept);
+  }
 }
 
 LandmarkRecord* LandmarkLife::find(LandmarkId id) {

@@ -6,11 +6,16 @@
 #include <set>
 #include <string>
 
+#include "ambiguous_return.hpp"
 #include "association_report.hpp"
 #include "candidates.hpp"
+#include "close_by_merge.hpp"
+#include "gating.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/odometry.hpp"
+#include "search.hpp"
+#include "track.hpp"
 
 namespace helixnav::supervisor {
 
@@ -21,17 +26,32 @@ using core::Scan;
 using core::StepReport;
 
 Navigator::Navigator(const core::PoseGaussian& start, const NavigatorOptions& options)
-    : options_(options), filter_(start, options.filter), life_(options.life), delayed_(options.delayed) {}
+    : options_(options),
+      filter_(start, options.filter),
+      life_(options.life),
+      track_(std::make_unique<Track>()),
+      delayed_(options.delayed) {}
+
+Navigator::~Navigator() = default;
+Navigator::Navigator(Navigator&&) noexcept = default;
+Navigator& Navigator::operator=(Navigator&&) noexcept = default;
 
 void Navigator::move(const core::Odometry& odometry) { motion_ = motion_ ? core::chain(*motion_, odometry) : odometry; }
 
 StepReport Navigator::observe(const Scan& scan) {
   predict();
   StepReport report;
-  report.associations = associate(scan);
+  std::optional<Gating> gating;
+  gating.emplace(filter_, candidates_of(scan), scan, options_.gates);
+  if (!search_ && is_lost(scan, *gating, report)) {
+    begin_search();
+    gating.emplace(filter_, candidates_of(scan), scan, options_.gates);
+  }
+  report.associations = associate(scan, *gating);
   update(scan, report);
   augment(scan, report);
   live_and_let_die(scan, report);
+  if (search_) pursue_search(scan, report);
   report.switched_region = filter_.switch_region_if_due();
   return close_step(scan, report);
 }
@@ -67,17 +87,85 @@ bool Navigator::fix(const core::AbsoluteFix& fix) {
 void Navigator::predict() {
   if (!motion_) return;
   filter_.predict(*motion_);
+  if (search_) search_->move(*motion_);
   motion_.reset();
 }
 
-std::vector<AssociationReport> Navigator::associate(const Scan& scan) const {
-  const core::JointGaussian joint = filter_.joint(candidates(filter_, scan, options_.candidate_sigmas));
-  const association::InnovationProblem problem = association::make_innovation_problem(joint, scan, options_.gates);
+std::vector<LandmarkId> Navigator::candidates_of(const Scan& scan) const {
+  std::vector<LandmarkId> ids = candidates(filter_, scan, options_.candidate_sigmas);
+  if (search_) {
+    ids.erase(std::remove_if(ids.begin(), ids.end(), [&](LandmarkId id) { return search_->excludes(id); }), ids.end());
+  }
+  return ids;
+}
+
+bool Navigator::is_lost(const Scan& scan, const Gating& gating, StepReport& report) const {
+  if (!options_.search.enabled || life_.path_m() < armed_path_m_) return false;
+  const std::vector<LandmarkId> old = old_landmarks(life_, options_.search.old_after_m);
+  const auto worst = most_ambiguous_return(filter_, gating.problem, scan, old, options_.search.foreign_per_scan);
+  if (!worst || worst->foreign_objects <= options_.search.foreign_objects) return false;
+  const core::PoseGaussian now = filter_.pose();
+  report.decisions.push_back({"trigger",
+                              "started",
+                              {{"landmark", worst->landmark},
+                               {"foreign_objects", worst->foreign_objects},
+                               {"neighbours", worst->neighbours},
+                               {"gate_area", worst->gate_area},
+                               {"pose_sigma_m", std::sqrt(now.covariance.topLeftCorner<2, 2>().trace())},
+                               {"heading_sigma_deg", std::sqrt(now.covariance(2, 2)) * 180.0 / core::pi},
+                               {"old_landmarks", static_cast<double>(old.size())}}});
+  return true;
+}
+
+void Navigator::begin_search() {
+  const std::uint64_t seed = options_.search.seed + 1000000u * ++searches_;
+  search_ = std::make_unique<Search>(old_landmarks(life_, options_.search.old_after_m), life_.path_m(), seed,
+                                     options_.search);
+}
+
+void Navigator::pursue_search(const Scan& scan, StepReport& report) {
+  const auto pairs = search_->look({filter_, life_, *track_, scan}, report.decisions);
+  report.cloud = search_->cloud(filter_);
+  report.mode = core::Mode::searching;
+  if (pairs) close(*pairs, report);
+  if (!search_ || !search_->is_undecided(life_.path_m())) return;
+  report.decisions.push_back({"closure", "undecided", {{"driven_m", life_.path_m() - search_->begun_path_m()}}});
+  search_.reset();
+}
+
+void Navigator::close(const std::vector<pf_relocalize::ConstellationPair>& pairs, StepReport& report) {
+  std::vector<LandmarkId> branch;
+  for (const association::LandmarkRecord& record : life_.records()) {
+    const bool mapped_lately = record.last_seen_path_m > search_->begun_path_m() - options_.search.old_after_m;
+    if (mapped_lately && !search_->excludes(record.id)) branch.push_back(record.id);
+  }
+  const core::Pose2 before = filter_.pose().mean;
+  const Closing closing = close_by_merge(filter_, pairs, branch, search_->old_landmarks(), options_.search);
+  for (const core::MergedLandmarks& one : closing.merged) life_.merge(one.kept, one.removed);
+  report.merged = closing.merged;
+  report.decisions.push_back({"closure",
+                              closing.accepted ? "accepted" : "refused",
+                              {{"pairs", static_cast<double>(pairs.size())},
+                               {"dropped", closing.dropped},
+                               {"merged", static_cast<double>(closing.merged.size())},
+                               {"cost", closing.cost},
+                               {"dof", closing.dof},
+                               {"limit", closing.limit},
+                               {"driven_m", life_.path_m() - search_->begun_path_m()},
+                               {"moved_m", (filter_.pose().mean.position_m() - before.position_m()).norm()}}});
+  if (closing.accepted) {
+    search_.reset();
+  } else {
+    search_->refuse(life_.path_m());
+  }
+}
+
+std::vector<AssociationReport> Navigator::associate(const Scan& scan, const Gating& gating) const {
   association::Options how = options_.association;
   if (std::isfinite(scan.field_of_view.max_range_m)) {
     how.extraneous = association::uniform_density(scan.field_of_view, options_.extraneous_per_scan);
   }
-  return association_reports(association::associate(options_.method, problem, how));
+  return association_reports(association::associate(options_.method, gating.problem, how));
 }
 
 std::vector<AssociationReport> Navigator::known_associations(const Scan& scan,
@@ -151,9 +239,25 @@ void Navigator::live_and_let_die(const Scan& scan, StepReport& report) {
       expected.erase(std::remove(expected.begin(), expected.end(), id), expected.end());
     }
   }
-  const Eigen::Vector2d sensor_m = core::transform(filter_.pose().mean, scan.T_robot_sensor.position_m());
-  const association::LifeChanges changes = life_.observe(sensor_m, seen, born, expected);
+  forgive_what_may_be_elsewhere(seen, expected);
+  const core::Pose2 T_world_sensor = core::compose(filter_.pose().mean, scan.T_robot_sensor);
+  const association::LifeChanges changes = life_.observe(T_world_sensor.position_m(), seen, born, expected);
   for (const LandmarkId id : changes.died) filter_.remove(id);
+  track_->pass(life_.path_m(), T_world_sensor);
+}
+
+/// A scan that recognises nothing old does not know where the old landmarks are, and their absence proves nothing.
+void Navigator::forgive_what_may_be_elsewhere(const std::vector<LandmarkId>& seen,
+                                              std::vector<LandmarkId>& expected) const {
+  const double old_before_m = life_.path_m() - options_.search.old_after_m;
+  const auto recognised = std::count_if(seen.begin(), seen.end(),
+                                        [&](LandmarkId id) { return life_.record(id).born_path_m < old_before_m; });
+  constexpr int enough = 2;
+  const auto may_be_elsewhere = [&](LandmarkId id) {
+    if (search_ && search_->excludes(id)) return true;
+    return recognised < enough && life_.record(id).last_seen_path_m < old_before_m;
+  };
+  expected.erase(std::remove_if(expected.begin(), expected.end(), may_be_elsewhere), expected.end());
 }
 
 void Navigator::remember(const std::vector<std::int64_t>& identities, const StepReport& report) {

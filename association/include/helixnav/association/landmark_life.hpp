@@ -36,7 +36,8 @@ struct LandmarkRecord {
   int misses = 0;                                           ///< looks that should have seen it
   Eigen::Vector2d last_hit_at_m = Eigen::Vector2d::Zero();  ///< place of the sensor
   Eigen::Vector2d last_miss_at_m = Eigen::Vector2d::Zero();
-  double last_seen_path_m = 0.0;            ///< length of the drive then
+  double born_path_m = 0.0;  ///< length of the drive then
+  double last_seen_path_m = 0.0;
   std::vector<core::LandmarkId> seen_with;  ///< ever in the same scan, ascending
 };
 
@@ -61,8 +62,11 @@ class LandmarkLife {
   LifeChanges observe(const Eigen::Vector2d& sensor_m, const std::vector<core::LandmarkId>& seen,
                       const std::vector<core::LandmarkId>& born, const std::vector<core::LandmarkId>& expected);
 
-  /// A landmark that the filter lost for another reason, as by a merge.
+  /// A landmark that the filter lost for another reason.
   void remove(core::LandmarkId id);
+
+  /// Two landmarks were one: what was seen of `removed` counts for `kept`. PreconditionError unless both are in the book.
+  void merge(core::LandmarkId kept, core::LandmarkId removed);
 
   bool contains(core::LandmarkId id) const;
   const LandmarkRecord& record(core::LandmarkId id) const;  ///< PreconditionError when it is not in the book
@@ -70,6 +74,9 @@ class LandmarkLife {
   const std::vector<LandmarkRecord>& records() const { return records_; }  ///< ascending by id
 
   bool seen_together(core::LandmarkId a, core::LandmarkId b) const;
+
+  /// Length of the drive so far, what last_seen_path_m is measured on.
+  double path_m() const { return path_m_; }
 
  private:
   LandmarkRecord* find(core::LandmarkId id);

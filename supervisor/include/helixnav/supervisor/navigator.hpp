@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -12,8 +13,13 @@
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/supervisor/delayed_landmarks.hpp"
+#include "helixnav/supervisor/search_options.hpp"
 
 namespace helixnav::supervisor {
+
+struct Gating;
+class Search;
+class Track;
 
 struct NavigatorOptions {
   cekf::FilterOptions filter;
@@ -21,6 +27,7 @@ struct NavigatorOptions {
   association::Options association;
   association::Gates gates;
   association::LifeOptions life;
+  SearchOptions search;
   DelayedOptions delayed;            ///< of landmarks known by name and seen as a range or a bearing only
   double fix_probability = 0.999;    ///< χ² gate of an absolute fix
   double extraneous_per_scan = 1.0;  ///< observations of no mapped landmark: clutter and new ones together
@@ -29,13 +36,19 @@ struct NavigatorOptions {
 };
 
 /// Navigates: keeps the pose and the landmark map up to date as events come in, with unknown data association.
-/// Every scan runs once through the paper's loop: predict, associate, update, augment, bury, switch region.
+/// Every scan runs once through the loop: predict, associate, update, augment, bury, switch region. When old ground comes
+/// into view that cannot be told apart scan by scan, a search begins: mapping goes on with the old landmarks excluded, a
+/// particle filter finds where on the old map the vehicle is, and when a constellation of new landmarks stands on old
+/// ones, and nowhere else as well, the map is closed by merging them. Source: hybrid_masson2003 §3, PROTOTYPE.
 /// The map frame is that of the start pose; nothing here knows of truth, files or screens.
 /// Throws what its filter throws (NumericalError, PreconditionError); the map is then as before the scan's failing verb.
-/// Test: supervisor/navigator_test.cpp.
+/// Test: supervisor/navigator_test.cpp, supervisor/closing_test.cpp.
 class Navigator {
  public:
   explicit Navigator(const core::PoseGaussian& start, const NavigatorOptions& options = {});
+  ~Navigator();
+  Navigator(Navigator&&) noexcept;
+  Navigator& operator=(Navigator&&) noexcept;
 
   /// Collects motion; it reaches the filter with the next scan (exact, see core::chain).
   void move(const core::Odometry& odometry);
@@ -62,13 +75,20 @@ class Navigator {
 
  private:
   void predict();
-  std::vector<core::AssociationReport> associate(const core::Scan& scan) const;
+  std::vector<core::LandmarkId> candidates_of(const core::Scan& scan) const;
+  bool is_lost(const core::Scan& scan, const Gating& gating, core::StepReport& report) const;
+  void begin_search();
+  void pursue_search(const core::Scan& scan, core::StepReport& report);
+  void close(const std::vector<pf_relocalize::ConstellationPair>& pairs, core::StepReport& report);
+  std::vector<core::AssociationReport> associate(const core::Scan& scan, const Gating& gating) const;
   std::vector<core::AssociationReport> known_associations(const core::Scan& scan,
                                                           const std::vector<std::int64_t>& identities) const;
   void update(const core::Scan& scan, core::StepReport& report);
   void augment(const core::Scan& scan, core::StepReport& report);
   void augment_known(const core::Scan& scan, const std::vector<std::int64_t>& identities, core::StepReport& report);
   void live_and_let_die(const core::Scan& scan, core::StepReport& report);
+  void forgive_what_may_be_elsewhere(const std::vector<core::LandmarkId>& seen,
+                                     std::vector<core::LandmarkId>& expected) const;
   void remember(const std::vector<std::int64_t>& identities, const core::StepReport& report);
   core::StepReport close_step(const core::Scan& scan, core::StepReport report);
 
@@ -78,6 +98,11 @@ class Navigator {
   std::optional<core::Odometry> motion_;   ///< since the last scan
   std::vector<core::Decision> decisions_;  ///< since the last scan
   std::int64_t step_ = 0;
+
+  std::unique_ptr<Track> track_;
+  std::unique_ptr<Search> search_;  ///< while a question is open
+  std::uint64_t searches_ = 0;
+  double armed_path_m_ = 0.0;  ///< no search begins before
 
   // Known association only: who is who, and how often it was seen.
   std::map<std::int64_t, core::LandmarkId> landmark_of_identity_;

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "helixnav/pf_relocalize/constellation.hpp"
+#include "helixnav/pf_relocalize/reference_map.hpp"
+#include "helixnav/pf_relocalize/relocalizer.hpp"
+#include "helixnav/pf_relocalize/rivals.hpp"
+
+namespace helixnav::supervisor {
+
+/// When a return to old ground is too ambiguous to be associated scan by scan, how it is resolved by the particle filter,
+/// and what is asked before the map is closed. Distances are driven ones. Source of the figures: PROTOTYPE §2 to §6.
+struct SearchOptions {
+  bool enabled = true;
+  std::uint64_t seed = 1;
+
+  // Trigger.
+  double old_after_m = 60.0;      ///< a mature landmark unseen over so long a drive is old
+  double foreign_objects = 0.1;   ///< expected other objects in the gate of an old landmark that begin a search
+  double foreign_per_scan = 2.5;  ///< observations of no old landmark in one scan: clutter and new ones together
+
+  // Search.
+  double look_distance_m = 1.0;  ///< scans nearer to one another are no new look for the particle filter
+  int start_observations = 3;    ///< in the scan that starts the particle filter, and …
+  int start_in_gate = 2;         ///< … so many of them with an old landmark in their gate
+  double start_gate = 9.21;      ///< χ² of that gate
+  double reach_m = 110.0;        ///< old landmarks so far beyond what the sensor may see belong to the reference map
+  double rest_m = 9.0;           ///< after an attempt that failed
+  double attempt_m = 105.0;      ///< after so long an attempt that was never accepted is begun again
+  double undecided_m = 330.0;    ///< after so long a search the question is left open
+  pf_relocalize::RelocalizerOptions relocalizer;
+  pf_relocalize::ReferenceMapOptions reference;
+  pf_relocalize::GateLimits gate;
+  pf_relocalize::GiveUpLimits give_up;
+
+  // Acceptance.
+  double branch_seen_within_m = 67.5;  ///< landmarks mapped since the trigger count while seen so lately
+  double ask_again_m = 7.5;            ///< after a test that was not passed
+  double confirm_m = 3.0;              ///< between the tests that must be passed in a row
+  int passes = 2;                      ///< so many; a closure is not to be had by asking until chance grants it
+  pf_relocalize::RivalOptions rivals;
+  pf_relocalize::ConstellationLimits constellation;
+
+  // Closing.
+  double merge_sigma_m = 0.02;         ///< two landmarks that are one differ by so little
+  double closing_probability = 0.999;  ///< χ² quantile that the cost of a closing must not exceed
+  double most_dropped_share = 0.25;    ///< of the pairs, worst first, until the cost passes
+  double leftover_gate = 9.21;         ///< χ² within which remaining duplicates are merged after a closing
+};
+
+}  // namespace helixnav::supervisor

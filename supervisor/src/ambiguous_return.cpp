@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ambiguous_return.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "helixnav/association/likelihood_ratio.hpp"
+#include "helixnav/core/chi2.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+bool contains(const std::vector<core::LandmarkId>& sorted, core::LandmarkId id) {
+  return std::binary_search(sorted.begin(), sorted.end(), id);
+}
+
+/// Extraneous objects per unit of the observation space at ẑ: in polar coordinates there is more ground farther out.
+double density_at(const association::Prediction& prediction, const core::FieldOfView& view, double per_scan) {
+  const double width_rad = view.max_bearing_rad - view.min_bearing_rad;
+  const double area_m2 = 0.5 * width_rad * (view.max_range_m * view.max_range_m - view.min_range_m * view.min_range_m);
+  const double per_m2 = per_scan / area_m2;
+  return prediction.kind == core::ObservationKind::range_bearing ? per_m2 * prediction.z_hat.x() : per_m2;
+}
+
+int neighbours_in_gate(const cekf::CompressedEkf& filter, const core::Pose2& pose, const core::Scan& scan,
+                       const std::vector<core::LandmarkId>& others, core::LandmarkId self,
+                       const association::GatedPair& pair, const association::Prediction& prediction, double gate) {
+  const Eigen::Matrix2d S_inverse = pair.S.inverse();
+  int neighbours = 0;
+  for (const core::LandmarkId other : others) {
+    if (other == self) continue;
+    const Eigen::Vector2d point_m = filter.landmark_mean(other);
+    if ((core::transform(core::compose(pose, scan.T_robot_sensor), Eigen::Vector2d::Zero()) - point_m).norm() < 1e-3)
+      continue;
+    const core::ObsVector z_hat = core::predict_observation(prediction.kind, pose, scan.T_robot_sensor, point_m).z_hat;
+    const Eigen::Vector2d nu = core::innovation(prediction.kind, z_hat, core::ObsVector(prediction.z_hat));
+    if (nu.dot(S_inverse * nu) < gate) ++neighbours;
+  }
+  return neighbours;
+}
+
+}  // namespace
+
+std::vector<core::LandmarkId> old_landmarks(const association::LandmarkLife& life, double old_after_m) {
+  std::vector<core::LandmarkId> old;
+  for (const association::LandmarkRecord& record : life.records()) {
+    const bool unseen = life.path_m() - record.last_seen_path_m > old_after_m;
+    if (unseen && record.state == core::LandmarkState::mature) old.push_back(record.id);
+  }
+  return old;
+}
+
+std::optional<AmbiguousReturn> most_ambiguous_return(const cekf::CompressedEkf& filter,
+                                                     const association::InnovationProblem& problem,
+                                                     const core::Scan& scan, const std::vector<core::LandmarkId>& old,
+                                                     double foreign_per_scan) {
+  if (old.empty() || !std::isfinite(scan.field_of_view.max_range_m)) return std::nullopt;
+  static const double gate = core::chi2_quantile(0.95, 2);
+  const core::Pose2 pose = filter.pose().mean;
+  std::vector<core::LandmarkId> others;  // looked up when the first old landmark is gated
+  std::optional<AmbiguousReturn> worst;
+  for (const association::GatedPair& pair : problem.pairs) {
+    const core::LandmarkId id = problem.ids[static_cast<std::size_t>(pair.candidate)];
+    if (pair.dof != 2 || !contains(old, id)) continue;
+    if (others.empty()) {
+      const core::PoseGaussian now = filter.pose();
+      const double sigma_m = std::sqrt(std::max(0.0, now.covariance.topLeftCorner<2, 2>().trace()));
+      const Eigen::Vector2d sensor_m = core::transform(pose, scan.T_robot_sensor.position_m());
+      for (const core::LandmarkId near :
+           filter.landmarks_within(sensor_m, scan.field_of_view.max_range_m + 3.0 * sigma_m)) {
+        if (contains(old, near)) others.push_back(near);
+      }
+    }
+    const association::Prediction& prediction = problem.predictions[static_cast<std::size_t>(pair.prediction)];
+    AmbiguousReturn here;
+    here.landmark = id;
+    here.neighbours = neighbours_in_gate(filter, pose, scan, others, id, pair, prediction, gate);
+    here.gate_area = core::pi * gate * std::sqrt(pair.S.determinant());
+    here.foreign_objects =
+        here.neighbours + density_at(prediction, scan.field_of_view, foreign_per_scan) * here.gate_area;
+    if (!worst || here.foreign_objects > worst->foreign_objects) worst = here;
+  }
+  return worst;
+}
+
+}  // namespace helixnav::supervisor

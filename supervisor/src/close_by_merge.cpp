@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "close_by_merge.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "helixnav/core/chi2.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+using KeptRemoved = std::vector<cekf::CompressedEkf::LandmarkPair>;
+
+constexpr double leftover_reach_m = 2.0;  // beyond it, compatible only means uncertain
+constexpr std::size_t least_pairs = 3;
+
+void note(const KeptRemoved& pairs, Closing& closing) {
+  for (const auto& [kept, removed] : pairs) closing.merged.push_back({kept, removed});
+}
+
+/// Drops the worst pair until the cost passes; false when too many would have to go.
+bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& options, KeptRemoved& pairs,
+                     Closing& closing) {
+  const auto most_dropped = static_cast<int>(options.most_dropped_share * static_cast<double>(pairs.size()));
+  while (true) {
+    const cekf::CostByPart cost = filter.merge_cost(pairs, options.merge_sigma_m);
+    closing.cost = cost.cost;
+    closing.dof = cost.dof;
+    closing.limit = core::chi2_quantile(options.closing_probability, cost.dof);
+    if (cost.cost <= closing.limit) return true;
+    if (closing.dropped == most_dropped || pairs.size() <= least_pairs) return false;
+    const auto worst = std::max_element(cost.parts.begin(), cost.parts.end()) - cost.parts.begin();
+    pairs.erase(pairs.begin() + worst);
+    ++closing.dropped;
+  }
+}
+
+struct Leftover {
+  core::LandmarkId kept, removed;
+  double nis;
+};
+
+/// Branch landmarks that stand on one old landmark and on no other, by the joint covariance of the closed map.
+KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& branch,
+                      const std::vector<core::LandmarkId>& old, double gate) {
+  std::vector<Leftover> found;
+  for (const core::LandmarkId removed : branch) {
+    if (!filter.contains(removed)) continue;
+    std::vector<Leftover> here;
+    for (const core::LandmarkId kept : filter.landmarks_within(filter.landmark_mean(removed), leftover_reach_m)) {
+      if (!std::binary_search(old.begin(), old.end(), kept)) continue;
+      const core::JointGaussian both = filter.joint({kept, removed});
+      const Eigen::MatrixXd& P = both.covariance;
+      const Eigen::Matrix2d S = P.block<2, 2>(3, 3) + P.block<2, 2>(5, 5) - P.block<2, 2>(3, 5) - P.block<2, 2>(5, 3) +
+                                1e-4 * Eigen::Matrix2d::Identity();
+      const Eigen::Vector2d d = both.points_m[1] - both.points_m[0];
+      const double nis = d.dot(S.inverse() * d);
+      if (nis < gate) here.push_back({kept, removed, nis});
+    }
+    if (here.size() == 1) found.push_back(here.front());
+  }
+  std::sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.nis < b.nis; });
+  KeptRemoved pairs;
+  for (const Leftover& leftover : found) {
+    const bool taken = std::any_of(pairs.begin(), pairs.end(), [&](const auto& p) { return p.first == leftover.kept; });
+    if (!taken) pairs.emplace_back(leftover.kept, leftover.removed);
+  }
+  return pairs;
+}
+
+}  // namespace
+
+Closing close_by_merge(cekf::CompressedEkf& filter, const std::vector<pf_relocalize::ConstellationPair>& pairs,
+                       const std::vector<core::LandmarkId>& branch, const std::vector<core::LandmarkId>& old,
+                       const SearchOptions& options) {
+  Closing closing;
+  KeptRemoved chosen;
+  for (const pf_relocalize::ConstellationPair& pair : pairs) chosen.emplace_back(pair.old_landmark, pair.branch);
+  if (chosen.size() < least_pairs || !make_compatible(filter, options, chosen, closing)) return closing;
+  filter.merge(chosen, options.merge_sigma_m);
+  note(chosen, closing);
+  closing.accepted = true;
+
+  KeptRemoved rest = leftovers(filter, branch, old, options.leftover_gate);
+  Closing rest_closing;
+  if (!rest.empty() && make_compatible(filter, options, rest, rest_closing)) {
+    filter.merge(rest, options.merge_sigma_m);
+    note(rest, closing);
+  }
+  return closing;
+}
+
+}  // namespace helixnav::supervisor

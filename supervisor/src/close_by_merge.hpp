@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/step_report.hpp"
+#include "helixnav/pf_relocalize/constellation.hpp"
+#include "helixnav/supervisor/search_options.hpp"
+
+namespace helixnav::supervisor {
+
+/// What closing a loop did, or would have done.
+struct Closing {
+  bool accepted = false;
+  double cost = 0.0;  ///< J of the pairs kept, χ² with dof
+  int dof = 0;
+  double limit = 0.0;
+  int dropped = 0;                            ///< pairs that the cost did not let pass
+  std::vector<core::MergedLandmarks> merged;  ///< empty unless accepted
+};
+
+/// Conditions the map on every branch landmark of the pairs being the old one that it stands on, jointly and iterated; the
+/// worst pair goes while the cost exceeds its χ² limit. Then what else of `branch` has become a duplicate of one of `old`
+/// (both ascending) is merged under a joint gate of its own. Refused: filter as before.
+/// Exact: equal to a full EKF told the same equalities. Source: PROTOTYPE §6. Test: supervisor/closing_test.cpp.
+Closing close_by_merge(cekf::CompressedEkf& filter, const std::vector<pf_relocalize::ConstellationPair>& pairs,
+                       const std::vector<core::LandmarkId>& branch, const std::vector<core::LandmarkId>& old,
+                       const SearchOptions& options);
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "constellation_question.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace helixnav::supervisor {
+namespace {
+
+bool contains(const std::vector<core::LandmarkId>& sorted, core::LandmarkId id) {
+  return std::binary_search(sorted.begin(), sorted.end(), id);
+}
+
+std::vector<core::Pose2> in_frame(const core::Pose2& T_world_frame, std::vector<core::Pose2> poses) {
+  for (core::Pose2& pose : poses) pose = core::between(T_world_frame, pose);
+  return poses;
+}
+
+/// Ground looked at on the old drive (base frame) and lately (vehicle frame).
+void add_coverage(const SearchView& view, const core::Pose2& T_world_base, double search_begun_path_m,
+                  const SearchOptions& options, pf_relocalize::Constellation& constellation) {
+  const double now_m = view.life.path_m();
+  const double old_until_m = search_begun_path_m - options.old_after_m;
+  constellation.old_drive.T_frame_sensor = in_frame(T_world_base, view.track.between(0.0, old_until_m));
+  constellation.old_drive.field_of_view = view.scan.field_of_view;
+  constellation.new_drive.T_frame_sensor =
+      in_frame(view.filter.pose().mean, view.track.between(now_m - options.old_after_m, now_m + 1.0));
+  constellation.new_drive.field_of_view = view.scan.field_of_view;
+  constellation.new_drive.least_views = 2;
+}
+
+std::string_view word_of(pf_relocalize::ConstellationReason reason) {
+  switch (reason) {
+    case pf_relocalize::ConstellationReason::accepted:
+      return "accepted";
+    case pf_relocalize::ConstellationReason::too_few_matches:
+      return "too-few-matches";
+    case pf_relocalize::ConstellationReason::ratio_too_low:
+      return "ratio-too-low";
+    default:
+      return "rival-too-good";
+  }
+}
+
+}  // namespace
+
+std::vector<core::LandmarkId> reference_landmarks(const SearchView& view, const std::vector<core::LandmarkId>& old,
+                                                  double reach_m) {
+  const core::PoseGaussian pose = view.filter.pose();
+  const double sigma_m = std::sqrt(std::max(0.0, pose.covariance.topLeftCorner<2, 2>().trace()));
+  std::vector<core::LandmarkId> near = view.filter.landmarks_within(
+      pose.mean.position_m(), view.scan.field_of_view.max_range_m + reach_m + 2.0 * sigma_m);
+  near.erase(std::remove_if(near.begin(), near.end(), [&](core::LandmarkId id) { return !contains(old, id); }),
+             near.end());
+  return near;
+}
+
+std::vector<pf_relocalize::BranchLandmark> branch_landmarks(const SearchView& view,
+                                                            const std::vector<core::LandmarkId>& old,
+                                                            double seen_within_m) {
+  const core::Pose2 T_robot_world = core::inverse(view.filter.pose().mean);
+  std::vector<pf_relocalize::BranchLandmark> branch;
+  for (const association::LandmarkRecord& record : view.life.records()) {
+    if (view.life.path_m() - record.last_seen_path_m > seen_within_m || contains(old, record.id)) continue;
+    branch.push_back({record.id, core::transform(T_robot_world, view.filter.landmark_mean(record.id)), record.hits});
+  }
+  return branch;
+}
+
+ConstellationAnswer ask_constellation(const SearchView& view, const std::vector<core::LandmarkId>& old,
+                                      double search_begun_path_m, const core::Pose2& T_world_robot,
+                                      const SearchOptions& options, std::uint64_t seed) {
+  ConstellationAnswer answer;
+  answer.T_world_winner = answer.T_world_rival = T_world_robot;
+  const std::vector<core::LandmarkId> near = reference_landmarks(view, old, options.reach_m);
+  if (near.size() < 3) return answer;
+  const pf_relocalize::ReferenceMap map =
+      pf_relocalize::build_reference_map(view.filter.joint(near), pf_relocalize::ReferenceMapOptions{});
+
+  pf_relocalize::Constellation constellation;
+  constellation.branch = branch_landmarks(view, old, options.branch_seen_within_m);
+  for (std::size_t i = 0; i < map.ids.size(); ++i) {
+    constellation.old_landmarks.push_back({map.ids[i], map.landmarks[i]});
+  }
+  add_coverage(view, map.T_world_base, search_begun_path_m, options, constellation);
+
+  std::vector<pf_relocalize::BranchLandmark> confirmed = constellation.branch;
+  confirmed.erase(std::remove_if(confirmed.begin(), confirmed.end(),
+                                 [&](const auto& b) { return b.hits < options.constellation.least_hits; }),
+                  confirmed.end());
+  const pf_relocalize::RivalPoses poses =
+      pf_relocalize::find_rivals(map, confirmed, core::between(map.T_world_base, T_world_robot), options.rivals, seed);
+  answer.verdict = judge_constellation(constellation, poses.winner, poses.rivals, options.constellation);
+  answer.T_world_winner = core::compose(map.T_world_base, poses.winner);
+  answer.T_world_rival = answer.verdict.rival.matched > 0
+                             ? core::compose(map.T_world_base, answer.verdict.rival.T_map_robot)
+                             : answer.T_world_winner;
+  return answer;
+}
+
+core::Decision constellation_decision(const ConstellationAnswer& answer) {
+  const pf_relocalize::ConstellationVerdict& v = answer.verdict;
+  return {"constellation",
+          std::string(word_of(v.reason)),
+          {{"matched", v.winner.matched},
+           {"unmatched_branch", v.winner.unmatched_branch},
+           {"unmatched_old", v.winner.unmatched_old},
+           {"ratio", v.winner.ratio},
+           {"rival_matched", v.rival.matched},
+           {"rival_ratio", v.rival.ratio},
+           {"rival_share", v.rival_share},
+           {"rivals_tried", v.rivals_tried},
+           {"x_m", answer.T_world_winner.x_m},
+           {"y_m", answer.T_world_winner.y_m},
+           {"heading_rad", answer.T_world_winner.heading_rad},
+           {"rival_x_m", answer.T_world_rival.x_m},
+           {"rival_y_m", answer.T_world_rival.y_m},
+           {"rival_heading_rad", answer.T_world_rival.heading_rad}}};
+}
+
+}  // namespace helixnav::supervisor

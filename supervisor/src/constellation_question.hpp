@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "helixnav/core/step_report.hpp"
+#include "helixnav/pf_relocalize/constellation.hpp"
+#include "search.hpp"
+
+namespace helixnav::supervisor {
+
+/// Old landmarks in reach of where the vehicle may be and of where it may drive next, ascending.
+std::vector<core::LandmarkId> reference_landmarks(const SearchView& view, const std::vector<core::LandmarkId>& old,
+                                                  double reach_m);
+
+/// Landmarks of the branch in the frame of the vehicle, all that were seen lately.
+std::vector<pf_relocalize::BranchLandmark> branch_landmarks(const SearchView& view,
+                                                            const std::vector<core::LandmarkId>& old,
+                                                            double seen_within_m);
+
+/// Does the constellation that the branch mapped stand on old landmarks at T_world_robot, and nowhere else nearly as
+/// well? Rivals are looked for within the branch's own uncertainty.
+struct ConstellationAnswer {
+  pf_relocalize::ConstellationVerdict verdict;
+  core::Pose2 T_world_winner;
+  core::Pose2 T_world_rival;  ///< of the best rival that counts; the winner's when there is none
+};
+ConstellationAnswer ask_constellation(const SearchView& view, const std::vector<core::LandmarkId>& old,
+                                      double search_begun_path_m, const core::Pose2& T_world_robot,
+                                      const SearchOptions& options, std::uint64_t seed);
+
+/// The answer as a decision of kind "constellation".
+core::Decision constellation_decision(const ConstellationAnswer& answer);
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "helixnav/association/innovation_problem.hpp"
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/events.hpp"
+
+namespace helixnav::supervisor {
+
+/// What the filter expects a scan to look like. The problem refers to the joint estimate beside it: not copyable.
+struct Gating {
+  Gating(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& ids, const core::Scan& scan,
+         const association::Gates& gates)
+      : joint(filter.joint(ids)), problem(association::make_innovation_problem(joint, scan, gates)) {}
+  Gating(const Gating&) = delete;
+  Gating& operator=(const Gating&) = delete;
+
+  core::JointGaussian joint;
+  association::InnovationProblem problem;
+};
+
+}  // namespace helixnav::supervisor

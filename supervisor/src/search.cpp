@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "search.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "constellation_question.hpp"
+#include "helixnav/association/innovation_problem.hpp"
+#include "helixnav/core/odometry.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+using pf_relocalize::ConstellationPair;
+using pf_relocalize::SearchOutcome;
+
+constexpr std::size_t most_cloud_points = 300;
+
+core::Pose2 base_frame_now(const cekf::CompressedEkf& filter, core::LandmarkId a, core::LandmarkId b) {
+  const Eigen::Vector2d a_m = filter.landmark_mean(a);
+  const Eigen::Vector2d axis = filter.landmark_mean(b) - a_m;
+  return {a_m.x(), a_m.y(), std::atan2(axis.y(), axis.x())};
+}
+
+/// Two passed tests speak for one another when no landmark has changed its partner.
+bool agree(const std::vector<ConstellationPair>& before, const std::vector<ConstellationPair>& now) {
+  return std::none_of(now.begin(), now.end(), [&](const ConstellationPair& n) {
+    return std::any_of(before.begin(), before.end(), [&](const ConstellationPair& b) {
+      return (b.branch == n.branch) != (b.old_landmark == n.old_landmark);
+    });
+  });
+}
+
+}  // namespace
+
+Search::Search(std::vector<core::LandmarkId> old, double path_m, std::uint64_t seed, const SearchOptions& options)
+    : options_(options),
+      old_(std::move(old)),
+      begun_path_m_(path_m),
+      seed_(seed),
+      motion_(core::no_motion(0)),
+      last_look_path_m_(path_m - options.look_distance_m) {}
+
+bool Search::excludes(core::LandmarkId id) const { return std::binary_search(old_.begin(), old_.end(), id); }
+
+void Search::move(const core::Odometry& odometry) { motion_ = core::chain(motion_, odometry); }
+
+std::optional<std::vector<ConstellationPair>> Search::look(const SearchView& view,
+                                                           std::vector<core::Decision>& decisions) {
+  const double path_m = view.life.path_m();
+  if (path_m - last_look_path_m_ < options_.look_distance_m) return std::nullopt;
+  last_look_path_m_ = path_m;
+  const core::Odometry motion = std::exchange(motion_, core::no_motion(view.scan.t_ns));
+  if (!attempt_) {
+    if (path_m >= next_start_path_m_ && is_promising(view)) start(view, decisions);
+    return std::nullopt;
+  }
+  attempt_->relocalizer.step(motion, view.scan);
+  switch (judge_search(attempt_->relocalizer.state(), options_.gate, options_.give_up)) {
+    case SearchOutcome::gate_met:
+      return question(view, decisions);
+    case SearchOutcome::timed_out:
+      end_attempt("timed-out", path_m, decisions);
+      break;
+    case SearchOutcome::nothing_here:
+      end_attempt("nothing-here", path_m, decisions);
+      break;
+    default:
+      break;
+  }
+  return std::nullopt;
+}
+
+bool Search::is_promising(const SearchView& view) const {
+  if (static_cast<int>(view.scan.observations.size()) < options_.start_observations) return false;
+  const core::JointGaussian joint = view.filter.joint(reference_landmarks(view, old_, 0.0));
+  if (joint.ids.size() < 3) return false;
+  const association::InnovationProblem problem = association::make_innovation_problem(joint, view.scan);
+  int in_gate = 0;
+  for (const association::GatedObservation& observation : problem.observations) {
+    in_gate += observation.nearest_nis < options_.start_gate ? 1 : 0;
+  }
+  return in_gate >= options_.start_in_gate;
+}
+
+void Search::start(const SearchView& view, std::vector<core::Decision>& decisions) {
+  const core::JointGaussian joint = view.filter.joint(reference_landmarks(view, old_, options_.reach_m));
+  pf_relocalize::ReferenceMap map = pf_relocalize::build_reference_map(joint, options_.reference);
+  const core::LandmarkId a = joint.ids[static_cast<std::size_t>(map.bases.a)];
+  const core::LandmarkId b = joint.ids[static_cast<std::size_t>(map.bases.b)];
+  const double path_m = view.life.path_m();
+  ++starts_;
+  const std::uint64_t seed = seed_ + 1000u * static_cast<std::uint64_t>(starts_);
+  attempt_.emplace(Attempt{
+      pf_relocalize::Relocalizer(std::move(map), view.scan, options_.relocalizer, seed), a, b, path_m, path_m, {}, 0});
+  decisions.push_back({"search",
+                       "started",
+                       {{"attempt", starts_},
+                        {"reference_landmarks", static_cast<double>(joint.ids.size())},
+                        {"helix_pairs", static_cast<double>(attempt_->relocalizer.helix_pairs())},
+                        {"log_evidence", attempt_->relocalizer.state().log_evidence}}});
+}
+
+std::optional<std::vector<ConstellationPair>> Search::question(const SearchView& view,
+                                                               std::vector<core::Decision>& decisions) {
+  Attempt& attempt = *attempt_;
+  const double path_m = view.life.path_m();
+  if (path_m < attempt.next_question_path_m) return std::nullopt;
+  if (path_m - attempt.begun_path_m > options_.attempt_m) {
+    end_attempt("abandoned", path_m, decisions);
+    return std::nullopt;
+  }
+  const core::Pose2 T_world_base = base_frame_now(view.filter, attempt.base_a, attempt.base_b);
+  const core::Pose2 T_base_robot = attempt.relocalizer.state().modes.front().pose.mean;
+  ++questions_;
+  const ConstellationAnswer answer =
+      ask_constellation(view, old_, begun_path_m_, core::compose(T_world_base, T_base_robot), options_,
+                        seed_ + static_cast<std::uint64_t>(questions_));
+  decisions.push_back(constellation_decision(answer));
+  const bool accepted = answer.verdict.accepted;
+  attempt.passes = !accepted ? 0 : agree(attempt.passed, answer.verdict.winner.pairs) ? attempt.passes + 1 : 1;
+  attempt.passed = accepted ? answer.verdict.winner.pairs : std::vector<ConstellationPair>{};
+  attempt.next_question_path_m = path_m + (accepted ? options_.confirm_m : options_.ask_again_m);
+  if (attempt.passes < options_.passes) return std::nullopt;
+  return attempt.passed;
+}
+
+void Search::end_attempt(const char* verdict, double path_m, std::vector<core::Decision>& decisions) {
+  const pf_relocalize::CloudState& state = attempt_->relocalizer.state();
+  decisions.push_back({"search",
+                       verdict,
+                       {{"attempt", starts_},
+                        {"scans", state.scans},
+                        {"log_evidence", state.log_evidence},
+                        {"largest_mode", state.modes.front().mass},
+                        {"driven_m", path_m - attempt_->begun_path_m}}});
+  refuse(path_m);
+}
+
+void Search::refuse(double path_m) {
+  attempt_.reset();
+  next_start_path_m_ = path_m + options_.rest_m;
+}
+
+std::vector<core::Pose2> Search::cloud(const cekf::CompressedEkf& filter) const {
+  std::vector<core::Pose2> poses;
+  if (!attempt_) return poses;
+  const core::Pose2 T_world_base = base_frame_now(filter, attempt_->base_a, attempt_->base_b);
+  const pf_relocalize::Particles& particles = attempt_->relocalizer.particles();
+  const std::size_t stride = std::max<std::size_t>(1, particles.size() / most_cloud_points);
+  for (std::size_t i = 0; i < particles.size(); i += stride) {
+    poses.push_back(core::compose(T_world_base, particles.pose(i)));
+  }
+  return poses;
+}
+
+}  // namespace helixnav::supervisor

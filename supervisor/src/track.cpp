@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "track.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+constexpr double spacing_m = 4.0;
+
+}  // namespace
+
+void Track::pass(double path_m, const core::Pose2& T_world_sensor) {
+  if (!points_.empty() && path_m - points_.back().path_m < spacing_m) return;
+  points_.push_back({path_m, T_world_sensor});
+}
+
+std::vector<core::Pose2> Track::between(double from_m, double to_m) const {
+  std::vector<core::Pose2> poses;
+  for (const Point& point : points_) {
+    if (point.path_m >= from_m && point.path_m < to_m) poses.push_back(point.T_world_sensor);
+  }
+  return poses;
+}
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "helixnav/core/se2.hpp"
+
+namespace helixnav::supervisor {
+
+/// Where the sensor has been, every few metres, in the map frame as estimated then: what ground the drive has looked at.
+class Track {
+ public:
+  /// Adds the sensor's pose when it is `spacing` beyond the last one.
+  void pass(double path_m, const core::Pose2& T_world_sensor);
+
+  /// Sensor poses passed at path lengths in [from_m, to_m).
+  std::vector<core::Pose2> between(double from_m, double to_m) const;
+
+ private:
+  struct Point {
+    double path_m;
+    core::Pose2 T_world_sensor;
+  };
+  std::vector<Point> points_;
+};
+
+}  // namespace helixnav::supervisor
