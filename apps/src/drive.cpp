@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "estimator.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/run_writer.hpp"
 #include "interrupt.hpp"
@@ -33,21 +34,24 @@ void check_labels(const Drive& job) {
     throw core::InputError(job.recording.name +
                            ": --association known needs a labelled log, and this one has no labels");
   }
+  if (job.known_association && job.given_map && job.given_map->landmark_of.empty()) {
+    throw core::InputError(
+        "--association known needs to know the labels of the map's landmarks: give --map the folder "
+        "of a run over a labelled log");
+  }
 }
 
 /// Feeds all events; returns the microseconds of each scan's step.
-std::vector<double> navigate(const Drive& job, supervisor::Navigator& navigator, logs::RunWriter& writer) {
+std::vector<double> navigate(const Drive& job, const Estimator& estimator, logs::RunWriter& writer) {
   std::vector<double> step_us;
-  ProgressBar progress("navigating", job.recording.events.size(), job.quiet);
+  ProgressBar progress(job.given_map ? "localising" : "navigating", job.recording.events.size(), job.quiet);
   for (std::size_t i = 0; i < job.recording.events.size() && !interrupted(); ++i) {
     const core::Event& event = job.recording.events[i];
-    if (const auto* odometry = std::get_if<core::Odometry>(&event)) navigator.move(*odometry);
-    if (const auto* fix = std::get_if<core::AbsoluteFix>(&event)) navigator.fix(*fix);
+    if (const auto* odometry = std::get_if<core::Odometry>(&event)) estimator.move(*odometry);
+    if (const auto* fix = std::get_if<core::AbsoluteFix>(&event)) estimator.fix(*fix);
     if (const auto* scan = std::get_if<core::Scan>(&event)) {
       const Clock::time_point begin = Clock::now();
-      const core::StepReport report = job.known_association
-                                          ? navigator.observe(*scan, job.recording.labels[step_us.size()])
-                                          : navigator.observe(*scan);
+      const core::StepReport report = estimator.observe(*scan, step_us.size());
       step_us.push_back(1e6 * seconds_since(begin));
       writer.write(report, step_us.back());
     }
@@ -65,8 +69,9 @@ ExitCode drive(const Drive& job) {
   using IfNotEmpty = logs::RunWriter::IfNotEmpty;
   logs::RunWriter writer(job.out, job.manifest, job.recording,
                          job.overwrite ? IfNotEmpty::overwrite : IfNotEmpty::refuse);
-  supervisor::Navigator navigator(job.recording.start, job.navigator);
-  const std::vector<double> step_us = navigate(job, navigator, writer);
+  LabelAgreement agreement;
+  const Estimator estimator = job.given_map ? localizer_of(job, agreement) : navigator_of(job);
+  const std::vector<double> step_us = navigate(job, estimator, writer);
 
   logs::RunEnd end;
   end.timing = {{"median_us", quantile(step_us, 0.5)},
@@ -74,10 +79,12 @@ ExitCode drive(const Drive& job) {
                 {"max_us", quantile(step_us, 1.0)},
                 {"reading_s", job.reading_s},
                 {"navigating_s", seconds_since(begin)}};
-  const std::vector<core::MapLandmark> map = navigator.map();
+  end.numbers = numbers_of(agreement);
+  const std::vector<core::MapLandmark> map = estimator.map();
   const ExitCode smoothed = job.smooth && !interrupted() ? smooth_drive(job, map, end) : ExitCode::ok;
   const logs::Evaluation evaluation = writer.finish(map, end);
   std::fputs(logs::evaluation_text(evaluation).c_str(), stdout);
+  std::fputs(text_of(agreement).c_str(), stdout);
   std::printf("run folder: %s   report: %s/report.html\n", job.out.c_str(), job.out.c_str());
   if (!interrupted()) return smoothed;
   std::fprintf(stderr, "helixnav: interrupted after %zu steps; the run folder is complete up to there\n",

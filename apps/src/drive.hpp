@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "exit_code.hpp"
+#include "given_map.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/logs/run_manifest.hpp"
 #include "helixnav/supervisor/navigator.hpp"
 
 namespace helixnav::apps {
 
-/// What replay and simulate have in common: a recording is driven through the navigator into a run folder.
+/// What replay and simulate have in common: a recording is driven through the navigator, or through the
+/// localizer, into a run folder.
 struct Drive {
   core::Recording recording;
   supervisor::NavigatorOptions navigator;
-  bool known_association = false;  ///< use the recording's labels as identities
-  bool smooth = false;             ///< afterwards, with the filter's own associations
+  std::optional<GivenMap> given_map;  ///< localise in it instead of mapping
+  bool known_association = false;     ///< use the recording's labels as identities
+  bool smooth = false;                ///< afterwards, with the filter's own associations
   std::string out;
   bool overwrite = false;
   bool quiet = false;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -24,6 +25,8 @@ namespace {
 struct ReplayJob {
   std::string path;
   bool smooth = false;
+  bool localize = false;
+  std::string map;
   RunOptions run;
   Settings settings;
 };
@@ -55,8 +58,19 @@ void scale_ranges(core::Recording& recording, const Settings& settings) {
   divide_ranges(recording, scale);
 }
 
+/// For logs whose covariances promise too much or too little.
+void scale_covariances(core::Recording& recording, double scale) {
+  for (core::Event& event : recording.events) {
+    if (auto* odometry = std::get_if<core::Odometry>(&event)) odometry->covariance *= scale;
+    if (auto* scan = std::get_if<core::Scan>(&event)) {
+      for (core::Observation& observation : scan->observations) observation.R *= scale;
+    }
+  }
+}
+
 ExitCode replay(CLI::App& command, ReplayJob& job) {
   prepare_run(command, job.run);
+  if (job.localize && job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "excludes --localize");
   const auto begin = std::chrono::steady_clock::now();
   Drive task;
   job.settings.logs.plaza.range_scale = 1.0;  // see scale_ranges
@@ -64,10 +78,16 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   task.navigator = job.settings.navigator;
   if (logs::recognise(job.path) == logs::LogFormat::plaza) scale_ranges(task.recording, job.settings);
   if (job.settings.gps.fuse) fuse_gps(task.recording, job.settings.gps);
+  scale_covariances(task.recording, job.settings.covariance_scale);
   fill_drive(task, job.run, dump_config(command));
   task.smooth = job.smooth;
+  if (job.localize) task.given_map = read_given_map(job.map);
   task.known_association = job.settings.known_association;
   task.manifest.inputs = input_files(job.path);
+  if (job.localize) {
+    const std::vector<logs::InputFile> of_map = input_files(map_file(job.map));
+    task.manifest.inputs.insert(task.manifest.inputs.end(), of_map.begin(), of_map.end());
+  }
   task.reading_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return drive(task);
 }
@@ -78,9 +98,16 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
   CLI::App* command = app.add_subcommand("replay", "Navigate along a recorded log");
   const auto job = std::make_shared<ReplayJob>();
   command->add_option("PATH", job->path, "Log: file, folder or zip; the format is recognised")->required();
-  command->add_flag(
+  CLI::Option* smooth = command->add_flag(
       "--smooth", job->smooth,
       "Then smooth with the filter's associations: trajectory_final.tum, chi2 and dof (GPS fixes left out)");
+  CLI::Option* map = command->add_option("--map", job->map, "Map to localise in: a run folder or its map.csv");
+  map->type_name("FILE");
+  CLI::Option* localize =
+      command->add_flag("--localize", job->localize, "Estimate the pose alone, in the map given, which stays as it is");
+  localize->needs(map);
+  map->needs(localize);
+  localize->excludes(smooth);
   add_run_options(*command, job->run);
   add_settings(*command, job->settings);
   command->footer(
@@ -89,7 +116,8 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
       "Examples:\n"
       "  helixnav replay victoria_park_ascii.zip --out runs/vp\n"
       "  helixnav replay isam_victoriaPark.txt --association known --out runs/graph\n"
-      "  helixnav replay data_set.mat --out runs/carpark --config mine.toml\n");
+      "  helixnav replay data_set.mat --out runs/carpark --config mine.toml\n"
+      "  helixnav replay map.circles --localize --map runs/optimum --out runs/located\n");
   command->callback([command, job, &code] { code = replay(*command, *job); });
 }
 

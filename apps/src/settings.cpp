@@ -125,6 +125,8 @@ void add_gps(CLI::App& command, Settings& settings) {
 }  // namespace
 
 void add_settings(CLI::App& command, Settings& settings) {
+  add_number(command, "--log.covariance_scale", settings.covariance_scale, 1e-6, 1e6,
+             "Factor on every covariance of odometry and observations; DLR run e is right with 2.07");
   add_filter(command, settings.navigator.filter);
   add_association(command, settings);
   add_landmarks(command, settings.navigator);

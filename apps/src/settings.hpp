@@ -18,6 +18,7 @@ struct Settings {
   supervisor::NavigatorOptions navigator;
   bool known_association = false;  ///< association.method is "known": the log's labels are the identities
   logs::RecordingSettings logs;
+  double covariance_scale = 1.0;   ///< on the covariances that the log itself states or its sensor settings give
   double plaza_range_scale = 0.0;  ///< 0: estimate it from the log
   GpsSettings gps;
 };

@@ -140,8 +140,13 @@ NisEvaluation evaluate_nis(const std::vector<core::StepReport>& steps) {
     nis += step.joint_nis;
     dof += step.joint_dof;
   }
-  result.mean_per_dof = result.updates == 0 ? nan : nis / dof;
   result.inside_95 = fraction_of(inside, result.updates);
+  result.mean_per_dof = result.mean_low_95 = result.mean_high_95 = nan;
+  if (result.updates == 0) return result;
+  const Band of_sum = two_sided_95(static_cast<int>(dof));
+  result.mean_per_dof = nis / dof;
+  result.mean_low_95 = of_sum.low / dof;
+  result.mean_high_95 = of_sum.high / dof;
   return result;
 }
 

@@ -99,8 +99,10 @@ std::string evaluation_text(const Evaluation& evaluation) {
   if (evaluation.map) text += map_text(*evaluation.map);
   if (!evaluation.position && !evaluation.map) text += "no truth             nothing to compare the run with\n";
   if (evaluation.nis.updates > 0) {
-    text += format("NIS                  mean %.3f per degree of freedom, %.1f %% inside the 95 %% band, %zu updates\n",
-                   evaluation.nis.mean_per_dof, 100.0 * evaluation.nis.inside_95, evaluation.nis.updates);
+    text += format("NIS                  mean %.3f per degree of freedom (95 %% band %.3f to %.3f)\n",
+                   evaluation.nis.mean_per_dof, evaluation.nis.mean_low_95, evaluation.nis.mean_high_95);
+    text += format("  single updates     %.1f %% inside their 95 %% bands, %zu updates\n",
+                   100.0 * evaluation.nis.inside_95, evaluation.nis.updates);
   }
   if (evaluation.revisits.revisits > 0) {
     text += format("NIS of revisits      mean %.3f per degree of freedom, %zu landmarks unseen for %d steps\n",
@@ -123,6 +125,8 @@ Json evaluation_to_json(const Evaluation& evaluation) {
   if (evaluation.map) json["landmark_error"] = map_to_json(*evaluation.map);
   json["nis"] = {{"updates", evaluation.nis.updates},
                  {"mean_per_dof", evaluation.nis.mean_per_dof},
+                 {"mean_low_95", evaluation.nis.mean_low_95},
+                 {"mean_high_95", evaluation.nis.mean_high_95},
                  {"inside_95", evaluation.nis.inside_95}};
   json["revisits"] = {{"count", evaluation.revisits.revisits},
                       {"mean_nis_per_dof", evaluation.revisits.mean_nis_per_dof}};

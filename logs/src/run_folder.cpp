@@ -164,6 +164,14 @@ void assemble(RunTables& tables, RunFolder& run) {
   }
 }
 
+bool has_truth(const std::string& folder) {
+  return std::any_of(std::begin(run_files), std::end(run_files), [&](std::string_view name) {
+    return name.substr(0, 6) == "truth_" && fs::exists(folder + '/' + std::string(name));
+  });
+}
+
+}  // namespace
+
 std::vector<core::MapLandmark> read_map(const std::string& path) {
   std::vector<core::MapLandmark> map;
   for_each_row(path, map_table, [&](const RunRow& row) {
@@ -176,14 +184,6 @@ std::vector<core::MapLandmark> read_map(const std::string& path) {
   });
   return map;
 }
-
-bool has_truth(const std::string& folder) {
-  return std::any_of(std::begin(run_files), std::end(run_files), [&](std::string_view name) {
-    return name.substr(0, 6) == "truth_" && fs::exists(folder + '/' + std::string(name));
-  });
-}
-
-}  // namespace
 
 RunFolder read_run(const std::string& path) {
   const std::string manifest = path + '/' + manifest_file;

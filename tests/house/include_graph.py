@@ -8,7 +8,7 @@ import re
 import sys
 from pathlib import Path
 
-ESTIMATORS = {"core", "association", "cekf", "pf_relocalize", "smoothing", "fastslam", "supervisor"}
+ESTIMATORS = {"core", "association", "cekf", "pf_relocalize", "smoothing", "localization", "fastslam", "supervisor"}
 TRUTH = "helixnav/core/recording.hpp"
 FILES_AND_SCREENS = {"iostream", "fstream", "filesystem"}
 STANDARD_HEADERS = set("""

@@ -79,7 +79,9 @@ struct MapEvaluation {
 struct NisEvaluation {
   std::size_t updates = 0;
   double mean_per_dof = 0.0;  ///< 1 when the filter is consistent; NaN without updates
-  double inside_95 = 0.0;     ///< fraction within the two-sided 95 % band
+  double mean_low_95 = 0.0;   ///< two-sided 95 % band of that mean, as if the updates were independent
+  double mean_high_95 = 0.0;
+  double inside_95 = 0.0;  ///< fraction within the two-sided 95 % band
 };
 
 /// First matches of landmarks that had not been seen for `unseen_steps` steps: what the map says after a detour, before it

@@ -36,6 +36,9 @@ struct RunFolder {
 /// Test: logs/run_folder_test.cpp (tables cut at every kind of byte).
 RunFolder read_run(const std::string& path);
 
+/// Reads a map.csv. InputError naming file:line. Test: logs/run_folder_test.cpp.
+std::vector<core::MapLandmark> read_map(const std::string& path);
+
 /// Reads truth from a folder (truth_*.csv, those that exist) or from one such file, recognised by its header line.
 /// InputError when there is none.
 RunTruth read_truth(const std::string& path);

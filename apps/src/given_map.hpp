@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "helixnav/core/recording.hpp"
+#include "helixnav/core/step_report.hpp"
+
+namespace helixnav::apps {
+
+/// A map that a run made, to localise in.
+struct GivenMap {
+  std::vector<core::MapLandmark> landmarks;             ///< mature ones
+  std::map<core::Label, core::LandmarkId> landmark_of;  ///< by label; empty when the run had no labels
+};
+
+/// Reads a map.csv, alone or in a run folder. Who is who is taken from that run's associations and labels: a label is
+/// the landmark that most of its observations were matched with. InputError when there is no map.
+GivenMap read_given_map(const std::string& path);
+
+/// The map.csv meant by what read_given_map takes.
+std::string map_file(const std::string& path);
+
+/// How the associations of a run in a given map agree with the labels of its log.
+struct LabelAgreement {
+  std::size_t matched = 0;  ///< observations matched with a landmark
+  std::size_t right = 0;    ///< of these: with the one of their label
+  std::size_t on_map = 0;   ///< observations whose label the map has
+
+  void count(const core::StepReport& report, const std::vector<core::Label>& labels, const GivenMap& map);
+};
+
+/// Precision and recall, one line; empty when the log or the map has no labels.
+std::string text_of(const LabelAgreement& agreement);
+
+/// The same for summary.json.
+std::vector<std::pair<std::string, double>> numbers_of(const LabelAgreement& agreement);
+
+}  // namespace helixnav::apps

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/association/associate.hpp"
+#include "helixnav/core/events.hpp"
+#include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/step_report.hpp"
+
+namespace helixnav::localization {
+
+struct LocalizerOptions {
+  association::Method method = association::Method::likelihood_ratio;
+  association::Options association;
+  association::Gates gates;
+  double extraneous_per_scan =
+      1.0;                        ///< observations of no landmark of the map; used where the field of view is bounded
+  double candidate_sigmas = 4.0;  ///< how far the search for candidates reaches
+};
+
+/// EKF over the pose alone, in a map that is given: every scan is associated with the map and updates the pose; the map
+/// stays as it is. The landmarks' positions are taken as exact: what a scan tells is where the robot is relative to them,
+/// and the error that they have in common is the frame's, not the robot's.
+/// Map frame, covariances in (x, y, heading) [m, m, rad]. Cost of a scan of m observations: O(m · landmarks) to find
+/// candidates, O(m³) to update. Throws PreconditionError (arguments, an observation that is none) and NumericalError (S
+/// not positive definite); the pose is then that before the scan's update.
+/// Source: dlr_kurlbaum2009 §3.4 (EKF localiser using the calculated map). Test: localization/localizer_test.cpp
+/// (information-form twin, NEES and NIS in their bands).
+class Localizer {
+ public:
+  /// Ids of the map must differ. The start is where the robot is in the frame of the map.
+  Localizer(const core::PoseGaussian& start, const std::vector<core::MapLandmark>& map,
+            const LocalizerOptions& options = {});
+
+  /// Collects motion; it reaches the pose with the next scan (exact, see core::chain).
+  void move(const core::Odometry& odometry);
+
+  /// One scan, association unknown. What belongs to no landmark of the map is rejected.
+  core::StepReport observe(const core::Scan& scan);
+
+  /// One scan whose landmarks are known, core::no_landmark for an observation of none of the map's. PreconditionError
+  /// unless there is one an observation and the map has it, with everything as it was.
+  core::StepReport observe(const core::Scan& scan, const std::vector<core::LandmarkId>& landmarks);
+
+  core::PoseGaussian pose() const { return pose_; }
+
+ private:
+  void predict();
+  core::JointGaussian candidates(const core::Scan& scan) const;
+  std::vector<core::AssociationReport> associate(const core::Scan& scan) const;
+  void update(const core::Scan& scan, core::StepReport& report);
+  core::StepReport close_step(const core::Scan& scan, core::StepReport report);
+
+  LocalizerOptions options_;
+  core::PoseGaussian pose_;
+  std::map<core::LandmarkId, Eigen::Vector2d> map_m_;
+  std::optional<core::Odometry> motion_;  ///< since the last scan
+  std::int64_t step_ = 0;
+};
+
+}  // namespace helixnav::localization
