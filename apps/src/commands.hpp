@@ -13,6 +13,7 @@ namespace helixnav::apps {
 /// `code`, which outlives the parse.
 void add_replay_command(CLI::App& app, ExitCode& code);
 void add_smooth_command(CLI::App& app, ExitCode& code);
+void add_convert_command(CLI::App& app, ExitCode& code);
 void add_simulate_command(CLI::App& app, ExitCode& code);
 void add_evaluate_command(CLI::App& app, ExitCode& code);
 void add_config_command(CLI::App& app, ExitCode& code);

@@ -39,6 +39,7 @@ ExitCode run(int argc, char** argv) {
   ExitCode code = ExitCode::ok;
   add_replay_command(app, code);
   add_smooth_command(app, code);
+  add_convert_command(app, code);
   add_simulate_command(app, code);
   add_evaluate_command(app, code);
   add_config_command(app, code);

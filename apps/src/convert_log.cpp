@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "convert_log.hpp"
+
+#include <cstdio>
+#include <set>
+#include <utility>
+#include <variant>
+
+#include "helixnav/core/errors.hpp"
+#include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/landmark_graph.hpp"
+#include "helixnav/logs/dlr.hpp"
+#include "helixnav/logs/graph_files.hpp"
+#include "helixnav/logs/read_recording.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+/// DLR text has no scan before the first STEP. An empty one says nothing that is lost; landmarks seen there would be.
+void drop_empty_beginning(core::Recording& recording) {
+  const auto* scan = recording.events.empty() ? nullptr : std::get_if<core::Scan>(&recording.events.front());
+  if (scan == nullptr || !scan->observations.empty()) return;
+  recording.events.erase(recording.events.begin());
+  if (!recording.labels.empty()) recording.labels.erase(recording.labels.begin());
+  for (core::SharedObservation& shared : recording.shared_observations) --shared.scan;
+}
+
+/// What is written is read back by programs that invert covariances.
+void check_odometry(const core::Recording& recording) {
+  for (const core::Event& event : recording.events) {
+    const auto* odometry = std::get_if<core::Odometry>(&event);
+    if (odometry == nullptr || core::is_symmetric_positive_definite(odometry->covariance)) continue;
+    throw core::InputError(
+        recording.name + ": the covariance of the odometry that ends at " +
+        std::to_string(core::seconds(odometry->t_ns)) +
+        " s is not positive definite, and no format holds that; --noise on odometry_x_m, odometry_y_m "
+        "and odometry_heading_rad makes it so");
+  }
+}
+
+Converted to_dlr(core::Recording recording, const std::string& out) {
+  drop_empty_beginning(recording);
+  logs::write_dlr(recording, out);
+  Converted converted;
+  std::set<core::Label> labels;
+  for (const core::Event& event : recording.events) {
+    const auto* scan = std::get_if<core::Scan>(&event);
+    if (scan == nullptr) continue;
+    ++converted.poses;
+    converted.observations += scan->observations.size();
+  }
+  for (const auto& of_scan : recording.labels) labels.insert(of_scan.begin(), of_scan.end());
+  labels.erase(core::no_label);
+  converted.landmarks = labels.size();
+  return converted;
+}
+
+Converted to_graph(const core::LandmarkGraph& graph, const std::string& out, GraphFormat format) {
+  if (format == GraphFormat::g2o) logs::write_g2o(graph, out);
+  if (format == GraphFormat::isam) logs::write_isam(graph, out);
+  if (format == GraphFormat::gtsam) logs::write_gtsam(graph, out);
+  Converted converted;
+  converted.poses = graph.poses.size();
+  converted.landmarks = graph.landmarks.size();
+  converted.observations = graph.landmark_edges.size();
+  return converted;
+}
+
+Converted to_graph(const core::Recording& recording, const std::string& out, GraphFormat format) {
+  const core::GraphFromEvents made = core::graph_from_events(recording.events, recording.labels, recording.start.mean);
+  Converted converted = to_graph(made.graph, out, format);
+  converted.unlabelled_observations = made.unlabelled_observations;
+  converted.unlocated_landmarks = made.unlocated_landmarks;
+  return converted;
+}
+
+}  // namespace
+
+std::string name_of(GraphFormat format) { return format_names()[static_cast<std::size_t>(format)]; }
+
+std::vector<std::string> format_names() { return {"dlr", "g2o", "isam", "gtsam"}; }
+
+std::optional<GraphFormat> format_by_name(const std::string& name) {
+  const std::vector<std::string> names = format_names();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == name) return static_cast<GraphFormat>(i);
+  }
+  return std::nullopt;
+}
+
+std::optional<GraphFormat> format_by_extension(const std::string& extension) {
+  if (extension == ".circles" || extension == ".lines") return GraphFormat::dlr;
+  return extension.empty() ? std::nullopt : format_by_name(extension.substr(1));
+}
+
+Converted convert_log(const std::string& in, const std::string& out, GraphFormat format,
+                      const std::vector<logs::Noise>& noises, std::uint64_t seed) {
+  const bool is_graph = logs::recognise(in) == logs::LogFormat::g2o;
+  if (is_graph && noises.empty() && format != GraphFormat::dlr) return to_graph(logs::read_g2o(in), out, format);
+  core::Recording recording = logs::read_recording(in);
+  if (recording.labels.empty() && format != GraphFormat::dlr) {
+    throw core::InputError(in + ": a graph needs a labelled log, and this one has no labels; --to dlr needs none");
+  }
+  std::vector<logs::AddedNoise> added;
+  if (!noises.empty()) added = logs::add_noise(recording, noises, seed);
+  check_odometry(recording);
+  Converted converted =
+      format == GraphFormat::dlr ? to_dlr(std::move(recording), out) : to_graph(recording, out, format);
+  converted.noise = std::move(added);
+  return converted;
+}
+
+std::string text_of(const Converted& converted) {
+  char line[256];
+  std::snprintf(line, sizeof line, "poses %zu, landmarks %zu, observations %zu\n", converted.poses, converted.landmarks,
+                converted.observations);
+  std::string text = line;
+  if (converted.unlabelled_observations + converted.unlocated_landmarks > 0) {
+    std::snprintf(line, sizeof line, "left out: %d observations without label, %d landmarks that nothing locates\n",
+                  converted.unlabelled_observations, converted.unlocated_landmarks);
+    text += line;
+  }
+  for (const logs::AddedNoise& noise : converted.noise) {
+    std::snprintf(line, sizeof line,
+                  "noise on %s: sigma %g, measured %.6g on %zu numbers (99 %% interval %.6g to %.6g)\n",
+                  logs::name_of(noise.field).c_str(), noise.sigma, noise.measured_sigma, noise.count, noise.low_99,
+                  noise.high_99);
+    text += line;
+  }
+  return text;
+}
+
+}  // namespace helixnav::apps

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "helixnav/logs/add_noise.hpp"
+
+namespace helixnav::apps {
+
+/// Formats that convert writes.
+enum class GraphFormat { dlr, g2o, isam, gtsam };
+
+std::string name_of(GraphFormat format);  ///< as on the command line
+std::vector<std::string> format_names();
+std::optional<GraphFormat> format_by_name(const std::string& name);
+std::optional<GraphFormat> format_by_extension(const std::string& extension);  ///< with its dot
+
+struct Converted {
+  std::size_t poses = 0;
+  std::size_t landmarks = 0;  ///< of the graph; DLR text: labels
+  std::size_t observations = 0;
+  int unlabelled_observations = 0;  ///< left out
+  int unlocated_landmarks = 0;      ///< left out
+  std::vector<logs::AddedNoise> noise;
+};
+
+/// Reads `in`, adds the noise and writes `out`, whole or not at all. A g2o graph without noise keeps its start values
+/// when written as a graph; all other graphs start from dead reckoning. InputError for what cannot be read or held.
+/// Test: apps/convert_test.cpp.
+Converted convert_log(const std::string& in, const std::string& out, GraphFormat format,
+                      const std::vector<logs::Noise>& noises, std::uint64_t seed);
+
+/// Counts, and a line for each noise with its measured standard deviation.
+std::string text_of(const Converted& converted);
+
+}  // namespace helixnav::apps
