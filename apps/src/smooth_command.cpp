@@ -92,6 +92,7 @@ ExitCode smooth(CLI::App& command, SmoothJob& job) {
   end.timing = {{"reading_s", reading_s}, {"solving_s", result.solving_s}};
   const std::vector<core::MapLandmark> map = result.run.map_after;
   end.smoothed = std::move(result.run);
+  end.smoothed->alone = true;
   writer.finish(map, end);
   std::printf("reading %.3f s\nrun folder: %s   report: %s/report.html\n", reading_s, job.run.out.c_str(),
               job.run.out.c_str());

@@ -212,8 +212,12 @@ SmoothingResult solve(SmoothingTask& task, const smoothing::SmoothOptions& optio
   result.solving_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   result.numbers = numbers_of(result.report);
   for (const int pose : task.pose_of_step) {
+    result.run.poses_before.push_back(result.started.graph.poses[index(pose)].T_world_robot);
     result.run.poses.push_back(task.problem.graph.poses[index(pose)].T_world_robot);
   }
+  result.run.chi2_odometry = result.report.chi2.odometry;
+  result.run.chi2_landmarks = result.report.chi2.landmarks;
+  result.run.dof = result.report.dof;
   result.run.map_before = map_of(result.started, {});
   result.run.map_after = map_of(task.problem, smoothing::landmark_covariances(task.problem));
   result.run.chi2.push_back(result.report.start.total());

@@ -72,14 +72,31 @@
     ["missing / duplicates / spurious", `${error.missing} / ${error.duplicates} / ${error.spurious}`],
   ]);
 
+  // A smoother's run without a filter: no steps that were estimated one after the other, so nothing of them to show.
+  const smoothing = data.smoothing;
+  const filtered = !(smoothing && smoothing.alone);
+  const last = (list) => list[list.length - 1];
+
+  const smoothingTable = () => table("Least squares", [
+    ["χ² at the start", fixed(smoothing.chi2[0], 2)],
+    ["χ² of the optimum", fixed(last(smoothing.chi2), 2)],
+    ["of it odometry", fixed(smoothing.chi2_odometry, 2)],
+    ["of it landmarks", fixed(smoothing.chi2_landmarks, 2)],
+    ["degrees of freedom", count(smoothing.dof)],
+    ["χ² over degrees of freedom (1 when the covariances are right)", fixed(last(smoothing.chi2) / smoothing.dof, 3)],
+    ["iterations", count(smoothing.chi2.length - 1)],
+  ]);
+
   const filterTable = () => table("Filter", [
     ["updates", count(summary.nis.updates)],
     ["NIS per degree of freedom (1 when consistent)", fixed(summary.nis.mean_per_dof, 3)],
-    ["NIS inside its 95 % band", percent(summary.nis.inside_95)],
+    ["95 % band of that mean", `${fixed(summary.nis.mean_low_95, 3)} … ${fixed(summary.nis.mean_high_95, 3)}`],
+    ["single updates inside their 95 % band", percent(summary.nis.inside_95)],
     ...Object.entries(summary.observations).map(([name, value]) => [`observations ${name}`, count(value)]),
   ]);
 
-  const clockTable = () => table("Wall clock", Object.entries(clock.timing).map(([name, value]) => {
+  const clockTable = () => table("Wall clock", Object.entries(clock.timing).filter(
+    ([name]) => filtered || !(name.endsWith("_us") || name === "steps_s")).map(([name, value]) => {
     const quantile = { median_us: "median", p99_us: "99 %", max_us: "maximum" }[name];
     if (quantile) return [`${quantile} per scan`, microseconds(value)];
     if (name === "steps_s") return ["all scans", `${fixed(value, 2)} s`];
@@ -98,18 +115,29 @@
     if (error) card(metres(error.rmse_m), "position error, RMSE");
     if (error) card(metres(error.median_m), "position error, median");
     if (summary.landmark_error) card(metres(summary.landmark_error.rmse_m), "landmark error, RMSE");
-    card(count(summary.landmarks.mature), `mature landmarks, ${count(summary.landmarks.tentative)} tentative`);
-    const closures = summary.closures;
-    card(`${closures.accepted} / ${closures.refused} / ${closures.undecided}`,
-         "closures accepted / refused / undecided");
-    card(count(summary.steps), `scans in ${duration(data.duration_s)}`);
+    if (smoothing) card(fixed(last(smoothing.chi2), 2), `χ² of the optimum, ${count(smoothing.dof)} degrees of freedom`);
+    if (smoothing) card(fixed(last(smoothing.chi2) / smoothing.dof, 3), "χ² over degrees of freedom");
+    card(count(summary.landmarks.mature),
+         filtered ? `mature landmarks, ${count(summary.landmarks.tentative)} tentative` : "landmarks");
+    if (filtered) {
+      const closures = summary.closures;
+      card(`${closures.accepted} / ${closures.refused} / ${closures.undecided}`,
+           "closures accepted / refused / undecided");
+    }
+    card(count(summary.steps), filtered ? `scans in ${duration(data.duration_s)}` : "scans");
     card(`${count(Math.round(data.length_m))} m`, "path");
-    card(microseconds(clock.timing.median_us), `per scan, median (99 % within ${microseconds(clock.timing.p99_us)})`);
+    if (filtered) {
+      card(microseconds(clock.timing.median_us), `per scan, median (99 % within ${microseconds(clock.timing.p99_us)})`);
+    } else {
+      card(`${fixed(clock.timing.solving_s, 3)} s`, `to solve, after ${fixed(clock.timing.reading_s, 3)} s of reading`);
+    }
     const tables = byId("tables");
     if (error) tables.append(positionTable(error));
     if (summary.heading_error) tables.append(poseTable());
     if (summary.landmark_error) tables.append(landmarkTable(summary.landmark_error));
-    tables.append(filterTable(), clockTable());
+    if (smoothing) tables.append(smoothingTable());
+    if (filtered) tables.append(filterTable());
+    tables.append(clockTable());
   };
 
   const writeHeader = () => {
@@ -125,6 +153,7 @@
     byId("origin").textContent = origin.join(" · ");
     byId("config").textContent =
       typeof manifest.config === "string" ? manifest.config : JSON.stringify(manifest.config, null, 2);
+    byId("configuration").hidden = !manifest.config;
     const rows = manifest.inputs.map((input) => [input.name, `SHA-256 ${input.sha256.slice(0, 16)}…`]);
     byId("inputs").append(rows.length > 0 ? table("Input", rows) : element("p", "No input files.", "quiet"));
   };
@@ -141,6 +170,20 @@
       const state = decision.verdict === "accepted" ? "accepted" : decision.verdict === "refused" ? "refused" : "";
       row.append(element("td", count(decision.step)), element("td", fixed(decision.t, 2)), element("td", decision.kind),
                  element("td", decision.verdict, state), element("td", numbers.join(", "), "numbers"));
+      box.append(row);
+    }
+    return box;
+  };
+
+  const residualTable = (residuals) => {
+    const box = element("table");
+    const head = element("tr");
+    for (const name of ["step", "measurement", "eᵀC⁻¹e", "rows"]) head.append(element("th", name));
+    box.append(head);
+    for (const residual of residuals) {
+      const row = element("tr");
+      row.append(element("td", count(residual.step)), element("td", residual.name), element("td", fixed(residual.nis, 1)),
+                 element("td", count(residual.rows)));
       box.append(row);
     }
     return box;
@@ -258,16 +301,15 @@
     const outline = ellipses(path.ellipses);
     const known_x = data.true_landmarks.map((m) => m[1]);
     const known_y = data.true_landmarks.map((m) => m[2]);
-    const last = path.x.length - 1;
-    const ends = last < 0 ? [] : [dots("start, end", [path.x[0], path.x[last]], [path.y[0], path.y[last]], c.ink,
+    const ends = path.x.length === 0 ? [] : [dots("start, end", [path.x[0], last(path.x)], [path.y[0], last(path.y)], c.ink,
       { marker: { color: [c.paper, c.ink], size: 10, symbol: ["circle", "square"], line: { color: c.ink, width: 2 } },
         text: ["start", "end"], hovertemplate: "%{text}<extra></extra>" })];
     draw("map", [
       ...truthTraces(),
-      line("estimated path", path.x, path.y, c.estimate, { line: { color: c.estimate, width: 2 }, customdata: path.t,
+      line(filtered ? "estimated path" : "smoothed path", path.x, path.y, c.estimate, { line: { color: c.estimate, width: 2 }, customdata: path.t,
         hovertemplate: "%{customdata:.1f} s<br>(%{x:.2f}, %{y:.2f}) m<extra>estimate</extra>" }),
-      line("95 % ellipses", outline.x, outline.y, c.estimate, { line: { color: c.estimate, width: 1 }, opacity: .55,
-        hoverinfo: "skip" }),
+      ...(filtered ? [line("95 % ellipses", outline.x, outline.y, c.estimate,
+        { line: { color: c.estimate, width: 1 }, opacity: .55, hoverinfo: "skip" })] : []),
       ...(known_x.length > 0 ? [dots("true landmarks", known_x, known_y, c.truth,
         { marker: { color: c.truth, size: 10, symbol: "circle-open" }, hoverinfo: "x+y" })] : []),
       ...landmarkTraces("tentative", c.faint, "diamond"),
@@ -278,8 +320,11 @@
       xaxis: axis("x [m]", { range: data.map_extent.slice(0, 2) }),
       yaxis: axis("y [m]", { range: data.map_extent.slice(2), scaleanchor: "x" }),
     });
-    byId("map-note").textContent = `Map frame (pose at the start). Ellipses hold the true position with 95 % if the
-      filter is right; those of the path stand ${count(path.ellipse_stride)} scans apart.` +
+    byId("map-note").textContent = (filtered
+      ? `Map frame (pose at the start). Ellipses hold the true position with 95 % if the filter is right; those of the
+         path stand ${count(path.ellipse_stride)} scans apart.`
+      : `Optimum of all measurements in the map frame (pose at the start). Ellipses hold the true position of a landmark
+         with 95 % if the covariances are right.`) +
       (data.truth && data.truth.aligned ? " The fixes were brought into the map frame by the alignment." : "");
   };
 
@@ -294,6 +339,8 @@
   };
 
   const drawErrors = () => {
+    byId("errors-section").hidden = !filtered && !data.errors;
+    if (byId("errors-section").hidden) return;
     const rows = errorRows();
     const traces = [];
     const lowest = `y${rows.length}`;
@@ -306,7 +353,7 @@
       const top = 1 - k * (height + gap);
       const here = { yaxis: `y${id}`, xaxis: "x" };
       const three = sigma.map((s) => 3 * s);
-      traces.push(...band("±3σ of the filter", t, three.map((s) => -s), three,
+      if (filtered) traces.push(...band("±3σ of the filter", t, three.map((s) => -s), three,
         { ...here, ...(k > 0 ? { showlegend: false } : {}) }));
       if (error) {
         traces.push((data.errors.aligned ? dots : line)("estimate − truth", t, error, c.estimate,
@@ -321,8 +368,8 @@
     byId("errors-note").textContent = !data.errors
       ? "No truth is known: the band is what the filter believes of itself."
       : data.errors.aligned
-        ? "Estimated antenna position minus fix along the axes of the map frame, after the alignment. " +
-          "The band is that of the estimate; the noise of the fixes comes on top."
+        ? "Estimated antenna position minus fix along the axes of the map frame, after the alignment." +
+          (filtered ? " The band is that of the estimate; the noise of the fixes comes on top." : "")
         : "Estimate minus truth along the axes of the map frame, without any alignment.";
   };
 
@@ -375,36 +422,40 @@
   };
 
   const drawSmoothing = () => {
-    const s = data.smoothing;
+    const s = smoothing;
     if (!s) return;
     byId("smoothing").hidden = false;
     byId("smoothing-note").textContent = `Path and map before and after ${count(s.chi2.length - 1)} iterations: χ² ${
-      fixed(s.chi2[0], 1)} to ${fixed(s.chi2[s.chi2.length - 1], 1)}.`;
+      fixed(s.chi2[0], 1)} to ${fixed(last(s.chi2), 1)}.`;
+    const named = (map) => ({ text: map.id, hovertemplate: "landmark %{text}<br>(%{x:.2f}, %{y:.2f}) m<extra></extra>" });
     draw("smoothing-map", [
-      line("path before", data.path.x, data.path.y, c.faint),
+      line("path before", s.path_before.x, s.path_before.y, c.truth, { line: { color: c.truth, width: 1.2 } }),
+      dots("landmarks before", s.before.x, s.before.y, c.truth,
+        { ...named(s.before), marker: { color: c.truth, size: 5, symbol: "circle-open" } }),
       line("path after", s.path.x, s.path.y, c.estimate),
-      dots("landmarks before", s.before.x, s.before.y, c.faint, { text: s.before.id }),
-      dots("landmarks after", s.after.x, s.after.y, c.landmark, { text: s.after.id }),
+      dots("landmarks after", s.after.x, s.after.y, c.landmark, named(s.after)),
     ], { xaxis: axis("x [m]"), yaxis: axis("y [m]", { scaleanchor: "x" }) });
     draw("smoothing-chi2", [{ ...line("χ²", s.chi2.map((_, k) => k), s.chi2, c.estimate), mode: "lines+markers" }],
-      { xaxis: axis("iteration [count]"), yaxis: axis("χ² [–]", { type: "log" }) });
+      { xaxis: axis("iteration [count]", { rangemode: "tozero" }), yaxis: axis("χ² [–]", { type: "log" }) });
     const r = s.residuals;
-    const ends = r.step.length > 0 ? [r.step[0], r.step[r.step.length - 1]] : [];
+    const ends = r.step.length > 0 ? [r.step[0], last(r.step)] : [];
     draw("smoothing-residuals", [
       ...band("±2σ", ends, ends.map(() => -2), ends.map(() => 2)),
       dots("residual", r.step, r.value, c.estimate, { marker: { color: c.estimate, size: 3 } }),
     ], { xaxis: axis("step [index]"), yaxis: axis("residual / σ [–]") });
     byId("smoothing-residuals-note").textContent =
-      `${fixed(100 * r.inside_2sigma, 1)} % lie within 2σ; 95.4 % would if the covariances were right.`;
-    byId("smoothing-largest").replaceChildren(table("Largest residuals",
-      s.largest.map((e) => [`step ${e.step}: ${e.name}`, `NIS ${fixed(e.nis, 1)} of ${e.rows} rows`])));
+      `${percent(r.inside_2sigma)} lie within 2σ; 95.4 % would if the covariances were right.`;
+    byId("smoothing-largest").replaceChildren(element("h3", "Largest residuals"), residualTable(s.largest));
   };
 
   const drawAll = () => {
     c = colours();
-    for (const chart of [drawMap, drawErrors, drawNis, drawLandmarks, drawObservations, drawTiming, drawSmoothing]) chart();
+    for (const chart of [drawMap, drawErrors, drawSmoothing]) chart();
+    if (!filtered) return;
+    for (const chart of [drawNis, drawLandmarks, drawObservations, drawTiming]) chart();
   };
 
+  for (const section of document.querySelectorAll(".of-filter")) section.hidden = !filtered;
   writeHeader();
   writeSummary();
   writeDecisions();

@@ -55,10 +55,15 @@ Json smoothing_data(const SmoothedRun& smoothed) {
     largest.push_back(
         {{"step", residual.step}, {"name", residual.name}, {"nis", residual.nis}, {"rows", residual.rows}});
   }
-  return {{"path", path_json(smoothed.poses)},
+  return {{"alone", smoothed.alone},
+          {"path_before", path_json(smoothed.poses_before)},
+          {"path", path_json(smoothed.poses)},
           {"before", map_json(smoothed.map_before)},
           {"after", map_json(smoothed.map_after)},
           {"chi2", smoothed.chi2},
+          {"chi2_odometry", smoothed.chi2_odometry},
+          {"chi2_landmarks", smoothed.chi2_landmarks},
+          {"dof", smoothed.dof},
           {"largest", largest},
           {"residuals", residuals_json(smoothed.normalised_residuals)}};
 }

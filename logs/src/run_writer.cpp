@@ -205,6 +205,10 @@ Evaluation RunWriter::finish(const std::vector<core::MapLandmark>& map, const Ru
   if (end.smoothed) {
     write_whole_file(folder_ + "/trajectory_final.tum", final_trajectory_text(run.steps, end.smoothed->poses));
   }
+  if (end.smoothed && end.smoothed->alone) {
+    const std::size_t n = std::min(run.steps.size(), end.smoothed->poses.size());
+    for (std::size_t i = 0; i < n; ++i) run.steps[i].pose.mean = end.smoothed->poses[i];
+  }
   const Evaluation evaluation = evaluate(run);
   Json summary = summary_to_json(run, evaluation, end.numbers);
   summary["timing"] = timing_to_json(run.microseconds, end.timing);

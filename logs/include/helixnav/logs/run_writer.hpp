@@ -53,7 +53,8 @@ class RunWriter {
   /// `write` and replace those with the same (step, observation) when read.
   void revise(std::int64_t step, const std::vector<core::AssociationReport>& associations);
 
-  /// Writes map.csv, trajectory_final.tum when a smoother ran, evaluates, writes summary.json and report.html. Each appears whole or not at all.
+  /// Writes map.csv, trajectory_final.tum when a smoother ran, evaluates, writes summary.json and report.html. Each
+  /// appears whole or not at all. Evaluated is what the steps say; where a smoother ran alone, its final poses.
   Evaluation finish(const std::vector<core::MapLandmark>& map, const RunEnd& end = {});
 
  private:

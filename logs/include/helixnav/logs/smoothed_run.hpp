@@ -27,10 +27,15 @@ struct SmoothedRun {
     double value = 0.0;
   };
 
-  std::vector<core::Pose2> poses;  ///< [step] as known at the end
+  bool alone = false;  ///< no filter ran: the steps hold the start values, and the run's result are the values below
+  std::vector<core::Pose2> poses;         ///< [step] as known at the end
+  std::vector<core::Pose2> poses_before;  ///< [step] at the start of the solution
   std::vector<core::MapLandmark> map_before;
   std::vector<core::MapLandmark> map_after;
-  std::vector<double> chi2;            ///< of the start, then after every iteration
+  std::vector<double> chi2;    ///< of the start, then after every iteration
+  double chi2_odometry = 0.0;  ///< of the solution
+  double chi2_landmarks = 0.0;
+  int dof = 0;
   std::vector<LargeResidual> largest;  ///< largest nis per row first
   std::vector<Normalised> normalised_residuals;
 };
