@@ -98,6 +98,8 @@ RivalPoses find_rivals(const ReferenceMap& reference, const std::vector<BranchLa
   ReferenceMap map = reference;  // common errors of the map do not matter here: all points are compared at once
   map.latent.resize(2 * static_cast<Eigen::Index>(map.landmarks.size()), 0);
   map.prior_by_latent.resize(3, 0);
+  constexpr double chi2_of_helices = 16.0;  // the proposal covers four σ of what it takes for the prior
+  map.prior.covariance *= std::max(1.0, options.prior_chi2 / chi2_of_helices);
   const LandmarkTable table(map);
   const std::vector<RobotPoint> points = points_of(branch, options);
   const double density_ratio_m2 = detection_probability / options.extraneous_per_m2;
@@ -106,7 +108,7 @@ RivalPoses find_rivals(const ReferenceMap& reference, const std::vector<BranchLa
 
   RivalPoses poses;
   poses.winner = refined(table, points, density_ratio_m2, winner);
-  const RivalRegion region(map, poses.winner, options);
+  const RivalRegion region(reference, poses.winner, options);
 
   Particles cloud;
   cloud.resize(options.helices);

@@ -23,14 +23,13 @@ void note(const KeptRemoved& pairs, Closing& closing) {
 /// Drops the worst pair until the cost passes; false when too many would have to go.
 bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& options, KeptRemoved& pairs,
                      Closing& closing) {
-  const auto most_dropped = static_cast<int>(options.most_dropped_share * static_cast<double>(pairs.size()));
   while (true) {
     const cekf::CostByPart cost = filter.merge_cost(pairs, options.merge_sigma_m);
     closing.cost = cost.cost;
     closing.dof = cost.dof;
     closing.limit = core::chi2_quantile(options.closing_probability, cost.dof);
     if (cost.cost <= closing.limit) return true;
-    if (closing.dropped == most_dropped || pairs.size() <= least_pairs) return false;
+    if (closing.dropped == options.most_dropped || pairs.size() <= least_pairs) return false;
     const auto worst = std::max_element(cost.parts.begin(), cost.parts.end()) - cost.parts.begin();
     pairs.erase(pairs.begin() + worst);
     ++closing.dropped;

@@ -44,10 +44,10 @@ struct SearchOptions {
   pf_relocalize::ConstellationLimits constellation;
 
   // Closing.
-  double merge_sigma_m = 0.02;         ///< two landmarks that are one differ by so little
-  double closing_probability = 0.999;  ///< χ² quantile that the cost of a closing must not exceed
-  double most_dropped_share = 0.25;    ///< of the pairs, worst first, until the cost passes
-  double leftover_gate = 9.21;         ///< χ² within which remaining duplicates are merged after a closing
+  double merge_sigma_m = 0.02;        ///< two landmarks that are one differ by so little
+  double closing_probability = 0.99;  ///< χ² quantile that the cost of a closing must not exceed
+  int most_dropped = 1;               ///< pairs that may go, worst first, until the cost passes
+  double leftover_gate = 9.21;        ///< χ² within which remaining duplicates are merged after a closing
 };
 
 }  // namespace helixnav::supervisor
