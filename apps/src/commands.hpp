@@ -15,6 +15,7 @@ void add_replay_command(CLI::App& app, ExitCode& code);
 void add_smooth_command(CLI::App& app, ExitCode& code);
 void add_convert_command(CLI::App& app, ExitCode& code);
 void add_simulate_command(CLI::App& app, ExitCode& code);
+void add_montecarlo_command(CLI::App& app, ExitCode& code);
 void add_evaluate_command(CLI::App& app, ExitCode& code);
 void add_config_command(CLI::App& app, ExitCode& code);
 

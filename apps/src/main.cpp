@@ -41,6 +41,7 @@ ExitCode run(int argc, char** argv) {
   add_smooth_command(app, code);
   add_convert_command(app, code);
   add_simulate_command(app, code);
+  add_montecarlo_command(app, code);
   add_evaluate_command(app, code);
   add_config_command(app, code);
   for (CLI::App* command : app.get_subcommands({})) {

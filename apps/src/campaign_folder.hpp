@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace helixnav::apps {
+
+struct Campaign;
+
+using Json = nlohmann::ordered_json;
+
+/// The folder of a campaign: manifest.json (what makes the runs what they are), runs.jsonl (a line a run), summary.json.
+class CampaignFolder {
+ public:
+  /// Begins the folder, or takes up what it holds: a last line without its end is dropped. InputError when it holds other
+  /// things, or a campaign of another scenario, configuration or build; the message names the first difference.
+  explicit CampaignFolder(const Campaign& campaign);
+
+  /// Of the runs that it holds.
+  std::set<std::uint64_t> seeds() const;
+
+  /// One run, with the operating system when this returns.
+  void append(const std::string& row);
+
+  /// Rewrites the lines in order of seed, so that they do not tell who finished first, and returns them.
+  std::vector<Json> sort();
+
+  void write_summary(const Json& summary) const;
+
+ private:
+  std::vector<Json> read_rows() const;
+  void write_rows(const std::vector<Json>& rows);
+  void take_up(const Json& manifest) const;
+
+  std::string path_;
+  std::ofstream rows_;
+};
+
+}  // namespace helixnav::apps

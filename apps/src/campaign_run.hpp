@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace helixnav::apps {
+
+struct Campaign;
+
+/// Drives one seed, judges it and gives its line of runs.jsonl (docs/campaign.md), without the line's end. A run whose
+/// mathematics broke down is a line, too: verdict "failed", with the message. Wall-clock figures stand under "wall".
+std::string run_and_judge(const Campaign& campaign, std::uint64_t seed);
+
+}  // namespace helixnav::apps
