@@ -69,7 +69,7 @@ TEST(CheckScenario, RefusesToldNoiseThatNoFilterCouldUse) {
 
 TEST(CheckScenario, RefusesALoopThatIsAllBare) {
   Scenario scenario = named_scenario("large-loop");
-  scenario.world.loop_length_m = {150.0, 150.0};
+  scenario.world.loop_length_m = {250.0, 250.0};
   EXPECT_NE(refusal(scenario).find("world.bare_length_m.max"), std::string::npos);
 }
 

@@ -224,8 +224,9 @@ std::size_t scan_of_return(const core::Recording& run, const World& world) {
   return nearest;
 }
 
-/// Dead reckoning over the whole loop, and over its bare stretch alone, in 50 seeds. The first share is 0.92 over many
-/// seeds (0.82 to 1.0 is its band at 1e-3 two-sided); over the bare stretch the median error is some metres.
+/// Dead reckoning over the whole loop, and over its bare stretch alone, in 50 seeds. The first share is 0.90 over 600
+/// seeds (fresh ones would give fewer than 41 with probability 2 %). Over 195 m heading noise alone spreads the position
+/// sideways by 13.4 m (1 sigma), so that the median is 9 m; its band is 1e-3 two-sided.
 TEST(Statistics, AtTheReturnDeadReckoningIsOffByMoreThanTheSpacingOfTheTrees) {
   const Scenario scenario = named_scenario("large-loop");
   constexpr double spacing_m = 8.0;
@@ -237,13 +238,13 @@ TEST(Statistics, AtTheReturnDeadReckoningIsOffByMoreThanTheSpacingOfTheTrees) {
     const std::size_t back = scan_of_return(run, world);
     const Eigen::Vector2d truth_m = run.true_poses[back].T_world_robot.position_m();
     beyond += (dead_reckon(run, 0, back).position_m() - truth_m).norm() > spacing_m ? 1 : 0;
-    const std::size_t bare_scans = 80;  // 120 m
+    const std::size_t bare_scans = 130;  // 195 m
     bare_error_m.push_back((dead_reckon(run, back - bare_scans, back).position_m() - truth_m).norm());
   }
   EXPECT_GE(beyond, 41);
   std::sort(bare_error_m.begin(), bare_error_m.end());
-  EXPECT_GT(bare_error_m[25], 2.0);
-  EXPECT_LT(bare_error_m[25], 7.0);
+  EXPECT_GT(bare_error_m[25], 4.2);
+  EXPECT_LT(bare_error_m[25], 14.0);
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST(World, LargeLoopIsBareBeforeItCloses) {
     const double lap_m = world.returns_at_m[0];
     for (const Tree& tree : world.trees) {
       const double along_m = world.route.nearest_along_m(tree.point_m, {0.0, lap_m});
-      EXPECT_FALSE(along_m > lap_m - 100.0 && along_m < lap_m - 5.0) << seed << " " << along_m;
+      EXPECT_FALSE(along_m > lap_m - 200.0 && along_m < lap_m - 5.0) << seed << " " << along_m;
     }
   }
 }
