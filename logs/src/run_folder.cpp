@@ -48,6 +48,8 @@ struct HealthRow {
   core::StepReport report;
   std::size_t association_rows;
   std::size_t decision_rows;
+  std::size_t merge_rows;
+  std::size_t cloud_rows;
   double microseconds;
 };
 
@@ -55,6 +57,8 @@ struct RunTables {
   std::vector<std::pair<core::Nanoseconds, core::Pose2>> trajectory;
   std::vector<AssociationRow> associations;
   std::vector<core::Decision> decisions;
+  std::vector<core::MergedLandmarks> merges;
+  std::vector<core::Pose2> particles;
   std::vector<HealthRow> health;
 };
 
@@ -75,7 +79,9 @@ HealthRow read_health_row(const RunRow& row) {
   report.switched_region = row.integer_in(13, 0, 1) == 1;
   health.association_rows = static_cast<std::size_t>(row.integer_in(14, 0, int_max));
   health.decision_rows = static_cast<std::size_t>(row.integer_in(15, 0, int_max));
-  health.microseconds = row.number(16);
+  health.merge_rows = static_cast<std::size_t>(row.integer_in(16, 0, int_max));
+  health.cloud_rows = static_cast<std::size_t>(row.integer_in(17, 0, int_max));
+  health.microseconds = row.number(18);
   return health;
 }
 
@@ -124,6 +130,11 @@ RunTables read_tables(const std::string& folder) {
                [&](const RunRow& row) { tables.associations.push_back(read_association_row(row)); });
   for_each_row(path(decisions_table), decisions_table,
                [&](const RunRow& row) { tables.decisions.push_back(read_decision_row(row)); });
+  for_each_row(path(merges_table), merges_table, [&](const RunRow& row) {
+    tables.merges.push_back({small_integer(row, 1), small_integer(row, 2)});
+  });
+  for_each_row(path(clouds_table), clouds_table,
+               [&](const RunRow& row) { tables.particles.emplace_back(row.finite(1), row.finite(2), row.finite(3)); });
   return tables;
 }
 
@@ -142,22 +153,34 @@ void put_association(const AssociationRow& row, std::vector<core::StepReport>& s
   }
 }
 
+// Moves the next `count` rows of a table into a step.
+template <typename Row>
+void take(std::vector<Row>& rows, std::size_t& next, std::size_t count, std::vector<Row>& into) {
+  for (const std::size_t end = next + count; next < end; ++next) into.push_back(std::move(rows[next]));
+}
+
 // Takes steps as long as every table holds their rows.
 void assemble(RunTables& tables, RunFolder& run) {
   std::size_t next_association = 0;
   std::size_t next_decision = 0;
+  std::size_t next_merge = 0;
+  std::size_t next_particle = 0;
   const std::size_t most = std::min(tables.health.size(), tables.trajectory.size());
   for (std::size_t k = 0; k < most; ++k) {
     HealthRow& health = tables.health[k];
     const std::size_t end_association = next_association + health.association_rows;
-    const std::size_t end_decision = next_decision + health.decision_rows;
-    if (end_association > tables.associations.size() || end_decision > tables.decisions.size()) break;
+    if (end_association > tables.associations.size() ||
+        next_decision + health.decision_rows > tables.decisions.size() ||
+        next_merge + health.merge_rows > tables.merges.size() ||
+        next_particle + health.cloud_rows > tables.particles.size()) {
+      break;
+    }
     core::StepReport& step = run.steps.emplace_back(std::move(health.report));
     run.microseconds.push_back(health.microseconds);
     step.pose.mean = tables.trajectory[k].second;
-    for (; next_decision < end_decision; ++next_decision) {
-      step.decisions.push_back(std::move(tables.decisions[next_decision]));
-    }
+    take(tables.decisions, next_decision, health.decision_rows, step.decisions);
+    take(tables.merges, next_merge, health.merge_rows, step.merged);
+    take(tables.particles, next_particle, health.cloud_rows, step.cloud);
     for (; next_association < end_association; ++next_association) {
       put_association(tables.associations[next_association], run.steps);
     }

@@ -11,7 +11,7 @@ namespace helixnav::logs {
 
 namespace {
 
-constexpr const char* format_name = "helixnav-run 1";
+constexpr const char* format_name = "helixnav-run 2";
 
 Json config_to_json(const std::string& config) {
   const Json parsed = Json::parse(config, nullptr, false);

@@ -20,7 +20,10 @@ inline constexpr RunTable associations_table{"associations.csv",
 inline constexpr RunTable decisions_table{"decisions.csv", "step,t_s,kind,verdict,numbers"};
 inline constexpr RunTable health_table{
     "health.csv",
-    "step,t_s,mode,sxx,sxy,sxh,syy,syh,shh,nis,dof,active,mapped,switched,association_rows,decision_rows,microseconds"};
+    "step,t_s,mode,sxx,sxy,sxh,syy,syh,shh,nis,dof,active,mapped,switched,association_rows,decision_rows,merge_rows,"
+    "cloud_rows,microseconds"};
+inline constexpr RunTable merges_table{"merges.csv", "step,kept,removed"};
+inline constexpr RunTable clouds_table{"clouds.csv", "step,x,y,heading"};
 inline constexpr RunTable map_table{"map.csv", "id,x,y,sxx,sxy,syy,observations,state"};
 inline constexpr RunTable truth_poses_table{"truth_poses.csv", "t_s,x,y,heading"};
 inline constexpr RunTable truth_positions_table{"truth_positions.csv", "t_s,x,y,antenna_x,antenna_y"};
@@ -34,6 +37,6 @@ inline constexpr const char* report_file = "report.html";
 inline constexpr const char* run_files[] = {
     "manifest.json",       "trajectory.tum",      "trajectory_final.tum", "map.csv",     "associations.csv",
     "decisions.csv",       "health.csv",          "summary.json",         "report.html", "truth_poses.csv",
-    "truth_positions.csv", "truth_landmarks.csv", "truth_labels.csv"};
+    "truth_positions.csv", "truth_landmarks.csv", "truth_labels.csv",     "merges.csv",  "clouds.csv"};
 
 }  // namespace helixnav::logs

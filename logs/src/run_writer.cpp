@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <initializer_list>
 
+#include "cloud_choice.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/report.hpp"
 #include "run_file.hpp"
@@ -87,6 +88,18 @@ void append_decision(std::string& text, const core::StepReport& report, const co
   text += decision.numbers.empty() ? ",\n" : "\n";
 }
 
+void append_merge(std::string& text, std::int64_t step, const core::MergedLandmarks& merge) {
+  append_number(text, step);
+  append_counts(text, {merge.kept, merge.removed});
+  text += '\n';
+}
+
+void append_particle(std::string& text, std::int64_t step, const core::Pose2& pose) {
+  append_number(text, step);
+  append_cells(text, {pose.x_m, pose.y_m, pose.heading_rad});
+  text += '\n';
+}
+
 void append_trajectory(std::string& text, core::Nanoseconds t_ns, const core::Pose2& pose) {
   append_seconds(text, t_ns);
   for (const double value :
@@ -98,14 +111,15 @@ void append_trajectory(std::string& text, core::Nanoseconds t_ns, const core::Po
 }
 
 void append_health(std::string& text, const core::StepReport& report, std::int64_t association_rows,
-                   double microseconds) {
+                   std::int64_t cloud_rows, double microseconds) {
   const Eigen::Matrix3d& P = report.pose.covariance;
   append_step_and_time(text, report);
   text += ',';
   text += word_of(mode_words, report.mode);
   append_cells(text, {P(0, 0), P(0, 1), P(0, 2), P(1, 1), P(1, 2), P(2, 2), report.joint_nis});
   append_counts(text, {report.joint_dof, report.active_landmarks, report.mapped_landmarks, report.switched_region,
-                       association_rows, static_cast<std::int64_t>(report.decisions.size())});
+                       association_rows, static_cast<std::int64_t>(report.decisions.size()),
+                       static_cast<std::int64_t>(report.merged.size()), cloud_rows});
   append_cells(text, {std::round(microseconds * 10.0) / 10.0});
   text += '\n';
 }
@@ -153,13 +167,18 @@ struct Table {
 struct RunWriter::Files {
   Table associations;
   Table decisions;
+  Table merges;
+  Table clouds;
   Table trajectory;
   Table health;
+  CloudChoice cloud_choice;
   std::int64_t revised_rows = 0;
 
   explicit Files(const std::string& folder)
       : associations(folder, associations_table),
         decisions(folder, decisions_table),
+        merges(folder, merges_table),
+        clouds(folder, clouds_table),
         trajectory(folder, trajectory_table),
         health(folder, health_table) {}
 };
@@ -182,13 +201,21 @@ void RunWriter::write(const core::StepReport& report, double microseconds) {
     append_association(f.associations.block, report.step, a, false);
   }
   for (const core::Decision& decision : report.decisions) append_decision(f.decisions.block, report, decision);
+  for (const core::MergedLandmarks& merge : report.merged) append_merge(f.merges.block, report.step, merge);
+  const bool keeps_cloud = f.cloud_choice.keeps(report);
+  const auto particles = keeps_cloud ? static_cast<std::int64_t>(report.cloud.size()) : 0;
+  if (keeps_cloud) {
+    for (const core::Pose2& pose : report.cloud) append_particle(f.clouds.block, report.step, pose);
+  }
   append_trajectory(f.trajectory.block, report.t_ns, report.pose.mean);
   const auto rows = f.revised_rows + static_cast<std::int64_t>(report.associations.size());
-  append_health(f.health.block, report, rows, microseconds);
+  append_health(f.health.block, report, rows, particles, microseconds);
   f.revised_rows = 0;
   // Health last: its row counts the rows of the others, so a reader knows when a step is complete.
   f.associations.flush();
   f.decisions.flush();
+  f.merges.flush();
+  f.clouds.flush();
   f.trajectory.flush();
   f.health.flush();
 }

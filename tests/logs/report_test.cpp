@@ -43,7 +43,7 @@ TEST(Report, HoldsTheRunInItsDataElement) {
   EXPECT_EQ(data["errors"]["x"].size(), 100u);
   EXPECT_EQ(data["heading"]["e"].size(), 100u);
   EXPECT_EQ(data["summary"]["closures"]["accepted"], 2);
-  EXPECT_EQ(data["decisions"].size(), 6u);
+  EXPECT_EQ(data["decisions"].size(), 9u);
   EXPECT_EQ(data["decisions"][0]["numbers"][1][0], "foreign_expected");
 }
 

@@ -50,6 +50,12 @@ inline core::StepReport example_step(std::int64_t k) {
     step.decisions.push_back({"trigger", "raised", {{"sigma_m", 0.1 + 0.2}, {"foreign_expected", 1.0 / 3.0}}});
     step.decisions.push_back({"closure", k % 80 == 11 ? "accepted" : "refused", {}});
   }
+  if (k % 80 == 11) step.merged = {{4, 17}, {5, 18 + static_cast<int>(k)}};
+  const std::int64_t since_trigger = k % 40 - 11;  // a search of seven scans
+  if (since_trigger == 0) step.decisions.push_back({"search", "started", {{"attempt", 1.0}}});
+  if (since_trigger >= 0 && since_trigger < 7) {
+    for (int i = 0; i < 3; ++i) step.cloud.emplace_back(random.uniform(), -1.0 / 3.0, 0.1 * i);
+  }
   return step;
 }
 

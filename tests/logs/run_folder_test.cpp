@@ -6,6 +6,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -52,6 +53,14 @@ void expect_same(const core::StepReport& a, const core::StepReport& b) {
     EXPECT_EQ(a.decisions[i].verdict, b.decisions[i].verdict);
     EXPECT_EQ(a.decisions[i].numbers, b.decisions[i].numbers);
   }
+  ASSERT_EQ(a.merged.size(), b.merged.size());
+  for (std::size_t i = 0; i < a.merged.size(); ++i) {
+    EXPECT_EQ(a.merged[i].kept, b.merged[i].kept);
+    EXPECT_EQ(a.merged[i].removed, b.merged[i].removed);
+  }
+  const bool keeps_cloud = std::set<std::int64_t>{11, 12, 14, 17}.count(b.step % 40) > 0;
+  ASSERT_EQ(a.cloud.size(), keeps_cloud ? b.cloud.size() : 0u) << b.step;
+  for (std::size_t i = 0; i < a.cloud.size(); ++i) EXPECT_EQ(a.cloud[i].vector(), b.cloud[i].vector());
 }
 
 void write_without_end(const std::string& folder, std::int64_t steps) {
@@ -83,7 +92,8 @@ TEST(RunFolder, ReadsToTheLastCompleteStepWhereverAnyTableIsCut) {
   const std::string path = (folder.path() / "run").string();
   write_without_end(path, written);
   core::RandomStream random(3, "cuts");
-  for (const char* table : {"trajectory.tum", "associations.csv", "decisions.csv", "health.csv"}) {
+  for (const char* table :
+       {"trajectory.tum", "associations.csv", "decisions.csv", "merges.csv", "clouds.csv", "health.csv"}) {
     const std::string file = path + '/' + table;
     const std::string whole = read_whole_file(file);
     for (int trial = 0; trial < 60; ++trial) {
@@ -171,10 +181,11 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Damage{"trajectory.tum", 3, "1 2 3", "expected 8"},
                       Damage{"trajectory.tum", 4, "1 2 x 0 0 0 0 1", "y is \"x\", expected a number"},
                       Damage{"health.csv", 1, "step,time", "expected \"step,t_s,mode"},
-                      Damage{"health.csv", 5, "\x01\xff\x7f", "expected 17"},
-                      Damage{"health.csv", 6, "1,1,mapping,0,0,0,0,0,0,0,0,0,0,0,0,0,0", "more than 3"},
+                      Damage{"health.csv", 5, "\x01\xff\x7f", "expected 19"},
+                      Damage{"health.csv", 6, "1,1,mapping,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0", "more than 3"},
                       Damage{"associations.csv", 4, "2,0,0,guessed,1,2,1,0", "one of matched"},
                       Damage{"decisions.csv", 2, "11,1,trigger,raised,sigma", "name=number"},
+                      Damage{"merges.csv", 3, "11,5,-1", "from 0"}, Damage{"clouds.csv", 3, "11,0,inf,0", "finite"},
                       Damage{"map.csv", 2, "0,1,2,0,0,0,-5,mature", "from 0"},
                       Damage{"truth_poses.csv", 2, "1,nan,0,0", "finite"},
                       Damage{"truth_labels.csv", 2, "-1,0,4", "from 0"}));

@@ -42,8 +42,8 @@ TEST(RunWriter, WritesEveryFileOfTheContract) {
   const TemporaryFolder folder;
   write_example((folder.path() / "run").string(), 20);
   for (const char* name :
-       {"manifest.json", "trajectory.tum", "map.csv", "associations.csv", "decisions.csv", "health.csv", "summary.json",
-        "report.html", "truth_poses.csv", "truth_landmarks.csv", "truth_labels.csv"}) {
+       {"manifest.json", "trajectory.tum", "map.csv", "associations.csv", "decisions.csv", "merges.csv", "clouds.csv",
+        "health.csv", "summary.json", "report.html", "truth_poses.csv", "truth_landmarks.csv", "truth_labels.csv"}) {
     EXPECT_TRUE(fs::exists(folder.path() / "run" / name)) << name;
   }
   EXPECT_FALSE(fs::exists(folder.path() / "run/truth_positions.csv")) << "the recording has none";
@@ -59,7 +59,7 @@ TEST(RunWriter, WritesTheSameBytesForTheSameInputExceptWallClockFigures) {
     EXPECT_EQ(without_wall_clock(entry.path()), without_wall_clock(twin)) << entry.path().filename();
     ++files;
   }
-  EXPECT_EQ(files, 11);
+  EXPECT_EQ(files, 13);
 }
 
 TEST(RunWriter, HasManifestAndHeadersOnDiskBeforeTheFirstStep) {

@@ -23,7 +23,7 @@ struct RunTruth {
 struct RunFolder {
   std::string path;
   RunManifest manifest;
-  std::vector<core::StepReport> steps;  ///< in order of time; associations with their revisions applied
+  std::vector<core::StepReport> steps;  ///< in order of time; revisions applied; only the clouds that were kept
   std::vector<double> microseconds;     ///< [step] wall clock
   std::vector<core::MapLandmark> map;   ///< empty unless the run came to its end
   RunTruth truth;
