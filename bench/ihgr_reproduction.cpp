@@ -2,7 +2,7 @@
 //
 // The simulation of ihgr_zhang2005 §IV.A for every method, swept over what the paper leaves out, as CSV on stdout: one row
 // a method and world, shares of successful runs with 95 % intervals (Wilson). docs/ihgr.md shows it.
-//   helixnav_ihgr_reproduction [layouts, default 200]
+//   helixnav_ihgr_reproduction [layouts, default 200 [setting, default all]]
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -80,13 +80,14 @@ void print_row(const Setting& setting, const bench::Contestant& contestant, int 
 int main(int argc, char** argv) {
   const int layouts = argc > 1 ? std::atoi(argv[1]) : 200;
   if (layouts < 1) {
-    std::fprintf(stderr, "usage: %s [layouts]\n", argv[0]);
+    std::fprintf(stderr, "usage: %s [layouts [setting]]\n", argv[0]);
     return 2;
   }
   std::printf(
       "setting,sigma_range_m,method,layouts,no_wrong,no_wrong_low,no_wrong_high,consistent,consistent_low,"
       "consistent_high,one_each,one_each_low,one_each_high,wrong,missed,observations\n");
   for (const Setting& setting : settings()) {
+    if (argc > 2 && setting.name != argv[2]) continue;
     for (const double sigma_range_m : {0.03, 0.06, 0.1, 0.15, 0.2, 0.3}) {
       Setting noisy = setting;
       noisy.world.sigma_range_m = sigma_range_m;

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -18,6 +17,7 @@
 #include "helixnav/logs/read_recording.hpp"
 #include "run_options.hpp"
 #include "settings.hpp"
+#include "suit_to_log.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -58,20 +58,11 @@ void scale_ranges(core::Recording& recording, const Settings& settings) {
   divide_ranges(recording, scale);
 }
 
-/// For logs whose covariances promise too much or too little.
-void scale_covariances(core::Recording& recording, double scale) {
-  for (core::Event& event : recording.events) {
-    if (auto* odometry = std::get_if<core::Odometry>(&event)) odometry->covariance *= scale;
-    if (auto* scan = std::get_if<core::Scan>(&event)) {
-      for (core::Observation& observation : scan->observations) observation.R *= scale;
-    }
-  }
-}
-
 ExitCode replay(CLI::App& command, ReplayJob& job) {
   prepare_run(command, job.run);
   if (job.localize && job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "excludes --localize");
   const auto begin = std::chrono::steady_clock::now();
+  suit_to_log(command, job.path);
   Drive task;
   job.settings.logs.plaza.range_scale = 1.0;  // see scale_ranges
   task.recording = logs::read_recording(job.path, job.settings.logs);

@@ -17,20 +17,9 @@ CLI::Option* add_number(CLI::App& command, const char* name, T& value, T low, T 
   return command.add_option(name, value, help)->capture_default_str()->check(number_between(low, high))->group(group);
 }
 
-std::vector<association::Method> methods() {
-  using association::Method;
-  return {Method::nearest_neighbour,
-          Method::nearest_neighbour_unique,
-          Method::likelihood_ratio,
-          Method::joint_likelihood_ratio,
-          Method::jcbb,
-          Method::ihgr_published,
-          Method::ihgr_likelihood_ratio};
-}
-
 void choose_method(const std::string& chosen, Settings& settings) {
   settings.known_association = chosen == "known";
-  for (const association::Method method : methods()) {
+  for (const association::Method method : association_methods()) {
     if (association::name(method) == chosen) settings.navigator.method = method;
   }
 }
@@ -53,7 +42,7 @@ void add_filter(CLI::App& command, cekf::FilterOptions& filter) {
 
 void add_association(CLI::App& command, Settings& settings) {
   std::vector<std::string> names{"known"};
-  for (const association::Method method : methods()) names.emplace_back(association::name(method));
+  for (const association::Method method : association_methods()) names.emplace_back(association::name(method));
   command
       .add_option_function<std::string>(
           "--association.method,--association", [&settings](const std::string& word) { choose_method(word, settings); },
@@ -123,6 +112,17 @@ void add_gps(CLI::App& command, Settings& settings) {
 }
 
 }  // namespace
+
+std::vector<association::Method> association_methods() {
+  using association::Method;
+  return {Method::nearest_neighbour,
+          Method::nearest_neighbour_unique,
+          Method::likelihood_ratio,
+          Method::joint_likelihood_ratio,
+          Method::jcbb,
+          Method::ihgr_published,
+          Method::ihgr_likelihood_ratio};
+}
 
 void add_settings(CLI::App& command, Settings& settings) {
   add_number(command, "--log.covariance_scale", settings.covariance_scale, 1e-6, 1e6,

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "fuse_gps.hpp"
+#include "helixnav/association/associate.hpp"
 #include "helixnav/logs/read_recording.hpp"
 #include "helixnav/supervisor/navigator.hpp"
 
@@ -22,6 +24,9 @@ struct Settings {
   double plaza_range_scale = 0.0;  ///< 0: estimate it from the log
   GpsSettings gps;
 };
+
+/// All association methods, in the order in which to show them.
+std::vector<association::Method> association_methods();
 
 /// Adds one option a key, with unit, range and default in its help.
 void add_settings(CLI::App& command, Settings& settings);
