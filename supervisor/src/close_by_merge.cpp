@@ -41,23 +41,36 @@ struct Leftover {
   double nis;
 };
 
-/// Branch landmarks that stand on one old landmark and on no other, by the joint covariance of the closed map.
-KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& branch,
+/// Squared Mahalanobis distance of two landmarks, correlations included, on top of 1 cm each way.
+double squared_distance(const cekf::CompressedEkf& filter, core::LandmarkId a, core::LandmarkId b) {
+  const core::JointGaussian both = filter.joint({a, b});
+  const Eigen::MatrixXd& P = both.covariance;
+  const Eigen::Matrix2d S = P.block<2, 2>(3, 3) + P.block<2, 2>(5, 5) - P.block<2, 2>(3, 5) - P.block<2, 2>(5, 3) +
+                            1e-4 * Eigen::Matrix2d::Identity();
+  const Eigen::Vector2d d = both.points_m[1] - both.points_m[0];
+  return d.dot(S.inverse() * d);
+}
+
+/// Old landmarks that `id` stands on, nearest first.
+std::vector<Leftover> stands_on(const cekf::CompressedEkf& filter, core::LandmarkId id,
+                                const std::vector<core::LandmarkId>& old, double gate) {
+  std::vector<Leftover> found;
+  for (const core::LandmarkId kept : filter.landmarks_within(filter.landmark_mean(id), leftover_reach_m)) {
+    if (!std::binary_search(old.begin(), old.end(), kept)) continue;
+    const double nis = squared_distance(filter, kept, id);
+    if (nis < gate) found.push_back({kept, id, nis});
+  }
+  std::sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.nis < b.nis; });
+  return found;
+}
+
+/// Confirmed branch landmarks that stand on one old landmark and on no other, by the joint covariance of the closed map.
+KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
                       const std::vector<core::LandmarkId>& old, double gate) {
   std::vector<Leftover> found;
-  for (const core::LandmarkId removed : branch) {
-    if (!filter.contains(removed)) continue;
-    std::vector<Leftover> here;
-    for (const core::LandmarkId kept : filter.landmarks_within(filter.landmark_mean(removed), leftover_reach_m)) {
-      if (!std::binary_search(old.begin(), old.end(), kept)) continue;
-      const core::JointGaussian both = filter.joint({kept, removed});
-      const Eigen::MatrixXd& P = both.covariance;
-      const Eigen::Matrix2d S = P.block<2, 2>(3, 3) + P.block<2, 2>(5, 5) - P.block<2, 2>(3, 5) - P.block<2, 2>(5, 3) +
-                                1e-4 * Eigen::Matrix2d::Identity();
-      const Eigen::Vector2d d = both.points_m[1] - both.points_m[0];
-      const double nis = d.dot(S.inverse() * d);
-      if (nis < gate) here.push_back({kept, removed, nis});
-    }
+  for (const core::LandmarkId id : confirmed) {
+    if (!filter.contains(id)) continue;
+    const std::vector<Leftover> here = stands_on(filter, id, old, gate);
     if (here.size() == 1) found.push_back(here.front());
   }
   std::sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.nis < b.nis; });
@@ -72,8 +85,7 @@ KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core:
 }  // namespace
 
 Closing close_by_merge(cekf::CompressedEkf& filter, const std::vector<pf_relocalize::ConstellationPair>& pairs,
-                       const std::vector<core::LandmarkId>& branch, const std::vector<core::LandmarkId>& old,
-                       const SearchOptions& options) {
+                       const Branch& branch, const std::vector<core::LandmarkId>& old, const SearchOptions& options) {
   Closing closing;
   KeptRemoved chosen;
   for (const pf_relocalize::ConstellationPair& pair : pairs) chosen.emplace_back(pair.old_landmark, pair.branch);
@@ -82,11 +94,16 @@ Closing close_by_merge(cekf::CompressedEkf& filter, const std::vector<pf_relocal
   note(chosen, closing);
   closing.accepted = true;
 
-  KeptRemoved rest = leftovers(filter, branch, old, options.leftover_gate);
+  KeptRemoved rest = leftovers(filter, branch.confirmed, old, options.leftover_gate);
   Closing rest_closing;
   if (!rest.empty() && make_compatible(filter, options, rest, rest_closing)) {
     filter.merge(rest, options.merge_sigma_m);
     note(rest, closing);
+  }
+  for (const core::LandmarkId id : branch.unconfirmed) {
+    if (stands_on(filter, id, old, options.leftover_gate).empty()) continue;
+    filter.remove(id);
+    closing.forgotten.push_back(id);
   }
   return closing;
 }

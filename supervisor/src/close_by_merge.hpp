@@ -18,14 +18,21 @@ struct Closing {
   double limit = 0.0;
   int dropped = 0;                            ///< pairs that the cost did not let pass
   std::vector<core::MergedLandmarks> merged;  ///< empty unless accepted
+  std::vector<core::LandmarkId> forgotten;    ///< unconfirmed ones that stood on an old landmark
+};
+
+/// Landmarks mapped since the old ones came to be excluded, ascending.
+struct Branch {
+  std::vector<core::LandmarkId> confirmed;    ///< seen often enough to be one with an old landmark
+  std::vector<core::LandmarkId> unconfirmed;  ///< may be clutter: never merged
 };
 
 /// Conditions the map on every branch landmark of the pairs being the old one that it stands on, jointly and iterated; the
-/// worst pair goes while the cost exceeds its χ² limit. Then what else of `branch` has become a duplicate of one of `old`
-/// (both ascending) is merged under a joint gate of its own. Refused: filter as before.
+/// worst pair goes while the cost exceeds its χ² limit. Then what else of the branch has become a duplicate of one of
+/// `old` (ascending) is merged under a joint gate of its own, and unconfirmed copies are removed. Refused: filter as
+/// before.
 /// Exact: equal to a full EKF told the same equalities. Source: PROTOTYPE §6. Test: supervisor/closing_test.cpp.
 Closing close_by_merge(cekf::CompressedEkf& filter, const std::vector<pf_relocalize::ConstellationPair>& pairs,
-                       const std::vector<core::LandmarkId>& branch, const std::vector<core::LandmarkId>& old,
-                       const SearchOptions& options);
+                       const Branch& branch, const std::vector<core::LandmarkId>& old, const SearchOptions& options);
 
 }  // namespace helixnav::supervisor

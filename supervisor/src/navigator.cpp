@@ -134,15 +134,17 @@ void Navigator::pursue_search(const Scan& scan, StepReport& report) {
 }
 
 void Navigator::close(const std::vector<pf_relocalize::ConstellationPair>& pairs, StepReport& report) {
-  std::vector<LandmarkId> branch;
+  Branch branch;
   for (const association::LandmarkRecord& record : life_.records()) {
     const bool mapped_lately = record.last_seen_path_m > search_->begun_path_m() - options_.search.old_after_m;
+    if (!mapped_lately || search_->excludes(record.id)) continue;
     const bool confirmed = record.hits >= options_.search.constellation.least_hits;
-    if (mapped_lately && confirmed && !search_->excludes(record.id)) branch.push_back(record.id);
+    (confirmed ? branch.confirmed : branch.unconfirmed).push_back(record.id);
   }
   const core::Pose2 before = filter_.pose().mean;
   const Closing closing = close_by_merge(filter_, pairs, branch, search_->old_landmarks(), options_.search);
   for (const core::MergedLandmarks& one : closing.merged) life_.merge(one.kept, one.removed);
+  for (const LandmarkId id : closing.forgotten) life_.remove(id);
   report.merged = closing.merged;
   report.decisions.push_back({"closure",
                               closing.accepted ? "accepted" : "refused",

@@ -39,7 +39,8 @@ Search::Search(std::vector<core::LandmarkId> old, double path_m, std::uint64_t s
       begun_path_m_(path_m),
       seed_(seed),
       motion_(core::no_motion(0)),
-      last_look_path_m_(path_m - options.look_distance_m) {}
+      last_look_path_m_(path_m - options.look_distance_m),
+      last_in_gate_path_m_(path_m) {}
 
 bool Search::excludes(core::LandmarkId id) const { return std::binary_search(old_.begin(), old_.end(), id); }
 
@@ -52,9 +53,10 @@ std::optional<std::vector<ConstellationPair>> Search::look(const SearchView& vie
   last_look_path_m_ = path_m;
   const core::Odometry motion = std::exchange(motion_, core::no_motion(view.scan.t_ns));
   if (!attempt_) {
-    if (path_m >= next_start_path_m_ && is_promising(view)) start(view, decisions);
+    if (is_promising(view) && path_m >= next_start_path_m_) start(view, decisions);
     return std::nullopt;
   }
+  last_in_gate_path_m_ = path_m;
   attempt_->relocalizer.step(motion, view.scan);
   switch (judge_search(attempt_->relocalizer.state(), options_.gate, options_.give_up)) {
     case SearchOutcome::gate_met:
@@ -71,8 +73,12 @@ std::optional<std::vector<ConstellationPair>> Search::look(const SearchView& vie
   return std::nullopt;
 }
 
-bool Search::is_promising(const SearchView& view) const {
-  if (static_cast<int>(view.scan.observations.size()) < options_.start_observations) return false;
+bool Search::is_undecided(double path_m) const {
+  const bool idle = !attempt_ && path_m - last_in_gate_path_m_ > options_.idle_m;
+  return idle || path_m - begun_path_m_ > options_.undecided_m;
+}
+
+bool Search::is_promising(const SearchView& view) {
   const core::JointGaussian joint = view.filter.joint(reference_landmarks(view, old_, 0.0));
   if (joint.ids.size() < 3) return false;
   const association::InnovationProblem problem = association::make_innovation_problem(joint, view.scan);
@@ -80,7 +86,9 @@ bool Search::is_promising(const SearchView& view) const {
   for (const association::GatedObservation& observation : problem.observations) {
     in_gate += observation.nearest_nis < options_.start_gate ? 1 : 0;
   }
-  return in_gate >= options_.start_in_gate;
+  if (in_gate > 0) last_in_gate_path_m_ = view.life.path_m();
+  return in_gate >= options_.start_in_gate &&
+         static_cast<int>(view.scan.observations.size()) >= options_.start_observations;
 }
 
 void Search::start(const SearchView& view, std::vector<core::Decision>& decisions) {
@@ -121,6 +129,11 @@ std::optional<std::vector<ConstellationPair>> Search::question(const SearchView&
   attempt.passes = !accepted ? 0 : agree(attempt.passed, answer.verdict.winner.pairs) ? attempt.passes + 1 : 1;
   attempt.passed = accepted ? answer.verdict.winner.pairs : std::vector<ConstellationPair>{};
   attempt.next_question_path_m = path_m + (accepted ? options_.confirm_m : options_.ask_again_m);
+  if (answer.verdict.rival.matched > answer.verdict.winner.matched && answer.verdict.rival_share > 1.0) {
+    end_attempt("outdone", path_m, decisions);
+    next_start_path_m_ = path_m;
+    return std::nullopt;
+  }
   if (attempt.passes < options_.passes) return std::nullopt;
   return attempt.passed;
 }

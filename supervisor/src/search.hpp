@@ -46,7 +46,7 @@ class Search {
   void refuse(double path_m);
 
   /// Driven so long without an answer that the question is left open.
-  bool is_undecided(double path_m) const { return path_m - begun_path_m_ > options_.undecided_m; }
+  bool is_undecided(double path_m) const;
   double begun_path_m() const { return begun_path_m_; }
 
   /// T_world_robot of the particles, every n-th; empty while no attempt runs.
@@ -62,7 +62,7 @@ class Search {
     int passes = 0;
   };
 
-  bool is_promising(const SearchView& view) const;
+  bool is_promising(const SearchView& view);
   void start(const SearchView& view, std::vector<core::Decision>& decisions);
   std::optional<std::vector<pf_relocalize::ConstellationPair>> question(const SearchView& view,
                                                                         std::vector<core::Decision>& decisions);
@@ -74,6 +74,7 @@ class Search {
   std::uint64_t seed_;
   core::Odometry motion_;  ///< since the last look
   double last_look_path_m_;
+  double last_in_gate_path_m_;  ///< something stood where an old landmark may be
   double next_start_path_m_ = 0.0;
   int starts_ = 0;
   int questions_ = 0;

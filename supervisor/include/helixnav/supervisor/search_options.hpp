@@ -29,7 +29,8 @@ struct SearchOptions {
   double reach_m = 110.0;        ///< old landmarks so far beyond what the sensor may see belong to the reference map
   double rest_m = 9.0;           ///< after an attempt that failed
   double attempt_m = 105.0;      ///< after so long an attempt that was never accepted is begun again
-  double undecided_m = 330.0;    ///< after so long a search the question is left open
+  double undecided_m = 330.0;    ///< after so long a search the question is left open, and …
+  double idle_m = 60.0;          ///< … after so long a drive without anything in an old landmark's gate
   pf_relocalize::RelocalizerOptions relocalizer;
   pf_relocalize::ReferenceMapOptions reference;
   pf_relocalize::GateLimits gate;
