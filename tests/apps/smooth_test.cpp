@@ -83,6 +83,30 @@ TEST_F(Smooth, TakesDlrRunEToThePublishedChi2) {
   EXPECT_EQ(complete_lines(folder("optimum") / "trajectory_final.tum"), 3297u + 1u) << "steps and a header";
 }
 
+// The filter linearises once, a batch as often as it takes: its map is near enough for ten steps to the same optimum.
+TEST_F(Smooth, TakesTheFiltersDlrRunEToTheSameOptimumInTenIterations) {
+  find_real_data("dlr/raw/map.circles");
+  if (IsSkipped()) return;
+  must({"replay", path_, "--association", "known", "--smooth", "--quiet", "--out", folder("run")});
+  EXPECT_NEAR(summary("run").at("chi2_start"), 14.70e6, 0.01e6)
+      << "of the map at the end and the path as estimated then";
+  EXPECT_NEAR(summary("run").at("chi2"), 56871.4, 0.1);
+  EXPECT_EQ(summary("run").at("dof"), 27466);
+  EXPECT_LE(summary("run").at("iterations"), 10);
+  EXPECT_EQ(summary("run").at("converged"), 1.0);
+}
+
+// From odometry the same log ends in a local minimum above 10^6: smoothing/victoria_park_test.cpp.
+TEST_F(Smooth, TakesTheFiltersVictoriaParkToTheReferenceOptimum) {
+  find_real_data("victoria_park_graph/raw/VicPark_clean_data.mat");
+  if (IsSkipped()) return;
+  must({"replay", path_, "--association", "known", "--smooth", "--filter.cell_side_m", "15", "--filter.hysteresis_m",
+        "5", "--quiet", "--out", folder("run")});
+  EXPECT_NEAR(summary("run").at("chi2"), 9012.72, 0.01);
+  EXPECT_EQ(summary("run").at("dof"), 90182);
+  EXPECT_LE(summary("run").at("iterations"), 10);
+}
+
 TEST_F(Smooth, TellsTheRetractionsApartOnTheISamGraph) {
   find_real_data("victoria_park_graph/raw/isam_victoriaPark.txt");
   if (IsSkipped()) return;
