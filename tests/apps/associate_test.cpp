@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
 #include "program.hpp"
@@ -80,6 +82,27 @@ TEST_F(Associate, RefusesWhatItCannotUse) {
   expect_refused({"ihgr-circle", "--scan", "9999"}, 3, {"--scan 9999 is beyond the last of 361 scans"});
   expect_refused({write_zip(folder_.path() / "release.zip", small_release())}, 3, {"no labels", "--scan"});
   expect_refused({}, 2, {"INPUT is required"});
+}
+
+// The first third of DLR run e, before the building's loops close: the limits are those that the project promises.
+TEST_F(Associate, KeepsToTheLabelsOfTheDlrRunInsideALap) {
+  find_real_data("dlr/raw/map.circles");
+  if (IsSkipped()) return;
+  std::istringstream all(text_of(path_));
+  std::string lap;
+  int steps = 0;
+  for (std::string line; steps <= 1000 && std::getline(all, line);) {
+    steps += line.rfind("STEP", 0) == 0;
+    if (steps <= 1000) lap += line + '\n';
+  }
+  const Outcome outcome = run({"associate", folder_.write("lap.circles", lap), "--methods", "likelihood-ratio"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Words row = words_by_line(outcome.out).at(1);
+  ASSERT_GE(row.size(), 6u);
+  const std::size_t last = row.size() - 1;
+  EXPECT_GE(std::stod(row[last - 5]), 99.5) << "pairwise precision";
+  EXPECT_GE(std::stod(row[last - 4]), 90.0) << "pairwise recall";
+  EXPECT_LE(std::stod(row[last - 2]), 1.1) << "map landmarks for each true one";
 }
 
 TEST_F(Associate, EndsWithATableWhenInterrupted) {
