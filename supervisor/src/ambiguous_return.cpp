@@ -12,6 +12,8 @@
 namespace helixnav::supervisor {
 namespace {
 
+constexpr double gate_probability = 0.95;  // of the gate whose foreign objects are counted
+
 bool contains(const std::vector<core::LandmarkId>& sorted, core::LandmarkId id) {
   return std::binary_search(sorted.begin(), sorted.end(), id);
 }
@@ -24,16 +26,31 @@ double density_at(const association::Prediction& prediction, const core::FieldOf
   return prediction.kind == core::ObservationKind::range_bearing ? per_m2 * prediction.z_hat.x() : per_m2;
 }
 
-int neighbours_in_gate(const cekf::CompressedEkf& filter, const core::Pose2& pose, const core::Scan& scan,
+/// Old landmarks that the sensor may have in view.
+std::vector<core::LandmarkId> old_in_view(const cekf::CompressedEkf& filter, const core::Scan& scan,
+                                          const std::vector<core::LandmarkId>& old) {
+  const core::PoseGaussian now = filter.pose();
+  const double sigma_m = std::sqrt(std::max(0.0, now.covariance.topLeftCorner<2, 2>().trace()));
+  const Eigen::Vector2d sensor_m = core::transform(now.mean, scan.T_robot_sensor.position_m());
+  std::vector<core::LandmarkId> near =
+      filter.landmarks_within(sensor_m, scan.field_of_view.max_range_m + 3.0 * sigma_m);
+  near.erase(std::remove_if(near.begin(), near.end(), [&](core::LandmarkId id) { return !contains(old, id); }),
+             near.end());
+  return near;
+}
+
+int neighbours_in_gate(const cekf::CompressedEkf& filter, const core::Scan& scan,
                        const std::vector<core::LandmarkId>& others, core::LandmarkId self,
-                       const association::GatedPair& pair, const association::Prediction& prediction, double gate) {
+                       const association::GatedPair& pair, const association::Prediction& prediction) {
+  static const double gate = core::chi2_quantile(gate_probability, 2);
+  const core::Pose2 pose = filter.pose().mean;
+  const Eigen::Vector2d sensor_m = core::transform(pose, scan.T_robot_sensor.position_m());
   const Eigen::Matrix2d S_inverse = pair.S.inverse();
   int neighbours = 0;
   for (const core::LandmarkId other : others) {
-    if (other == self) continue;
     const Eigen::Vector2d point_m = filter.landmark_mean(other);
-    if ((core::transform(core::compose(pose, scan.T_robot_sensor), Eigen::Vector2d::Zero()) - point_m).norm() < 1e-3)
-      continue;
+    constexpr double too_near_m = 1e-3;  // at the sensor itself there is no bearing
+    if (other == self || (point_m - sensor_m).norm() < too_near_m) continue;
     const core::ObsVector z_hat = core::predict_observation(prediction.kind, pose, scan.T_robot_sensor, point_m).z_hat;
     const Eigen::Vector2d nu = core::innovation(prediction.kind, z_hat, core::ObsVector(prediction.z_hat));
     if (nu.dot(S_inverse * nu) < gate) ++neighbours;
@@ -52,37 +69,41 @@ std::vector<core::LandmarkId> old_landmarks(const association::LandmarkLife& lif
   return old;
 }
 
-std::optional<AmbiguousReturn> most_ambiguous_return(const cekf::CompressedEkf& filter,
-                                                     const association::InnovationProblem& problem,
-                                                     const core::Scan& scan, const std::vector<core::LandmarkId>& old,
-                                                     double foreign_per_scan) {
-  if (old.empty() || !std::isfinite(scan.field_of_view.max_range_m)) return std::nullopt;
-  static const double gate = core::chi2_quantile(0.95, 2);
-  const core::Pose2 pose = filter.pose().mean;
+std::vector<AmbiguousReturn> returns_in_gate(const cekf::CompressedEkf& filter,
+                                             const association::InnovationProblem& problem, const core::Scan& scan,
+                                             const std::vector<core::LandmarkId>& old, double foreign_per_scan) {
+  std::vector<AmbiguousReturn> returns;
+  if (old.empty() || !std::isfinite(scan.field_of_view.max_range_m)) return returns;
+  static const double gate = core::chi2_quantile(gate_probability, 2);
   std::vector<core::LandmarkId> others;  // looked up when the first old landmark is gated
-  std::optional<AmbiguousReturn> worst;
   for (const association::GatedPair& pair : problem.pairs) {
     const core::LandmarkId id = problem.ids[static_cast<std::size_t>(pair.candidate)];
     if (pair.dof != 2 || !contains(old, id)) continue;
-    if (others.empty()) {
-      const core::PoseGaussian now = filter.pose();
-      const double sigma_m = std::sqrt(std::max(0.0, now.covariance.topLeftCorner<2, 2>().trace()));
-      const Eigen::Vector2d sensor_m = core::transform(pose, scan.T_robot_sensor.position_m());
-      for (const core::LandmarkId near :
-           filter.landmarks_within(sensor_m, scan.field_of_view.max_range_m + 3.0 * sigma_m)) {
-        if (contains(old, near)) others.push_back(near);
-      }
-    }
+    if (others.empty()) others = old_in_view(filter, scan, old);
     const association::Prediction& prediction = problem.predictions[static_cast<std::size_t>(pair.prediction)];
     AmbiguousReturn here;
     here.landmark = id;
-    here.neighbours = neighbours_in_gate(filter, pose, scan, others, id, pair, prediction, gate);
-    here.gate_area = core::pi * gate * std::sqrt(pair.S.determinant());
+    here.neighbours = neighbours_in_gate(filter, scan, others, id, pair, prediction);
+    const Eigen::Matrix2d R = scan.observations[static_cast<std::size_t>(pair.observation)].R;
+    here.gate_area = core::pi * gate * (std::sqrt(pair.S.determinant()) - std::sqrt(R.determinant()));
     here.foreign_objects =
         here.neighbours + density_at(prediction, scan.field_of_view, foreign_per_scan) * here.gate_area;
-    if (!worst || here.foreign_objects > worst->foreign_objects) worst = here;
+    const auto at = std::lower_bound(returns.begin(), returns.end(), id,
+                                     [](const AmbiguousReturn& r, core::LandmarkId l) { return r.landmark < l; });
+    if (at == returns.end() || at->landmark != id) {
+      returns.insert(at, here);
+    } else if (here.foreign_objects > at->foreign_objects) {
+      *at = here;
+    }
   }
-  return worst;
+  return returns;
+}
+
+const AmbiguousReturn* most_ambiguous(const std::vector<AmbiguousReturn>& returns) {
+  const auto worst = std::max_element(
+      returns.begin(), returns.end(),
+      [](const AmbiguousReturn& a, const AmbiguousReturn& b) { return a.foreign_objects < b.foreign_objects; });
+  return worst == returns.end() ? nullptr : &*worst;
 }
 
 }  // namespace helixnav::supervisor

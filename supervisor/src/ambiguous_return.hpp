@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "helixnav/association/innovation_problem.hpp"
@@ -19,16 +18,20 @@ struct AmbiguousReturn {
   core::LandmarkId landmark = core::no_landmark;
   double foreign_objects = 0.0;  ///< η = neighbours + extraneous density × area of the gate
   int neighbours = 0;            ///< other old landmarks in its 95 % gate
-  double gate_area = 0.0;        ///< π·5.99·√|S| in the units of the observation
+  /// π·5.99·(√|S| − √|R|) in the units of the observation: what the pose's uncertainty adds to the gate. Clutter in the
+  /// part that the sensor's noise makes is no question of where one is.
+  double gate_area = 0.0;
 };
 
-/// The largest η over all old landmarks that have an observation in their gate; none when no old landmark has.
-/// P(wrong | matched) is about η/(P_D + η), so that η is what one risks by associating scan by scan. `old` ascending.
+/// Every old landmark that has an observation in its gate, ascending. P(wrong | matched) is about η/(P_D + η), so that η
+/// is what one risks by associating scan by scan. `old` ascending.
 /// Cost: gated pairs × old landmarks in view, and nothing as long as no old landmark is gated.
 /// Source: PROTOTYPE §2. Test: supervisor/ambiguous_return_test.cpp.
-std::optional<AmbiguousReturn> most_ambiguous_return(const cekf::CompressedEkf& filter,
-                                                     const association::InnovationProblem& problem,
-                                                     const core::Scan& scan, const std::vector<core::LandmarkId>& old,
-                                                     double foreign_per_scan);
+std::vector<AmbiguousReturn> returns_in_gate(const cekf::CompressedEkf& filter,
+                                             const association::InnovationProblem& problem, const core::Scan& scan,
+                                             const std::vector<core::LandmarkId>& old, double foreign_per_scan);
+
+/// The one with the largest η; null when there is none.
+const AmbiguousReturn* most_ambiguous(const std::vector<AmbiguousReturn>& returns);
 
 }  // namespace helixnav::supervisor

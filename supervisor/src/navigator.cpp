@@ -43,11 +43,13 @@ StepReport Navigator::observe(const Scan& scan) {
   StepReport report;
   std::optional<Gating> gating;
   gating.emplace(filter_, candidates_of(scan), scan, options_.gates);
-  if (!search_ && is_lost(scan, *gating, report)) {
+  std::vector<AmbiguousReturn> returns = old_ones_in_gate(scan, *gating);
+  if (is_lost(returns, report)) {
     begin_search();
     gating.emplace(filter_, candidates_of(scan), scan, options_.gates);
+    returns.clear();
   }
-  report.associations = associate(scan, *gating);
+  report.associations = associate(scan, *gating, returns);
   update(scan, report);
   augment(scan, report);
   live_and_let_die(scan, report);
@@ -99,11 +101,15 @@ std::vector<LandmarkId> Navigator::candidates_of(const Scan& scan) const {
   return ids;
 }
 
-bool Navigator::is_lost(const Scan& scan, const Gating& gating, StepReport& report) const {
-  if (!options_.search.enabled || life_.path_m() < armed_path_m_) return false;
-  const std::vector<LandmarkId> old = old_landmarks(life_, options_.search.old_after_m);
-  const auto worst = most_ambiguous_return(filter_, gating.problem, scan, old, options_.search.foreign_per_scan);
-  if (!worst || worst->foreign_objects <= options_.search.foreign_objects) return false;
+std::vector<AmbiguousReturn> Navigator::old_ones_in_gate(const Scan& scan, const Gating& gating) const {
+  if (!options_.search.enabled || search_) return {};
+  return returns_in_gate(filter_, gating.problem, scan, old_landmarks(life_, options_.search.old_after_m),
+                         options_.search.foreign_per_scan);
+}
+
+bool Navigator::is_lost(const std::vector<AmbiguousReturn>& returns, StepReport& report) const {
+  const AmbiguousReturn* worst = most_ambiguous(returns);
+  if (worst == nullptr || worst->foreign_objects <= options_.search.foreign_objects) return false;
   const core::PoseGaussian now = filter_.pose();
   report.decisions.push_back({"trigger",
                               "started",
@@ -113,7 +119,7 @@ bool Navigator::is_lost(const Scan& scan, const Gating& gating, StepReport& repo
                                {"gate_area", worst->gate_area},
                                {"pose_sigma_m", std::sqrt(now.covariance.topLeftCorner<2, 2>().trace())},
                                {"heading_sigma_deg", std::sqrt(now.covariance(2, 2)) * 180.0 / core::pi},
-                               {"old_landmarks", static_cast<double>(old.size())}}});
+                               {"old_in_gate", static_cast<double>(returns.size())}}});
   return true;
 }
 
@@ -163,12 +169,21 @@ void Navigator::close(const std::vector<pf_relocalize::ConstellationPair>& pairs
   }
 }
 
-std::vector<AssociationReport> Navigator::associate(const Scan& scan, const Gating& gating) const {
+std::vector<AssociationReport> Navigator::associate(const Scan& scan, const Gating& gating,
+                                                    const std::vector<AmbiguousReturn>& returns) const {
   association::Options how = options_.association;
   if (std::isfinite(scan.field_of_view.max_range_m)) {
     how.extraneous = association::uniform_density(scan.field_of_view, options_.extraneous_per_scan);
   }
-  return association_reports(association::associate(options_.method, gating.problem, how));
+  std::vector<AssociationReport> reports =
+      association_reports(association::associate(options_.method, gating.problem, how));
+  for (AssociationReport& report : reports) {
+    const bool held = std::any_of(returns.begin(), returns.end(), [&](const AmbiguousReturn& old) {
+      return old.landmark == report.landmark && old.foreign_objects > options_.search.hold_objects;
+    });
+    if (held && report.outcome == Outcome::matched) report.outcome = Outcome::ambiguous;
+  }
+  return reports;
 }
 
 std::vector<AssociationReport> Navigator::known_associations(const Scan& scan,

@@ -17,6 +17,7 @@
 
 namespace helixnav::supervisor {
 
+struct AmbiguousReturn;
 struct Gating;
 class Search;
 class Track;
@@ -76,11 +77,13 @@ class Navigator {
  private:
   void predict();
   std::vector<core::LandmarkId> candidates_of(const core::Scan& scan) const;
-  bool is_lost(const core::Scan& scan, const Gating& gating, core::StepReport& report) const;
+  std::vector<AmbiguousReturn> old_ones_in_gate(const core::Scan& scan, const Gating& gating) const;
+  bool is_lost(const std::vector<AmbiguousReturn>& returns, core::StepReport& report) const;
   void begin_search();
   void pursue_search(const core::Scan& scan, core::StepReport& report);
   void close(const std::vector<pf_relocalize::ConstellationPair>& pairs, core::StepReport& report);
-  std::vector<core::AssociationReport> associate(const core::Scan& scan, const Gating& gating) const;
+  std::vector<core::AssociationReport> associate(const core::Scan& scan, const Gating& gating,
+                                                 const std::vector<AmbiguousReturn>& returns) const;
   std::vector<core::AssociationReport> known_associations(const core::Scan& scan,
                                                           const std::vector<std::int64_t>& identities) const;
   void update(const core::Scan& scan, core::StepReport& report);
@@ -102,7 +105,6 @@ class Navigator {
   std::unique_ptr<Track> track_;
   std::unique_ptr<Search> search_;  ///< while a question is open
   std::uint64_t searches_ = 0;
-  double armed_path_m_ = 0.0;  ///< no search begins before
 
   // Known association only: who is who, and how often it was seen.
   std::map<std::int64_t, core::LandmarkId> landmark_of_identity_;

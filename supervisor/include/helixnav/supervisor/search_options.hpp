@@ -19,6 +19,7 @@ struct SearchOptions {
   // Trigger.
   double old_after_m = 60.0;      ///< a mature landmark unseen over so long a drive is old
   double foreign_objects = 0.1;   ///< expected other objects in the gate of an old landmark that begin a search
+  double hold_objects = 0.02;     ///< above it a single old landmark is not matched, but no search begins yet
   double foreign_per_scan = 2.5;  ///< observations of no old landmark in one scan: clutter and new ones together
 
   // Search.
