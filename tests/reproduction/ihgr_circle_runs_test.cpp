@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <gtest/gtest.h>
 
 #include "helixnav/association/ihgr.hpp"
-#include "helixnav/association/k_best.hpp"
+#include "helixnav/association/linear_assignment.hpp"
 #include "ihgr_study.hpp"
 
 namespace helixnav::bench {
@@ -29,13 +30,13 @@ sim::IhgrCircle world_with_noise(double sigma_range_m) {
 TEST(IhgrCircleRuns, LikelihoodRatiosGetLayoutsRightThatNearestNeighbourDoesNot) {
   int only_nearest = 0;
   int only_ratio = 0;
-  for (std::uint64_t seed = 5001; seed <= 5060; ++seed) {
+  for (std::uint64_t seed = 5001; seed <= 5040; ++seed) {
     const bool nearest = run_layout(world_with_noise(0.15), seed, contestant("nearest-neighbour")).without_wrong;
     const bool ratio = run_layout(world_with_noise(0.15), seed, contestant("likelihood-ratio")).without_wrong;
     only_nearest += nearest && !ratio;
     only_ratio += ratio && !nearest;
   }
-  EXPECT_GE(only_ratio, 7 + 3 * only_nearest) << "of 60, nearest neighbour alone: " << only_nearest;
+  EXPECT_GE(only_ratio, 7 + 3 * only_nearest) << "of 40, nearest neighbour alone: " << only_nearest;
 }
 
 TEST(IhgrCircleRuns, FiveFeaturesWithinTheNoiseDefeatEveryMethodYetLeaveThePoseConsistent) {
