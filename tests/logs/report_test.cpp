@@ -92,6 +92,31 @@ TEST(Report, ThinsLongRunsAndStaysSmall) {
   EXPECT_LE(element(page, "wall-clock")["steps"]["t"].size(), 1200u);
 }
 
+TEST(Report, HoldsWhatASmootherMadeOfTheRun) {
+  const RunFolder run = example_run(20);
+  SmoothedRun smoothed;
+  smoothed.alone = true;
+  smoothed.poses = {{1.0, 2.0, 0.1}, {3.0, 4.0, 0.2}};
+  smoothed.poses_before = {{-1.0, 2.0, 0.1}, {-3.0, 4.0, 0.2}};
+  smoothed.map_before = smoothed.map_after = example_map();
+  smoothed.chi2 = {900.0, 20.5};
+  smoothed.chi2_odometry = 8.25;
+  smoothed.chi2_landmarks = 12.25;
+  smoothed.dof = 10;
+  smoothed.largest = {{7, "pose 7 sees landmark 4", 9.5, 2}};
+  smoothed.normalised_residuals = {{3, 0.5}, {4, -2.5}};
+  const nlohmann::json data = element(render_report(run, evaluate(run), {}, &smoothed), "run-data")["smoothing"];
+  EXPECT_EQ(data["alone"], true);
+  EXPECT_EQ(data["path"]["x"], (nlohmann::json{1.0, 3.0}));
+  EXPECT_EQ(data["path_before"]["x"], (nlohmann::json{-1.0, -3.0}));
+  EXPECT_EQ(data["chi2"], (nlohmann::json{900.0, 20.5}));
+  EXPECT_EQ(data["chi2_odometry"], 8.25);
+  EXPECT_EQ(data["dof"], 10);
+  EXPECT_EQ(data["largest"][0]["name"], "pose 7 sees landmark 4");
+  EXPECT_EQ(data["residuals"]["inside_2sigma"], 0.5);
+  EXPECT_TRUE(element(render(run), "run-data")["smoothing"].is_null());
+}
+
 TEST(Report, OfARunWithoutStepsIsAPageToo) {
   RunFolder run;
   run.manifest = example_manifest();

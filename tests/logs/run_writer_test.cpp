@@ -119,6 +119,29 @@ TEST(RunWriter, SummarizesWithTheKeysThatScriptsRelyOn) {
   EXPECT_EQ(summary["error"]["fixes_left_out"], 0);
 }
 
+TEST(RunWriter, JudgesASmootherThatRanAloneByItsOptimum) {
+  const core::Recording recording = example_recording(30);
+  const auto rmse_m = [&](bool alone) {
+    const testing::TemporaryFolder folder;
+    RunWriter writer(folder.path() / "run", example_manifest(), recording);
+    RunEnd end;
+    end.smoothed.emplace();
+    end.smoothed->alone = alone;
+    for (std::int64_t k = 0; k < 30; ++k) {
+      core::StepReport start = example_step(k);
+      end.smoothed->poses.push_back(start.pose.mean);  // the truth
+      start.pose.mean.x_m += 3.0;
+      end.smoothed->poses_before.push_back(start.pose.mean);
+      writer.write(start, 0.0);
+    }
+    const Evaluation evaluation = writer.finish(example_map(), end);
+    EXPECT_EQ(read_run(folder.path() / "run").steps[7].pose.mean.x_m, end.smoothed->poses_before[7].x_m);
+    return evaluation.position->error_m.rmse;
+  };
+  EXPECT_NEAR(rmse_m(true), 0.0, 1e-12);
+  EXPECT_NEAR(rmse_m(false), 3.0, 1e-9) << "after a filter the steps are the filter's";
+}
+
 TEST(RunWriter, LeavesNoTemporaryFileBehind) {
   const TemporaryFolder folder;
   write_example((folder.path() / "run").string(), 3);
