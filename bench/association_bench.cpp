@@ -133,7 +133,7 @@ void time_dense_assignment(int rows, int columns, int count) {
 int main() {
   time_dense_assignment(15, 30, 10'000);
   time_set(draw("usual scan", 10'000, 15, 30, 0.3, 20.0));
-  time_set(draw("ambiguous scan", 1'000, 14, 20, 0.3, 8.5));
+  time_set(draw("ambiguous scan", 1'000, 14, 20, 0.3, 8.9));
   time_set(draw("crowded scan", 1'000, 14, 20, 0.3, 6.0));
   time_set(draw("very crowded scan", 200, 14, 30, 0.3, 4.0));
 }
