@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,22 +28,6 @@ struct ReplayJob {
   RunOptions run;
   Settings settings;
 };
-
-/// The file, or the files of the folder in order of name, with their digests.
-std::vector<logs::InputFile> input_files(const std::string& path) {
-  std::vector<std::string> names;
-  if (std::filesystem::is_directory(path)) {
-    for (const auto& entry : std::filesystem::directory_iterator(path)) {
-      if (entry.is_regular_file()) names.push_back(entry.path().string());
-    }
-    std::sort(names.begin(), names.end());
-  } else {
-    names.push_back(path);
-  }
-  std::vector<logs::InputFile> inputs;
-  for (const std::string& name : names) inputs.push_back({name, logs::sha256_of_file(name)});
-  return inputs;
-}
 
 /// Ranges that read long are made right: by the scale given, or by one estimated from the log itself.
 void scale_ranges(core::Recording& recording, const Settings& settings) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run_options.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <vector>
 
@@ -52,6 +53,21 @@ void fill_drive(Drive& drive, const RunOptions& options, const std::string& conf
   drive.manifest.command = logs::command_text(command_line());
   drive.manifest.recording = drive.recording.name;
   drive.manifest.config = config;
+}
+
+std::vector<logs::InputFile> input_files(const std::string& path) {
+  std::vector<std::string> names;
+  if (std::filesystem::is_directory(path)) {
+    for (const auto& entry : std::filesystem::directory_iterator(path)) {
+      if (entry.is_regular_file()) names.push_back(entry.path().string());
+    }
+    std::sort(names.begin(), names.end());
+  } else {
+    names.push_back(path);
+  }
+  std::vector<logs::InputFile> inputs;
+  for (const std::string& name : names) inputs.push_back({name, logs::sha256_of_file(name)});
+  return inputs;
 }
 
 }  // namespace helixnav::apps

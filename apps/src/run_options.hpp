@@ -2,6 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include "helixnav/logs/run_manifest.hpp"
 
 namespace CLI {
 class App;
@@ -26,6 +29,9 @@ void prepare_run(CLI::App& command, const RunOptions& options);
 
 /// Copies the options into the drive and begins its manifest; `config` is the configuration in force.
 void fill_drive(Drive& drive, const RunOptions& options, const std::string& config);
+
+/// The file, or the files of the folder in order of name, with their digests. InputError when one cannot be read.
+std::vector<logs::InputFile> input_files(const std::string& path);
 
 /// The words of this process's command line, for the manifest.
 void remember_command_line(int argc, char** argv);

@@ -80,7 +80,7 @@ ExitCode smooth(CLI::App& command, SmoothJob& job) {
   const double reading_s = seconds_since(begin);
   SmoothingResult result = solve(task, options_of(job));
   fill_drive(task_info, job.run, "");
-  task_info.manifest.inputs = {{job.path, logs::sha256_of_file(job.path)}};  // labelled logs are single files
+  task_info.manifest.inputs = input_files(job.path);
 
   using IfNotEmpty = logs::RunWriter::IfNotEmpty;
   logs::RunWriter writer(job.run.out, task_info.manifest, task_info.recording,
