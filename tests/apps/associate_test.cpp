@@ -81,6 +81,7 @@ TEST_F(Associate, RefusesWhatItCannotUse) {
   expect_refused({"ihgr-circle", "--runs", "0"}, 2, {"--runs", "from 1 to 100000"});
   expect_refused({"ihgr-circle", "--scan", "9999"}, 3, {"--scan 9999 is beyond the last of 361 scans"});
   expect_refused({write_zip(folder_.path() / "release.zip", small_release())}, 3, {"no labels", "--scan"});
+  expect_refused({"ihgr-circle", "--gps", "fuse"}, 2, {"--gps fuse"});
   expect_refused({}, 2, {"INPUT is required"});
 }
 
