@@ -48,7 +48,7 @@ TEST_F(Usage, OfTheBareProgramIsShownAndIsAFailure) {
 }
 
 TEST_F(Usage, HelpAndVersionSucceedOnEveryCommand) {
-  for (const Words& command : {Words{}, {"replay"}, {"simulate"}, {"evaluate"}, {"config"}}) {
+  for (const Words& command : {Words{}, {"replay"}, {"simulate"}, {"evaluate"}, {"associate"}, {"config"}}) {
     for (const std::string option : {"--help", "--version"}) {
       Words words = command;
       words.push_back(option);
@@ -61,7 +61,7 @@ TEST_F(Usage, HelpAndVersionSucceedOnEveryCommand) {
 }
 
 TEST_F(Usage, HelpOfACommandThatRunsShowsAnExample) {
-  for (const std::string command : {"replay", "simulate", "evaluate", "config"}) {
+  for (const std::string command : {"replay", "simulate", "evaluate", "associate", "config"}) {
     const std::string help = run({command, "--help"}).out;
     EXPECT_NE(help.find("\n  helixnav " + command), std::string::npos) << help;
   }
