@@ -148,6 +148,14 @@ TEST_F(Smooth, FollowsAReplayWithTheFiltersOwnAssociations) {
   EXPECT_EQ(complete_lines(folder("run") / "trajectory_final.tum"), complete_lines(folder("run") / "trajectory.tum"));
 }
 
+TEST_F(Smooth, TakesALogOfSeveralFilesAndJudgesTheOptimum) {
+  find_real_data("plaza/plaza1_odometry.csv");
+  if (IsSkipped()) return;
+  must({"smooth", path_.parent_path(), "--out", folder("optimum")});
+  EXPECT_LT(summary("optimum").at("error").at("rmse_m"), 0.35) << "dead reckoning, the start, is off by metres";
+  EXPECT_GE(json::parse(text_of(folder("optimum") / "manifest.json")).at("inputs").size(), 2u);
+}
+
 TEST_F(Smooth, NamesTheVariableThatNothingFixes) {
   std::ofstream(folder("graph.g2o")) << "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nVERTEX_SE2 7 2 0 0\nVERTEX_XY 42 3 1\n"
                                         "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2_XY 1 42 2 1 1 0 1\n";
