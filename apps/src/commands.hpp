@@ -17,6 +17,7 @@ void add_convert_command(CLI::App& app, ExitCode& code);
 void add_simulate_command(CLI::App& app, ExitCode& code);
 void add_montecarlo_command(CLI::App& app, ExitCode& code);
 void add_evaluate_command(CLI::App& app, ExitCode& code);
+void add_explain_command(CLI::App& app, ExitCode& code);
 void add_associate_command(CLI::App& app, ExitCode& code);
 void add_config_command(CLI::App& app, ExitCode& code);
 

@@ -43,6 +43,7 @@ ExitCode run(int argc, char** argv) {
   add_simulate_command(app, code);
   add_montecarlo_command(app, code);
   add_evaluate_command(app, code);
+  add_explain_command(app, code);
   add_associate_command(app, code);
   add_config_command(app, code);
   for (CLI::App* command : app.get_subcommands({})) {
