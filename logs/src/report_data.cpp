@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "helixnav/core/chi2.hpp"
+#include "report_closures.hpp"
 #include "run_words.hpp"
 
 namespace helixnav::logs {
@@ -291,6 +292,7 @@ Json report_data(const RunFolder& run, const Evaluation& evaluation) {
   json["nis"] = nis_json(steps);
   json["observations"] = observations_json(steps);
   put_decisions(json, steps);
+  json["closures"] = closures_data(run);
   return json;
 }
 

@@ -47,6 +47,34 @@ TEST(Report, HoldsTheRunInItsDataElement) {
   EXPECT_EQ(data["decisions"][0]["numbers"][1][0], "foreign_expected");
 }
 
+TEST(Report, HoldsCloudsConstellationAndRivalOfEachClosure) {
+  RunFolder run = example_run(100);
+  core::StepReport& closing = run.steps[17];  // six scans after the attempt that begins in step 11
+  closing.decisions = {{"constellation",
+                        "accepted",
+                        {{"x_m", 1.0},
+                         {"y_m", 2.0},
+                         {"heading_rad", 0.5},
+                         {"rival_matched", 3.0},
+                         {"rival_x_m", 7.0},
+                         {"rival_y_m", 8.0},
+                         {"rival_heading_rad", -0.5}}},
+                       {"closure", "accepted", {}}};
+  closing.merged = {{2, 17}, {77, 18}};  // 77 has died since
+  const nlohmann::json closure = element(render(run), "run-data")["closures"].at(1);
+  EXPECT_EQ(closure["step"], 17);
+  ASSERT_EQ(closure["views"].size(), 7u);
+  EXPECT_EQ(closure["views"][3]["scans"], 3);
+  EXPECT_EQ(closure["views"][3]["closing"], false);
+  EXPECT_EQ(closure["views"][6]["closing"], true);
+  EXPECT_EQ(closure["views"][0]["cloud"].size(), 3u);
+  EXPECT_NEAR(closure["views"][0]["cloud"][2][1].get<double>(), -1.0 / 3.0, 5e-4);
+  EXPECT_NEAR(closure["views"][6]["truth"][0].get<double>(), example_step(17).pose.mean.x_m, 5e-4);
+  EXPECT_EQ(closure["winner"], nlohmann::json({1.0, 2.0, 0.5}));
+  EXPECT_EQ(closure["rival"], nlohmann::json({7.0, 8.0, -0.5}));
+  EXPECT_EQ(closure["matched"], nlohmann::json({{10.0, 0.333}}));
+}
+
 TEST(Report, LoadsNothingFromElsewhere) {
   std::string page = render(example_run(20));
   const std::size_t charts = page.find(report_charts);
