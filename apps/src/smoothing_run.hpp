@@ -36,7 +36,8 @@ SmoothingTask task_from_recording(const core::Recording& recording, const Ids& i
 /// A g2o graph: step k is pose k, at t = k seconds.
 SmoothingTask task_from_graph(core::LandmarkGraph graph);
 
-/// [step][observation] landmark that a filter matched or began, −1 else.
+/// [step][observation] landmark that a filter matched or began, −1 else; of one that a closure found to be another, that
+/// other one.
 Ids ids_of_run(const std::vector<core::StepReport>& steps, const core::Recording& recording);
 
 /// Starts poses and landmarks where a run left them. Landmarks are recognised by the observations that both share;
