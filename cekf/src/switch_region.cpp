@@ -33,7 +33,8 @@ void CompressedEkf::switch_region(const std::vector<core::LandmarkId>& active) {
   open_phase(std::move(next), columns, wanted);
 }
 
-/// Landmarks of the vehicle's cell and its eight neighbours, the nearest max_active_landmarks of them.
+/// Landmarks of the vehicle's cell and its eight neighbours; when they are too many the nearest, and fewer than may be
+/// active, so that the next activation does not make another switch due.
 std::vector<core::LandmarkId> CompressedEkf::region_around_vehicle() const {
   const Eigen::Vector2i cell = cell_of(active_.pose.position_m());
   std::vector<std::pair<double, core::LandmarkId>> near;
@@ -45,10 +46,11 @@ std::vector<core::LandmarkId> CompressedEkf::region_around_vehicle() const {
     if ((cell_of(mean_m) - cell).cwiseAbs().maxCoeff() > 1) continue;
     near.emplace_back((mean_m - active_.pose.position_m()).squaredNorm(), id);
   }
-  const std::size_t most = static_cast<std::size_t>(options_.max_active_landmarks);
-  if (near.size() > most) {
-    std::nth_element(near.begin(), near.begin() + options_.max_active_landmarks, near.end());
-    near.resize(most);
+  const std::ptrdiff_t most = options_.max_active_landmarks;
+  const std::ptrdiff_t kept = most - most / 4;
+  if (static_cast<std::ptrdiff_t>(near.size()) > kept) {
+    std::nth_element(near.begin(), near.begin() + kept, near.end());
+    near.resize(static_cast<std::size_t>(kept));
   }
   std::vector<core::LandmarkId> ids;
   for (const auto& [distance, id] : near) ids.push_back(id);

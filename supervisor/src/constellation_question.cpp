@@ -3,6 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "helixnav/core/chi2.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -27,6 +32,30 @@ void add_coverage(const SearchView& view, const core::Pose2& T_world_base, doubl
       in_frame(view.filter.pose().mean, view.track.between(now_m - options.old_after_m, now_m + 1.0));
   constellation.new_drive.field_of_view = view.scan.field_of_view;
   constellation.new_drive.least_views = 2;
+}
+
+/// Inside the 99.9 % ellipsoid of the prior.
+bool is_likely(const core::Pose2& pose, const core::PoseGaussian& prior) {
+  static const double limit = core::chi2_quantile(0.999, 3);
+  Eigen::Matrix3d covariance = prior.covariance;
+  covariance.diagonal().array() += 1e-9;
+  Eigen::Vector3d d = pose.vector() - prior.mean.vector();
+  d.z() = core::wrap_to_pi(d.z());
+  return d.dot(covariance.inverse() * d) < limit;
+}
+
+/// The test with the best rival in the winner's place, against the winner and all rivals that are not the same place.
+pf_relocalize::ConstellationVerdict judge_rival(const pf_relocalize::Constellation& constellation,
+                                                const pf_relocalize::ConstellationVerdict& verdict,
+                                                const pf_relocalize::RivalPoses& poses, const SearchOptions& options) {
+  const core::Pose2& candidate = verdict.rival.T_map_robot;
+  std::vector<core::Pose2> others{poses.winner};
+  for (const core::Pose2& pose : poses.rivals) {
+    const bool apart = (pose.position_m() - candidate.position_m()).norm() > options.rivals.apart_m ||
+                       std::abs(core::wrap_to_pi(pose.heading_rad - candidate.heading_rad)) > options.rivals.apart_rad;
+    if (apart) others.push_back(pose);
+  }
+  return judge_constellation(constellation, candidate, others, options.constellation);
 }
 
 std::string_view word_of(pf_relocalize::ConstellationReason reason) {
@@ -91,7 +120,14 @@ ConstellationAnswer ask_constellation(const SearchView& view, const std::vector<
   const pf_relocalize::RivalPoses poses =
       pf_relocalize::find_rivals(map, confirmed, core::between(map.T_world_base, T_world_robot), options.rivals, seed);
   answer.verdict = judge_constellation(constellation, poses.winner, poses.rivals, options.constellation);
-  answer.T_world_winner = core::compose(map.T_world_base, poses.winner);
+  if (answer.verdict.rival_share > 1.0 && is_likely(answer.verdict.rival.T_map_robot, map.prior)) {
+    pf_relocalize::ConstellationVerdict other = judge_rival(constellation, answer.verdict, poses, options);
+    if (other.accepted) {
+      answer.verdict = std::move(other);
+      answer.adopted = true;
+    }
+  }
+  answer.T_world_winner = core::compose(map.T_world_base, answer.verdict.winner.T_map_robot);
   answer.T_world_rival = answer.verdict.rival.matched > 0
                              ? core::compose(map.T_world_base, answer.verdict.rival.T_map_robot)
                              : answer.T_world_winner;
@@ -110,6 +146,7 @@ core::Decision constellation_decision(const ConstellationAnswer& answer) {
            {"rival_ratio", v.rival.ratio},
            {"rival_share", v.rival_share},
            {"rivals_tried", v.rivals_tried},
+           {"adopted", answer.adopted ? 1.0 : 0.0},
            {"x_m", answer.T_world_winner.x_m},
            {"y_m", answer.T_world_winner.y_m},
            {"heading_rad", answer.T_world_winner.heading_rad},

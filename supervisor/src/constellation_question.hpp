@@ -19,12 +19,14 @@ std::vector<pf_relocalize::BranchLandmark> branch_landmarks(const SearchView& vi
                                                             const std::vector<core::LandmarkId>& old,
                                                             double seen_within_m);
 
-/// Does the constellation that the branch mapped stand on old landmarks at T_world_robot, and nowhere else nearly as
-/// well? Rivals are looked for within the branch's own uncertainty.
+/// Does the constellation that the branch mapped stand on old landmarks, and nowhere else nearly as well? The hypothesis
+/// is T_world_robot, the particle filter's, unless another pose inside the prior explains more by so much that it, not the
+/// filter's, would pass the test: scans weigh an unmapped tree again every time, the constellation counts it once.
 struct ConstellationAnswer {
   pf_relocalize::ConstellationVerdict verdict;
   core::Pose2 T_world_winner;
   core::Pose2 T_world_rival;  ///< of the best rival that counts; the winner's when there is none
+  bool adopted = false;       ///< the winner is not the particle filter's hypothesis
 };
 ConstellationAnswer ask_constellation(const SearchView& view, const std::vector<core::LandmarkId>& old,
                                       double search_begun_path_m, const core::Pose2& T_world_robot,

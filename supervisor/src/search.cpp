@@ -79,20 +79,27 @@ bool Search::is_undecided(double path_m) const {
 }
 
 bool Search::is_promising(const SearchView& view) {
-  const core::JointGaussian joint = view.filter.joint(reference_landmarks(view, old_, 0.0));
-  if (joint.ids.size() < 3) return false;
-  const association::InnovationProblem problem = association::make_innovation_problem(joint, view.scan);
-  int in_gate = 0;
-  for (const association::GatedObservation& observation : problem.observations) {
-    in_gate += observation.nearest_nis < options_.start_gate ? 1 : 0;
+  // One landmark at a time: the marginal with the pose is all that a gate needs, and two in gate are enough to know.
+  std::vector<bool> in_gate(view.scan.observations.size(), false);
+  int count = 0;
+  for (const core::LandmarkId id : reference_landmarks(view, old_, 0.0)) {
+    const core::JointGaussian joint = view.filter.joint({id});
+    const association::InnovationProblem problem = association::make_innovation_problem(joint, view.scan);
+    for (std::size_t i = 0; i < in_gate.size(); ++i) {
+      if (in_gate[i] || problem.observations[i].nearest_nis >= options_.start_gate) continue;
+      in_gate[i] = true;
+      ++count;
+    }
+    if (count >= options_.start_in_gate) break;
   }
-  if (in_gate > 0) last_in_gate_path_m_ = view.life.path_m();
-  return in_gate >= options_.start_in_gate &&
+  if (count > 0) last_in_gate_path_m_ = view.life.path_m();
+  return count >= options_.start_in_gate &&
          static_cast<int>(view.scan.observations.size()) >= options_.start_observations;
 }
 
 void Search::start(const SearchView& view, std::vector<core::Decision>& decisions) {
   const core::JointGaussian joint = view.filter.joint(reference_landmarks(view, old_, options_.reach_m));
+  if (joint.ids.size() < 3) return;
   pf_relocalize::ReferenceMap map = pf_relocalize::build_reference_map(joint, options_.reference);
   const core::LandmarkId a = joint.ids[static_cast<std::size_t>(map.bases.a)];
   const core::LandmarkId b = joint.ids[static_cast<std::size_t>(map.bases.b)];

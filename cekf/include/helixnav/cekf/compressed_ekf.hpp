@@ -59,7 +59,7 @@ class CompressedEkf {
   core::LandmarkId augment(const core::Observation& observation, const core::Pose2& T_robot_sensor);
   /// New active landmark as a linear function of pose and landmarks, with all its correlations; the landmarks it
   /// depends on are activated first. Its mean is the caller's, who linearised there. O((n + q)·ids).
-  /// Test: supervisor/delayed_landmarks_test.cpp.
+  /// Test: cekf/equality_test.cpp, cekf/bad_input_test.cpp.
   core::LandmarkId augment(const DerivedPoint& point);
 
   /// Conditions on kept = removed (difference known to sigma_m) for all pairs at once, iterated like update_iterated,

@@ -17,7 +17,7 @@ struct FilterOptions {
   Retraction retraction = Retraction::right_invariant;
   double cell_side_m = 25.0;       ///< side of a cell
   double hysteresis_m = 8.0;       ///< the vehicle must leave its cell by this much before the region switches
-  int max_active_landmarks = 120;  ///< above this a switch is due, and only the nearest are made active
+  int max_active_landmarks = 120;  ///< above this a switch is due, which keeps the nearest, ¾ of it at most
 };
 
 }  // namespace helixnav::cekf
