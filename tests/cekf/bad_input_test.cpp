@@ -57,6 +57,31 @@ TEST_P(BadInput, NanInAnObservationIsRefused) {
   expect_refused<core::PreconditionError>([&] { filter_.augment(z, {}); });
 }
 
+TEST_P(BadInput, ADerivedPointThatIsIncompleteOrNotFiniteIsRefusedBeforeAnythingIsActivated) {
+  DerivedPoint good;
+  good.ids = {passive_};
+  good.G = Eigen::MatrixXd::Ones(2, 5);
+  DerivedPoint bad = good;
+  bad.ids = {passive_, 99999};
+  expect_refused<core::PreconditionError>([&] { filter_.augment(bad); }, "99999");
+  bad = good;
+  bad.G = Eigen::MatrixXd::Ones(2, 7);
+  expect_refused<core::PreconditionError>([&] { filter_.augment(bad); }, "derived point");
+  bad = good;
+  bad.G(1, 4) = nan;
+  expect_refused<core::PreconditionError>([&] { filter_.augment(bad); }, "derived point");
+  bad = good;
+  bad.point_m.x() = nan;
+  expect_refused<core::PreconditionError>([&] { filter_.augment(bad); }, "derived point");
+  bad = good;
+  bad.noise_m2 << 1.0, 0.0, 0.0, -1e-3;
+  expect_refused<core::PreconditionError>([&] { filter_.augment(bad); }, "derived point");
+  bad.noise_m2 << 1.0, 0.5, 0.0, 1.0;
+  expect_refused<core::PreconditionError>([&] { filter_.augment(bad); }, "derived point");
+  EXPECT_FALSE(filter_.is_active(passive_));
+  EXPECT_NO_THROW(filter_.augment(good));
+}
+
 TEST_P(BadInput, ANoiseCovarianceThatIsNotPositiveDefiniteIsRefused) {
   core::Observation z = core::make_range_bearing(5.0, 0.1, 0.1, 0.01);
   z.R(1, 1) = -1e-4;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The compressed filter is the full filter, to round-off.
+#include <algorithm>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "random_program.hpp"
@@ -60,6 +63,37 @@ TEST_P(Equality, HoldsWhenClosedPhasesAreKept) {
   const Differences d = compare(program.filter, program.oracle);
   EXPECT_LE(d.covariance, 1e-8);
   EXPECT_LE(d.mean, 1e-8);
+}
+
+/// A point between an active and a passive landmark, shifted with the vehicle; then an ordinary life.
+TEST_P(Equality, HoldsForALandmarkDerivedFromPoseAndLandmarks) {
+  RandomProgram program(6, {GetParam(), 220, 25, false});
+  for (int k = 0; k < 160; ++k) program.step();
+  const auto& active = program.filter.active_landmarks();
+  ASSERT_GE(active.size(), 2U);
+  const std::vector<core::LandmarkId> mapped = program.filter.landmarks();
+  const auto passive =
+      std::find_if(mapped.begin(), mapped.end(), [&](core::LandmarkId id) { return !program.filter.is_active(id); });
+  ASSERT_NE(passive, mapped.end());
+
+  DerivedPoint point;
+  point.ids = {active.front(), *passive, active.back()};
+  point.G.resize(2, 9);
+  point.G << 0.3, -0.1, 2.0, 0.5, 0.1, 0.4, -0.2, 0.1, 0.0,  //
+      0.2, 0.4, -1.5, -0.1, 0.5, 0.2, 0.4, 0.0, 0.1;
+  point.noise_m2 << 0.04, 0.01, 0.01, 0.02;
+  point.point_m = 0.5 * (program.filter.landmark_mean(point.ids[0]) + program.filter.landmark_mean(point.ids[1]));
+  const core::LandmarkId id = program.filter.augment(point);
+  program.oracle.augment(id, point.point_m, point.ids, point.G, point.noise_m2);
+  EXPECT_TRUE(program.filter.is_active(id));
+  const Differences at_once = compare(program.filter, program.oracle);
+  EXPECT_LE(at_once.covariance, 1e-10);
+  EXPECT_LE(at_once.mean, 1e-10);
+
+  for (int k = 0; k < 60; ++k) program.step();  // two switches and more
+  const Differences later = compare(program.filter, program.oracle);
+  EXPECT_LE(later.covariance, 1e-8);
+  EXPECT_LE(later.mean, 1e-8);
 }
 
 INSTANTIATE_TEST_SUITE_P(BothRetractions, Equality, testing::Values(Retraction::standard, Retraction::right_invariant),

@@ -58,6 +58,24 @@ class FullEkf {
     ids.push_back(id);
   }
 
+  /// New landmark whose error is G times that of (pose, landmarks in the order of `from`) plus independent noise.
+  void augment(core::LandmarkId id, const Eigen::Vector2d& point_m, const std::vector<core::LandmarkId>& from,
+               const Eigen::MatrixXd& G, const Eigen::Matrix2d& noise_m2) {
+    const Eigen::Index n = x.size();
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n + 2, n);  // error of the longer state from that of this one
+    all.topRows(n).setIdentity();
+    all.block(n, 0, 2, 3) = G.leftCols(3);
+    for (std::size_t k = 0; k < from.size(); ++k) {
+      all.block(n, row_of(from[k]), 2, 2) += G.middleCols(3 + 2 * static_cast<Eigen::Index>(k), 2);
+    }
+    P = (all * P * all.transpose()).eval();
+    P.bottomRightCorner<2, 2>() += noise_m2;
+    Eigen::VectorXd longer(n + 2);
+    longer << x, point_m;
+    x = longer;
+    ids.push_back(id);
+  }
+
   void remove(core::LandmarkId id) {
     const Eigen::Index row = row_of(id);
     std::vector<Eigen::Index> keep;
