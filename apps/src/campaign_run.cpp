@@ -88,6 +88,7 @@ Json json_of(const sim::RunScore& score) {
           {"wrong_before_trigger", score.wrong_before_trigger},
           {"spacing_m", score.spacing_m},
           {"end", json_of(score.end)},
+          {"end_on_old_ground", json_of(score.end_on_old_ground)},
           {"trees_seen", score.trees_seen},
           {"mature_landmarks", score.mature_landmarks},
           {"duplicates", score.duplicates},

@@ -126,6 +126,10 @@ void put_shares(Json& summary, const std::vector<Json>& rows) {
   summary["error_at_return_exceeds_spacing"] = share(rows, exceeds_spacing);
   summary["absolutely_wrong_at_closing"] =
       share(rows, [](const Json& row) { return any_closure(row, is_wrong_absolutely); });
+  summary["wrong_at_end"] = share(rows, [&limits](const Json& row) {
+    return has_verdict(row, "closed") &&
+           number(row.value("end", Json::object()), "position_error_m") > limits.wrong_position_m;
+  });
   summary["absolutely_wrong_at_end"] = share(rows, [&limits](const Json& row) {
     return has_verdict(row, "closed") &&
            number(row.value("end", Json::object()), "absolute_position_error_m") > limits.wrong_position_m;
@@ -217,6 +221,7 @@ std::string summary_text(const Json& summary) {
         std::pair("wrong_before_trigger", "wrong match before the trigger"),
         std::pair("any_wrong_old_match", "any wrong match with old ground"),
         std::pair("error_at_return_exceeds_spacing", "error at return > spacing"),
+        std::pair("wrong_at_end", "wrong at the end of the drive"),
         std::pair("absolutely_wrong_at_closing", "wrong at closing, map frame"),
         std::pair("absolutely_wrong_at_end", "wrong at the end, map frame")}) {
     text += text_of_share(name, summary.at(key));

@@ -75,6 +75,16 @@ void add_landmarks(CLI::App& command, supervisor::NavigatorOptions& navigator) {
              "That an expected landmark is seen in one look, occlusion included");
 }
 
+void add_search(CLI::App& command, supervisor::SearchOptions& search) {
+  command
+      .add_option_function<std::string>(
+          "--search.enabled", [&search](const std::string& word) { search.enabled = word == "true"; },
+          "Search with particles where a return is ambiguous; false: associate scan by scan, whatever may come")
+      ->check(one_of({"true", "false"}))
+      ->default_str("true")
+      ->group(group);
+}
+
 void add_truck(CLI::App& command, const std::string& section, logs::AcfrSettings& truck) {
   const auto name = [&section](const char* key) { return "--" + section + "." + key; };
   add_number(command, name("sigma_speed_mps").c_str(), truck.noise.sigma_speed_mps, 1e-3, 10.0,
@@ -130,6 +140,7 @@ void add_settings(CLI::App& command, Settings& settings) {
   add_filter(command, settings.navigator.filter);
   add_association(command, settings);
   add_landmarks(command, settings.navigator);
+  add_search(command, settings.navigator.search);
   add_truck(command, "victoria_park", settings.logs.victoria_park);
   add_truck(command, "car_park", settings.logs.car_park);
   add_plaza(command, settings);

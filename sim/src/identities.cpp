@@ -11,8 +11,8 @@ void Identities::add_sighting(core::LandmarkId id, core::Label label, double dri
   record.last_seen_m = driven_m;
 }
 
-void Identities::fix_all() {
-  for (auto& [id, record] : records_) record.fixed = true;
+void Identities::fix_unseen(double seen_before_m) {
+  for (auto& [id, record] : records_) record.fixed = record.fixed || record.last_seen_m < seen_before_m;
 }
 
 void Identities::fix_if_unseen(core::LandmarkId id, double seen_before_m) {

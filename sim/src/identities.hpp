@@ -18,8 +18,8 @@ class Identities {
 
   void add_sighting(core::LandmarkId id, core::Label label, double driven_m);
 
-  /// Fixes every landmark known, or the one that was unseen since before `seen_before_m`.
-  void fix_all();
+  /// Fixes those that were not seen since `seen_before_m`, all of them or one.
+  void fix_unseen(double seen_before_m);
   void fix_if_unseen(core::LandmarkId id, double seen_before_m);
 
   /// A fixed landmark that was some tree when it was fixed, and not just a few false detections.

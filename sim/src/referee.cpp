@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -68,6 +69,12 @@ double number(const core::Decision& decision, const char* name) {
 
 }  // namespace
 
+/// An estimated pose and the true one.
+struct Judgeable {
+  core::PoseGaussian estimate;
+  core::Pose2 truth;
+};
+
 /// What was seen so far.
 struct Referee::Book {
   const core::Recording& recording;
@@ -81,8 +88,10 @@ struct Referee::Book {
   double driven_m = 0.0;
   double reentered_at_m = no_number;  ///< of the present return
   bool triggered = false;             ///< since the present return
+  bool on_old_ground = false;         ///< in the present scan
   std::size_t steps = 0;
   core::PoseGaussian pose;
+  std::optional<Judgeable> last_on_old_ground;
   RunScore score;
 
   Book(const core::Recording& run, std::vector<double> returns_m, const RefereeOptions& how)
@@ -105,8 +114,8 @@ struct Referee::Book {
   void look_out(const std::vector<Label>& labels);
   void count_matches(const StepReport& report, const std::vector<Label>& labels);
   void judge_closure(const StepReport& report, const std::vector<MapLandmark>& map);
-  JudgedPose judge(const std::vector<MapLandmark>& map) const;
-  PoseError relative_error(const std::vector<MapLandmark>& map) const;
+  JudgedPose judge(const Judgeable& pose_at, const std::vector<MapLandmark>& map) const;
+  PoseError relative_error(const Judgeable& pose_at, const std::vector<MapLandmark>& map) const;
   double spacing_m() const;
   void score_map(const std::vector<MapLandmark>& map, RunScore& result) const;
   void pass_verdict(RunScore& result) const;
@@ -133,6 +142,7 @@ void Referee::watch(const StepReport& report, const Map& map_now) {
   book.drive_on(report);
   book.look_out(labels);
   book.pose = report.pose;
+  if (book.on_old_ground) book.last_on_old_ground = {report.pose, book.truth()};
   book.score.triggers += count(report, "trigger", "started");
   if (count(report, "trigger", "started") > 0) book.triggered = true;
   book.count_matches(report, labels);
@@ -143,7 +153,11 @@ void Referee::watch(const StepReport& report, const Map& map_now) {
 
 RunScore Referee::score(const std::vector<MapLandmark>& map) const {
   RunScore result = book_->score;
-  if (book_->steps > 0) result.end = book_->judge(map);
+  if (book_->steps > 0) {
+    const Judgeable end{book_->pose, book_->truth()};
+    result.end = book_->judge(end, map);
+    result.end_on_old_ground = book_->judge(book_->last_on_old_ground.value_or(end), map);
+  }
   result.spacing_m = book_->spacing_m();
   result.trees_seen = static_cast<int>(book_->seen.size());
   book_->score_map(map, result);
@@ -164,7 +178,7 @@ void Referee::Book::drive_on(const StepReport& report) {
 
 void Referee::Book::begin_return(bool searching) {
   score.returns.emplace_back();
-  identities.fix_all();
+  identities.fix_unseen(driven_m - options.left_behind_m);
   old_trees = identities.old_trees();
   seen_until_return.push_back(seen);
   reentered_at_m = no_number;
@@ -179,6 +193,7 @@ void Referee::Book::look_out(const std::vector<Label>& labels) {
     seen.insert(label);
     old += old_trees.count(label) > 0 ? 1 : 0;
   }
+  on_old_ground = old >= options.reentry_observations;
   if (score.returns.empty() || old == 0) return;
   ReturnScore& now = score.returns.back();
   if (std::isnan(now.error_before_m) && steps > 1) {
@@ -210,7 +225,7 @@ void Referee::Book::count_matches(const StepReport& report, const std::vector<La
 void Referee::Book::judge_closure(const StepReport& report, const std::vector<MapLandmark>& map) {
   ClosureScore closure;
   closure.step = report.step;
-  closure.after_reentry_m = driven_m - reentered_at_m;
+  if (!score.returns.empty() && !score.returns.back().closed) closure.after_reentry_m = driven_m - reentered_at_m;
   closure.pairs = static_cast<int>(report.merged.size());
   for (const core::MergedLandmarks& pair : report.merged) {
     const Label kept = identities.identity(pair.kept);
@@ -219,33 +234,35 @@ void Referee::Book::judge_closure(const StepReport& report, const std::vector<Ma
   for (const core::Decision& decision : report.decisions) {
     if (decision.kind == "constellation") closure.rival_share = number(decision, "rival_share");
   }
-  closure.pose = judge(map);
+  closure.pose = judge({pose, truth()}, map);
   closure.is_false =
       score.returns.empty() || is_wrong(closure.pose.relative) || too_many_wrong(closure.wrong_pairs, closure.pairs);
   if (!score.returns.empty()) score.returns.back().closed = true;
   score.closures.push_back(closure);
 }
 
-JudgedPose Referee::Book::judge(const std::vector<MapLandmark>& map) const {
-  return {error_between(pose.mean, truth()), relative_error(map), nees_of(pose, truth())};
+JudgedPose Referee::Book::judge(const Judgeable& pose_at, const std::vector<MapLandmark>& map) const {
+  return {error_between(pose_at.estimate.mean, pose_at.truth), relative_error(pose_at, map),
+          nees_of(pose_at.estimate, pose_at.truth)};
 }
 
-PoseError Referee::Book::relative_error(const std::vector<MapLandmark>& map) const {
+PoseError Referee::Book::relative_error(const Judgeable& pose_at, const std::vector<MapLandmark>& map) const {
+  const core::Pose2& estimate = pose_at.estimate.mean;
   std::vector<std::pair<double, PlacedTwice>> near;
   for (const MapLandmark& landmark : map) {
     if (landmark.state != core::LandmarkState::mature || !identities.is_old(landmark.id)) continue;
     const auto tree = static_cast<std::size_t>(identities.identity(landmark.id));
     const Eigen::Vector2d& map_m = landmark.point.mean_m;
-    near.push_back({(map_m - pose.mean.position_m()).norm(), {map_m, recording.true_landmarks.at(tree).point_m}});
+    near.push_back({(map_m - estimate.position_m()).norm(), {map_m, recording.true_landmarks.at(tree).point_m}});
   }
   std::sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   if (near.size() < least_relative || near[least_relative - 1].first > relative_reach_m) {
-    return error_between(pose.mean, truth());
+    return error_between(estimate, pose_at.truth);
   }
   near.resize(std::min(near.size(), static_cast<std::size_t>(options.relative_landmarks)));
   std::vector<PlacedTwice> points;
   for (const auto& [distance_m, point] : near) points.push_back(point);
-  return error_between(core::compose(rigid_fit(points), pose.mean), truth());
+  return error_between(core::compose(rigid_fit(points), estimate), pose_at.truth);
 }
 
 double Referee::Book::spacing_m() const {
@@ -288,13 +305,15 @@ void Referee::Book::pass_verdict(RunScore& result) const {
   for (ReturnScore& one : result.returns) {
     if (one.closed || one.old_matches < options.association_matches) continue;
     one.closed = result.closed_by_association = true;
-    wrong = wrong || is_wrong(result.end.relative) || too_many_wrong(one.wrong_old_matches, one.old_matches);
+    wrong =
+        wrong || is_wrong(result.end_on_old_ground.relative) || too_many_wrong(one.wrong_old_matches, one.old_matches);
   }
   const bool all_closed =
       !returns_at_m.empty() && result.returns.size() == returns_at_m.size() &&
       std::all_of(result.returns.begin(), result.returns.end(), [](const ReturnScore& one) { return one.closed; });
   result.verdict = wrong ? RunVerdict::false_closure : all_closed ? RunVerdict::closed : RunVerdict::undecided;
-  result.late = result.verdict == RunVerdict::closed && result.end.relative.position_m > options.wrong_position_m;
+  result.late =
+      result.verdict == RunVerdict::closed && result.end_on_old_ground.relative.position_m > options.wrong_position_m;
 }
 
 }  // namespace helixnav::sim

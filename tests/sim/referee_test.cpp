@@ -54,7 +54,7 @@ core::Recording circle_drive(double length_m) {
 /// until it closes, and the old ones again afterwards.
 struct Script {
   std::vector<double> returns_at_m{lap_m};
-  double length_m = 560.0;
+  double length_m = 490.0;              ///< trees are in view to the end
   double trigger_at_m = 390.0;          ///< beyond the end: never
   double close_at_m = 430.0;            ///< beyond the end: never
   bool new_after_return = true;         ///< false: old landmarks are matched at once
@@ -218,6 +218,16 @@ TEST(Referee, CallsLateWhatWasClosedRightlyAndThenLost) {
   const RunScore score = judged(script);
   EXPECT_EQ(score.verdict, RunVerdict::closed);
   EXPECT_TRUE(score.late);
+}
+
+TEST(Referee, DoesNotCallLateWhatDriftsAfterOldGroundIsLeft) {
+  Script script;
+  script.length_m = 600.0;  // the last tree is out of view from 500 m on
+  script.end_error = {5.0, 0.0, 0.0};
+  const RunScore score = judged(script);
+  EXPECT_FALSE(score.late);
+  EXPECT_NEAR(score.end.relative.position_m, 5.0, 1e-9);
+  EXPECT_NEAR(score.end_on_old_ground.relative.position_m, 0.0, 1e-9);
 }
 
 TEST(Referee, CallsAnyClosingFalseWhereNothingReturns) {

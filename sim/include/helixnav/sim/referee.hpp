@@ -20,6 +20,7 @@ struct RefereeOptions {
   double most_wrong_share = 0.05;  ///< … and so is a closing with a larger share of wrong pairs, if there are …
   int least_wrong_pairs = 2;       ///< … so many of them
   double old_after_m = 60.0;       ///< a landmark unseen for so long is old: who it is stands fixed
+  double left_behind_m = 30.0;     ///< where a return begins, so long is enough
   int old_sightings = 3;           ///< with fewer it is no mapped landmark, and matches with it do not count
   int reentry_observations = 3;    ///< of trees mapped before, in one scan: old ground is re-entered
   int association_matches = 10;    ///< with old landmarks after a return: closed without any closure
@@ -44,7 +45,7 @@ struct JudgedPose {
 /// One accepted closure.
 struct ClosureScore {
   std::int64_t step = 0;
-  double after_reentry_m = std::numeric_limits<double>::quiet_NaN();  ///< NaN: no old ground was in view before it
+  double after_reentry_m = std::numeric_limits<double>::quiet_NaN();  ///< NaN: no old ground yet, or closed before
   JudgedPose pose;                                                    ///< after the closing
   int pairs = 0;
   int wrong_pairs = 0;                                            ///< that are not the same tree, or none
@@ -70,7 +71,7 @@ enum class RunVerdict {
 /// One run, judged. Where nothing returns, `undecided` is the right verdict.
 struct RunScore {
   RunVerdict verdict = RunVerdict::undecided;
-  bool late = false;                   ///< every closing was right, and yet the pose at the end is wrong by position
+  bool late = false;                   ///< every closing was right, and yet end_on_old_ground is wrong by position
   bool closed_by_association = false;  ///< a return was closed, rightly or not, without any closure
   std::vector<ReturnScore> returns;
   std::vector<ClosureScore> closures;
@@ -82,6 +83,7 @@ struct RunScore {
   int wrong_before_trigger = 0;  ///< wrong old matches before the first trigger, anew after each return
   double spacing_m = 0.0;        ///< median distance from a tree seen before the first return to the nearest other
   JudgedPose end;
+  JudgedPose end_on_old_ground;  ///< at the last scan with old trees in view: behind them, all drift again
   int trees_seen = 0;
   int mature_landmarks = 0;
   int duplicates = 0;      ///< mature landmarks on a tree that has another one
@@ -89,11 +91,11 @@ struct RunScore {
 };
 
 /// Scores a navigator's run in a world whose truth is known; nothing of it reaches the navigator. A landmark is the tree
-/// that most of its observations came from. Who an old landmark is stands fixed from the return on, or since it was unseen
-/// for old_after_m, so that wrong matches cannot make it another. A return begins 1.5 times the sensor's range before
+/// that most of its observations came from. Who an old landmark is stands fixed where the return begins, if it was left
+/// behind by then, or since it was unseen for old_after_m, so that wrong matches cannot make it another. A return begins 1.5 times the sensor's range before
 /// `returns_at_m`, when no old tree is in view yet. A closing is wrong by its pose or by its pairs; a return that is
-/// closed by association alone (association_matches with old landmarks and no closure) is judged by the pose at the end
-/// and by its matches. Poses are judged by the relative error; the absolute one stands beside it.
+/// closed by association alone (association_matches with old landmarks and no closure) is judged by end_on_old_ground and
+/// by its matches. Poses are judged by the relative error; the absolute one stands beside it.
 /// Test: sim/referee_test.cpp (a report made by hand for every verdict).
 class Referee {
  public:
