@@ -20,7 +20,10 @@ TEST_P(Equality, HoldsTo1em10InOnePhase) {
     program.start_oracle_from_filter();
     const int lazy_before = program.lazy_activations;
     const int removed_before = program.removed;
-    // Round-off of the two codings grows along a phase: 2e-11 after 125 steps, 1e-10 after 200 (right-invariant, seed 1).
+    // Not 200 steps: the difference grows along a phase to 1e-10 (right-invariant; 125 steps 2e-11). It is the filter's
+    // round-off; an oracle in long double differs from it by the same. The weights refer to the anchors themselves, M
+    // grows to 5e3 like the inverse of their covariance, E·M·Eᵀ cancels, and an activation takes the rest into the active
+    // part. Weights of anchors made independent (Cholesky factor of their covariance) would stay near 1.
     for (int k = 0; k < 125; ++k) {
       program.step();
       if (k % 25 == 12) program.activate_some();
