@@ -83,9 +83,9 @@ const core::StepReport& step_numbered(const logs::RunFolder& run, std::int64_t s
   const auto found = std::find_if(run.steps.begin(), run.steps.end(),
                                   [&](const core::StepReport& report) { return report.step == step; });
   if (found != run.steps.end()) return *found;
-  const std::string steps = run.steps.empty() ? "none"
-                                              : std::to_string(run.steps.front().step) + " to " +
-                                                    std::to_string(run.steps.back().step);
+  const std::string steps =
+      run.steps.empty() ? "none"
+                        : std::to_string(run.steps.front().step) + " to " + std::to_string(run.steps.back().step);
   throw core::InputError(run.path + ": no step " + std::to_string(step) + "; this run has " + steps);
 }
 
@@ -95,11 +95,12 @@ std::string explain_run(const logs::RunFolder& run) {
   const std::vector<Decided> decided = decisions_of(run);
   std::vector<Decided> closures;
   std::copy_if(decided.begin(), decided.end(), std::back_inserter(closures), is_closure);
-  std::string text = std::to_string(run.steps.size()) + " steps; closings: " +
-                     std::to_string(count_of(closures, "accepted")) + " accepted, " +
+  std::string text = std::to_string(run.steps.size()) +
+                     " steps; closings: " + std::to_string(count_of(closures, "accepted")) + " accepted, " +
                      std::to_string(count_of(closures, "refused")) + " refused, " +
                      std::to_string(count_of(closures, "undecided")) + " left undecided.\n";
-  if (decided.empty()) return text + "Nothing was ever ambiguous enough for a search: every scan was associated at once.\n";
+  if (decided.empty())
+    return text + "Nothing was ever ambiguous enough for a search: every scan was associated at once.\n";
   for (std::size_t i = 0; i < closures.size(); ++i) {
     text += "\nClosure " + std::to_string(i + 1) + ", " + when(*closures[i].step) + ". " +
             sentence_of(*closures[i].decision) + '\n';
