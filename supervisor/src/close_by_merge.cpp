@@ -13,7 +13,7 @@ namespace {
 
 using KeptRemoved = std::vector<cekf::CompressedEkf::LandmarkPair>;
 
-constexpr double leftover_reach_m = 2.0;  // beyond it, compatible only means uncertain
+constexpr double leftover_reach_m = 1.0;  // beyond it, compatible only means uncertain
 constexpr std::size_t least_pairs = 3;
 
 void note(const KeptRemoved& pairs, Closing& closing) {
@@ -82,6 +82,19 @@ KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core:
   return pairs;
 }
 
+/// Each pass draws the branch nearer to the old map, so that copies farther along come within reach in the next.
+void merge_leftovers(cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
+                     const std::vector<core::LandmarkId>& old, const SearchOptions& options, Closing& closing) {
+  constexpr int most_passes = 10;
+  for (int pass = 0; pass < most_passes; ++pass) {
+    KeptRemoved rest = leftovers(filter, confirmed, old, options.leftover_gate);
+    Closing rest_closing;
+    if (rest.empty() || !make_compatible(filter, options, rest, rest_closing)) return;
+    filter.merge(rest, options.merge_sigma_m);
+    note(rest, closing);
+  }
+}
+
 }  // namespace
 
 Closing close_by_merge(cekf::CompressedEkf& filter, const std::vector<pf_relocalize::ConstellationPair>& pairs,
@@ -94,12 +107,7 @@ Closing close_by_merge(cekf::CompressedEkf& filter, const std::vector<pf_relocal
   note(chosen, closing);
   closing.accepted = true;
 
-  KeptRemoved rest = leftovers(filter, branch.confirmed, old, options.leftover_gate);
-  Closing rest_closing;
-  if (!rest.empty() && make_compatible(filter, options, rest, rest_closing)) {
-    filter.merge(rest, options.merge_sigma_m);
-    note(rest, closing);
-  }
+  merge_leftovers(filter, branch.confirmed, old, options, closing);
   for (const core::LandmarkId id : branch.unconfirmed) {
     if (stands_on(filter, id, old, options.leftover_gate).empty()) continue;
     filter.remove(id);
