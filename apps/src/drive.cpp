@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <variant>
 #include <vector>
 
+#include "dead_reckoning.hpp"
 #include "estimator.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/run_writer.hpp"
@@ -41,23 +43,42 @@ void check_labels(const Drive& job) {
   }
 }
 
-/// Feeds all events; returns the microseconds of each scan's step.
-std::vector<double> navigate(const Drive& job, const Estimator& estimator, logs::RunWriter& writer) {
-  std::vector<double> step_us;
+struct Driven {
+  std::size_t steps = 0;
+  std::vector<double> step_us;  ///< of each scan that was fed
+};
+
+/// Feeds all events, but for the scans withheld.
+Driven navigate(const Drive& job, const Estimator& estimator, logs::RunWriter& writer) {
+  Driven driven;
+  DeadReckoning reckoning;
+  core::StepReport report;
   ProgressBar progress(job.given_map ? "localising" : "navigating", job.recording.events.size(), job.quiet);
+  const auto feed = [&](const core::Scan& scan) {
+    const Clock::time_point begin = Clock::now();
+    report = estimator.observe(scan, driven.steps);
+    driven.step_us.push_back(1e6 * seconds_since(begin));
+    reckoning.absorbed();
+    return driven.step_us.back();
+  };
   for (std::size_t i = 0; i < job.recording.events.size() && !interrupted(); ++i) {
     const core::Event& event = job.recording.events[i];
-    if (const auto* odometry = std::get_if<core::Odometry>(&event)) estimator.move(*odometry);
-    if (const auto* fix = std::get_if<core::AbsoluteFix>(&event)) estimator.fix(*fix);
-    if (const auto* scan = std::get_if<core::Scan>(&event)) {
-      const Clock::time_point begin = Clock::now();
-      const core::StepReport report = estimator.observe(*scan, step_us.size());
-      step_us.push_back(1e6 * seconds_since(begin));
-      writer.write(report, step_us.back());
+    if (const auto* odometry = std::get_if<core::Odometry>(&event)) {
+      estimator.move(*odometry);
+      reckoning.move(*odometry);
+    } else if (const auto* fix = std::get_if<core::AbsoluteFix>(&event)) {
+      estimator.fix(*fix);
+      reckoning.absorbed();
+    } else if (const auto* scan = std::get_if<core::Scan>(&event)) {
+      const bool blind = !job.withheld.empty() && job.withheld[driven.steps];
+      if (blind) report = reckoning.report(scan->t_ns, estimator.pose(), report);
+      const double microseconds = blind ? 0.0 : feed(*scan);
+      report.step = static_cast<std::int64_t>(driven.steps++);  // estimators do not count what they never saw
+      writer.write(report, microseconds);
     }
     progress.advance_to(i);
   }
-  return step_us;
+  return driven;
 }
 
 }  // namespace
@@ -71,7 +92,7 @@ ExitCode drive(const Drive& job) {
                          job.overwrite ? IfNotEmpty::overwrite : IfNotEmpty::refuse);
   LabelAgreement agreement;
   const Estimator estimator = job.given_map ? localizer_of(job, agreement) : navigator_of(job);
-  const std::vector<double> step_us = navigate(job, estimator, writer);
+  const auto [steps, step_us] = navigate(job, estimator, writer);
 
   logs::RunEnd end;
   end.timing = {{"median_us", quantile(step_us, 0.5)},
@@ -80,6 +101,10 @@ ExitCode drive(const Drive& job) {
                 {"reading_s", job.reading_s},
                 {"navigating_s", seconds_since(begin)}};
   end.numbers = numbers_of(agreement);
+  if (!job.withheld.empty()) {
+    const auto withheld = std::count(job.withheld.begin(), job.withheld.end(), true);
+    end.numbers.emplace_back("blackout.scans", static_cast<double>(withheld));
+  }
   const std::vector<core::MapLandmark> map = estimator.map();
   const ExitCode smoothed = job.smooth && !interrupted() ? smooth_drive(job, map, end) : ExitCode::ok;
   const logs::Evaluation evaluation = writer.finish(map, end);
@@ -87,8 +112,7 @@ ExitCode drive(const Drive& job) {
   std::fputs(text_of(agreement).c_str(), stdout);
   std::printf("run folder: %s   report: %s/report.html\n", job.out.c_str(), job.out.c_str());
   if (!interrupted()) return smoothed;
-  std::fprintf(stderr, "helixnav: interrupted after %zu steps; the run folder is complete up to there\n",
-               step_us.size());
+  std::fprintf(stderr, "helixnav: interrupted after %zu steps; the run folder is complete up to there\n", steps);
   return ExitCode::interrupted;
 }
 

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "exit_code.hpp"
 #include "given_map.hpp"
@@ -19,6 +20,7 @@ struct Drive {
   supervisor::NavigatorOptions navigator;
   std::optional<GivenMap> given_map;  ///< localise in it instead of mapping
   bool known_association = false;     ///< use the recording's labels as identities
+  std::vector<bool> withheld;         ///< [scan] not to be fed (blackout.hpp); empty: none is
   bool smooth = false;                ///< afterwards, with the filter's own associations
   std::string out;
   bool overwrite = false;

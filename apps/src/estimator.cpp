@@ -39,6 +39,7 @@ Estimator navigator_of(const Drive& job) {
   estimator.observe = [navigator, &job](const core::Scan& scan, std::size_t i) {
     return job.known_association ? navigator->observe(scan, job.recording.labels[i]) : navigator->observe(scan);
   };
+  estimator.pose = [navigator] { return navigator->pose(); };
   estimator.map = [navigator] { return navigator->map(); };
   return estimator;
 }
@@ -57,6 +58,7 @@ Estimator localizer_of(const Drive& job, LabelAgreement& agreement) {
     if (!job.recording.labels.empty()) agreement.count(report, job.recording.labels[i], map);
     return report;
   };
+  estimator.pose = [localizer] { return localizer->pose(); };
   estimator.map = [&map] { return map.landmarks; };
   return estimator;
 }

@@ -7,6 +7,7 @@
 
 #include "drive.hpp"
 #include "helixnav/core/events.hpp"
+#include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/step_report.hpp"
 
 namespace helixnav::apps {
@@ -17,6 +18,7 @@ struct Estimator {
   std::function<void(const core::Odometry&)> move;
   std::function<void(const core::AbsoluteFix&)> fix;
   std::function<core::StepReport(const core::Scan&, std::size_t scan)> observe;  ///< `scan` counts from 0
+  std::function<core::PoseGaussian()> pose;                                      ///< at the last scan or fix
   std::function<std::vector<core::MapLandmark>()> map;
 };
 

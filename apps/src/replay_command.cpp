@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "blackout.hpp"
 #include "commands.hpp"
 #include "config_file.hpp"
 #include "drive.hpp"
@@ -25,6 +26,7 @@ struct ReplayJob {
   bool smooth = false;
   bool localize = false;
   std::string map;
+  std::vector<Blackout> blackouts;
   RunOptions run;
   Settings settings;
 };
@@ -51,6 +53,7 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   task.navigator = job.settings.navigator;
   if (logs::recognise(job.path) == logs::LogFormat::plaza) scale_ranges(task.recording, job.settings);
   if (job.settings.gps.fuse) fuse_gps(task.recording, job.settings.gps);
+  if (!job.blackouts.empty()) task.withheld = withhold(task.recording, job.blackouts);
   scale_covariances(task.recording, job.settings.covariance_scale);
   fill_drive(task, job.run, dump_config(command));
   task.smooth = job.smooth;
@@ -63,6 +66,25 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   }
   task.reading_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return drive(task);
+}
+
+void add_blackouts(CLI::App& command, ReplayJob& job) {
+  const auto objection_to = [](const std::string& word) {
+    std::string objection;
+    blackout_from(word, objection);
+    return objection;
+  };
+  const auto take = [&job](const std::vector<std::string>& words) {
+    std::string none;
+    for (const std::string& word : words) job.blackouts.push_back(blackout_from(word, none));
+  };
+  command
+      .add_option_function<std::vector<std::string>>("--blackout", take,
+                                                     "Withhold the scans from T0 to T1, seconds as in trajectory.tum; "
+                                                     "odometry goes on. May be given several times")
+      ->type_name("T0:T1")
+      ->allow_extra_args(false)
+      ->check(objection_to);
 }
 
 }  // namespace
@@ -81,6 +103,7 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
   localize->needs(map);
   map->needs(localize);
   localize->excludes(smooth);
+  add_blackouts(*command, *job);
   add_run_options(*command, job->run);
   add_settings(*command, job->settings);
   command->footer(
@@ -90,7 +113,8 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
       "  helixnav replay victoria_park_ascii.zip --out runs/vp\n"
       "  helixnav replay isam_victoriaPark.txt --association known --out runs/graph\n"
       "  helixnav replay data_set.mat --out runs/carpark --config mine.toml\n"
-      "  helixnav replay map.circles --localize --map runs/optimum --out runs/located\n");
+      "  helixnav replay map.circles --localize --map runs/optimum --out runs/located\n"
+      "  helixnav replay victoria_park_ascii.zip --blackout 600:660 --blackout 900:930 --out runs/blind\n");
   command->callback([command, job, &code] { code = replay(*command, *job); });
 }
 
