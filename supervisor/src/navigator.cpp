@@ -177,13 +177,26 @@ std::vector<AssociationReport> Navigator::associate(const Scan& scan, const Gati
   }
   std::vector<AssociationReport> reports =
       association_reports(association::associate(options_.method, gating.problem, how));
-  for (AssociationReport& report : reports) {
-    const bool held = std::any_of(returns.begin(), returns.end(), [&](const AmbiguousReturn& old) {
-      return old.landmark == report.landmark && old.foreign_objects > options_.search.hold_objects;
-    });
-    if (held && report.outcome == Outcome::matched) report.outcome = Outcome::ambiguous;
-  }
+  hold_lonely_returns(returns, reports);
   return reports;
+}
+
+/// Two old landmarks that fit together vouch for one another; one alone, with room for others in its gate, waits.
+void Navigator::hold_lonely_returns(const std::vector<AmbiguousReturn>& returns,
+                                    std::vector<AssociationReport>& reports) const {
+  AssociationReport* lonely = nullptr;
+  for (AssociationReport& report : reports) {
+    const bool old = std::any_of(returns.begin(), returns.end(),
+                                 [&](const AmbiguousReturn& r) { return r.landmark == report.landmark; });
+    if (!old || report.outcome != Outcome::matched) continue;
+    if (lonely != nullptr) return;
+    lonely = &report;
+  }
+  if (lonely == nullptr) return;
+  const bool ambiguous = std::any_of(returns.begin(), returns.end(), [&](const AmbiguousReturn& r) {
+    return r.landmark == lonely->landmark && r.foreign_objects > options_.search.hold_objects;
+  });
+  if (ambiguous) lonely->outcome = Outcome::ambiguous;
 }
 
 std::vector<AssociationReport> Navigator::known_associations(const Scan& scan,

@@ -84,6 +84,8 @@ class Navigator {
   void close(const std::vector<pf_relocalize::ConstellationPair>& pairs, core::StepReport& report);
   std::vector<core::AssociationReport> associate(const core::Scan& scan, const Gating& gating,
                                                  const std::vector<AmbiguousReturn>& returns) const;
+  void hold_lonely_returns(const std::vector<AmbiguousReturn>& returns,
+                           std::vector<core::AssociationReport>& reports) const;
   std::vector<core::AssociationReport> known_associations(const core::Scan& scan,
                                                           const std::vector<std::int64_t>& identities) const;
   void update(const core::Scan& scan, core::StepReport& report);

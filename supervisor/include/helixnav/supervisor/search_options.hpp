@@ -19,7 +19,7 @@ struct SearchOptions {
   // Trigger.
   double old_after_m = 60.0;      ///< a mature landmark unseen over so long a drive is old
   double foreign_objects = 0.1;   ///< expected other objects in the gate of an old landmark that begin a search
-  double hold_objects = 0.02;     ///< above it a single old landmark is not matched, but no search begins yet
+  double hold_objects = 0.05;     ///< above it an old landmark is not matched alone, but no search begins yet
   double foreign_per_scan = 2.5;  ///< observations of no old landmark in one scan: clutter and new ones together
 
   // Search.
@@ -39,8 +39,8 @@ struct SearchOptions {
 
   // Acceptance.
   double branch_seen_within_m = 67.5;  ///< landmarks mapped since the trigger count while seen so lately
-  double ask_again_m = 7.5;            ///< after a test that was not passed
-  double confirm_m = 3.0;              ///< between the tests that must be passed in a row
+  double ask_again_m = 4.5;            ///< after a test that was not passed
+  double confirm_m = 1.5;              ///< between the tests that must be passed in a row
   int passes = 2;                      ///< so many; a closure is not to be had by asking until chance grants it
   pf_relocalize::RivalOptions rivals;
   pf_relocalize::ConstellationLimits constellation;
