@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "settings.hpp"
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -22,6 +27,17 @@ void choose_method(const std::string& chosen, Settings& settings) {
   for (const association::Method method : association_methods()) {
     if (association::name(method) == chosen) settings.navigator.method = method;
   }
+}
+
+std::vector<std::string> decorrelations() {
+  using pf_relocalize::Decorrelation;
+  std::vector<std::string> names;
+  for (const Decorrelation decorrelation :
+       {Decorrelation::relative_marginals, Decorrelation::scalar_bound, Decorrelation::trace_bound,
+        Decorrelation::whitened_bound, Decorrelation::constellations, Decorrelation::latent_modes}) {
+    names.emplace_back(pf_relocalize::name_of(decorrelation));
+  }
+  return names;
 }
 
 void add_filter(CLI::App& command, cekf::FilterOptions& filter) {
@@ -75,6 +91,52 @@ void add_landmarks(CLI::App& command, supervisor::NavigatorOptions& navigator) {
              "That an expected landmark is seen in one look, occlusion included");
 }
 
+void add_particle_filter(CLI::App& command, supervisor::SearchOptions& search) {
+  pf_relocalize::RelocalizerOptions& relocalizer = search.relocalizer;
+  const auto set_particles = [&relocalizer](std::size_t most) {
+    relocalizer.most_particles = most;
+    relocalizer.least_particles = std::min(pf_relocalize::RelocalizerOptions{}.least_particles, most);
+  };
+  command
+      .add_option_function<std::size_t>("--search.particles", set_particles,
+                                        "Particles of an attempt at its start; later fewer where that is enough")
+      ->check(number_between(std::size_t{100}, std::size_t{10'000'000}))
+      ->default_str(std::to_string(relocalizer.most_particles))
+      ->group(group);
+  const auto set_start = [&relocalizer](const std::string& word) {
+    relocalizer.helix.prior_share = word == "gaussian" ? 1.0 : pf_relocalize::HelixOptions{}.prior_share;
+  };
+  command
+      .add_option_function<std::string>("--search.init", set_start,
+                                        "Where particles start; helix: where an observation meets a landmark; "
+                                        "gaussian: all over the prior (baseline)")
+      ->check(one_of({"helix", "gaussian"}))
+      ->default_str("helix")
+      ->group(group);
+  const auto set_decorrelation = [&search](const std::string& word) {
+    search.reference.decorrelation = pf_relocalize::decorrelation_from(word);
+  };
+  command
+      .add_option_function<std::string>("--search.decorrelation", set_decorrelation,
+                                        "What becomes of the errors that old landmarks share, before the particle "
+                                        "filter, which knows independent ones, sees them")
+      ->check(one_of(decorrelations()))
+      ->default_str(std::string(pf_relocalize::name_of(search.reference.decorrelation)))
+      ->group(group);
+  add_number(command, "--search.threads", relocalizer.threads, 1u, 256u,
+             "Threads of the particle filter; results do not depend on it, and montecarlo, whose runs fill the cores, "
+             "uses one");
+}
+
+void add_acceptance(CLI::App& command, supervisor::SearchOptions& search) {
+  add_number(command, "--search.passes", search.passes, 1, 1000,
+             "So many constellation tests in a row must be passed before a loop is closed");
+  add_number(command, "--search.least_matches", search.constellation.least_matches, 3, 1000,
+             "New landmarks that must stand on old ones for a constellation test to be passed");
+  add_number(command, "--search.rival_ratio", search.constellation.rival_ratio, 0.01, 1.0,
+             "A test is not passed when another pose explains this share of what the best pose does");
+}
+
 void add_search(CLI::App& command, supervisor::SearchOptions& search) {
   command
       .add_option_function<std::string>(
@@ -83,6 +145,16 @@ void add_search(CLI::App& command, supervisor::SearchOptions& search) {
       ->check(one_of({"true", "false"}))
       ->default_str("true")
       ->group(group);
+  add_number(command, "--search.seed", search.seed, std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max(),
+             "Seed of the particle filter and of the rivals tried; apart from the seed of a simulated world");
+  add_number(command, "--search.old_after_m", search.old_after_m, 1.0, 1e6,
+             "A mature landmark unseen over so long a drive is old: met again, it may begin a search");
+  add_number(command, "--search.foreign_objects", search.foreign_objects, 1e-6, 1e3,
+             "A search begins when so many other objects are to be expected in the gate of an old landmark");
+  add_number(command, "--search.undecided_m", search.undecided_m, 1.0, 1e6,
+             "After so long a drive without a closing the question is left open");
+  add_particle_filter(command, search);
+  add_acceptance(command, search);
 }
 
 void add_truck(CLI::App& command, const std::string& section, logs::AcfrSettings& truck) {
