@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <map>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -45,8 +47,15 @@ void check_labels(const Drive& job) {
 
 struct Driven {
   std::size_t steps = 0;
-  std::vector<double> step_us;  ///< of each scan that was fed
+  std::vector<double> step_us;          ///< of each scan that was fed
+  std::map<std::string, int> closings;  ///< how many of each verdict
 };
+
+void count_closings(const core::StepReport& report, Driven& driven) {
+  for (const core::Decision& decision : report.decisions) {
+    if (decision.kind == "closure") ++driven.closings[decision.verdict];
+  }
+}
 
 /// Feeds all events, but for the scans withheld.
 Driven navigate(const Drive& job, const Estimator& estimator, logs::RunWriter& writer) {
@@ -74,6 +83,7 @@ Driven navigate(const Drive& job, const Estimator& estimator, logs::RunWriter& w
       if (blind) report = reckoning.report(scan->t_ns, estimator.pose(), report);
       const double microseconds = blind ? 0.0 : feed(*scan);
       report.step = static_cast<std::int64_t>(driven.steps++);  // estimators do not count what they never saw
+      count_closings(report, driven);
       writer.write(report, microseconds);
     }
     progress.advance_to(i);
@@ -92,7 +102,7 @@ ExitCode drive(const Drive& job) {
                          job.overwrite ? IfNotEmpty::overwrite : IfNotEmpty::refuse);
   LabelAgreement agreement;
   const Estimator estimator = job.given_map ? localizer_of(job, agreement) : navigator_of(job);
-  const auto [steps, step_us] = navigate(job, estimator, writer);
+  auto [steps, step_us, closings] = navigate(job, estimator, writer);
 
   logs::RunEnd end;
   end.timing = {{"median_us", quantile(step_us, 0.5)},
@@ -110,6 +120,10 @@ ExitCode drive(const Drive& job) {
   const logs::Evaluation evaluation = writer.finish(map, end);
   std::fputs(logs::evaluation_text(evaluation).c_str(), stdout);
   std::fputs(text_of(agreement).c_str(), stdout);
+  if (!job.given_map) {
+    std::printf("closings             %d accepted, %d refused, %d left undecided\n", closings["accepted"],
+                closings["refused"], closings["undecided"]);
+  }
   std::printf("run folder: %s   report: %s/report.html\n", job.out.c_str(), job.out.c_str());
   if (!interrupted()) return smoothed;
   std::fprintf(stderr, "helixnav: interrupted after %zu steps; the run folder is complete up to there\n", steps);

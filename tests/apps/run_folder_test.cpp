@@ -48,6 +48,7 @@ TEST_F(RunFolder, OfTheSameSimulationTwiceHasTheSameBytes) {
   for (const char* name : {"first", "second"}) {
     const Outcome outcome = run({"simulate", "large-loop", "--seed", "3", "--out", out(name)});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("closings             1 accepted, 0 refused"), std::string::npos) << outcome.out;
   }
   EXPECT_GE(names_in(out("first")).size(), 9u);
   expect_the_same_run(out("first"), out("second"));
