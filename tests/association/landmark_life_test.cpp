@@ -136,5 +136,27 @@ TEST(LandmarkLife, RefusesUnknownAndRebornLandmarksAndStaysAsItWas) {
   EXPECT_THROW(LandmarkLife{options}, core::PreconditionError);
 }
 
+TEST(LandmarkLife, OfTwoThatAreOneGoesOnAsOne) {
+  LandmarkLife life;
+  life.observe(at(0.0), {}, {4, 5}, {});
+  for (double x = 1.0; x <= 3.0; x += 1.0) life.observe(at(x), {4, 5}, {}, {});
+  life.observe(at(100.0), {}, {9, 10}, {});
+  life.observe(at(101.0), {9, 10}, {}, {});
+  const int observations = life.record(4).observations + life.record(9).observations;
+  life.merge(4, 9);
+  EXPECT_FALSE(life.contains(9));
+  EXPECT_EQ(life.state(4), LandmarkState::mature);
+  EXPECT_EQ(life.record(4).observations, observations);
+  EXPECT_EQ(life.record(4).hits, 6);
+  EXPECT_EQ(life.record(4).last_seen_path_m, 101.0);
+  EXPECT_EQ(life.record(4).born_path_m, 0.0);
+  EXPECT_TRUE(life.seen_together(4, 5));
+  EXPECT_TRUE(life.seen_together(4, 10));
+  EXPECT_TRUE(life.seen_together(10, 4));
+  EXPECT_THROW(life.merge(4, 4), core::PreconditionError);
+  EXPECT_THROW(life.merge(4, 9), core::PreconditionError);
+  EXPECT_THROW(life.merge(9, 4), core::PreconditionError);
+}
+
 }  // namespace
 }  // namespace helixnav::association

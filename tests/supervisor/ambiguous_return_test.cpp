@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ambiguous_return.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <Eigen/LU>
+
+#include "gating.hpp"
+#include "helixnav/core/chi2.hpp"
+#include "helixnav/core/random.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+constexpr double per_scan = 2.5;
+
+/// A map of random landmarks around a vehicle whose pose has become uncertain, and a scan of some of them.
+struct Scene {
+  cekf::CompressedEkf filter{core::PoseGaussian{}};
+  std::vector<core::LandmarkId> ids;
+  core::Scan scan;
+
+  Scene(std::uint64_t seed, double sigma_m, int landmarks = 12) {
+    core::RandomStream random(seed, "scene");
+    const Eigen::Matrix2d R = 0.01 * Eigen::Matrix2d::Identity();
+    std::vector<Eigen::Vector2d> points;
+    for (int i = 0; i < landmarks; ++i) {
+      points.emplace_back(28.0 * random.uniform() + 1.0, 20.0 * random.uniform() - 10.0);
+      ids.push_back(filter.augment(core::make_cartesian(points.back(), R), {}));
+    }
+    core::Odometry odometry;
+    odometry.covariance.diagonal() << sigma_m * sigma_m, sigma_m * sigma_m, 1e-4 * sigma_m * sigma_m;
+    filter.predict(odometry);
+    scan.field_of_view = {1.0, 30.0, -core::pi / 2, core::pi / 2};
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector2d& p = points[static_cast<std::size_t>(i)];
+      scan.observations.push_back(core::make_range_bearing(p.norm(), std::atan2(p.y(), p.x()), 0.1, 0.02));
+    }
+  }
+};
+
+/// η by its definition, from the dense joint covariance.
+double expected_objects(const Scene& scene, core::LandmarkId id, const core::Observation& observation) {
+  const core::JointGaussian joint = scene.filter.joint({id});
+  const auto predicted =
+      core::predict_observation(observation.kind, joint.pose, scene.scan.T_robot_sensor, joint.points_m[0]);
+  Eigen::Matrix<double, 2, 5> H;
+  H << predicted.H_pose, predicted.H_landmark;
+  const Eigen::Matrix2d R = observation.R;
+  const Eigen::Matrix2d S = H * joint.covariance * H.transpose() + R;
+  const double gate = core::chi2_quantile(0.95, 2);
+  double objects = 0.0;
+  for (const core::LandmarkId other : scene.ids) {
+    if (other == id) continue;
+    const auto z = core::predict_observation(observation.kind, joint.pose, scene.scan.T_robot_sensor,
+                                             scene.filter.landmark_mean(other));
+    const Eigen::Vector2d nu = core::innovation(observation.kind, z.z_hat, predicted.z_hat);
+    objects += nu.dot(S.inverse() * nu) < gate ? 1.0 : 0.0;
+  }
+  const double area_m2 = 0.5 * core::pi * (30.0 * 30.0 - 1.0);
+  const double density = per_scan / area_m2 * predicted.z_hat[0];
+  return objects + density * core::pi * gate * (std::sqrt(S.determinant()) - std::sqrt(R.determinant()));
+}
+
+TEST(AmbiguousReturn, CountsForeignObjectsByTheirDefinition) {
+  int checked = 0;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    const Scene scene(seed, 0.1 * static_cast<double>(1 + seed % 30));
+    const Gating gating(scene.filter, scene.ids, scene.scan, {});
+    for (const AmbiguousReturn& found :
+         returns_in_gate(scene.filter, gating.problem, scene.scan, scene.ids, per_scan)) {
+      double most = 0.0;
+      for (const association::GatedPair& pair : gating.problem.pairs) {
+        if (gating.problem.ids[static_cast<std::size_t>(pair.candidate)] != found.landmark) continue;
+        const auto& observation = scene.scan.observations[static_cast<std::size_t>(pair.observation)];
+        most = std::max(most, expected_objects(scene, found.landmark, observation));
+      }
+      EXPECT_NEAR(found.foreign_objects, most, 1e-9 * (1.0 + most)) << seed;
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 150);
+}
+
+TEST(AmbiguousReturn, IsNoneWhereThePoseIsCertainAndTreesStandApart) {
+  const Scene scene(3, 1e-3, 3);
+  const Gating gating(scene.filter, scene.ids, scene.scan, {});
+  const auto found = returns_in_gate(scene.filter, gating.problem, scene.scan, scene.ids, per_scan);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_LT(most_ambiguous(found)->foreign_objects, 0.05);
+}
+
+TEST(AmbiguousReturn, SpeaksOfOldLandmarksOnly) {
+  const Scene scene(4, 2.0);
+  const Gating gating(scene.filter, scene.ids, scene.scan, {});
+  EXPECT_TRUE(returns_in_gate(scene.filter, gating.problem, scene.scan, {}, per_scan).empty());
+  const std::vector<core::LandmarkId> one{scene.ids[1]};
+  for (const AmbiguousReturn& found : returns_in_gate(scene.filter, gating.problem, scene.scan, one, per_scan)) {
+    EXPECT_EQ(found.landmark, one.front());
+    EXPECT_EQ(found.neighbours, 0);
+  }
+  EXPECT_EQ(most_ambiguous({}), nullptr);
+}
+
+TEST(AmbiguousReturn, CallsOldWhatIsMatureAndLongUnseen) {
+  association::LandmarkLife life;
+  life.observe({0.0, 0.0}, {}, {1}, {});
+  for (double x = 1.0; x <= 3.0; x += 1.0) life.observe({x, 0.0}, {1}, {}, {});
+  for (double x = 4.0; x < 63.0; x += 1.0) life.observe({x, 0.0}, {}, {}, {});
+  EXPECT_TRUE(old_landmarks(life, 60.0).empty());
+  life.observe({63.5, 0.0}, {}, {2}, {});
+  EXPECT_EQ(old_landmarks(life, 60.0), std::vector<core::LandmarkId>{1}) << "2 is young and tentative";
+}
+
+}  // namespace
+}  // namespace helixnav::supervisor
