@@ -129,7 +129,8 @@ ExitCode show_scan(const AssociateJob& job) {
 ExitCode associate(CLI::App& command, AssociateJob& job) {
   if (!job.config.empty()) apply_config_file(command, job.config);
   if (job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "has no part in comparing associations");
-  if (!is_scenario(job.input) && std::filesystem::exists(job.input)) suit_to_log(command, job.input);
+  if (!is_scenario(job.input) && std::filesystem::exists(job.input))
+    suit_to_log(command, job.input, job.settings.navigator.search);
   catch_interrupts();
   return job.scan >= 0 ? show_scan(job) : compare(job);
 }

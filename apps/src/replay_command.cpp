@@ -46,7 +46,7 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   prepare_run(command, job.run);
   if (job.localize && job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "excludes --localize");
   const auto begin = std::chrono::steady_clock::now();
-  suit_to_log(command, job.path);
+  suit_to_log(command, job.path, job.settings.navigator.search);
   Drive task;
   job.settings.logs.plaza.range_scale = 1.0;  // see scale_ranges
   task.recording = logs::read_recording(job.path, job.settings.logs);

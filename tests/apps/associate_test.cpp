@@ -106,6 +106,20 @@ TEST_F(Associate, KeepsToTheLabelsOfTheDlrRunInsideALap) {
   EXPECT_LE(std::stod(row[last - 2]), 1.1) << "map landmarks for each true one";
 }
 
+// The limits are those that the project promises; with loops left open the recall is 81 %.
+TEST_F(Associate, ClosesTheLoopsOfTheDlrRun) {
+  find_real_data("dlr/raw/map.circles");
+  if (IsSkipped()) return;
+  const Outcome outcome = run({"associate", path_, "--methods", "likelihood-ratio"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Words row = words_by_line(outcome.out).at(1);
+  ASSERT_GE(row.size(), 6u);
+  const std::size_t last = row.size() - 1;
+  EXPECT_GE(std::stod(row[last - 5]), 99.5) << "pairwise precision";
+  EXPECT_GE(std::stod(row[last - 4]), 90.0) << "pairwise recall";
+  EXPECT_LE(std::stod(row[last - 2]), 1.1) << "map landmarks for each true one";
+}
+
 TEST_F(Associate, EndsWithATableWhenInterrupted) {
   Program program({"associate", "ihgr-circle", "--runs", "100000"});
   usleep(300000);
