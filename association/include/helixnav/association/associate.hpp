@@ -32,7 +32,7 @@ struct Options {
   double joint_probability = 0.99;    ///< the set's joint NIS must not exceed this χ² quantile
   int joint_alternatives = 10;        ///< likelihood-ratio assignments tried, best first, when the joint test fails
   double min_margin_nats = 0.0;       ///< a match whose best alternative is nearer is ambiguous; 0: none
-  std::int64_t node_budget = 50'000;  ///< nodes of JCBB, combinations of IHGR's tie rule
+  std::int64_t node_budget = 30'000;  ///< nodes of JCBB (10 ms at the most), combinations of IHGR's tie rule
 };
 
 enum class Outcome {
