@@ -91,7 +91,7 @@ struct Referee::Book {
   bool on_old_ground = false;         ///< in the present scan
   std::size_t steps = 0;
   core::PoseGaussian pose;
-  std::optional<Judgeable> last_on_old_ground;
+  std::optional<Judgeable> last_on_old_ground;  ///< or at a closing behind it
   RunScore score;
 
   Book(const core::Recording& run, std::vector<double> returns_m, const RefereeOptions& how)
@@ -148,7 +148,9 @@ void Referee::watch(const StepReport& report, const Map& map_now) {
   book.count_matches(report, labels);
   book.score.refused += count(report, "closure", "refused");
   book.score.undecided += count(report, "closure", "undecided");
-  if (count(report, "closure", "accepted") > 0) book.judge_closure(report, map_now());
+  if (count(report, "closure", "accepted") == 0) return;
+  book.judge_closure(report, map_now());
+  book.last_on_old_ground = {report.pose, book.truth()};  // what was wrong before the closing is no longer believed
 }
 
 RunScore Referee::score(const std::vector<MapLandmark>& map) const {

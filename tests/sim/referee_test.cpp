@@ -60,7 +60,8 @@ struct Script {
   bool new_after_return = true;         ///< false: old landmarks are matched at once
   int swapped_pairs = 0;                ///< of the closing
   int match_shift = 0;                  ///< old landmarks are matched with the tree so many farther
-  core::Pose2 error;                    ///< of the pose, from the closing on: T_true_estimate
+  core::Pose2 drift;                    ///< of the pose, until the closing: T_true_estimate
+  core::Pose2 error;                    ///< of the pose, from the closing on
   core::Pose2 end_error;                ///< of the last pose, in its stead when it is not the identity
   core::Pose2 T_map_true;               ///< the whole map lies wrong by this
   std::vector<core::MapLandmark> more;  ///< in the map
@@ -91,7 +92,7 @@ class Run {
     const bool ends_wrong = last && script_.end_error.vector().norm() > 0.0;
     const core::Pose2 error = ends_wrong                   ? script_.end_error
                               : at_m >= script_.close_at_m ? script_.error
-                                                           : core::Pose2{};
+                                                           : script_.drift;
     report.pose.mean = core::compose(script_.T_map_true, core::compose(recording_.true_poses[k].T_world_robot, error));
     report.pose.covariance = Eigen::Vector3d(0.04, 0.04, 1e-4).asDiagonal();
     if (at_m == script_.trigger_at_m) report.decisions.push_back({"trigger", "started", {}});
@@ -228,6 +229,27 @@ TEST(Referee, DoesNotCallLateWhatDriftsAfterOldGroundIsLeft) {
   EXPECT_FALSE(score.late);
   EXPECT_NEAR(score.end.relative.position_m, 5.0, 1e-9);
   EXPECT_NEAR(score.end_on_old_ground.relative.position_m, 0.0, 1e-9);
+}
+
+TEST(Referee, JudgesTheEndByAClosingThatComesAfterOldGroundIsLeft) {
+  Script script;
+  script.length_m = 600.0;
+  script.close_at_m = 520.0;  // the last tree is out of view from 500 m on
+  script.drift = {6.0, 0.0, 0.0};
+  const RunScore right = judged(script);
+  EXPECT_EQ(right.verdict, RunVerdict::closed);
+  EXPECT_FALSE(right.late) << "what the closing put right was wrong before it";
+  EXPECT_NEAR(right.end_on_old_ground.relative.position_m, 0.0, 1e-9);
+  script.error = {1.5, 0.0, 0.0};
+  EXPECT_NEAR(judged(script).end_on_old_ground.relative.position_m, 1.5, 1e-9);
+}
+
+TEST(Referee, CallsLateWhatIsLostOnOldGroundAfterTheClosing) {
+  Script script;
+  script.drift = {6.0, 0.0, 0.0};
+  script.close_at_m = 480.0;
+  script.end_error = {2.1, 0.0, 0.0};  // at 490 m
+  EXPECT_TRUE(judged(script).late);
 }
 
 TEST(Referee, CallsAnyClosingFalseWhereNothingReturns) {

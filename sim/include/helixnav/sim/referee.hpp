@@ -83,7 +83,7 @@ struct RunScore {
   int wrong_before_trigger = 0;  ///< wrong old matches before the first trigger, anew after each return
   double spacing_m = 0.0;        ///< median distance from a tree seen before the first return to the nearest other
   JudgedPose end;
-  JudgedPose end_on_old_ground;  ///< at the last scan with old trees in view: behind them, all drift again
+  JudgedPose end_on_old_ground;  ///< at the last scan with old trees in view, or that closed: behind them, all drift
   int trees_seen = 0;
   int mature_landmarks = 0;
   int duplicates = 0;      ///< mature landmarks on a tree that has another one
