@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <mrpt/slam/CMetricMapBuilder.h>
+
+#include "helixnav/mrpt_adapter/data_association.hpp"
+#include "helixnav/mrpt_adapter/map_builder_options.hpp"
+#include "helixnav/mrpt_adapter/mrpt_version.hpp"
+
+namespace mrpt::math {
+struct TPoint2D;
+}
+namespace mrpt::opengl {
+class CSetOfObjects;
+}
+namespace mrpt::poses {
+class CPosePDFGaussian;
+}
+namespace mrpt::system {
+class CTimeLogger;
+}
+
+namespace helixnav::mrpt_adapter {
+
+/// HelixNav's Navigator as a map builder of MRPT: landmark SLAM in the plane with a compressed EKF, unknown association,
+/// and loops closed by a particle filter. It stands where CRangeBearingKFSLAM2D or another CMetricMapBuilder stood.
+///
+/// What it reads. Motion: the best CActionRobotMovement2D of the actions (else CActionRobotMovement3D, its planar part),
+/// else the increments of CObservationOdometry among the observations, else unknown motion of options.stdXY_no_odo.
+/// Landmarks: CObservationBearingRange (sensor pose, covariance of each measurement, field of view up to the full circle)
+/// and what options.detector finds in CObservation2DRangeScan. Position: CObservationGPS when options.gps_use. Other
+/// observations are passed over. A sensory frame is worked through in the order of its time stamps; each landmark
+/// observation is one step of the navigator.
+///
+/// Names. When the first measurements carry a landmarkID (and options.use_landmark_ids), association is known from then
+/// on and measurements without one are passed over; otherwise it is unknown and later IDs are passed over.
+///
+/// Frames: the map frame is that of the pose given to `initialize`, (0, 0, 0°) without. SI units, headings in radians.
+/// All calls lock critZoneChangingMap, so that one thread may read while another feeds; two builders share nothing.
+/// Errors: core::InputError for what cannot be used at all (options, a tilted sensor, a movement that is not finite, no
+/// noise figure), with pose and map as they were; single measurements that are not finite or not positive are dropped with a
+/// warning. Cost: that of Navigator::observe; converting takes about 1 µs a measurement. Tests: tests/mrpt_adapter.
+class MapBuilder : public mrpt::slam::CMetricMapBuilder {
+ public:
+  using LandmarkNumber = std::int64_t;  ///< as mrpt::maps::CLandmark::TLandmarkID
+
+  explicit MapBuilder(const MapBuilderOptions& options = {});
+  ~MapBuilder() override;
+  MapBuilder(const MapBuilder&) = delete;
+  MapBuilder& operator=(const MapBuilder&) = delete;
+
+  const MapBuilderOptions& getOptions() const;
+
+  // What CMetricMapBuilder asks for.
+
+  /// Forgets everything and starts at x0, at the origin without. A past map cannot be taken over: a CSimpleMap has no
+  /// covariance between its frames, so InputError unless it is empty.
+  void initialize(const mrpt::maps::CSimpleMap& initialMap = mrpt::maps::CSimpleMap(),
+                  const mrpt::poses::CPosePDF* x0 = nullptr) override;
+
+  /// CPose3DPDFGaussian while mapping; CPose3DPDFParticles, up to some 600 of equal weight, while a particle filter
+  /// looks for the vehicle on old ground. The pose of the map that goes on meanwhile is getCurrentState's.
+  mrpt::poses::CPose3DPDF::Ptr getCurrentPoseEstimation() const override;
+
+  /// PreconditionError while map updating is switched off: this filter does not localise without mapping.
+  void processActionObservation(mrpt::obs::CActionCollection& action, mrpt::obs::CSensoryFrame& observations) override;
+
+  /// The frames with landmarks, as pose (known then) and observations, if options.create_simplemap.
+  void getCurrentlyBuiltMap(mrpt::maps::CSimpleMap& out_map) const override;
+  unsigned int getCurrentlyBuiltMapSize() override;
+
+  /// One CLandmarksMap with the mature landmarks, made anew by the first call after a step; what an earlier call
+  /// returned changes with it.
+  MetricMapResult getCurrentlyBuiltMetricMap() const override;
+
+  /// Map, path and pose from above, in the format that the file's name ends in (png, jpg, bmp; else .png is appended).
+  /// formatEMF_BMP is not looked at: MRPT writes no EMF here. InputError when the file cannot be written.
+  void saveCurrentEstimationToImage(const std::string& file, bool formatEMF_BMP = true) override;
+
+  // Beyond.
+
+  /// One observation of a stream without actions, as in observation-only rawlogs.
+  void processObservation(const mrpt::obs::CObservation::Ptr& observation);
+
+  /// Pose and landmarks of the filter, tentative ones too, in order of number. out_fullState: (x, y, heading), then
+  /// (x, y) of each landmark. out_fullCovariance: dense, in the order of out_fullState, only on request: O(landmarks²).
+  /// Beside, per landmark: its number (the landmarkID where association is known).
+  void getCurrentState(mrpt::poses::CPosePDFGaussian& out_robotPose,
+                       std::vector<mrpt::math::TPoint2D>& out_landmarksPositions,
+                       std::map<unsigned int, LandmarkNumber>& out_landmarkIDs,
+                       mrpt::math::CVectorDouble& out_fullState,
+                       mrpt::math::CMatrixDouble* out_fullCovariance = nullptr) const;
+
+  /// Of the last step.
+  DataAssociation getLastDataAssociation() const;
+
+  /// Landmarks with ellipses of options.quantiles_3D_representation σ, path, vehicle, particles, and the mode in words.
+  void getAs3DObject(std::shared_ptr<mrpt::opengl::CSetOfObjects>& outObj) const;
+
+  /// Sections: complete_step, and inside it convert and navigate; refresh_map, get_as_3d_object.
+  const mrpt::system::CTimeLogger& getProfiler() const;
+
+ private:
+  friend class RunAccess;
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace helixnav::mrpt_adapter

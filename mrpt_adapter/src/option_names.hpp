@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "helixnav/association/associate.hpp"
+
+namespace helixnav::mrpt_adapter {
+
+/// The values that the options `association` and `detector` may have.
+std::vector<std::string> association_names();
+std::vector<std::string> detector_names();
+
+/// The method of that name; InputError when there is none.
+association::Method method_of(const std::string& name);
+
+/// For messages: 0.5, 1e+06.
+std::string short_text(double number);
+/// The shortest text that reads back as the same number.
+std::string exact_text(double number);
+
+}  // namespace helixnav::mrpt_adapter
