@@ -8,15 +8,13 @@
 #include <string>
 #include <vector>
 
+#include <mrpt/math/TPoint2D.h>
 #include <mrpt/slam/CMetricMapBuilder.h>
 
 #include "helixnav/mrpt_adapter/data_association.hpp"
 #include "helixnav/mrpt_adapter/map_builder_options.hpp"
 #include "helixnav/mrpt_adapter/mrpt_version.hpp"
 
-namespace mrpt::math {
-struct TPoint2D;
-}
 namespace mrpt::opengl {
 class CSetOfObjects;
 }

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <chrono>
+#include <sstream>
+#include <utility>
+
+#include <mrpt/obs/CSensoryFrame.h>
+
+#include "map_builder_impl.hpp"
+#include "pose_pdf.hpp"
+
+namespace helixnav::mrpt_adapter {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double microseconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
+}
+
+core::Odometry unknown_motion(const MapBuilderOptions& options) {
+  core::Odometry odometry;
+  const double xy_m2 = options.stdXY_no_odo * options.stdXY_no_odo;
+  odometry.covariance =
+      Eigen::Vector3d(xy_m2, xy_m2, options.stdPhi_no_odo_rad * options.stdPhi_no_odo_rad).asDiagonal();
+  return odometry;
+}
+
+std::string sentence(const core::Decision& decision) {
+  std::ostringstream text;
+  text << decision.kind << " " << decision.verdict;
+  for (const auto& [name, number] : decision.numbers) text << ", " << name << " " << number;
+  return text.str();
+}
+
+}  // namespace
+
+void MapBuilder::Impl::feed(const std::optional<core::Odometry>& motion, const mrpt::obs::CSensoryFrame& frame,
+                            bool stream) {
+  const mrpt::system::CTimeLoggerEntry complete(profiler, "complete_step");
+  steps.clear();
+  const std::optional<core::Odometry> stated = options.force_ignore_odometry ? std::nullopt : motion;
+  profiler.enter("convert");
+  FrameInput input;
+  try {
+    input = convert_frame(frame, stated.has_value(), motion_, options);
+  } catch (...) {
+    profiler.leave("convert");
+    throw;
+  }
+  profiler.leave("convert");
+  motion_ = input.motion;
+  motion_is_known_ = !options.force_ignore_odometry && (motion_is_known_ || stated || motion_.last_reading);
+  for (const std::string& warning : input.warnings) warn(warning);
+  // Without any word on motion, the vehicle moved in some way from frame to frame: but not before the first one.
+  if (stated) {
+    navigator->move(*stated);
+  } else if (!stream && last && (!motion_.last_reading || options.force_ignore_odometry)) {
+    navigator->move(unknown_motion(options));
+  }
+  for (const Input& one : input.inputs) {
+    if (const auto* odometry = std::get_if<core::Odometry>(&one)) navigator->move(*odometry);
+    if (const auto* scan = std::get_if<NamedScan>(&one)) see(*scan, stream);
+    if (const auto* fix = std::get_if<core::AbsoluteFix>(&one)) navigator->fix(*fix);
+  }
+  if (!steps.empty() && options.create_simplemap) keep(frame);
+}
+
+void MapBuilder::Impl::see(const NamedScan& scan, bool stream) {
+  if (stream && last && !motion_is_known_ && scan.scan.t_ns != last->t_ns) navigator->move(unknown_motion(options));
+  const Clock::time_point begin = Clock::now();
+  Step step;
+  {
+    const mrpt::system::CTimeLoggerEntry navigate(profiler, "navigate");
+    step.report = observe(scan);
+  }
+  step.microseconds = microseconds_since(begin);
+  metric_map_is_current_ = false;
+  remember(scan, step.report);
+  tell(step.report);
+  path.push_back(step.report.pose.mean);
+  last = step.report;
+  last_measurements = scan.measurements;
+  steps.push_back(std::move(step));
+}
+
+core::StepReport MapBuilder::Impl::observe(const NamedScan& scan) {
+  const bool named = std::any_of(scan.identities.begin(), scan.identities.end(), [](std::int64_t i) { return i >= 0; });
+  if (association_ == Association::open && !scan.identities.empty()) {
+    association_ = named && options.use_landmark_ids ? Association::by_name : Association::unknown;
+  }
+  if (association_ == Association::by_name) {
+    if (std::any_of(scan.identities.begin(), scan.identities.end(), [](std::int64_t i) { return i < 0; })) {
+      warn("landmarks are told apart by landmarkID, and measurements without one are passed over");
+    }
+    return navigator->observe(scan.scan, scan.identities);
+  }
+  if (named && options.use_landmark_ids) {
+    warn("the first measurements had no landmarkID: association is unknown, and later IDs are passed over");
+  }
+  return navigator->observe(scan.scan);
+}
+
+void MapBuilder::Impl::remember(const NamedScan& scan, const core::StepReport& report) {
+  for (const core::AssociationReport& association : report.associations) {
+    using core::Outcome;
+    if (association.outcome != Outcome::matched && association.outcome != Outcome::augmented) continue;
+    seen_ns_[association.landmark] = scan.scan.t_ns;
+    if (association_ != Association::by_name) continue;
+    name_of_[association.landmark] = scan.identities[static_cast<std::size_t>(association.observation)];
+  }
+}
+
+void MapBuilder::Impl::tell(const core::StepReport& report) const {
+  for (const core::Decision& decision : report.decisions) log_.logStr(mrpt::system::LVL_INFO, sentence(decision));
+  if (!log_.isLoggingLevelVisible(mrpt::system::LVL_DEBUG)) return;
+  std::ostringstream text;
+  text << "step " << report.step << ": " << report.associations.size() << " measurements, " << report.joint_dof / 2
+       << " matched with joint NIS " << report.joint_nis << ", " << report.mapped_landmarks << " landmarks, "
+       << report.active_landmarks << " active";
+  log_.logStr(mrpt::system::LVL_DEBUG, text.str());
+}
+
+void MapBuilder::Impl::warn(const std::string& text) {
+  // The same fault in every frame is worth one line, and the details are there for who asks.
+  const std::string kind = text.substr(0, text.find_first_of(",0123456789"));
+  log_.logStr(warned_.insert(kind).second ? mrpt::system::LVL_WARN : mrpt::system::LVL_DEBUG, text);
+}
+
+void MapBuilder::Impl::keep(const mrpt::obs::CSensoryFrame& frame) {
+  simple_map.insert(gaussian_pdf(last->pose), mrpt::obs::CSensoryFrame::Create(frame));
+}
+
+}  // namespace helixnav::mrpt_adapter

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "navigator_options.hpp"
+
+#include <algorithm>
+
+#include "option_names.hpp"
+
+namespace helixnav::mrpt_adapter {
+
+supervisor::NavigatorOptions navigator_options(const MapBuilderOptions& options) {
+  supervisor::NavigatorOptions result;
+  result.filter.cell_side_m = options.cell_side;
+  result.filter.hysteresis_m = options.hysteresis;
+  result.method = method_of(options.association);
+  result.extraneous_per_scan = options.extraneous_per_scan;
+  result.gates.match_probability = options.data_assoc_IC_chi2_thres;
+  // The gate for new landmarks stays outside that for pairs, as many times as it is by default.
+  const association::Gates defaults;
+  const double share = (1.0 - defaults.new_probability) / (1.0 - defaults.match_probability);
+  const double widest = 1.0 - share * (1.0 - options.data_assoc_IC_chi2_thres);
+  result.gates.new_probability = std::max(defaults.new_probability, widest);
+  result.fix_probability = options.gps_probability;
+  result.search.enabled = options.search_enabled;
+  result.search.seed = options.search_seed;
+  result.search.old_after_m = options.search_old_after;
+  result.search.relocalizer.threads = static_cast<unsigned>(options.search_threads);
+  return result;
+}
+
+}  // namespace helixnav::mrpt_adapter
