@@ -151,6 +151,21 @@ void add_search(CLI::App& command, supervisor::SearchOptions& search) {
              "A mature landmark unseen over so long a drive is old: met again, it may begin a search");
   add_number(command, "--search.foreign_objects", search.foreign_objects, 1e-6, 1e3,
              "A search begins when so many other objects are to be expected in the gate of an old landmark");
+  const auto set_closing = [&search](const std::string& word) {
+    using supervisor::ClosingMethod;
+    search.closing = word == "replay"    ? ClosingMethod::replay
+                     : word == "restart" ? ClosingMethod::restart
+                                         : ClosingMethod::merge;
+  };
+  command
+      .add_option_function<std::string>("--search.closing", set_closing,
+                                        "How a loop is closed; merge: new landmarks become the old ones; replay: the "
+                                        "scans since the search began are driven again with the associations found; "
+                                        "restart: the pose is the particles', what was mapped since is forgotten "
+                                        "(baseline)")
+      ->check(one_of({"merge", "replay", "restart"}))
+      ->default_str("merge")
+      ->group(group);
   add_number(command, "--search.undecided_m", search.undecided_m, 1.0, 1e6,
              "After so long a drive without a closing the question is left open");
   add_particle_filter(command, search);

@@ -3,29 +3,12 @@
 
 #include <vector>
 
+#include "closing.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
-#include "helixnav/core/step_report.hpp"
 #include "helixnav/pf_relocalize/constellation.hpp"
 #include "helixnav/supervisor/search_options.hpp"
 
 namespace helixnav::supervisor {
-
-/// What closing a loop did, or would have done.
-struct Closing {
-  bool accepted = false;
-  double cost = 0.0;  ///< J of the pairs kept, χ² with dof
-  int dof = 0;
-  double limit = 0.0;
-  int dropped = 0;                            ///< pairs that the cost did not let pass
-  std::vector<core::MergedLandmarks> merged;  ///< empty unless accepted
-  std::vector<core::LandmarkId> forgotten;    ///< unconfirmed ones that stood on an old landmark
-};
-
-/// Landmarks mapped since the old ones came to be excluded, ascending.
-struct Branch {
-  std::vector<core::LandmarkId> confirmed;    ///< seen often enough to be one with an old landmark
-  std::vector<core::LandmarkId> unconfirmed;  ///< may be clutter: never merged
-};
 
 /// Conditions the map on every branch landmark of the pairs being the old one that it stands on, jointly and iterated; the
 /// worst pair goes while the cost exceeds its χ² limit. Then what else of the branch has become a duplicate of one of

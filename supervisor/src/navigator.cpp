@@ -3,13 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 
 #include "ambiguous_return.hpp"
 #include "association_report.hpp"
+#include "branch_journal.hpp"
 #include "candidates.hpp"
 #include "close_by_merge.hpp"
+#include "close_by_replay.hpp"
+#include "close_by_restart.hpp"
 #include "gating.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
@@ -52,6 +56,7 @@ StepReport Navigator::observe(const Scan& scan) {
   report.associations = associate(scan, *gating, returns);
   update(scan, report);
   augment(scan, report);
+  if (journal_) journal_->observe(scan, report);
   live_and_let_die(scan, report);
   if (search_) pursue_search(scan, report);
   report.switched_region = filter_.switch_region_if_due();
@@ -61,6 +66,7 @@ StepReport Navigator::observe(const Scan& scan) {
 StepReport Navigator::observe(const Scan& scan, const std::vector<std::int64_t>& identities) {
   StepReport report;
   report.associations = known_associations(scan, identities);
+  if (search_) end_search();  // it asked for what is known now
   predict();
   update(scan, report);
   augment_known(scan, identities, report);
@@ -75,6 +81,7 @@ bool Navigator::fix(const core::AbsoluteFix& fix) {
   const double limit = core::chi2_quantile(options_.fix_probability, 2);
   const bool accepted = nis <= limit;
   if (accepted) filter_.update_position(fix);
+  if (accepted && journal_) journal_->fix(fix);
   const core::PoseGaussian now = filter_.pose();
   decisions_.push_back({"fix",
                         accepted ? "accepted" : "refused",
@@ -90,6 +97,7 @@ void Navigator::predict() {
   if (!motion_) return;
   filter_.predict(*motion_);
   if (search_) search_->move(*motion_);
+  if (journal_) journal_->predict(*motion_);
   motion_.reset();
 }
 
@@ -127,6 +135,13 @@ void Navigator::begin_search() {
   const std::uint64_t seed = options_.search.seed + 1000000u * ++searches_;
   search_ = std::make_unique<Search>(old_landmarks(life_, options_.search.old_after_m), life_.path_m(), seed,
                                      options_.search);
+  if (options_.search.closing == ClosingMethod::replay) journal_ = std::make_unique<BranchJournal>(filter_);
+}
+
+void Navigator::end_search() {
+  search_.reset();
+  journal_.reset();
+  filter_.keep_since(std::numeric_limits<long>::max());
 }
 
 void Navigator::pursue_search(const Scan& scan, StepReport& report) {
@@ -136,19 +151,30 @@ void Navigator::pursue_search(const Scan& scan, StepReport& report) {
   if (pairs) close(*pairs, report);
   if (!search_ || !search_->is_undecided(life_.path_m())) return;
   report.decisions.push_back({"closure", "undecided", {{"driven_m", life_.path_m() - search_->begun_path_m()}}});
-  search_.reset();
+  end_search();
 }
 
-void Navigator::close(const std::vector<pf_relocalize::ConstellationPair>& pairs, StepReport& report) {
+Closing Navigator::close_map(const std::vector<pf_relocalize::ConstellationPair>& pairs) {
   Branch branch;
+  std::vector<LandmarkId> since;  // the search began
   for (const association::LandmarkRecord& record : life_.records()) {
+    if (record.born_path_m > search_->begun_path_m()) since.push_back(record.id);
     const bool mapped_lately = record.last_seen_path_m > search_->begun_path_m() - options_.search.old_after_m;
     if (!mapped_lately || search_->excludes(record.id)) continue;
     const bool confirmed = record.hits >= options_.search.constellation.least_hits;
     (confirmed ? branch.confirmed : branch.unconfirmed).push_back(record.id);
   }
+  const std::vector<LandmarkId>& old = search_->old_landmarks();
+  if (options_.search.closing == ClosingMethod::restart) {
+    return close_by_restart(filter_, since, search_->heaviest_mode(filter_).value_or(filter_.pose()));
+  }
+  if (journal_) return close_by_replay(filter_, *journal_, pairs, branch, old, options_.search);
+  return close_by_merge(filter_, pairs, branch, old, options_.search);
+}
+
+void Navigator::close(const std::vector<pf_relocalize::ConstellationPair>& pairs, StepReport& report) {
   const core::Pose2 before = filter_.pose().mean;
-  const Closing closing = close_by_merge(filter_, pairs, branch, search_->old_landmarks(), options_.search);
+  const Closing closing = close_map(pairs);
   for (const core::MergedLandmarks& one : closing.merged) life_.merge(one.kept, one.removed);
   for (const LandmarkId id : closing.forgotten) life_.remove(id);
   report.merged = closing.merged;
@@ -163,7 +189,7 @@ void Navigator::close(const std::vector<pf_relocalize::ConstellationPair>& pairs
                                {"driven_m", life_.path_m() - search_->begun_path_m()},
                                {"moved_m", (filter_.pose().mean.position_m() - before.position_m()).norm()}}});
   if (closing.accepted) {
-    search_.reset();
+    end_search();
   } else {
     search_->refuse(life_.path_m());
   }
@@ -273,7 +299,10 @@ void Navigator::live_and_let_die(const Scan& scan, StepReport& report) {
   forgive_what_may_be_elsewhere(seen, expected);
   const core::Pose2 T_world_sensor = core::compose(filter_.pose().mean, scan.T_robot_sensor);
   const association::LifeChanges changes = life_.observe(T_world_sensor.position_m(), seen, born, expected);
-  for (const LandmarkId id : changes.died) filter_.remove(id);
+  for (const LandmarkId id : changes.died) {
+    filter_.remove(id);
+    if (journal_) journal_->remove(id);
+  }
   track_->pass(life_.path_m(), T_world_sensor);
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "constellation_question.hpp"
 #include "helixnav/association/innovation_problem.hpp"
 #include "helixnav/core/odometry.hpp"
@@ -160,6 +162,15 @@ void Search::end_attempt(const char* verdict, double path_m, std::vector<core::D
 void Search::refuse(double path_m) {
   attempt_.reset();
   next_start_path_m_ = path_m + options_.rest_m;
+}
+
+std::optional<core::PoseGaussian> Search::heaviest_mode(const cekf::CompressedEkf& filter) const {
+  if (!attempt_) return std::nullopt;
+  const core::Pose2 T_world_base = base_frame_now(filter, attempt_->base_a, attempt_->base_b);
+  const core::PoseGaussian& in_base = attempt_->relocalizer.state().modes.front().pose;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(T_world_base.heading_rad).toRotationMatrix();
+  return core::PoseGaussian{core::compose(T_world_base, in_base.mean), turn * in_base.covariance * turn.transpose()};
 }
 
 std::vector<core::Pose2> Search::cloud(const cekf::CompressedEkf& filter) const {

@@ -49,6 +49,9 @@ class Search {
   bool is_undecided(double path_m) const;
   double begun_path_m() const { return begun_path_m_; }
 
+  /// T_world_robot of the heaviest mode at the last look; nothing while no attempt runs.
+  std::optional<core::PoseGaussian> heaviest_mode(const cekf::CompressedEkf& filter) const;
+
   /// T_world_robot of the particles, every n-th; empty while no attempt runs.
   std::vector<core::Pose2> cloud(const cekf::CompressedEkf& filter) const;
 

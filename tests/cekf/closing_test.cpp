@@ -2,6 +2,7 @@
 // What a closing needs: merge, iterated joint update, position fixes; each equal to the full filter.
 #include <gtest/gtest.h>
 
+#include "helixnav/core/errors.hpp"
 #include "random_program.hpp"
 
 namespace helixnav::cekf {
@@ -134,6 +135,25 @@ TEST_P(Closing, APositionFixEqualsTheFullFilterAndReachesPassiveLandmarks) {
   EXPECT_NEAR(result.nis, program.oracle.update_position(fix), 1e-7);
   EXPECT_GT((program.filter.landmark(passive[0]).mean_m - before).norm(), 1e-4);
   expect_equal(program, 1e-8);
+}
+
+TEST_P(Closing, AReplacedPoseEqualsTheFullFilterAndOwesTheMapNothing) {
+  RandomProgram program = prepared(GetParam(), 17);
+  core::PoseGaussian elsewhere;
+  elsewhere.mean = core::compose(program.filter.pose().mean, core::Pose2(1.0, -2.0, 0.1));
+  elsewhere.covariance = Eigen::Vector3d(0.3, 0.2, 0.01).asDiagonal();
+  program.filter.replace_pose(elsewhere);
+  program.oracle.x.head<3>() = elsewhere.mean.vector();
+  program.oracle.P.topRows(3).setZero();
+  program.oracle.P.leftCols(3).setZero();
+  program.oracle.P.topLeftCorner<3, 3>() = elsewhere.covariance;
+  expect_equal(program, 1e-8);
+  for (int k = 0; k < 20; ++k) program.step();
+  program.filter.switch_region();
+  expect_equal(program, 1e-8);
+  core::PoseGaussian bad;
+  bad.covariance(0, 0) = -1.0;
+  EXPECT_THROW(program.filter.replace_pose(bad), core::PreconditionError);
 }
 
 INSTANTIATE_TEST_SUITE_P(BothRetractions, Closing, testing::Values(Retraction::standard, Retraction::right_invariant),

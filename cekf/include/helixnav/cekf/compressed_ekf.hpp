@@ -41,6 +41,10 @@ class CompressedEkf {
   /// Moves the vehicle: F and the noise from core::compose_jacobians. O(n + q).
   void predict(const core::Odometry& odometry);
 
+  /// Puts the vehicle elsewhere, independent of the whole map. For comparison with filters that restart; what is known of
+  /// the vehicle is thrown away. Covariance symmetric positive semidefinite. O(n + q). Test: cekf/closing_test.cpp.
+  void replace_pose(const core::PoseGaussian& pose);
+
   /// Joint EKF update with all matches. Passive landmarks are activated first: nothing is discarded. O((n + q)²·m).
   UpdateResult update(const std::vector<Match>& matches);
   /// Joint Gauss-Newton update to the minimum of J = |x ⊖ x̂|²_P + |ν|²_R, for closings where one linearisation is not

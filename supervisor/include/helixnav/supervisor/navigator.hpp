@@ -18,6 +18,8 @@
 namespace helixnav::supervisor {
 
 struct AmbiguousReturn;
+class BranchJournal;
+struct Closing;
 struct Gating;
 class Search;
 class Track;
@@ -40,7 +42,7 @@ struct NavigatorOptions {
 /// Every scan runs once through the loop: predict, associate, update, augment, bury, switch region. When old ground comes
 /// into view that cannot be told apart scan by scan, a search begins: mapping goes on with the old landmarks excluded, a
 /// particle filter finds where on the old map the vehicle is, and when a constellation of new landmarks stands on old
-/// ones, and nowhere else as well, the map is closed by merging them. Source: hybrid_masson2003 §3, PROTOTYPE.
+/// ones, and nowhere else as well, the map is closed there. Source: hybrid_masson2003 §3, PROTOTYPE.
 /// The map frame is that of the start pose; nothing here knows of truth, files or screens.
 /// Throws what its filter throws (NumericalError, PreconditionError); the map is then as before the scan's failing verb.
 /// Test: supervisor/navigator_test.cpp, supervisor/closing_test.cpp.
@@ -82,6 +84,8 @@ class Navigator {
   void begin_search();
   void pursue_search(const core::Scan& scan, core::StepReport& report);
   void close(const std::vector<pf_relocalize::ConstellationPair>& pairs, core::StepReport& report);
+  Closing close_map(const std::vector<pf_relocalize::ConstellationPair>& pairs);
+  void end_search();
   std::vector<core::AssociationReport> associate(const core::Scan& scan, const Gating& gating,
                                                  const std::vector<AmbiguousReturn>& returns) const;
   void hold_lonely_returns(const std::vector<AmbiguousReturn>& returns,
@@ -105,7 +109,8 @@ class Navigator {
   std::int64_t step_ = 0;
 
   std::unique_ptr<Track> track_;
-  std::unique_ptr<Search> search_;  ///< while a question is open
+  std::unique_ptr<Search> search_;          ///< while a question is open
+  std::unique_ptr<BranchJournal> journal_;  ///< of the search, when closing is by replay
   std::uint64_t searches_ = 0;
 
   // Known association only: who is who, and how often it was seen.

@@ -10,6 +10,11 @@
 
 namespace helixnav::supervisor {
 
+/// How the map is closed. merge: the branch stays and each of its landmarks is conditioned on being the old one.
+/// replay: back to where the search began, and its scans once more with the associations now known. Both are exact, and
+/// differ by where they linearise. restart: the paper's, a baseline that throws the branch away. Figures: docs/closing.md.
+enum class ClosingMethod { merge, replay, restart };
+
 /// When a return to old ground is too ambiguous to be associated scan by scan, how it is resolved by the particle filter,
 /// and what is asked before the map is closed. Distances are driven ones. Source of the figures: PROTOTYPE §2 to §6.
 struct SearchOptions {
@@ -46,6 +51,7 @@ struct SearchOptions {
   pf_relocalize::ConstellationLimits constellation;
 
   // Closing.
+  ClosingMethod closing = ClosingMethod::merge;
   double merge_sigma_m = 0.02;        ///< two landmarks that are one differ by so little
   double closing_probability = 0.99;  ///< χ² quantile that the cost of a closing must not exceed
   int most_dropped = 1;               ///< pairs that may go, worst first, until the cost passes

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "branch_pairs.hpp"
+
+#include <algorithm>
+
+#include <Eigen/LU>
+
+#include "helixnav/core/chi2.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+constexpr double leftover_reach_m = 1.0;  // beyond it, compatible only means uncertain
+
+struct Leftover {
+  core::LandmarkId kept, removed;
+  double nis;
+};
+
+/// Squared Mahalanobis distance of two landmarks, correlations included, on top of 1 cm each way.
+double squared_distance(const cekf::CompressedEkf& filter, core::LandmarkId a, core::LandmarkId b) {
+  const core::JointGaussian both = filter.joint({a, b});
+  const Eigen::MatrixXd& P = both.covariance;
+  const Eigen::Matrix2d S = P.block<2, 2>(3, 3) + P.block<2, 2>(5, 5) - P.block<2, 2>(3, 5) - P.block<2, 2>(5, 3) +
+                            1e-4 * Eigen::Matrix2d::Identity();
+  const Eigen::Vector2d d = both.points_m[1] - both.points_m[0];
+  return d.dot(S.inverse() * d);
+}
+
+/// Old landmarks that `id` stands on, nearest first.
+std::vector<Leftover> stands_on(const cekf::CompressedEkf& filter, core::LandmarkId id,
+                                const std::vector<core::LandmarkId>& old, double gate) {
+  std::vector<Leftover> found;
+  for (const core::LandmarkId kept : filter.landmarks_within(filter.landmark_mean(id), leftover_reach_m)) {
+    if (!std::binary_search(old.begin(), old.end(), kept)) continue;
+    const double nis = squared_distance(filter, kept, id);
+    if (nis < gate) found.push_back({kept, id, nis});
+  }
+  std::sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.nis < b.nis; });
+  return found;
+}
+
+}  // namespace
+
+KeptRemoved kept_removed(const std::vector<pf_relocalize::ConstellationPair>& pairs) {
+  KeptRemoved result;
+  for (const pf_relocalize::ConstellationPair& pair : pairs) result.emplace_back(pair.old_landmark, pair.branch);
+  return result;
+}
+
+void note(const KeptRemoved& pairs, Closing& closing) {
+  for (const auto& [kept, removed] : pairs) closing.merged.push_back({kept, removed});
+}
+
+bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& options, KeptRemoved& pairs,
+                     Closing& closing) {
+  while (true) {
+    const cekf::CostByPart cost = filter.merge_cost(pairs, options.merge_sigma_m);
+    closing.cost = cost.cost;
+    closing.dof = cost.dof;
+    closing.limit = core::chi2_quantile(options.closing_probability, cost.dof);
+    if (cost.cost <= closing.limit) return true;
+    if (closing.dropped == options.most_dropped || pairs.size() <= least_pairs) return false;
+    const auto worst = std::max_element(cost.parts.begin(), cost.parts.end()) - cost.parts.begin();
+    pairs.erase(pairs.begin() + worst);
+    ++closing.dropped;
+  }
+}
+
+KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
+                      const std::vector<core::LandmarkId>& old, double gate) {
+  std::vector<Leftover> found;
+  for (const core::LandmarkId id : confirmed) {
+    if (!filter.contains(id)) continue;
+    const std::vector<Leftover> here = stands_on(filter, id, old, gate);
+    if (here.size() == 1) found.push_back(here.front());
+  }
+  std::sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.nis < b.nis; });
+  KeptRemoved pairs;
+  for (const Leftover& leftover : found) {
+    const bool taken = std::any_of(pairs.begin(), pairs.end(), [&](const auto& p) { return p.first == leftover.kept; });
+    if (!taken) pairs.emplace_back(leftover.kept, leftover.removed);
+  }
+  return pairs;
+}
+
+void forget_copies(cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& unconfirmed,
+                   const std::vector<core::LandmarkId>& old, double gate, Closing& closing) {
+  for (const core::LandmarkId id : unconfirmed) {
+    if (stands_on(filter, id, old, gate).empty()) continue;
+    filter.remove(id);
+    closing.forgotten.push_back(id);
+  }
+}
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "closing.hpp"
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/pf_relocalize/constellation.hpp"
+#include "helixnav/supervisor/search_options.hpp"
+
+namespace helixnav::supervisor {
+
+/// The old landmark that stays and the one of the branch that goes.
+using KeptRemoved = std::vector<cekf::CompressedEkf::LandmarkPair>;
+
+constexpr std::size_t least_pairs = 3;  ///< of a closing
+
+KeptRemoved kept_removed(const std::vector<pf_relocalize::ConstellationPair>& pairs);
+
+/// The pairs belong to what the closing merged.
+void note(const KeptRemoved& pairs, Closing& closing);
+
+/// Drops the worst pair until the cost of merging the rest passes; false when too many would have to go. Sets the figures of
+/// `closing`.
+bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& options, KeptRemoved& pairs,
+                     Closing& closing);
+
+/// Confirmed branch landmarks that stand on one landmark of `old` (ascending) and on no other, by the joint covariance of
+/// the closed map; of several on the same one the nearest.
+KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
+                      const std::vector<core::LandmarkId>& old, double gate);
+
+/// Removes unconfirmed landmarks of the branch that stand on an old one: they may be clutter and are never merged.
+void forget_copies(cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& unconfirmed,
+                   const std::vector<core::LandmarkId>& old, double gate, Closing& closing);
+
+}  // namespace helixnav::supervisor

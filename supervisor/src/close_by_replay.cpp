@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "close_by_replay.hpp"
+
+#include <map>
+#include <utility>
+
+#include "branch_pairs.hpp"
+#include "helixnav/core/chi2.hpp"
+#include "helixnav/core/errors.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+/// The filter as the pairs make it; false, with the filter in between, when it cannot believe them.
+bool replay(cekf::CompressedEkf& filter, const BranchJournal& journal, const KeptRemoved& pairs,
+            const SearchOptions& options, Closing& closing) {
+  std::map<core::LandmarkId, core::LandmarkId> old_of;
+  KeptRemoved older;  // than the journal
+  for (const auto& [kept, removed] : pairs) {
+    if (journal.has_birth_of(removed)) {
+      old_of[removed] = kept;
+    } else {
+      older.emplace_back(kept, removed);
+    }
+  }
+  try {
+    const cekf::UpdateResult again = journal.replay(filter, old_of);
+    const cekf::UpdateResult merged = filter.merge(older, options.merge_sigma_m);
+    closing.cost = again.nis + merged.nis - journal.cost().nis;
+    closing.dof = again.dof + merged.dof - journal.cost().dof;
+  } catch (const core::NumericalError&) {
+    return false;
+  }
+  closing.limit = core::chi2_quantile(options.closing_probability, closing.dof);
+  return closing.cost <= closing.limit;
+}
+
+/// Replays with more and more pairs; ends with the last ones that the filter could believe.
+void replay_leftovers(cekf::CompressedEkf& filter, const BranchJournal& journal, const Branch& branch,
+                      const std::vector<core::LandmarkId>& old, const SearchOptions& options, KeptRemoved& pairs,
+                      Closing& closing) {
+  constexpr int most_passes = 10;
+  for (int pass = 0; pass < most_passes; ++pass) {
+    KeptRemoved rest = leftovers(filter, branch.confirmed, old, options.leftover_gate);
+    Closing next = closing;
+    next.dropped = 0;
+    if (rest.empty() || !make_compatible(filter, options, rest, next)) return;
+    rest.insert(rest.begin(), pairs.begin(), pairs.end());
+    const cekf::CompressedEkf before = filter;
+    if (!replay(filter, journal, rest, options, next)) {
+      filter = before;
+      return;
+    }
+    next.dropped = closing.dropped;
+    closing = next;
+    pairs = std::move(rest);
+  }
+}
+
+}  // namespace
+
+Closing close_by_replay(cekf::CompressedEkf& filter, const BranchJournal& journal,
+                        const std::vector<pf_relocalize::ConstellationPair>& pairs, const Branch& branch,
+                        const std::vector<core::LandmarkId>& old, const SearchOptions& options) {
+  Closing closing;
+  KeptRemoved chosen = kept_removed(pairs);
+  if (chosen.size() < least_pairs || !make_compatible(filter, options, chosen, closing)) return closing;
+  const cekf::CompressedEkf before = filter;
+  if (!replay(filter, journal, chosen, options, closing)) {
+    filter = before;
+    return closing;
+  }
+  closing.accepted = true;
+  replay_leftovers(filter, journal, branch, old, options, chosen, closing);
+  note(chosen, closing);
+  forget_copies(filter, branch.unconfirmed, old, options.leftover_gate, closing);
+  return closing;
+}
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "helixnav/core/step_report.hpp"
+
+namespace helixnav::supervisor {
+
+/// What closing a loop did, or would have done.
+struct Closing {
+  bool accepted = false;
+  double cost = 0.0;  ///< J of the pairs kept, χ² with dof
+  int dof = 0;
+  double limit = 0.0;
+  int dropped = 0;                            ///< pairs that the cost did not let pass
+  std::vector<core::MergedLandmarks> merged;  ///< empty unless accepted
+  std::vector<core::LandmarkId> forgotten;    ///< unconfirmed ones that stood on an old landmark
+};
+
+/// Landmarks mapped since the old ones came to be excluded, ascending.
+struct Branch {
+  std::vector<core::LandmarkId> confirmed;    ///< seen often enough to be one with an old landmark
+  std::vector<core::LandmarkId> unconfirmed;  ///< may be clutter: never merged
+};
+
+}  // namespace helixnav::supervisor
