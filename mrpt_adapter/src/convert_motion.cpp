@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include <Eigen/LU>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CActionRobotMovement3D.h>
