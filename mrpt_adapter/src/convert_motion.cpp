@@ -3,11 +3,11 @@
 #include <memory>
 #include <string>
 
-#include <Eigen/LU>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CActionRobotMovement3D.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
+#include <Eigen/LU>
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/gaussian.hpp"
