@@ -11,6 +11,7 @@
 
 #include "commands.hpp"
 #include "convert_log.hpp"
+#include "hand_over.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/nearest_name.hpp"
 #include "validators.hpp"
@@ -56,10 +57,21 @@ GraphFormat format_of(const ConvertJob& job) {
   if (const auto format = format_by_extension(extension)) return *format;
   throw CLI::ValidationError("OUT", "'" + extension + "' says no format; give --to " +
                                         CLI::detail::join(format_names(), ", --to ") +
-                                        ", or an extension of .circles, .lines, .dlr, .g2o, .isam, .gtsam");
+                                        ", or an extension of .circles, .lines, .dlr, .g2o, .isam, .gtsam, .rawlog");
+}
+
+bool is_rawlog(const std::string& path) { return std::filesystem::path(path).extension() == ".rawlog"; }
+
+[[noreturn]] void convert_rawlog(const ConvertJob& job) {
+  if (!job.noise.empty()) throw CLI::ValidationError("--noise", "goes to no rawlog; add it to IN first, then convert");
+  std::vector<std::string> arguments{job.in, job.out};
+  if (!job.to.empty()) arguments.insert(arguments.end(), {"--to", job.to});
+  if (job.overwrite) arguments.emplace_back("--overwrite");
+  hand_over("helixnav-rawlog", arguments);
 }
 
 ExitCode convert(const ConvertJob& job) {
+  if (is_rawlog(job.in) || (is_rawlog(job.out) && job.to.empty())) convert_rawlog(job);
   const GraphFormat format = format_of(job);
   std::vector<logs::Noise> noises;
   for (const std::string& word : job.noise) noises.push_back(noise_of(word));
@@ -96,9 +108,11 @@ void add_convert_command(CLI::App& app, ExitCode& code) {
   command->add_flag("--overwrite", job->overwrite, "Replace OUT when it is there");
   command->footer(
       "Formats by extension: .circles .lines .dlr (DLR text, robot axes X left, Y backward), .g2o, .isam (square-root\n"
-      "information), .gtsam (covariances). The graph formats hold what has a label; DLR text holds all.\n\n"
+      "information), .gtsam (covariances). The graph formats hold what has a label; DLR text holds all.\n"
+      "A .rawlog of MRPT, as IN or OUT, is converted by helixnav-rawlog, which says more (--help).\n\n"
       "Examples:\n"
       "  helixnav convert map.circles run_e.g2o\n"
+      "  helixnav convert victoria_park_ascii.zip park.rawlog\n"
       "  helixnav convert map.circles noisy.circles --noise odometry_heading_rad=0.01,point_x_m=0.05 --seed 3\n");
   command->callback([job, &code] { code = convert(*job); });
 }

@@ -97,7 +97,11 @@ Converted convert_log(const std::string& in, const std::string& out, GraphFormat
                       const std::vector<logs::Noise>& noises, std::uint64_t seed) {
   const bool is_graph = logs::recognise(in) == logs::LogFormat::g2o;
   if (is_graph && noises.empty() && format != GraphFormat::dlr) return to_graph(logs::read_g2o(in), out, format);
-  core::Recording recording = logs::read_recording(in);
+  return convert_recording(logs::read_recording(in), in, out, format, noises, seed);
+}
+
+Converted convert_recording(core::Recording recording, const std::string& in, const std::string& out,
+                            GraphFormat format, const std::vector<logs::Noise>& noises, std::uint64_t seed) {
   if (recording.labels.empty() && format != GraphFormat::dlr) {
     throw core::InputError(in + ": a graph needs a labelled log, and this one has no labels; --to dlr needs none");
   }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "helixnav/core/recording.hpp"
 #include "helixnav/logs/add_noise.hpp"
 
 namespace helixnav::apps {
@@ -33,6 +34,10 @@ struct Converted {
 /// Test: apps/convert_test.cpp.
 Converted convert_log(const std::string& in, const std::string& out, GraphFormat format,
                       const std::vector<logs::Noise>& noises, std::uint64_t seed);
+
+/// The same of a recording that was read from `in`.
+Converted convert_recording(core::Recording recording, const std::string& in, const std::string& out,
+                            GraphFormat format, const std::vector<logs::Noise>& noises, std::uint64_t seed);
 
 /// Counts, and a line for each noise with its measured standard deviation.
 std::string text_of(const Converted& converted);

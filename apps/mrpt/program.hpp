@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "exit_code.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace helixnav::apps {
+
+/// Name, version and commit, and MRPT's version.
+std::string version_text(const std::string& program);
+
+/// Parses the command line, calls `run` and turns what it throws into a line on stderr and an exit code, as docs/adr/0005
+/// says; what MRPT throws counts as data.
+int run_program(CLI::App& app, int argc, char** argv, const std::function<ExitCode()>& run);
+
+}  // namespace helixnav::apps

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <mrpt/obs/CActionCollection.h>
+
+#include "helixnav/core/events.hpp"
+
+namespace helixnav::apps {
+
+/// One movement with its whole covariance, which MRPT keeps for movements from scan matching only.
+mrpt::obs::CActionCollection movement_of(const core::Odometry& odometry);
+
+}  // namespace helixnav::apps

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rawlog_stream.hpp"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include <mrpt/core/exceptions.h>
+#include <mrpt/io/CFileGZInputStream.h>
+#include <mrpt/obs/CAction.h>
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CObservation.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/serialization/CArchive.h>
+
+#include "helixnav/core/errors.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The size of the content that a gzip file states in its last four bytes (modulo 2³²). zlib reads a file that was cut
+/// off as if it ended there, and MRPT does not ask it.
+bool is_cut_off(const fs::path& path, std::uint64_t content_bytes) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<unsigned char, 2> magic{};
+  file.read(reinterpret_cast<char*>(magic.data()), magic.size());
+  if (magic != std::array<unsigned char, 2>{0x1f, 0x8b}) return false;
+  std::array<unsigned char, 4> size{};
+  file.seekg(-static_cast<std::streamoff>(size.size()), std::ios::end);
+  file.read(reinterpret_cast<char*>(size.data()), size.size());
+  std::uint32_t stated = 0;
+  for (std::size_t i = size.size(); i-- > 0;) stated = stated << 8U | size[i];
+  return stated != static_cast<std::uint32_t>(content_bytes);
+}
+
+/// What MRPT says, without the call stack that it adds.
+std::string first_words(const std::exception& error) {
+  const auto* with_stack = dynamic_cast<const mrpt::ExceptionWithCallBackBase*>(&error);
+  std::string text = with_stack != nullptr ? with_stack->originalWhat : error.what();
+  for (char& c : text) {
+    if (c == '\n') c = ' ';
+  }
+  return text;
+}
+
+bool is_rawlog_entry(const mrpt::serialization::CSerializable& object) {
+  return dynamic_cast<const mrpt::obs::CObservation*>(&object) != nullptr ||
+         dynamic_cast<const mrpt::obs::CSensoryFrame*>(&object) != nullptr ||
+         dynamic_cast<const mrpt::obs::CActionCollection*>(&object) != nullptr ||
+         dynamic_cast<const mrpt::obs::CAction*>(&object) != nullptr;
+}
+
+}  // namespace
+
+struct RawlogStream::File {
+  explicit File(const std::string& name) : path(name) {
+    if (!fs::exists(path)) throw core::InputError(path + ": expected a rawlog, found nothing there");
+    if (fs::is_directory(path)) throw core::InputError(path + ": expected a rawlog, found a folder");
+    if (!gz.open(path)) throw core::InputError(path + ": cannot be opened for reading");
+    archive = mrpt::serialization::archiveUniquePtrFrom<mrpt::io::CStream>(gz);
+  }
+
+  void read() {
+    const std::uint64_t before = gz.getPosition();
+    try {
+      entry = archive->ReadObject<mrpt::serialization::CSerializable>();
+      if (!entry || !is_rawlog_entry(*entry)) {
+        damage_at(std::string("holds a ") + (entry ? entry->GetRuntimeClass()->className : "null object") +
+                  ", which is no action and no observation");
+      }
+    } catch (const std::exception& error) {
+      entry.reset();
+      const bool at_end = gz.getPosition() == before;
+      if (at_end && is_cut_off(path, before)) damage_at("is missing: the file was cut off");
+      if (!at_end) damage_at("cannot be read (cut off, of a class unknown here, or no rawlog): " + first_words(error));
+    }
+    if (!entry) done = true;
+  }
+
+  void damage_at(const std::string& what) {
+    entry.reset();
+    damage = path + ": entry " + std::to_string(count) + " " + what;
+  }
+
+  std::string path;
+  mrpt::io::CFileGZInputStream gz;
+  mrpt::serialization::CArchive::UniquePtr archive;
+  mrpt::serialization::CSerializable::Ptr entry;
+  std::size_t count = 0;
+  std::string damage;
+  bool done = false;
+};
+
+RawlogStream::RawlogStream(const std::string& path) : file_(std::make_unique<File>(path)) {
+  file_->read();
+  if (!file_->damage.empty()) throw core::InputError(file_->damage);
+  if (file_->done) throw core::InputError(path + ": expected a rawlog, found an empty file");
+}
+RawlogStream::~RawlogStream() = default;
+RawlogStream::RawlogStream(RawlogStream&&) noexcept = default;
+RawlogStream& RawlogStream::operator=(RawlogStream&&) noexcept = default;
+
+mrpt::serialization::CSerializable::Ptr RawlogStream::next() {
+  mrpt::serialization::CSerializable::Ptr entry = std::move(file_->entry);
+  file_->entry.reset();
+  if (!entry) return entry;
+  ++file_->count;
+  file_->read();
+  return entry;
+}
+
+std::size_t RawlogStream::entries() const { return file_->count; }
+const std::string& RawlogStream::damage() const { return file_->damage; }
+
+}  // namespace helixnav::apps

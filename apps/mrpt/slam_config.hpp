@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "helixnav/mrpt_adapter/map_builder_options.hpp"
+
+namespace helixnav::apps {
+
+/// What a configuration file of kf-slam says, and the section [HelixNav] that may stand beside.
+struct SlamConfig {
+  // [MappingApplication]
+  std::string rawlog_file;
+  std::size_t rawlog_offset = 0;
+  std::string logOutput_dir = "OUT_HELIXNAV-SLAM";  ///< empty: no files
+  std::size_t SAVE_LOG_FREQUENCY = 0;               ///< steps from one set of files to the next; 0: at the end only
+  bool SAVE_DA_LOG = true;
+  bool SAVE_3D_SCENES = true;
+  bool SHOW_3D_LIVE = false;
+  bool CAMERA_3DSCENE_FOLLOWS_ROBOT = false;
+  std::string ground_truth_file;
+  std::string ground_truth_file_robot;
+
+  // [HelixNav], beside the keys of MapBuilderOptions, which [RangeBearingKFSLAM] may hold as well.
+  bool save_png = true;
+  bool overwrite = false;
+  mrpt_adapter::MapBuilderOptions builder;
+
+  std::vector<std::string> without_effect;  ///< keys that are kf-slam's own, as [section] key
+};
+
+/// Reads `path`. InputError that names file, section, key and value: no file, none of the sections, a value that is
+/// not what the key wants, an unknown key in [HelixNav] (with the nearest), kf_implementation neither
+/// CRangeBearingKFSLAM nor CRangeBearingKFSLAM2D. Test: mrpt_apps/slam_config_test.cpp.
+SlamConfig read_slam_config(const std::string& path);
+
+}  // namespace helixnav::apps
