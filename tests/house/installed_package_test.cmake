@@ -1,5 +1,6 @@
 # Script: installs BUILD_DIR into WORK_DIR, moves what was installed, builds the consumer with find_package(helixnav) there
-# and runs it. The consumer is the program of the README, word for word.
+# and runs it. The consumer is the program of the README, word for word. WITH_MRPT: then the example of a program inside
+# MRPT, too.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(status)
@@ -38,4 +39,19 @@ run(${CMAKE_COMMAND} --build ${WORK_DIR}/build --parallel 2)
 run(${WORK_DIR}/build/consumer)
 if(NOT output MATCHES "^[1-9][0-9]* landmarks, robot at ")
   message(FATAL_ERROR "the consumer said: ${output}")
+endif()
+
+# Who does not ask for it does not meet MRPT.
+file(STRINGS ${WORK_DIR}/build/CMakeCache.txt met REGEX "^mrpt-")
+if(met)
+  message(FATAL_ERROR "the consumer looked for MRPT: ${met}")
+endif()
+if(WITH_MRPT)
+  run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE_DIR}/examples/mrpt_own_loop -B ${WORK_DIR}/example
+    -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
+  run(${CMAKE_COMMAND} --build ${WORK_DIR}/example)
+  run(${CMAKE_COMMAND} -E chdir ${WORK_DIR}/example ./mrpt_own_loop)
+  if(NOT output MATCHES "12 landmarks, robot at ")
+    message(FATAL_ERROR "the example said: ${output}")
+  endif()
 endif()
