@@ -60,9 +60,14 @@ std::optional<std::vector<ConstellationPair>> Search::look(const SearchView& vie
   }
   last_in_gate_path_m_ = path_m;
   attempt_->relocalizer.step(motion, view.scan);
+  if (options_.acceptance == Acceptance::paper_rule &&
+      pf_relocalize::meets_paper_rule(attempt_->relocalizer.state(), motion)) {
+    return std::vector<ConstellationPair>{};
+  }
   switch (judge_search(attempt_->relocalizer.state(), options_.gate, options_.give_up)) {
     case SearchOutcome::gate_met:
-      return question(view, decisions);
+      if (options_.acceptance == Acceptance::constellation) return question(view, decisions);
+      break;
     case SearchOutcome::timed_out:
       end_attempt("timed-out", path_m, decisions);
       break;

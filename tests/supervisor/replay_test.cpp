@@ -309,5 +309,21 @@ TEST(ClosingMethods, AllCloseALoopWhereTheTruthIs) {
   }
 }
 
+TEST(ClosingMethods, ThePapersRuleAsksNoConstellation) {
+  const core::Recording run = sim::simulate(sim::named_scenario("sparse"), 7001);
+  NavigatorOptions options = closing_by(ClosingMethod::restart);
+  options.search.acceptance = Acceptance::paper_rule;
+  Navigator navigator(run.start, options);
+  int accepted = 0, questions = 0;
+  drive(run, navigator, [&](const core::Scan& scan, std::size_t) {
+    for (const core::Decision& decision : navigator.observe(scan).decisions) {
+      accepted += decision.kind == "closure" && decision.verdict == "accepted" ? 1 : 0;
+      questions += decision.kind == "constellation" ? 1 : 0;
+    }
+  });
+  EXPECT_GE(accepted, 1);
+  EXPECT_EQ(questions, 0);
+}
+
 }  // namespace
 }  // namespace helixnav::supervisor

@@ -15,6 +15,11 @@ namespace helixnav::supervisor {
 /// differ by where they linearise. restart: the paper's, a baseline that throws the branch away. Figures: docs/closing.md.
 enum class ClosingMethod { merge, replay, restart };
 
+/// What is believed. constellation: landmarks of the branch stand on old ones, and nowhere else as well. paper_rule: the
+/// cloud's standard deviations are below twice those of the odometry since the last look, and that is all; a baseline,
+/// which has no pairs of landmarks to close with and needs ClosingMethod::restart.
+enum class Acceptance { constellation, paper_rule };
+
 /// When a return to old ground is too ambiguous to be associated scan by scan, how it is resolved by the particle filter,
 /// and what is asked before the map is closed. Distances are driven ones. Source of the figures: PROTOTYPE §2 to §6.
 struct SearchOptions {
@@ -43,6 +48,7 @@ struct SearchOptions {
   pf_relocalize::GiveUpLimits give_up;
 
   // Acceptance.
+  Acceptance acceptance = Acceptance::constellation;
   double branch_seen_within_m = 67.5;  ///< landmarks mapped since the trigger count while seen so lately
   double ask_again_m = 4.5;            ///< after a test that was not passed
   double confirm_m = 1.5;              ///< between the tests that must be passed in a row
