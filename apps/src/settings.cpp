@@ -129,6 +129,17 @@ void add_particle_filter(CLI::App& command, supervisor::SearchOptions& search) {
 }
 
 void add_acceptance(CLI::App& command, supervisor::SearchOptions& search) {
+  const auto set_acceptance = [&search](const std::string& word) {
+    search.acceptance = word == "paper" ? supervisor::Acceptance::paper_rule : supervisor::Acceptance::constellation;
+  };
+  command
+      .add_option_function<std::string>("--search.acceptance", set_acceptance,
+                                        "What is believed; constellation: new landmarks that stand on old ones as "
+                                        "nowhere else; paper: a cloud no wider than twice the odometry's noise "
+                                        "(baseline, with --search.closing restart only)")
+      ->check(one_of({"constellation", "paper"}))
+      ->default_str("constellation")
+      ->group(group);
   add_number(command, "--search.passes", search.passes, 1, 1000,
              "So many constellation tests in a row must be passed before a loop is closed");
   add_number(command, "--search.least_matches", search.constellation.least_matches, 3, 1000,
