@@ -24,6 +24,35 @@ namespace {
 
 using mrpt_adapter::MapBuilderOptions;
 
+core::Nanoseconds needed_time_of(const mrpt::obs::CObservation& observation) {
+  const auto t_ns = mrpt_adapter::time_of(observation);
+  if (!t_ns) throw core::InputError(std::string("a ") + observation.GetRuntimeClass()->className + " without time");
+  return *t_ns;
+}
+
+/// Fixes of one antenna, from the first on.
+class Fixes {
+ public:
+  Fixes(const MapBuilderOptions& options, core::Recording& recording) : options_(options), recording_(recording) {}
+
+  void take(const mrpt::obs::CObservation& observation) {
+    const auto* gps = dynamic_cast<const mrpt::obs::CObservationGPS*>(&observation);
+    if (gps == nullptr) return;
+    const auto t_ns = mrpt_adapter::time_of(*gps);
+    const auto position = mrpt_adapter::position_of(*gps);
+    if (!t_ns || !position) return;
+    if (!reference_) reference_ = position;
+    const core::AbsoluteFix fix = mrpt_adapter::fix_of(*gps, *position, *reference_, options_);
+    recording_.true_positions.push_back({*t_ns, fix.position_world_m});
+    recording_.antenna_robot_m = fix.antenna_robot_m;
+  }
+
+ private:
+  const MapBuilderOptions& options_;
+  core::Recording& recording_;
+  std::optional<mrpt_adapter::GpsReference> reference_;
+};
+
 class Recorder {
  public:
   Recorder(std::string name, const MapBuilderOptions& options) : options_(options) {
@@ -60,18 +89,10 @@ class Recorder {
       add(mrpt_adapter::scan_of(*landmarks, options_), observation);
     } else if (const auto* ranges = dynamic_cast<const mrpt::obs::CObservation2DRangeScan*>(&observation)) {
       add(mrpt_adapter::scan_of(*ranges, options_), observation);
-    } else if (const auto* gps = dynamic_cast<const mrpt::obs::CObservationGPS*>(&observation)) {
-      add(*gps);
     } else if (const auto* odometry = dynamic_cast<const mrpt::obs::CObservationOdometry*>(&observation)) {
       if (last_reading_) move(mrpt_adapter::increment_between(*last_reading_, odometry->odometry, options_));
       last_reading_ = odometry->odometry;
     }
-  }
-
-  static core::Nanoseconds needed_time_of(const mrpt::obs::CObservation& observation) {
-    const auto t_ns = mrpt_adapter::time_of(observation);
-    if (!t_ns) throw core::InputError(std::string("a ") + observation.GetRuntimeClass()->className + " without time");
-    return *t_ns;
   }
 
   void add(mrpt_adapter::NamedScan named, const mrpt::obs::CObservation& observation) {
@@ -87,20 +108,10 @@ class Recorder {
     recording_.events.emplace_back(std::move(named.scan));
   }
 
-  void add(const mrpt::obs::CObservationGPS& gps) {
-    const auto position = mrpt_adapter::position_of(gps);
-    if (!position) return;
-    if (!reference_) reference_ = position;
-    const core::AbsoluteFix fix = mrpt_adapter::fix_of(gps, *position, *reference_, options_);
-    recording_.true_positions.push_back({needed_time_of(gps), fix.position_world_m});
-    recording_.antenna_robot_m = fix.antenna_robot_m;
-  }
-
   MapBuilderOptions options_;
   core::Recording recording_;
   std::optional<core::Odometry> motion_;  ///< since the last scan
   std::optional<mrpt::poses::CPose2D> last_reading_;
-  std::optional<mrpt_adapter::GpsReference> reference_;
 };
 
 }  // namespace
@@ -117,6 +128,17 @@ RawlogEntries read_entries(const std::string& path) {
   return entries;
 }
 
+void add_true_positions(const RawlogEntries& entries, const MapBuilderOptions& options, core::Recording& recording) {
+  Fixes fixes(options, recording);
+  for (const auto& entry : entries) {
+    if (const auto* frame = dynamic_cast<const mrpt::obs::CSensoryFrame*>(entry.get())) {
+      for (const auto& observation : *frame) fixes.take(*observation);
+    } else if (const auto* observation = dynamic_cast<const mrpt::obs::CObservation*>(entry.get())) {
+      fixes.take(*observation);
+    }
+  }
+}
+
 core::Recording read_rawlog(const std::string& path, const MapBuilderOptions& options) {
   const RawlogEntries entries = with_movements(read_entries(path), vehicle_for(options.detector));
   Recorder recorder(std::filesystem::path(path).stem().string(), options);
@@ -127,7 +149,9 @@ core::Recording read_rawlog(const std::string& path, const MapBuilderOptions& op
       throw core::InputError(path + ": entry " + std::to_string(i) + ": " + error.what());
     }
   }
-  return recorder.finish();
+  core::Recording recording = recorder.finish();
+  add_true_positions(entries, options, recording);
+  return recording;
 }
 
 }  // namespace helixnav::apps

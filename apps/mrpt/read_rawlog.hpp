@@ -16,6 +16,10 @@ logs::AcfrSettings vehicle_for(const std::string& detector);
 /// A whole rawlog in memory. InputError when it is damaged anywhere.
 RawlogEntries read_entries(const std::string& path);
 
+/// Every valid GPS fix, for evaluation: metres east and north of the first, of the antenna that the last one names.
+void add_true_positions(const RawlogEntries& entries, const mrpt_adapter::MapBuilderOptions& options,
+                        core::Recording& recording);
+
 /// A rawlog, of frames or of single observations, as events in the order of the file; frames in theirs. Movements and
 /// observations as mrpt_adapter/conversions.hpp says, with its options; landmarkIDs become labels when any is there, GPS
 /// becomes positions for evaluation in metres east and north of the first fix. Observations of other classes are passed

@@ -101,20 +101,22 @@ class LiveView {
     if (!window_) std::fprintf(stderr, "helixnav-slam: no live view: %s\n", why_not.c_str());
   }
 
-  /// At most 20 times a second, or when it must.
+  /// At most 20 times a second and a tenth of the time, or when it must.
   void show(const mrpt_adapter::MapBuilder& builder, std::size_t step, bool must) {
-    constexpr double pause_s = 0.05;
-    if (!window_ || !window_->is_open() || (!must && shown_ && seconds_since(*shown_) < pause_s)) return;
-    shown_ = Clock::now();
+    if (!window_ || !window_->is_open() || (!must && shown_ && seconds_since(*shown_) < pause_s_)) return;
+    const Clock::time_point begin = Clock::now();
     window_->show(scene_of(builder, {}), "Step " + std::to_string(step));
     const core::Pose2 pose = RunAccess::pose(builder).mean;
     if (follows_robot_) window_->look_at(pose.x_m, pose.y_m);
+    pause_s_ = std::max(0.05, 9.0 * seconds_since(begin));
+    shown_ = Clock::now();
   }
 
  private:
   bool follows_robot_;
   std::unique_ptr<LiveWindow> window_;
   std::optional<Clock::time_point> shown_;
+  double pause_s_ = 0.0;
 };
 
 /// One run from its first step to its last file.
@@ -122,6 +124,7 @@ class Run {
  public:
   Run(const SlamConfig& config, Input input, std::string out)
       : config_(config), input_(std::move(input)), out_(std::move(out)) {
+    if (!config_.builder.gps_use) add_true_positions(input_.entries, config_.builder, recording_);
     if (!config_.ground_truth_file.empty()) recording_.true_landmarks = read_true_landmarks(config_.ground_truth_file);
     if (!config_.ground_truth_file_robot.empty()) true_path_m_ = read_true_path(config_.ground_truth_file_robot);
   }

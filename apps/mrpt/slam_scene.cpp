@@ -76,13 +76,15 @@ void render_png(const mrpt_adapter::MapBuilder& builder, mrpt::opengl::COpenGLSc
   const Eigen::Vector2d size_m = extent.high_m - extent.low_m;
   const Eigen::Vector2d centre_m = (extent.high_m + extent.low_m) / 2.0;
   constexpr double margin = 1.15;
+  constexpr double zoom_of_height = 2.0;  // MRPT shows half of the zoom distance
   constexpr double aspect = static_cast<double>(width_px) / height_px;
   mrpt::opengl::CCamera camera;
   camera.setProjectiveModel(false);
   camera.setPointingAt(static_cast<float>(centre_m.x()), static_cast<float>(centre_m.y()), 0.0F);
   camera.setAzimuthDegrees(-90.0F);  // x to the right, y up
   camera.setElevationDegrees(90.0F);
-  camera.setZoomDistance(static_cast<float>(margin * std::max({size_m.x() / aspect, size_m.y(), 1.0})));
+  camera.setZoomDistance(
+      static_cast<float>(zoom_of_height * margin * std::max({size_m.x() / aspect, size_m.y(), 1.0})));
   scene.getViewport()->setCustomBackgroundColor({1.0F, 1.0F, 1.0F, 1.0F});
 
   mrpt::opengl::CFBORender renderer(width_px, height_px);

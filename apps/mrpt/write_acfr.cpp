@@ -25,6 +25,8 @@ bool is_shiny(const logs::SickScan& scan) {
   return std::any_of(scan.reflectivity.begin(), scan.reflectivity.end(), [](int code) { return code > 0; });
 }
 
+mrpt::poses::CPose3D in_space(const core::Pose2& pose) { return {pose.x_m, pose.y_m, 0.0, pose.heading_rad, 0.0, 0.0}; }
+
 mrpt::obs::CObservation2DRangeScan::Ptr range_scan(const logs::SickScan& scan, const core::Pose2& T_robot_laser,
                                                    bool with_reflectivity) {
   const auto observation = std::make_shared<mrpt::obs::CObservation2DRangeScan>();
@@ -45,7 +47,8 @@ mrpt::obs::CObservation2DRangeScan::Ptr range_scan(const logs::SickScan& scan, c
   return observation;
 }
 
-mrpt::obs::CObservationGPS::Ptr gps_fix(const logs::GpsFix& fix, const logs::GpsFix& first) {
+mrpt::obs::CObservationGPS::Ptr gps_fix(const logs::GpsFix& fix, const logs::GpsFix& first,
+                                        const core::Pose2& T_robot_antenna) {
   const Eigen::Vector2d from_first_m = fix.position_m - first.position_m;
   mrpt::topography::TGeocentricCoords centred;
   mrpt::topography::ENUToGeocentric({from_first_m.x(), from_first_m.y(), 0.0}, nominal_place, centred,
@@ -60,6 +63,7 @@ mrpt::obs::CObservationGPS::Ptr gps_fix(const logs::GpsFix& fix, const logs::Gps
   const auto observation = std::make_shared<mrpt::obs::CObservationGPS>();
   observation->timestamp = rawlog_time(fix.t_ns);
   observation->sensorLabel = "GPS";
+  observation->sensorPose = in_space(T_robot_antenna);
   observation->setMsg(message);
   return observation;
 }
@@ -107,7 +111,7 @@ RawlogCounts write_acfr(const logs::AcfrLog& log, const logs::AcfrSettings& sett
       sink.write(*range_scan(log.scans[reading.index], settings.T_robot_laser, with_reflectivity));
       ++counts.scans;
     } else if (reading.sensor == logs::AcfrLog::Sensor::gps) {
-      sink.write(*gps_fix(log.gps[reading.index], log.gps.front()));
+      sink.write(*gps_fix(log.gps[reading.index], log.gps.front(), settings.T_robot_laser));
       ++counts.observations;
     } else {
       const logs::DeadReckoning& wheels = log.dead_reckoning[reading.index];

@@ -13,7 +13,8 @@ namespace helixnav::apps {
 /// CObservation2DRangeScan (reflectivity as intensity), GPS as CObservationGPS (GGA), each reading of wheel and steering
 /// as wheel_steering.hpp says and, for other programs, as CObservationOdometry: pose and velocity of the rear axle by
 /// the vehicle of `settings`. Nothing is detected or averaged; reading the rawlog gives the log's events again. The
-/// GPS of these logs is metric and local: its first fix is put at a nominal place in Sydney. Lost: surveyed beacons,
+/// GPS of these logs is metric and local: its first fix is put at a nominal place in Sydney, the
+/// antenna at the laser, as the data say. Lost: surveyed beacons,
 /// times finer than 100 ns. Test: mrpt_apps/convert_test.cpp.
 RawlogCounts write_acfr(const logs::AcfrLog& log, const logs::AcfrSettings& settings, const std::string& path);
 
