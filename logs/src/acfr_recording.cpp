@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/logs/acfr_recording.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace helixnav::logs {
@@ -33,7 +34,7 @@ class HeldSteering {
     const DeadReckoning& held = log_.dead_reckoning[index_];
     core::AckermannSample sample;
     sample.wheel_speed_mps = held.wheel_speed_mps;
-    sample.steering_rad = held.steering_rad + settings_.steering_offset_rad;
+    sample.steering_rad = settings_.steering_scale * held.steering_rad + settings_.steering_offset_rad;
     sample.duration_s = core::seconds(t_ns - now_ns_);
     core::Odometry odometry = ackermann_increment(settings_.geometry, settings_.noise, sample);
     odometry.covariance *= core::seconds(holds_until_ns(t_ns) - held.t_ns) / sample.duration_s;
@@ -77,20 +78,39 @@ core::Scan observe(const SickScan& raw, const AcfrSettings& settings) {
   return scan;
 }
 
+core::Nanoseconds time_of(const AcfrLog& log, const AcfrLog::Reading& reading) {
+  if (reading.sensor == AcfrLog::Sensor::gps) return log.gps[reading.index].t_ns;
+  if (reading.sensor == AcfrLog::Sensor::laser) return log.scans[reading.index].t_ns;
+  return log.dead_reckoning[reading.index].t_ns;
+}
+
 }  // namespace
+
+AcfrLog without_laser_delay(AcfrLog log, double delay_s) {
+  if (delay_s == 0.0) return log;
+  for (SickScan& scan : log.scans) scan.t_ns -= core::nanoseconds_from_seconds(delay_s);
+  std::stable_sort(log.order.begin(), log.order.end(), [&](const AcfrLog::Reading& a, const AcfrLog::Reading& b) {
+    return time_of(log, a) < time_of(log, b);
+  });
+  return log;
+}
 
 AcfrSettings car_park_settings() {
   AcfrSettings settings;
   settings.detector = AcfrSettings::Detector::reflectors;
   settings.noise = {1.0, 0.15};
+  settings.steering_scale = 1.0;
   settings.steering_offset_rad = 0.0075;
+  settings.laser_delay_s = 0.0;
+  settings.T_robot_laser.heading_rad = 0.0;
   settings.sigma_range_m = 0.05;
   settings.sigma_bearing_rad = 0.01;
   settings.view_range_m = 5.0;
   return settings;
 }
 
-core::Recording make_recording(const AcfrLog& log, const AcfrSettings& settings) {
+core::Recording make_recording(const AcfrLog& as_recorded, const AcfrSettings& settings) {
+  const AcfrLog log = without_laser_delay(as_recorded, settings.laser_delay_s);
   core::Recording recording;
   recording.name = log.name;
   recording.true_landmarks = log.beacons;

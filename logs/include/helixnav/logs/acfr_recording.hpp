@@ -15,9 +15,11 @@ struct AcfrSettings {
   enum class Detector { trees, reflectors };
 
   core::AckermannGeometry geometry;           ///< L = 2.83 m, H = 0.76 m
-  core::AckermannNoise noise{0.7, 0.05};      ///< of each dead-reckoning sample, white
-  double steering_offset_rad = -0.009;        ///< added to each recorded angle; docs/adr/0007-victoria-park.md
-  core::Pose2 T_robot_laser{3.78, 0.5, 0.0};  ///< from the middle of the rear axle
+  core::AckermannNoise noise{0.7, 0.01};          ///< of each dead-reckoning sample, white
+  double steering_scale = 0.97;                   ///< times the recorded angle; docs/adr/0007-victoria-park.md, and
+  double steering_offset_rad = 0.0016;            ///< added to that
+  double laser_delay_s = 0.1;                     ///< a scan was taken so long before its stamp
+  core::Pose2 T_robot_laser{3.78, 0.5, -0.0191};  ///< from the middle of the rear axle
 
   Detector detector = Detector::trees;
   TreeRules trees;
@@ -36,12 +38,15 @@ struct AcfrSettings {
 /// compared on this one log by the error of the beacons, about 30 combinations, so expect less elsewhere.
 AcfrSettings car_park_settings();
 
+/// The log with its scans stamped, and put in order, by when they were taken.
+AcfrLog without_laser_delay(AcfrLog log, double delay_s);
+
 /// Dead reckoning as increments, scans as observations, GPS and beacons as truth (the antenna is taken to be at the
 /// laser, as the data say). A sample of speed and steering holds from its time until the next one (the first nothing
 /// holds before, the last until the last scan); an increment is split exactly at the scans, its covariance in
 /// proportion to time, so that splitting changes nothing. Events come in the order of log.order; the start is the
 /// identity with zero covariance. Cost: detection, 5 µs a scan, and 0.3 µs a sample.
 /// Test: logs/acfr_recording_test.cpp.
-core::Recording make_recording(const AcfrLog& log, const AcfrSettings& settings);
+core::Recording make_recording(const AcfrLog& as_recorded, const AcfrSettings& settings);
 
 }  // namespace helixnav::logs
