@@ -14,6 +14,14 @@
 #include "pose_pdf.hpp"
 
 namespace helixnav::mrpt_adapter {
+namespace {
+
+void check_that_maps_are_updated(const mrpt::slam::CMetricMapBuilder::TOptions& options) {
+  if (options.enableMapUpdating) return;
+  throw core::PreconditionError("map updating is switched off, and this filter does not localise without mapping");
+}
+
+}  // namespace
 
 MapBuilder::Impl::Impl(const MapBuilderOptions& its_options, const mrpt::system::COutputLogger& log,
                        std::mutex& its_lock)
@@ -61,20 +69,16 @@ void MapBuilder::initialize(const mrpt::maps::CSimpleMap& initialMap, const mrpt
 
 void MapBuilder::processActionObservation(mrpt::obs::CActionCollection& action,
                                           mrpt::obs::CSensoryFrame& observations) {
-  if (!options.enableMapUpdating) {
-    throw core::PreconditionError("map updating is switched off, and this filter does not localise without mapping");
-  }
+  check_that_maps_are_updated(options);
   const Impl::Lock lock(impl_->lock);
   impl_->feed(odometry_of(action), observations, /*stream=*/false);
 }
 
 void MapBuilder::processObservation(const mrpt::obs::CObservation::Ptr& observation) {
   if (!observation) throw core::PreconditionError("processObservation: no observation");
+  check_that_maps_are_updated(options);
   mrpt::obs::CSensoryFrame frame;
   frame.insert(observation);
-  if (!options.enableMapUpdating) {
-    throw core::PreconditionError("map updating is switched off, and this filter does not localise without mapping");
-  }
   const Impl::Lock lock(impl_->lock);
   impl_->feed(std::nullopt, frame, /*stream=*/true);
 }

@@ -13,10 +13,10 @@
 #include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/system/CTimeLogger.h>
 
+#include "convert_frame.hpp"
 #include "helixnav/mrpt_adapter/map_builder.hpp"
 #include "helixnav/mrpt_adapter/run_access.hpp"
 #include "helixnav/supervisor/navigator.hpp"
-#include "input_queue.hpp"
 
 namespace helixnav::mrpt_adapter {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A scanner that sees all around, landmarks behind the vehicle, unknown association: MRPT issue 909.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
