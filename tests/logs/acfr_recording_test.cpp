@@ -31,6 +31,16 @@ AcfrLog small_log() {
   return log;
 }
 
+/// No calibration at all.
+AcfrSettings as_recorded() {
+  AcfrSettings settings;
+  settings.steering_scale = 1.0;
+  settings.steering_offset_rad = 0.0;
+  settings.laser_delay_s = 0.0;
+  settings.T_robot_laser.heading_rad = 0.0;
+  return settings;
+}
+
 std::vector<core::Odometry> increments(const core::Recording& recording) {
   std::vector<core::Odometry> all;
   for (const core::Event& event : recording.events) {
@@ -42,7 +52,7 @@ std::vector<core::Odometry> increments(const core::Recording& recording) {
 }
 
 TEST(MakeRecording, SplitsIncrementsExactlyAtTheScans) {
-  const core::Recording recording = make_recording(small_log(), {});
+  const core::Recording recording = make_recording(small_log(), as_recorded());
   const auto parts = increments(recording);
   ASSERT_EQ(parts.size(), 3u);
   EXPECT_EQ(parts[0].t_ns, 130'000'000);
@@ -55,19 +65,31 @@ TEST(MakeRecording, SplitsIncrementsExactlyAtTheScans) {
 }
 
 TEST(MakeRecording, MovesAndDoubtsAsMuchInPartsAsInTheWhole) {
-  AcfrSettings settings;
+  AcfrSettings settings = as_recorded();
+  settings.steering_scale = 1.05;
   settings.steering_offset_rad = 0.01;
   const auto parts = increments(make_recording(small_log(), settings));
   const core::Odometry both = core::chain(parts[0], parts[1]);
-  const core::Odometry whole = core::ackermann_increment(settings.geometry, settings.noise, {2.0, 0.21, 0.1});
+  const core::Odometry whole = core::ackermann_increment(settings.geometry, settings.noise, {2.0, 0.22, 0.1});
   EXPECT_LT((both.T_before_after.vector() - whole.T_before_after.vector()).norm(), 1e-12);
   // Speed moves along x and both variances are in proportion to the parts, so the largest terms agree to first order.
   EXPECT_NEAR(both.covariance(0, 0), whole.covariance(0, 0), 1e-3 * whole.covariance(0, 0));
   EXPECT_NEAR(both.covariance(2, 2), whole.covariance(2, 2), 1e-9 * whole.covariance(2, 2));
 }
 
+TEST(MakeRecording, StampsAScanByWhenItWasTaken) {
+  AcfrSettings settings = as_recorded();
+  settings.laser_delay_s = 0.06;
+  const auto parts = increments(make_recording(small_log(), settings));
+  ASSERT_EQ(parts.size(), 3u) << "the scan that came in at 130 ms was taken before the first sample, at 70 ms";
+  EXPECT_EQ(parts[0].t_ns, 140'000'000);
+  EXPECT_EQ(parts[1].t_ns, 190'000'000);
+  EXPECT_EQ(parts[2].t_ns, 200'000'000);
+  EXPECT_DOUBLE_EQ(parts[1].T_before_after.heading_rad / parts[0].T_before_after.heading_rad, 50.0 / 40.0);
+}
+
 TEST(MakeRecording, SeesFromTheLaserWithBearingsCounterClockwiseFromAhead) {
-  const core::Recording recording = make_recording(small_log(), {});
+  const core::Recording recording = make_recording(small_log(), as_recorded());
   const auto& scan = std::get<core::Scan>(recording.events[0]);
   EXPECT_EQ(scan.T_robot_sensor.vector(), Eigen::Vector3d(3.78, 0.5, 0.0));
   ASSERT_EQ(scan.observations.size(), 1u);

@@ -14,7 +14,7 @@ namespace helixnav::logs {
 struct AcfrSettings {
   enum class Detector { trees, reflectors };
 
-  core::AckermannGeometry geometry;           ///< L = 2.83 m, H = 0.76 m
+  core::AckermannGeometry geometry;               ///< L = 2.83 m, H = 0.76 m
   core::AckermannNoise noise{0.7, 0.01};          ///< of each dead-reckoning sample, white
   double steering_scale = 0.97;                   ///< times the recorded angle; docs/adr/0007-victoria-park.md, and
   double steering_offset_rad = 0.0016;            ///< added to that
