@@ -191,6 +191,12 @@ void add_truck(CLI::App& command, const std::string& section, logs::AcfrSettings
              "Noise of one sample of the steering angle");
   add_number(command, name("steering_offset_rad").c_str(), truck.steering_offset_rad, -0.5, 0.5,
              "Added to every recorded steering angle");
+  add_number(command, name("steering_scale").c_str(), truck.steering_scale, 0.5, 2.0,
+             "Every recorded steering angle is multiplied by this first");
+  add_number(command, name("laser_heading_rad").c_str(), truck.T_robot_laser.heading_rad, -core::pi, core::pi,
+             "Where the laser looks, from straight ahead to the left");
+  add_number(command, name("laser_delay_s").c_str(), truck.laser_delay_s, 0.0, 1.0,
+             "A scan was taken so long before its stamp");
   add_number(command, name("sigma_range_m").c_str(), truck.sigma_range_m, 1e-3, 100.0, "Noise of a detection's range");
   add_number(command, name("sigma_bearing_rad").c_str(), truck.sigma_bearing_rad, 1e-4, 1.0,
              "Noise of a detection's bearing");
