@@ -15,7 +15,6 @@
 #include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/opengl/COpenGLScene.h>
-#include <mrpt/system/CTimeLogger.h>
 
 #include "ground_truth.hpp"
 #include "helixnav/core/errors.hpp"
@@ -197,7 +196,6 @@ class Run {
                   errors.mean_m, errors.largest_m, errors.compared, errors.without_truth);
     }
     std::printf("time a step          median %.1f us\n", median_us());
-    if (config_.builder.enable_profiler) std::fputs(builder_.getProfiler().getStatsAsText().c_str(), stdout);
     if (writer_) std::printf("run folder: %s   report: %s/report.html\n", out_.c_str(), out_.c_str());
   }
 

@@ -92,7 +92,9 @@ CObservationRawDAQ::Ptr wheel_steering(const logs::DeadReckoning& reading) {
 RawlogEntries with_movements(RawlogEntries entries, const logs::AcfrSettings& settings) {
   const bool has_wheels = std::any_of(entries.begin(), entries.end(), as_wheel_steering);
   if (!has_wheels) return entries;
-  const std::vector<core::Odometry> before_scan = motions(make_recording(blind_log(entries), settings));
+  logs::AcfrSettings vehicle = settings;
+  vehicle.laser_delay_s = 0.0;  // a rawlog says when a scan was taken
+  const std::vector<core::Odometry> before_scan = motions(make_recording(blind_log(entries), vehicle));
   RawlogEntries result;
   std::size_t scan = 0;
   for (CSerializable::Ptr& entry : entries) {

@@ -20,7 +20,7 @@ mrpt::obs::CObservationRawDAQ::Ptr wheel_steering(const logs::DeadReckoning& rea
 using RawlogEntries = std::vector<mrpt::serialization::CSerializable::Ptr>;
 
 /// Where a rawlog has such readings: the same entries with, before each observation of landmarks (range scan, bearings
-/// and ranges), one movement with its covariance, that of logs::make_recording; readings and CObservationOdometry are
+/// and ranges), one movement with its covariance, that of logs::make_recording without its laser_delay_s; readings and CObservationOdometry are
 /// gone. Otherwise the entries as they are. InputError for readings without two inputs or without time.
 /// Test: mrpt_apps/convert_test.cpp (equal to the increments of the log itself).
 RawlogEntries with_movements(RawlogEntries entries, const logs::AcfrSettings& settings);

@@ -91,7 +91,8 @@ class Odometer {
   core::Odometry moved(const logs::DeadReckoning& reading, double duration_s) const {
     return core::ackermann_increment(
         settings_.geometry, settings_.noise,
-        {reading.wheel_speed_mps, reading.steering_rad + settings_.steering_offset_rad, duration_s});
+        {reading.wheel_speed_mps, settings_.steering_scale * reading.steering_rad + settings_.steering_offset_rad,
+         duration_s});
   }
 
   const logs::AcfrSettings& settings_;
@@ -101,7 +102,8 @@ class Odometer {
 
 }  // namespace
 
-RawlogCounts write_acfr(const logs::AcfrLog& log, const logs::AcfrSettings& settings, const std::string& path) {
+RawlogCounts write_acfr(const logs::AcfrLog& as_recorded, const logs::AcfrSettings& settings, const std::string& path) {
+  const logs::AcfrLog log = logs::without_laser_delay(as_recorded, settings.laser_delay_s);
   RawlogSink sink(path);
   RawlogCounts counts;
   Odometer odometer(settings);
