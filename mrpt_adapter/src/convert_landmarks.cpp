@@ -86,6 +86,7 @@ core::Pose2 planar_pose_of(const mrpt::poses::CPose3D& pose, const std::string& 
 NamedScan scan_of(const CObservationBearingRange& observation, const MapBuilderOptions& options) {
   const std::string whose = "CObservationBearingRange \"" + observation.sensorLabel + "\"";
   NamedScan result;
+  result.has_time = time_of(observation).has_value();
   result.scan.t_ns = time_of(observation).value_or(0);
   result.scan.T_robot_sensor = planar_pose_of(observation.sensorLocationOnRobot, whose);
   result.scan.field_of_view = field_of_view(observation, options);

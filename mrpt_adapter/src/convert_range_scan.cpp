@@ -79,6 +79,7 @@ NamedScan scan_of(const CObservation2DRangeScan& observation, const MapBuilderOp
   const bool trees = options.detector == "trees";
   const logs::SickScan sick = sick_scan_of(observation, rays);
   NamedScan result;
+  result.has_time = time_of(observation).has_value();
   result.scan.t_ns = sick.t_ns;
   result.scan.T_robot_sensor = planar_pose_of(observation.sensorPose, whose);
   result.scan.field_of_view = field_of_view(rays, trees, options);

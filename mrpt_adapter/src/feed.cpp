@@ -66,8 +66,12 @@ void MapBuilder::Impl::feed(const std::optional<core::Odometry>& motion, const m
   if (!steps.empty() && options.create_simplemap) keep(frame);
 }
 
-void MapBuilder::Impl::see(const NamedScan& scan, bool stream) {
-  if (stream && last && !motion_is_known_ && scan.scan.t_ns != last->t_ns) navigator->move(unknown_motion(options));
+void MapBuilder::Impl::see(NamedScan scan, bool stream) {
+  const bool same_instant = last && scan.has_time && scan.scan.t_ns == last->t_ns;
+  if (stream && last && !motion_is_known_ && !same_instant) navigator->move(unknown_motion(options));
+  if (last && !scan.has_time) scan.scan.t_ns = last->t_ns;
+  if (!scan.has_time) warn("an observation has no time stamp, the last one's is taken for it");
+  if (last && scan.scan.t_ns < last->t_ns) warn("an observation is older than the last one that was used");
   const Clock::time_point begin = Clock::now();
   Step step;
   {
@@ -123,7 +127,8 @@ void MapBuilder::Impl::tell(const core::StepReport& report) const {
 
 void MapBuilder::Impl::warn(const std::string& text) {
   // The same fault in every frame is worth one line, and the details are there for who asks.
-  const std::string kind = text.substr(0, text.find_first_of(",0123456789"));
+  std::string kind = text;
+  kind.erase(std::remove_if(kind.begin(), kind.end(), [](char c) { return c >= '0' && c <= '9'; }), kind.end());
   log_.logStr(warned_.insert(kind).second ? mrpt::system::LVL_WARN : mrpt::system::LVL_DEBUG, text);
 }
 

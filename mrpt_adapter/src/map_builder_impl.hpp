@@ -50,7 +50,7 @@ class MapBuilder::Impl {
   /// How landmarks are told apart, settled by the first measurements.
   enum class Association { open, by_name, unknown };
 
-  void see(const NamedScan& scan, bool stream);
+  void see(NamedScan scan, bool stream);
   core::StepReport observe(const NamedScan& scan);
   void remember(const NamedScan& scan, const core::StepReport& report);
   void tell(const core::StepReport& report) const;

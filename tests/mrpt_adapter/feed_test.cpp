@@ -221,6 +221,29 @@ TEST(Feed, FramesWithNothingToSeeAndObservationsWithoutATimeAreFine) {
   EXPECT_DOUBLE_EQ(RunAccess::pose(builder).mean.x_m, 1.0);
 }
 
+TEST(Feed, WithoutTimesEveryObservationOfAStreamIsAnInstantOfItsOwn) {
+  QuietBuilder builder;
+  for (int k = 0; k < 3; ++k) {
+    core::Scan nothing;
+    nothing.t_ns = 5000;
+    auto observation = observation_of(nothing);
+    if (k > 0) observation->timestamp = INVALID_TIMESTAMP;
+    builder.processObservation(observation);
+    EXPECT_EQ(RunAccess::last_steps(builder).back().report.t_ns, 5000);
+    EXPECT_NEAR(RunAccess::pose(builder).covariance(0, 0), 0.01 * k, 1e-4);
+  }
+  EXPECT_NE(builder.said().find("no time stamp"), std::string::npos);
+}
+
+TEST(Feed, TwoSensorsAtOneInstantAreNoMotion) {
+  QuietBuilder builder;
+  for (int k = 0; k < 3; ++k) builder.processObservation(observation_of(scan_at(1000, {})));
+  core::Scan late = scan_at(500, {});
+  EXPECT_EQ(RunAccess::pose(builder).covariance.trace(), 0.0);
+  builder.processObservation(observation_of(late));
+  EXPECT_NE(builder.said().find("older than the last one"), std::string::npos);
+}
+
 TEST(Initialize, StartsAfreshAtThePoseGiven) {
   QuietBuilder builder;
   process(builder, {}, frame_of(scan_at(0, {})));

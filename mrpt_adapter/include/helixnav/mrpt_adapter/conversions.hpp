@@ -43,7 +43,8 @@ core::Pose2 planar_pose_of(const mrpt::poses::CPose3D& pose, const std::string& 
 
 /// A scan with names beside it.
 struct NamedScan {
-  core::Scan scan;
+  core::Scan scan;                        ///< t_ns is 0 when has_time is false
+  bool has_time = false;                  ///< the observation has a time stamp
   std::vector<std::int64_t> identities;   ///< landmarkID of each observation, −1 without
   std::vector<std::size_t> measurements;  ///< where in sensedData each observation stood
   std::vector<std::string> dropped;       ///< why measurements were left out, a sentence each

@@ -64,7 +64,8 @@ class MapBuilder : public mrpt::slam::CMetricMapBuilder {
                   const mrpt::poses::CPosePDF* x0 = nullptr) override;
 
   /// CPose3DPDFGaussian while mapping; CPose3DPDFParticles, up to some 600 of equal weight, while a particle filter
-  /// looks for the vehicle on old ground. The pose of the map that goes on meanwhile is getCurrentState's.
+  /// looks for the vehicle on old ground. The pose of the map that goes on meanwhile is getCurrentState's. Either is as
+  /// of the last landmark observation or fix: motion since then reaches the filter with the next.
   mrpt::poses::CPose3DPDF::Ptr getCurrentPoseEstimation() const override;
 
   /// PreconditionError while map updating is switched off: this filter does not localise without mapping.
