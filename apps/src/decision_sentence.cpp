@@ -85,6 +85,13 @@ std::string closure_sentence(const core::Decision& d) {
     return "Refused: " + cost + (too_dear ? " exceeds " : " stands against ") + limit + " (" + dropped +
            (too_dear ? "): they cannot all be right. The map stays as it was." : "). The map stays as it was.");
   }
+  if (number(d, "dof") == 0.0) {
+    return "Accepted: the pose is that of the particles, and what was mapped since the trigger is forgotten; nothing "
+           "speaks "
+           "for it but " +
+           counted(number(d, "pairs"), "pair") + ". The pose moved by " + text(d, "moved_m") + " m, " +
+           text(d, "driven_m") + " m after the trigger.";
+  }
   return "Accepted: " + cost + " is within " + limit + " (" + dropped + "). The pose moved by " + text(d, "moved_m") +
          " m, " + text(d, "driven_m") + " m after the trigger.";
 }

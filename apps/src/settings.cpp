@@ -131,12 +131,13 @@ void add_particle_filter(CLI::App& command, supervisor::SearchOptions& search) {
 void add_acceptance(CLI::App& command, supervisor::SearchOptions& search) {
   const auto set_acceptance = [&search](const std::string& word) {
     search.acceptance = word == "paper" ? supervisor::Acceptance::paper_rule : supervisor::Acceptance::constellation;
+    if (word == "paper") search.closing = supervisor::ClosingMethod::restart;
   };
   command
       .add_option_function<std::string>("--search.acceptance", set_acceptance,
                                         "What is believed; constellation: new landmarks that stand on old ones as "
                                         "nowhere else; paper: a cloud no wider than twice the odometry's noise "
-                                        "(baseline, with --search.closing restart only)")
+                                        "(baseline, which closes by restart)")
       ->check(one_of({"constellation", "paper"}))
       ->default_str("constellation")
       ->group(group);

@@ -36,6 +36,9 @@ TEST_F(SearchSettings, EachReachTheSearchButThreadsAndTheDumpOfTheDefaultsChange
                                {"--search.particles", "100"},
                                {"--search.init", "gaussian"},
                                {"--search.decorrelation", "whitened-bound"},
+                               {"--search.closing", "replay"},
+                               {"--search.closing", "restart"},
+                               {"--search.acceptance", "paper"},
                                {"--search.passes", "4"},
                                {"--search.rival_ratio", "0.01"}}) {
     EXPECT_NE(decisions(options), plain) << options.front() << ' ' << options.back();
@@ -54,10 +57,20 @@ TEST_F(SearchSettings, CanForbidTheSearchOrItsClosing) {
   EXPECT_TRUE(has(decisions({"--search.undecided_m", "20"}), "closure,undecided"));
 }
 
+TEST_F(SearchSettings, OfThePaperCloseWithoutAConstellationAndAreExplained) {
+  const std::string paper = decisions({"--search.acceptance", "paper"});
+  EXPECT_TRUE(has(paper, "closure,accepted"));
+  EXPECT_FALSE(has(paper, "constellation,accepted"));
+  const Outcome outcome = run({"explain", folder_.path() / "run"});
+  EXPECT_NE(outcome.out.find("the pose is that of the particles"), std::string::npos) << outcome.out;
+}
+
 TEST_F(SearchSettings, OutOfRangeAreMisuse) {
   for (const Words& options : {Words{"--search.particles", "99"},
                                {"--search.init", "gausian"},
                                {"--search.decorrelation", "scalar"},
+                               {"--search.closing", "merg"},
+                               {"--search.acceptance", "papers"},
                                {"--search.threads", "0"},
                                {"--search.least_matches", "2"},
                                {"--search.rival_ratio", "1.5"},
