@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rawlog_stream.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
-#include <mrpt/core/exceptions.h>
 #include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/obs/CAction.h>
 #include <mrpt/obs/CActionCollection.h>
@@ -37,14 +37,21 @@ bool is_cut_off(const fs::path& path, std::uint64_t content_bytes) {
   return stated != static_cast<std::uint32_t>(content_bytes);
 }
 
-/// What MRPT says, without the call stack that it adds.
-std::string first_words(const std::exception& error) {
-  const auto* with_stack = dynamic_cast<const mrpt::ExceptionWithCallBackBase*>(&error);
-  std::string text = with_stack != nullptr ? with_stack->originalWhat : error.what();
-  for (char& c : text) {
-    if (c == '\n') c = ' ';
+/// The innermost of the messages that MRPT nests, without its call stacks.
+std::string core_of(const std::exception& error) {
+  std::string text = error.what();
+  const std::string beginning = "Message:";
+  if (const std::size_t last = text.rfind(beginning); last != std::string::npos) {
+    text = text.substr(last + beginning.size());
   }
-  return text;
+  text = text.substr(0, text.find('\n'));
+  return text.substr(std::min(text.size(), text.find_first_not_of(' ')));
+}
+
+std::string fault_of(const std::exception& error) {
+  const std::string why = core_of(error);
+  const bool ended = why.find("EOF") != std::string::npos;
+  return ended ? "is cut off" : "cannot be read (of a class unknown here, or no rawlog): " + why;
 }
 
 bool is_rawlog_entry(const mrpt::serialization::CSerializable& object) {
@@ -76,7 +83,7 @@ struct RawlogStream::File {
       entry.reset();
       const bool at_end = gz.getPosition() == before;
       if (at_end && is_cut_off(path, before)) damage_at("is missing: the file was cut off");
-      if (!at_end) damage_at("cannot be read (cut off, of a class unknown here, or no rawlog): " + first_words(error));
+      if (!at_end) damage_at(fault_of(error));
     }
     if (!entry) done = true;
   }

@@ -52,7 +52,7 @@ std::string explain_usage_error(const CLI::App& app, const CLI::ParseError& erro
   if (unknown.empty()) unknown = app.remaining();
   // A misspelt option also leaves its value or a required one missing: the word nobody knows is the cause.
   const std::string what = unknown.empty() ? error.what() : unknown_word(parsed, unknown.front());
-  const std::string command = &parsed == &app ? "helixnav" : "helixnav " + parsed.get_name();
+  const std::string command = &parsed == &app ? app.get_name() : app.get_name() + " " + parsed.get_name();
   return what + "\nTry '" + command + " --help'.";
 }
 

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <mrpt/img/CImage.h>
+#include <mrpt/maps/CSimpleMap.h>
+#include <mrpt/obs/CObservationBearingRange.h>
+#include <mrpt/obs/CObservationComment.h>
+#include <mrpt/opengl/COpenGLScene.h>
+
+#include "helixnav/logs/run_folder.hpp"
+#include "input_error.hpp"
+#include "live_window.hpp"
+#include "observations_only.hpp"
+#include "program.hpp"
+#include "rawlog_movement.hpp"
+#include "rawlog_sink.hpp"
+#include "read_rawlog.hpp"
+#include "slam_feed.hpp"
+#include "slam_run.hpp"
+#include "slam_scene.hpp"
+#include "small_rawlogs.hpp"
+#include "temporary_folder.hpp"
+#include "write_recording.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::input_error_of;
+
+const std::string application = "[MappingApplication]\nSAVE_LOG_FREQUENCY=0\n";
+
+class Slam : public ::testing::Test {
+ protected:
+  std::string file(const std::string& name) const { return folder_.path() / name; }
+
+  std::string posts() const {
+    write_recording(testing::past_posts(), file("posts.rawlog"), LandmarkIds::labels);
+    return file("posts.rawlog");
+  }
+
+  SlamJob job(const std::string& ini, const std::string& rawlog) const {
+    SlamJob made;
+    made.config = folder_.write("a.ini", ini);
+    made.rawlog = rawlog;
+    made.out = file("out");
+    made.quiet = true;
+    made.command_line = {"helixnav-slam"};
+    return made;
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+/// Blue as MapBuilder draws landmarks, well apart from grey grid, red path and white ground.
+int blue_pixels(const mrpt::img::CImage& image) {
+  int count = 0;
+  for (std::size_t y = 0; y < image.getHeight(); ++y) {
+    for (std::size_t x = 0; x < image.getWidth(); ++x) {
+      const std::uint8_t* bgr = image.ptr<std::uint8_t>(static_cast<unsigned>(x), static_cast<unsigned>(y));
+      if (bgr[0] > bgr[2] + 60 && bgr[0] > 120) ++count;
+    }
+  }
+  return count;
+}
+
+TEST_F(Slam, WritesTheRunFolderAndTheFilesOfKfSlam) {
+  EXPECT_EQ(run_slam(job("[MappingApplication]\nSAVE_LOG_FREQUENCY=10\n", posts())), ExitCode::ok);
+  const std::set<std::string> names = names_in(file("out"));
+  for (const char* name :
+       {"manifest.json", "trajectory.tum", "map.csv", "report.html", "data_association.log", "robot_pose_00000.txt",
+        "robot_pose_00010.txt", "full_cov_00020.txt", "kf_state_00010.3Dscene", "robot_pose.txt", "full_cov.txt",
+        "landmarks.txt", "kf_state.3Dscene", "map.simplemap", "map.png"}) {
+    EXPECT_EQ(names.count(name), 1U) << name;
+  }
+  const logs::RunFolder read = logs::read_run(file("out"));
+  EXPECT_EQ(read.steps.size(), 21U);  // the first frame, too
+  mrpt::maps::CSimpleMap map;
+  ASSERT_TRUE(map.loadFromFile(file("out/map.simplemap")));
+  EXPECT_EQ(map.size(), 21U);
+  mrpt::opengl::COpenGLScene scene;
+  EXPECT_TRUE(scene.loadFromFile(file("out/kf_state.3Dscene")));
+  mrpt::img::CImage picture;
+  ASSERT_TRUE(picture.loadFromFile(file("out/map.png")));
+  EXPECT_GT(blue_pixels(picture), 12 * 5);  // of each post a few
+}
+
+TEST_F(Slam, NeverTouchesWhatAUserHasInTheFolder) {
+  folder_.write("out/thesis.tex", "years of work");
+  const std::string why = input_error_of([&] { run_slam(job(application, posts())); });
+  EXPECT_NE(why.find("out"), std::string::npos) << why;
+  SlamJob again = job(application, posts());
+  again.overwrite = true;
+  EXPECT_EQ(run_slam(again), ExitCode::ok);
+  EXPECT_EQ(run_slam(again), ExitCode::ok);
+  EXPECT_EQ(text_of(file("out/thesis.tex")), "years of work");
+}
+
+TEST_F(Slam, KeepsWhatCameBeforeADamagedPlace) {
+  const std::string packed = text_of(posts());
+  const std::string cut = folder_.write("cut.rawlog", packed.substr(0, packed.size() * 2 / 3));
+  const std::string why = input_error_of([&] { run_slam(job(application, cut)); });
+  EXPECT_NE(why.find("cut.rawlog: entry"), std::string::npos) << why;
+  EXPECT_NE(why.find("steps before that were navigated and written to"), std::string::npos) << why;
+  EXPECT_GT(logs::read_run(file("out")).steps.size(), 5U);
+  EXPECT_TRUE(fs::exists(file("out/map.simplemap")));
+}
+
+TEST_F(Slam, StopsAtAnObservationWithoutTimeAndKeepsWhatCameBefore) {
+  RawlogSink sink(file("a.rawlog"));
+  mrpt::obs::CObservationBearingRange seen;
+  seen.timestamp = mrpt::Clock::fromDouble(100.0);
+  seen.sensor_std_range = seen.sensor_std_yaw = 0.1F;
+  seen.sensedData.resize(1);
+  seen.sensedData[0].range = 2.0F;
+  seen.sensedData[0].yaw = seen.sensedData[0].pitch = 0.0F;
+  seen.sensedData[0].landmarkID = mrpt::obs::INVALID_LANDMARK_ID;
+  sink.write(seen);
+  seen.timestamp = mrpt::Clock::time_point();
+  seen.sensorLabel = "TURRET";
+  sink.write(seen);
+  sink.finish();
+  const std::string why = input_error_of([&] { run_slam(job(application, file("a.rawlog"))); });
+  EXPECT_NE(why.find("entry 1: "), std::string::npos) << why;
+  EXPECT_NE(why.find("\"TURRET\" has no time"), std::string::npos) << why;
+  EXPECT_EQ(logs::read_run(file("out")).steps.size(), 1U);
+}
+
+TEST_F(Slam, RefusesARawlogWithNothingToNavigateBy) {
+  RawlogSink sink(file("a.rawlog"));
+  mrpt::obs::CObservationComment comment;
+  comment.text = "nothing happened";
+  sink.write(comment);
+  sink.finish();
+  const std::string why = input_error_of([&] { run_slam(job(application, file("a.rawlog"))); });
+  EXPECT_NE(why.find("nothing to navigate by"), std::string::npos) << why;
+  EXPECT_FALSE(fs::exists(file("out")));
+  const std::string unnamed = input_error_of([&] { run_slam(job(application, "")); });
+  EXPECT_NE(unnamed.find("[MappingApplication] rawlog_file is missing"), std::string::npos) << unnamed;
+}
+
+TEST_F(Slam, TellsTheShellWhatHappened) {
+  const Outcome help = run({HELIXNAV_SLAM, "--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_NE(help.out.find("Exit codes"), std::string::npos);
+  const Outcome version = run({HELIXNAV_SLAM, "--version"});
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_EQ(version.out.rfind("helixnav-slam ", 0), 0U) << version.out;
+  EXPECT_EQ(run({HELIXNAV_SLAM}).exit_code, 2);
+  const Outcome missing = run({HELIXNAV_SLAM, folder_.write("a.ini", application), file("none.rawlog")});
+  EXPECT_EQ(missing.exit_code, 3);
+  EXPECT_NE(missing.err.find("none.rawlog: expected a rawlog, found nothing there"), std::string::npos) << missing.err;
+}
+
+/// MRPT's shipped demo; kf-slam 2.5.8 has a mean error of 0.0037 m there, from the second frame on.
+class Demo : public Slam {
+ protected:
+  const std::string datasets_ = HELIXNAV_MRPT_DATASETS;
+  const std::string ini_ = "[MappingApplication]\nground_truth_file=" + datasets_ +
+                           "/kf-slam_demo_ground_truth.txt\n[RangeBearingKFSLAM]\nstd_sensor_range=0.03\n"
+                           "std_sensor_yaw_deg=0.1\n[HelixNav]\nsave_png=0\n"
+                           "odo_a1=0\nodo_a2=0\nodo_a3=0\nodo_a4=0\nodo_min_std_xy=0.04\nodo_min_std_phi_deg=0.01\n";
+
+  void SetUp() override {
+    if (!fs::exists(datasets_ + "/kf-slam_demo.rawlog")) GTEST_SKIP() << datasets_ << " is not there: mrpt-common";
+  }
+};
+
+TEST_F(Demo, IsMappedAsWellAsByKfSlamAndTheSameFromObservationsOnly) {
+  const std::string rawlog = datasets_ + "/kf-slam_demo.rawlog";
+  ::testing::internal::CaptureStdout();
+  EXPECT_EQ(run_slam(job(ini_, rawlog)), ExitCode::ok);
+  const std::string out = ::testing::internal::GetCapturedStdout();
+  const std::size_t mean = out.find("landmarks to truth   mean ");
+  ASSERT_NE(mean, std::string::npos) << out;
+  EXPECT_LT(std::stod(out.substr(mean + 26)), 0.006) << out;
+  EXPECT_NE(out.find("of 70 (0 without truth)"), std::string::npos) << out;
+
+  write_observations_only(rawlog, file("observations.rawlog"));
+  SlamJob again = job(ini_, file("observations.rawlog"));
+  again.out = file("again");
+  EXPECT_EQ(run_slam(again), ExitCode::ok);
+  const logs::RunFolder frames = logs::read_run(file("out"));
+  const logs::RunFolder single = logs::read_run(file("again"));
+  ASSERT_EQ(frames.steps.size(), 250U);
+  ASSERT_EQ(single.steps.size(), 250U);
+  for (std::size_t i = 0; i < frames.steps.size(); ++i) {
+    const core::Pose2 apart = core::between(frames.steps[i].pose.mean, single.steps[i].pose.mean);
+    EXPECT_LT(apart.vector().norm(), 1e-6) << i;
+  }
+}
+
+/// An X server without a screen, whose picture lies in a file. It ends with this process and not before: wxWidgets keeps
+/// its connection to the end, and exits when that is cut.
+class VirtualScreen {
+ public:
+  explicit VirtualScreen(const fs::path& folder) : image_(folder / "Xvfb_screen0") {
+    std::array<int, 2> ends{};
+    if (pipe(ends.data()) != 0) return;
+    if (fork() == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGTERM);
+      const std::string number = std::to_string(ends[1]);
+      execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1024x768x24", "-fbdir", folder.c_str(),
+             "-nolisten", "tcp", static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    close(ends[1]);
+    char byte = 0;
+    while (read(ends[0], &byte, 1) == 1 && byte != '\n') display_ += byte;
+    close(ends[0]);
+  }
+  /// ":N", or ":" when there is no server.
+  std::string display() const { return ":" + display_; }
+
+  /// Pixels as blue as landmarks, in the XWD file that the server keeps.
+  int blue_pixels() const {
+    const std::string xwd = text_of(image_);
+    const auto word = [&xwd](std::size_t i) {
+      std::uint32_t value = 0;
+      for (std::size_t byte = 0; byte < 4; ++byte) value = value << 8U | static_cast<unsigned char>(xwd[4 * i + byte]);
+      return static_cast<std::size_t>(value);
+    };
+    if (xwd.size() < 100) return 0;
+    const std::size_t pixels = word(0) + 12 * word(19);
+    int count = 0;
+    for (std::size_t i = pixels; i + 4 <= xwd.size(); i += 4) {
+      const auto blue = static_cast<unsigned char>(xwd[i]);
+      const auto red = static_cast<unsigned char>(xwd[i + 2]);
+      if (blue > red + 60 && blue > 120) ++count;
+    }
+    return count;
+  }
+
+ private:
+  fs::path image_;
+  std::string display_;
+};
+
+TEST_F(Slam, ShowsTheLandmarksInALiveWindow) {
+  fs::create_directory(file("screen"));
+  const VirtualScreen screen(file("screen"));
+  ASSERT_NE(screen.display(), ":") << "no Xvfb";
+  const std::string ini = folder_.write("live.ini", "[MappingApplication]\nSHOW_3D_LIVE=1\nlogOutput_dir=\n");
+  const Outcome outcome = run({"DISPLAY=" + screen.display(), HELIXNAV_SLAM, ini, posts(), "--quiet"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+
+  // The same window again, for as long as the picture takes to appear.
+  setenv("DISPLAY", screen.display().c_str(), 1);
+  std::string why_not;
+  const std::unique_ptr<LiveWindow> window = open_live_window(why_not);
+  ASSERT_TRUE(window) << why_not;
+  mrpt_adapter::MapBuilder builder;
+  SlamFeed feed(builder, [](const auto&) {});
+  for (const auto& entry : read_entries(posts())) feed.take(entry);
+  window->show(scene_of(builder, {}), "21 steps");
+  window->look_at(8.0, 0.0);
+  int blue = 0;
+  for (int tries = 0; tries < 1000 && blue < 12 * 5; ++tries) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    blue = screen.blue_pixels();
+  }
+  EXPECT_GE(blue, 12 * 5);
+}
+
+TEST_F(Slam, GoesOnWithoutADisplay) {
+  const std::string ini = folder_.write("live.ini", "[MappingApplication]\nSHOW_3D_LIVE=1\nlogOutput_dir=\n");
+  const Outcome outcome = run({"-u", "DISPLAY", HELIXNAV_SLAM, ini, posts(), "--quiet"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("no live view: there is no display"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+}  // namespace helixnav::apps
