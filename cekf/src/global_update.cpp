@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The end of a phase: what its weights say is written down, and applied to the passive covariance when nothing needs to
 // be undone any more.
-#include "add_outer.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
+#include "packed_product.hpp"
 
 namespace helixnav::cekf {
 namespace {
@@ -41,14 +41,11 @@ int CompressedEkf::assign_slots(Phase& phase) {
 }
 
 /// Covariance of all slots (rows) with the active part (columns), 2·slots × n.
-Eigen::MatrixXd CompressedEkf::end_columns(const Phase& phase, int slots) const {
+Eigen::MatrixXd CompressedEkf::end_columns(const Panels& basis, int slots) const {
   const int n = active_.dimension();
   ReservedMatrix columns(2 * slots, n);
-  if (active_.weights() > 0 && phase.slots > 0) {
-    const Eigen::MatrixXd weights = active_.A.view().transpose();
-    add_outer(columns.col(0), columns.stride(), phase.basis.padded_rows(), n, phase.basis.col(0), phase.basis.stride(),
-              weights.data(), weights.outerStride(), weights.cols());
-  }
+  const Eigen::MatrixXd weights = active_.A.view().transpose();
+  add_product(columns.col(0), columns.stride(), basis, Panels(weights, right_width));
   const auto P = active_.P.view();
   for (int i = 0; i < active_count(); ++i) {
     columns.view().middleRows<2>(2 * active_.slots[static_cast<std::size_t>(i)]) =
@@ -61,14 +58,12 @@ Eigen::MatrixXd CompressedEkf::end_columns(const Phase& phase, int slots) const 
 Eigen::MatrixXd CompressedEkf::close_phase(Phase& next) {
   Phase& phase = phases_.back();
   const int slots = assign_slots(phase);
-  Eigen::MatrixXd columns = end_columns(phase, slots);
+  const Panels basis(phase.basis.view(), left_width);
+  Eigen::MatrixXd columns = end_columns(basis, slots);
 
   ReservedMatrix response(2 * phase.slots, active_.weights());
-  if (response.rows() > 0 && response.cols() > 0) {
-    const Eigen::MatrixXd M = active_.M.view().selfadjointView<Eigen::Lower>();
-    add_outer(response.col(0), response.stride(), response.padded_rows(), response.cols(), phase.basis.col(0),
-              phase.basis.stride(), M.data(), M.outerStride(), M.cols());
-  }
+  const Eigen::MatrixXd M = active_.M.view().selfadjointView<Eigen::Lower>();
+  add_product(response.col(0), response.stride(), basis, Panels(M, right_width));
   phase.response = response.view();
   phase.written = active_.slots;
   phase.written_covariance = columns.rightCols(columns.cols() - 3);

@@ -4,22 +4,9 @@
 #include <algorithm>
 
 #include "add_outer.hpp"
+#include "packed_product.hpp"
 
 namespace helixnav::cekf {
-namespace {
-
-constexpr int tile_rows = PassiveCovariance::tile;
-
-/// Rows [I·tile, …) of `from`, zero below its end, as a compact tile × q block.
-void pack(const Eigen::Ref<const Eigen::MatrixXd>& from, int I, Eigen::MatrixXd& packed) {
-  const Eigen::Index first = static_cast<Eigen::Index>(I) * tile_rows;
-  const Eigen::Index rows = std::min<Eigen::Index>(tile_rows, from.rows() - first);
-  packed.resize(tile_rows, from.cols());
-  packed.topRows(rows) = from.middleRows(first, rows);
-  packed.bottomRows(tile_rows - rows).setZero();
-}
-
-}  // namespace
 
 void PassiveCovariance::grow(int rows) {
   if (rows <= rows_) return;
@@ -57,16 +44,14 @@ void PassiveCovariance::copy_columns(int slot, Eigen::Ref<Eigen::MatrixXd> colum
 
 void PassiveCovariance::add_symmetric_product(const Eigen::Ref<const Eigen::MatrixXd>& left,
                                               const Eigen::Ref<const Eigen::MatrixXd>& right) {
-  if (left.rows() == 0 || left.cols() == 0) return;
-  const int side = static_cast<int>((left.rows() + tile - 1) / tile);
-  std::vector<Eigen::MatrixXd> packed_right(static_cast<std::size_t>(side));
-  for (int J = 0; J < side; ++J) pack(right, J, packed_right[static_cast<std::size_t>(J)]);
-  Eigen::MatrixXd packed_left;
-  for (int I = 0; I < side; ++I) {
-    pack(left, I, packed_left);
-    for (int J = 0; J <= I; ++J) {
-      const Eigen::MatrixXd& r = packed_right[static_cast<std::size_t>(J)];
-      add_outer(tile_at(I, J).data(), tile, tile, tile, packed_left.data(), tile, r.data(), tile, left.cols());
+  const Panels tall(left, left_width);
+  const Panels wide(right, right_width);
+  for (Eigen::Index l = 0; l < tall.count(); ++l) {
+    const int row = static_cast<int>(l * left_width);
+    for (Eigen::Index r = 0; r * right_width < row + left_width && r < wide.count(); ++r) {
+      const int column = static_cast<int>(r * right_width);
+      double* const C = tile_at(row / tile, column / tile).data() + row % tile + (column % tile) * tile;
+      add_outer(C, tile, left_width, right_width, tall.panel(l), left_width, wide.panel(r), right_width, tall.depth());
     }
   }
 }

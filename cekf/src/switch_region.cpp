@@ -37,12 +37,15 @@ void CompressedEkf::switch_region(const std::vector<core::LandmarkId>& active) {
 /// active, so that the next activation does not make another switch due.
 std::vector<core::LandmarkId> CompressedEkf::region_around_vehicle() const {
   const Eigen::Vector2i cell = cell_of(active_.pose.position_m());
+  const Phase& phase = phases_.back();
+  const Eigen::VectorXd passive_m = phase.mean_m + phase.basis.view() * active_.theta;
   std::vector<std::pair<double, core::LandmarkId>> near;
   for (const core::LandmarkId id : landmarks()) {
     const Place& place = places_[static_cast<std::size_t>(id)];
     const bool is_active = place.where == Whereabouts::active;
     const Eigen::Vector2d mean_m =
-        is_active ? active_.points_m[static_cast<std::size_t>(place.index)] : passive_mean(place.index);
+        is_active ? active_.points_m[static_cast<std::size_t>(place.index)]
+                  : Eigen::Vector2d(passive_m.segment<2>(2 * static_cast<Eigen::Index>(place.index)));
     if ((cell_of(mean_m) - cell).cwiseAbs().maxCoeff() > 1) continue;
     near.emplace_back((mean_m - active_.pose.position_m()).squaredNorm(), id);
   }

@@ -9,6 +9,7 @@
 #include "helixnav/cekf/passive_covariance.hpp"
 #include "helixnav/cekf/reserved_matrix.hpp"
 #include "helixnav/core/random.hpp"
+#include "packed_product.hpp"
 
 namespace helixnav::cekf {
 namespace {
@@ -62,6 +63,22 @@ TEST(ReservedMatrix, KeepsWhatIsCommonAndZeroesTheRest) {
   EXPECT_EQ(copy.view().sum(), 2.0 * 6);
   matrix = copy;
   EXPECT_EQ(matrix.view(), copy.view());
+}
+
+TEST(Panels, MultiplyBitForBitLikeTheMatricesTheyWereCopiedFrom) {
+  core::RandomStream random(2);
+  for (const Eigen::Index rows : {1, 8, 16, 21, 150}) {
+    const ReservedMatrix zero(rows, 13);
+    ReservedMatrix A(rows, 37);
+    A.view() = random_matrix(random, rows, 37);
+    const Eigen::MatrixXd B = random_matrix(random, 13, 37);
+    ReservedMatrix direct = zero;
+    ReservedMatrix packed = zero;
+    add_outer(direct.col(0), direct.stride(), direct.padded_rows(), 13, A.col(0), A.stride(), B.data(), B.outerStride(),
+              37);
+    add_product(packed.col(0), packed.stride(), Panels(A.view(), left_width), Panels(B, right_width));
+    EXPECT_EQ(packed.view(), direct.view()) << rows << " rows";
+  }
 }
 
 TEST(PassiveCovariance, AddsAProductAndReadsItBack) {

@@ -19,6 +19,8 @@
 
 namespace helixnav::cekf {
 
+class Panels;
+
 /// EKF-SLAM over a pose and point landmarks, exactly, at a cost per step that does not depend on the size of the map:
 /// only the landmarks of the vehicle's neighbourhood are active; what the steps of a phase mean for all others is
 /// gathered in the weights of ActivePart and applied when the region switches.
@@ -167,7 +169,7 @@ class CompressedEkf {
 
   // global_update.cpp, switch_region.cpp, snapshot.cpp
   int assign_slots(Phase& phase);
-  Eigen::MatrixXd end_columns(const Phase& phase, int slots) const;
+  Eigen::MatrixXd end_columns(const Panels& basis, int slots) const;
   Eigen::MatrixXd close_phase(Phase& next);
   void absorb_closed_phases();
   void open_phase(Phase&& next, const Eigen::MatrixXd& columns, const std::vector<core::LandmarkId>& active);

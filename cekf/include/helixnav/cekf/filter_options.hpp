@@ -9,14 +9,14 @@ namespace helixnav::cekf {
 enum class Retraction { standard, right_invariant };
 
 /// The active set is the vehicle's cell of the square grid and its eight neighbours. The defaults were measured on a
-/// park of 350 trees on 320 m × 300 m seen up to 45 m away: 30 landmarks are active, a scan costs 70 µs on average and
-/// half of that in the median; cells of 80 m cost six times as much. Observations beyond the region activate lazily, so
-/// that a cell may well be smaller than the sensor's range. Maps of thousands of landmarks want larger cells, because a
-/// switch costs O(N²).
+/// park of 350 trees on 320 m × 300 m seen up to 45 m away (7230 scans, two busy cores): 88 switches, median 0.13 ms, 99 %
+/// of the scans under 2.7 ms; cells of 25 m left by 8 m switch 147 times, 4.4 ms. Observations beyond the region activate
+/// lazily, so that a cell may well be smaller than the sensor's range. Maps of thousands of landmarks want larger cells,
+/// because a switch costs O(N²).
 struct FilterOptions {
   Retraction retraction = Retraction::right_invariant;
-  double cell_side_m = 25.0;       ///< side of a cell
-  double hysteresis_m = 8.0;       ///< the vehicle must leave its cell by this much before the region switches
+  double cell_side_m = 20.0;       ///< side of a cell
+  double hysteresis_m = 20.0;      ///< the vehicle must leave its cell by this much before the region switches
   int max_active_landmarks = 120;  ///< above this a switch is due, which keeps the nearest, ¾ of it at most
 };
 

@@ -59,8 +59,8 @@ class MapBuilderOptions : public mrpt::config::CLoadableOptions {
   double gps_altitude = 0.0;
 
   // The filter and the search for old ground.
-  double cell_side = 25.0;
-  double hysteresis = 8.0;
+  double cell_side = 20.0;
+  double hysteresis = 20.0;
   bool search_enabled = true;
   std::uint64_t search_seed = 1;
   double search_old_after = 60.0;

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace helixnav::cekf {
+
+/// A rows × depth matrix copied into panels of `width` rows, each panel contiguous with `width` as its stride and zero
+/// beyond the last row. Columns of a tall matrix lie whole pages or powers of two apart, so that a kernel that walks along
+/// the depth would miss the first cache at every step; in a panel it reads line after line.
+class Panels {
+ public:
+  Panels(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& from, Eigen::Index width);
+
+  Eigen::Index rows() const { return rows_; }
+  Eigen::Index depth() const { return depth_; }
+  Eigen::Index width() const { return width_; }
+  Eigen::Index count() const { return (rows_ + width_ - 1) / width_; }
+  const double* panel(Eigen::Index p) const { return data_.data() + p * width_ * depth_; }
+
+ private:
+  Eigen::Index rows_;
+  Eigen::Index depth_;
+  Eigen::Index width_;
+  std::vector<double> data_;
+};
+
+/// Widths that fit the kernels: both panels of a depth of 150 lie in 32 KiB.
+constexpr Eigen::Index left_width = 16;
+constexpr Eigen::Index right_width = 8;
+
+/// C += left·rightᵀ, bit for bit what add_outer gives. C is column-major with at least left.rows() rows rounded up to
+/// eight, padding included.
+void add_product(double* C, Eigen::Index stride_C, const Panels& left, const Panels& right);
+
+}  // namespace helixnav::cekf
