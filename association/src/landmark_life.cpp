@@ -46,10 +46,6 @@ LandmarkLife::LandmarkLife(const LifeOptions& options)
 LifeChanges LandmarkLife::observe(const Eigen::Vector2d& sensor_m, const std::vector<LandmarkId>& seen,
                                   const std::vector<LandmarkId>& born, const std::vector<LandmarkId>& expected) {
   check_scan(seen, born, expected);
-  if (started_) path_m_ += (sensor_m - last_sensor_m_).norm();
-  last_sensor_m_ = sensor_m;
-  started_ = true;
-
   for (const LandmarkId id : seen) hit(*find(id), sensor_m);
   for (const LandmarkId id : expected) {
     if (!is_listed(seen, id) && !is_listed(born, id)) miss(*find(id), sensor_m);

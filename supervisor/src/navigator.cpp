@@ -40,7 +40,10 @@ Navigator::~Navigator() = default;
 Navigator::Navigator(Navigator&&) noexcept = default;
 Navigator& Navigator::operator=(Navigator&&) noexcept = default;
 
-void Navigator::move(const core::Odometry& odometry) { motion_ = motion_ ? core::chain(*motion_, odometry) : odometry; }
+void Navigator::move(const core::Odometry& odometry) {
+  motion_ = motion_ ? core::chain(*motion_, odometry) : odometry;
+  driven_m_ += odometry.T_before_after.position_m().norm();
+}
 
 StepReport Navigator::observe(const Scan& scan) {
   predict();
@@ -98,6 +101,8 @@ void Navigator::predict() {
   filter_.predict(*motion_);
   if (search_) search_->move(*motion_);
   if (journal_) journal_->predict(*motion_);
+  life_.drive(driven_m_);
+  driven_m_ = 0.0;
   motion_.reset();
 }
 

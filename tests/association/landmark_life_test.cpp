@@ -50,7 +50,9 @@ TEST(LandmarkLife, TentativeOnesDieUnconfirmedAndLeaveNoTrace) {
 TEST(LandmarkLife, TentativeOnesDieWhenTheDriveLeavesThemBehind) {
   LandmarkLife life;
   life.observe(at(0.0), {}, {4}, {});
-  for (int k = 1; k <= 30; ++k) EXPECT_TRUE(life.observe(at(k), {}, {}, {}).died.empty());
+  life.drive(30.0);
+  EXPECT_TRUE(life.observe(at(30.0), {}, {}, {}).died.empty());
+  life.drive(1.0);
   EXPECT_EQ(life.observe(at(31.0), {}, {}, {}).died, std::vector<core::LandmarkId>{4});
 }
 
@@ -140,7 +142,9 @@ TEST(LandmarkLife, OfTwoThatAreOneGoesOnAsOne) {
   LandmarkLife life;
   life.observe(at(0.0), {}, {4, 5}, {});
   for (double x = 1.0; x <= 3.0; x += 1.0) life.observe(at(x), {4, 5}, {}, {});
+  life.drive(100.0);
   life.observe(at(100.0), {}, {9, 10}, {});
+  life.drive(1.0);
   life.observe(at(101.0), {9, 10}, {}, {});
   const int observations = life.record(4).observations + life.record(9).observations;
   life.merge(4, 9);

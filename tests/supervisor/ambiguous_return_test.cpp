@@ -109,8 +109,9 @@ TEST(AmbiguousReturn, CallsOldWhatIsMatureAndLongUnseen) {
   association::LandmarkLife life;
   life.observe({0.0, 0.0}, {}, {1}, {});
   for (double x = 1.0; x <= 3.0; x += 1.0) life.observe({x, 0.0}, {1}, {}, {});
-  for (double x = 4.0; x < 63.0; x += 1.0) life.observe({x, 0.0}, {}, {}, {});
+  life.drive(60.0);
   EXPECT_TRUE(old_landmarks(life, 60.0).empty());
+  life.drive(0.5);
   life.observe({63.5, 0.0}, {}, {2}, {});
   EXPECT_EQ(old_landmarks(life, 60.0), std::vector<core::LandmarkId>{1}) << "2 is young and tentative";
 }

@@ -55,6 +55,9 @@ class LandmarkLife {
   /// PreconditionError unless 0 < P_F < P_D < 1, deaths lie below birth and maturity above it.
   explicit LandmarkLife(const LifeOptions& options = {});
 
+  /// The vehicle has driven on. What is driven without scans counts, and what a correction moves the estimate does not.
+  void drive(double length_m) { path_m_ += length_m; }
+
   /// One scan taken with the sensor at `sensor_m`, world frame. `seen`: matched landmarks. `born`: those that it began.
   /// `expected`: those it should have seen, with a margin inside the field of view; who was seen may be among them. A
   /// landmark beside an ambiguous observation belongs in neither list. PreconditionError, with the book as it was, for a
@@ -92,9 +95,7 @@ class LandmarkLife {
   double hit_nats_;
   double miss_nats_;
   std::vector<LandmarkRecord> records_;
-  Eigen::Vector2d last_sensor_m_ = Eigen::Vector2d::Zero();
   double path_m_ = 0.0;
-  bool started_ = false;
 };
 
 }  // namespace helixnav::association

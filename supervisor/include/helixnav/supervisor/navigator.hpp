@@ -105,6 +105,7 @@ class Navigator {
   cekf::CompressedEkf filter_;
   association::LandmarkLife life_;
   std::optional<core::Odometry> motion_;   ///< since the last scan
+  double driven_m_ = 0.0;                  ///< its length along the road
   std::vector<core::Decision> decisions_;  ///< since the last scan
   std::int64_t step_ = 0;
 
