@@ -80,7 +80,9 @@ struct NameKey {
 };
 
 std::vector<NameKey> name_keys() {
-  return {{"association", &O::association, association_names()}, {"detector", &O::detector, detector_names()}};
+  return {{"association", &O::association, association_names()},
+          {"detector", &O::detector, detector_names()},
+          {"retraction", &O::retraction, retraction_names()}};
 }
 
 struct CountKey {

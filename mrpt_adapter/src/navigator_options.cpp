@@ -9,6 +9,7 @@ namespace helixnav::mrpt_adapter {
 
 supervisor::NavigatorOptions navigator_options(const MapBuilderOptions& options) {
   supervisor::NavigatorOptions result;
+  result.filter.retraction = retraction_of(options.retraction);
   result.filter.cell_side_m = options.cell_side;
   result.filter.hysteresis_m = options.hysteresis;
   result.method = method_of(options.association);

@@ -28,11 +28,19 @@ std::vector<std::string> association_names() {
 
 std::vector<std::string> detector_names() { return {"trees", "reflectors", "none"}; }
 
+std::vector<std::string> retraction_names() { return {"right-invariant", "standard"}; }
+
 association::Method method_of(const std::string& name) {
   for (const association::Method method : methods()) {
     if (association::name(method) == name) return method;
   }
   throw core::InputError("association = \"" + name + "\": there is no such method");
+}
+
+cekf::Retraction retraction_of(const std::string& name) {
+  if (name == "right-invariant") return cekf::Retraction::right_invariant;
+  if (name == "standard") return cekf::Retraction::standard;
+  throw core::InputError("retraction = \"" + name + "\": expected right-invariant or standard");
 }
 
 std::string short_text(double number) {

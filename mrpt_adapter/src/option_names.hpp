@@ -5,15 +5,18 @@
 #include <vector>
 
 #include "helixnav/association/associate.hpp"
+#include "helixnav/cekf/filter_options.hpp"
 
 namespace helixnav::mrpt_adapter {
 
-/// The values that the options `association` and `detector` may have.
+/// The values that the options `association`, `detector` and `retraction` may have.
 std::vector<std::string> association_names();
 std::vector<std::string> detector_names();
+std::vector<std::string> retraction_names();
 
-/// The method of that name; InputError when there is none.
+/// What has that name; InputError when there is none.
 association::Method method_of(const std::string& name);
+cekf::Retraction retraction_of(const std::string& name);
 
 /// For messages: 0.5, 1e+06.
 std::string short_text(double number);

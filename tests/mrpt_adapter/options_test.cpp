@@ -60,6 +60,7 @@ TEST(Options, WhatIsSavedIsLoadedAgainToTheLastBit) {
   options.std_sensor_yaw_rad = 0.3;
   options.association = "jcbb";
   options.detector = "reflectors";
+  options.retraction = "standard";
   options.gps_use = true;
   options.search_seed = 18'446'744'073'709'551'615u;
   options.search_threads = 3;
@@ -74,6 +75,7 @@ TEST(Options, WhatIsSavedIsLoadedAgainToTheLastBit) {
   EXPECT_EQ(back.search_threads, 3u);
   EXPECT_EQ(back.association, "jcbb");
   EXPECT_EQ(back.detector, "reflectors");
+  EXPECT_EQ(back.retraction, "standard");
   EXPECT_TRUE(back.gps_use);
   CConfigFileMemory again;
   back.saveToConfigFile(again, "s");
@@ -87,7 +89,7 @@ TEST(Options, DumpNamesEveryKeyInTheUnitOfTheFile) {
   std::ostringstream text;
   options.dumpToTextStream(text);
   for (const char* key : {"stdPhi_no_odo_deg", "std_sensor_yaw_deg", "odo_min_std_phi_deg", "association", "detector",
-                          "create_simplemap", "search_seed", "gps_latitude_deg", "enable_profiler"}) {
+                          "create_simplemap", "search_seed", "retraction", "gps_latitude_deg", "enable_profiler"}) {
     EXPECT_NE(text.str().find(key), std::string::npos) << key;
   }
 }
@@ -99,6 +101,7 @@ TEST(Options, RefusalsNameSectionKeyValueAndRange) {
   EXPECT_NE(refusal("cell_side = nan\n").find("expected a number"), std::string::npos);
   EXPECT_NE(refusal("search_enabled = maybe\n").find("true or false"), std::string::npos);
   EXPECT_NE(refusal("association = jcb\n").find("nearest: jcbb"), std::string::npos);
+  EXPECT_NE(refusal("retraction = right_invariant\n").find("nearest: right-invariant"), std::string::npos);
   EXPECT_NE(refusal("search_threads = 0\n").find("from 1 to 256"), std::string::npos);
   EXPECT_NE(refusal("search_seed = -1\n").find("whole number"), std::string::npos);
   EXPECT_NE(refusal("data_assoc_method = best\n").find("assocJCBB"), std::string::npos);

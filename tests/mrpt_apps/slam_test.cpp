@@ -7,15 +7,25 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
+#include <map>
 #include <memory>
+#include <sstream>
 #include <thread>
 
 #include <gtest/gtest.h>
 #include <mrpt/img/CImage.h>
 #include <mrpt/maps/CSimpleMap.h>
+#include <mrpt/math/CMatrixDynamic.h>
+#include <mrpt/math/CVectorDynamic.h>
+#include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/obs/CObservationComment.h>
+#include <mrpt/obs/CRawlog.h>
+#include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/opengl/COpenGLScene.h>
+#include <mrpt/poses/CPosePDFGaussian.h>
+#include <mrpt/slam/CRangeBearingKFSLAM2D.h>
 
 #include "helixnav/logs/run_folder.hpp"
 #include "input_error.hpp"
@@ -198,6 +208,69 @@ TEST_F(Demo, IsMappedAsWellAsByKfSlamAndTheSameFromObservationsOnly) {
     const core::Pose2 apart = core::between(frames.steps[i].pose.mean, single.steps[i].pose.mean);
     EXPECT_LT(apart.vector().norm(), 1e-6) << i;
   }
+}
+
+/// Landmarks by landmarkID.
+using Landmarks = std::map<std::int64_t, mrpt::math::TPoint2D>;
+
+Landmarks landmarks_of_kf_slam(mrpt::obs::CRawlog& demo) {
+  mrpt::slam::CRangeBearingKFSLAM2D filter;
+  filter.setMinLoggingLevel(mrpt::system::LVL_ERROR);
+  filter.KF_options.verbosity_level = mrpt::system::LVL_ERROR;
+  filter.KF_options.enable_profiler = false;
+  filter.options.std_sensor_range = 0.03F;
+  filter.options.std_sensor_yaw = static_cast<float>(0.1 * core::pi / 180.0);
+  auto action = mrpt::obs::CActionCollection::Create();
+  for (std::size_t i = 0; i < demo.size(); ++i) {
+    if (demo.getType(i) == mrpt::obs::CRawlog::etActionCollection) action = demo.getAsAction(i);
+    if (demo.getType(i) != mrpt::obs::CRawlog::etSensoryFrame) continue;
+    auto frame = demo.getAsObservations(i);
+    filter.processActionObservation(action, frame);
+  }
+  mrpt::poses::CPosePDFGaussian pose;
+  std::vector<mrpt::math::TPoint2D> points;
+  std::map<unsigned int, mrpt::maps::CLandmark::TLandmarkID> ids;
+  mrpt::math::CVectorDouble state;
+  mrpt::math::CMatrixDouble covariance;
+  filter.getCurrentState(pose, points, ids, state, covariance);
+  Landmarks landmarks;
+  for (const auto& [index, id] : ids) landmarks[static_cast<std::int64_t>(id)] = points[index];
+  return landmarks;
+}
+
+Landmarks read_landmarks(const std::string& path) {
+  Landmarks landmarks;
+  std::istringstream lines(text_of(path));
+  lines.ignore(1000, '\n');
+  mrpt::math::TPoint2D point;
+  for (std::int64_t id = 0; lines >> point.x >> point.y >> id;) landmarks[id] = point;
+  return landmarks;
+}
+
+/// Largest distance of equally named landmarks; infinity when the names differ.
+double farthest_m(const Landmarks& a, const Landmarks& b) {
+  if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
+  double farthest = 0.0;
+  for (const auto& [id, point] : a) {
+    if (b.count(id) == 0) return std::numeric_limits<double>::infinity();
+    farthest = std::max(farthest, (b.at(id) - point).norm());
+  }
+  return farthest;
+}
+
+TEST_F(Demo, IsKfSlamsMapWithTheStandardRetractionAndWithinItsLinearisationWithOurs) {
+  mrpt::obs::CRawlog demo;
+  ASSERT_TRUE(demo.loadFromRawLogFile(datasets_ + "/kf-slam_demo.rawlog"));
+  const Landmarks of_kf_slam = landmarks_of_kf_slam(demo);
+  ASSERT_EQ(of_kf_slam.size(), 70U);
+  EXPECT_EQ(run_slam(job(ini_ + "retraction = standard\n", datasets_ + "/kf-slam_demo.rawlog")), ExitCode::ok);
+  EXPECT_LT(farthest_m(read_landmarks(file("out/landmarks.txt")), of_kf_slam), 1e-7);
+  SlamJob ours = job(ini_, datasets_ + "/kf-slam_demo.rawlog");
+  ours.overwrite = true;
+  EXPECT_EQ(run_slam(ours), ExitCode::ok);
+  const double apart_m = farthest_m(read_landmarks(file("out/landmarks.txt")), of_kf_slam);
+  EXPECT_GT(apart_m, 1e-6);
+  EXPECT_LT(apart_m, 1e-3);
 }
 
 /// An X server without a screen, whose picture lies in a file. It ends with this process and not before: wxWidgets keeps

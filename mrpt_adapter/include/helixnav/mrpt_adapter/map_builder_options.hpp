@@ -59,6 +59,7 @@ class MapBuilderOptions : public mrpt::config::CLoadableOptions {
   double gps_altitude = 0.0;
 
   // The filter and the search for old ground.
+  std::string retraction = "right-invariant";  ///< or standard: as kf-slam corrects
   double cell_side = 20.0;
   double hysteresis = 20.0;
   bool search_enabled = true;
