@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam_files.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include <mrpt/core/exceptions.h>
 #include <mrpt/maps/CSimpleMap.h>
@@ -57,6 +60,33 @@ std::string numbered(std::size_t step) {
   return text;
 }
 
+/// Whether this is a name that a run gives to a file of kf-slam's kind, with the number of a step or without.
+bool is_written_here(const std::string& name) {
+  for (const char* alone : {"data_association.log", "landmarks.txt", "map.simplemap", "map.png"}) {
+    if (name == alone) return true;
+  }
+  const std::string stem = name.substr(0, name.find('.'));
+  const std::string ending = name.substr(stem.size());
+  const std::size_t digits = stem.size() - std::min(stem.size(), stem.find_last_not_of("0123456789") + 1);
+  const bool is_numbered = digits >= 5 && stem.size() > digits && stem[stem.size() - digits - 1] == '_';
+  const std::string kind = is_numbered ? stem.substr(0, stem.size() - digits - 1) : stem;
+  if (kind == "kf_state") return ending == ".3Dscene";
+  return (kind == "robot_pose" || kind == "full_cov") && ending == ".txt";
+}
+
+/// A shorter run would leave the last numbers of a longer one beside its own.
+void remove_earlier_files(const std::string& folder) {
+  std::vector<std::filesystem::path> earlier;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.is_regular_file() && is_written_here(entry.path().filename().string())) earlier.push_back(entry.path());
+  }
+  for (const std::filesystem::path& path : earlier) {
+    std::error_code error;
+    std::filesystem::remove(path, error);
+    if (error) throw core::InputError(path.string() + ": cannot be removed: " + error.message());
+  }
+}
+
 void write_landmarks(const std::string& path, const std::vector<mrpt::math::TPoint2D>& points,
                      const std::map<unsigned int, std::int64_t>& ids) {
   std::ofstream file(path);
@@ -74,6 +104,7 @@ void write_landmarks(const std::string& path, const std::vector<mrpt::math::TPoi
 
 SlamFiles::SlamFiles(const SlamConfig& config, std::string folder, std::vector<Eigen::Vector2d> true_path_m)
     : config_(config), folder_(std::move(folder)), true_path_m_(std::move(true_path_m)) {
+  remove_earlier_files(folder_);
   if (!config_.SAVE_DA_LOG) return;
   associations_.open(folder_ + "/data_association.log");
   if (!(associations_ << associations_header)) {

@@ -16,7 +16,8 @@ namespace helixnav::apps {
 
 /// The files that users of kf-slam look for, in the folder of the run: data_association.log as the run goes; where
 /// SAVE_LOG_FREQUENCY says so, robot_pose_N.txt, full_cov_N.txt and kf_state_N.3Dscene; at the end robot_pose.txt,
-/// full_cov.txt, landmarks.txt, kf_state.3Dscene, map.simplemap and map.png. InputError when one cannot be written.
+/// full_cov.txt, landmarks.txt, kf_state.3Dscene, map.simplemap and map.png. InputError when one cannot be written. Files
+/// of these names that lie in the folder from an earlier run are removed at the beginning, and no others.
 /// Test: mrpt_apps/slam_test.cpp.
 class SlamFiles {
  public:

@@ -116,6 +116,25 @@ TEST_F(Slam, NeverTouchesWhatAUserHasInTheFolder) {
   EXPECT_EQ(text_of(file("out/thesis.tex")), "years of work");
 }
 
+TEST_F(Slam, LeavesNoNumbersOfALongerRunWhenToldToOverwrite) {
+  const std::string every_step = "[HelixNav]\nsave_png=0\n[MappingApplication]\nSAVE_LOG_FREQUENCY=1\n";
+  ASSERT_EQ(run_slam(job(every_step, posts())), ExitCode::ok);
+  ASSERT_TRUE(fs::exists(file("out/kf_state_00020.3Dscene")));
+  for (const char* name : {"out/robot_pose_07.txt", "out/robot_pose_00020.txt.bak", "out/my_full_cov_00020.txt"}) {
+    folder_.write(name, "mine");
+  }
+  SlamJob shorter = job(every_step + "rawlog_offset=20\n", posts());
+  shorter.overwrite = true;
+  ASSERT_EQ(run_slam(shorter), ExitCode::ok);
+  EXPECT_TRUE(fs::exists(file("out/robot_pose_00005.txt")));
+  for (const char* name : {"out/robot_pose_00020.txt", "out/full_cov_00020.txt", "out/kf_state_00020.3Dscene"}) {
+    EXPECT_FALSE(fs::exists(file(name))) << name;
+  }
+  for (const char* name : {"out/robot_pose_07.txt", "out/robot_pose_00020.txt.bak", "out/my_full_cov_00020.txt"}) {
+    EXPECT_EQ(text_of(file(name)), "mine") << name;
+  }
+}
+
 TEST_F(Slam, KeepsWhatCameBeforeADamagedPlace) {
   const std::string packed = text_of(posts());
   const std::string cut = folder_.write("cut.rawlog", packed.substr(0, packed.size() * 2 / 3));
