@@ -8,6 +8,7 @@
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/observation.hpp"
+#include "helixnav/logs/acfr_recording.hpp"
 #include "helixnav/logs/detect_reflectors.hpp"
 #include "helixnav/logs/detect_trees.hpp"
 #include "helixnav/mrpt_adapter/conversions.hpp"
@@ -64,10 +65,26 @@ logs::SickScan sick_scan_of(const CObservation2DRangeScan& scan, const Rays& ray
   return sick;
 }
 
-core::FieldOfView field_of_view(const Rays& rays, bool trees, const MapBuilderOptions& options) {
+/// What is known of a detector, unless the options say better.
+struct Detector {
+  explicit Detector(const MapBuilderOptions& options) : trees(options.detector == "trees") {
+    const logs::AcfrSettings measured = trees ? logs::AcfrSettings{} : logs::car_park_settings();
+    const auto either = [](double chosen, double own) { return chosen > 0.0 ? chosen : own; };
+    sigma_range_m = either(options.std_detector_range, measured.sigma_range_m);
+    sigma_bearing_rad = either(options.std_detector_yaw_rad, measured.sigma_bearing_rad);
+    view_range_m = either(options.detector_view_range, measured.view_range_m);
+  }
+
+  bool trees;
+  double sigma_range_m;
+  double sigma_bearing_rad;
+  double view_range_m;
+};
+
+core::FieldOfView field_of_view(const Rays& rays, const Detector& detector) {
   const logs::TreeRules rules;
-  const double half_rad = std::min(core::pi, rays.aperture_rad) / 2.0 - (trees ? rules.edge_margin_rad : 0.0);
-  return {trees ? rules.min_range_m : 0.0, options.detector_view_range, -half_rad, half_rad};
+  const double half_rad = std::min(core::pi, rays.aperture_rad) / 2.0 - (detector.trees ? rules.edge_margin_rad : 0.0);
+  return {detector.trees ? rules.min_range_m : 0.0, detector.view_range_m, -half_rad, half_rad};
 }
 
 }  // namespace
@@ -76,18 +93,18 @@ NamedScan scan_of(const CObservation2DRangeScan& observation, const MapBuilderOp
   const std::string whose = "CObservation2DRangeScan \"" + observation.sensorLabel + "\"";
   const Rays rays(observation);
   check(rays, whose);
-  const bool trees = options.detector == "trees";
+  const Detector detector(options);
   const logs::SickScan sick = sick_scan_of(observation, rays);
   NamedScan result;
   result.has_time = time_of(observation).has_value();
   result.scan.t_ns = sick.t_ns;
   result.scan.T_robot_sensor = planar_pose_of(observation.sensorPose, whose);
-  result.scan.field_of_view = field_of_view(rays, trees, options);
-  for (const logs::SickDetection& seen : trees ? logs::detect_trees(sick) : logs::detect_reflectors(sick)) {
+  result.scan.field_of_view = field_of_view(rays, detector);
+  for (const logs::SickDetection& seen : detector.trees ? logs::detect_trees(sick) : logs::detect_reflectors(sick)) {
     result.measurements.push_back(result.measurements.size());
     result.identities.push_back(-1);
-    result.scan.observations.push_back(core::make_range_bearing(
-        seen.range_m, seen.bearing_rad, options.std_detector_range, options.std_detector_yaw_rad));
+    result.scan.observations.push_back(
+        core::make_range_bearing(seen.range_m, seen.bearing_rad, detector.sigma_range_m, detector.sigma_bearing_rad));
   }
   return result;
 }

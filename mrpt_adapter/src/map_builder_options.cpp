@@ -40,9 +40,9 @@ const std::vector<NumberKey>& number_keys() {
       {"data_assoc_IC_chi2_thres", &O::data_assoc_IC_chi2_thres, 0.5, 0.999999},
       {"extraneous_per_scan", &O::extraneous_per_scan, 0.01, 100.0},
       {"max_sensor_range", &O::max_sensor_range, 0.0, huge},
-      {"std_detector_range", &O::std_detector_range, 1e-6, huge},
-      {"std_detector_yaw_deg", &O::std_detector_yaw_rad, 1e-6, 180.0, radians_per_degree},
-      {"detector_view_range", &O::detector_view_range, 0.1, huge},
+      {"std_detector_range", &O::std_detector_range, 0.0, huge},
+      {"std_detector_yaw_deg", &O::std_detector_yaw_rad, 0.0, 180.0, radians_per_degree},
+      {"detector_view_range", &O::detector_view_range, 0.0, huge},
       {"odo_a1", &O::odo_a1, 0.0, huge},
       {"odo_a2", &O::odo_a2, 0.0, huge},
       {"odo_a3", &O::odo_a3, 0.0, huge},
@@ -57,6 +57,9 @@ const std::vector<NumberKey>& number_keys() {
       {"cell_side", &O::cell_side, 1.0, huge},
       {"hysteresis", &O::hysteresis, 0.0, huge},
       {"search_old_after", &O::search_old_after, 1.0, huge},
+      {"search_scale", &O::search_scale, 1e-3, 1e3},
+      {"search_foreign_per_scan", &O::search_foreign_per_scan, 0.0, 100.0},
+      {"search_view_area", &O::search_view_area, 0.0, huge},
   };
   return keys;
 }

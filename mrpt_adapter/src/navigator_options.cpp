@@ -3,9 +3,32 @@
 
 #include <algorithm>
 
+#include "helixnav/supervisor/scale_lengths.hpp"
 #include "option_names.hpp"
 
 namespace helixnav::mrpt_adapter {
+
+namespace {
+
+supervisor::SearchOptions search_options(const MapBuilderOptions& options) {
+  supervisor::SearchOptions search = supervisor::scale_lengths({}, options.search_scale);
+  search.enabled = options.search_enabled;
+  search.seed = options.search_seed;
+  search.old_after_m = options.search_old_after;
+  search.relocalizer.threads = static_cast<unsigned>(options.search_threads);
+  constexpr double among_reflectors = 0.5;  // hardly anything else shines
+  if (options.detector == "reflectors") search.foreign_per_scan = among_reflectors;
+  if (options.search_foreign_per_scan > 0.0) {
+    search.foreign_per_scan = options.search_foreign_per_scan;
+    search.relocalizer.sensor.extraneous_per_scan = options.search_foreign_per_scan;
+  }
+  if (options.search_view_area > 0.0) {
+    search.rivals.extraneous_per_m2 = search.foreign_per_scan / options.search_view_area;
+  }
+  return search;
+}
+
+}  // namespace
 
 supervisor::NavigatorOptions navigator_options(const MapBuilderOptions& options) {
   supervisor::NavigatorOptions result;
@@ -21,10 +44,7 @@ supervisor::NavigatorOptions navigator_options(const MapBuilderOptions& options)
   const double widest = 1.0 - share * (1.0 - options.data_assoc_IC_chi2_thres);
   result.gates.new_probability = std::max(defaults.new_probability, widest);
   result.fix_probability = options.gps_probability;
-  result.search.enabled = options.search_enabled;
-  result.search.seed = options.search_seed;
-  result.search.old_after_m = options.search_old_after;
-  result.search.relocalizer.threads = static_cast<unsigned>(options.search_threads);
+  result.search = search_options(options);
   return result;
 }
 

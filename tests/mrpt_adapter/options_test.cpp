@@ -88,8 +88,9 @@ TEST(Options, DumpNamesEveryKeyInTheUnitOfTheFile) {
   MapBuilderOptions options;
   std::ostringstream text;
   options.dumpToTextStream(text);
-  for (const char* key : {"stdPhi_no_odo_deg", "std_sensor_yaw_deg", "odo_min_std_phi_deg", "association", "detector",
-                          "create_simplemap", "search_seed", "retraction", "gps_latitude_deg", "enable_profiler"}) {
+  for (const char* key :
+       {"stdPhi_no_odo_deg", "std_sensor_yaw_deg", "odo_min_std_phi_deg", "association", "detector", "create_simplemap",
+        "search_seed", "search_scale", "retraction", "gps_latitude_deg", "enable_profiler"}) {
     EXPECT_NE(text.str().find(key), std::string::npos) << key;
   }
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
@@ -138,6 +139,52 @@ TEST_F(Rawlogs, OfDlrKeepCorrelationsAndTurnEveryCovariance) {
   EXPECT_EQ(got.labels.at(0).at(0), 7);
 }
 
+/// Poses of the navigator on the log itself.
+std::vector<core::Pose2> navigated(const logs::AcfrLog& log, const logs::AcfrSettings& settings,
+                                   const supervisor::NavigatorOptions& options = {}) {
+  supervisor::Navigator navigator(core::PoseGaussian{}, options);
+  std::vector<core::Pose2> poses;
+  for (const core::Event& event : logs::make_recording(log, settings).events) {
+    if (const auto* odometry = std::get_if<core::Odometry>(&event)) navigator.move(*odometry);
+    if (const auto* scan = std::get_if<core::Scan>(&event)) poses.push_back(navigator.observe(*scan).pose.mean);
+  }
+  return poses;
+}
+
+/// Poses of the component on a rawlog.
+std::vector<core::Pose2> built(const std::string& rawlog, const mrpt_adapter::MapBuilderOptions& options) {
+  mrpt_adapter::MapBuilder builder(options);
+  std::vector<core::Pose2> poses;
+  SlamFeed feed(builder, [&](const auto&) { poses.push_back(mrpt_adapter::RunAccess::pose(builder).mean); });
+  for (const auto& entry : with_movements(read_entries(rawlog), vehicle_for(options.detector))) feed.take(entry);
+  return poses;
+}
+
+void expect_same_drive(const std::vector<core::Pose2>& got, const std::vector<core::Pose2>& expected) {
+  ASSERT_EQ(got.size(), expected.size());
+  const auto is_away = [](const core::Pose2& pose) { return pose.position_m().norm() > 10.0; };
+  EXPECT_TRUE(std::any_of(expected.begin(), expected.end(), is_away));  // it drove
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    EXPECT_LT((got[i].position_m() - expected[i].position_m()).norm(), 1e-6) << i;
+    EXPECT_LT(std::abs(core::wrap_to_pi(got[i].heading_rad - expected[i].heading_rad)), 1e-6) << i;
+  }
+}
+
+// The whole drive among reflectors, whose detector brings its own noise and reach.
+TEST_F(Rawlogs, OfTheCarParkNavigateAsTheLogItself) {
+  find_real_data("carpark/raw/data_set.mat");
+  if (IsSkipped()) return;
+  const logs::AcfrLog log = logs::read_car_park_mat(path_);
+  write_acfr(log, logs::car_park_settings(), file("park.rawlog"));
+  mrpt_adapter::MapBuilderOptions options;
+  options.detector = "reflectors";
+  const std::vector<core::Pose2> got = built(file("park.rawlog"), options);
+  EXPECT_EQ(got.size(), 586U);
+  supervisor::NavigatorOptions as_replayed;
+  as_replayed.search.foreign_per_scan = 0.5;
+  expect_same_drive(got, navigated(log, logs::car_park_settings(), as_replayed));
+}
+
 // Victoria Park's first minutes: log -> rawlog -> component, beside the navigator on the log.
 TEST_F(Rawlogs, OfVictoriaParkNavigateAsTheLogItself) {
   find_real_data("victoria_park/raw/victoria_park_ascii.zip");
@@ -148,25 +195,9 @@ TEST_F(Rawlogs, OfVictoriaParkNavigateAsTheLogItself) {
   while (scans < 700) scans += log.order[keep++].sensor == logs::AcfrLog::Sensor::laser ? 1 : 0;
   log.order.resize(keep);
   write_acfr(log, {}, file("park.rawlog"));
-
-  supervisor::Navigator navigator(core::PoseGaussian{});
-  std::vector<core::Pose2> expected;
-  for (const core::Event& event : logs::make_recording(log, {}).events) {
-    if (const auto* odometry = std::get_if<core::Odometry>(&event)) navigator.move(*odometry);
-    if (const auto* scan = std::get_if<core::Scan>(&event)) expected.push_back(navigator.observe(*scan).pose.mean);
-  }
-  mrpt_adapter::MapBuilder builder;
-  std::vector<core::Pose2> got;
-  SlamFeed feed(builder, [&](const auto&) { got.push_back(mrpt_adapter::RunAccess::pose(builder).mean); });
-  for (const auto& entry : with_movements(read_entries(file("park.rawlog")), {})) feed.take(entry);
-
-  ASSERT_EQ(got.size(), 700U);
-  ASSERT_EQ(expected.size(), 700U);
-  EXPECT_GT(expected.back().position_m().norm(), 10.0);  // it drove
-  for (std::size_t i = 0; i < got.size(); ++i) {
-    EXPECT_LT((got[i].position_m() - expected[i].position_m()).norm(), 1e-6) << i;
-    EXPECT_LT(std::abs(core::wrap_to_pi(got[i].heading_rad - expected[i].heading_rad)), 1e-6) << i;
-  }
+  const std::vector<core::Pose2> got = built(file("park.rawlog"), {});
+  EXPECT_EQ(got.size(), 700U);
+  expect_same_drive(got, navigated(log, {}));
   const core::Recording read = read_rawlog(file("park.rawlog"), {});
   const core::Recording of_log = logs::make_recording(log, {});
   ASSERT_EQ(read.true_positions.size(), of_log.true_positions.size());

@@ -36,11 +36,12 @@ class MapBuilderOptions : public mrpt::config::CLoadableOptions {
   bool use_landmark_ids = true;                  ///< landmarkID of bearing-range measurements names the landmark
 
   // The sensor.
-  double max_sensor_range = 0.0;    ///< a landmark nearer is expected to be seen; 0: as the observation says
-  std::string detector = "trees";   ///< of landmarks in 2D range scans: trees, reflectors, none
-  double std_detector_range = 0.7;  ///< of what a detector finds
-  double std_detector_yaw_rad = 0.03;
-  double detector_view_range = 22.0;  ///< max_sensor_range of what a detector finds
+  double max_sensor_range = 0.0;   ///< a landmark nearer is expected to be seen; 0: as the observation says
+  std::string detector = "trees";  ///< of landmarks in 2D range scans: trees, reflectors, none
+  // Of what a detector finds; 0: as measured for it, see logs::AcfrSettings and logs::car_park_settings.
+  double std_detector_range = 0.0;
+  double std_detector_yaw_rad = 0.0;
+  double detector_view_range = 0.0;  ///< in place of max_sensor_range
 
   // CObservationOdometry, which states no uncertainty: MRPT's Gaussian motion model.
   double odo_a1 = 0.01;                                 ///< [m/m]
@@ -65,7 +66,10 @@ class MapBuilderOptions : public mrpt::config::CLoadableOptions {
   bool search_enabled = true;
   std::uint64_t search_seed = 1;
   double search_old_after = 60.0;
-  std::uint64_t search_threads = 2;  ///< results do not depend on it
+  std::uint64_t search_threads = 2;      ///< results do not depend on it
+  double search_scale = 1.0;             ///< reach of the sensor over 30 m, see supervisor::scale_lengths
+  double search_foreign_per_scan = 0.0;  ///< observations of no old landmark in a scan; 0: 2.5, of reflectors 0.5
+  double search_view_area = 0.0;         ///< [m²] where these are seen; 0: that of the scale
 
   bool enable_profiler = false;  ///< of MapBuilder::getProfiler
 };
