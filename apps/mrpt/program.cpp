@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "program.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 
@@ -16,7 +17,10 @@
 namespace helixnav::apps {
 namespace {
 
-int fail(const CLI::App& app, ExitCode code, const std::string& what) {
+/// What a damaged file says of itself may hold anything: nothing of it shall move a terminal's cursor.
+int fail(const CLI::App& app, ExitCode code, std::string what) {
+  const auto commands_terminal = [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7f; };
+  std::replace_if(what.begin(), what.end(), commands_terminal, '?');
   std::fprintf(stderr, "%s: %s\n", app.get_name().c_str(), what.c_str());
   return static_cast<int>(code);
 }

@@ -70,6 +70,7 @@ Input read_input(const std::string& path, const SlamConfig& config) {
                            ": nothing to navigate by: no CObservationBearingRange and no "
                            "CObservation2DRangeScan in " +
                            std::to_string(input.entries.size()) + " entries" +
+                           (input.offset > 0 ? " behind rawlog_offset = " + std::to_string(input.offset) : "") +
                            (input.damage.empty() ? "" : "; " + input.damage));
   }
   return input;

@@ -174,6 +174,8 @@ TEST_F(Slam, RefusesARawlogWithNothingToNavigateBy) {
   const std::string why = input_error_of([&] { run_slam(job(application, file("a.rawlog"))); });
   EXPECT_NE(why.find("nothing to navigate by"), std::string::npos) << why;
   EXPECT_FALSE(fs::exists(file("out")));
+  const std::string beyond = input_error_of([&] { run_slam(job(application + "rawlog_offset=1000\n", posts())); });
+  EXPECT_NE(beyond.find("in 0 entries behind rawlog_offset = 1000"), std::string::npos) << beyond;
   const std::string unnamed = input_error_of([&] { run_slam(job(application, "")); });
   EXPECT_NE(unnamed.find("[MappingApplication] rawlog_file is missing"), std::string::npos) << unnamed;
 }
@@ -189,6 +191,11 @@ TEST_F(Slam, TellsTheShellWhatHappened) {
   const Outcome missing = run({HELIXNAV_SLAM, folder_.write("a.ini", application), file("none.rawlog")});
   EXPECT_EQ(missing.exit_code, 3);
   EXPECT_NE(missing.err.find("none.rawlog: expected a rawlog, found nothing there"), std::string::npos) << missing.err;
+  const std::string class_of_nine_bytes = "\x89\x1b[2Jbell\a" + std::string(20, 'z');
+  const Outcome damaged = run({HELIXNAV_SLAM, file("a.ini"), folder_.write("b.rawlog", class_of_nine_bytes)});
+  EXPECT_EQ(damaged.exit_code, 3);
+  EXPECT_NE(damaged.err.find("entry 0 cannot be read"), std::string::npos) << damaged.err;
+  EXPECT_EQ(damaged.err.find_first_of("\x1b\a"), std::string::npos) << damaged.err;
 }
 
 /// MRPT's shipped demo; kf-slam 2.5.8 has a mean error of 0.0037 m there, from the second frame on.
