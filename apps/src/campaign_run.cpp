@@ -81,6 +81,7 @@ Json json_of(const sim::RunScore& score) {
           {"returns", list_of(score.returns)},
           {"closures", list_of(score.closures)},
           {"triggers", score.triggers},
+          {"rewound", score.rewound},
           {"refused", score.refused},
           {"left_open", score.undecided},
           {"old_matches", score.old_matches},

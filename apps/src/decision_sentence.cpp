@@ -21,7 +21,16 @@ std::string text(const core::Decision& decision, const char* name) { return shor
 
 std::string degrees(double angle_rad) { return short_number(angle_rad * 180.0 / core::pi) + "°"; }
 
+std::string rewound_sentence(const core::Decision& d) {
+  return "The pose is not to be trusted: " + counted(number(d, "missing"), "landmark") +
+         " of earlier drives that should be in view are missing, " + text(d, "seen") + " are there, and " +
+         counted(number(d, "spawned"), "new one") + " matured meanwhile (" + text(d, "nats") +
+         " nats against the pose). A search begins from " + counted(number(d, "scans"), "scan") +
+         " ago, when the pose was last beyond doubt.";
+}
+
 std::string trigger_sentence(const core::Decision& d) {
+  if (d.verdict == "rewound") return rewound_sentence(d);
   return "A search began: an observation was about to be matched with the old landmark " + text(d, "landmark") +
          ", in whose gate " + text(d, "foreign_objects") + " other objects are to be expected; " +
          counted(number(d, "neighbours"), "old landmark") + " of the map among them. The pose was uncertain by " +

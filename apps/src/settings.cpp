@@ -157,6 +157,14 @@ void add_search(CLI::App& command, supervisor::SearchOptions& search) {
       ->check(one_of({"true", "false"}))
       ->default_str("true")
       ->group(group);
+  command
+      .add_option_function<std::string>(
+          "--search.missing_spawn",
+          [&search](const std::string& word) { search.missing_spawn.enabled = word == "true"; },
+          "A search also begins, from before, where old landmarks are missing and new ones spawn instead")
+      ->check(one_of({"true", "false"}))
+      ->default_str("true")
+      ->group(group);
   add_number(command, "--search.seed", search.seed, std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max(),
              "Seed of the particle filter and of the rivals tried; apart from the seed of a simulated world");
   add_number(command, "--search.old_after_m", search.old_after_m, 1.0, 1e6,

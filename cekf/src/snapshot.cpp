@@ -45,6 +45,11 @@ void CompressedEkf::restore(const Snapshot& snapshot) {
   rebuild_places();
 }
 
+void CompressedEkf::name_from(core::LandmarkId id) {
+  active_.next_id = std::max(active_.next_id, id);
+  places_.resize(static_cast<std::size_t>(active_.next_id));
+}
+
 std::size_t CompressedEkf::kept_bytes() const {
   std::size_t bytes = 0;
   for (std::size_t p = 0; p + 1 < phases_.size(); ++p) {

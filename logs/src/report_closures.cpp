@@ -36,7 +36,10 @@ bool has(const core::StepReport& step, const char* kind, const char* verdict) {
 /// Where the attempt began that step `k` belongs to.
 std::size_t attempt_begin(const std::vector<core::StepReport>& steps, std::size_t k) {
   std::size_t begin = k;
-  while (begin > 0 && !has(steps[begin], "search", "started") && !has(steps[begin], "trigger", "started")) --begin;
+  while (begin > 0 && !has(steps[begin], "search", "started") && !has(steps[begin], "trigger", "started") &&
+         !has(steps[begin], "trigger", "rewound")) {
+    --begin;
+  }
   return begin;
 }
 

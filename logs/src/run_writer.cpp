@@ -172,7 +172,6 @@ struct RunWriter::Files {
   Table trajectory;
   Table health;
   CloudChoice cloud_choice;
-  std::int64_t revised_rows = 0;
 
   explicit Files(const std::string& folder)
       : associations(folder, associations_table),
@@ -197,6 +196,13 @@ RunWriter::~RunWriter() = default;
 
 void RunWriter::write(const core::StepReport& report, double microseconds) {
   Files& f = *files_;
+  auto rows = static_cast<std::int64_t>(report.associations.size());
+  for (const core::RevisedScan& scan : report.revised) {
+    for (const core::AssociationReport& a : scan.associations) {
+      append_association(f.associations.block, scan.step, a, true);
+    }
+    rows += static_cast<std::int64_t>(scan.associations.size());
+  }
   for (const core::AssociationReport& a : report.associations) {
     append_association(f.associations.block, report.step, a, false);
   }
@@ -208,9 +214,7 @@ void RunWriter::write(const core::StepReport& report, double microseconds) {
     for (const core::Pose2& pose : report.cloud) append_particle(f.clouds.block, report.step, pose);
   }
   append_trajectory(f.trajectory.block, report.t_ns, report.pose.mean);
-  const auto rows = f.revised_rows + static_cast<std::int64_t>(report.associations.size());
   append_health(f.health.block, report, rows, particles, microseconds);
-  f.revised_rows = 0;
   // Health last: its row counts the rows of the others, so a reader knows when a step is complete.
   f.associations.flush();
   f.decisions.flush();
@@ -218,11 +222,6 @@ void RunWriter::write(const core::StepReport& report, double microseconds) {
   f.clouds.flush();
   f.trajectory.flush();
   f.health.flush();
-}
-
-void RunWriter::revise(std::int64_t step, const std::vector<core::AssociationReport>& associations) {
-  for (const core::AssociationReport& a : associations) append_association(files_->associations.block, step, a, true);
-  files_->revised_rows += static_cast<std::int64_t>(associations.size());
 }
 
 Evaluation RunWriter::finish(const std::vector<core::MapLandmark>& map, const RunEnd& end) {

@@ -113,6 +113,7 @@ struct Referee::Book {
   void begin_return(bool searching);
   void look_out(const std::vector<Label>& labels);
   void count_matches(const StepReport& report, const std::vector<Label>& labels);
+  void revise(const StepReport& report);
   void judge_closure(const StepReport& report, const std::vector<MapLandmark>& map);
   JudgedPose judge(const Judgeable& pose_at, const std::vector<MapLandmark>& map) const;
   PoseError relative_error(const Judgeable& pose_at, const std::vector<MapLandmark>& map) const;
@@ -143,6 +144,9 @@ void Referee::watch(const StepReport& report, const Map& map_now) {
   book.look_out(labels);
   book.pose = report.pose;
   if (book.on_old_ground) book.last_on_old_ground = {report.pose, book.truth()};
+  const int rewound = count(report, "trigger", "rewound");
+  if (rewound > 0) book.revise(report);
+  book.score.rewound += rewound;
   book.score.triggers += count(report, "trigger", "started");
   if (count(report, "trigger", "started") > 0) book.triggered = true;
   book.count_matches(report, labels);
@@ -222,6 +226,18 @@ void Referee::Book::count_matches(const StepReport& report, const std::vector<La
     }
     identities.add_sighting(a.landmark, label, driven_m);
   }
+}
+
+/// Landmarks that earlier scans began when they were gone through again; and poses believed in between are no more.
+void Referee::Book::revise(const StepReport& report) {
+  for (const core::RevisedScan& scan : report.revised) {
+    const std::vector<Label>& labels = recording.labels.at(static_cast<std::size_t>(scan.step));
+    for (const core::AssociationReport& a : scan.associations) {
+      const bool used = a.outcome == core::Outcome::matched || a.outcome == core::Outcome::augmented;
+      if (used) identities.add_sighting(a.landmark, labels.at(static_cast<std::size_t>(a.observation)), driven_m);
+    }
+  }
+  last_on_old_ground = {report.pose, truth()};
 }
 
 void Referee::Book::judge_closure(const StepReport& report, const std::vector<MapLandmark>& map) {

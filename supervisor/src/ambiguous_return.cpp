@@ -85,7 +85,9 @@ std::vector<AmbiguousReturn> returns_in_gate(const cekf::CompressedEkf& filter,
     here.landmark = id;
     here.neighbours = neighbours_in_gate(filter, scan, others, id, pair, prediction);
     const Eigen::Matrix2d R = scan.observations[static_cast<std::size_t>(pair.observation)].R;
-    here.gate_area = core::pi * gate * (std::sqrt(pair.S.determinant()) - std::sqrt(R.determinant()));
+    const double sensor_area = std::sqrt(R.determinant());
+    here.widening = std::sqrt(pair.S.determinant()) / sensor_area;
+    here.gate_area = core::pi * gate * sensor_area * (here.widening - 1.0);
     here.foreign_objects =
         here.neighbours + density_at(prediction, scan.field_of_view, foreign_per_scan) * here.gate_area;
     const auto at = std::lower_bound(returns.begin(), returns.end(), id,

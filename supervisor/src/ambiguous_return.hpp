@@ -21,6 +21,7 @@ struct AmbiguousReturn {
   /// π·5.99·(√|S| − √|R|) in the units of the observation: what the pose's uncertainty adds to the gate. Clutter in the
   /// part that the sensor's noise makes is no question of where one is.
   double gate_area = 0.0;
+  double widening = 1.0;  ///< √(|S|/|R|): how much wider the gate is than the sensor's noise makes it
 };
 
 /// Every old landmark that has an observation in its gate, ascending. P(wrong | matched) is about η/(P_D + η), so that η

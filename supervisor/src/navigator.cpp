@@ -18,6 +18,9 @@
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/odometry.hpp"
+#include "history.hpp"
+#include "missing_spawn.hpp"
+#include "probation.hpp"
 #include "search.hpp"
 #include "track.hpp"
 
@@ -34,6 +37,9 @@ Navigator::Navigator(const core::PoseGaussian& start, const NavigatorOptions& op
       filter_(start, options.filter),
       life_(options.life),
       track_(std::make_unique<Track>()),
+      probation_(std::make_unique<Probation>()),
+      doubts_(std::make_unique<MissingSpawn>()),
+      history_(std::make_unique<History>()),
       delayed_(options.delayed) {}
 
 Navigator::~Navigator() = default;
@@ -46,6 +52,12 @@ void Navigator::move(const core::Odometry& odometry) {
 }
 
 StepReport Navigator::observe(const Scan& scan) {
+  StepReport report = navigate(scan);
+  keep_in_mind(scan, report);
+  return has_got_lost() ? search_from_before(std::move(report)) : report;
+}
+
+StepReport Navigator::navigate(const Scan& scan) {
   predict();
   StepReport report;
   std::optional<Gating> gating;
@@ -70,6 +82,7 @@ StepReport Navigator::observe(const Scan& scan, const std::vector<std::int64_t>&
   StepReport report;
   report.associations = known_associations(scan, identities);
   if (search_) end_search();  // it asked for what is known now
+  if (!history_->empty()) history_->clear(filter_);
   predict();
   update(scan, report);
   augment_known(scan, identities, report);
@@ -85,6 +98,7 @@ bool Navigator::fix(const core::AbsoluteFix& fix) {
   const bool accepted = nis <= limit;
   if (accepted) filter_.update_position(fix);
   if (accepted && journal_) journal_->fix(fix);
+  if (!search_) history_->note(fix);
   const core::PoseGaussian now = filter_.pose();
   decisions_.push_back({"fix",
                         accepted ? "accepted" : "refused",
@@ -101,9 +115,62 @@ void Navigator::predict() {
   filter_.predict(*motion_);
   if (search_) search_->move(*motion_);
   if (journal_) journal_->predict(*motion_);
+  if (!search_) history_->note(History::Motion{*motion_, driven_m_});
   life_.drive(driven_m_);
   driven_m_ = 0.0;
   motion_.reset();
+}
+
+void Navigator::keep_in_mind(const Scan& scan, const StepReport& report) {
+  if (search_ || !options_.search.enabled || !options_.search.missing_spawn.enabled) return;
+  history_->note(scan);
+  const bool out_of_reach = !history_->empty() && report.step - history_->step() > options_.search.missing_spawn.reach;
+  if (out_of_reach) *doubts_ = MissingSpawn();
+  if (doubts_->is_clear()) history_->settle(report.step, filter_, life_);
+}
+
+bool Navigator::has_got_lost() const {
+  return !history_->empty() && doubts_->is_lost(life_, options_.search.missing_spawn);
+}
+
+/// The search that should have begun when the pose was last vouched for: what came since is gone through again in it.
+StepReport Navigator::search_from_before(StepReport report) {
+  const MissingSpawn::Evidence evidence = doubts_->evidence(life_, options_.search.missing_spawn);
+  const LandmarkId next = filter_.next_name();
+  const std::int64_t rewound_to = history_->step();
+  const std::vector<History::Event> since = history_->rewind(filter_, life_);
+  filter_.name_from(next);
+  track_->back_to(life_.path_m());
+  step_ = rewound_to + 1;
+  decisions_ = std::move(report.decisions);
+  decisions_.push_back({"trigger",
+                        "rewound",
+                        {{"missing", evidence.missing},
+                         {"seen", evidence.seen},
+                         {"spawned", evidence.spawned},
+                         {"nats", evidence.nats},
+                         {"scans", static_cast<double>(report.step - rewound_to)}}});
+  begin_search();
+  StepReport through;
+  for (const History::Event& event : since) {
+    if (const auto* motion = std::get_if<History::Motion>(&event)) {
+      motion_ = motion->odometry;
+      driven_m_ = motion->driven_m;
+    } else if (const auto* absolute = std::get_if<core::AbsoluteFix>(&event)) {
+      fix(*absolute);
+      decisions_.pop_back();  // it was reported when it came in
+    } else {
+      report = navigate(std::get<Scan>(event));
+      through.decisions.insert(through.decisions.end(), report.decisions.begin(), report.decisions.end());
+      through.merged.insert(through.merged.end(), report.merged.begin(), report.merged.end());
+      through.revised.push_back({report.step, report.associations});
+    }
+  }
+  through.revised.pop_back();  // the last one is this scan
+  report.decisions = std::move(through.decisions);
+  report.merged = std::move(through.merged);
+  report.revised = std::move(through.revised);
+  return report;
 }
 
 std::vector<LandmarkId> Navigator::candidates_of(const Scan& scan) const {
@@ -137,6 +204,8 @@ bool Navigator::is_lost(const std::vector<AmbiguousReturn>& returns, StepReport&
 }
 
 void Navigator::begin_search() {
+  history_->clear(filter_);
+  *doubts_ = MissingSpawn();
   const std::uint64_t seed = options_.search.seed + 1000000u * ++searches_;
   search_ = std::make_unique<Search>(old_landmarks(life_, options_.search.old_after_m), life_.path_m(), seed,
                                      options_.search);
@@ -201,7 +270,7 @@ void Navigator::close(const std::vector<pf_relocalize::ConstellationPair>& pairs
 }
 
 std::vector<AssociationReport> Navigator::associate(const Scan& scan, const Gating& gating,
-                                                    const std::vector<AmbiguousReturn>& returns) const {
+                                                    const std::vector<AmbiguousReturn>& returns) {
   association::Options how = options_.association;
   if (std::isfinite(scan.field_of_view.max_range_m)) {
     how.extraneous = association::uniform_density(scan.field_of_view, options_.extraneous_per_scan);
@@ -212,9 +281,10 @@ std::vector<AssociationReport> Navigator::associate(const Scan& scan, const Gati
   return reports;
 }
 
-/// Two old landmarks that fit together vouch for one another; one alone, with room for others in its gate, waits.
+/// Two old landmarks that fit together vouch for one another; one alone, with room for others in its gate, waits, and so
+/// does one that would tell the vehicle much about where it is, until it is met again.
 void Navigator::hold_lonely_returns(const std::vector<AmbiguousReturn>& returns,
-                                    std::vector<AssociationReport>& reports) const {
+                                    std::vector<AssociationReport>& reports) {
   AssociationReport* lonely = nullptr;
   for (AssociationReport& report : reports) {
     const bool old = std::any_of(returns.begin(), returns.end(),
@@ -224,10 +294,12 @@ void Navigator::hold_lonely_returns(const std::vector<AmbiguousReturn>& returns,
     lonely = &report;
   }
   if (lonely == nullptr) return;
-  const bool ambiguous = std::any_of(returns.begin(), returns.end(), [&](const AmbiguousReturn& r) {
-    return r.landmark == lonely->landmark && r.foreign_objects > options_.search.hold_objects;
-  });
-  if (ambiguous) lonely->outcome = Outcome::ambiguous;
+  const auto met = std::find_if(returns.begin(), returns.end(),
+                                [&](const AmbiguousReturn& r) { return r.landmark == lonely->landmark; });
+  const bool ambiguous = met->foreign_objects > options_.search.hold_objects;
+  const bool telling = met->widening > options_.search.probation_widening;
+  const bool met_again = probation_->passes(lonely->landmark, life_.path_m(), options_.search.probation_m);
+  if (ambiguous || (telling && !met_again)) lonely->outcome = Outcome::ambiguous;
 }
 
 std::vector<AssociationReport> Navigator::known_associations(const Scan& scan,
@@ -301,6 +373,7 @@ void Navigator::live_and_let_die(const Scan& scan, StepReport& report) {
       expected.erase(std::remove(expected.begin(), expected.end(), id), expected.end());
     }
   }
+  if (!search_) doubts_->observe(life_, expected, seen, options_.search.old_after_m);
   forgive_what_may_be_elsewhere(seen, expected);
   const core::Pose2 T_world_sensor = core::compose(filter_.pose().mean, scan.T_robot_sensor);
   const association::LifeChanges changes = life_.observe(T_world_sensor.position_m(), seen, born, expected);

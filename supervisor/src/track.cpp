@@ -13,6 +13,10 @@ void Track::pass(double path_m, const core::Pose2& T_world_sensor) {
   points_.push_back({path_m, T_world_sensor});
 }
 
+void Track::back_to(double path_m) {
+  while (!points_.empty() && points_.back().path_m > path_m) points_.pop_back();
+}
+
 std::vector<core::Pose2> Track::between(double from_m, double to_m) const {
   std::vector<core::Pose2> poses;
   for (const Point& point : points_) {

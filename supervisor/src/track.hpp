@@ -13,6 +13,9 @@ class Track {
   /// Adds the sensor's pose when it is `spacing` beyond the last one.
   void pass(double path_m, const core::Pose2& T_world_sensor);
 
+  /// Forgets what was passed after `path_m`.
+  void back_to(double path_m);
+
   /// Sensor poses passed at path lengths in [from_m, to_m).
   std::vector<core::Pose2> between(double from_m, double to_m) const;
 

@@ -48,6 +48,10 @@ class Explain : public ::testing::Test {
                            {3, core::Outcome::ambiguous, 6, 30.0, 2, alone},
                            {4, core::Outcome::ambiguous, core::no_landmark, none, 0, alone}};
     }
+    if (step.step == 0) {
+      step.decisions.push_back(
+          {"trigger", "rewound", {{"missing", 5}, {"seen", 0}, {"spawned", 2}, {"nats", 5.5}, {"scans", 31}}});
+    }
     if (step.step == 2) step.decisions.push_back({"search", "started", {{"attempt", 1}, {"helix_pairs", 15}}});
     if (step.step == 3) step.decisions.push_back(constellation("rival-too-good"));
     if (step.step == 4) {
@@ -156,7 +160,8 @@ TEST_F(Explain, TellsTheFateOfEveryObservationOfAStep) {
                                 "Observation 1 began landmark 12", "Observation 2 was dropped from landmark 5 (NIS 8",
                                 "joint test", "Observation 3 was dropped: landmark 6 is the nearest (NIS 30",
                                 "Observation 4 was dropped: it is neither near enough", "A search began"});
-  expect_said({"--step", "0"}, {"Step 0 (0 s), mapping", "Nothing was observed."});
+  expect_said({"--step", "0"}, {"Step 0 (0 s), mapping", "Nothing was observed.", "5 landmarks of earlier drives",
+                                "0 are there, and 2 new ones", "5.5 nats", "from 31 scans ago"});
 }
 
 TEST_F(Explain, RefusesWhatTheRunDoesNotHave) {

@@ -110,6 +110,28 @@ TEST_P(Rewind, ByTheRingReachesTwoHundredStepsBackAcrossSwitches) {
   EXPECT_TRUE(bytes_of(program.filter, Passive::means_only) == at_210);
 }
 
+TEST_P(Rewind, NamesNoLandmarkTwiceWhenAskedTo) {
+  RandomProgram program(23, {GetParam(), 60, 0, false});
+  go_on(program, 40);
+  CompressedEkf& filter = program.filter;
+  const Snapshot snapshot = filter.snapshot();
+  const core::Observation seen = core::make_range_bearing(5.0, 0.3, 0.1, 0.01);
+  const core::LandmarkId undone = filter.augment(seen, {});
+  const core::LandmarkId next = filter.next_name();
+  EXPECT_EQ(next, undone + 1);
+  filter.restore(snapshot);
+  filter.name_from(next);
+  EXPECT_FALSE(filter.contains(undone));
+  const core::LandmarkId fresh = filter.augment(seen, {});
+  EXPECT_EQ(fresh, next);
+  EXPECT_TRUE(filter.contains(fresh));
+  filter.switch_region();
+  EXPECT_FALSE(filter.contains(undone));
+  EXPECT_TRUE(filter.contains(fresh));
+  filter.name_from(0);
+  EXPECT_EQ(filter.next_name(), fresh + 1);
+}
+
 TEST(SnapshotSize, IsAtMostOneMegabyteAtFiftyActiveLandmarks) {
   RandomProgram program(27, {Retraction::right_invariant, 400, 0, false});
   go_on(program, 200);

@@ -137,8 +137,9 @@ TEST(RunFolder, TakesTheLastRevisionOfAnAssociation) {
   for (std::int64_t k = 0; k < 10; ++k) writer.write(example_step(k), 10.0);
   core::AssociationReport changed = example_step(5).associations[2];
   changed.landmark = 77;
-  writer.revise(5, {changed});
-  writer.write(example_step(10), 10.0);
+  core::StepReport after = example_step(10);
+  after.revised.push_back({5, {changed}});
+  writer.write(after, 10.0);
   const RunFolder run = read_run(path);
   ASSERT_EQ(run.steps.size(), 11u);
   EXPECT_EQ(run.steps[5].associations[2].landmark, 77);

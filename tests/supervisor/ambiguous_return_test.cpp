@@ -11,6 +11,7 @@
 #include "gating.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/random.hpp"
+#include "probation.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -73,6 +74,7 @@ TEST(AmbiguousReturn, CountsForeignObjectsByTheirDefinition) {
     for (const AmbiguousReturn& found :
          returns_in_gate(scene.filter, gating.problem, scene.scan, scene.ids, per_scan)) {
       double most = 0.0;
+      EXPECT_GE(found.widening, 1.0);
       for (const association::GatedPair& pair : gating.problem.pairs) {
         if (gating.problem.ids[static_cast<std::size_t>(pair.candidate)] != found.landmark) continue;
         const auto& observation = scene.scan.observations[static_cast<std::size_t>(pair.observation)];
@@ -103,6 +105,31 @@ TEST(AmbiguousReturn, SpeaksOfOldLandmarksOnly) {
     EXPECT_EQ(found.neighbours, 0);
   }
   EXPECT_EQ(most_ambiguous({}), nullptr);
+}
+
+TEST(AmbiguousReturn, SaysHowMuchWiderThePoseMakesTheGate) {
+  const Scene certain(3, 1e-3, 3);
+  const Gating gating(certain.filter, certain.ids, certain.scan, {});
+  for (const AmbiguousReturn& found :
+       returns_in_gate(certain.filter, gating.problem, certain.scan, certain.ids, per_scan)) {
+    EXPECT_LT(found.widening, 2.0) << "the landmarks are known as well as the sensor sees them";
+  }
+  const Scene uncertain(3, 2.0, 3);
+  const Gating wide(uncertain.filter, uncertain.ids, uncertain.scan, {});
+  for (const AmbiguousReturn& found :
+       returns_in_gate(uncertain.filter, wide.problem, uncertain.scan, uncertain.ids, per_scan)) {
+    EXPECT_GT(found.widening, 10.0);
+  }
+}
+
+TEST(Probation, IsPassedByTheLandmarkThatWasMetJustBefore) {
+  Probation probation;
+  EXPECT_FALSE(probation.passes(7, 100.0, 5.0));
+  EXPECT_TRUE(probation.passes(7, 104.0, 5.0));
+  EXPECT_TRUE(probation.passes(7, 109.0, 5.0));
+  EXPECT_FALSE(probation.passes(8, 110.0, 5.0)) << "another one";
+  EXPECT_FALSE(probation.passes(7, 111.0, 5.0));
+  EXPECT_FALSE(probation.passes(7, 117.0, 5.0)) << "too long ago";
 }
 
 TEST(AmbiguousReturn, CallsOldWhatIsMatureAndLongUnseen) {

@@ -123,6 +123,11 @@ class CompressedEkf {
   /// phase older than the snapshot's has been absorbed in between. PreconditionError when the snapshot's phase is out of reach.
   void restore(const Snapshot& snapshot);
   bool can_restore(const Snapshot& snapshot) const;
+  /// Landmarks named from now on have ids from `id` on: after a restore, names given since the snapshot are not given
+  /// again to others. No effect when all ids below are taken.
+  void name_from(core::LandmarkId id);
+  /// Id of the next landmark.
+  core::LandmarkId next_name() const { return active_.next_id; }
   /// Phases from `phase` on are kept restorable instead of being absorbed when they close; each costs
   /// 2N·(2q + 2n) doubles and lengthens switches and activations. Default: none but the open one.
   void keep_since(long phase);

@@ -49,6 +49,13 @@ struct MergedLandmarks {
   LandmarkId removed = no_landmark;
 };
 
+/// What became of the observations of an earlier scan when it was gone through again: this holds, and not what its own
+/// report says.
+struct RevisedScan {
+  std::int64_t step = 0;
+  std::vector<AssociationReport> associations;
+};
+
 /// Everything one scan did to the map and the pose. Filled by supervisor::Navigator, written by logs::RunWriter.
 struct StepReport {
   std::int64_t step = 0;  ///< index of the scan, from 0
@@ -63,6 +70,7 @@ struct StepReport {
   bool switched_region = false;
   std::vector<Decision> decisions;
   std::vector<MergedLandmarks> merged;  ///< by a closure in this step
+  std::vector<RevisedScan> revised;     ///< where a search began from before
   std::vector<Pose2> cloud;  ///< T_world_robot of particles of a search, thinned out for pictures; empty without
 };
 

@@ -45,13 +45,10 @@ class RunWriter {
   RunWriter(const RunWriter&) = delete;
   RunWriter& operator=(const RunWriter&) = delete;
 
-  /// Appends one step and hands it to the operating system. `microseconds` is the wall-clock cost of the step.
+  /// Appends one step and hands it to the operating system. What it revises replaces the rows with the same (step,
+  /// observation) when read. `microseconds` is the wall-clock cost of the step.
   /// Cost: about 5 µs.
   void write(const core::StepReport& report, double microseconds);
-
-  /// Says that the associations of an earlier step are now others, as after a replay. The rows go out with the next
-  /// `write` and replace those with the same (step, observation) when read.
-  void revise(std::int64_t step, const std::vector<core::AssociationReport>& associations);
 
   /// Writes map.csv, trajectory_final.tum when a smoother ran, evaluates, writes summary.json and report.html. Each
   /// appears whole or not at all. Evaluated is what the steps say; where a smoother ran alone, its final poses.

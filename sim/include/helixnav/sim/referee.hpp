@@ -76,6 +76,7 @@ struct RunScore {
   std::vector<ReturnScore> returns;
   std::vector<ClosureScore> closures;
   int triggers = 0;
+  int rewound = 0;    ///< searches begun from before
   int refused = 0;    ///< closures
   int undecided = 0;  ///< closures
   int old_matches = 0;

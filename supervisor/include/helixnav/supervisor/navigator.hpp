@@ -21,6 +21,9 @@ struct AmbiguousReturn;
 class BranchJournal;
 struct Closing;
 struct Gating;
+class History;
+class MissingSpawn;
+class Probation;
 class Search;
 class Track;
 
@@ -77,6 +80,10 @@ class Navigator {
   const cekf::CompressedEkf& filter() const { return filter_; }
 
  private:
+  core::StepReport navigate(const core::Scan& scan);
+  void keep_in_mind(const core::Scan& scan, const core::StepReport& report);
+  bool has_got_lost() const;
+  core::StepReport search_from_before(core::StepReport report);
   void predict();
   std::vector<core::LandmarkId> candidates_of(const core::Scan& scan) const;
   std::vector<AmbiguousReturn> old_ones_in_gate(const core::Scan& scan, const Gating& gating) const;
@@ -87,9 +94,8 @@ class Navigator {
   Closing close_map(const std::vector<pf_relocalize::ConstellationPair>& pairs);
   void end_search();
   std::vector<core::AssociationReport> associate(const core::Scan& scan, const Gating& gating,
-                                                 const std::vector<AmbiguousReturn>& returns) const;
-  void hold_lonely_returns(const std::vector<AmbiguousReturn>& returns,
-                           std::vector<core::AssociationReport>& reports) const;
+                                                 const std::vector<AmbiguousReturn>& returns);
+  void hold_lonely_returns(const std::vector<AmbiguousReturn>& returns, std::vector<core::AssociationReport>& reports);
   std::vector<core::AssociationReport> known_associations(const core::Scan& scan,
                                                           const std::vector<std::int64_t>& identities) const;
   void update(const core::Scan& scan, core::StepReport& report);
@@ -112,6 +118,9 @@ class Navigator {
   std::unique_ptr<Track> track_;
   std::unique_ptr<Search> search_;          ///< while a question is open
   std::unique_ptr<BranchJournal> journal_;  ///< of the search, when closing is by replay
+  std::unique_ptr<Probation> probation_;
+  std::unique_ptr<MissingSpawn> doubts_;  ///< while no question is open, and …
+  std::unique_ptr<History> history_;      ///< … what to go back to when they grow
   std::uint64_t searches_ = 0;
 
   // Known association only: who is who, and how often it was seen.

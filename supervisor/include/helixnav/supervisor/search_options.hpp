@@ -20,6 +20,18 @@ enum class ClosingMethod { merge, replay, restart };
 /// which has no pairs of landmarks to close with and needs ClosingMethod::restart.
 enum class Acceptance { constellation, paper_rule };
 
+/// What makes a pose doubtful whose covariance says nothing: old landmarks that are missing where new ones spawn.
+/// Source of the figures: LifeOptions (log-odds of a hit and a miss). Measured: docs/adr/0009-doubt.md.
+struct MissingSpawnLimits {
+  bool enabled = true;
+  int looks = 3;              ///< scans that looked for a landmark make it count
+  double missing_nats = 1.1;  ///< for a wrong pose, of each that was looked for and not seen
+  double seen_nats = 1.95;    ///< against it, of each that was mostly seen
+  double nats = 4.0;          ///< so many, and …
+  int spawned = 2;            ///< … so many landmarks matured meanwhile, make a search begin from before
+  int reach = 200;            ///< scans that can be gone through again; doubts older than that are let go
+};
+
 /// When a return to old ground is too ambiguous to be associated scan by scan, how it is resolved by the particle filter,
 /// and what is asked before the map is closed. Distances are driven ones. Source of the figures: PROTOTYPE §2 to §6.
 struct SearchOptions {
@@ -27,10 +39,14 @@ struct SearchOptions {
   std::uint64_t seed = 1;
 
   // Trigger.
-  double old_after_m = 60.0;      ///< a mature landmark unseen over so long a drive is old
-  double foreign_objects = 0.1;   ///< expected other objects in the gate of an old landmark that begin a search
-  double hold_objects = 0.05;     ///< above it an old landmark is not matched alone, but no search begins yet
+  double old_after_m = 60.0;        ///< a mature landmark unseen over so long a drive is old
+  double foreign_objects = 0.1;     ///< expected other objects in the gate of an old landmark that begin a search
+  double hold_objects = 0.05;       ///< above it an old landmark is not matched alone, but no search begins yet
+  double probation_widening = 2.0;  ///< √(|S|/|R|) above which an old landmark is matched alone only when met again, …
+  double probation_m = 5.0;         ///< … within so long a drive
   double foreign_per_scan = 2.5;  ///< observations of no old landmark in one scan: clutter and new ones together
+
+  MissingSpawnLimits missing_spawn;
 
   // Search.
   double look_distance_m = 1.0;  ///< scans nearer to one another are no new look for the particle filter

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "helixnav/association/landmark_life.hpp"
+#include "helixnav/core/landmark_id.hpp"
+#include "helixnav/supervisor/search_options.hpp"
+
+namespace helixnav::supervisor {
+
+/// Whether what the map predicts is still there. A wrong match turns the pose while its covariance shrinks: afterwards no
+/// old landmark falls into its gate, everything in view is mapped anew, and no innovation ever tells. What does tell is that
+/// the old ones are missing where new ones spawn. Each landmark counts once, however often it is looked for.
+/// The pose is vouched for by every scan that matches two returned landmarks at once, and all counts begin anew there.
+/// Cost of a scan: O(expected + landmarks returned to lately). Source: PROTOTYPE §7.
+/// Test: supervisor/missing_spawn_test.cpp.
+class MissingSpawn {
+ public:
+  /// What speaks for a wrong pose since it was last vouched for.
+  struct Evidence {
+    int missing = 0;    ///< returned to, looked for, not seen
+    int seen = 0;       ///< returned to and mostly seen
+    int spawned = 0;    ///< matured since
+    double nats = 0.0;  ///< log-likelihood ratio of "wrong" against "right" of missing and seen
+  };
+
+  /// One scan of which nothing has entered the book `life` yet. `expected`: landmarks that should be in view; `matched`:
+  /// those that were seen.
+  void observe(const association::LandmarkLife& life, const std::vector<core::LandmarkId>& expected,
+               const std::vector<core::LandmarkId>& matched, double old_after_m);
+
+  /// No landmark that was returned to was looked for since the pose was vouched for.
+  bool is_clear() const { return clear_; }
+  Evidence evidence(const association::LandmarkLife& life, const MissingSpawnLimits& limits) const;
+  bool is_lost(const association::LandmarkLife& life, const MissingSpawnLimits& limits) const;
+
+ private:
+  struct Returned {
+    int looks = 0;  ///< since the pose was vouched for
+    int hits = 0;
+    double last_look_path_m = 0.0;
+  };
+
+  Returned* find_returned(const association::LandmarkLife& life, core::LandmarkId id, double old_after_m);
+
+  std::map<core::LandmarkId, Returned> returned_;
+  bool clear_ = true;
+  double clear_path_m_ = 0.0;  ///< when it was so last
+};
+
+}  // namespace helixnav::supervisor

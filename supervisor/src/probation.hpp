@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "helixnav/core/landmark_id.hpp"
+
+namespace helixnav::supervisor {
+
+/// An old landmark that is met alone is believed when it is met a second time: clutter does not stand twice in the same
+/// place. Test: supervisor/ambiguous_return_test.cpp, campaigns in docs/adr/0009-doubt.md.
+class Probation {
+ public:
+  /// Meets the landmark, `path_m` along the drive. True when it was the last one met, at most `reach_m` before.
+  bool passes(core::LandmarkId landmark, double path_m, double reach_m) {
+    const bool again = landmark == landmark_ && path_m - path_m_ <= reach_m;
+    landmark_ = landmark;
+    path_m_ = path_m;
+    return again;
+  }
+
+ private:
+  core::LandmarkId landmark_ = core::no_landmark;
+  double path_m_ = 0.0;
+};
+
+}  // namespace helixnav::supervisor

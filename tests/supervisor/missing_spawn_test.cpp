@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "circuits.hpp"
+#include "helixnav/core/chi2.hpp"
+#include "helixnav/sim/world.hpp"
+#include "missing_spawn.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+using Ids = std::vector<core::LandmarkId>;
+
+constexpr double old_after_m = 60.0;
+
+/// A book of mature landmarks 0 to n−1, last seen at the begin of a drive of `driven_m`.
+association::LandmarkLife book_of(int n, double driven_m) {
+  association::LandmarkLife life;
+  Ids all;
+  for (int i = 0; i < n; ++i) all.push_back(i);
+  life.observe({0.0, 0.0}, {}, all, {});
+  for (int look = 1; look <= 5; ++look) life.observe({1.0 * look, 0.0}, all, {}, {});
+  life.drive(driven_m);
+  return life;
+}
+
+/// Looks for them in so many scans, a metre apart.
+void look(MissingSpawn& doubts, association::LandmarkLife& life, int scans, const Ids& expected, const Ids& matched) {
+  for (int i = 0; i < scans; ++i) {
+    doubts.observe(life, expected, matched, old_after_m);
+    life.drive(1.0);
+  }
+}
+
+/// Landmarks from `first` on are born and mature.
+void spawn(association::LandmarkLife& life, core::LandmarkId first, int n) {
+  Ids born;
+  for (int i = 0; i < n; ++i) born.push_back(first + i);
+  life.observe({100.0, 0.0}, {}, born, {});
+  for (int look = 1; look <= 5; ++look) life.observe({100.0 + look, 0.0}, born, {}, {});
+}
+
+TEST(MissingSpawn, CountsEachLandmarkOnceHoweverOftenItIsLookedFor) {
+  association::LandmarkLife life = book_of(5, 100.0);
+  MissingSpawn doubts;
+  look(doubts, life, 2, {0, 1}, {});
+  EXPECT_EQ(doubts.evidence(life, {}).missing, 0);
+  look(doubts, life, 50, {0, 1, 2}, {2});
+  const MissingSpawn::Evidence evidence = doubts.evidence(life, {});
+  EXPECT_EQ(evidence.missing, 2);
+  EXPECT_EQ(evidence.seen, 1);
+  EXPECT_DOUBLE_EQ(evidence.nats, 2 * 1.1 - 1.95);
+}
+
+TEST(MissingSpawn, IsLostWhereFourAreMissingAndTwoSpawn) {
+  association::LandmarkLife life = book_of(5, 100.0);
+  MissingSpawn doubts;
+  look(doubts, life, 3, {0, 1, 2, 3}, {});
+  EXPECT_FALSE(doubts.is_lost(life, {})) << "nothing is seen: the sensor may be covered";
+  spawn(life, 10, 2);
+  EXPECT_TRUE(doubts.is_lost(life, {}));
+}
+
+TEST(MissingSpawn, AFelledThirdIsNoReasonToDoubt) {
+  association::LandmarkLife life = book_of(9, 100.0);
+  MissingSpawn doubts;
+  for (const core::LandmarkId standing : {0, 1, 2, 3, 4, 5}) look(doubts, life, 4, {standing, 6, 7, 8}, {standing});
+  spawn(life, 10, 3);
+  EXPECT_EQ(doubts.evidence(life, {}).missing, 3);
+  EXPECT_FALSE(doubts.is_lost(life, {}));
+}
+
+TEST(MissingSpawn, TwoAtOnceVouchForThePose) {
+  association::LandmarkLife life = book_of(6, 100.0);
+  MissingSpawn doubts;
+  EXPECT_TRUE(doubts.is_clear());
+  look(doubts, life, 3, {0, 1, 2, 3}, {});
+  EXPECT_FALSE(doubts.is_clear());
+  look(doubts, life, 1, {0, 1, 2, 3, 4, 5}, {4, 5});
+  EXPECT_TRUE(doubts.is_clear());
+  spawn(life, 10, 2);
+  EXPECT_EQ(doubts.evidence(life, {}).missing, 0);
+  look(doubts, life, 1, {4}, {4});
+  EXPECT_FALSE(doubts.is_clear()) << "one alone vouches for nothing";
+}
+
+TEST(MissingSpawn, WhatWasSeenLatelyTellsNothingOfAReturn) {
+  association::LandmarkLife life = book_of(4, 30.0);
+  MissingSpawn doubts;
+  look(doubts, life, 10, {0, 1, 2, 3}, {});
+  EXPECT_EQ(doubts.evidence(life, {}).missing, 0);
+  EXPECT_TRUE(doubts.is_clear());
+}
+
+/// Sparse worlds of seeds on which a wrong match, long after a right closing, turned the pose for good.
+class WrongMatch : public testing::TestWithParam<std::uint64_t> {};
+
+struct End {
+  double nees = 0.0;
+  int rewound = 0;
+  std::vector<core::LandmarkId> born;
+};
+
+End end_of(std::uint64_t seed, bool missing_spawn) {
+  const core::Recording run = sim::simulate(sim::named_scenario("sparse"), seed);
+  NavigatorOptions options;
+  options.search.relocalizer.threads = 1;
+  options.search.seed = seed;
+  options.search.missing_spawn.enabled = missing_spawn;
+  Navigator navigator(run.start, options);
+  End end;
+  drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
+    const core::StepReport report = navigator.observe(scan);
+    EXPECT_EQ(report.step, static_cast<std::int64_t>(i));
+    for (const core::Decision& d : report.decisions) end.rewound += d.kind == "trigger" && d.verdict == "rewound";
+    const auto note = [&](const std::vector<core::AssociationReport>& associations) {
+      for (const auto& a : associations) {
+        if (a.outcome == core::Outcome::augmented) end.born.push_back(a.landmark);
+      }
+    };
+    for (const core::RevisedScan& revised : report.revised) note(revised.associations);
+    note(report.associations);
+    end.nees = nees(report.pose, run.true_poses[i].T_world_robot);
+  });
+  return end;
+}
+
+TEST_P(WrongMatch, IsUndoneByASearchFromBefore) {
+  const End lost = end_of(GetParam(), false);
+  EXPECT_EQ(lost.rewound, 0);
+  const double band = core::chi2_quantile(0.999, 3);
+  EXPECT_GT(lost.nees, band);
+  End found = end_of(GetParam(), true);
+  EXPECT_GE(found.rewound, 1);
+  EXPECT_LT(found.nees, band);
+  std::sort(found.born.begin(), found.born.end());
+  EXPECT_EQ(std::adjacent_find(found.born.begin(), found.born.end()), found.born.end()) << "an id was given twice";
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, WrongMatch, testing::Values(1786, 2817));
+
+}  // namespace
+}  // namespace helixnav::supervisor
