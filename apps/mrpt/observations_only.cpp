@@ -27,7 +27,7 @@ class Unroller {
       return;
     }
     if (const auto* frame = dynamic_cast<const mrpt::obs::CSensoryFrame*>(&entry)) {
-      if (frame->size() > 0) write_odometer((*frame->begin())->timestamp);
+      if (!frame->empty()) write_odometer((*frame->begin())->timestamp);
       for (const auto& observation : *frame) sink_.write(*observation);
       return;
     }

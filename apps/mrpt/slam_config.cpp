@@ -133,11 +133,12 @@ void read_application(const Section& section, SlamConfig& config) {
 void refuse_unknown_keys(const CConfigFileMemory& ini, const std::string& path) {
   Names known = builder_keys();
   known.insert(known.end(), {"save_png", "overwrite"});
-  for (const std::string& key : keys_of(ini, ours)) {
-    if (contains(known, key)) continue;
-    throw core::InputError(path + ": [" + ours + "] " + key + ": unknown key; did you mean '" +
-                           core::nearest_name(key, known) + "'?");
-  }
+  const Names keys = keys_of(ini, ours);
+  const auto unknown =
+      std::find_if_not(keys.begin(), keys.end(), [&](const auto& key) { return contains(known, key); });
+  if (unknown == keys.end()) return;
+  throw core::InputError(path + ": [" + ours + "] " + *unknown + ": unknown key; did you mean '" +
+                         core::nearest_name(*unknown, known) + "'?");
 }
 
 Names keys_without_effect(const CConfigFileMemory& ini) {

@@ -81,7 +81,7 @@ std::vector<core::Odometry> motions(const core::Recording& recording) {
 }  // namespace
 
 CObservationRawDAQ::Ptr wheel_steering(const logs::DeadReckoning& reading) {
-  const auto observation = std::make_shared<CObservationRawDAQ>();
+  auto observation = std::make_shared<CObservationRawDAQ>();
   observation->timestamp = rawlog_time(reading.t_ns);
   observation->sensorLabel = wheel_steering_label;
   observation->AIN_double = {reading.wheel_speed_mps, reading.steering_rad};

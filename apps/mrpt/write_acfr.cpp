@@ -29,7 +29,7 @@ mrpt::poses::CPose3D in_space(const core::Pose2& pose) { return {pose.x_m, pose.
 
 mrpt::obs::CObservation2DRangeScan::Ptr range_scan(const logs::SickScan& scan, const core::Pose2& T_robot_laser,
                                                    bool with_reflectivity) {
-  const auto observation = std::make_shared<mrpt::obs::CObservation2DRangeScan>();
+  auto observation = std::make_shared<mrpt::obs::CObservation2DRangeScan>();
   observation->timestamp = rawlog_time(scan.t_ns);
   observation->sensorLabel = "LASER";
   observation->aperture = static_cast<float>(core::pi);
@@ -60,7 +60,7 @@ mrpt::obs::CObservationGPS::Ptr gps_fix(const logs::GpsFix& fix, const logs::Gps
   message.fields.longitude_degrees = place.lon.decimal_value;
   message.fields.altitude_meters = place.height;
   message.fields.fix_quality = 1;
-  const auto observation = std::make_shared<mrpt::obs::CObservationGPS>();
+  auto observation = std::make_shared<mrpt::obs::CObservationGPS>();
   observation->timestamp = rawlog_time(fix.t_ns);
   observation->sensorLabel = "GPS";
   observation->sensorPose = in_space(T_robot_antenna);

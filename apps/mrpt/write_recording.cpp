@@ -93,7 +93,7 @@ class Writer {
   }
 
   CObservationBearingRange::Ptr observation_of(const core::Scan& scan) {
-    const auto observation = std::make_shared<CObservationBearingRange>();
+    auto observation = std::make_shared<CObservationBearingRange>();
     observation->timestamp = rawlog_time(scan.t_ns);
     observation->sensorLabel = "LANDMARKS";
     observation->validCovariances = true;

@@ -98,7 +98,9 @@ NamedScan scan_of(const CObservationBearingRange& observation, const MapBuilderO
     core::Observation seen = project(measured, noise);
     const std::string fault = fault_of(seen);
     if (!fault.empty()) {
-      result.dropped.push_back(whose + ", measurement " + std::to_string(i) + " left out: " + fault);
+      std::string sentence = whose;
+      sentence.append(", measurement ").append(std::to_string(i)).append(" left out: ").append(fault);
+      result.dropped.push_back(std::move(sentence));
       continue;
     }
     result.scan.observations.push_back(std::move(seen));

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
@@ -40,12 +41,12 @@ std::shared_ptr<CActionRobotMovement2D> best_of(const CActionCollection& actions
   std::shared_ptr<CActionRobotMovement2D> best;
   double least = 0.0;
   for (const auto& action : actions) {
-    const auto movement = std::dynamic_pointer_cast<CActionRobotMovement2D>(action.get_ptr());
+    auto movement = std::dynamic_pointer_cast<CActionRobotMovement2D>(action.get_ptr());
     if (!movement || !movement->poseChange) continue;
     if (movement->estimationMethod == CActionRobotMovement2D::emScan2DMatching) return movement;
     const double determinant = eigen_of(movement->poseChange->getCovariance()).determinant();
     if (best && !(determinant < least)) continue;
-    best = movement;
+    best = std::move(movement);
     least = determinant;
   }
   return best;

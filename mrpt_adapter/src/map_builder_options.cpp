@@ -137,7 +137,7 @@ class Section {
   }
 
   std::string name(const NameKey& key) const {
-    const std::string value = text(key.key);
+    std::string value = text(key.key);
     for (const std::string& allowed : key.allowed) {
       if (value == allowed) return value;
     }
