@@ -2,6 +2,7 @@
 #include "branch_pairs.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/LU>
 
@@ -10,10 +11,15 @@
 namespace helixnav::supervisor {
 namespace {
 
-constexpr double leftover_reach_m = 1.0;  // beyond it, compatible only means uncertain
+// How far from one another two landmarks may be one: beyond it, compatible only means uncertain. Where old landmarks stand
+// far apart, a third of their distance says well enough who is whose copy.
+constexpr double least_reach_m = 1.0;
+constexpr double most_reach_m = 2.5;
+constexpr double reach_share = 0.35;
 
 struct Leftover {
   core::LandmarkId kept, removed;
+  double distance_m;
   double nis;
 };
 
@@ -27,14 +33,25 @@ double squared_distance(const cekf::CompressedEkf& filter, core::LandmarkId a, c
   return d.dot(S.inverse() * d);
 }
 
-/// Old landmarks that `id` stands on, nearest first.
-std::vector<Leftover> stands_on(const cekf::CompressedEkf& filter, core::LandmarkId id,
-                                const std::vector<core::LandmarkId>& old, double gate) {
+double reach_m(const cekf::CompressedEkf& filter, core::LandmarkId kept, const std::vector<core::LandmarkId>& old) {
+  const Eigen::Vector2d at_m = filter.landmark_mean(kept);
+  double nearest_m = most_reach_m / reach_share;
+  for (const core::LandmarkId other : filter.landmarks_within(at_m, nearest_m)) {
+    if (other == kept || !std::binary_search(old.begin(), old.end(), other)) continue;
+    nearest_m = std::min(nearest_m, (filter.landmark_mean(other) - at_m).norm());
+  }
+  return std::max(least_reach_m, reach_share * nearest_m);
+}
+
+/// Old landmarks that `id` may be, as far as one looks, nearest first.
+std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::LandmarkId id,
+                                 const std::vector<core::LandmarkId>& old, double gate, double look_m) {
+  const Eigen::Vector2d at_m = filter.landmark_mean(id);
   std::vector<Leftover> found;
-  for (const core::LandmarkId kept : filter.landmarks_within(filter.landmark_mean(id), leftover_reach_m)) {
+  for (const core::LandmarkId kept : filter.landmarks_within(at_m, look_m)) {
     if (!std::binary_search(old.begin(), old.end(), kept)) continue;
     const double nis = squared_distance(filter, kept, id);
-    if (nis < gate) found.push_back({kept, id, nis});
+    if (nis < gate) found.push_back({kept, id, (filter.landmark_mean(kept) - at_m).norm(), nis});
   }
   std::sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.nis < b.nis; });
   return found;
@@ -72,8 +89,10 @@ KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core:
   std::vector<Leftover> found;
   for (const core::LandmarkId id : confirmed) {
     if (!filter.contains(id)) continue;
-    const std::vector<Leftover> here = stands_on(filter, id, old, gate);
-    if (here.size() == 1) found.push_back(here.front());
+    const double look_m = most_reach_m + std::sqrt(gate) * filter.landmark_sigma_bound_m(id);
+    const std::vector<Leftover> here = compatible(filter, id, old, gate, look_m);
+    if (here.size() != 1 || here.front().distance_m > reach_m(filter, here.front().kept, old)) continue;
+    found.push_back(here.front());
   }
   std::sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.nis < b.nis; });
   KeptRemoved pairs;
@@ -87,7 +106,7 @@ KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core:
 void forget_copies(cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& unconfirmed,
                    const std::vector<core::LandmarkId>& old, double gate, Closing& closing) {
   for (const core::LandmarkId id : unconfirmed) {
-    if (stands_on(filter, id, old, gate).empty()) continue;
+    if (compatible(filter, id, old, gate, least_reach_m).empty()) continue;
     filter.remove(id);
     closing.forgotten.push_back(id);
   }

@@ -26,8 +26,9 @@ void note(const KeptRemoved& pairs, Closing& closing);
 bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& options, KeptRemoved& pairs,
                      Closing& closing);
 
-/// Confirmed branch landmarks that stand on one landmark of `old` (ascending) and on no other, by the joint covariance of
-/// the closed map; of several on the same one the nearest.
+/// Confirmed branch landmarks that are compatible with one landmark of `old` (ascending) and with no other, by the joint
+/// covariance of the closed map, and not farther from it than a third of the distance to its nearest old neighbour, 1 m
+/// at the least and 2.5 m at the most; of several on the same one the nearest. Test: supervisor/branch_pairs_test.cpp.
 KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
                       const std::vector<core::LandmarkId>& old, double gate);
 
