@@ -32,7 +32,8 @@ void MissingSpawn::observe(const association::LandmarkLife& life, const std::vec
     hits += hit;
   }
   constexpr int witnesses = 2;
-  const bool vouched = hits >= witnesses;
+  const bool vouched = hits >= witnesses && hits_before_ >= witnesses;
+  hits_before_ = hits;
   clear_ = vouched || (clear_ && looks == 0);
   if (clear_) clear_path_m_ = path_m;
   for (auto it = returned_.begin(); it != returned_.end();) {

@@ -13,7 +13,8 @@ namespace helixnav::supervisor {
 /// Whether what the map predicts is still there. A wrong match turns the pose while its covariance shrinks: afterwards no
 /// old landmark falls into its gate, everything in view is mapped anew, and no innovation ever tells. What does tell is that
 /// the old ones are missing where new ones spawn. Each landmark counts once, however often it is looked for.
-/// The pose is vouched for by every scan that matches two returned landmarks at once, and all counts begin anew there.
+/// The pose is vouched for where two scans in a row match two returned landmarks each (clutter may do it once), and all
+/// counts begin anew there.
 /// Cost of a scan: O(expected + landmarks returned to lately). Source: PROTOTYPE §7.
 /// Test: supervisor/missing_spawn_test.cpp.
 class MissingSpawn {
@@ -46,6 +47,7 @@ class MissingSpawn {
   Returned* find_returned(const association::LandmarkLife& life, core::LandmarkId id, double old_after_m);
 
   std::map<core::LandmarkId, Returned> returned_;
+  int hits_before_ = 0;  ///< returned landmarks matched in the scan before
   bool clear_ = true;
   double clear_path_m_ = 0.0;  ///< when it was so last
 };
