@@ -324,7 +324,7 @@ std::array<double, 4> figures(const Times& times, int seeds) {
           1e3 * times.timed_s / static_cast<double>(times.warm_s.size() + times.cold_s.size()), times.whole_s / seeds};
 }
 
-/// Mean of a − b and twice its standard error; the latter is NaN for a single one.
+/// Mean of a − b and twice its standard error, of more than one.
 std::array<double, 2> paired(const std::vector<double>& a, const std::vector<double>& b) {
   const double n = static_cast<double>(a.size());
   double mean = 0.0;
@@ -358,7 +358,9 @@ void compare_at(const Size& size, const Noise& noise, std::ofstream& csv) {
       csv << ',' << own[k];
     }
     const auto [less, error] = paired(rms[i], rms[1]);
-    std::printf(" %9.4f %9.5f +- %.5f\n", std::sqrt(square_m2[i]), less, error);
+    std::printf(" %9.4f %9.5f", std::sqrt(square_m2[i]), less);
+    if (size.seeds > 1) std::printf(" +- %.5f", error);
+    std::printf("\n");
     csv << ',' << std::sqrt(square_m2[i]) << '\n';
   }
   std::fflush(stdout);
