@@ -37,17 +37,17 @@ std_sensor_yaw_deg = 0.1
 enable_profiler = true
 save_png = false
 overwrite = true
-retraction = {retraction}
+{own}
 """
 STEP = re.compile(r"complete_step\s+\d+\s+\S+\s+([0-9.]+)(ns|us|ms|s)\s")
 ERROR = re.compile(r"(?:Mean Error:|landmarks to truth   mean) ([0-9.]+)")
 UNIT_MS = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}
 
 
-def run(program, folder, data, offset=0, retraction="right-invariant"):
+def run(program, folder, data, offset=0, own=""):
     """Mean landmark error [mm], time of a step [ms], wall clock [s], processor [s]."""
     config = Path(folder) / "demo.ini"
-    config.write_text(CONFIG.format(data=data, out=Path(folder) / "out", offset=offset, retraction=retraction))
+    config.write_text(CONFIG.format(data=data, out=Path(folder) / "out", offset=offset, own=own))
     used, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
     done = subprocess.run([program, config, f"{data}/kf-slam_demo.rawlog"], stdin=subprocess.DEVNULL,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
@@ -68,7 +68,7 @@ def main():
     rows = [("kf-slam, which begins at the second frame", "kf-slam", {}),
             ("helixnav-slam", ours, {}),
             ("helixnav-slam from the second frame on", ours, {"offset": 1}),
-            ("the same, retraction = standard", ours, {"offset": 1, "retraction": "standard"})]
+            ("the same, retraction = right-invariant", ours, {"offset": 1, "own": "retraction = right-invariant"})]
     results = [[] for _ in rows]
     with tempfile.TemporaryDirectory() as folder:
         for _ in range(runs):

@@ -73,19 +73,21 @@ class Section {
   Section(const CConfigFileMemory& ini, const std::string& path, const char* name)
       : ini_(ini), path_(path), name_(name) {}
 
+  bool has(const char* key) const { return ini_.keyExists(name_, key); }
+
   void read(const char* key, std::string& value) const {
-    if (ini_.keyExists(name_, key)) value = text(key);
+    if (has(key)) value = text(key);
   }
 
   void read(const char* key, std::size_t& value) const {
-    if (!ini_.keyExists(name_, key)) return;
+    if (!has(key)) return;
     const std::string word = text(key);
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || end != word.data() + word.size()) fail(key, word, "a whole number, 0 or more");
   }
 
   void read(const char* key, bool& value) const {
-    if (!ini_.keyExists(name_, key)) return;
+    if (!has(key)) return;
     std::string word = text(key);
     std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
     const bool yes = contains({"1", "true", "yes"}, word);
@@ -130,6 +132,22 @@ void read_application(const Section& section, SlamConfig& config) {
   section.read("ground_truth_file_robot", config.ground_truth_file_robot);
 }
 
+/// The filter that the file asks kf-slam for, by MRPT's names or numbers. Both plain ones are an EKF with the standard
+/// retraction, the second of them number by number; a file that says `retraction` is read after this one. Iterated ones
+/// have no successor here. True when the key had its effect.
+bool take_filter_of_kf_slam(const Section& section, mrpt_adapter::MapBuilderOptions& options) {
+  constexpr const char* key = "method";
+  if (!section.has(key)) return false;
+  std::string method;
+  section.read(key, method);
+  if (contains({"2", "kfIKFFull", "3", "kfIKF"}, method)) return false;
+  if (!contains({"0", "kfEKFNaive", "1", "kfEKFAlaDavison"}, method)) {
+    section.fail(key, method, "kfEKFNaive (0), kfEKFAlaDavison (1), kfIKFFull (2) or kfIKF (3)");
+  }
+  options.retraction = "standard";
+  return true;
+}
+
 void refuse_unknown_keys(const CConfigFileMemory& ini, const std::string& path) {
   Names known = builder_keys();
   known.insert(known.end(), {"save_png", "overwrite"});
@@ -141,7 +159,7 @@ void refuse_unknown_keys(const CConfigFileMemory& ini, const std::string& path) 
                          core::nearest_name(*unknown, known) + "'?");
 }
 
-Names keys_without_effect(const CConfigFileMemory& ini) {
+Names keys_without_effect(const CConfigFileMemory& ini, bool filter_taken) {
   Names names;
   const auto add = [&](const char* section, const Names& known) {
     for (const std::string& key : keys_of(ini, section)) {
@@ -150,7 +168,7 @@ Names keys_without_effect(const CConfigFileMemory& ini) {
   };
   add(application, application_keys());
   add(filter, builder_keys());
-  add(kalman, {});
+  add(kalman, filter_taken ? Names{"method"} : Names{});
   return names;
 }
 
@@ -167,6 +185,7 @@ SlamConfig read_slam_config(const std::string& path) {
                            "found none");
   }
   SlamConfig config;
+  const bool filter_taken = take_filter_of_kf_slam(Section(ini, path, kalman), config.builder);
   try {
     config.builder.loadFromConfigFile(ini, filter);
     config.builder.loadFromConfigFile(ini, ours);
@@ -178,7 +197,7 @@ SlamConfig read_slam_config(const std::string& path) {
   own.read("save_png", config.save_png);
   own.read("overwrite", config.overwrite);
   refuse_unknown_keys(ini, path);
-  config.without_effect = keys_without_effect(ini);
+  config.without_effect = keys_without_effect(ini, filter_taken);
   return config;
 }
 

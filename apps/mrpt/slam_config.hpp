@@ -33,7 +33,8 @@ struct SlamConfig {
 
 /// Reads `path`. InputError that names file, section, key and value: no file, none of the sections, a value that is
 /// not what the key wants, an unknown key in [HelixNav] (with the nearest), kf_implementation neither
-/// CRangeBearingKFSLAM nor CRangeBearingKFSLAM2D. Test: mrpt_apps/slam_config_test.cpp.
+/// CRangeBearingKFSLAM nor CRangeBearingKFSLAM2D, a `method` that is no TKFMethod of MRPT. A file that names one of MRPT's
+/// two plain EKFs there gets the standard retraction, unless it says `retraction` itself. Test: mrpt_apps/slam_config_test.cpp.
 SlamConfig read_slam_config(const std::string& path);
 
 }  // namespace helixnav::apps

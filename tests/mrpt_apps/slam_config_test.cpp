@@ -40,8 +40,30 @@ TEST_F(Config, TakesTheKeysOfKfSlamWithItsComments) {
   EXPECT_DOUBLE_EQ(config.builder.stdXY_no_odo, 0.2);
   EXPECT_DOUBLE_EQ(config.builder.std_sensor_range, 0.04);  // our section has the last word
   EXPECT_EQ(config.without_effect, (std::vector<std::string>{"[MappingApplication] SAVE_MAP_REPRESENTATIONS",
-                                                             "[RangeBearingKFSLAM] std_sensor_pitch_deg",
-                                                             "[RangeBearingKFSLAM_KalmanFilter] method"}));
+                                                             "[RangeBearingKFSLAM] std_sensor_pitch_deg"}));
+}
+
+TEST_F(Config, NamesOfMrptsPlainFilterMeanTheStandardRetractionUnlessTheFileSaysIt) {
+  const std::string kalman = "[RangeBearingKFSLAM_KalmanFilter]\n";
+  for (const char* method : {"0  # Full EKF", "1", "kfEKFNaive", "kfEKFAlaDavison"}) {
+    const SlamConfig config = read(kalman + "method = " + method + "\n");
+    EXPECT_EQ(config.builder.retraction, "standard") << method;
+    EXPECT_TRUE(config.without_effect.empty()) << method;
+  }
+  const std::string plain = kalman + "method=0\n";
+  EXPECT_EQ(read(plain + "[HelixNav]\nretraction = right-invariant\n").builder.retraction, "right-invariant");
+  EXPECT_EQ(read(plain + "[RangeBearingKFSLAM]\nretraction = right-invariant\n").builder.retraction, "right-invariant");
+}
+
+TEST_F(Config, NoNameOrOneOfAnIteratedFilterLeavesOurRetraction) {
+  const std::string kalman = "[RangeBearingKFSLAM_KalmanFilter]\n";
+  EXPECT_EQ(read(kalman + "IKF_iterations=5\n").builder.retraction, "right-invariant");
+  EXPECT_EQ(read("[RangeBearingKFSLAM]\nmethod=0\n").builder.retraction, "right-invariant");
+  for (const char* method : {"2", "3", "kfIKFFull", "kfIKF"}) {
+    const SlamConfig config = read(kalman + "method=" + method + "\n");
+    EXPECT_EQ(config.builder.retraction, "right-invariant") << method;
+    EXPECT_EQ(config.without_effect, std::vector<std::string>{"[RangeBearingKFSLAM_KalmanFilter] method"}) << method;
+  }
 }
 
 TEST_F(Config, NamesFileSectionKeyAndValueOfWhatIsWrong) {
@@ -54,6 +76,10 @@ TEST_F(Config, NamesFileSectionKeyAndValueOfWhatIsWrong) {
                {"a.ini", "[MappingApplication] SAVE_LOG_FREQUENCY", "'often'"});
   expect_words(refusal("[MappingApplication]\nSHOW_3D_LIVE=maybe\n"), {"SHOW_3D_LIVE", "true or false", "'maybe'"});
   expect_words(refusal("[MappingApplication]\nkf_implementation=CFastSLAM\n"), {"kf_implementation", "'CFastSLAM'"});
+  for (const char* method : {"4", "-1", "00", "UKF", ""}) {
+    expect_words(refusal(std::string("[RangeBearingKFSLAM_KalmanFilter]\nmethod=") + method + "\n"),
+                 {"a.ini", "[RangeBearingKFSLAM_KalmanFilter] method", "kfIKF (3)", std::string("'") + method + "'"});
+  }
   expect_words(refusal("[HelixNav]\nsave_pgn=1\n"), {"[HelixNav] save_pgn", "did you mean 'save_png'"});
   expect_words(refusal("[RangeBearingKFSLAM]\nstd_sensor_range=-1\n"), {"a.ini", "std_sensor_range"});
 }
