@@ -30,6 +30,22 @@ void whiten(const ReservedMatrix& picked, const ReservedMatrix& G, Index extra, 
             G.stride(), G.cols());
 }
 
+/// product = picked·gain.
+void multiply(const ReservedMatrix& picked, const ReservedMatrix& gain, ReservedMatrix& product) {
+  product.resize(picked.rows(), 1);
+  product.set_zero();
+  if (picked.rows() == 0) return;
+  constexpr Index next = 1;  // from one element of the column `gain` to the next
+  add_outer(product.col(0), product.stride(), product.padded_rows(), 1, picked.col(0), picked.stride(), gain.col(0),
+            next, picked.cols());
+}
+
+/// Column m + 1 of left += W·wᵀ, W the first m columns of left, w a row with its elements `stride` apart.
+void add_product_to_column(ReservedMatrix& left, Index m, const double* w, Index stride) {
+  if (left.rows() == 0) return;
+  add_outer(left.col(m + 1), left.stride(), left.padded_rows(), 1, left.col(0), left.stride(), w, stride, m);
+}
+
 /// right = [−W g n] from left = [W n g].
 void mirror_columns(const ReservedMatrix& left, bool transported, ReservedMatrix& right) {
   right.resize(left.rows(), left.cols());
@@ -46,14 +62,23 @@ void add_to_lower(ReservedMatrix& target, const ReservedMatrix& left, const Rese
                   right.col(0), right.stride(), left.cols());
 }
 
+/// Whole tiles of 4 × 4, the diagonal's among them, so that a tile is turned in registers; then the rows left over.
 void copy_lower_to_upper(ReservedMatrix& target) {
   auto T = target.view();
-  constexpr Index tile = 8;
-  for (Index j0 = 0; j0 < T.cols(); j0 += tile) {
-    const Index j1 = std::min(j0 + tile, T.cols());
-    for (Index i = j0; i < T.rows(); ++i) {
-      for (Index j = j0; j < std::min(j1, i); ++j) T(j, i) = T(i, j);
+  const Index n = T.cols();
+  constexpr Index tile = 4;
+  const Index whole = n / tile * tile;
+  for (Index j = 0; j < whole; j += tile) {
+    for (Index k = j; k < j + tile; ++k) {
+      for (Index i = k + 1; i < j + tile; ++i) T(k, i) = T(i, k);
     }
+    for (Index i = j + tile; i < whole; i += tile) {
+      const Eigen::Matrix4d below = T.block<tile, tile>(i, j);
+      T.block<tile, tile>(j, i) = below.transpose();
+    }
+  }
+  for (Index i = whole; i < n; ++i) {
+    for (Index j = 0; j < i; ++j) T(j, i) = T(i, j);
   }
 }
 
@@ -79,10 +104,8 @@ void CompressedEkf::apply_correction(UpdateWorkspace& w, const char* verb) {
   const bool transported = options_.retraction == Retraction::right_invariant;
   pick_columns(active_.P, w.involved, w.picked_active);
   pick_columns(active_.A, w.involved, w.picked_weights);
-  w.delta_active.resize(active_.P.rows(), 1);
-  w.delta_weights.resize(active_.A.rows(), 1);
-  w.delta_active.view().noalias() = w.picked_active.view().lazyProduct(w.gain.view());
-  w.delta_weights.view().noalias() = w.picked_weights.view().lazyProduct(w.gain.view());
+  multiply(w.picked_active, w.gain, w.delta_active);
+  multiply(w.picked_weights, w.gain, w.delta_weights);
   if (!w.delta_active.view().allFinite() || !w.delta_weights.view().allFinite()) {
     throw core::NumericalError(problem_with(w, verb, "the correction is not finite"));
   }
@@ -119,16 +142,14 @@ void CompressedEkf::add_transport(UpdateWorkspace& w) const {
   quarter_turns(w.delta_active, 3, active.col(m));
   quarter_turns(w.delta_weights, 0, weights.col(m));
 
-  active.col(m + 1) = active_.P.view().col(2);
-  weights.col(m + 1) = active_.A.view().col(2);
-  for (Index k = 0; k < m; ++k) {
-    const double w_theta = active(2, k);
-    active.col(m + 1) -= w_theta * active.col(k);
-    weights.col(m + 1) -= w_theta * weights.col(k);
-  }
-  const double half_variance = 0.5 * active(2, m + 1);
-  active.col(m + 1) += half_variance * active.col(m);
-  weights.col(m + 1) += half_variance * weights.col(m);
+  active.col(m + 1) = -active_.P.view().col(2);
+  weights.col(m + 1) = -active_.A.view().col(2);
+  const double* w_theta = w.left_active.col(0) + 2;
+  add_product_to_column(w.left_active, m, w_theta, w.left_active.stride());
+  add_product_to_column(w.left_weights, m, w_theta, w.left_active.stride());
+  const double half_variance = -0.5 * active(2, m + 1);
+  active.col(m + 1) = half_variance * active.col(m) - active.col(m + 1);
+  weights.col(m + 1) = half_variance * weights.col(m) - weights.col(m + 1);
 }
 
 void CompressedEkf::move_means(const UpdateWorkspace& w) {

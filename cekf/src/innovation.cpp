@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "add_outer.hpp"
 #include "helixnav/cekf/active_part.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/gaussian.hpp"
@@ -32,19 +33,33 @@ void size_rows(UpdateWorkspace& w, Index rows) {
   w.R.set_zero();
 }
 
-/// Lower Cholesky factor in place; false when a pivot is not positive.
-template <class Matrix>
-bool factor_in_place(Matrix& L) {
-  for (Index j = 0; j < L.rows(); ++j) {
-    const double pivot = L(j, j) - L.row(j).head(j).squaredNorm();
+/// Lower Cholesky factor in place, column by column; the upper triangle is left as it was. False when a pivot is not
+/// positive.
+bool factor_in_place(ReservedMatrix& S) {
+  auto L = S.view();
+  for (Index j = 0; j < L.cols(); ++j) {
+    const double pivot = L(j, j);
     if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
-    const double diagonal = std::sqrt(pivot);
-    L(j, j) = diagonal;
-    for (Index i = j + 1; i < L.rows(); ++i) {
-      L(i, j) = (L(i, j) - L.row(i).head(j).dot(L.row(j).head(j))) / diagonal;
-    }
+    const Index below = L.rows() - j - 1;
+    L.col(j).tail(below + 1) /= std::sqrt(pivot);
+    for (Index k = j + 1; k < L.cols(); ++k) L.col(k).tail(L.rows() - k) -= L(k, j) * L.col(j).tail(L.rows() - k);
   }
   return true;
+}
+
+/// B becomes L⁻¹·B. Rows of a column before its first that is not zero are passed over: those of H in the columns of a
+/// landmark are not zero from its own sighting on.
+void solve_in_place(const ReservedMatrix& lower, ReservedMatrix& right) {
+  const auto L = lower.view();
+  auto B = right.view();
+  for (Index j = 0; j < B.cols(); ++j) {
+    for (Index k = 0; k < B.rows(); ++k) {
+      if (B(k, j) == 0.0) continue;
+      B(k, j) /= L(k, k);
+      const Index below = B.rows() - k - 1;
+      B.col(j).tail(below) -= B(k, j) * L.col(k).tail(below);
+    }
+  }
 }
 
 }  // namespace
@@ -139,30 +154,20 @@ double solve_innovation(UpdateWorkspace& w, const char* verb) {
   const Index m = w.H.rows();
   const Index n = w.H.cols();
   w.G.resize(m, n);
-  w.L.resize(m, m);
-  w.y.resize(m, 1);
-  w.gain.resize(n, 1);
-  auto G = w.G.view();
-  auto L = w.L.view();
-  auto y = w.y.view();
-  G.noalias() = w.H.view().lazyProduct(w.P.view());
-  L.noalias() = G.lazyProduct(w.H.view().transpose());
-  L += w.R.view();
-  if (!factor_in_place(L)) {
+  w.G.set_zero();
+  add_outer(w.G.col(0), w.G.stride(), w.G.padded_rows(), n, w.H.col(0), w.H.stride(), w.P.col(0), w.P.stride(), n);
+  w.L = w.R;
+  add_outer(w.L.col(0), w.L.stride(), w.L.padded_rows(), m, w.G.col(0), w.G.stride(), w.H.col(0), w.H.stride(), n);
+  if (!factor_in_place(w.L)) {
     throw core::NumericalError(problem_with(w, verb, "the innovation covariance is not positive definite"));
   }
-  G = w.H.view();
-  y = w.nu.view();
-  for (Index i = 0; i < m; ++i) {
-    for (Index k = 0; k < i; ++k) {
-      G.row(i) -= L(i, k) * G.row(k);
-      y(i, 0) -= L(i, k) * y(k, 0);
-    }
-    G.row(i) /= L(i, i);
-    y(i, 0) /= L(i, i);
-  }
-  w.gain.view().noalias() = G.transpose().lazyProduct(y);
-  return y.squaredNorm();
+  w.G = w.H;
+  w.y = w.nu;
+  solve_in_place(w.L, w.G);
+  solve_in_place(w.L, w.y);
+  w.gain.resize(n, 1);
+  w.gain.view().noalias() = w.G.view().transpose().lazyProduct(w.y.view());
+  return w.y.view().squaredNorm();
 }
 
 }  // namespace helixnav::cekf
