@@ -4,6 +4,9 @@
 #include <memory>
 #include <string>
 
+namespace mrpt::gui {
+class CDisplayWindow3D;
+}
 namespace mrpt::opengl {
 class COpenGLScene;
 }
@@ -13,15 +16,20 @@ namespace helixnav::apps {
 /// A window that follows a run.
 class LiveWindow {
  public:
-  virtual ~LiveWindow() = default;
-  virtual bool is_open() const = 0;
-  virtual void show(const std::shared_ptr<mrpt::opengl::COpenGLScene>& scene, const std::string& text) = 0;
-  virtual void look_at(double x_m, double y_m) = 0;
+  LiveWindow();
+  ~LiveWindow();
+  LiveWindow(const LiveWindow&) = delete;
+  LiveWindow& operator=(const LiveWindow&) = delete;
+
+  bool is_open() const;
+  void show(const std::shared_ptr<mrpt::opengl::COpenGLScene>& scene, const std::string& text);
+  void look_at(double x_m, double y_m);
+
+ private:
+  std::shared_ptr<mrpt::gui::CDisplayWindow3D> window_;
 };
 
-/// Loads the window's library, which stands beside the program or in ../lib/helixnav, and opens one: that brings wxWidgets
-/// in, 0.2 s that a run without window need not pay. Null with the reason in `why_not` when there is no display or no
-/// library.
+/// Null with the reason in `why_not` when there is no display.
 std::unique_ptr<LiveWindow> open_live_window(std::string& why_not);
 
 }  // namespace helixnav::apps

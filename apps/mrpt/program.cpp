@@ -32,10 +32,9 @@ std::string version_text(const std::string& program) {
          mrpt::system::MRPT_getVersion();
 }
 
-int run_program(CLI::App& app, int argc, char** argv, const std::function<ExitCode()>& run) {
+int run_program(CLI::App& app, const std::function<ExitCode()>& run) {
   app.set_version_flag("--version", version_text(app.get_name()), "Print the version and exit");
   try {
-    app.parse(argc, argv);
     return static_cast<int>(run());
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version

@@ -122,5 +122,8 @@ int main(int argc, char** argv) {
       "  helixnav-rawlog map.circles run_e.rawlog\n"
       "  helixnav-rawlog kf-slam_demo.rawlog demo.g2o\n"
       "  helixnav-rawlog kf-slam_demo.rawlog observations.rawlog --observations-only\n");
-  return run_program(app, argc, argv, [&job] { return convert(job); });
+  return run_program(app, [&] {
+    app.parse(argc, argv);
+    return convert(job);
+  });
 }

@@ -7,13 +7,12 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
 
-#include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/obs/CAction.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CObservation.h>
 #include <mrpt/obs/CSensoryFrame.h>
-#include <mrpt/serialization/CArchive.h>
 
 #include "helixnav/core/errors.hpp"
 
@@ -64,11 +63,24 @@ bool is_rawlog_entry(const mrpt::serialization::CSerializable& object) {
 }  // namespace
 
 struct RawlogStream::File {
-  explicit File(const std::string& name) : path(name) {
+  struct Handles {
+    mrpt::io::CFileGZInputStream gz;
+    mrpt::serialization::CArchive::UniquePtr archive;
+  };
+
+  explicit File(const std::string& name) : File(name, std::make_unique<Handles>()) {}
+  File(const std::string& name, std::unique_ptr<Handles> handles) : File(name, handles->gz, handles->archive) {
+    own = std::move(handles);
+  }
+  File(const std::string& name, mrpt::io::CFileGZInputStream& file, mrpt::serialization::CArchive::UniquePtr& through)
+      : path(name), gz(file), archive(through) {
     if (!fs::exists(path)) throw core::InputError(path + ": expected a rawlog, found nothing there");
     if (fs::is_directory(path)) throw core::InputError(path + ": expected a rawlog, found a folder");
     if (!gz.open(path)) throw core::InputError(path + ": cannot be opened for reading");
     archive = mrpt::serialization::archiveUniquePtrFrom<mrpt::io::CStream>(gz);
+    read();
+    if (!damage.empty()) throw core::InputError(damage);
+    if (done) throw core::InputError(path + ": expected a rawlog, found an empty file");
   }
 
   void read() {
@@ -94,19 +106,19 @@ struct RawlogStream::File {
   }
 
   std::string path;
-  mrpt::io::CFileGZInputStream gz;
-  mrpt::serialization::CArchive::UniquePtr archive;
+  std::unique_ptr<Handles> own;  ///< null where they are the caller's
+  mrpt::io::CFileGZInputStream& gz;
+  mrpt::serialization::CArchive::UniquePtr& archive;
   mrpt::serialization::CSerializable::Ptr entry;
   std::size_t count = 0;
   std::string damage;
   bool done = false;
 };
 
-RawlogStream::RawlogStream(const std::string& path) : file_(std::make_unique<File>(path)) {
-  file_->read();
-  if (!file_->damage.empty()) throw core::InputError(file_->damage);
-  if (file_->done) throw core::InputError(path + ": expected a rawlog, found an empty file");
-}
+RawlogStream::RawlogStream(const std::string& path) : file_(std::make_unique<File>(path)) {}
+RawlogStream::RawlogStream(const std::string& path, mrpt::io::CFileGZInputStream& file,
+                           mrpt::serialization::CArchive::UniquePtr& archive)
+    : file_(std::make_unique<File>(path, file, archive)) {}
 RawlogStream::~RawlogStream() = default;
 RawlogStream::RawlogStream(RawlogStream&&) noexcept = default;
 RawlogStream& RawlogStream::operator=(RawlogStream&&) noexcept = default;

@@ -5,6 +5,8 @@
 #include <memory>
 #include <string>
 
+#include <mrpt/io/CFileGZInputStream.h>
+#include <mrpt/serialization/CArchive.h>
 #include <mrpt/serialization/CSerializable.h>
 
 namespace helixnav::apps {
@@ -15,6 +17,11 @@ namespace helixnav::apps {
 class RawlogStream {
  public:
   explicit RawlogStream(const std::string& path);
+
+  /// The same through a file and an archive of the caller's, which it opens and which outlive it.
+  RawlogStream(const std::string& path, mrpt::io::CFileGZInputStream& file,
+               mrpt::serialization::CArchive::UniquePtr& archive);
+
   ~RawlogStream();
   RawlogStream(RawlogStream&&) noexcept;
   RawlogStream& operator=(RawlogStream&&) noexcept;

@@ -2,12 +2,10 @@
 #include "slam_feed.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <mrpt/obs/CAction.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservationBearingRange.h>
 
@@ -18,6 +16,7 @@
 namespace helixnav::apps {
 namespace {
 
+using mrpt::obs::CActionCollection;
 using mrpt::obs::CObservation;
 
 bool shows_landmarks(const CObservation::Ptr& observation) {
@@ -35,57 +34,48 @@ void check_time(const CObservation& observation) {
 
 SlamFeed::SlamFeed(mrpt_adapter::MapBuilder& builder, Seen seen) : builder_(builder), seen_(std::move(seen)) {}
 
-void SlamFeed::take(const mrpt::serialization::CSerializable::Ptr& entry) {
-  using mrpt::obs::CActionCollection;
-  auto movement = std::dynamic_pointer_cast<CActionCollection>(entry);
-  if (const auto action = std::dynamic_pointer_cast<mrpt::obs::CAction>(entry)) {
-    movement = std::make_shared<CActionCollection>();
-    movement->insertPtr(action);
-  }
-  if (movement) {
+void SlamFeed::take(const RawlogTurn& turn) {
+  if (turn.frame) {
+    take(turn.frame, turn.movement);
+  } else if (turn.observation) {
+    observe(turn.observation, turn.movement);
+  } else {
     mrpt::obs::CSensoryFrame nothing_seen;
-    if (movement_) feed(nothing_seen);
-    movement_ = std::move(movement);
-  } else if (const auto frame = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(entry)) {
-    take(frame);
-  } else if (const auto observation = std::dynamic_pointer_cast<CObservation>(entry)) {
-    observe(observation);
+    feed(nothing_seen, turn.movement);
   }
 }
 
-void SlamFeed::take(const mrpt::obs::CSensoryFrame::Ptr& frame) {
+void SlamFeed::take(const mrpt::obs::CSensoryFrame::Ptr& frame, CActionCollection::Ptr movement) {
   const auto landmarks = std::count_if(frame->begin(), frame->end(), shows_landmarks);
   if (landmarks > 1) {
     std::vector<CObservation::Ptr> in_turn(frame->begin(), frame->end());
     std::stable_sort(in_turn.begin(), in_turn.end(),
                      [](const auto& a, const auto& b) { return a->timestamp < b->timestamp; });
-    for (const CObservation::Ptr& observation : in_turn) observe(observation);
+    for (const CObservation::Ptr& observation : in_turn) observe(observation, std::exchange(movement, nullptr));
     return;
   }
   const auto shows = std::find_if(frame->begin(), frame->end(), shows_landmarks);
   if (shows != frame->end()) check_time(**shows);
-  feed(*frame);
+  feed(*frame, movement);
   if (shows != frame->end() && !mrpt_adapter::RunAccess::last_steps(builder_).empty()) seen_(**shows);
 }
 
-void SlamFeed::observe(const CObservation::Ptr& observation) {
+void SlamFeed::observe(const CObservation::Ptr& observation, const CActionCollection::Ptr& movement) {
   const bool shows = shows_landmarks(observation);
   if (shows) check_time(*observation);
-  if (movement_) {
+  if (movement) {
     mrpt::obs::CSensoryFrame frame;
     frame.insert(observation);
-    feed(frame);
+    feed(frame, movement);
   } else {
     builder_.processObservation(observation);
   }
   if (shows && !mrpt_adapter::RunAccess::last_steps(builder_).empty()) seen_(*observation);
 }
 
-void SlamFeed::feed(mrpt::obs::CSensoryFrame& frame) {
-  mrpt::obs::CActionCollection movement;
-  if (movement_) movement = *movement_;
-  movement_.reset();
-  builder_.processActionObservation(movement, frame);
+void SlamFeed::feed(mrpt::obs::CSensoryFrame& frame, const CActionCollection::Ptr& movement) {
+  CActionCollection none;
+  builder_.processActionObservation(movement ? *movement : none, frame);
 }
 
 }  // namespace helixnav::apps

@@ -25,7 +25,7 @@
 #include "interrupt.hpp"
 #include "live_window.hpp"
 #include "progress_bar.hpp"
-#include "rawlog_stream.hpp"
+#include "rawlog_source.hpp"
 #include "read_rawlog.hpp"
 #include "slam_config.hpp"
 #include "slam_feed.hpp"
@@ -48,32 +48,14 @@ bool shows_landmarks(const mrpt::serialization::CSerializable* object) {
          dynamic_cast<const mrpt::obs::CObservation2DRangeScan*>(object) != nullptr;
 }
 
-/// The entries to process, and what is wrong with the file behind them.
-struct Input {
-  RawlogEntries entries;
-  std::string damage;
-  std::size_t offset = 0;
-};
-
-Input read_input(const std::string& path, const SlamConfig& config) {
-  RawlogStream stream(path);
-  Input input;
-  while (auto entry = stream.next()) input.entries.push_back(std::move(entry));
-  input.damage = stream.damage();
-  input.offset = config.rawlog_offset;
-  const std::size_t skipped = std::min(input.offset, input.entries.size());
-  input.entries.erase(input.entries.begin(), input.entries.begin() + static_cast<std::ptrdiff_t>(skipped));
-  input.entries = with_movements(std::move(input.entries), vehicle_for(config.builder.detector));
+void check_that_landmarks_are_seen(const RawlogSource& source, const std::string& path) {
   const auto shows = [](const auto& entry) { return shows_landmarks(entry.get()); };
-  if (std::none_of(input.entries.begin(), input.entries.end(), shows)) {
-    throw core::InputError(path +
-                           ": nothing to navigate by: no CObservationBearingRange and no "
-                           "CObservation2DRangeScan in " +
-                           std::to_string(input.entries.size()) + " entries" +
-                           (input.offset > 0 ? " behind rawlog_offset = " + std::to_string(input.offset) : "") +
-                           (input.damage.empty() ? "" : "; " + input.damage));
-  }
-  return input;
+  if (std::any_of(source.entries().begin(), source.entries().end(), shows)) return;
+  throw core::InputError(path +
+                         ": nothing to navigate by: no CObservationBearingRange and no CObservation2DRangeScan in " +
+                         std::to_string(source.entries().size()) + " entries" +
+                         (source.offset() > 0 ? " behind rawlog_offset = " + std::to_string(source.offset()) : "") +
+                         (source.damage().empty() ? "" : "; " + source.damage()));
 }
 
 logs::RunManifest manifest_of(const SlamJob& job, const std::string& rawlog, const std::vector<std::string>& truths) {
@@ -122,9 +104,9 @@ class LiveView {
 /// One run from its first step to its last file.
 class Run {
  public:
-  Run(const SlamConfig& config, Input input, std::string out)
-      : config_(config), input_(std::move(input)), out_(std::move(out)) {
-    if (!config_.builder.gps_use) add_true_positions(input_.entries, config_.builder, recording_);
+  Run(const SlamConfig& config, RawlogSource& source, std::string out)
+      : config_(config), source_(source), out_(std::move(out)), damage_(source.damage()) {
+    if (!config_.builder.gps_use) add_true_positions(source_.entries(), config_.builder, recording_);
     if (!config_.ground_truth_file.empty()) recording_.true_landmarks = read_true_landmarks(config_.ground_truth_file);
     if (!config_.ground_truth_file_robot.empty()) true_path_m_ = read_true_path(config_.ground_truth_file_robot);
   }
@@ -143,15 +125,17 @@ class Run {
       note(seen);
       live.show(builder_, steps_, false);
     });
-    ProgressBar progress("navigating", input_.entries.size(), quiet);
-    for (std::size_t i = 0; i < input_.entries.size() && !interrupted(); ++i) {
+    ProgressBar progress("navigating", source_.size(), quiet);
+    while (!interrupted()) {
+      const std::optional<RawlogTurn> turn = source_.next();
+      if (!turn) break;
       try {
-        feed.take(input_.entries[i]);
+        feed.take(*turn);
       } catch (const core::InputError& error) {
-        input_.damage = "entry " + std::to_string(input_.offset + i) + ": " + error.what();
+        damage_ = "entry " + std::to_string(source_.last_entry()) + ": " + error.what();
         break;
       }
-      progress.advance_to(i);
+      progress.advance_to(source_.last_entry());
     }
     if (steps_ > 0) live.show(builder_, steps_, true);
   }
@@ -166,7 +150,7 @@ class Run {
   }
 
   std::size_t steps() const { return steps_; }
-  const std::string& damage() const { return input_.damage; }
+  const std::string& damage() const { return damage_; }
 
  private:
   void note(const mrpt::obs::CObservation& seen) {
@@ -201,8 +185,9 @@ class Run {
   }
 
   const SlamConfig& config_;
-  Input input_;
+  RawlogSource& source_;
   std::string out_;
+  std::string damage_;
   core::Recording recording_;  ///< truth only
   std::vector<Eigen::Vector2d> true_path_m_;
   mrpt_adapter::MapBuilder builder_{config_.builder};
@@ -233,7 +218,9 @@ ExitCode run_slam(const SlamJob& job) {
     }
   }
   catch_interrupts();
-  Run run(config, read_input(rawlog, config), out);
+  RawlogSource source(rawlog, config.rawlog_offset, vehicle_for(config.builder.detector));
+  check_that_landmarks_are_seen(source, rawlog);
+  Run run(config, source, out);
   std::vector<std::string> truths;
   for (const std::string& name : {config.ground_truth_file, config.ground_truth_file_robot}) {
     if (!name.empty()) truths.push_back(name);

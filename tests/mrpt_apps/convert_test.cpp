@@ -18,6 +18,7 @@
 #include "program.hpp"
 #include "rawlog_movement.hpp"
 #include "rawlog_sink.hpp"
+#include "rawlog_source.hpp"
 #include "read_rawlog.hpp"
 #include "real_data.hpp"
 #include "slam_feed.hpp"
@@ -156,7 +157,8 @@ std::vector<core::Pose2> built(const std::string& rawlog, const mrpt_adapter::Ma
   mrpt_adapter::MapBuilder builder(options);
   std::vector<core::Pose2> poses;
   SlamFeed feed(builder, [&](const auto&) { poses.push_back(mrpt_adapter::RunAccess::pose(builder).mean); });
-  for (const auto& entry : with_movements(read_entries(rawlog), vehicle_for(options.detector))) feed.take(entry);
+  RawlogSource source(rawlog, 0, vehicle_for(options.detector));
+  while (const auto turn = source.next()) feed.take(*turn);
   return poses;
 }
 

@@ -34,7 +34,7 @@
 #include "program.hpp"
 #include "rawlog_movement.hpp"
 #include "rawlog_sink.hpp"
-#include "read_rawlog.hpp"
+#include "rawlog_source.hpp"
 #include "slam_feed.hpp"
 #include "slam_run.hpp"
 #include "slam_scene.hpp"
@@ -365,7 +365,8 @@ TEST_F(Slam, ShowsTheLandmarksInALiveWindow) {
   ASSERT_TRUE(window) << why_not;
   mrpt_adapter::MapBuilder builder;
   SlamFeed feed(builder, [](const auto&) {});
-  for (const auto& entry : read_entries(posts())) feed.take(entry);
+  RawlogSource source(posts(), 0, {});
+  while (const auto turn = source.next()) feed.take(*turn);
   window->show(scene_of(builder, {}), "21 steps");
   window->look_at(8.0, 0.0);
   int blue = 0;
