@@ -17,6 +17,26 @@ void add_own_blocks(const Eigen::MatrixXd& left, const ReservedMatrix& right, Ei
   }
 }
 
+/// The weights of an anchor that the phase never saw, nor anything through it, have stayed as they began.
+std::vector<int> columns_not_zero(const Eigen::MatrixXd& M) {
+  std::vector<int> columns;
+  for (int k = 0; k < static_cast<int>(M.cols()); ++k) {
+    if (!M.col(k).isZero(0.0)) columns.push_back(k);
+  }
+  return columns;
+}
+
+/// E·M, where M is symmetric and zero outside the rows and columns named.
+Eigen::MatrixXd product_with_symmetric(const ReservedMatrix& E, const Eigen::MatrixXd& M,
+                                       const std::vector<int>& columns) {
+  const Eigen::MatrixXd M_named = M(columns, columns);
+  ReservedMatrix named(E.rows(), M_named.cols());
+  add_product(named.col(0), named.stride(), Panels(E.view(), columns, left_width), Panels(M_named, right_width));
+  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(E.rows(), M.cols());
+  product(Eigen::all, columns) = named.view();
+  return product;
+}
+
 }  // namespace
 
 void CompressedEkf::global_update() {
@@ -61,10 +81,9 @@ Eigen::MatrixXd CompressedEkf::close_phase(Phase& next) {
   const Panels basis(phase.basis.view(), left_width);
   Eigen::MatrixXd columns = end_columns(basis, slots);
 
-  ReservedMatrix response(2 * phase.slots, active_.weights());
   const Eigen::MatrixXd M = active_.M.view().selfadjointView<Eigen::Lower>();
-  add_product(response.col(0), response.stride(), basis, Panels(M, right_width));
-  phase.response = response.view();
+  phase.touched = columns_not_zero(M);
+  phase.response = product_with_symmetric(phase.basis, M, phase.touched);
   phase.written = active_.slots;
   phase.written_covariance = columns.rightCols(columns.cols() - 3);
   phase.dead = active_.dead_slots;
@@ -89,7 +108,7 @@ void CompressedEkf::absorb_closed_phases() {
   while (phases_.size() > 1 && phases_.front().number < keep_since_) {
     const Phase& phase = phases_.front();
     absorbed_.grow(static_cast<int>(phase.written_covariance.rows()));
-    absorbed_.add_symmetric_product(phase.response, phase.basis.view());
+    absorbed_.add_symmetric_product(phase.response, phase.basis.view(), phase.touched);
     absorbed_.overwrite(phase.written, phase.written_covariance);
     free_slots_.insert(free_slots_.end(), phase.dead.begin(), phase.dead.end());
     phases_.pop_front();

@@ -2,6 +2,7 @@
 #include "packed_product.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "add_outer.hpp"
 
@@ -9,16 +10,29 @@ namespace helixnav::cekf {
 
 using Index = Eigen::Index;
 
-Panels::Panels(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& from, Index width)
-    : rows_(from.rows()), depth_(from.cols()), width_(width) {
+namespace {
+
+std::vector<int> all_columns(Index count) {
+  std::vector<int> columns(static_cast<std::size_t>(count));
+  std::iota(columns.begin(), columns.end(), 0);
+  return columns;
+}
+
+}  // namespace
+
+Panels::Panels(const Source& from, Index width) : Panels(from, all_columns(from.cols()), width) {}
+
+Panels::Panels(const Source& from, const std::vector<int>& columns, Index width)
+    : rows_(from.rows()), depth_(static_cast<Index>(columns.size())), width_(width) {
   data_.resize(static_cast<std::size_t>(count() * width_ * depth_));
   for (Index p = 0; p < count(); ++p) {
     const Index first = p * width_;
     const Index filled = std::min(width_, rows_ - first);
     double* to = data_.data() + first * depth_;
-    for (Index k = 0; k < depth_; ++k, to += width_) {
-      const double* source = from.data() + first + k * from.outerStride();
+    for (const int column : columns) {
+      const double* source = from.data() + first + column * from.outerStride();
       std::copy(source, source + filled, to);
+      to += width_;
     }
   }
 }

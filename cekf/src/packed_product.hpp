@@ -12,7 +12,11 @@ namespace helixnav::cekf {
 /// the depth would miss the first cache at every step; in a panel it reads line after line.
 class Panels {
  public:
-  Panels(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& from, Eigen::Index width);
+  using Source = Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+
+  Panels(const Source& from, Eigen::Index width);
+  /// Only the columns named.
+  Panels(const Source& from, const std::vector<int>& columns, Eigen::Index width);
 
   Eigen::Index rows() const { return rows_; }
   Eigen::Index depth() const { return depth_; }

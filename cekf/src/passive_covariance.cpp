@@ -43,9 +43,10 @@ void PassiveCovariance::copy_columns(int slot, Eigen::Ref<Eigen::MatrixXd> colum
 }
 
 void PassiveCovariance::add_symmetric_product(const Eigen::Ref<const Eigen::MatrixXd>& left,
-                                              const Eigen::Ref<const Eigen::MatrixXd>& right) {
-  const Panels tall(left, left_width);
-  const Panels wide(right, right_width);
+                                              const Eigen::Ref<const Eigen::MatrixXd>& right,
+                                              const std::vector<int>& columns) {
+  const Panels tall(left, columns, left_width);
+  const Panels wide(right, columns, right_width);
   for (Eigen::Index l = 0; l < tall.count(); ++l) {
     const int row = static_cast<int>(l * left_width);
     for (Eigen::Index r = 0; r * right_width < row + left_width && r < wide.count(); ++r) {

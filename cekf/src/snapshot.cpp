@@ -36,6 +36,7 @@ void CompressedEkf::restore(const Snapshot& snapshot) {
   }
   Phase& phase = phases_.back();
   return_slots(phase);
+  phase.touched.clear();
   phase.response.resize(0, 0);
   phase.written.clear();
   phase.written_covariance.resize(0, 0);

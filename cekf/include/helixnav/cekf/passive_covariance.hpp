@@ -21,9 +21,10 @@ class PassiveCovariance {
   Eigen::Matrix2d block(int slot_i, int slot_j) const;
   /// Columns 2s and 2s+1, rows() × 2.
   void copy_columns(int slot, Eigen::Ref<Eigen::MatrixXd> columns) const;
-  /// this += left·rightᵀ, a product known to be symmetric, n × q each with n ≤ rows(). Cost n²·q flops.
+  /// this += left·rightᵀ over the columns named, a product known to be symmetric, n × q each with n ≤ rows(). Cost n²
+  /// flops a column.
   void add_symmetric_product(const Eigen::Ref<const Eigen::MatrixXd>& left,
-                             const Eigen::Ref<const Eigen::MatrixXd>& right);
+                             const Eigen::Ref<const Eigen::MatrixXd>& right, const std::vector<int>& columns);
   /// Overwrites rows and columns of the slots; columns is rows() × 2·|slots|.
   void overwrite(const std::vector<int>& slots, const Eigen::Ref<const Eigen::MatrixXd>& columns);
   std::size_t bytes() const { return tiles_.size() * tile * tile * sizeof(double); }

@@ -25,6 +25,7 @@ struct Phase {
   std::vector<int> late_anchors;  ///< slots whose columns were appended, in order
 
   // Filled when the phase closes: P_bb += response·basisᵀ, then the rows and columns of `written` are overwritten.
+  std::vector<int> touched;            ///< weights that an update reached: all other columns of M are zero
   Eigen::MatrixXd response;            ///< E·M, 2·slots × q
   std::vector<int> written;            ///< slots of the landmarks active at the end
   Eigen::MatrixXd written_covariance;  ///< 2·slots_after × 2·|written|
