@@ -7,6 +7,7 @@
 #include <string>
 
 #include "chi2_table.hpp"
+#include "costs.hpp"
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/errors.hpp"
 
@@ -16,7 +17,6 @@ namespace {
 using core::ObservationKind;
 
 constexpr int kinds = 4;
-constexpr double ln_2pi = 1.8378770664093454836;
 
 /// Observation padded to two rows.
 struct PaddedObservation {

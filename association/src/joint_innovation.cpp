@@ -7,12 +7,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "costs.hpp"
 #include "helixnav/core/errors.hpp"
 
 namespace helixnav::association {
 namespace {
-
-constexpr double ln_2pi = 1.8378770664093454836;
 
 [[noreturn]] void throw_not_positive_definite(const InnovationProblem& problem, const std::vector<int>& pairs) {
   std::string landmarks;

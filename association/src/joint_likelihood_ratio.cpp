@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "costs.hpp"
 #include "joint_factor.hpp"
 #include "matching.hpp"
 
 namespace helixnav::association {
 namespace {
-
-constexpr double ln_2pi = 1.8378770664093454836;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The part of a pair's cost that its likelihood is not: −ln(P_D/(1−P_D)).
 double detection_cost(const InnovationProblem& problem, const AssignmentProblem& costs, int pair) {

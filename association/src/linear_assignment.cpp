@@ -3,16 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
+#include "costs.hpp"
 #include "helixnav/core/errors.hpp"
 #include "residual_path.hpp"
 
 namespace helixnav::association {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check(const AssignmentProblem& problem) {
   const int rows = problem.rows();

@@ -2,12 +2,12 @@
 #include "residual_path.hpp"
 
 #include <algorithm>
-#include <limits>
+
+#include "costs.hpp"
 
 namespace helixnav::association {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int fixed = -2;  // held by a row that keeps what it has
 
 }  // namespace

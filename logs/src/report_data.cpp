@@ -9,6 +9,7 @@
 #include "helixnav/core/chi2.hpp"
 #include "report_closures.hpp"
 #include "run_words.hpp"
+#include "stride_for.hpp"
 
 namespace helixnav::logs {
 
@@ -31,10 +32,6 @@ Json time_of(core::Nanoseconds t_ns) { return rounded(core::seconds(t_ns), 1e-3)
 double sigma(double variance) { return std::sqrt(std::max(variance, 0.0)); }
 
 double degrees(double angle_rad) { return angle_rad * 180.0 / core::pi; }
-
-std::size_t stride_for(std::size_t count, std::size_t most) {
-  return std::max<std::size_t>(1, (count + most - 1) / most);
-}
 
 // {"name": [value(item) of every stride-th item], …}
 template <typename Item>

@@ -4,17 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stride_for.hpp"
+
 namespace helixnav::logs {
 namespace {
 
 constexpr std::size_t most_path_points = 3600;
-constexpr std::size_t most_dots = 4000;
+constexpr std::size_t most_residuals = 4000;
 
 Json to_millimetres(double value) { return std::round(value * 1e3) / 1e3; }
-
-std::size_t stride_for(std::size_t count, std::size_t most) {
-  return std::max<std::size_t>(1, (count + most - 1) / most);
-}
 
 Json path_json(const std::vector<core::Pose2>& poses) {
   Json json = {{"x", Json::array()}, {"y", Json::array()}};
@@ -39,7 +37,7 @@ Json residuals_json(const std::vector<SmoothedRun::Normalised>& residuals) {
   Json json = {{"step", Json::array()}, {"value", Json::array()}};
   std::size_t inside = 0;
   for (const SmoothedRun::Normalised& residual : residuals) inside += std::abs(residual.value) <= 2.0 ? 1 : 0;
-  for (std::size_t i = 0; i < residuals.size(); i += stride_for(residuals.size(), most_dots)) {
+  for (std::size_t i = 0; i < residuals.size(); i += stride_for(residuals.size(), most_residuals)) {
     json["step"].push_back(residuals[i].step);
     json["value"].push_back(to_millimetres(residuals[i].value));
   }

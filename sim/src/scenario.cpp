@@ -83,7 +83,7 @@ Scenario two_laps() {
   return s;
 }
 
-Scenario figure_of_eight() {
+Scenario figure_of_eight_scenario() {
   Scenario s;
   s.world.kind = WorldKind::figure_of_eight;
   return s;
@@ -173,7 +173,7 @@ constexpr std::array<Entry, 17> entries{{
     {"orchard", "racetrack through a lattice of trees larger than the part mapped; pitch and shape vary", orchard},
     {"two-laps", "loop of 390-820 m, 110-200 m bare, closed twice", two_laps},
     {"figure-of-eight", "two lobes with trees, bare around the crossing: two old regions to return to",
-     figure_of_eight},
+     figure_of_eight_scenario},
     {"odometry-bias",
      "loop of two-laps, closed once, with slow errors of steering (0.002 rad) and speed (1 %) not told", odometry_bias},
     {"told-noise-half", "loop of two-laps, closed once, whose events claim half of the true noise", told_half},
