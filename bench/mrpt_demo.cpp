@@ -21,7 +21,6 @@
 #include <utility>
 #include <vector>
 
-#include <mrpt/math/CMatrixDynamic.h>
 #include <mrpt/math/CVectorDynamic.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
@@ -29,12 +28,12 @@
 #include <mrpt/obs/CRawlog.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
-#include <mrpt/slam/CRangeBearingKFSLAM2D.h>
 
 #include "helixnav/core/random.hpp"
 #include "helixnav/core/se2.hpp"
 #include "helixnav/logs/alignment.hpp"
 #include "helixnav/mrpt_adapter/map_builder.hpp"
+#include "kf_slam.hpp"
 
 namespace {
 
@@ -126,29 +125,15 @@ Demo drawn(const Demo& demo, std::uint64_t seed) {
   return result;
 }
 
-using Map = std::map<std::int64_t, Eigen::Vector2d>;
+using Map = testing::KfSlam::Landmarks;
 
 Map map_of_kf_slam(const Demo& demo, std::size_t first, mrpt::bayes::TKFMethod method) {
-  mrpt::slam::CRangeBearingKFSLAM2D filter;
-  filter.setMinLoggingLevel(mrpt::system::LVL_ERROR);
-  filter.KF_options.verbosity_level = mrpt::system::LVL_ERROR;
-  filter.KF_options.enable_profiler = false;
-  filter.KF_options.method = method;
-  filter.options.std_sensor_range = static_cast<float>(sigma_range_m);
-  filter.options.std_sensor_yaw = static_cast<float>(sigma_bearing_rad);
+  testing::KfSlam filter(sigma_range_m, sigma_bearing_rad, method);
   for (std::size_t i = first; i < demo.frames.size(); ++i) {
     Frame frame = demo.frames[i];
-    filter.processActionObservation(frame.action, frame.seen);
+    filter.take(frame.action, frame.seen);
   }
-  mrpt::poses::CPosePDFGaussian pose;
-  std::vector<mrpt::math::TPoint2D> points;
-  std::map<unsigned int, mrpt::maps::CLandmark::TLandmarkID> ids;
-  mrpt::math::CVectorDouble state;
-  mrpt::math::CMatrixDouble covariance;
-  filter.getCurrentState(pose, points, ids, state, covariance);
-  Map map_m;
-  for (const auto& [index, id] : ids) map_m[static_cast<std::int64_t>(id)] = {points[index].x, points[index].y};
-  return map_m;
+  return filter.landmarks_m();
 }
 
 Map map_of_builder(const Demo& demo, std::size_t first, const std::string& retraction) {

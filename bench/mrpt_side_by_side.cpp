@@ -33,10 +33,10 @@
 #include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
-#include <mrpt/slam/CRangeBearingKFSLAM2D.h>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/random.hpp"
+#include "kf_slam.hpp"
 
 namespace {
 
@@ -208,33 +208,21 @@ class Compressed : public Contestant {
 
 class Mrpt : public Contestant {
  public:
-  Mrpt(Times& its_times, mrpt::bayes::TKFMethod method, const Noise& noise) : Contestant(its_times), noise_(noise) {
-    filter_.setMinLoggingLevel(mrpt::system::LVL_ERROR);
-    filter_.KF_options.method = method;
-    filter_.KF_options.verbosity_level = mrpt::system::LVL_ERROR;
-    filter_.KF_options.enable_profiler = false;
-    filter_.options.std_sensor_range = static_cast<float>(noise.sigma_range_m);
-    filter_.options.std_sensor_yaw = static_cast<float>(noise.sigma_bearing_rad);
-  }
+  Mrpt(Times& its_times, mrpt::bayes::TKFMethod method, const Noise& noise)
+      : Contestant(its_times), noise_(noise), filter_(noise.sigma_range_m, noise.sigma_bearing_rad, method) {}
 
   void take(const Step& step, Kind kind) override {
     auto action = action_of(step.odometry);
     auto frame = frame_of(step.sightings);
     const double start = seconds_of_this_thread();
-    filter_.processActionObservation(action, frame);
+    filter_.take(action, frame);
     note(seconds_of_this_thread() - start, 0.0, kind);
   }
 
   std::vector<Eigen::Vector2d> map_m(std::size_t landmarks) const override {
-    mrpt::poses::CPosePDFGaussian pose;
-    std::vector<mrpt::math::TPoint2D> points;
-    std::map<unsigned int, mrpt::maps::CLandmark::TLandmarkID> ids;
-    mrpt::math::CVectorDouble state;
-    mrpt::math::CMatrixDouble covariance;
-    filter_.getCurrentState(pose, points, ids, state, covariance);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     std::vector<Eigen::Vector2d> result(landmarks, Eigen::Vector2d(nan, nan));
-    for (const auto& [index, id] : ids) result.at(static_cast<std::size_t>(id)) = {points[index].x, points[index].y};
+    for (const auto& [id, point_m] : filter_.landmarks_m()) result.at(static_cast<std::size_t>(id)) = point_m;
     return result;
   }
 
@@ -274,7 +262,7 @@ class Mrpt : public Contestant {
   }
 
   Noise noise_;
-  mrpt::slam::CRangeBearingKFSLAM2D filter_;
+  testing::KfSlam filter_;
 };
 
 constexpr std::array<const char*, 4> names{"mrpt_naive", "mrpt_davison", "cekf_standard", "cekf_right_invariant"};

@@ -6,12 +6,10 @@
 #include <memory>
 
 #include <gtest/gtest.h>
-#include <mrpt/math/CMatrixDynamic.h>
-#include <mrpt/math/CVectorDynamic.h>
-#include <mrpt/slam/CRangeBearingKFSLAM2D.h>
 #include <mrpt/version.h>
 
 #include "helixnav/core/random.hpp"
+#include "kf_slam.hpp"
 #include "quiet_builder.hpp"
 
 namespace helixnav::mrpt_adapter {
@@ -55,28 +53,17 @@ core::Recording surrounded(std::uint64_t seed) {
 }
 
 std::size_t landmarks_of_kf_slam(const core::Recording& recording) {
-  mrpt::slam::CRangeBearingKFSLAM2D filter;
-  filter.setMinLoggingLevel(mrpt::system::LVL_ERROR);
-  filter.KF_options.verbosity_level = mrpt::system::LVL_ERROR;
-  filter.KF_options.enable_profiler = false;
-  filter.options.std_sensor_range = static_cast<float>(sigma_range_m);
-  filter.options.std_sensor_yaw = static_cast<float>(sigma_bearing_rad);
+  helixnav::testing::KfSlam filter(sigma_range_m, sigma_bearing_rad);
   auto actions = std::make_shared<mrpt::obs::CActionCollection>();
   for (const core::Event& event : recording.events) {
     if (const auto* odometry = std::get_if<core::Odometry>(&event)) {
       *actions = testing::action_of(*odometry);
     } else {
       auto frame = std::make_shared<mrpt::obs::CSensoryFrame>(testing::frame_of(std::get<core::Scan>(event)));
-      filter.processActionObservation(actions, frame);
+      filter.take(actions, frame);
     }
   }
-  mrpt::poses::CPosePDFGaussian pose;
-  std::vector<mrpt::math::TPoint2D> points;
-  std::map<unsigned int, mrpt::maps::CLandmark::TLandmarkID> ids;
-  mrpt::math::CVectorDouble state;
-  mrpt::math::CMatrixDouble covariance;
-  filter.getCurrentState(pose, points, ids, state, covariance);
-  return points.size();
+  return filter.landmarks_m().size();
 }
 
 TEST(FullCircle, EveryLandmarkIsMappedOnceWhereKfSlamMapsItAgain) {

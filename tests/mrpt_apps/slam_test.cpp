@@ -16,19 +16,16 @@
 #include <gtest/gtest.h>
 #include <mrpt/img/CImage.h>
 #include <mrpt/maps/CSimpleMap.h>
-#include <mrpt/math/CMatrixDynamic.h>
-#include <mrpt/math/CVectorDynamic.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/obs/CObservationComment.h>
 #include <mrpt/obs/CRawlog.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/opengl/COpenGLScene.h>
-#include <mrpt/poses/CPosePDFGaussian.h>
-#include <mrpt/slam/CRangeBearingKFSLAM2D.h>
 
 #include "helixnav/logs/run_folder.hpp"
 #include "input_error.hpp"
+#include "kf_slam.hpp"
 #include "live_window.hpp"
 #include "observations_only.hpp"
 #include "program.hpp"
@@ -236,45 +233,31 @@ TEST_F(Demo, IsMappedAsWellAsByKfSlamAndTheSameFromObservationsOnly) {
   }
 }
 
-/// Landmarks by landmarkID.
-using Landmarks = std::map<std::int64_t, mrpt::math::TPoint2D>;
+using testing::KfSlam;
 
-Landmarks landmarks_of_kf_slam(mrpt::obs::CRawlog& demo) {
-  mrpt::slam::CRangeBearingKFSLAM2D filter;
-  filter.setMinLoggingLevel(mrpt::system::LVL_ERROR);
-  filter.KF_options.verbosity_level = mrpt::system::LVL_ERROR;
-  filter.KF_options.enable_profiler = false;
-  filter.options.std_sensor_range = 0.03F;
-  filter.options.std_sensor_yaw = static_cast<float>(0.1 * core::pi / 180.0);
+KfSlam::Landmarks landmarks_of_kf_slam(mrpt::obs::CRawlog& demo) {
+  KfSlam filter(0.03, 0.1 * core::pi / 180.0);
   auto action = mrpt::obs::CActionCollection::Create();
   for (std::size_t i = 0; i < demo.size(); ++i) {
     if (demo.getType(i) == mrpt::obs::CRawlog::etActionCollection) action = demo.getAsAction(i);
     if (demo.getType(i) != mrpt::obs::CRawlog::etSensoryFrame) continue;
     auto frame = demo.getAsObservations(i);
-    filter.processActionObservation(action, frame);
+    filter.take(action, frame);
   }
-  mrpt::poses::CPosePDFGaussian pose;
-  std::vector<mrpt::math::TPoint2D> points;
-  std::map<unsigned int, mrpt::maps::CLandmark::TLandmarkID> ids;
-  mrpt::math::CVectorDouble state;
-  mrpt::math::CMatrixDouble covariance;
-  filter.getCurrentState(pose, points, ids, state, covariance);
-  Landmarks landmarks;
-  for (const auto& [index, id] : ids) landmarks[static_cast<std::int64_t>(id)] = points[index];
-  return landmarks;
+  return filter.landmarks_m();
 }
 
-Landmarks read_landmarks(const std::string& path) {
-  Landmarks landmarks;
+KfSlam::Landmarks read_landmarks(const std::string& path) {
+  KfSlam::Landmarks landmarks_m;
   std::istringstream lines(text_of(path));
   lines.ignore(1000, '\n');
-  mrpt::math::TPoint2D point;
-  for (std::int64_t id = 0; lines >> point.x >> point.y >> id;) landmarks[id] = point;
-  return landmarks;
+  Eigen::Vector2d point_m;
+  for (std::int64_t id = 0; lines >> point_m.x() >> point_m.y() >> id;) landmarks_m[id] = point_m;
+  return landmarks_m;
 }
 
 /// Largest distance of equally named landmarks; infinity when the names differ.
-double farthest_m(const Landmarks& a, const Landmarks& b) {
+double farthest_m(const KfSlam::Landmarks& a, const KfSlam::Landmarks& b) {
   if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
   double farthest = 0.0;
   for (const auto& [id, point] : a) {
@@ -287,7 +270,7 @@ double farthest_m(const Landmarks& a, const Landmarks& b) {
 TEST_F(Demo, IsKfSlamsMapWithTheFileShippedForItAndWithinItsLinearisationWithOurRetraction) {
   mrpt::obs::CRawlog demo;
   ASSERT_TRUE(demo.loadFromRawLogFile(datasets_ + "/kf-slam_demo.rawlog"));
-  const Landmarks of_kf_slam = landmarks_of_kf_slam(demo);
+  const KfSlam::Landmarks of_kf_slam = landmarks_of_kf_slam(demo);
   ASSERT_EQ(of_kf_slam.size(), 70U);
   const std::string shipped = datasets_ + "/../config_files/kf-slam/EKF-SLAM_test_2d.ini";  // method = 0: plain EKF
   const std::string rawlog = datasets_ + "/kf-slam_demo.rawlog";
