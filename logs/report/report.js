@@ -516,7 +516,7 @@
 
   const viewTitle = (view) => {
     if (view.closing) return "At the closing";
-    if (view.scans === 0) return "Where the attempt starts";
+    if (view.scans === 0) return "Where the attempt starts, as drawn on helices";
     return `After ${count(view.scans)} scan${view.scans === 1 ? "" : "s"}`;
   };
 

@@ -209,9 +209,11 @@ void RunWriter::write(const core::StepReport& report, double microseconds) {
   for (const core::Decision& decision : report.decisions) append_decision(f.decisions.block, report, decision);
   for (const core::MergedLandmarks& merge : report.merged) append_merge(f.merges.block, report.step, merge);
   const bool keeps_cloud = f.cloud_choice.keeps(report);
-  const auto particles = keeps_cloud ? static_cast<std::int64_t>(report.cloud.size()) : 0;
+  // An attempt starts as it was drawn; what its first scan made of that is seen one scan later.
+  const std::vector<core::Pose2>& cloud = report.drawn.empty() ? report.cloud : report.drawn;
+  const auto particles = keeps_cloud ? static_cast<std::int64_t>(cloud.size()) : 0;
   if (keeps_cloud) {
-    for (const core::Pose2& pose : report.cloud) append_particle(f.clouds.block, report.step, pose);
+    for (const core::Pose2& pose : cloud) append_particle(f.clouds.block, report.step, pose);
   }
   append_trajectory(f.trajectory.block, report.t_ns, report.pose.mean);
   append_health(f.health.block, report, rows, particles, microseconds);

@@ -176,6 +176,9 @@ const CloudState& Relocalizer::state() const { return impl_->state; }
 const ReferenceMap& Relocalizer::map() const { return impl_->map; }
 std::size_t Relocalizer::helix_pairs() const { return impl_->helix_pairs; }
 const Particles& Relocalizer::particles() const { return impl_->particles; }
+const Particles& Relocalizer::weighted_particles() const {
+  return impl_->state.resampled ? impl_->resampled : impl_->particles;
+}
 std::vector<LineagePose> Relocalizer::lineage() const { return impl_->lineage.trace(); }
 
 bool meets_paper_rule(const CloudState& state, const core::Odometry& motion) {

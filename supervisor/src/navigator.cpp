@@ -221,6 +221,7 @@ void Navigator::end_search() {
 void Navigator::pursue_search(const Scan& scan, StepReport& report) {
   const auto pairs = search_->look({filter_, life_, *track_, scan}, report.decisions);
   report.cloud = search_->cloud(filter_);
+  report.drawn = search_->drawn(filter_);
   report.mode = core::Mode::searching;
   if (pairs) close(*pairs, report);
   if (!search_ || !search_->is_undecided(life_.path_m())) return;

@@ -33,6 +33,16 @@ bool agree(const std::vector<ConstellationPair>& before, const std::vector<Const
   });
 }
 
+/// T_world_robot of every n-th particle.
+std::vector<core::Pose2> thinned_out(const pf_relocalize::Particles& particles, const core::Pose2& T_world_base) {
+  std::vector<core::Pose2> poses;
+  const std::size_t stride = std::max<std::size_t>(1, particles.size() / most_cloud_points);
+  for (std::size_t i = 0; i < particles.size(); i += stride) {
+    poses.push_back(core::compose(T_world_base, particles.pose(i)));
+  }
+  return poses;
+}
+
 }  // namespace
 
 Search::Search(std::vector<core::LandmarkId> old, double path_m, std::uint64_t seed, const SearchOptions& options)
@@ -179,15 +189,14 @@ std::optional<core::PoseGaussian> Search::heaviest_mode(const cekf::CompressedEk
 }
 
 std::vector<core::Pose2> Search::cloud(const cekf::CompressedEkf& filter) const {
-  std::vector<core::Pose2> poses;
-  if (!attempt_) return poses;
-  const core::Pose2 T_world_base = base_frame_now(filter, attempt_->base_a, attempt_->base_b);
-  const pf_relocalize::Particles& particles = attempt_->relocalizer.particles();
-  const std::size_t stride = std::max<std::size_t>(1, particles.size() / most_cloud_points);
-  for (std::size_t i = 0; i < particles.size(); i += stride) {
-    poses.push_back(core::compose(T_world_base, particles.pose(i)));
-  }
-  return poses;
+  if (!attempt_) return {};
+  return thinned_out(attempt_->relocalizer.particles(), base_frame_now(filter, attempt_->base_a, attempt_->base_b));
+}
+
+std::vector<core::Pose2> Search::drawn(const cekf::CompressedEkf& filter) const {
+  if (!attempt_ || attempt_->relocalizer.state().scans > 1) return {};
+  return thinned_out(attempt_->relocalizer.weighted_particles(),
+                     base_frame_now(filter, attempt_->base_a, attempt_->base_b));
 }
 
 }  // namespace helixnav::supervisor

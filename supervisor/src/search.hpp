@@ -55,6 +55,9 @@ class Search {
   /// T_world_robot of the particles, every n-th; empty while no attempt runs.
   std::vector<core::Pose2> cloud(const cekf::CompressedEkf& filter) const;
 
+  /// Same, as an attempt that has seen one scan drew them on helices; empty later.
+  std::vector<core::Pose2> drawn(const cekf::CompressedEkf& filter) const;
+
  private:
   struct Attempt {
     pf_relocalize::Relocalizer relocalizer;

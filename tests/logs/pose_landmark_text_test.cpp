@@ -13,10 +13,10 @@ namespace {
 using testing::input_error_of;
 using testing::TemporaryFolder;
 
-const core::Odometry& odometry(const core::Recording& recording, std::size_t event) {
+const core::Odometry& odometry_of(const core::Recording& recording, std::size_t event) {
   return std::get<core::Odometry>(recording.events.at(event));
 }
-const core::Scan& scan(const core::Recording& recording, std::size_t pose) {
+const core::Scan& scan_of(const core::Recording& recording, std::size_t pose) {
   return std::get<core::Scan>(recording.events.at(2 * pose));
 }
 
@@ -34,8 +34,8 @@ TEST_F(VictoriaParkGraph, HasAScanForEveryPoseAndTheLabelsOfTheFile) {
     observations += labels.size();
   }
   EXPECT_EQ(observations, 3640u);
-  EXPECT_EQ(scan(recording, 4).observations.at(0).z[0], 11.5387);
-  EXPECT_EQ(scan(recording, 4).observations.at(0).z[1], -3.2007);
+  EXPECT_EQ(scan_of(recording, 4).observations.at(0).z[0], 11.5387);
+  EXPECT_EQ(scan_of(recording, 4).observations.at(0).z[1], -3.2007);
   EXPECT_EQ(recording.labels.at(4), std::vector<core::Label>{5});
 }
 
@@ -47,10 +47,10 @@ TEST_F(VictoriaParkGraph, IsTheSameFromSquareRootsAndFromVariances) {
   const Eigen::Matrix3d expected = Eigen::Vector3d(1e-4, 4e-6, 4e-6).asDiagonal();
   for (std::size_t pose = 0; pose < isam.labels.size(); ++pose) {
     if (pose > 0) {
-      EXPECT_LT((odometry(isam, 2 * pose - 1).covariance - expected).norm(), 1e-12);
-      EXPECT_LT((odometry(gtsam, 2 * pose - 1).covariance - expected).norm(), 1e-12);
+      EXPECT_LT((odometry_of(isam, 2 * pose - 1).covariance - expected).norm(), 1e-12);
+      EXPECT_LT((odometry_of(gtsam, 2 * pose - 1).covariance - expected).norm(), 1e-12);
     }
-    for (const core::Observation& observation : scan(isam, pose).observations) {
+    for (const core::Observation& observation : scan_of(isam, pose).observations) {
       EXPECT_LT((observation.R - 0.4 * Eigen::Matrix2d::Identity()).norm(), 1e-6);
     }
   }
@@ -62,9 +62,10 @@ TEST(PoseLandmarkText, InvertsAFullSquareRoot) {
   const core::Recording recording = read_pose_landmark_text(path);
   Eigen::Matrix3d U;
   U << 2, 1, 0.5, 0, 4, -1, 0, 0, 5;
-  EXPECT_LT((odometry(recording, 1).covariance * U.transpose() * U - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+  EXPECT_LT((odometry_of(recording, 1).covariance * U.transpose() * U - Eigen::Matrix3d::Identity()).norm(), 1e-12);
   const Eigen::Matrix2d U2 = U.topLeftCorner<2, 2>();
-  EXPECT_LT((scan(recording, 1).observations[0].R * U2.transpose() * U2 - Eigen::Matrix2d::Identity()).norm(), 1e-12);
+  EXPECT_LT((scan_of(recording, 1).observations[0].R * U2.transpose() * U2 - Eigen::Matrix2d::Identity()).norm(),
+            1e-12);
 }
 
 TEST(PoseLandmarkText, TakesAnObservationThatComesLaterThanItsPose) {
@@ -78,8 +79,8 @@ TEST(PoseLandmarkText, TakesAnObservationThatComesLaterThanItsPose) {
 TEST(PoseLandmarkText, ObeysTheReaderAboutTheMeaningOfTheNoise) {
   const TemporaryFolder folder;
   const auto path = folder.write("graph.txt", "ODOMETRY 0 1 1 0 0 2 0 0 2 0 2\n");
-  EXPECT_NEAR(odometry(read_pose_landmark_text(path, NoiseColumns::covariance), 1).covariance(0, 0), 2.0, 1e-15);
-  EXPECT_NEAR(odometry(read_pose_landmark_text(path), 1).covariance(0, 0), 0.25, 1e-15);
+  EXPECT_NEAR(odometry_of(read_pose_landmark_text(path, NoiseColumns::covariance), 1).covariance(0, 0), 2.0, 1e-15);
+  EXPECT_NEAR(odometry_of(read_pose_landmark_text(path), 1).covariance(0, 0), 0.25, 1e-15);
 }
 
 TEST(PoseLandmarkText, NamesTheLineOfWhatIsWrong) {

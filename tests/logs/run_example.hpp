@@ -55,6 +55,7 @@ inline core::StepReport example_step(std::int64_t k) {
   if (since_trigger == 0) step.decisions.push_back({"search", "started", {{"attempt", 1.0}}});
   if (since_trigger >= 0 && since_trigger < 7) {
     for (int i = 0; i < 3; ++i) step.cloud.emplace_back(random.uniform(), -1.0 / 3.0, 0.1 * i);
+    if (since_trigger == 0) step.drawn = {{9.0, -1.0 / 3.0, 0.0}, {-9.0, 2.0, 0.5}, {0.1, -1.0 / 3.0, 1.0}};
   }
   return step;
 }
@@ -86,7 +87,7 @@ inline core::Recording example_recording(std::int64_t steps) {
 inline void write_example(const std::string& folder, std::int64_t steps, double microseconds = 12.3) {
   RunWriter writer(folder, example_manifest(), example_recording(steps));
   for (std::int64_t k = 0; k < steps; ++k) writer.write(example_step(k), microseconds);
-  writer.finish(example_map(), {{{"chi2", 12.5}, {"closures.pending", 2.0}}, {{"total_s", microseconds}}});
+  writer.finish(example_map(), {{{"chi2", 12.5}, {"closures.pending", 2.0}}, {{"total_s", microseconds}}, {}});
 }
 
 }  // namespace helixnav::logs

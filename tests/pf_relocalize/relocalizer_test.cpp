@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "helixnav/core/errors.hpp"
+#include "helixnav/pf_relocalize/resample.hpp"
 #include "scatter_world.hpp"
 
 namespace {
@@ -106,6 +107,9 @@ TEST(Relocalizer, AgreesWithBayesRuleOnAGridOfPosesAfterTheFirstScan) {
     const Relocalizer search(world.map, scan, options, seed);
     const CloudState& state = search.state();
     ASSERT_GT(state.effective_size, 300.0);
+    const Particles& drawn = search.weighted_particles();
+    EXPECT_EQ(drawn.size(), state.particles);
+    EXPECT_DOUBLE_EQ(effective_sample_size(drawn), state.effective_size);
     const double error = 4.0 / std::sqrt(state.effective_size);  // 4 σ; 12 numbers: false alarm 1e-3
     EXPECT_NEAR(std::exp(state.log_evidence) / exact.evidence, 1.0, 2.0 * error) << seed;
     const Eigen::Vector3d sigma = state.cloud.covariance.diagonal().cwiseSqrt();

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -45,6 +47,12 @@ int count(const core::StepReport& report, const std::string& kind, const std::st
   }));
 }
 
+std::size_t distinct(const std::vector<core::Pose2>& poses) {
+  std::set<std::pair<double, double>> places;
+  for (const core::Pose2& pose : poses) places.emplace(pose.x_m, pose.y_m);
+  return places.size();
+}
+
 struct Drive {
   int triggers = 0, closures = 0, searching_scans = 0, clouds = 0, pairs = 0, wrong_pairs = 0;
   double error_after_closing_m = 0.0;
@@ -62,6 +70,8 @@ Drive drive_scenario(const std::string& name, std::uint64_t seed, const Navigato
     result.triggers += count(report, "trigger", "started");
     result.searching_scans += report.mode == core::Mode::searching ? 1 : 0;
     result.clouds += report.cloud.empty() ? 0 : 1;
+    EXPECT_EQ(report.drawn.empty(), count(report, "search", "started") == 0);
+    EXPECT_EQ(distinct(report.drawn), report.drawn.size());  // as resampling would not leave them
     if (count(report, "closure", "accepted") > 0) {
       ++result.closures;
       const Eigen::Vector2d truth_m = run.true_poses[i].T_world_robot.position_m();

@@ -80,6 +80,9 @@ class Relocalizer {
   /// The cloud after the last step (after resampling): for pictures.
   const Particles& particles() const;
 
+  /// The cloud before that resampling, with its weights: at the start, as it was drawn on helices.
+  const Particles& weighted_particles() const;
+
   /// Poses of the heaviest particle of the heaviest mode and of its ancestors at every scan, oldest first.
   std::vector<LineagePose> lineage() const;
 
