@@ -42,7 +42,8 @@ class Search {
   std::optional<std::vector<pf_relocalize::ConstellationPair>> look(const SearchView& view,
                                                                     std::vector<core::Decision>& decisions);
 
-  /// The closing did not pass: this attempt is over.
+  /// The closing did not pass: this attempt is over. Its constellation stood on old landmarks by chance and shows what chance
+  /// can do here: the next one must explain more.
   void refuse(double path_m);
 
   /// Driven so long without an answer that the question is left open.
@@ -66,12 +67,14 @@ class Search {
     double next_question_path_m = 0.0;
     std::vector<pf_relocalize::ConstellationPair> passed;  ///< pairs of the last test if it was passed
     int passes = 0;
+    double ratio = 0.0;  ///< of the last test
   };
 
   bool is_promising(const SearchView& view);
   void start(const SearchView& view, std::vector<core::Decision>& decisions);
   std::optional<std::vector<pf_relocalize::ConstellationPair>> question(const SearchView& view,
                                                                         std::vector<core::Decision>& decisions);
+  void stop_attempt(double path_m);
   void end_attempt(const char* verdict, double path_m, std::vector<core::Decision>& decisions);
 
   SearchOptions options_;
@@ -85,6 +88,7 @@ class Search {
   int starts_ = 0;
   int questions_ = 0;
   std::optional<Attempt> attempt_;
+  double refused_ratio_ = 0.0;  ///< largest of a constellation whose closing did not pass
 };
 
 }  // namespace helixnav::supervisor
