@@ -60,6 +60,7 @@ void Search::move(const core::Odometry& odometry) { motion_ = core::chain(motion
 
 std::optional<std::vector<ConstellationPair>> Search::look(const SearchView& view,
                                                            std::vector<core::Decision>& decisions) {
+  has_just_started_ = false;
   const double path_m = view.life.path_m();
   if (path_m - last_look_path_m_ < options_.look_distance_m) return std::nullopt;
   last_look_path_m_ = path_m;
@@ -125,6 +126,7 @@ void Search::start(const SearchView& view, std::vector<core::Decision>& decision
   const std::uint64_t seed = seed_ + 1000u * static_cast<std::uint64_t>(starts_);
   attempt_.emplace(Attempt{
       pf_relocalize::Relocalizer(std::move(map), view.scan, options_.relocalizer, seed), a, b, path_m, path_m, {}, 0});
+  has_just_started_ = true;
   decisions.push_back({"search",
                        "started",
                        {{"attempt", starts_},
@@ -202,7 +204,7 @@ std::vector<core::Pose2> Search::cloud(const cekf::CompressedEkf& filter) const 
 }
 
 std::vector<core::Pose2> Search::drawn(const cekf::CompressedEkf& filter) const {
-  if (!attempt_ || attempt_->relocalizer.state().scans > 1) return {};
+  if (!attempt_ || !has_just_started_) return {};
   return thinned_out(attempt_->relocalizer.weighted_particles(),
                      base_frame_now(filter, attempt_->base_a, attempt_->base_b));
 }

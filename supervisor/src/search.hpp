@@ -56,7 +56,7 @@ class Search {
   /// T_world_robot of the particles, every n-th; empty while no attempt runs.
   std::vector<core::Pose2> cloud(const cekf::CompressedEkf& filter) const;
 
-  /// Same, as an attempt that has seen one scan drew them on helices; empty later.
+  /// Same, as they were drawn on helices, when the last look began an attempt; else empty.
   std::vector<core::Pose2> drawn(const cekf::CompressedEkf& filter) const;
 
  private:
@@ -88,7 +88,8 @@ class Search {
   int starts_ = 0;
   int questions_ = 0;
   std::optional<Attempt> attempt_;
-  double refused_ratio_ = 0.0;  ///< largest of a constellation whose closing did not pass
+  bool has_just_started_ = false;  ///< the attempt, in the last look
+  double refused_ratio_ = 0.0;     ///< largest of a constellation whose closing did not pass
 };
 
 }  // namespace helixnav::supervisor

@@ -118,6 +118,13 @@ TEST(Closing, BelievesNoConstellationThatExplainsNoMoreThanOneRefused) {
   EXPECT_EQ(drive.closures, 0);
 }
 
+/// drive_scenario holds the drawn cloud against the step that starts an attempt, here with scans that are no look between.
+TEST(Closing, ShowsWhatWasDrawnInOneStepOnly) {
+  NavigatorOptions options = one_thread();
+  options.search.look_distance_m = 4.0;
+  EXPECT_GT(drive_scenario("sparse", 7001, options).clouds, 3);
+}
+
 TEST(Closing, ClosesNothingOnARoadThatNeverReturns) {
   for (std::uint64_t seed = 7101; seed <= 7106; ++seed) {
     EXPECT_EQ(drive_scenario("open-road", seed, one_thread()).closures, 0) << seed;
