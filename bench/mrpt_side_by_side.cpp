@@ -358,6 +358,10 @@ void compare_at(const Size& size, const Noise& noise, std::ofstream& csv) {
 
 int main(int argc, char** argv) {
   std::ofstream csv;
+  if (argc > 1 && argv[1][0] == '-') {
+    std::printf("usage: %s [file.csv [noise factor]]\n", argv[0]);
+    return 2;
+  }
   if (argc > 1) csv.open(argv[1]);
   const Noise noise(argc > 2 ? std::strtod(argv[2], nullptr) : 1.0);
   csv << "N,filter,median_ms,cold_ms,mean_ms,whole_s,rms_m\n";

@@ -47,12 +47,23 @@ void PassiveCovariance::add_symmetric_product(const Eigen::Ref<const Eigen::Matr
                                               const std::vector<int>& columns) {
   const Panels tall(left, columns, left_width);
   const Panels wide(right, columns, right_width);
-  for (Eigen::Index l = 0; l < tall.count(); ++l) {
-    const int row = static_cast<int>(l * left_width);
-    for (Eigen::Index r = 0; r * right_width < row + left_width && r < wide.count(); ++r) {
-      const int column = static_cast<int>(r * right_width);
-      double* const C = tile_at(row / tile, column / tile).data() + row % tile + (column % tile) * tile;
-      add_outer(C, tile, left_width, right_width, tall.panel(l), left_width, wide.panel(r), right_width, tall.depth());
+  for (int I = 0; I * tile < left.rows(); ++I) {
+    for (int J = 0; J <= I; ++J) add_to_tile(I, J, tall, wide);
+  }
+}
+
+/// Tile by tile, because the panels of two tiles, and the tile, stay in a second-level cache meanwhile.
+void PassiveCovariance::add_to_tile(int I, int J, const Panels& left, const Panels& right) {
+  constexpr int lefts = tile / static_cast<int>(left_width);
+  constexpr int rights = tile / static_cast<int>(right_width);
+  double* const C = tile_at(I, J).data();
+  for (int l = 0; l < lefts && I * lefts + l < left.count(); ++l) {
+    const int row = l * static_cast<int>(left_width);
+    for (int r = 0; r < rights && J * rights + r < right.count(); ++r) {
+      const int column = r * static_cast<int>(right_width);
+      if (I == J && column >= row + left_width) break;  // above the diagonal
+      add_outer(C + row + column * tile, tile, left_width, right_width, left.panel(I * lefts + l), left_width,
+                right.panel(J * rights + r), right_width, left.depth());
     }
   }
 }

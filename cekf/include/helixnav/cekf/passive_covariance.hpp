@@ -7,6 +7,8 @@
 
 namespace helixnav::cekf {
 
+class Panels;
+
 /// Symmetric matrix that keeps only the tiles of its lower triangle and grows without being copied: the covariance of
 /// all landmarks that have a slot, as of the last absorbed phase. Memory 4·n² bytes for n rows.
 /// Test: tests/cekf/pieces_test.cpp.
@@ -34,6 +36,7 @@ class PassiveCovariance {
   Tile& tile_at(int I, int J) { return tiles_[static_cast<std::size_t>(I * (I + 1) / 2 + J)]; }
   const Tile& tile_at(int I, int J) const { return tiles_[static_cast<std::size_t>(I * (I + 1) / 2 + J)]; }
   void set(int i, int j, double value);
+  void add_to_tile(int I, int J, const Panels& left, const Panels& right);
 
   std::vector<Tile, Eigen::aligned_allocator<Tile>> tiles_;
   int rows_ = 0;
