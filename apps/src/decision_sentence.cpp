@@ -71,9 +71,6 @@ std::string constellation_verdict(const std::string& verdict) {
   if (verdict == "too-few-matches") return "The constellation test was not passed, too few landmarks matched";
   if (verdict == "ratio-too-low") return "The constellation test was not passed, too many landmarks contradict";
   if (verdict == "rival-too-good") return "The constellation test was not passed, another pose explains as much";
-  if (verdict == "no-better-than-refused") {
-    return "The constellation test was passed, but explains no more than one whose closing was refused";
-  }
   return "The constellation test: " + verdict;
 }
 

@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "helixnav/core/chi2.hpp"
+#include "old_ground.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -32,6 +33,24 @@ void add_coverage(const SearchView& view, const core::Pose2& T_world_base, doubl
       in_frame(view.filter.pose().mean, view.track.between(now_m - options.old_after_m, now_m + 1.0));
   constellation.new_drive.field_of_view = view.scan.field_of_view;
   constellation.new_drive.least_views = 2;
+}
+
+/// So far from where the vehicle is thought to be may stand what it sees.
+double may_be_seen_m(const SearchView& view) {
+  const double variance_m2 = view.filter.pose().covariance.topLeftCorner<2, 2>().trace();
+  return view.scan.field_of_view.max_range_m + 2.0 * std::sqrt(std::max(0.0, variance_m2));
+}
+
+/// Largest standard deviation of a landmark as the vehicle has it, in its own frame.
+double sigma_from_vehicle_m(const cekf::CompressedEkf& filter, core::LandmarkId id) {
+  const core::JointGaussian joint = filter.joint({id});
+  Eigen::Matrix<double, 2, 5> J;  // of m − p − θ·J(m − p), unturned
+  const Eigen::Vector2d d = joint.points_m.front() - joint.pose.position_m();
+  J << -1.0, 0.0, d.y(), 1.0, 0.0,  //
+      0.0, -1.0, -d.x(), 0.0, 1.0;
+  const Eigen::Matrix2d covariance = J * joint.covariance * J.transpose();
+  const double half_trace = 0.5 * covariance.trace();
+  return std::sqrt(half_trace + std::sqrt(std::max(0.0, half_trace * half_trace - covariance.determinant())));
 }
 
 /// Inside the 99.9 % ellipsoid of the prior.
@@ -75,22 +94,26 @@ std::string_view word_of(pf_relocalize::ConstellationReason reason) {
 
 std::vector<core::LandmarkId> reference_landmarks(const SearchView& view, const std::vector<core::LandmarkId>& old,
                                                   double reach_m) {
-  const core::PoseGaussian pose = view.filter.pose();
-  const double sigma_m = std::sqrt(std::max(0.0, pose.covariance.topLeftCorner<2, 2>().trace()));
-  std::vector<core::LandmarkId> near = view.filter.landmarks_within(
-      pose.mean.position_m(), view.scan.field_of_view.max_range_m + reach_m + 2.0 * sigma_m);
+  std::vector<core::LandmarkId> near =
+      view.filter.landmarks_within(view.filter.pose().mean.position_m(), may_be_seen_m(view) + reach_m);
   near.erase(std::remove_if(near.begin(), near.end(), [&](core::LandmarkId id) { return !contains(old, id); }),
              near.end());
   return near;
 }
 
+core::JointGaussian reference_ground(const SearchView& view, const std::vector<core::LandmarkId>& old, double reach_m) {
+  return old_ground(view.filter.joint(reference_landmarks(view, old, reach_m)), may_be_seen_m(view));
+}
+
 std::vector<pf_relocalize::BranchLandmark> branch_landmarks(const SearchView& view,
                                                             const std::vector<core::LandmarkId>& old,
-                                                            double seen_within_m) {
+                                                            const SearchOptions& options) {
   const core::Pose2 T_robot_world = core::inverse(view.filter.pose().mean);
   std::vector<pf_relocalize::BranchLandmark> branch;
   for (const association::LandmarkRecord& record : view.life.records()) {
-    if (view.life.path_m() - record.last_seen_path_m > seen_within_m || contains(old, record.id)) continue;
+    if (view.life.path_m() - record.last_seen_path_m > options.branch_seen_within_m) continue;
+    if (contains(old, record.id)) continue;
+    if (3.0 * sigma_from_vehicle_m(view.filter, record.id) > options.constellation.most_tolerance_m) continue;
     branch.push_back({record.id, core::transform(T_robot_world, view.filter.landmark_mean(record.id)), record.hits});
   }
   return branch;
@@ -101,13 +124,13 @@ ConstellationAnswer ask_constellation(const SearchView& view, const std::vector<
                                       const SearchOptions& options, std::uint64_t seed) {
   ConstellationAnswer answer;
   answer.T_world_winner = answer.T_world_rival = T_world_robot;
-  const std::vector<core::LandmarkId> near = reference_landmarks(view, old, options.reach_m);
-  if (near.size() < 3) return answer;
+  const core::JointGaussian ground = reference_ground(view, old, options.reach_m);
+  if (ground.ids.size() < 3) return answer;
   const pf_relocalize::ReferenceMap map =
-      pf_relocalize::build_reference_map(view.filter.joint(near), pf_relocalize::ReferenceMapOptions{});
+      pf_relocalize::build_reference_map(ground, pf_relocalize::ReferenceMapOptions{});
 
   pf_relocalize::Constellation constellation;
-  constellation.branch = branch_landmarks(view, old, options.branch_seen_within_m);
+  constellation.branch = branch_landmarks(view, old, options);
   for (std::size_t i = 0; i < map.ids.size(); ++i) {
     constellation.old_landmarks.push_back({map.ids[i], map.landmarks[i]});
   }

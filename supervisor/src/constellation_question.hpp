@@ -14,10 +14,14 @@ namespace helixnav::supervisor {
 std::vector<core::LandmarkId> reference_landmarks(const SearchView& view, const std::vector<core::LandmarkId>& old,
                                                   double reach_m);
 
-/// Landmarks of the branch in the frame of the vehicle, all that were seen lately.
+/// The joint estimate of those among them that are one piece of ground (old_ground).
+core::JointGaussian reference_ground(const SearchView& view, const std::vector<core::LandmarkId>& old, double reach_m);
+
+/// Landmarks of the branch in the frame of the vehicle, all that were seen lately and from which the vehicle has not
+/// drifted off since by more than any pair is granted: the constellation is compared as a rigid one.
 std::vector<pf_relocalize::BranchLandmark> branch_landmarks(const SearchView& view,
                                                             const std::vector<core::LandmarkId>& old,
-                                                            double seen_within_m);
+                                                            const SearchOptions& options);
 
 /// Does the constellation that the branch mapped stand on old landmarks, and nowhere else nearly as well? The hypothesis
 /// is T_world_robot, the particle filter's, unless another pose inside the prior explains more by so much that it, not the

@@ -116,7 +116,7 @@ bool Search::is_promising(const SearchView& view) {
 }
 
 void Search::start(const SearchView& view, std::vector<core::Decision>& decisions) {
-  const core::JointGaussian joint = view.filter.joint(reference_landmarks(view, old_, options_.reach_m));
+  const core::JointGaussian joint = reference_ground(view, old_, options_.reach_m);
   if (joint.ids.size() < 3) return;
   pf_relocalize::ReferenceMap map = pf_relocalize::build_reference_map(joint, options_.reference);
   const core::LandmarkId a = joint.ids[static_cast<std::size_t>(map.bases.a)];
@@ -151,10 +151,7 @@ std::optional<std::vector<ConstellationPair>> Search::question(const SearchView&
       ask_constellation(view, old_, begun_path_m_, core::compose(T_world_base, T_base_robot), options_,
                         seed_ + static_cast<std::uint64_t>(questions_));
   decisions.push_back(constellation_decision(answer));
-  attempt.ratio = answer.verdict.winner.ratio;
-  const bool outdoes_refused = attempt.ratio > refused_ratio_;
-  if (answer.verdict.accepted && !outdoes_refused) decisions.back().verdict = "no-better-than-refused";
-  const bool accepted = answer.verdict.accepted && outdoes_refused;
+  const bool accepted = answer.verdict.accepted;
   attempt.passes = !accepted ? 0 : agree(attempt.passed, answer.verdict.winner.pairs) ? attempt.passes + 1 : 1;
   attempt.passed = accepted ? answer.verdict.winner.pairs : std::vector<ConstellationPair>{};
   attempt.next_question_path_m = path_m + (accepted ? options_.confirm_m : options_.ask_again_m);
@@ -176,15 +173,10 @@ void Search::end_attempt(const char* verdict, double path_m, std::vector<core::D
                         {"log_evidence", state.log_evidence},
                         {"largest_mode", state.modes.front().mass},
                         {"driven_m", path_m - attempt_->begun_path_m}}});
-  stop_attempt(path_m);
+  refuse(path_m);
 }
 
 void Search::refuse(double path_m) {
-  refused_ratio_ = std::max(refused_ratio_, attempt_->ratio);
-  stop_attempt(path_m);
-}
-
-void Search::stop_attempt(double path_m) {
   attempt_.reset();
   next_start_path_m_ = path_m + options_.rest_m;
 }

@@ -42,8 +42,7 @@ class Search {
   std::optional<std::vector<pf_relocalize::ConstellationPair>> look(const SearchView& view,
                                                                     std::vector<core::Decision>& decisions);
 
-  /// The closing did not pass: this attempt is over. Its constellation stood on old landmarks by chance and shows what chance
-  /// can do here: the next one must explain more.
+  /// The closing did not pass: this attempt is over.
   void refuse(double path_m);
 
   /// Driven so long without an answer that the question is left open.
@@ -67,14 +66,12 @@ class Search {
     double next_question_path_m = 0.0;
     std::vector<pf_relocalize::ConstellationPair> passed;  ///< pairs of the last test if it was passed
     int passes = 0;
-    double ratio = 0.0;  ///< of the last test
   };
 
   bool is_promising(const SearchView& view);
   void start(const SearchView& view, std::vector<core::Decision>& decisions);
   std::optional<std::vector<pf_relocalize::ConstellationPair>> question(const SearchView& view,
                                                                         std::vector<core::Decision>& decisions);
-  void stop_attempt(double path_m);
   void end_attempt(const char* verdict, double path_m, std::vector<core::Decision>& decisions);
 
   SearchOptions options_;
@@ -89,7 +86,6 @@ class Search {
   int questions_ = 0;
   std::optional<Attempt> attempt_;
   bool has_just_started_ = false;  ///< the attempt, in the last look
-  double refused_ratio_ = 0.0;     ///< largest of a constellation whose closing did not pass
 };
 
 }  // namespace helixnav::supervisor
