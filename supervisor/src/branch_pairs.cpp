@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include "helixnav/core/angle.hpp"
 #include "helixnav/core/chi2.hpp"
 
 namespace helixnav::supervisor {
@@ -19,28 +20,46 @@ constexpr double reach_share = 0.35;
 
 struct Leftover {
   core::LandmarkId kept, removed;
-  double distance_m;
+  Eigen::Vector2d difference_m;  ///< removed less kept
+  Eigen::Matrix2d information;   ///< of it, correlations included, on top of 1 cm each way
   double nis;
 };
 
-/// Squared Mahalanobis distance of two landmarks, correlations included, on top of 1 cm each way.
-double squared_distance(const cekf::CompressedEkf& filter, core::LandmarkId a, core::LandmarkId b) {
-  const core::JointGaussian both = filter.joint({a, b});
+Leftover compare(const cekf::CompressedEkf& filter, core::LandmarkId kept, core::LandmarkId removed) {
+  const core::JointGaussian both = filter.joint({kept, removed});
   const Eigen::MatrixXd& P = both.covariance;
   const Eigen::Matrix2d S = P.block<2, 2>(3, 3) + P.block<2, 2>(5, 5) - P.block<2, 2>(3, 5) - P.block<2, 2>(5, 3) +
                             1e-4 * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix2d information = S.inverse();
   const Eigen::Vector2d d = both.points_m[1] - both.points_m[0];
-  return d.dot(S.inverse() * d);
+  return {kept, removed, d, information, d.dot(information * d)};
 }
 
-double reach_m(const cekf::CompressedEkf& filter, core::LandmarkId kept, const std::vector<core::LandmarkId>& old) {
+/// From an old landmark to its nearest old neighbour, as far as that matters.
+double nearest_old_m(const cekf::CompressedEkf& filter, core::LandmarkId kept,
+                     const std::vector<core::LandmarkId>& old) {
   const Eigen::Vector2d at_m = filter.landmark_mean(kept);
   double nearest_m = most_reach_m / reach_share;
   for (const core::LandmarkId other : filter.landmarks_within(at_m, nearest_m)) {
     if (other == kept || !std::binary_search(old.begin(), old.end(), other)) continue;
     nearest_m = std::min(nearest_m, (filter.landmark_mean(other) - at_m).norm());
   }
-  return std::max(least_reach_m, reach_share * nearest_m);
+  return nearest_m;
+}
+
+/// At the rim of what was mapped a copy has one partner only, right or wrong. Is it a thousand times likelier to be that
+/// one's than a neighbour's which nobody has mapped, on any side as near as the nearest is? The copies of one stretch
+/// have their error in common, so that a likelier mistake would be one of whole rows in one of some hundred closings.
+bool may_be_a_neighbours(const Leftover& leftover, double neighbour_m) {
+  constexpr int sides = 16;
+  static const double least_excess = 2.0 * std::log(1000.0);
+  for (int k = 0; k < sides; ++k) {
+    const double angle_rad = 2.0 * core::pi * k / sides;
+    const Eigen::Vector2d d =
+        leftover.difference_m - neighbour_m * Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad));
+    if (d.dot(leftover.information * d) < leftover.nis + least_excess) return true;
+  }
+  return false;
 }
 
 /// Old landmarks that `id` may be, as far as one looks, nearest first.
@@ -50,8 +69,8 @@ std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::Landma
   std::vector<Leftover> found;
   for (const core::LandmarkId kept : filter.landmarks_within(at_m, look_m)) {
     if (!std::binary_search(old.begin(), old.end(), kept)) continue;
-    const double nis = squared_distance(filter, kept, id);
-    if (nis < gate) found.push_back({kept, id, (filter.landmark_mean(kept) - at_m).norm(), nis});
+    const Leftover leftover = compare(filter, kept, id);
+    if (leftover.nis < gate) found.push_back(leftover);
   }
   std::sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.nis < b.nis; });
   return found;
@@ -91,7 +110,10 @@ KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core:
     if (!filter.contains(id)) continue;
     const double look_m = most_reach_m + std::sqrt(gate) * filter.landmark_sigma_bound_m(id);
     const std::vector<Leftover> here = compatible(filter, id, old, gate, look_m);
-    if (here.size() != 1 || here.front().distance_m > reach_m(filter, here.front().kept, old)) continue;
+    if (here.size() != 1) continue;
+    const double neighbour_m = nearest_old_m(filter, here.front().kept, old);
+    const double reach_m = std::max(least_reach_m, reach_share * neighbour_m);
+    if (here.front().difference_m.norm() > reach_m || may_be_a_neighbours(here.front(), neighbour_m)) continue;
     found.push_back(here.front());
   }
   std::sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.nis < b.nis; });

@@ -27,8 +27,9 @@ bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& opt
                      Closing& closing);
 
 /// Confirmed branch landmarks that are compatible with one landmark of `old` (ascending) and with no other, by the joint
-/// covariance of the closed map, and not farther from it than a third of the distance to its nearest old neighbour, 1 m
-/// at the least and 2.5 m at the most; of several on the same one the nearest. Test: supervisor/branch_pairs_test.cpp.
+/// covariance of the closed map, a thousand times likelier it than one that stood as near to it as its nearest old
+/// neighbour on another side, and not farther from it than a third of that distance, 1 m at the least and 2.5 m at the
+/// most; of several on the same one the nearest. Test: supervisor/branch_pairs_test.cpp.
 KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
                       const std::vector<core::LandmarkId>& old, double gate);
 

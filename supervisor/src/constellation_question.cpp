@@ -35,12 +35,6 @@ void add_coverage(const SearchView& view, const core::Pose2& T_world_base, doubl
   constellation.new_drive.least_views = 2;
 }
 
-/// So far from where the vehicle is thought to be may stand what it sees.
-double may_be_seen_m(const SearchView& view) {
-  const double variance_m2 = view.filter.pose().covariance.topLeftCorner<2, 2>().trace();
-  return view.scan.field_of_view.max_range_m + 2.0 * std::sqrt(std::max(0.0, variance_m2));
-}
-
 /// Largest standard deviation of a landmark as the vehicle has it, in its own frame.
 double sigma_from_vehicle_m(const cekf::CompressedEkf& filter, core::LandmarkId id) {
   const core::JointGaussian joint = filter.joint({id});
@@ -94,15 +88,17 @@ std::string_view word_of(pf_relocalize::ConstellationReason reason) {
 
 std::vector<core::LandmarkId> reference_landmarks(const SearchView& view, const std::vector<core::LandmarkId>& old,
                                                   double reach_m) {
-  std::vector<core::LandmarkId> near =
-      view.filter.landmarks_within(view.filter.pose().mean.position_m(), may_be_seen_m(view) + reach_m);
+  const core::PoseGaussian pose = view.filter.pose();
+  const double sigma_m = std::sqrt(std::max(0.0, pose.covariance.topLeftCorner<2, 2>().trace()));
+  std::vector<core::LandmarkId> near = view.filter.landmarks_within(
+      pose.mean.position_m(), view.scan.field_of_view.max_range_m + reach_m + 2.0 * sigma_m);
   near.erase(std::remove_if(near.begin(), near.end(), [&](core::LandmarkId id) { return !contains(old, id); }),
              near.end());
   return near;
 }
 
 core::JointGaussian reference_ground(const SearchView& view, const std::vector<core::LandmarkId>& old, double reach_m) {
-  return old_ground(view.filter.joint(reference_landmarks(view, old, reach_m)), may_be_seen_m(view));
+  return old_ground(view.filter.joint(reference_landmarks(view, old, reach_m)), view.scan.field_of_view.max_range_m);
 }
 
 std::vector<pf_relocalize::BranchLandmark> branch_landmarks(const SearchView& view,

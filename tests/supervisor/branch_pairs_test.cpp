@@ -45,11 +45,12 @@ TEST(Leftovers, AreCopiesWithinTheirReach) {
   EXPECT_EQ(TwoMaps(row(5, 4.6), 0.2, 0.2).found(), 5u);
   EXPECT_EQ(TwoMaps(row(5, 4.6), 1.5, 0.6).found(), 5u) << "within a third of the pitch";
   EXPECT_EQ(TwoMaps(row(5, 4.6), 1.8, 0.7).found(), 0u) << "beyond";
-  EXPECT_EQ(TwoMaps(row(5, 2.0), 0.9, 0.3).found(), 5u) << "a metre, however dense the map is";
+  EXPECT_EQ(TwoMaps(row(5, 2.5), 0.95, 0.32).found(), 5u) << "a metre, however dense the map is";
+  EXPECT_EQ(TwoMaps(row(5, 2.0), 0.9, 0.3).found(), 0u) << "nine times likelier than a neighbour's is not enough";
 }
 
 TEST(Leftovers, AreNoneWhereTwoOldOnesAreCompatible) {
-  EXPECT_EQ(TwoMaps(row(5, 4.6), 1.5, 1.2).found(), 1u) << "only the last of the row has no other neighbour ahead";
+  EXPECT_EQ(TwoMaps(row(5, 4.6), 1.5, 1.2).found(), 0u) << "not the last of the row either, with no neighbour ahead";
   EXPECT_EQ(TwoMaps(row(5, 2.0), 0.2, 1.0).found(), 0u);
 }
 

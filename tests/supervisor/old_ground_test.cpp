@@ -13,6 +13,8 @@ namespace {
 
 using Ids = std::vector<core::LandmarkId>;
 
+constexpr double range_m = 20.0;
+
 core::Odometry motion(double ahead_m, double sigma_m, double sigma_rad) {
   core::Odometry odometry;
   odometry.T_before_after = core::Pose2(ahead_m, 0.0, 0.0);
@@ -50,15 +52,15 @@ struct ReturnAmongTrees {
 };
 
 TEST(OldGround, LeavesOutWhatTheVehicleHasJustPassed) {
-  for (const int passed : {1, 8, 30}) {
+  for (const int passed : {1, 4, 8}) {
     const ReturnAmongTrees back(8, passed);
-    EXPECT_EQ(old_ground(back.joint(), 60.0).ids, back.old) << passed << " passed";
+    EXPECT_EQ(old_ground(back.joint(), range_m).ids, back.old) << passed << " passed";
   }
 }
 
 TEST(OldGround, KeepsTheJointEstimateOfWhatItKeeps) {
   const ReturnAmongTrees back(6, 3);
-  const core::JointGaussian ground = old_ground(back.joint(), 60.0);
+  const core::JointGaussian ground = old_ground(back.joint(), range_m);
   const core::JointGaussian alone = back.filter.joint(back.old);
   EXPECT_EQ(ground.points_m, alone.points_m);
   EXPECT_LE((ground.covariance - alone.covariance).norm(), 1e-12 * alone.covariance.norm());
@@ -67,19 +69,18 @@ TEST(OldGround, KeepsTheJointEstimateOfWhatItKeeps) {
 TEST(OldGround, IsAllOfIt) {
   cekf::CompressedEkf filter{core::PoseGaussian{}};
   const Ids old = map_row(filter, 20);
-  filter.predict(motion(-30.0, 4.0, 0.05));
-  EXPECT_EQ(old_ground(filter.joint(old), 60.0).ids, old);
-  EXPECT_EQ(old_ground(filter.joint(old), 1.0).ids, old) << "none in view";
+  filter.predict(motion(-30.0, 2.0, 0.05));
+  EXPECT_EQ(old_ground(filter.joint(old), range_m).ids, old);
+  EXPECT_EQ(old_ground(filter.joint(old), 0.1).ids, old) << "none in view";
 }
 
 TEST(OldGround, GivesAFrameInWhichTheReturnIsAsUncertainAsItIs) {
-  // Most of the trees have just been passed: of all of them, one becomes a base, and the prior a certainty.
-  const ReturnAmongTrees back(8, 30);
+  const ReturnAmongTrees back(4, 8);
   const auto heading_sigma = [](const core::JointGaussian& joint) {
     return std::sqrt(pf_relocalize::in_base_frame(joint, pf_relocalize::choose_bases(joint)).covariance(2, 2));
   };
-  EXPECT_LT(heading_sigma(back.joint()), 0.02);
-  EXPECT_NEAR(heading_sigma(old_ground(back.joint(), 60.0)), std::hypot(0.04, 0.01), 0.005);
+  EXPECT_GT(heading_sigma(back.joint()), 0.07) << "one base here and one there";
+  EXPECT_NEAR(heading_sigma(old_ground(back.joint(), range_m)), std::hypot(0.04, 0.01), 0.005);
 }
 
 /// Ten trees mapped, then a drive of 30 m that may have drifted.
