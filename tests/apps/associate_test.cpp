@@ -122,7 +122,8 @@ TEST_F(Associate, ClosesTheLoopsOfTheDlrRun) {
 
 TEST_F(Associate, EndsWithATableWhenInterrupted) {
   Program program({"associate", "ihgr-circle", "--runs", "100000"});
-  usleep(300000);
+  constexpr int patience_ms = 30'000;
+  for (int ms = 0; ms < patience_ms && !program.catches(SIGINT); ++ms) ::usleep(1000);
   program.send(SIGINT);
   const Outcome outcome = program.wait();
   EXPECT_EQ(outcome.exit_code, 130) << outcome.err;

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <string>
 
 namespace helixnav::apps {
 namespace {
@@ -47,6 +48,16 @@ Program::~Program() {
 }
 
 void Program::send(int signal) const { ::kill(process_, signal); }
+
+bool Program::catches(int signal) const {
+  std::ifstream status("/proc/" + std::to_string(process_) + "/status");
+  for (std::string word; status >> word;) {
+    if (word != "SigCgt:") continue;
+    status >> word;
+    return (std::stoull(word, nullptr, 16) >> (signal - 1) & 1u) != 0;
+  }
+  return false;
+}
 
 Outcome Program::wait() {
   int status = 0;

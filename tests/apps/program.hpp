@@ -29,6 +29,7 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   void send(int signal) const;
+  bool catches(int signal) const;  ///< it has got so far as to install its handler
   Outcome wait();
 
  private:
