@@ -14,7 +14,7 @@ namespace helixnav::supervisor {
 std::vector<core::LandmarkId> reference_landmarks(const SearchView& view, const std::vector<core::LandmarkId>& old,
                                                   double reach_m);
 
-/// The joint estimate of those among them that are one piece of ground (old_ground).
+/// The joint estimate of those among them that tell where the vehicle is (old_ground).
 core::JointGaussian reference_ground(const SearchView& view, const std::vector<core::LandmarkId>& old, double reach_m);
 
 /// Landmarks of the branch in the frame of the vehicle, all that were seen lately and from which the vehicle has not

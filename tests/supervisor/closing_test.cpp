@@ -54,7 +54,7 @@ std::size_t distinct(const std::vector<core::Pose2>& poses) {
 }
 
 struct Drive {
-  int triggers = 0, closures = 0, refusals = 0, searching_scans = 0, clouds = 0, pairs = 0, wrong_pairs = 0;
+  int triggers = 0, closures = 0, searching_scans = 0, clouds = 0, pairs = 0, wrong_pairs = 0;
   double error_after_closing_m = 0.0;
   core::PoseGaussian end;
   std::size_t landmarks = 0;
@@ -70,7 +70,6 @@ Drive drive_scenario(const std::string& name, std::uint64_t seed, const Navigato
     result.triggers += count(report, "trigger", "started");
     result.searching_scans += report.mode == core::Mode::searching ? 1 : 0;
     result.clouds += report.cloud.empty() ? 0 : 1;
-    result.refusals += count(report, "closure", "refused");
     EXPECT_EQ(report.drawn.empty(), count(report, "search", "started") == 0);
     EXPECT_EQ(distinct(report.drawn), report.drawn.size());  // as resampling would not leave them
     if (count(report, "closure", "accepted") > 0) {
