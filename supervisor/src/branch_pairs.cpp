@@ -12,18 +12,9 @@
 namespace helixnav::supervisor {
 namespace {
 
-// How far from one another two landmarks may be one: beyond it, compatible only means uncertain. Where old landmarks stand
-// far apart, a third of their distance says well enough who is whose copy.
+// Of the distance of old landmarks a third says well enough who is whose copy.
 constexpr double least_reach_m = 1.0;
-constexpr double most_reach_m = 2.5;
 constexpr double reach_share = 0.35;
-
-struct Leftover {
-  core::LandmarkId kept, removed;
-  Eigen::Vector2d difference_m;  ///< removed less kept
-  Eigen::Matrix2d information;   ///< of it, correlations included, on top of 1 cm each way
-  double nis;
-};
 
 Leftover compare(const cekf::CompressedEkf& filter, core::LandmarkId kept, core::LandmarkId removed) {
   const core::JointGaussian both = filter.joint({kept, removed});
@@ -62,6 +53,8 @@ bool may_be_a_neighbours(const Leftover& leftover, double neighbour_m) {
   return false;
 }
 
+}  // namespace
+
 /// Old landmarks that `id` may be, as far as one looks, nearest first.
 std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::LandmarkId id,
                                  const std::vector<core::LandmarkId>& old, double gate, double look_m) {
@@ -75,8 +68,6 @@ std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::Landma
   std::sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.nis < b.nis; });
   return found;
 }
-
-}  // namespace
 
 KeptRemoved kept_removed(const std::vector<pf_relocalize::ConstellationPair>& pairs) {
   KeptRemoved result;

@@ -16,7 +16,23 @@ using KeptRemoved = std::vector<cekf::CompressedEkf::LandmarkPair>;
 
 constexpr std::size_t least_pairs = 3;  ///< of a closing
 
+/// How far from one another two landmarks may be one, where old ones stand far apart: beyond it, compatible only means
+/// uncertain.
+constexpr double most_reach_m = 2.5;
+
 KeptRemoved kept_removed(const std::vector<pf_relocalize::ConstellationPair>& pairs);
+
+/// An old landmark that one of the branch may be.
+struct Leftover {
+  core::LandmarkId kept, removed;
+  Eigen::Vector2d difference_m;  ///< removed less kept
+  Eigen::Matrix2d information;   ///< of it, correlations included, on top of 1 cm each way
+  double nis;
+};
+
+/// Old landmarks that `id` may be, as far as one looks, nearest first.
+std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::LandmarkId id,
+                                 const std::vector<core::LandmarkId>& old, double gate, double look_m);
 
 /// The pairs belong to what the closing merged.
 void note(const KeptRemoved& pairs, Closing& closing);

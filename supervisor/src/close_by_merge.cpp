@@ -2,16 +2,19 @@
 #include "close_by_merge.hpp"
 
 #include "branch_pairs.hpp"
+#include "left_behind.hpp"
 
 namespace helixnav::supervisor {
 namespace {
 
 /// Each pass draws the branch nearer to the old map, so that copies farther along come within reach in the next.
-void merge_leftovers(cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
-                     const std::vector<core::LandmarkId>& old, const SearchOptions& options, Closing& closing) {
+void merge_leftovers(cekf::CompressedEkf& filter, const LeftBehind& left_behind,
+                     const std::vector<core::LandmarkId>& confirmed, const std::vector<core::LandmarkId>& old,
+                     const SearchOptions& options, Closing& closing) {
   constexpr int most_passes = 10;
   for (int pass = 0; pass < most_passes; ++pass) {
     KeptRemoved rest = leftovers(filter, confirmed, old, options.leftover_gate);
+    if (rest.empty()) rest = left_behind.place(filter, old, options);
     Closing rest_closing;
     if (rest.empty() || !make_compatible(filter, options, rest, rest_closing)) return;
     filter.merge(rest, options.merge_sigma_m);
@@ -24,13 +27,14 @@ void merge_leftovers(cekf::CompressedEkf& filter, const std::vector<core::Landma
 Closing close_by_merge(cekf::CompressedEkf& filter, const std::vector<pf_relocalize::ConstellationPair>& pairs,
                        const Branch& branch, const std::vector<core::LandmarkId>& old, const SearchOptions& options) {
   Closing closing;
+  const LeftBehind left_behind(filter, branch);
   KeptRemoved chosen = kept_removed(pairs);
   if (chosen.size() < least_pairs || !make_compatible(filter, options, chosen, closing)) return closing;
   filter.merge(chosen, options.merge_sigma_m);
   note(chosen, closing);
   closing.accepted = true;
 
-  merge_leftovers(filter, branch.confirmed, old, options, closing);
+  merge_leftovers(filter, left_behind, branch.confirmed, old, options, closing);
   forget_copies(filter, branch.unconfirmed, old, options.leftover_gate, closing);
   return closing;
 }

@@ -7,6 +7,7 @@
 #include "branch_pairs.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
+#include "left_behind.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -36,12 +37,13 @@ bool replay(cekf::CompressedEkf& filter, const BranchJournal& journal, const Kep
 }
 
 /// Replays with more and more pairs; ends with the last ones that the filter could believe.
-void replay_leftovers(cekf::CompressedEkf& filter, const BranchJournal& journal, const Branch& branch,
-                      const std::vector<core::LandmarkId>& old, const SearchOptions& options, KeptRemoved& pairs,
-                      Closing& closing) {
+void replay_leftovers(cekf::CompressedEkf& filter, const LeftBehind& left_behind, const BranchJournal& journal,
+                      const Branch& branch, const std::vector<core::LandmarkId>& old, const SearchOptions& options,
+                      KeptRemoved& pairs, Closing& closing) {
   constexpr int most_passes = 10;
   for (int pass = 0; pass < most_passes; ++pass) {
     KeptRemoved rest = leftovers(filter, branch.confirmed, old, options.leftover_gate);
+    if (rest.empty()) rest = left_behind.place(filter, old, options);
     Closing next = closing;
     next.dropped = 0;
     if (rest.empty() || !make_compatible(filter, options, rest, next)) return;
@@ -63,6 +65,7 @@ Closing close_by_replay(cekf::CompressedEkf& filter, const BranchJournal& journa
                         const std::vector<pf_relocalize::ConstellationPair>& pairs, const Branch& branch,
                         const std::vector<core::LandmarkId>& old, const SearchOptions& options) {
   Closing closing;
+  const LeftBehind left_behind(filter, branch);
   KeptRemoved chosen = kept_removed(pairs);
   if (chosen.size() < least_pairs || !make_compatible(filter, options, chosen, closing)) return closing;
   const cekf::CompressedEkf before = filter;
@@ -71,7 +74,7 @@ Closing close_by_replay(cekf::CompressedEkf& filter, const BranchJournal& journa
     return closing;
   }
   closing.accepted = true;
-  replay_leftovers(filter, journal, branch, old, options, chosen, closing);
+  replay_leftovers(filter, left_behind, journal, branch, old, options, chosen, closing);
   note(chosen, closing);
   forget_copies(filter, branch.unconfirmed, old, options.leftover_gate, closing);
   return closing;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "helixnav/core/step_report.hpp"
+#include "helixnav/pf_relocalize/constellation.hpp"
 
 namespace helixnav::supervisor {
 
@@ -22,6 +23,8 @@ struct Closing {
 struct Branch {
   std::vector<core::LandmarkId> confirmed;    ///< seen often enough to be one with an old landmark
   std::vector<core::LandmarkId> unconfirmed;  ///< may be clutter: never merged
+  pf_relocalize::Coverage old_drive;          ///< map frame
+  pf_relocalize::Coverage new_drive;          ///< map frame as it was before the closing
 };
 
 }  // namespace helixnav::supervisor

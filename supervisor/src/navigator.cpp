@@ -11,9 +11,7 @@
 #include "association_report.hpp"
 #include "branch_journal.hpp"
 #include "candidates.hpp"
-#include "close_by_merge.hpp"
-#include "close_by_replay.hpp"
-#include "close_by_restart.hpp"
+#include "close_map.hpp"
 #include "gating.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
@@ -223,33 +221,16 @@ void Navigator::pursue_search(const Scan& scan, StepReport& report) {
   report.cloud = search_->cloud(filter_);
   report.drawn = search_->drawn(filter_);
   report.mode = core::Mode::searching;
-  if (pairs) close(*pairs, report);
+  if (pairs) close(scan, *pairs, report);
   if (!search_ || !search_->is_undecided(life_.path_m())) return;
   report.decisions.push_back({"closure", "undecided", {{"driven_m", life_.path_m() - search_->begun_path_m()}}});
   end_search();
 }
 
-Closing Navigator::close_map(const std::vector<pf_relocalize::ConstellationPair>& pairs) {
-  Branch branch;
-  std::vector<LandmarkId> since;  // the search began
-  for (const association::LandmarkRecord& record : life_.records()) {
-    if (record.born_path_m > search_->begun_path_m()) since.push_back(record.id);
-    const bool mapped_lately = record.last_seen_path_m > search_->begun_path_m() - options_.search.old_after_m;
-    if (!mapped_lately || search_->excludes(record.id)) continue;
-    const bool confirmed = record.hits >= options_.search.constellation.least_hits;
-    (confirmed ? branch.confirmed : branch.unconfirmed).push_back(record.id);
-  }
-  const std::vector<LandmarkId>& old = search_->old_landmarks();
-  if (options_.search.closing == ClosingMethod::restart) {
-    return close_by_restart(filter_, since, search_->heaviest_mode(filter_).value_or(filter_.pose()));
-  }
-  if (journal_) return close_by_replay(filter_, *journal_, pairs, branch, old, options_.search);
-  return close_by_merge(filter_, pairs, branch, old, options_.search);
-}
-
-void Navigator::close(const std::vector<pf_relocalize::ConstellationPair>& pairs, StepReport& report) {
+void Navigator::close(const Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
+                      StepReport& report) {
   const core::Pose2 before = filter_.pose().mean;
-  const Closing closing = close_map(pairs);
+  const Closing closing = close_map(filter_, {*search_, life_, *track_, scan, journal_.get()}, pairs, options_.search);
   for (const core::MergedLandmarks& one : closing.merged) life_.merge(one.kept, one.removed);
   for (const LandmarkId id : closing.forgotten) life_.remove(id);
   report.merged = closing.merged;

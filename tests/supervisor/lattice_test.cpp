@@ -45,5 +45,17 @@ TEST(Lattice, BehindADriftOfItsPitchIsNotComparedAsRigid) {
   EXPECT_EQ(score.closures.front().wrong_pairs, 0);
 }
 
+TEST(Lattice, ThatWasLeftBehindIsNoMapOfItsOwn) {
+  // Closed 60 m behind the lattice, when each of its 38 and 48 trees was off by a third of the pitch and more.
+  for (const std::uint64_t seed : {1001u, 1004u}) {
+    const sim::RunScore score = navigate_orchard(seed, 1.0);
+    EXPECT_EQ(score.verdict, sim::RunVerdict::closed) << seed;
+    EXPECT_LE(score.duplicates, 1) << seed;
+    ASSERT_EQ(score.closures.size(), 1u) << seed;
+    EXPECT_GE(score.closures.front().pairs, 40) << seed;
+    EXPECT_EQ(score.closures.front().wrong_pairs, 0) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace helixnav::supervisor

@@ -19,7 +19,6 @@ namespace helixnav::supervisor {
 
 struct AmbiguousReturn;
 class BranchJournal;
-struct Closing;
 struct Gating;
 class History;
 class MissingSpawn;
@@ -92,8 +91,8 @@ class Navigator {
   bool is_lost(const std::vector<AmbiguousReturn>& returns, core::StepReport& report) const;
   void begin_search();
   void pursue_search(const core::Scan& scan, core::StepReport& report);
-  void close(const std::vector<pf_relocalize::ConstellationPair>& pairs, core::StepReport& report);
-  Closing close_map(const std::vector<pf_relocalize::ConstellationPair>& pairs);
+  void close(const core::Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
+             core::StepReport& report);
   void end_search();
   std::vector<core::AssociationReport> associate(const core::Scan& scan, const Gating& gating,
                                                  const std::vector<AmbiguousReturn>& returns);

@@ -10,9 +10,10 @@
 
 namespace helixnav::supervisor {
 
-/// How the map is closed. merge: the branch stays and each of its landmarks is conditioned on being the old one.
-/// replay: back to where the search began, and its scans once more with the associations now known. Both are exact, and
-/// differ by where they linearise. restart: the paper's, a baseline that throws the branch away. Figures: docs/closing.md.
+/// How the map is closed. replay: back to where the search began, and its scans once more with the associations now
+/// known; where that costs too much to be believed, merge. merge: the branch stays and each of its landmarks is
+/// conditioned on being the old one. Both are exact, and differ by where they linearise. restart: the paper's, a baseline
+/// that throws the branch away. Figures: docs/closing.md.
 enum class ClosingMethod { merge, replay, restart };
 
 /// What is believed. constellation: landmarks of the branch stand on old ones, and nowhere else as well. paper_rule: the
@@ -73,7 +74,7 @@ struct SearchOptions {
   pf_relocalize::ConstellationLimits constellation;
 
   // Closing.
-  ClosingMethod closing = ClosingMethod::merge;
+  ClosingMethod closing = ClosingMethod::replay;
   double merge_sigma_m = 0.02;        ///< two landmarks that are one differ by so little
   double closing_probability = 0.99;  ///< χ² quantile that the cost of a closing must not exceed
   int most_dropped = 1;               ///< pairs that may go, worst first, until the cost passes

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "left_behind.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "helixnav/core/random.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+constexpr double pitch_m = 4.5;
+
+/// An orchard of four rows seen from an aisle, and seen again from poses that are `shift_m` off along it, by a vehicle
+/// that knows this to `sigma_m`; the second drive sees the columns from `first_again` to `last_again` only.
+struct Orchard {
+  cekf::CompressedEkf filter{core::PoseGaussian{}};
+  std::vector<core::LandmarkId> old;
+  Branch branch;
+  std::vector<core::LandmarkId> original;  ///< of branch.confirmed, no_landmark for a new tree
+
+  Orchard(int columns, int first_again, int last_again, double shift_m, double sigma_m) {
+    core::RandomStream jitter(1, "left_behind_test");
+    const Eigen::Matrix2d R = 2.5e-3 * Eigen::Matrix2d::Identity();
+    std::vector<Eigen::Vector2d> trees;
+    for (int column = 0; column < columns; ++column) {
+      for (const double y_m : {-4.0 - pitch_m, -4.0, 4.0, 4.0 + pitch_m}) {
+        trees.emplace_back(column * pitch_m + jitter.normal(0.0, 0.05), y_m + jitter.normal(0.0, 0.05));
+        old.push_back(see(trees.back(), R, jitter));
+      }
+    }
+    core::Odometry odometry;
+    odometry.covariance.diagonal() << sigma_m * sigma_m, 0.04, 1e-6;
+    filter.predict(odometry);
+    for (int column = first_again; column <= last_again; ++column) {
+      for (int row = 0; row < 4; ++row) {
+        const auto tree = static_cast<std::size_t>(4 * column + row);
+        const Eigen::Vector2d at_m =
+            tree < trees.size() ? trees[tree] : Eigen::Vector2d(column * pitch_m, trees[tree % 4].y());
+        branch.confirmed.push_back(see(at_m + Eigen::Vector2d(shift_m, 0.0), R, jitter));
+        original.push_back(tree < trees.size() ? old[tree] : core::no_landmark);
+      }
+    }
+    look_around({-10.0, columns * pitch_m + 10.0}, branch.old_drive);
+    look_around({first_again * pitch_m + shift_m, last_again * pitch_m + shift_m}, branch.new_drive);
+  }
+
+  KeptRemoved placed() const { return LeftBehind(filter, branch).place(filter, old, {}); }
+
+  int wrong(const KeptRemoved& pairs) const {
+    int wrong = 0;
+    for (const auto& [kept, removed] : pairs) {
+      const auto k = std::find(branch.confirmed.begin(), branch.confirmed.end(), removed) - branch.confirmed.begin();
+      wrong += original[static_cast<std::size_t>(k)] != kept ? 1 : 0;
+    }
+    return wrong;
+  }
+
+ private:
+  core::LandmarkId see(const Eigen::Vector2d& at_m, const Eigen::Matrix2d& R, core::RandomStream& noise) {
+    return filter.augment(
+        core::make_cartesian(at_m + Eigen::Vector2d(noise.normal(0.0, 0.05), noise.normal(0.0, 0.05)), R), {});
+  }
+
+  static void look_around(const std::pair<double, double>& x_m, pf_relocalize::Coverage& ground) {
+    for (double x = x_m.first; x <= x_m.second; x += 3.0) ground.T_frame_sensor.emplace_back(x, 0.0, 0.0);
+    ground.field_of_view.max_range_m = 15.0;
+    ground.field_of_view.min_bearing_rad = -core::pi;
+    ground.field_of_view.max_bearing_rad = core::pi;
+  }
+};
+
+TEST(LeftBehind, IsPlacedAsAWholeWhereNoTreeCanBeToldAlone) {
+  const Orchard orchard(9, 0, 8, 1.9, 1.5);
+  EXPECT_TRUE(leftovers(orchard.filter, orchard.branch.confirmed, orchard.old, SearchOptions{}.leftover_gate).empty());
+  const KeptRemoved pairs = orchard.placed();
+  EXPECT_EQ(pairs.size(), 36u);
+  EXPECT_EQ(orchard.wrong(pairs), 0);
+}
+
+TEST(LeftBehind, IsPlacedByItsEndWhereItIsLikelierAPitchOff) {
+  const Orchard orchard(12, 4, 15, 2.8, 1.5);
+  const KeptRemoved pairs = orchard.placed();
+  EXPECT_EQ(pairs.size(), 32u);
+  EXPECT_EQ(orchard.wrong(pairs), 0);
+}
+
+TEST(LeftBehind, StaysWhereNothingTellsOnePitchFromAnother) {
+  EXPECT_TRUE(Orchard(30, 10, 12, 2.0, 3.0).placed().empty());
+}
+
+TEST(LeftBehind, IsNothingWithoutCopies) {
+  Orchard orchard(6, 0, 5, 0.0, 0.5);
+  orchard.old.clear();
+  EXPECT_TRUE(orchard.placed().empty());
+}
+
+}  // namespace
+}  // namespace helixnav::supervisor
