@@ -73,13 +73,12 @@ core::JointGaussian CompressedEkf::joint(const std::vector<core::LandmarkId>& id
   C(passive_rows, active_rows) = cross;
   C(active_rows, passive_rows) = cross.transpose();
   Eigen::MatrixXd own = e * (active_.M.view().selfadjointView<Eigen::Lower>() * e.transpose());
+  Eigen::MatrixXd before = phase_start_blocks(passive_slots);
   for (std::size_t i = 0; i < passive_slots.size(); ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      own.block<2, 2>(2 * static_cast<Eigen::Index>(i), 2 * static_cast<Eigen::Index>(j)) +=
-          i == j ? Eigen::Matrix2d(phases_.back().own_covariance_m2.middleRows<2>(2 * passive_slots[i]))
-                 : phase_start_block(passive_slots[i], passive_slots[j]);
-    }
+    const auto row = 2 * static_cast<Eigen::Index>(i);
+    before.block<2, 2>(row, row) = phases_.back().own_covariance_m2.middleRows<2>(2 * passive_slots[i]);
   }
+  own += before;
   own.triangularView<Eigen::StrictlyUpper>() = own.transpose();
   C(passive_rows, passive_rows) = own;
   return result;

@@ -14,19 +14,51 @@ int written_index(const Phase& phase, int slot) {
   return found == phase.written.end() ? -1 : static_cast<int>(found - phase.written.begin());
 }
 
-/// Carries columns 2s, 2s+1 of the map's covariance over a closed phase.
+/// Carries columns 2s, 2s+1 of the map's covariance over a closed phase that did not write the slot s.
 void replay_on_columns(const Phase& phase, int slot, Eigen::Ref<Eigen::MatrixXd> columns) {
-  const int w = written_index(phase, slot);
-  if (w >= 0) {
-    columns.topRows(phase.written_covariance.rows()) = phase.written_covariance.middleCols<2>(2 * w);
-    return;
-  }
   if (slot >= phase.slots) return;  // born later
   const Eigen::MatrixXd c = phase.basis.view().middleRows<2>(2 * slot);
   columns.topRows(2 * phase.slots).noalias() += phase.response * c.transpose();
   for (std::size_t k = 0; k < phase.written.size(); ++k) {
     columns.middleRows<2>(2 * phase.written[k]) =
         phase.written_covariance.block<2, 2>(2 * slot, 2 * static_cast<Eigen::Index>(k)).transpose();
+  }
+}
+
+/// Rows 2s, 2s+1 of the slots, columns that the phase touched; zero for slots born later.
+Eigen::MatrixXd touched_rows(const Phase& phase, const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& from,
+                             const std::vector<int>& slots) {
+  const auto width = static_cast<Eigen::Index>(phase.touched.size());
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * static_cast<Eigen::Index>(slots.size()), width);
+  for (Eigen::Index column = 0; column < width; ++column) {
+    const auto source = from.col(phase.touched[static_cast<std::size_t>(column)]);
+    for (std::size_t k = 0; k < slots.size(); ++k) {
+      if (slots[k] >= phase.slots) continue;
+      rows.col(column).segment<2>(2 * static_cast<Eigen::Index>(k)) = source.segment<2>(2 * slots[k]);
+    }
+  }
+  return rows;
+}
+
+/// Carries the covariance of the slots, its lower triangle, over a closed phase.
+void replay_on_blocks(const Phase& phase, const std::vector<int>& slots, Eigen::MatrixXd& blocks) {
+  const Eigen::MatrixXd response = touched_rows(phase, phase.response, slots);
+  const Eigen::MatrixXd basis = touched_rows(phase, phase.basis.view(), slots);
+  blocks.triangularView<Eigen::Lower>() += response * basis.transpose();
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    const int w = written_index(phase, slots[k]);
+    if (w < 0) continue;
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      if (2 * slots[i] >= phase.written_covariance.rows()) continue;
+      const Eigen::Matrix2d written = phase.written_covariance.block<2, 2>(2 * slots[i], 2 * w);
+      const auto row = 2 * static_cast<Eigen::Index>(std::max(i, k));
+      const auto column = 2 * static_cast<Eigen::Index>(std::min(i, k));
+      if (i >= k) {
+        blocks.block<2, 2>(row, column) = written;
+      } else {
+        blocks.block<2, 2>(row, column) = written.transpose();
+      }
+    }
   }
 }
 
@@ -37,28 +69,32 @@ Eigen::MatrixXd CompressedEkf::phase_start_columns(const std::vector<int>& slots
       Eigen::MatrixXd::Zero(2 * phases_.back().slots, 2 * static_cast<Eigen::Index>(slots.size()));
   for (std::size_t k = 0; k < slots.size(); ++k) {
     auto own = columns.middleCols<2>(2 * static_cast<Eigen::Index>(k));
-    if (2 * slots[k] < absorbed_.rows()) absorbed_.copy_columns(slots[k], own.topRows(absorbed_.rows()));
-    for (std::size_t p = 0; p + 1 < phases_.size(); ++p) replay_on_columns(phases_[p], slots[k], own);
+    int w = -1;
+    std::size_t p = phases_.size() - 1;  // back to the last closed phase that wrote the slot
+    while (w < 0 && p > 0) w = written_index(phases_[--p], slots[k]);
+    if (w >= 0) {
+      const Eigen::MatrixXd& written = phases_[p++].written_covariance;
+      own.topRows(written.rows()) = written.middleCols<2>(2 * w);
+    } else if (2 * slots[k] < absorbed_.rows()) {
+      absorbed_.copy_columns(slots[k], own.topRows(absorbed_.rows()));
+    }
+    for (; p + 1 < phases_.size(); ++p) replay_on_columns(phases_[p], slots[k], own);
   }
   return columns;
 }
 
-Eigen::Matrix2d CompressedEkf::phase_start_block(int slot_i, int slot_j) const {
-  Eigen::Matrix2d block = Eigen::Matrix2d::Zero();
-  if (2 * std::max(slot_i, slot_j) < absorbed_.rows()) block = absorbed_.block(slot_i, slot_j);
-  for (std::size_t p = 0; p + 1 < phases_.size(); ++p) {
-    const Phase& phase = phases_[p];
-    const int wi = written_index(phase, slot_i);
-    const int wj = written_index(phase, slot_j);
-    if (wj >= 0 && 2 * slot_i < phase.written_covariance.rows()) {
-      block = phase.written_covariance.block<2, 2>(2 * slot_i, 2 * wj);
-    } else if (wi >= 0 && 2 * slot_j < phase.written_covariance.rows()) {
-      block = phase.written_covariance.block<2, 2>(2 * slot_j, 2 * wi).transpose();
-    } else if (std::max(slot_i, slot_j) < phase.slots) {
-      block += phase.response.middleRows<2>(2 * slot_i) * phase.basis.view().middleRows<2>(2 * slot_j).transpose();
+Eigen::MatrixXd CompressedEkf::phase_start_blocks(const std::vector<int>& slots) const {
+  const Eigen::Index n = 2 * static_cast<Eigen::Index>(slots.size());
+  Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      if (2 * std::max(slots[i], slots[j]) >= absorbed_.rows()) continue;
+      blocks.block<2, 2>(2 * static_cast<Eigen::Index>(i), 2 * static_cast<Eigen::Index>(j)) =
+          absorbed_.block(slots[i], slots[j]);
     }
   }
-  return block;
+  for (std::size_t p = 0; p + 1 < phases_.size(); ++p) replay_on_blocks(phases_[p], slots, blocks);
+  return blocks;
 }
 
 Eigen::MatrixXd CompressedEkf::basis_rows(const std::vector<int>& slots) const {

@@ -167,7 +167,7 @@ class CompressedEkf {
   void append_columns(Phase& phase, const Eigen::MatrixXd& start_columns) const;
   void append_weights_for(int first_column);
   Eigen::MatrixXd phase_start_columns(const std::vector<int>& slots) const;
-  Eigen::Matrix2d phase_start_block(int slot_i, int slot_j) const;
+  Eigen::MatrixXd phase_start_blocks(const std::vector<int>& slots) const;
   Eigen::Vector2d passive_mean(int slot) const;
   std::vector<core::LandmarkId> passive_in_cells(const Eigen::Vector2d& point_m, double reach_m) const;
   Eigen::MatrixXd basis_rows(const std::vector<int>& slots) const;
