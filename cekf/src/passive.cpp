@@ -42,9 +42,11 @@ Eigen::MatrixXd touched_rows(const Phase& phase, const Eigen::Ref<const Eigen::M
 
 /// Carries the covariance of the slots, its lower triangle, over a closed phase.
 void replay_on_blocks(const Phase& phase, const std::vector<int>& slots, Eigen::MatrixXd& blocks) {
-  const Eigen::MatrixXd response = touched_rows(phase, phase.response, slots);
-  const Eigen::MatrixXd basis = touched_rows(phase, phase.basis.view(), slots);
-  blocks.triangularView<Eigen::Lower>() += response * basis.transpose();
+  if (!phase.touched.empty()) {  // a product of no depth ends in a division by zero in Eigen
+    const Eigen::MatrixXd response = touched_rows(phase, phase.response, slots);
+    const Eigen::MatrixXd basis = touched_rows(phase, phase.basis.view(), slots);
+    blocks.triangularView<Eigen::Lower>() += response * basis.transpose();
+  }
   for (std::size_t k = 0; k < slots.size(); ++k) {
     const int w = written_index(phase, slots[k]);
     if (w < 0) continue;

@@ -58,6 +58,19 @@ TEST_P(Rewind, ReachesBackAcrossRegionSwitchesBitForBit) {
   EXPECT_LE(d.mean, 1e-8);
 }
 
+TEST_P(Rewind, IsReadyForPhasesInWhichNothingWasSeen) {
+  RandomProgram program(28, {GetParam(), 220, 30, false});
+  go_on(program, 200);
+  program.filter.keep_since(program.filter.phase());
+  for (int k = 0; k < 3; ++k) program.switch_region_randomly();
+  ASSERT_GE(program.filter.phases_kept(), 3);
+  EXPECT_LE(compare(program.filter, program.oracle).covariance, 1e-8);
+  go_on(program, 100);
+  const Differences d = compare(program.filter, program.oracle);
+  EXPECT_LE(d.covariance, 1e-8);
+  EXPECT_LE(d.mean, 1e-8);
+}
+
 TEST_P(Rewind, OfALaterSnapshotWorksAfterAnEarlierOneInTheSamePhase) {
   RandomProgram program(23, {GetParam(), 220, 0, false});
   go_on(program, 250);
