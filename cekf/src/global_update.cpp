@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The end of a phase: what its weights say is written down, and applied to the passive covariance when nothing needs to
 // be undone any more.
+#include <memory>
+
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "packed_product.hpp"
 
@@ -107,9 +109,11 @@ Eigen::MatrixXd CompressedEkf::close_phase(Phase& next) {
 void CompressedEkf::absorb_closed_phases() {
   while (phases_.size() > 1 && phases_.front().number < keep_since_) {
     const Phase& phase = phases_.front();
-    absorbed_.grow(static_cast<int>(phase.written_covariance.rows()));
-    absorbed_.add_symmetric_product(phase.response, phase.basis.view(), phase.touched);
-    absorbed_.overwrite(phase.written, phase.written_covariance);
+    const bool is_shared = absorbed_.use_count() > 1;
+    if (is_shared) absorbed_ = std::make_shared<PassiveCovariance>(*absorbed_);
+    absorbed_->grow(static_cast<int>(phase.written_covariance.rows()));
+    absorbed_->add_symmetric_product(phase.response, phase.basis.view(), phase.touched);
+    absorbed_->overwrite(phase.written, phase.written_covariance);
     free_slots_.insert(free_slots_.end(), phase.dead.begin(), phase.dead.end());
     phases_.pop_front();
   }

@@ -77,8 +77,8 @@ Eigen::MatrixXd CompressedEkf::phase_start_columns(const std::vector<int>& slots
     if (w >= 0) {
       const Eigen::MatrixXd& written = phases_[p++].written_covariance;
       own.topRows(written.rows()) = written.middleCols<2>(2 * w);
-    } else if (2 * slots[k] < absorbed_.rows()) {
-      absorbed_.copy_columns(slots[k], own.topRows(absorbed_.rows()));
+    } else if (2 * slots[k] < absorbed_->rows()) {
+      absorbed_->copy_columns(slots[k], own.topRows(absorbed_->rows()));
     }
     for (; p + 1 < phases_.size(); ++p) replay_on_columns(phases_[p], slots[k], own);
   }
@@ -90,9 +90,9 @@ Eigen::MatrixXd CompressedEkf::phase_start_blocks(const std::vector<int>& slots)
   Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(n, n);
   for (std::size_t i = 0; i < slots.size(); ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
-      if (2 * std::max(slots[i], slots[j]) >= absorbed_.rows()) continue;
+      if (2 * std::max(slots[i], slots[j]) >= absorbed_->rows()) continue;
       blocks.block<2, 2>(2 * static_cast<Eigen::Index>(i), 2 * static_cast<Eigen::Index>(j)) =
-          absorbed_.block(slots[i], slots[j]);
+          absorbed_->block(slots[i], slots[j]);
     }
   }
   for (std::size_t p = 0; p + 1 < phases_.size(); ++p) replay_on_blocks(phases_[p], slots, blocks);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -16,15 +17,14 @@ using core::LandmarkId;
 using pf_relocalize::Constellation;
 using pf_relocalize::ConstellationPair;
 
-constexpr double stretch_m =
-    40.0;  // around the best-known copy: with its lever, as rigid as the constellation test takes it
-constexpr double rim_m = 3.0;    // beyond it landmarks are partners, but nobody misses one
-constexpr double rigid_m = 0.7;  // two copies and the old landmarks that they may be are so equally far apart
+constexpr double stretch_m = 40.0;  // around the best-known copy; 25 and 60 m do as well
+constexpr double rim_m = 3.0;       // beyond it landmarks are partners, but nobody misses one
+constexpr double rigid_m = 0.7;     // two copies and the old landmarks that they may be are so equally far apart
 constexpr std::size_t most_anchors = 6;
 // χ² of what a copy may be. To first order the true one was beyond 9.2 for most trees of a stretch in one of 50 orchards;
 // the cost of merging, which is iterated, was 41 for 42 degrees of freedom there.
 constexpr double wide_gate = 40.0;
-static const double least_nats = std::log(1000.0);
+const double least_nats = std::log(1000.0);
 
 struct Copy {
   LandmarkId id;
@@ -175,15 +175,30 @@ KeptRemoved LeftBehind::place(const cekf::CompressedEkf& filter, const std::vect
                               const SearchOptions& options) const {
   std::vector<Copy> copies = copies_among(confirmed_, filter, old);
   if (copies.empty()) return {};
-  const Eigen::Vector2d origin_m = before_m_.at(copies.front().id);
-  const Eigen::Vector2d now_m = filter.landmark_mean(copies.front().id);
   const double reach_m = stretch_m + rim_m + std::sqrt(wide_gate * copies.back().variance_m2);
+  const Stretch stretch(ground_around(copies.front().id, reach_m, filter, old), filter, options);
+  copies.erase(std::remove_if(copies.begin(), copies.end(), [&](const Copy& copy) { return !stretch.holds(copy.id); }),
+               copies.end());
+  std::vector<Placing> placings = stretch.placings(copies);
+  if (placings.empty()) return {};
+  for (Placing& placing : placings) placing.nats = stretch.nats(placing);
+  std::sort(placings.begin(), placings.end(), [](const Placing& a, const Placing& b) { return a.nats > b.nats; });
+  const Placing& best = placings.front();
+  const bool has_rival = std::any_of(placings.begin() + 1, placings.end(), [&](const Placing& other) {
+    return other.nats > best.nats - least_nats && is_elsewhere(other, best);
+  });
+  return has_rival ? KeptRemoved{} : kept_removed(best.pairs);
+}
 
+Constellation LeftBehind::ground_around(LandmarkId middle, double reach_m, const cekf::CompressedEkf& filter,
+                                        const std::vector<LandmarkId>& old) const {
+  const Eigen::Vector2d origin_m = before_m_.at(middle);
+  const Eigen::Vector2d now_m = filter.landmark_mean(middle);
   Constellation ground;
   for (const LandmarkId id : confirmed_) {
     const Eigen::Vector2d at_m = before_m_.at(id) - origin_m;
     if (!filter.contains(id) || at_m.norm() > stretch_m + rim_m) continue;
-    ground.branch.push_back({id, at_m, options.constellation.least_hits});
+    ground.branch.push_back({id, at_m, std::numeric_limits<int>::max()});
   }
   for (const LandmarkId id : filter.landmarks_within(now_m, reach_m)) {
     if (!std::binary_search(old.begin(), old.end(), id)) continue;
@@ -194,21 +209,9 @@ KeptRemoved LeftBehind::place(const cekf::CompressedEkf& filter, const std::vect
   ground.old_drive.T_frame_sensor = near(old_drive_.T_frame_sensor, now_m, reach_m + range_m);
   ground.new_drive = new_drive_;
   ground.new_drive.T_frame_sensor = near(new_drive_.T_frame_sensor, origin_m, stretch_m + range_m);
-  for (core::Pose2& pose : ground.new_drive.T_frame_sensor) {
-    pose = core::Pose2(pose.x_m - origin_m.x(), pose.y_m - origin_m.y(), pose.heading_rad);
-  }
-
-  const Stretch stretch(std::move(ground), filter, options);
-  copies.erase(std::remove_if(copies.begin(), copies.end(), [&](const Copy& copy) { return !stretch.holds(copy.id); }),
-               copies.end());
-  std::vector<Placing> placings = stretch.placings(copies);
-  for (Placing& placing : placings) placing.nats = stretch.nats(placing);
-  std::sort(placings.begin(), placings.end(), [](const Placing& a, const Placing& b) { return a.nats > b.nats; });
-  if (placings.empty()) return {};
-  const bool has_rival = std::any_of(placings.begin() + 1, placings.end(), [&](const Placing& other) {
-    return other.nats > placings.front().nats - least_nats && is_elsewhere(other, placings.front());
-  });
-  return has_rival ? KeptRemoved{} : kept_removed(placings.front().pairs);
+  const core::Pose2 T_stretch_before(-origin_m.x(), -origin_m.y(), 0.0);
+  for (core::Pose2& pose : ground.new_drive.T_frame_sensor) pose = core::compose(T_stretch_before, pose);
+  return ground;
 }
 
 }  // namespace helixnav::supervisor

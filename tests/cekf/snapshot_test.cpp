@@ -145,6 +145,22 @@ TEST_P(Rewind, NamesNoLandmarkTwiceWhenAskedTo) {
   EXPECT_EQ(filter.next_name(), fresh + 1);
 }
 
+TEST(Copies, AreNotChangedByOneAnother) {
+  RandomProgram program(29, {Retraction::right_invariant, 220, 30, false});
+  go_on(program, 200);
+  RandomProgram copy = program;
+  const std::string before = bytes_of(copy.filter);
+  const core::JointGaussian all = copy.filter.joint(copy.filter.landmarks());
+  const int switches = program.switches;
+  go_on(program, 100);
+  ASSERT_GE(program.switches, switches + 2);
+  EXPECT_TRUE(bytes_of(copy.filter) == before);
+  EXPECT_EQ(copy.filter.joint(copy.filter.landmarks()).covariance, all.covariance);
+  go_on(copy, 100);
+  EXPECT_LE(compare(program.filter, program.oracle).covariance, 1e-8);
+  EXPECT_LE(compare(copy.filter, copy.oracle).covariance, 1e-8);
+}
+
 TEST(SnapshotSize, IsAtMostOneMegabyteAtFiftyActiveLandmarks) {
   RandomProgram program(27, {Retraction::right_invariant, 400, 0, false});
   go_on(program, 200);

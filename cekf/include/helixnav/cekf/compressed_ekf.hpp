@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,7 @@ class Panels;
 /// gathered in the weights of ActivePart and applied when the region switches.
 ///
 /// Frames: everything is in the map frame; the pose is T_world_robot, covariances in (x, y, heading) [m, m, rad].
+/// A copy shares the covariance of the passive landmarks until one of the two absorbs a phase into it: O(N·q) a phase kept.
 /// Every call either succeeds or throws PreconditionError (arguments) or NumericalError (S not positive definite, a
 /// correction that is not finite) and leaves the filter as it was. Cost below with n active landmarks, q weights
 /// (2·3+4·n right-invariant, 3+2·n standard), m rows of innovation. Source: THEORY §1 and §1b. Test: tests/cekf (equal
@@ -190,7 +192,8 @@ class CompressedEkf {
   FilterOptions options_;
   ActivePart active_;
   std::deque<Phase> phases_;  ///< closed ones that are kept, then the open one
-  PassiveCovariance absorbed_;
+  std::shared_ptr<PassiveCovariance> absorbed_ =
+      std::make_shared<PassiveCovariance>();  ///< copies share it, until one writes
   std::vector<int> free_slots_;
   std::vector<Place> places_;  ///< by landmark id
   long last_phase_ = 0;        ///< numbers are never used twice, not even after a restore
