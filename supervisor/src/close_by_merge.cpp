@@ -5,9 +5,7 @@
 #include "left_behind.hpp"
 
 namespace helixnav::supervisor {
-namespace {
 
-/// Each pass draws the branch nearer to the old map, so that copies farther along come within reach in the next.
 void merge_leftovers(cekf::CompressedEkf& filter, const LeftBehind& left_behind,
                      const std::vector<core::LandmarkId>& confirmed, const std::vector<core::LandmarkId>& old,
                      const SearchOptions& options, Closing& closing) {
@@ -21,8 +19,6 @@ void merge_leftovers(cekf::CompressedEkf& filter, const LeftBehind& left_behind,
     note(rest, closing);
   }
 }
-
-}  // namespace
 
 Closing close_by_merge(cekf::CompressedEkf& filter, const std::vector<pf_relocalize::ConstellationPair>& pairs,
                        const Branch& branch, const std::vector<core::LandmarkId>& old, const SearchOptions& options) {

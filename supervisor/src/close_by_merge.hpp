@@ -7,6 +7,7 @@
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/pf_relocalize/constellation.hpp"
 #include "helixnav/supervisor/search_options.hpp"
+#include "left_behind.hpp"
 
 namespace helixnav::supervisor {
 
@@ -17,5 +18,11 @@ namespace helixnav::supervisor {
 /// Exact: equal to a full EKF told the same equalities. Source: PROTOTYPE §6. Test: supervisor/closing_test.cpp.
 Closing close_by_merge(cekf::CompressedEkf& filter, const std::vector<pf_relocalize::ConstellationPair>& pairs,
                        const Branch& branch, const std::vector<core::LandmarkId>& old, const SearchOptions& options);
+
+/// Merges what has become a copy, in passes: each draws the branch nearer to the old map, so that copies farther along come
+/// within reach in the next. Adds to `closing`.
+void merge_leftovers(cekf::CompressedEkf& filter, const LeftBehind& left_behind,
+                     const std::vector<core::LandmarkId>& confirmed, const std::vector<core::LandmarkId>& old,
+                     const SearchOptions& options, Closing& closing);
 
 }  // namespace helixnav::supervisor

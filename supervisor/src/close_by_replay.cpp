@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "branch_pairs.hpp"
+#include "close_by_merge.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
 #include "left_behind.hpp"
@@ -36,8 +37,8 @@ bool replay(cekf::CompressedEkf& filter, const BranchJournal& journal, const Kep
   return closing.cost <= closing.limit;
 }
 
-/// Replays with more and more pairs; ends with the last ones that the filter could believe.
-void replay_leftovers(cekf::CompressedEkf& filter, const LeftBehind& left_behind, const BranchJournal& journal,
+/// Replays with more and more pairs, as long as the filter believes them; true when there are no more.
+bool replay_leftovers(cekf::CompressedEkf& filter, const LeftBehind& left_behind, const BranchJournal& journal,
                       const Branch& branch, const std::vector<core::LandmarkId>& old, const SearchOptions& options,
                       KeptRemoved& pairs, Closing& closing) {
   constexpr int most_passes = 10;
@@ -46,17 +47,18 @@ void replay_leftovers(cekf::CompressedEkf& filter, const LeftBehind& left_behind
     if (rest.empty()) rest = left_behind.place(filter, old, options);
     Closing next = closing;
     next.dropped = 0;
-    if (rest.empty() || !make_compatible(filter, options, rest, next)) return;
+    if (rest.empty() || !make_compatible(filter, options, rest, next)) return true;
     rest.insert(rest.begin(), pairs.begin(), pairs.end());
     const cekf::CompressedEkf before = filter;
     if (!replay(filter, journal, rest, options, next)) {
       filter = before;
-      return;
+      return false;
     }
     next.dropped = closing.dropped;
     closing = next;
     pairs = std::move(rest);
   }
+  return true;
 }
 
 }  // namespace
@@ -74,8 +76,9 @@ Closing close_by_replay(cekf::CompressedEkf& filter, const BranchJournal& journa
     return closing;
   }
   closing.accepted = true;
-  replay_leftovers(filter, left_behind, journal, branch, old, options, chosen, closing);
+  const bool complete = replay_leftovers(filter, left_behind, journal, branch, old, options, chosen, closing);
   note(chosen, closing);
+  if (!complete) merge_leftovers(filter, left_behind, branch.confirmed, old, options, closing);
   forget_copies(filter, branch.unconfirmed, old, options.leftover_gate, closing);
   return closing;
 }
