@@ -43,7 +43,7 @@ Closing close_map(cekf::CompressedEkf& filter, const ClosingView& view,
   }
   const Branch branch = branch_of(view, options);
   if (view.journal != nullptr) {
-    const Closing closing = close_by_replay(filter, *view.journal, pairs, branch, search.old_landmarks(), options);
+    Closing closing = close_by_replay(filter, *view.journal, pairs, branch, search.old_landmarks(), options);
     if (closing.accepted) return closing;
   }
   return close_by_merge(filter, pairs, branch, search.old_landmarks(), options);

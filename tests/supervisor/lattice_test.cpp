@@ -46,8 +46,9 @@ TEST(Lattice, BehindADriftOfItsPitchIsNotComparedAsRigid) {
 }
 
 TEST(Lattice, ThatWasLeftBehindIsNoMapOfItsOwn) {
-  // Closed 60 m behind the lattice, when each of its 38 and 48 trees was off by a third of the pitch and more.
-  for (const std::uint64_t seed : {1001u, 1004u}) {
+  // Closed 60 m behind the lattice, when each of its 38 and 50 trees was off by a third of the pitch and more; in the second
+  // the replay with all pairs costs too much, and they are merged.
+  for (const std::uint64_t seed : {1004u, 1148u}) {
     const sim::RunScore score = navigate_orchard(seed, 1.0);
     EXPECT_EQ(score.verdict, sim::RunVerdict::closed) << seed;
     EXPECT_LE(score.duplicates, 1) << seed;

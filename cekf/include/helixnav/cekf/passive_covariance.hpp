@@ -33,8 +33,12 @@ class PassiveCovariance {
 
  private:
   using Tile = Eigen::Matrix<double, tile, tile>;
-  Tile& tile_at(int I, int J) { return tiles_[static_cast<std::size_t>(I * (I + 1) / 2 + J)]; }
-  const Tile& tile_at(int I, int J) const { return tiles_[static_cast<std::size_t>(I * (I + 1) / 2 + J)]; }
+  static std::size_t index(int I, int J) {
+    const auto row = static_cast<std::size_t>(I);
+    return row * (row + 1) / 2 + static_cast<std::size_t>(J);
+  }
+  Tile& tile_at(int I, int J) { return tiles_[index(I, J)]; }
+  const Tile& tile_at(int I, int J) const { return tiles_[index(I, J)]; }
   void set(int i, int j, double value);
   void add_to_tile(int I, int J, const Panels& left, const Panels& right);
 
