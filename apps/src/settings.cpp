@@ -173,18 +173,18 @@ void add_search(CLI::App& command, supervisor::SearchOptions& search) {
              "A search begins when so many other objects are to be expected in the gate of an old landmark");
   const auto set_closing = [&search](const std::string& word) {
     using supervisor::ClosingMethod;
-    search.closing = word == "replay"    ? ClosingMethod::replay
+    search.closing = word == "merge"     ? ClosingMethod::merge
                      : word == "restart" ? ClosingMethod::restart
-                                         : ClosingMethod::merge;
+                                         : ClosingMethod::replay;
   };
   command
       .add_option_function<std::string>("--search.closing", set_closing,
-                                        "How a loop is closed; merge: new landmarks become the old ones; replay: the "
-                                        "scans since the search began are driven again with the associations found; "
-                                        "restart: the pose is the particles', what was mapped since is forgotten "
-                                        "(baseline)")
-      ->check(one_of({"merge", "replay", "restart"}))
-      ->default_str("merge")
+                                        "How a loop is closed; replay: the scans since the search began are driven "
+                                        "again with the associations found, or merged where that costs too much; "
+                                        "merge: new landmarks become the old ones; restart: the pose is the "
+                                        "particles', what was mapped since is forgotten (baseline)")
+      ->check(one_of({"replay", "merge", "restart"}))
+      ->default_str("replay")
       ->group(group);
   add_number(command, "--search.undecided_m", search.undecided_m, 1.0, 1e6,
              "After so long a drive without a closing the question is left open");

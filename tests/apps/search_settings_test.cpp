@@ -36,7 +36,7 @@ TEST_F(SearchSettings, EachReachTheSearchButThreadsAndTheDumpOfTheDefaultsChange
                                {"--search.particles", "100"},
                                {"--search.init", "gaussian"},
                                {"--search.decorrelation", "whitened-bound"},
-                               {"--search.closing", "replay"},
+                               {"--search.closing", "merge"},
                                {"--search.closing", "restart"},
                                {"--search.acceptance", "paper"},
                                {"--search.passes", "4"},
