@@ -73,7 +73,9 @@ core::JointGaussian CompressedEkf::joint(const std::vector<core::LandmarkId>& id
   C(passive_rows, active_rows) = cross;
   C(active_rows, passive_rows) = cross.transpose();
   Eigen::MatrixXd own = e * (active_.M.view().selfadjointView<Eigen::Lower>() * e.transpose());
-  Eigen::MatrixXd before = phase_start_blocks(passive_slots);
+  Eigen::MatrixXd before = Eigen::MatrixXd::Zero(own.rows(), own.cols());
+  const bool has_pairs = passive_slots.size() > 1;  // a landmark's own block needs no phase read again
+  if (has_pairs) before = phase_start_blocks(passive_slots);
   for (std::size_t i = 0; i < passive_slots.size(); ++i) {
     const auto row = 2 * static_cast<Eigen::Index>(i);
     before.block<2, 2>(row, row) = phases_.back().own_covariance_m2.middleRows<2>(2 * passive_slots[i]);

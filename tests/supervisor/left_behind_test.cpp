@@ -22,13 +22,14 @@ struct Orchard {
   Branch branch;
   std::vector<core::LandmarkId> original;  ///< of branch.confirmed, no_landmark for a new tree
 
-  Orchard(int columns, int first_again, int last_again, double shift_m, double sigma_m) {
+  Orchard(int columns, int first_again, int last_again, double shift_m, double sigma_m, double jitter_m = 0.05)
+      : jitter_m_(jitter_m) {
     core::RandomStream jitter(1, "left_behind_test");
     const Eigen::Matrix2d R = 2.5e-3 * Eigen::Matrix2d::Identity();
     std::vector<Eigen::Vector2d> trees;
     for (int column = 0; column < columns; ++column) {
       for (const double y_m : {-4.0 - pitch_m, -4.0, 4.0, 4.0 + pitch_m}) {
-        trees.emplace_back(column * pitch_m + jitter.normal(0.0, 0.05), y_m + jitter.normal(0.0, 0.05));
+        trees.emplace_back(column * pitch_m + jitter.normal(0.0, jitter_m), y_m + jitter.normal(0.0, jitter_m));
         old.push_back(see(trees.back(), R, jitter));
       }
     }
@@ -60,9 +61,12 @@ struct Orchard {
   }
 
  private:
+  double jitter_m_;  ///< of the trees, and of where they are seen
+
   core::LandmarkId see(const Eigen::Vector2d& at_m, const Eigen::Matrix2d& R, core::RandomStream& noise) {
     return filter.augment(
-        core::make_cartesian(at_m + Eigen::Vector2d(noise.normal(0.0, 0.05), noise.normal(0.0, 0.05)), R), {});
+        core::make_cartesian(at_m + Eigen::Vector2d(noise.normal(0.0, jitter_m_), noise.normal(0.0, jitter_m_)), R),
+        {});
   }
 
   static void look_around(const std::pair<double, double>& x_m, pf_relocalize::Coverage& ground) {
@@ -81,8 +85,15 @@ TEST(LeftBehind, IsPlacedAsAWholeWhereNoTreeCanBeToldAlone) {
   EXPECT_EQ(orchard.wrong(pairs), 0);
 }
 
-TEST(LeftBehind, IsPlacedByItsEndWhereItIsLikelierAPitchOff) {
+TEST(LeftBehind, IsPlacedByItsShapeWhereItIsLikelierAPitchOffAndMatchesMoreThere) {
   const Orchard orchard(12, 4, 15, 2.8, 1.5);
+  const KeptRemoved pairs = orchard.placed();
+  EXPECT_EQ(pairs.size(), 32u);
+  EXPECT_EQ(orchard.wrong(pairs), 0);
+}
+
+TEST(LeftBehind, IsPlacedByTheEndOfALatticeThatHasNoShapeWhereItIsLikelierAPitchOff) {
+  const Orchard orchard(12, 4, 11, 2.8, 1.5, 0.0);
   const KeptRemoved pairs = orchard.placed();
   EXPECT_EQ(pairs.size(), 32u);
   EXPECT_EQ(orchard.wrong(pairs), 0);
