@@ -105,6 +105,18 @@ std::string closure_sentence(const core::Decision& d) {
          " m, " + text(d, "driven_m") + " m after the trigger.";
 }
 
+std::string smoothing_sentence(const core::Decision& d) {
+  const std::string cost = text(d, "chi2") + " after " + counted(number(d, "iterations"), "iteration") + " over " +
+                           counted(number(d, "poses"), "pose");
+  const std::string limit = text(d, "limit") + ", what the filter's solution costs and a little more";
+  if (d.verdict != "accepted") {
+    return "The drive as a whole was not solved: least squares came to a cost of " + cost + "; it must settle within " +
+           limit + ". The map stays as the closing left it.";
+  }
+  return "The drive was solved as a whole, every landmark being known: least squares' cost is " + cost + ", within " +
+         limit + ". The pose moved by another " + text(d, "moved_m") + " m.";
+}
+
 std::string fix_sentence(const core::Decision& d) {
   const bool used = d.verdict == "accepted";
   return std::string("A position fix was ") + (used ? "used" : "refused") + ": NIS " + text(d, "nis") +
@@ -140,6 +152,7 @@ std::string sentence_of(const core::Decision& decision) {
   if (decision.kind == "search") return search_sentence(decision);
   if (decision.kind == "constellation") return constellation_sentence(decision);
   if (decision.kind == "closure") return closure_sentence(decision);
+  if (decision.kind == "smoothing") return smoothing_sentence(decision);
   if (decision.kind == "fix") return fix_sentence(decision);
   return plain_sentence(decision);
 }

@@ -188,6 +188,8 @@ void add_search(CLI::App& command, supervisor::SearchOptions& search) {
       ->group(group);
   add_number(command, "--search.undecided_m", search.undecided_m, 1.0, 1e6,
              "After so long a drive without a closing the question is left open");
+  add_number(command, "--search.smooth_up_to_scans", search.smooth_up_to_scans, 0, 100'000'000,
+             "After a closing the whole drive is solved by least squares, unless it has more scans; 0: never");
   add_particle_filter(command, search);
   add_acceptance(command, search);
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <string>
 
@@ -11,7 +10,7 @@
 #include "association_report.hpp"
 #include "branch_journal.hpp"
 #include "candidates.hpp"
-#include "close_map.hpp"
+#include "drive_log.hpp"
 #include "gating.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
@@ -35,6 +34,7 @@ Navigator::Navigator(const core::PoseGaussian& start, const NavigatorOptions& op
       filter_(start, options.filter),
       life_(options.life),
       track_(std::make_unique<Track>()),
+      drive_(std::make_unique<DriveLog>(start, options.search.enabled ? options.search.smooth_up_to_scans : 0)),
       probation_(std::make_unique<Probation>()),
       doubts_(std::make_unique<MissingSpawn>()),
       history_(std::make_unique<History>()),
@@ -70,6 +70,7 @@ StepReport Navigator::navigate(const Scan& scan) {
   update(scan, report);
   augment(scan, report);
   if (journal_) journal_->observe(scan, report);
+  drive_->observe(scan, report);
   live_and_let_die(scan, report);
   if (search_) pursue_search(scan, report);
   report.switched_region = filter_.switch_region_if_due();
@@ -80,6 +81,7 @@ StepReport Navigator::observe(const Scan& scan, const std::vector<std::int64_t>&
   StepReport report;
   report.associations = known_associations(scan, identities);
   if (search_) end_search();  // it asked for what is known now
+  drive_->let_go();
   if (!history_->empty()) history_->clear(filter_);
   predict();
   update(scan, report);
@@ -96,6 +98,7 @@ bool Navigator::fix(const core::AbsoluteFix& fix) {
   const bool accepted = nis <= limit;
   if (accepted) filter_.update_position(fix);
   if (accepted && journal_) journal_->fix(fix);
+  if (accepted) drive_->fix(fix, nis);
   if (!search_) history_->note(fix);
   const core::PoseGaussian now = filter_.pose();
   decisions_.push_back({"fix",
@@ -113,62 +116,11 @@ void Navigator::predict() {
   filter_.predict(*motion_);
   if (search_) search_->move(*motion_);
   if (journal_) journal_->predict(*motion_);
+  drive_->predict(*motion_);
   if (!search_) history_->note(History::Motion{*motion_, driven_m_});
   life_.drive(driven_m_);
   driven_m_ = 0.0;
   motion_.reset();
-}
-
-void Navigator::keep_in_mind(const Scan& scan, const StepReport& report) {
-  if (search_ || !options_.search.enabled || !options_.search.missing_spawn.enabled) return;
-  history_->note(scan);
-  const bool out_of_reach = !history_->empty() && report.step - history_->step() > options_.search.missing_spawn.reach;
-  if (out_of_reach) *doubts_ = MissingSpawn();
-  if (doubts_->is_clear()) history_->settle(report.step, filter_, life_);
-}
-
-bool Navigator::has_got_lost() const {
-  return !history_->empty() && doubts_->is_lost(life_, options_.search.missing_spawn);
-}
-
-/// The search that should have begun when the pose was last vouched for: what came since is gone through again in it.
-StepReport Navigator::search_from_before(StepReport report) {
-  const MissingSpawn::Evidence evidence = doubts_->evidence(life_, options_.search.missing_spawn);
-  const LandmarkId next = filter_.next_name();
-  const std::int64_t rewound_to = history_->step();
-  const std::vector<History::Event> since = history_->rewind(filter_, life_);
-  filter_.name_from(next);
-  track_->back_to(life_.path_m());
-  step_ = rewound_to + 1;
-  decisions_ = std::move(report.decisions);
-  decisions_.push_back({"trigger",
-                        "rewound",
-                        {{"missing", evidence.missing},
-                         {"seen", evidence.seen},
-                         {"spawned", evidence.spawned},
-                         {"nats", evidence.nats},
-                         {"scans", static_cast<double>(report.step - rewound_to)}}});
-  begin_search();
-  StepReport through;
-  for (const History::Event& event : since) {
-    if (const auto* motion = std::get_if<History::Motion>(&event)) {
-      motion_ = motion->odometry;
-      driven_m_ = motion->driven_m;
-    } else if (const auto* absolute = std::get_if<core::AbsoluteFix>(&event)) {
-      fix(*absolute);
-      decisions_.pop_back();  // it was reported when it came in
-    } else {
-      report = navigate(std::get<Scan>(event));
-      through.decisions.insert(through.decisions.end(), report.decisions.begin(), report.decisions.end());
-      through.merged.insert(through.merged.end(), report.merged.begin(), report.merged.end());
-      through.revised.push_back({report.step, report.associations});
-    }
-  }
-  through.revised.pop_back();  // the last one is this scan
-  report.decisions = std::move(through.decisions);
-  report.merged = std::move(through.merged);
-  report.revised = std::move(through.revised);
-  return report;
 }
 
 std::vector<LandmarkId> Navigator::candidates_of(const Scan& scan) const {
@@ -199,56 +151,6 @@ bool Navigator::is_lost(const std::vector<AmbiguousReturn>& returns, StepReport&
                                {"heading_sigma_deg", std::sqrt(now.covariance(2, 2)) * 180.0 / core::pi},
                                {"old_in_gate", static_cast<double>(returns.size())}}});
   return true;
-}
-
-void Navigator::begin_search() {
-  history_->clear(filter_);
-  *doubts_ = MissingSpawn();
-  const std::uint64_t seed = options_.search.seed + 1000000u * ++searches_;
-  search_ = std::make_unique<Search>(old_landmarks(life_, options_.search.old_after_m), life_.path_m(), seed,
-                                     options_.search);
-  if (options_.search.closing == ClosingMethod::replay) journal_ = std::make_unique<BranchJournal>(filter_);
-}
-
-void Navigator::end_search() {
-  search_.reset();
-  journal_.reset();
-  filter_.keep_since(std::numeric_limits<long>::max());
-}
-
-void Navigator::pursue_search(const Scan& scan, StepReport& report) {
-  const auto pairs = search_->look({filter_, life_, *track_, scan}, report.decisions);
-  report.cloud = search_->cloud(filter_);
-  report.drawn = search_->drawn(filter_);
-  report.mode = core::Mode::searching;
-  if (pairs) close(scan, *pairs, report);
-  if (!search_ || !search_->is_undecided(life_.path_m())) return;
-  report.decisions.push_back({"closure", "undecided", {{"driven_m", life_.path_m() - search_->begun_path_m()}}});
-  end_search();
-}
-
-void Navigator::close(const Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
-                      StepReport& report) {
-  const core::Pose2 before = filter_.pose().mean;
-  const Closing closing = close_map(filter_, {*search_, life_, *track_, scan, journal_.get()}, pairs, options_.search);
-  for (const core::MergedLandmarks& one : closing.merged) life_.merge(one.kept, one.removed);
-  for (const LandmarkId id : closing.forgotten) life_.remove(id);
-  report.merged = closing.merged;
-  report.decisions.push_back({"closure",
-                              closing.accepted ? "accepted" : "refused",
-                              {{"pairs", static_cast<double>(pairs.size())},
-                               {"dropped", closing.dropped},
-                               {"merged", static_cast<double>(closing.merged.size())},
-                               {"cost", closing.cost},
-                               {"dof", closing.dof},
-                               {"limit", closing.limit},
-                               {"driven_m", life_.path_m() - search_->begun_path_m()},
-                               {"moved_m", (filter_.pose().mean.position_m() - before.position_m()).norm()}}});
-  if (closing.accepted) {
-    end_search();
-  } else {
-    search_->refuse(life_.path_m());
-  }
 }
 
 std::vector<AssociationReport> Navigator::associate(const Scan& scan, const Gating& gating,

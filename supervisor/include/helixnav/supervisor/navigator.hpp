@@ -19,6 +19,7 @@ namespace helixnav::supervisor {
 
 struct AmbiguousReturn;
 class BranchJournal;
+class DriveLog;
 struct Gating;
 class History;
 class MissingSpawn;
@@ -94,6 +95,7 @@ class Navigator {
   void close(const core::Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
              core::StepReport& report);
   void end_search();
+  void smooth(core::StepReport& report);
   std::vector<core::AssociationReport> associate(const core::Scan& scan, const Gating& gating,
                                                  const std::vector<AmbiguousReturn>& returns);
   void hold_lonely_returns(const std::vector<AmbiguousReturn>& returns, std::vector<core::AssociationReport>& reports);
@@ -117,6 +119,7 @@ class Navigator {
   std::int64_t step_ = 0;
 
   std::unique_ptr<Track> track_;
+  std::unique_ptr<DriveLog> drive_;         ///< to be solved as a whole after a closing
   std::unique_ptr<Search> search_;          ///< while a question is open
   std::unique_ptr<BranchJournal> journal_;  ///< of the search, when closing is by replay
   std::unique_ptr<Probation> probation_;

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drive_graph.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/observation.hpp"
+#include "helixnav/core/odometry.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+using core::LandmarkGraph;
+
+/// How often each landmark was observed that is worth a place in the graph: one lost again after a single look says nothing.
+std::map<core::LandmarkId, int> sightings(const DriveLog& log, const cekf::CompressedEkf& filter) {
+  std::map<core::LandmarkId, int> count;
+  for (const DriveLog::Stop& stop : log.stops()) {
+    for (const cekf::Match& match : stop.seen) ++count[log.present(match.landmark)];
+  }
+  for (auto one = count.begin(); one != count.end();) {
+    one = one->second > 1 || filter.contains(one->first) ? std::next(one) : count.erase(one);
+  }
+  return count;
+}
+
+/// The vehicle among landmarks whose places are known: an EKF of its pose alone.
+class PoseOnMap {
+ public:
+  explicit PoseOnMap(const core::PoseGaussian& start) : pose_(start) {}
+
+  const core::Pose2& mean() const { return pose_.mean; }
+
+  void move(const core::Odometry& odometry) {
+    const core::ComposeJacobians J = core::compose_jacobians(pose_.mean, odometry.T_before_after);
+    pose_.mean = core::compose(pose_.mean, odometry.T_before_after);
+    pose_.covariance = (J.J_first * pose_.covariance * J.J_first.transpose() +
+                        J.J_second * odometry.covariance * J.J_second.transpose())
+                           .eval();
+  }
+
+  void see(const cekf::Match& match, const Eigen::Vector2d& point_m) {
+    const core::Observation& seen = match.observation;
+    const core::PredictedObservation predicted =
+        core::predict_observation(seen.kind, pose_.mean, match.T_robot_sensor, point_m);
+    const Eigen::MatrixXd PHt = pose_.covariance * predicted.H_pose.transpose();
+    const Eigen::MatrixXd S = predicted.H_pose * PHt + seen.R;
+    const Eigen::MatrixXd K = S.ldlt().solve(PHt.transpose()).transpose();
+    const core::ObsVector nu = core::innovation(seen.kind, seen.z, predicted.z_hat);
+    pose_.mean = core::Pose2(Eigen::Vector3d(pose_.mean.vector() + K * nu));
+    const Eigen::Matrix3d P = pose_.covariance - K * PHt.transpose();
+    pose_.covariance = 0.5 * (P + P.transpose());
+  }
+
+ private:
+  core::PoseGaussian pose_;
+};
+
+class Builder {
+ public:
+  Builder(const DriveLog& log, const cekf::CompressedEkf& filter)
+      : log_(log), filter_(filter), sightings_(sightings(log, filter)), vehicle_(log.start()) {
+    open_pose();
+  }
+
+  LandmarkGraph build() {
+    for (const DriveLog::Stop& stop : log_.stops()) {
+      drive(stop.motion);
+      const std::vector<cekf::Match> seen = worthwhile(stop);
+      const bool observed = stop.fix || !seen.empty();
+      if (observed && motion_) reach_pose();
+      if (observed) observe(stop, seen);
+    }
+    drive(log_.motion());
+    if (motion_) reach_pose();  // where the vehicle is now, even if nothing is seen from there
+    return std::move(graph_);
+  }
+
+ private:
+  int last_pose() const { return static_cast<int>(graph_.poses.size()) - 1; }
+
+  void open_pose() {
+    const auto name = static_cast<std::int64_t>(graph_.poses.size());
+    graph_.poses.push_back({name, vehicle_.mean()});
+  }
+
+  void drive(const std::optional<core::Odometry>& motion) {
+    if (!motion) return;
+    vehicle_.move(*motion);
+    motion_ = motion_ ? core::chain(*motion_, *motion) : *motion;
+  }
+
+  void reach_pose() {
+    open_pose();
+    graph_.pose_edges.push_back({last_pose() - 1, last_pose(), motion_->T_before_after, motion_->covariance});
+    motion_.reset();
+  }
+
+  std::vector<cekf::Match> worthwhile(const DriveLog::Stop& stop) const {
+    std::vector<cekf::Match> seen;
+    for (cekf::Match match : stop.seen) {
+      match.landmark = log_.present(match.landmark);
+      if (sightings_.count(match.landmark) > 0) seen.push_back(match);
+    }
+    return seen;
+  }
+
+  /// Landmarks whose places are known say where the vehicle is, and it says where the others are.
+  void observe(const DriveLog::Stop& stop, const std::vector<cekf::Match>& seen) {
+    for (const cekf::Match& match : seen) {
+      if (const auto point_m = place_of(match.landmark)) vehicle_.see(match, *point_m);
+    }
+    for (const cekf::Match& match : seen) {
+      graph_.landmark_edges.push_back({last_pose(), index_of(match), match.T_robot_sensor, match.observation});
+    }
+    if (stop.fix) graph_.fix_edges.push_back({last_pose(), *stop.fix});
+    graph_.poses.back().T_world_robot = vehicle_.mean();
+  }
+
+  std::optional<Eigen::Vector2d> place_of(core::LandmarkId id) const {
+    const auto found = index_of_landmark_.find(id);
+    if (found != index_of_landmark_.end()) return graph_.landmarks[static_cast<std::size_t>(found->second)].point_m;
+    if (filter_.contains(id)) return filter_.landmark_mean(id);
+    return std::nullopt;
+  }
+
+  int index_of(const cekf::Match& match) {
+    const auto next = static_cast<int>(graph_.landmarks.size());
+    const std::optional<Eigen::Vector2d> known_m = place_of(match.landmark);
+    const auto [found, is_new] = index_of_landmark_.emplace(match.landmark, next);
+    if (!is_new) return found->second;
+    const core::Pose2 here = vehicle_.mean();
+    graph_.landmarks.push_back(
+        {match.landmark,
+         known_m ? *known_m : core::locate_landmark(match.observation, here, match.T_robot_sensor).point_world_m});
+    return next;
+  }
+
+  const DriveLog& log_;
+  const cekf::CompressedEkf& filter_;
+  std::map<core::LandmarkId, int> sightings_;
+  PoseOnMap vehicle_;
+  std::optional<core::Odometry> motion_;  ///< since the last pose
+  LandmarkGraph graph_;
+  std::map<core::LandmarkId, int> index_of_landmark_;
+};
+
+}  // namespace
+
+LandmarkGraph graph_of(const DriveLog& log, const cekf::CompressedEkf& filter) { return Builder(log, filter).build(); }
+
+}  // namespace helixnav::supervisor
