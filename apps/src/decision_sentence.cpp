@@ -106,15 +106,16 @@ std::string closure_sentence(const core::Decision& d) {
 }
 
 std::string smoothing_sentence(const core::Decision& d) {
-  const std::string cost = text(d, "chi2") + " after " + counted(number(d, "iterations"), "iteration") + " over " +
-                           counted(number(d, "poses"), "pose");
-  const std::string limit = text(d, "limit") + ", what the filter's solution costs and a little more";
+  const std::string cost = short_number(std::round(number(d, "chi2")));
+  const std::string work = counted(number(d, "poses"), "pose") + ", " + counted(number(d, "iterations"), "iteration");
+  const std::string limit =
+      short_number(std::round(number(d, "limit"))) + " (what the filter had come to, and some slack)";
   if (d.verdict != "accepted") {
-    return "The drive as a whole was not solved: least squares came to a cost of " + cost + "; it must settle within " +
-           limit + ". The map stays as the closing left it.";
+    return "The drive was not solved as a whole: least squares ended at " + cost + " (" + work +
+           ") and had to settle within " + limit + ". The map stays as the closing left it.";
   }
-  return "The drive was solved as a whole, every landmark being known: least squares' cost is " + cost + ", within " +
-         limit + ". The pose moved by another " + text(d, "moved_m") + " m.";
+  return "Then the drive was solved as a whole: least squares ended at " + cost + " (" + work + "), within " + limit +
+         ". The pose moved by another " + text(d, "moved_m") + " m.";
 }
 
 std::string fix_sentence(const core::Decision& d) {

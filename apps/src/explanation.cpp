@@ -127,7 +127,9 @@ std::string explain_closure(const logs::RunFolder& run, std::size_t closure) {
   while (first != decided.begin() && !is_trigger(*first)) --first;
   std::string text = "Closure " + std::to_string(closure) + " of this run: " + last->decision->verdict + ".\n";
   for (auto it = first; it != last + 1; ++it) text += line_of(*it);
-  return text + merges_of(*last->step);
+  text += merges_of(*last->step);
+  const auto next = last + 1;
+  return next != decided.end() && next->decision->kind == "smoothing" ? text + line_of(*next) : text;
 }
 
 std::string explain_step(const logs::RunFolder& run, std::int64_t step) {

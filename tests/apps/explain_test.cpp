@@ -64,6 +64,8 @@ class Explain : public ::testing::Test {
                                  {"limit", 32.9},
                                  {"driven_m", 20},
                                  {"moved_m", 0}}});
+      step.decisions.push_back(
+          {"smoothing", "refused", {{"chi2", 4000.0}, {"limit", 3170.25}, {"poses", 1}, {"iterations", 200}}});
     }
     if (step.step == 5) {
       step.decisions.push_back(constellation("accepted"));
@@ -76,6 +78,10 @@ class Explain : public ::testing::Test {
                                  {"limit", 32.9},
                                  {"driven_m", 27},
                                  {"moved_m", 8.25}}});
+      step.decisions.push_back(
+          {"smoothing",
+           "accepted",
+           {{"chi2", 3145.75}, {"limit", 3170.25}, {"poses", 350}, {"iterations", 4}, {"moved_m", 0.25}}});
       step.merged = {{7, 12}, {8, 13}};
     }
   }
@@ -151,7 +157,10 @@ TEST_F(Explain, TellsOfAClosureAllSinceItsTrigger) {
                                    "Refused",
                                    "test was passed",
                                    "Accepted",
-                                   "12 is 7, 13 is 8."});
+                                   "12 is 7, 13 is 8.",
+                                   "step 5 (2.5 s)  Then the drive was solved as a whole",
+                                   "ended at 3146 (350 poses, 4 iterations), within 3170",
+                                   "another 0.25 m"});
 }
 
 TEST_F(Explain, TellsTheFateOfEveryObservationOfAStep) {
@@ -160,6 +169,8 @@ TEST_F(Explain, TellsTheFateOfEveryObservationOfAStep) {
                                 "Observation 1 began landmark 12", "Observation 2 was dropped from landmark 5 (NIS 8",
                                 "joint test", "Observation 3 was dropped: landmark 6 is the nearest (NIS 30",
                                 "Observation 4 was dropped: it is neither near enough", "A search began"});
+  expect_said({"--step", "4"}, {"drive was not solved as a whole", "ended at 4000 (1 pose, 200 iterations)",
+                                "within 3170", "stays as the closing left it"});
   expect_said({"--step", "0"}, {"Step 0 (0 s), mapping", "Nothing was observed.", "5 landmarks of earlier drives",
                                 "0 are there, and 2 new ones", "5.5 nats", "from 31 scans ago"});
 }

@@ -57,6 +57,12 @@ TEST_F(SearchSettings, CanForbidTheSearchOrItsClosing) {
   EXPECT_TRUE(has(decisions({"--search.undecided_m", "20"}), "closure,undecided"));
 }
 
+TEST_F(SearchSettings, CanLeaveADriveUnsolved) {
+  EXPECT_TRUE(has(decisions({}), "smoothing,accepted"));
+  EXPECT_FALSE(has(decisions({"--search.smooth_up_to_scans", "0"}), "smoothing,accepted"));
+  EXPECT_FALSE(has(decisions({"--search.smooth_up_to_scans", "100"}), "smoothing,accepted"));
+}
+
 TEST_F(SearchSettings, OfThePaperCloseWithoutAConstellationAndAreExplained) {
   const std::string paper = decisions({"--search.acceptance", "paper"});
   EXPECT_TRUE(has(paper, "closure,accepted"));
@@ -73,6 +79,7 @@ TEST_F(SearchSettings, OutOfRangeAreMisuse) {
                                {"--search.acceptance", "papers"},
                                {"--search.threads", "0"},
                                {"--search.least_matches", "2"},
+                               {"--search.smooth_up_to_scans", "-1"},
                                {"--search.rival_ratio", "1.5"},
                                {"--search.foreign_objects", "nan"}}) {
     Words words{"config", "--dump"};

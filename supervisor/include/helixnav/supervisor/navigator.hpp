@@ -46,7 +46,9 @@ struct NavigatorOptions {
 /// into view that cannot be told apart scan by scan, a search begins: mapping goes on with the old landmarks excluded, a
 /// particle filter finds where on the old map the vehicle is, and when a constellation of new landmarks stands on old
 /// ones, and nowhere else as well, the map is closed there. Where old landmarks are missing and new ones spawn, the last
-/// scans are gone through again in a search from before (docs/adr/0009-doubt.md); that scan costs as much as they did.
+/// scans are gone through again in a search from before (docs/adr/0009-doubt.md); that scan costs as much as they did. After a
+/// closing the drive so far is solved as a whole, and the scan that closes costs time proportional to it
+/// (docs/adr/0010-solving-the-drive.md, SearchOptions::smooth_up_to_scans).
 /// Source: hybrid_masson2003 §3, PROTOTYPE.
 /// The map frame is that of the start pose; nothing here knows of truth, files or screens.
 /// Throws what its filter throws (NumericalError, PreconditionError); the map is then as before the scan's failing verb.
