@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/observation.hpp"
@@ -50,9 +50,10 @@ class PoseOnMap {
     const core::Observation& seen = match.observation;
     const core::PredictedObservation predicted =
         core::predict_observation(seen.kind, pose_.mean, match.T_robot_sensor, point_m);
-    const Eigen::MatrixXd PHt = pose_.covariance * predicted.H_pose.transpose();
-    const Eigen::MatrixXd S = predicted.H_pose * PHt + seen.R;
-    const Eigen::MatrixXd K = S.ldlt().solve(PHt.transpose()).transpose();
+    using PoseByObs = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 2>;
+    const PoseByObs PHt = pose_.covariance * predicted.H_pose.transpose();
+    const core::ObsMatrix S = predicted.H_pose * PHt + seen.R;
+    const PoseByObs K = PHt * S.inverse();
     const core::ObsVector nu = core::innovation(seen.kind, seen.z, predicted.z_hat);
     pose_.mean = core::Pose2(Eigen::Vector3d(pose_.mean.vector() + K * nu));
     const Eigen::Matrix3d P = pose_.covariance - K * PHt.transpose();

@@ -28,14 +28,15 @@ void DriveLog::observe(const core::Scan& scan, const core::StepReport& report) {
     next.seen.push_back({association.landmark, seen, scan.T_robot_sensor});
   }
   next.cost = report.joint_nis;
+  ++scans_;
   stop(std::move(next));
-  if (++scans_ > most_scans_) let_go();
 }
 
 void DriveLog::stop(Stop&& next) {
   next.motion = std::exchange(motion_, std::nullopt);
   cost_ += next.cost;
-  if (most_scans_ > 0) stops_.push_back(std::move(next));
+  stops_.push_back(std::move(next));
+  if (static_cast<int>(stops_.size()) > most_stops_) let_go();
 }
 
 void DriveLog::close(const std::vector<core::MergedLandmarks>& merged, double cost) {
@@ -53,7 +54,7 @@ void DriveLog::back_to(std::int64_t step) {
 }
 
 void DriveLog::let_go() {
-  most_scans_ = 0;
+  most_stops_ = 0;
   stops_.clear();
   stops_.shrink_to_fit();
 }

@@ -15,7 +15,7 @@ namespace helixnav::supervisor {
 
 /// All that the filter was told since the start, with the landmark that each observation was attributed to, so that the
 /// drive can be solved as a whole. Knows which landmarks have turned out to be one since.
-/// Memory: about 200 bytes a scan and 200 an observation used, never more than for the scans allowed: beyond them, or
+/// Memory: about 200 bytes a scan and 200 an observation used, never more than for the stops allowed: beyond them, or
 /// when the filter was told what a log cannot say, everything is let go for good. Test: supervisor/smooth_drive_test.cpp.
 class DriveLog {
  public:
@@ -27,7 +27,7 @@ class DriveLog {
     double cost = 0.0;  ///< νᵀS⁻¹ν of the update made with it
   };
 
-  DriveLog(const core::PoseGaussian& start, int most_scans) : start_(start), most_scans_(most_scans) {}
+  DriveLog(const core::PoseGaussian& start, int most_stops) : start_(start), most_stops_(most_stops) {}
 
   void predict(const core::Odometry& odometry);
   void fix(const core::AbsoluteFix& fix, double nis);
@@ -55,7 +55,7 @@ class DriveLog {
   void stop(Stop&& next);
 
   core::PoseGaussian start_;
-  int most_scans_;
+  int most_stops_;
   std::optional<core::Odometry> motion_;
   std::vector<Stop> stops_;
   std::int64_t scans_ = 0;  ///< among the stops

@@ -79,7 +79,7 @@ struct SearchOptions {
   double closing_probability = 0.99;  ///< χ² quantile that the cost of a closing must not exceed
   int most_dropped = 1;               ///< pairs that may go, worst first, until the cost passes
   double leftover_gate = 9.21;        ///< χ² within which remaining duplicates are merged after a closing
-  int smooth_up_to_scans = 20000;     ///< after a closing the drive is solved as a whole, unless it is longer; 0: never
+  int smooth_up_to_scans = 20000;     ///< and fixes; a drive of more is not solved as a whole after a closing
 };
 
 }  // namespace helixnav::supervisor
