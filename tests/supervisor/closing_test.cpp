@@ -184,6 +184,56 @@ TEST(Closing, LeavesDrivesUnsolvedThatWereRestarted) {
   EXPECT_EQ(drive.smoothed + drive.not_smoothed, 0);
 }
 
+// What is known by name is not in the log.
+TEST(Closing, LeavesDrivesUnsolvedOfWhichAPartWasKnownByName) {
+  const core::Recording run = sim::simulate(sim::named_scenario("large-loop-changed"), 7001);
+  Navigator navigator(run.start, one_thread());
+  int closures = 0;
+  int smoothings = 0;
+  drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
+    if (i == 0) {
+      navigator.observe(scan, std::vector<std::int64_t>(scan.observations.size(), -1));
+      return;
+    }
+    const core::StepReport report = navigator.observe(scan);
+    closures += count(report, "closure", "accepted");
+    smoothings += count(report, "smoothing", "accepted") + count(report, "smoothing", "refused");
+  });
+  EXPECT_EQ(closures, 1);
+  EXPECT_EQ(smoothings, 0);
+}
+
+/// Trace of the covariance of the landmark that is known best, 90 m from the start, where a fix told the position to 1 cm.
+double best_variance_where_fixed_m2(bool solved) {
+  const core::Recording run = sim::simulate(sim::named_scenario("large-loop-changed"), 7001);
+  NavigatorOptions options = one_thread();
+  options.search.smooth_up_to_scans = solved ? 1000 : 0;
+  Navigator navigator(run.start, options);
+  constexpr std::size_t fixed_at = 60;
+  int smoothed = 0;
+  drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
+    smoothed += count(navigator.observe(scan), "smoothing", "accepted");
+    if (i != fixed_at) return;
+    core::AbsoluteFix fix;
+    fix.position_world_m = run.true_poses[i].T_world_robot.position_m();
+    fix.covariance_m2 = 1e-4 * Eigen::Matrix2d::Identity();
+    EXPECT_TRUE(navigator.fix(fix));
+  });
+  EXPECT_EQ(smoothed, solved ? 1 : 0);
+  double best_m2 = 1e9;
+  for (const core::LandmarkId id :
+       navigator.filter().landmarks_within(run.true_poses[fixed_at].T_world_robot.position_m(), 15.0)) {
+    best_m2 = std::min(best_m2, navigator.filter().landmark(id).covariance_m2.trace());
+  }
+  return best_m2;
+}
+
+TEST(Closing, SolvesTheDriveWithItsFixes) {
+  const double solved_m2 = best_variance_where_fixed_m2(true);
+  const double filtered_m2 = best_variance_where_fixed_m2(false);
+  EXPECT_NEAR(solved_m2, filtered_m2, 0.2 * filtered_m2);
+}
+
 /// Five landmarks, seen at the start and again after a drive that the odometry got wrong by `slip_m`.
 struct Return {
   cekf::CompressedEkf filter{core::PoseGaussian{}};
