@@ -103,7 +103,7 @@ class Refilter {
 };
 
 /// χ² of three more degrees of freedom, exceeded once in a million times: by less the two costs differ that would be one
-/// if everything were linear. Measured: −12 to 17 in 1500 drives; another minimum is off by hundreds.
+/// if everything were linear. Measured: −12 to 17 (docs/adr/0010-solving-the-drive.md).
 double slack() { return core::chi2_quantile(0.999999, 3); }
 
 smoothing::Report solve(const core::PoseGaussian& start, core::LandmarkGraph& graph) {
