@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstddef>
+#include <string>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/errors.hpp"
@@ -8,7 +9,17 @@
 namespace helixnav::cekf {
 
 core::LandmarkId CompressedEkf::augment(const core::Observation& observation, const core::Pose2& T_robot_sensor) {
-  check_observation_of({active_.next_id, observation, T_robot_sensor}, "augment");
+  const core::LandmarkId name = active_.next_id;
+  augment(observation, T_robot_sensor, name);
+  return name;
+}
+
+void CompressedEkf::augment(const core::Observation& observation, const core::Pose2& T_robot_sensor,
+                            core::LandmarkId name) {
+  check_observation_of({name, observation, T_robot_sensor}, "augment");
+  if (name < 0 || contains(name)) {
+    throw core::PreconditionError("augment: the name " + std::to_string(name) + " is taken or negative");
+  }
   const core::LocatedLandmark located = core::locate_landmark(observation, active_.pose, T_robot_sensor);
 
   const int n = active_.dimension();
@@ -24,7 +35,7 @@ core::LandmarkId CompressedEkf::augment(const core::Observation& observation, co
   P.block<2, 2>(n, n) = 0.5 * (own + own.transpose());
   A.rightCols<2>().noalias() = A.leftCols<3>().lazyProduct(G);
 
-  return name_newest(located.point_world_m);
+  name_newest(located.point_world_m, name);
 }
 
 core::LandmarkId CompressedEkf::augment(const DerivedPoint& point) {
@@ -54,7 +65,7 @@ core::LandmarkId CompressedEkf::augment(const DerivedPoint& point) {
   }
   P.block(n, 0, 2, n) = P.block(0, n, n, 2).transpose();
   P.block<2, 2>(n, n) = 0.5 * (own + own.transpose());
-  return name_newest(point.point_m);
+  return name_newest(point.point_m, active_.next_id);
 }
 
 void CompressedEkf::check_derived_point(const DerivedPoint& point) const {
@@ -66,9 +77,9 @@ void CompressedEkf::check_derived_point(const DerivedPoint& point) const {
   }
 }
 
-core::LandmarkId CompressedEkf::name_newest(const Eigen::Vector2d& point_m) {
-  const core::LandmarkId id = active_.next_id++;
-  places_.push_back({Whereabouts::active, active_count()});
+core::LandmarkId CompressedEkf::name_newest(const Eigen::Vector2d& point_m, core::LandmarkId id) {
+  name_from(id + 1);
+  places_[static_cast<std::size_t>(id)] = {Whereabouts::active, active_count()};
   active_.ids.push_back(id);
   active_.slots.push_back(-1);
   active_.points_m.push_back(point_m);

@@ -82,11 +82,8 @@ class Refilter {
     }
     if (filter_.contains(exact.landmark)) {
       known.push_back(exact);
-      return;
-    }
-    filter_.name_from(exact.landmark);
-    if (filter_.augment(exact.observation, exact.T_robot_sensor) != exact.landmark) {
-      throw core::PreconditionError("drive log: landmarks were not born in the order of their ids");
+    } else {
+      filter_.augment(exact.observation, exact.T_robot_sensor, exact.landmark);
     }
   }
 

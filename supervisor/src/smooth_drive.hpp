@@ -20,7 +20,7 @@ struct Smoothing {
 /// After a closing that turned a part of the map by many degrees the filter is linearised where that part was drawn, and
 /// no retraction of its own undoes that (docs/adr/0010-solving-the-drive.md).
 /// Not accepted, filter as it was: no convergence, or a minimum that costs more than what the filter has found, which is
-/// another one. Landmarks keep their ids. PreconditionError for a log that is not the filter's.
+/// another one. Landmarks keep their ids.
 /// Cost: a few sparse factorisations and the filter's updates of the whole drive; ADR 10 has milliseconds.
 /// Test: supervisor/smooth_drive_test.cpp.
 Smoothing smooth_drive(cekf::CompressedEkf& filter, const DriveLog& log);

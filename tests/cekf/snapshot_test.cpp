@@ -145,6 +145,24 @@ TEST_P(Rewind, NamesNoLandmarkTwiceWhenAskedTo) {
   EXPECT_EQ(filter.next_name(), fresh + 1);
 }
 
+// A name below those that were skipped is to be had; one in the map, active or passive, is not.
+TEST(Naming, TakesTheCallersName) {
+  CompressedEkf filter(core::PoseGaussian{});
+  const core::Observation ahead = core::make_range_bearing(5.0, 0.1, 0.1, 0.01);
+  filter.augment(ahead, core::Pose2(), 7);
+  filter.augment(ahead, core::Pose2(), 3);
+  EXPECT_EQ(filter.landmarks(), (std::vector<core::LandmarkId>{3, 7}));
+  EXPECT_EQ(filter.augment(ahead, core::Pose2()), 8);
+  filter.switch_region({7});
+  for (const core::LandmarkId taken : {3, 7, 8, -1}) {
+    EXPECT_THROW(filter.augment(ahead, core::Pose2(), taken), core::PreconditionError) << taken;
+  }
+  EXPECT_EQ(filter.mapped_count(), 3);
+  filter.activate(3);
+  EXPECT_EQ(filter.landmark_mean(3), filter.landmark_mean(7));
+  EXPECT_LT(filter.update({{3, ahead, core::Pose2()}}).nis, 1e-20);
+}
+
 TEST(Copies, AreNotChangedByOneAnother) {
   RandomProgram program(29, {Retraction::right_invariant, 220, 30, false});
   go_on(program, 200);

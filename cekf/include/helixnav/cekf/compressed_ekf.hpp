@@ -65,6 +65,8 @@ class CompressedEkf {
 
   /// New active landmark where the observation (kind with two rows) sees it.
   core::LandmarkId augment(const core::Observation& observation, const core::Pose2& T_robot_sensor);
+  /// The same with a name of the caller's, which no landmark has. Names given to others later are above it.
+  void augment(const core::Observation& observation, const core::Pose2& T_robot_sensor, core::LandmarkId name);
   /// New active landmark as a linear function of pose and landmarks, with all its correlations; the landmarks it
   /// depends on are activated first. Its mean is the caller's, who linearised there. O((n + q)·ids).
   /// Test: cekf/equality_test.cpp, cekf/bad_input_test.cpp.
@@ -149,7 +151,7 @@ class CompressedEkf {
   int weights_per_anchor() const { return options_.retraction == Retraction::right_invariant ? 2 : 1; }
 
   // augment.cpp
-  core::LandmarkId name_newest(const Eigen::Vector2d& point_m);
+  core::LandmarkId name_newest(const Eigen::Vector2d& point_m, core::LandmarkId id);
   void check_derived_point(const DerivedPoint& point) const;
 
   // update.cpp, update_iterated.cpp, merge.cpp, apply_correction.cpp
