@@ -166,7 +166,7 @@ std::vector<AssociationReport> Navigator::associate(const Scan& scan, const Gati
 }
 
 /// Two old landmarks that fit together vouch for one another; one alone, with room for others in its gate, waits, and so
-/// does one that would tell the vehicle much about where it is, until it is met again, and is clearly it and not another.
+/// does one that would tell the vehicle much about where it is, until it is met again.
 void Navigator::hold_lonely_returns(const std::vector<AmbiguousReturn>& returns,
                                     std::vector<AssociationReport>& reports) {
   AssociationReport* lonely = nullptr;
@@ -183,8 +183,7 @@ void Navigator::hold_lonely_returns(const std::vector<AmbiguousReturn>& returns,
   const bool ambiguous = met->foreign_objects > options_.search.hold_objects;
   const bool telling = met->widening > options_.search.probation_widening;
   const bool met_again = probation_->passes(lonely->landmark, life_.path_m(), options_.search.probation_m);
-  const bool clear = lonely->margin_nats >= options_.search.probation_nats;
-  if (ambiguous || (telling && !(met_again && clear))) lonely->outcome = Outcome::ambiguous;
+  if (ambiguous || (telling && !met_again)) lonely->outcome = Outcome::ambiguous;
 }
 
 std::vector<AssociationReport> Navigator::known_associations(const Scan& scan,

@@ -44,8 +44,7 @@ struct SearchOptions {
   double foreign_objects = 0.1;     ///< expected other objects in the gate of an old landmark that begin a search
   double hold_objects = 0.05;       ///< above it an old landmark is not matched alone, but no search begins yet
   double probation_widening = 2.0;  ///< √(|S|/|R|) above which an old landmark is matched alone only when met again, …
-  double probation_m = 5.0;         ///< … within so long a drive, …
-  double probation_nats = 4.6;      ///< … and so much likelier it than anything else
+  double probation_m = 5.0;         ///< … within so long a drive
   double foreign_per_scan = 2.5;  ///< observations of no old landmark in one scan: clutter and new ones together
 
   MissingSpawnLimits missing_spawn;
