@@ -60,11 +60,13 @@ Json json_of(const sim::ClosureScore& closure) {
 }
 
 Json json_of(const sim::ReturnScore& one) {
-  return {{"closed", one.closed},
-          {"reentry_step", one.reentry_step},
-          {"error_before_m", one.error_before_m},
-          {"old_matches", one.old_matches},
-          {"wrong_old_matches", one.wrong_old_matches}};
+  Json json = {{"closed", one.closed},
+               {"reentry_step", one.reentry_step},
+               {"error_before_m", one.error_before_m},
+               {"old_matches", one.old_matches},
+               {"wrong_old_matches", one.wrong_old_matches}};
+  json.update(json_of(one.left_behind));
+  return json;
 }
 
 template <typename Item>
@@ -87,6 +89,7 @@ Json json_of(const sim::RunScore& score) {
           {"old_matches", score.old_matches},
           {"wrong_old_matches", score.wrong_old_matches},
           {"wrong_before_trigger", score.wrong_before_trigger},
+          {"wrong_without_trigger", score.wrong_without_trigger},
           {"spacing_m", score.spacing_m},
           {"end", json_of(score.end)},
           {"end_on_old_ground", json_of(score.end_on_old_ground)},

@@ -122,6 +122,8 @@ void put_shares(Json& summary, const std::vector<Json>& rows) {
       share(rows, [](const Json& row) { return row.value("closed_by_association", false); });
   summary["wrong_before_trigger"] =
       share(rows, [](const Json& row) { return number(row, "wrong_before_trigger") > 0; });
+  summary["wrong_without_trigger"] =
+      share(rows, [](const Json& row) { return number(row, "wrong_without_trigger") > 0; });
   summary["rewound"] = share(rows, [](const Json& row) { return number(row, "rewound") > 0; });
   summary["any_wrong_old_match"] = share(rows, [](const Json& row) { return number(row, "wrong_old_matches") > 0; });
   summary["error_at_return_exceeds_spacing"] = share(rows, exceeds_spacing);
@@ -220,6 +222,7 @@ std::string summary_text(const Json& summary) {
         std::pair("failed", "failed"), std::pair("late", "late"),
         std::pair("closed_by_association", "closed by association alone"),
         std::pair("wrong_before_trigger", "wrong match before the trigger"),
+        std::pair("wrong_without_trigger", "wrong match, never a trigger"),
         std::pair("rewound", "search begun from before"),
         std::pair("any_wrong_old_match", "any wrong match with old ground"),
         std::pair("error_at_return_exceeds_spacing", "error at return > spacing"),

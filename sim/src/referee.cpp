@@ -88,6 +88,7 @@ struct Referee::Book {
   double driven_m = 0.0;
   double reentered_at_m = no_number;  ///< of the present return
   bool triggered = false;             ///< since the present return
+  int wrong_so_far = 0;               ///< wrong old matches since the present return, while nothing triggered
   bool on_old_ground = false;         ///< in the present scan
   std::size_t steps = 0;
   core::PoseGaussian pose;
@@ -109,8 +110,9 @@ struct Referee::Book {
     return wrong >= options.least_wrong_pairs && wrong > options.most_wrong_share * all;
   }
 
-  void drive_on(const StepReport& report);
+  void drive_on(const StepReport& report, const Map& map_now);
   void begin_return(bool searching);
+  void note_triggers(const StepReport& report);
   void look_out(const std::vector<Label>& labels);
   void count_matches(const StepReport& report, const std::vector<Label>& labels);
   void revise(const StepReport& report);
@@ -140,15 +142,11 @@ void Referee::watch(const StepReport& report, const Map& map_now) {
                                   std::to_string(book.steps) + " of " + std::to_string(book.recording.labels.size()));
   }
   const std::vector<Label>& labels = book.recording.labels[book.steps];
-  book.drive_on(report);
+  book.drive_on(report, map_now);
   book.look_out(labels);
   book.pose = report.pose;
   if (book.on_old_ground) book.last_on_old_ground = {report.pose, book.truth()};
-  const int rewound = count(report, "trigger", "rewound");
-  if (rewound > 0) book.revise(report);
-  book.score.rewound += rewound;
-  book.score.triggers += count(report, "trigger", "started");
-  if (count(report, "trigger", "started") > 0) book.triggered = true;
+  book.note_triggers(report);
   book.count_matches(report, labels);
   book.score.refused += count(report, "closure", "refused");
   book.score.undecided += count(report, "closure", "undecided");
@@ -164,6 +162,8 @@ RunScore Referee::score(const std::vector<MapLandmark>& map) const {
     result.end = book_->judge(end, map);
     result.end_on_old_ground = book_->judge(book_->last_on_old_ground.value_or(end), map);
   }
+  if (!result.returns.empty()) result.returns.back().left_behind = result.end_on_old_ground;
+  result.wrong_without_trigger += book_->wrong_so_far;
   result.spacing_m = book_->spacing_m();
   result.trees_seen = static_cast<int>(book_->seen.size());
   book_->score_map(map, result);
@@ -171,13 +171,14 @@ RunScore Referee::score(const std::vector<MapLandmark>& map) const {
   return result;
 }
 
-void Referee::Book::drive_on(const StepReport& report) {
+void Referee::Book::drive_on(const StepReport& report, const Map& map_now) {
   ++steps;
   if (steps > 1) {
     driven_m += (truth().position_m() - recording.true_poses[steps - 2].T_world_robot.position_m()).norm();
   }
   const std::size_t next = score.returns.size();
   if (next < returns_at_m.size() && driven_m >= returns_at_m[next] - in_sight_m) {
+    if (next > 0 && last_on_old_ground) score.returns.back().left_behind = judge(*last_on_old_ground, map_now());
     begin_return(report.mode == core::Mode::searching && count(report, "trigger", "started") == 0);
   }
 }
@@ -189,6 +190,18 @@ void Referee::Book::begin_return(bool searching) {
   seen_until_return.push_back(seen);
   reentered_at_m = no_number;
   triggered = searching;
+  score.wrong_without_trigger += std::exchange(wrong_so_far, 0);
+}
+
+void Referee::Book::note_triggers(const StepReport& report) {
+  const int rewound = count(report, "trigger", "rewound");
+  const int started = count(report, "trigger", "started");
+  score.rewound += rewound;
+  score.triggers += started;
+  if (rewound > 0) revise(report);
+  if (rewound == 0 && started == 0) return;
+  triggered = true;
+  score.wrong_before_trigger += std::exchange(wrong_so_far, 0);
 }
 
 /// Notes which trees come into view, and when they are old ones. `pose` still is that of the scan before.
@@ -220,7 +233,7 @@ void Referee::Book::count_matches(const StepReport& report, const std::vector<La
       const int wrong = identities.identity(a.landmark) == label ? 0 : 1;
       ++score.old_matches;
       score.wrong_old_matches += wrong;
-      if (!triggered) score.wrong_before_trigger += wrong;
+      if (!triggered) wrong_so_far += wrong;
       if (!score.returns.empty()) ++score.returns.back().old_matches;
       if (!score.returns.empty()) score.returns.back().wrong_old_matches += wrong;
     }
@@ -323,8 +336,7 @@ void Referee::Book::pass_verdict(RunScore& result) const {
   for (ReturnScore& one : result.returns) {
     if (one.closed || one.old_matches < options.association_matches) continue;
     one.closed = result.closed_by_association = true;
-    wrong =
-        wrong || is_wrong(result.end_on_old_ground.relative) || too_many_wrong(one.wrong_old_matches, one.old_matches);
+    wrong = wrong || is_wrong(one.left_behind.relative) || too_many_wrong(one.wrong_old_matches, one.old_matches);
   }
   const bool all_closed =
       !returns_at_m.empty() && result.returns.size() == returns_at_m.size() &&

@@ -56,11 +56,13 @@ struct Script {
   std::vector<double> returns_at_m{lap_m};
   double length_m = 490.0;              ///< trees are in view to the end
   double trigger_at_m = 390.0;          ///< beyond the end: never
+  const char* trigger = "started";      ///< or "rewound"
   double close_at_m = 430.0;            ///< beyond the end: never
   bool new_after_return = true;         ///< false: old landmarks are matched at once
   int swapped_pairs = 0;                ///< of the closing
   int match_shift = 0;                  ///< old landmarks are matched with the tree so many farther
-  core::Pose2 drift;                    ///< of the pose, until the closing: T_true_estimate
+  core::Pose2 drift;                    ///< of the pose, until the closing or drift_to_m: T_true_estimate
+  double drift_to_m = 1e9;
   core::Pose2 error;                    ///< of the pose, from the closing on
   core::Pose2 end_error;                ///< of the last pose, in its stead when it is not the identity
   core::Pose2 T_map_true;               ///< the whole map lies wrong by this
@@ -91,11 +93,11 @@ class Run {
     const bool last = k + 1 == recording_.labels.size();
     const bool ends_wrong = last && script_.end_error.vector().norm() > 0.0;
     const core::Pose2 error = ends_wrong                   ? script_.end_error
-                              : at_m >= script_.close_at_m ? script_.error
-                                                           : script_.drift;
+                              : at_m >= std::min(script_.close_at_m, script_.drift_to_m) ? script_.error
+                                                                                         : script_.drift;
     report.pose.mean = core::compose(script_.T_map_true, core::compose(recording_.true_poses[k].T_world_robot, error));
     report.pose.covariance = Eigen::Vector3d(0.04, 0.04, 1e-4).asDiagonal();
-    if (at_m == script_.trigger_at_m) report.decisions.push_back({"trigger", "started", {}});
+    if (at_m == script_.trigger_at_m) report.decisions.push_back({"trigger", script_.trigger, {}});
     for (std::size_t j = 0; j < recording_.labels[k].size(); ++j) {
       report.associations.push_back(association(static_cast<int>(j), recording_.labels[k][j], at_m));
     }
@@ -289,6 +291,22 @@ TEST(Referee, WantsEveryReturnClosed) {
   EXPECT_TRUE(both.closed_by_association) << "the second by plain matches";
 }
 
+TEST(Referee, JudgesWhatAssociationClosedWhereThatGroundIsLeft) {
+  Script script;
+  script.returns_at_m = {lap_m, 2.0 * lap_m};
+  script.length_m = 960.0;
+  script.close_at_m = script.trigger_at_m = 1e9;
+  script.new_after_return = false;
+  script.drift = {1.9, 0.0, 0.0};
+  script.drift_to_m = 600.0;  // behind the first return
+  EXPECT_EQ(judged(script).verdict, RunVerdict::closed);
+  script.drift = {2.1, 0.0, 0.0};
+  const RunScore score = judged(script);
+  EXPECT_EQ(score.verdict, RunVerdict::false_closure) << "that the second return is right does not help the first";
+  EXPECT_NEAR(score.returns.at(0).left_behind.relative.position_m, 2.1, 1e-9);
+  EXPECT_NEAR(score.returns.at(1).left_behind.relative.position_m, 0.0, 1e-9);
+}
+
 TEST(Referee, JudgesWhatAssociationClosedByTheEndAndByItsMatches) {
   Script script;
   script.close_at_m = script.trigger_at_m = 1e9;
@@ -322,13 +340,33 @@ TEST(Referee, CountsWrongMatchesBeforeTheTriggerOnly) {
   script.match_shift = 1;
   script.trigger_at_m = 386.0;  // no tree is in view yet
   EXPECT_EQ(judged(script).wrong_before_trigger, 0);
-  script.trigger_at_m = 1e9;
-  const RunScore never = judged(script);
-  EXPECT_EQ(never.wrong_before_trigger, never.wrong_old_matches);
+  EXPECT_EQ(judged(script).wrong_without_trigger, 0);
   script.trigger_at_m = 394.0;
   const RunScore tardy = judged(script);
   EXPECT_GT(tardy.wrong_before_trigger, 0);
   EXPECT_LT(tardy.wrong_before_trigger, 10);
+  EXPECT_EQ(tardy.wrong_without_trigger, 0);
+  script.trigger = "rewound";
+  EXPECT_EQ(judged(script).wrong_before_trigger, tardy.wrong_before_trigger) << "what it undoes had been believed";
+}
+
+TEST(Referee, TellsTheWrongMatchesOfReturnsThatNothingTriggered) {
+  Script script;
+  script.close_at_m = script.trigger_at_m = 1e9;
+  script.new_after_return = false;
+  script.match_shift = 1;
+  const RunScore never = judged(script);
+  EXPECT_EQ(never.wrong_before_trigger, 0);
+  EXPECT_GT(never.wrong_without_trigger, 300);
+  EXPECT_EQ(never.wrong_without_trigger, never.wrong_old_matches);
+  script.returns_at_m = {lap_m, 2.0 * lap_m};
+  script.length_m = 960.0;
+  const RunScore both = judged(script);
+  EXPECT_EQ(both.wrong_without_trigger, both.wrong_old_matches);
+  script.trigger_at_m = 786.0;  // the second return has begun, no tree is in view yet
+  const RunScore second_only = judged(script);
+  EXPECT_EQ(second_only.wrong_without_trigger, second_only.returns.at(0).wrong_old_matches);
+  EXPECT_EQ(second_only.wrong_before_trigger, 0);
 }
 
 TEST(Referee, CountsMatureDuplicatesAndTheMapsErrorAfterAlignment) {

@@ -149,11 +149,27 @@ TEST(World, OrchardsDifferInPitchAndShape) {
   EXPECT_GT(*largest - *smallest, 1.5);
 }
 
-TEST(World, FigureOfEightComesBackToTwoRegionsThatAreFarApart) {
+TEST(World, FigureOfEightComesBackToTwoRegionsThatAreFarApartAndToTheFirstOnceMore) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const World world = world_of("figure-of-eight", seed);
-    ASSERT_EQ(world.returns_at_m.size(), 2U);
+    ASSERT_EQ(world.returns_at_m.size(), 3U);
     EXPECT_GT((world.route.at(world.returns_at_m[0]) - world.route.at(world.returns_at_m[1])).norm(), 30.0);
+    EXPECT_LT((world.route.at(world.returns_at_m[0]) - world.route.at(world.returns_at_m[2])).norm(), 1e-6);
+  }
+}
+
+/// The end of a drive must not lie where old ground comes into view again that no return stands for.
+TEST(World, FigureOfEightEndsOutOfSightOfTheNextReturn) {
+  const double sight_m = sim::named_scenario("figure-of-eight").scanner.field_of_view.max_range_m;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const World world = world_of("figure-of-eight", seed);
+    const Eigen::Vector2d end_m = world.route.at(world.drive_m);
+    double nearest_m = for_ever;
+    for (double along_m = world.returns_at_m[1]; along_m < world.returns_at_m[2] - 60.0; along_m += 1.0) {
+      nearest_m = std::min(nearest_m, (world.route.at(along_m) - end_m).norm());
+    }
+    EXPECT_GT(nearest_m, sight_m) << seed;
+    EXPECT_GT(world.drive_m - world.returns_at_m[2], 110.0) << "enough to close it";
   }
 }
 

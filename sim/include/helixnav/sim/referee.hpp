@@ -59,7 +59,8 @@ struct ReturnScore {
   std::int64_t reentry_step = -1;                                    ///< -1: the drive ended before
   int old_matches = 0;                                               ///< by association, until the next return
   int wrong_old_matches = 0;
-  bool closed = false;  ///< by a closure, or by association
+  bool closed = false;      ///< by a closure, or by association
+  JudgedPose left_behind;   ///< as RunScore::end_on_old_ground, before the next return or the end
 };
 
 enum class RunVerdict {
@@ -81,7 +82,8 @@ struct RunScore {
   int undecided = 0;  ///< closures
   int old_matches = 0;
   int wrong_old_matches = 0;
-  int wrong_before_trigger = 0;  ///< wrong old matches before the first trigger, anew after each return
+  int wrong_before_trigger = 0;   ///< wrong old matches before the first trigger of a return, begun from before or not
+  int wrong_without_trigger = 0;  ///< those of returns without any trigger
   double spacing_m = 0.0;        ///< median distance from a tree seen before the first return to the nearest other
   JudgedPose end;
   JudgedPose end_on_old_ground;  ///< at the last scan with old trees in view, or that closed: behind them, all drift
@@ -95,8 +97,8 @@ struct RunScore {
 /// that most of its observations came from. Who an old landmark is stands fixed where the return begins, if it was left
 /// behind by then, or since it was unseen for old_after_m, so that wrong matches cannot make it another. A return begins 1.5 times the sensor's range before
 /// `returns_at_m`, when no old tree is in view yet. A closing is wrong by its pose or by its pairs; a return that is
-/// closed by association alone (association_matches with old landmarks and no closure) is judged by end_on_old_ground and
-/// by its matches. Poses are judged by the relative error; the absolute one stands beside it.
+/// closed by association alone (association_matches with old landmarks and no closure) is judged by the pose where its old
+/// ground is left behind and by its matches. Poses are judged by the relative error; the absolute one stands beside it.
 /// Test: sim/referee_test.cpp (a report made by hand for every verdict).
 class Referee {
  public:
@@ -109,7 +111,7 @@ class Referee {
   Referee(Referee&&) noexcept;
   Referee& operator=(Referee&&) noexcept;
 
-  /// Every report in order. `map_now` is called where a closing is to be judged, and nowhere else.
+  /// Every report in order. `map_now` is called where a closing is to be judged or a return ends, and nowhere else.
   /// PreconditionError for a step that is not the next.
   void watch(const core::StepReport& report, const Map& map_now);
 
