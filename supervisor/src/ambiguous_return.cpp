@@ -39,10 +39,21 @@ std::vector<core::LandmarkId> old_in_view(const cekf::CompressedEkf& filter, con
   return near;
 }
 
+bool may_be(const association::InnovationProblem& problem, int observation, core::LandmarkId id, double gate) {
+  const association::GatedObservation& here = problem.observations[static_cast<std::size_t>(observation)];
+  return std::any_of(problem.pairs.begin() + here.begin, problem.pairs.begin() + here.end,
+                     [&](const association::GatedPair& pair) {
+                       return problem.ids[static_cast<std::size_t>(pair.candidate)] == id && pair.nis < gate;
+                     });
+}
+
+/// Other landmarks in the gate of the pair's, or in whose gates its observation stands as well: two that stand on either
+/// side of it may be outside each other's gates, and yet it is a toss-up which of them it is.
 int neighbours_in_gate(const cekf::CompressedEkf& filter, const core::Scan& scan,
                        const std::vector<core::LandmarkId>& others, core::LandmarkId self,
-                       const association::GatedPair& pair, const association::Prediction& prediction) {
+                       const association::GatedPair& pair, const association::InnovationProblem& problem) {
   static const double gate = core::chi2_quantile(gate_probability, 2);
+  const association::Prediction& prediction = problem.predictions[static_cast<std::size_t>(pair.prediction)];
   const core::Pose2 pose = filter.pose().mean;
   const Eigen::Vector2d sensor_m = core::transform(pose, scan.T_robot_sensor.position_m());
   const Eigen::Matrix2d S_inverse = pair.S.inverse();
@@ -53,7 +64,7 @@ int neighbours_in_gate(const cekf::CompressedEkf& filter, const core::Scan& scan
     if (other == self || (point_m - sensor_m).norm() < too_near_m) continue;
     const core::ObsVector z_hat = core::predict_observation(prediction.kind, pose, scan.T_robot_sensor, point_m).z_hat;
     const Eigen::Vector2d nu = core::innovation(prediction.kind, z_hat, core::ObsVector(prediction.z_hat));
-    if (nu.dot(S_inverse * nu) < gate) ++neighbours;
+    if (nu.dot(S_inverse * nu) < gate || may_be(problem, pair.observation, other, gate)) ++neighbours;
   }
   return neighbours;
 }
@@ -83,7 +94,7 @@ std::vector<AmbiguousReturn> returns_in_gate(const cekf::CompressedEkf& filter,
     const association::Prediction& prediction = problem.predictions[static_cast<std::size_t>(pair.prediction)];
     AmbiguousReturn here;
     here.landmark = id;
-    here.neighbours = neighbours_in_gate(filter, scan, others, id, pair, prediction);
+    here.neighbours = neighbours_in_gate(filter, scan, others, id, pair, problem);
     const Eigen::Matrix2d R = scan.observations[static_cast<std::size_t>(pair.observation)].R;
     const double sensor_area = std::sqrt(R.determinant());
     here.widening = std::sqrt(pair.S.determinant()) / sensor_area;

@@ -17,7 +17,7 @@ std::vector<core::LandmarkId> old_landmarks(const association::LandmarkLife& lif
 struct AmbiguousReturn {
   core::LandmarkId landmark = core::no_landmark;
   double foreign_objects = 0.0;  ///< η = neighbours + extraneous density × area of the gate
-  int neighbours = 0;            ///< other old landmarks in its 95 % gate
+  int neighbours = 0;            ///< other old landmarks in its 95 % gate, or that the observation may be as well
   /// π·5.99·(√|S| − √|R|) in the units of the observation: what the pose's uncertainty adds to the gate. Clutter in the
   /// part that the sensor's noise makes is no question of where one is.
   double gate_area = 0.0;

@@ -43,27 +43,36 @@ struct Scene {
   }
 };
 
-/// η by its definition, from the dense joint covariance.
-double expected_objects(const Scene& scene, core::LandmarkId id, const core::Observation& observation) {
+struct DensePrediction {
+  core::ObsVector z_hat;
+  Eigen::Matrix2d S;
+};
+
+DensePrediction predict_densely(const Scene& scene, core::LandmarkId id, const core::Observation& observation) {
   const core::JointGaussian joint = scene.filter.joint({id});
   const auto predicted =
       core::predict_observation(observation.kind, joint.pose, scene.scan.T_robot_sensor, joint.points_m[0]);
   Eigen::Matrix<double, 2, 5> H;
   H << predicted.H_pose, predicted.H_landmark;
-  const Eigen::Matrix2d R = observation.R;
-  const Eigen::Matrix2d S = H * joint.covariance * H.transpose() + R;
+  return {predicted.z_hat, H * joint.covariance * H.transpose() + observation.R};
+}
+
+/// η by its definition, from the dense joint covariance.
+double expected_objects(const Scene& scene, core::LandmarkId id, const core::Observation& observation) {
+  const auto [z_hat, S] = predict_densely(scene, id, observation);
   const double gate = core::chi2_quantile(0.95, 2);
   double objects = 0.0;
   for (const core::LandmarkId other : scene.ids) {
     if (other == id) continue;
-    const auto z = core::predict_observation(observation.kind, joint.pose, scene.scan.T_robot_sensor,
-                                             scene.filter.landmark_mean(other));
-    const Eigen::Vector2d nu = core::innovation(observation.kind, z.z_hat, predicted.z_hat);
-    objects += nu.dot(S.inverse() * nu) < gate ? 1.0 : 0.0;
+    const auto [other_z_hat, other_S] = predict_densely(scene, other, observation);
+    const Eigen::Vector2d apart = core::innovation(observation.kind, other_z_hat, z_hat);
+    const Eigen::Vector2d nu = core::innovation(observation.kind, observation.z, other_z_hat);
+    objects += apart.dot(S.inverse() * apart) < gate || nu.dot(other_S.inverse() * nu) < gate ? 1.0 : 0.0;
   }
   const double area_m2 = 0.5 * core::pi * (30.0 * 30.0 - 1.0);
-  const double density = per_scan / area_m2 * predicted.z_hat[0];
-  return objects + density * core::pi * gate * (std::sqrt(S.determinant()) - std::sqrt(R.determinant()));
+  const double density = per_scan / area_m2 * z_hat[0];
+  const double sensor_area = std::sqrt(Eigen::Matrix2d(observation.R).determinant());
+  return objects + density * core::pi * gate * (std::sqrt(S.determinant()) - sensor_area);
 }
 
 TEST(AmbiguousReturn, CountsForeignObjectsByTheirDefinition) {
@@ -85,6 +94,27 @@ TEST(AmbiguousReturn, CountsForeignObjectsByTheirDefinition) {
     }
   }
   EXPECT_GT(checked, 150);
+}
+
+/// 1.8 gates apart, an observation halfway: neither stands in the gate of the other, and either may be what was seen.
+TEST(AmbiguousReturn, CountsTheLandmarkOnTheOtherSideOfTheObservation) {
+  cekf::CompressedEkf filter{core::PoseGaussian{}};
+  const Eigen::Matrix2d R = 1e-4 * Eigen::Matrix2d::Identity();
+  std::vector<core::LandmarkId> ids;
+  for (const double y_m : {-2.2, 2.2}) ids.push_back(filter.augment(core::make_cartesian({10.0, y_m}, R), {}));
+  core::Odometry odometry;
+  odometry.covariance.diagonal() << 1.0, 1.0, 1e-6;
+  filter.predict(odometry);
+  core::Scan scan;
+  scan.field_of_view = {1.0, 30.0, -core::pi / 2, core::pi / 2};
+  const auto foreign_objects = [&](double y_m) {
+    scan.observations = {core::make_range_bearing(10.0, std::atan2(y_m, 10.0), 0.01, 0.001)};
+    const Gating gating(filter, ids, scan, {});
+    return most_ambiguous(returns_in_gate(filter, gating.problem, scan, ids, per_scan))->foreign_objects;
+  };
+  EXPECT_GT(foreign_objects(0.1), 1.0);
+  EXPECT_GT(foreign_objects(-0.1), 1.0);
+  EXPECT_LT(foreign_objects(-4.0), 0.2) << "beyond the gate of the farther one";
 }
 
 TEST(AmbiguousReturn, IsNoneWhereThePoseIsCertainAndTreesStandApart) {

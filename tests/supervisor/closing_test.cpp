@@ -12,6 +12,7 @@
 #include "close_by_merge.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/sim/world.hpp"
+#include "judged_drive.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -141,6 +142,17 @@ TEST(Closing, CanBeSwitchedOff) {
   off.search.enabled = false;
   const Drive drive = drive_scenario("large-loop-changed", 7001, off);
   EXPECT_EQ(drive.triggers + drive.closures + drive.searching_scans, 0);
+}
+
+// Drives of development whose pose was lost by an observation that stood between two old landmarks and was given to the wrong
+// one, each outside the other's gate: 0.3 to 1.5 nats told them apart.
+TEST(Closing, SearchesWhereAnObservationMayBeEitherOfTwoOldLandmarks) {
+  for (const std::uint64_t seed : {730u, 2073u, 2655u}) {
+    const sim::RunScore score = navigate_and_judge(sim::named_scenario("figure-of-eight"), seed);
+    EXPECT_EQ(score.verdict, sim::RunVerdict::closed) << seed;
+    EXPECT_EQ(score.wrong_before_trigger + score.wrong_without_trigger, 0) << seed;
+    EXPECT_EQ(score.rewound, 0) << seed;
+  }
 }
 
 // Two closings, the second on ground that was drawn with 10° of drift: two-sided, 0.1 %. Without solving the drive the mean is

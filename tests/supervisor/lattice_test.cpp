@@ -2,8 +2,7 @@
 // Orchards, where every pitch is a rival: drives that were closed wrongly before.
 #include <gtest/gtest.h>
 
-#include "circuits.hpp"
-#include "helixnav/sim/referee.hpp"
+#include "judged_drive.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -13,16 +12,7 @@ sim::RunScore navigate_orchard(std::uint64_t seed, double odometry_noise) {
   scenario.true_noise.odometry.sigma_speed_mps *= odometry_noise;
   scenario.true_noise.odometry.sigma_steering_rad *= odometry_noise;
   scenario.told_noise = scenario.true_noise;
-  const sim::World world = sim::build_world(scenario.world, seed);
-  const core::Recording run = sim::simulate_in(world, scenario, seed);
-  NavigatorOptions options;
-  options.search.relocalizer.threads = 1;
-  Navigator navigator(run.start, options);
-  sim::Referee referee(run, world.returns_at_m);
-  drive(run, navigator, [&](const core::Scan& scan, std::size_t) {
-    referee.watch(navigator.observe(scan), [&] { return navigator.map(); });
-  });
-  return referee.score(navigator.map());
+  return navigate_and_judge(scenario, seed);
 }
 
 TEST(Lattice, IsNotClosedAPitchOffAfterAShortDrift) {
