@@ -170,7 +170,7 @@ void add_search(CLI::App& command, supervisor::SearchOptions& search) {
   add_number(command, "--search.old_after_m", search.old_after_m, 1.0, 1e6,
              "A mature landmark unseen over so long a drive is old: met again, it may begin a search");
   add_number(command, "--search.foreign_objects", search.foreign_objects, 1e-6, 1e3,
-             "A search begins when so many other objects are to be expected in the gate of an old landmark");
+             "A search begins when so many objects other than the old landmark may be what was observed");
   const auto set_closing = [&search](const std::string& word) {
     using supervisor::ClosingMethod;
     search.closing = word == "merge"     ? ClosingMethod::merge

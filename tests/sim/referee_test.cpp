@@ -54,14 +54,14 @@ core::Recording circle_drive(double length_m) {
 /// until it closes, and the old ones again afterwards.
 struct Script {
   std::vector<double> returns_at_m{lap_m};
-  double length_m = 490.0;              ///< trees are in view to the end
-  double trigger_at_m = 390.0;          ///< beyond the end: never
-  const char* trigger = "started";      ///< or "rewound"
-  double close_at_m = 430.0;            ///< beyond the end: never
-  bool new_after_return = true;         ///< false: old landmarks are matched at once
-  int swapped_pairs = 0;                ///< of the closing
-  int match_shift = 0;                  ///< old landmarks are matched with the tree so many farther
-  core::Pose2 drift;                    ///< of the pose, until the closing or drift_to_m: T_true_estimate
+  double length_m = 490.0;          ///< trees are in view to the end
+  double trigger_at_m = 390.0;      ///< beyond the end: never
+  const char* trigger = "started";  ///< or "rewound"
+  double close_at_m = 430.0;        ///< beyond the end: never
+  bool new_after_return = true;     ///< false: old landmarks are matched at once
+  int swapped_pairs = 0;            ///< of the closing
+  int match_shift = 0;              ///< old landmarks are matched with the tree so many farther
+  core::Pose2 drift;                ///< of the pose, until the closing or drift_to_m: T_true_estimate
   double drift_to_m = 1e9;
   core::Pose2 error;                    ///< of the pose, from the closing on
   core::Pose2 end_error;                ///< of the last pose, in its stead when it is not the identity
@@ -92,7 +92,7 @@ class Run {
     report.step = static_cast<std::int64_t>(k);
     const bool last = k + 1 == recording_.labels.size();
     const bool ends_wrong = last && script_.end_error.vector().norm() > 0.0;
-    const core::Pose2 error = ends_wrong                   ? script_.end_error
+    const core::Pose2 error = ends_wrong                                                 ? script_.end_error
                               : at_m >= std::min(script_.close_at_m, script_.drift_to_m) ? script_.error
                                                                                          : script_.drift;
     report.pose.mean = core::compose(script_.T_map_true, core::compose(recording_.true_poses[k].T_world_robot, error));

@@ -59,8 +59,8 @@ struct ReturnScore {
   std::int64_t reentry_step = -1;                                    ///< -1: the drive ended before
   int old_matches = 0;                                               ///< by association, until the next return
   int wrong_old_matches = 0;
-  bool closed = false;      ///< by a closure, or by association
-  JudgedPose left_behind;   ///< as RunScore::end_on_old_ground, before the next return or the end
+  bool closed = false;     ///< by a closure, or by association
+  JudgedPose left_behind;  ///< as RunScore::end_on_old_ground, before the next return or the end
 };
 
 enum class RunVerdict {
@@ -84,7 +84,7 @@ struct RunScore {
   int wrong_old_matches = 0;
   int wrong_before_trigger = 0;   ///< wrong old matches before the first trigger of a return, begun from before or not
   int wrong_without_trigger = 0;  ///< those of returns without any trigger
-  double spacing_m = 0.0;        ///< median distance from a tree seen before the first return to the nearest other
+  double spacing_m = 0.0;         ///< median distance from a tree seen before the first return to the nearest other
   JudgedPose end;
   JudgedPose end_on_old_ground;  ///< at the last scan with old trees in view, or that closed: behind them, all drift
   int trees_seen = 0;
