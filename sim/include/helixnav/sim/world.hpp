@@ -21,7 +21,7 @@ enum class WorldKind {
   loop,             ///< closed wavy road with trees and a bare stretch before it closes
   open_road,        ///< begins as the loop, then swings out beside its own beginning and never comes back to it
   orchard,          ///< racetrack whose home straight runs through a lattice of trees larger than what was mapped of it
-  figure_of_eight,  ///< two lobes with trees, bare around the crossing: two old regions to come back to
+  figure_of_eight,  ///< two lobes with trees, bare around the crossing: both are come back to, the first one twice
   circuit,          ///< small circle among scattered landmarks, driven again and again
 };
 
@@ -34,7 +34,7 @@ struct WorldOptions {
   Interval tree_offset_m{4.0, 9.0};      ///< from the middle of the road
   double road_clearance_m = 3.0;         ///< no tree nearer to the middle of any part of the route
   double changed_share = 0.0;            ///< of the trees: felled before the return; as many new ones planted
-  double drive_on_m = 180.0;             ///< driven after the (last) return
+  double drive_on_m = 180.0;             ///< driven after the (last) return; figure_of_eight: to the lobe's end at most
   int returns = 1;                       ///< how often the loop is closed (loop, circuit)
   Interval lattice_pitch_m{4.0, 7.0};    ///< orchard
   int circuit_landmarks = 20;            ///< circuit: at 0.5 to 1.5 times its radius from its centre
