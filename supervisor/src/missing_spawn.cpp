@@ -43,6 +43,12 @@ void MissingSpawn::observe(const association::LandmarkLife& life, const std::vec
   }
 }
 
+void MissingSpawn::close(double path_m, const std::vector<core::LandmarkId>& recognised) {
+  *this = MissingSpawn();
+  clear_path_m_ = path_m;
+  for (const core::LandmarkId id : recognised) returned_[id].last_look_path_m = path_m;
+}
+
 MissingSpawn::Returned* MissingSpawn::find_returned(const association::LandmarkLife& life, core::LandmarkId id,
                                                     double old_after_m) {
   const auto known = returned_.find(id);

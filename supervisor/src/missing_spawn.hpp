@@ -32,6 +32,10 @@ class MissingSpawn {
   void observe(const association::LandmarkLife& life, const std::vector<core::LandmarkId>& expected,
                const std::vector<core::LandmarkId>& matched, double old_after_m);
 
+  /// A closing recognised these landmarks at `path_m` of the drive. They have been returned to as others are by a match, and
+  /// vouch for the pose from here on; without them only what the closing did not find would be looked for.
+  void close(double path_m, const std::vector<core::LandmarkId>& recognised);
+
   /// No landmark that was returned to was looked for since the pose was vouched for.
   bool is_clear() const { return clear_; }
   Evidence evidence(const association::LandmarkLife& life, const MissingSpawnLimits& limits) const;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "ambiguous_return.hpp"
 #include "branch_journal.hpp"
@@ -121,6 +122,9 @@ void Navigator::close(const Scan& scan, const std::vector<pf_relocalize::Constel
                                {"moved_m", (filter_.pose().mean.position_m() - before.position_m()).norm()}}});
   if (closing.accepted) {
     drive_->close(closing.merged, closing.cost);
+    std::vector<LandmarkId> recognised;
+    for (const core::MergedLandmarks& one : closing.merged) recognised.push_back(one.kept);
+    doubts_->close(life_.path_m(), recognised);
     end_search();
     smooth(report);
   } else {

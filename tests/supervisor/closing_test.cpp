@@ -172,7 +172,7 @@ TEST(Closing, SolvesTheDriveAndIsConsistentAfterwards) {
 
 // A closing, scans gone through again in a search from before, another closing: the log holds what the filter holds.
 TEST(Closing, SolvesADriveOfWhichPartWasGoneThroughTwice) {
-  const Drive drive = drive_scenario("sparse", 7119, one_thread());
+  const Drive drive = drive_scenario("sparse", 1867, one_thread());
   EXPECT_EQ(drive.rewound, 1);
   EXPECT_EQ(drive.closures, 2);
   EXPECT_EQ(drive.smoothed, 2);

@@ -90,6 +90,29 @@ TEST(MissingSpawn, TwoAtOnceTwiceVouchForThePose) {
   EXPECT_FALSE(doubts.is_clear()) << "one alone vouches for nothing";
 }
 
+TEST(MissingSpawn, AClosingVouchesWithTheLandmarksThatItRecognised) {
+  association::LandmarkLife life = book_of(9, 100.0);
+  const Ids recognised{0, 1, 2, 3, 4};
+  spawn(life, 10, 2);
+  life.observe({110.0, 0.0}, recognised, {}, {});  // as merging enters them
+  const auto drive_on = [&](MissingSpawn doubts) {
+    association::LandmarkLife book = life;
+    EXPECT_TRUE(doubts.is_clear());
+    look(doubts, book, 3, {0, 1, 5, 6, 7, 8}, {0, 1});
+    return doubts;
+  };
+  EXPECT_TRUE(drive_on(MissingSpawn()).is_lost(life, {})) << "those that were felled are all that it knows of";
+  MissingSpawn closed;
+  closed.close(life.path_m(), recognised);
+  EXPECT_FALSE(drive_on(closed).is_lost(life, {}));
+  EXPECT_TRUE(drive_on(closed).is_clear());
+  EXPECT_EQ(closed.evidence(life, {}).spawned, 0) << "what was born in the search is not held against the closing";
+  association::LandmarkLife book = life;
+  look(closed, book, 3, {0, 1, 2, 5, 6}, {});
+  spawn(book, 20, 2);
+  EXPECT_TRUE(closed.is_lost(book, {})) << "and it may be wrong";
+}
+
 TEST(MissingSpawn, WhatWasSeenLatelyTellsNothingOfAReturn) {
   association::LandmarkLife life = book_of(4, 30.0);
   MissingSpawn doubts;
