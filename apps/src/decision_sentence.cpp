@@ -32,7 +32,7 @@ std::string rewound_sentence(const core::Decision& d) {
 std::string trigger_sentence(const core::Decision& d) {
   if (d.verdict == "rewound") return rewound_sentence(d);
   return "A search began: an observation was about to be matched with the old landmark " + text(d, "landmark") +
-         ", and " + text(d, "foreign_objects") + " other objects may be expected to be what was seen; " +
+         ", and it may as well have been one of " + text(d, "foreign_objects") + " other objects to be expected; " +
          counted(number(d, "neighbours"), "old landmark") + " of the map among them. The pose was uncertain by " +
          text(d, "pose_sigma_m") + " m and " + text(d, "heading_sigma_deg") +
          "°. The old landmarks are set aside until it is known which is which.";

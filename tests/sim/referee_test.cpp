@@ -154,6 +154,14 @@ Script closing_with_error(const core::Pose2& error) {
   return script;
 }
 
+/// Old landmarks are matched at once, and nothing triggers or closes.
+Script association_alone() {
+  Script script;
+  script.close_at_m = script.trigger_at_m = 1e9;
+  script.new_after_return = false;
+  return script;
+}
+
 TEST(Referee, CallsARightClosingClosed) {
   const RunScore score = judged({});
   EXPECT_EQ(score.verdict, RunVerdict::closed);
@@ -263,10 +271,8 @@ TEST(Referee, CallsAnyClosingFalseWhereNothingReturns) {
 }
 
 TEST(Referee, CallsMatchesWithOldLandmarksFalseWhereNothingReturns) {
-  Script script;
+  Script script = association_alone();
   script.returns_at_m = {};
-  script.close_at_m = script.trigger_at_m = 1e9;
-  script.new_after_return = false;
   script.match_shift = 5;
   const RunScore score = judged(script);
   EXPECT_EQ(score.verdict, RunVerdict::false_closure);
@@ -292,11 +298,9 @@ TEST(Referee, WantsEveryReturnClosed) {
 }
 
 TEST(Referee, JudgesWhatAssociationClosedWhereThatGroundIsLeft) {
-  Script script;
+  Script script = association_alone();
   script.returns_at_m = {lap_m, 2.0 * lap_m};
   script.length_m = 960.0;
-  script.close_at_m = script.trigger_at_m = 1e9;
-  script.new_after_return = false;
   script.drift = {1.9, 0.0, 0.0};
   script.drift_to_m = 600.0;  // behind the first return
   EXPECT_EQ(judged(script).verdict, RunVerdict::closed);
@@ -308,9 +312,7 @@ TEST(Referee, JudgesWhatAssociationClosedWhereThatGroundIsLeft) {
 }
 
 TEST(Referee, JudgesWhatAssociationClosedByTheEndAndByItsMatches) {
-  Script script;
-  script.close_at_m = script.trigger_at_m = 1e9;
-  script.new_after_return = false;
+  Script script = association_alone();
   const RunScore right = judged(script);
   EXPECT_EQ(right.verdict, RunVerdict::closed);
   EXPECT_TRUE(right.closed_by_association);
@@ -322,11 +324,8 @@ TEST(Referee, JudgesWhatAssociationClosedByTheEndAndByItsMatches) {
 }
 
 TEST(Referee, DoesNotLetWrongMatchesMakeAnOldLandmarkAnother) {
-  Script script;
-  script.close_at_m = script.trigger_at_m = 1e9;
-  script.new_after_return = false;
+  Script script = association_alone();
   script.match_shift = 1;
-  script.length_m = 490.0;
   const RunScore score = judged(script);
   EXPECT_GT(score.old_matches, 300);
   EXPECT_EQ(score.wrong_old_matches, score.old_matches);
@@ -334,13 +333,10 @@ TEST(Referee, DoesNotLetWrongMatchesMakeAnOldLandmarkAnother) {
 }
 
 TEST(Referee, CountsWrongMatchesBeforeTheTriggerOnly) {
-  Script script;
-  script.close_at_m = 1e9;
-  script.new_after_return = false;
+  Script script = association_alone();
   script.match_shift = 1;
   script.trigger_at_m = 386.0;  // no tree is in view yet
-  EXPECT_EQ(judged(script).wrong_before_trigger, 0);
-  EXPECT_EQ(judged(script).wrong_without_trigger, 0);
+  EXPECT_EQ(judged(script).wrong_before_trigger + judged(script).wrong_without_trigger, 0);
   script.trigger_at_m = 394.0;
   const RunScore tardy = judged(script);
   EXPECT_GT(tardy.wrong_before_trigger, 0);
@@ -351,9 +347,7 @@ TEST(Referee, CountsWrongMatchesBeforeTheTriggerOnly) {
 }
 
 TEST(Referee, TellsTheWrongMatchesOfReturnsThatNothingTriggered) {
-  Script script;
-  script.close_at_m = script.trigger_at_m = 1e9;
-  script.new_after_return = false;
+  Script script = association_alone();
   script.match_shift = 1;
   const RunScore never = judged(script);
   EXPECT_EQ(never.wrong_before_trigger, 0);

@@ -178,6 +178,15 @@ TEST(Closing, SolvesADriveOfWhichPartWasGoneThroughTwice) {
   EXPECT_EQ(drive.smoothed, 2);
 }
 
+// A drive whose right closing was doubted, and searched for again from before, for the felled trees beside it.
+TEST(Closing, IsNotDoubtedForWhatItDidNotFind) {
+  const Drive drive = drive_scenario("sparse", 7119, one_thread());
+  EXPECT_EQ(drive.closures, 1);
+  EXPECT_EQ(drive.wrong_pairs, 0);
+  EXPECT_LT(drive.error_after_closing_m, 2.0);
+  EXPECT_EQ(drive.rewound, 0);
+}
+
 TEST(Closing, LeavesDrivesUnsolvedThatAreLongerThanAllowed) {
   NavigatorOptions options = one_thread();
   for (const int scans : {0, 100}) {

@@ -41,7 +41,7 @@ struct SearchOptions {
 
   // Trigger.
   double old_after_m = 60.0;        ///< a mature landmark unseen over so long a drive is old
-  double foreign_objects = 0.1;     ///< expected other objects in the gate of an old landmark that begin a search
+  double foreign_objects = 0.1;     ///< expected objects that may be seen in an old one's stead that begin a search
   double hold_objects = 0.05;       ///< above it an old landmark is not matched alone, but no search begins yet
   double probation_widening = 2.0;  ///< √(|S|/|R|) above which an old landmark is matched alone only when met again, …
   double probation_m = 5.0;         ///< … within so long a drive
