@@ -158,7 +158,7 @@ class Run {
       if (writer_) writer_->write(step.report, step.microseconds);
       step_us_.push_back(step.microseconds);
       for (const core::Decision& decision : step.report.decisions) {
-        if (decision.kind == "closure") ++closings_[decision.verdict];
+        if (core::is_closure(decision)) ++closings_[core::row_of(decision).verdict];
       }
     }
     if (files_) files_->write_step(builder_, seen, steps_);

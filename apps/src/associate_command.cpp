@@ -14,6 +14,7 @@
 #include "association_trial.hpp"
 #include "commands.hpp"
 #include "config_file.hpp"
+#include "chosen_navigator.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/nearest_name.hpp"
 #include "helixnav/logs/read_recording.hpp"
@@ -103,21 +104,19 @@ ExitCode show_scan(const AssociateJob& job) {
   if (job.settings.known_association && recording.labels.empty()) {
     throw core::InputError(recording.name + ": --association known needs a labelled log, and this one has no labels");
   }
-  supervisor::Navigator navigator(recording.start, job.settings.navigator);
+  ChosenNavigator navigator(recording, job.settings.navigator, job.settings.known_association);
   std::size_t scans = 0;
   for (const core::Event& event : recording.events) {
     if (interrupted()) return ExitCode::interrupted;
-    if (const auto* odometry = std::get_if<core::Odometry>(&event)) navigator.move(*odometry);
-    if (const auto* fix = std::get_if<core::AbsoluteFix>(&event)) navigator.fix(*fix);
-    const auto* scan = std::get_if<core::Scan>(&event);
-    if (scan == nullptr) continue;
-    const std::vector<core::LandmarkId> before = navigator.filter().landmarks();
-    const core::StepReport report =
-        job.settings.known_association ? navigator.observe(*scan, recording.labels[scans]) : navigator.observe(*scan);
-    if (report.step == job.scan) {
+    const bool asked = std::holds_alternative<core::Scan>(event) && static_cast<std::int64_t>(scans) == job.scan;
+    const std::vector<core::LandmarkId> before =
+        asked ? navigator.filter().landmarks() : std::vector<core::LandmarkId>{};
+    const std::optional<core::StepReport> report = navigator.take(event, scans);
+    if (!report) continue;
+    if (asked) {
       std::printf("scan %lld: %zu observations (rows), %zu landmarks (columns: id + 1), 0 is the dummy\n",
-                  static_cast<long long>(job.scan), report.associations.size(), before.size());
-      std::fputs(matching_matrix(report, before).c_str(), stdout);
+                  static_cast<long long>(job.scan), report->associations.size(), before.size());
+      std::fputs(matching_matrix(*report, before).c_str(), stdout);
       return ExitCode::ok;
     }
     ++scans;

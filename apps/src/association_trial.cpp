@@ -61,11 +61,9 @@ void try_association(const core::Recording& recording, const supervisor::Navigat
   std::vector<core::StepReport> steps;
   for (std::size_t i = 0; i < recording.events.size() && !interrupted(); ++i) {
     const core::Event& event = recording.events[i];
-    if (const auto* odometry = std::get_if<core::Odometry>(&event)) navigator.move(*odometry);
-    if (const auto* fix = std::get_if<core::AbsoluteFix>(&event)) navigator.fix(*fix);
-    if (const auto* scan = std::get_if<core::Scan>(&event)) {
-      const Clock::time_point begin = Clock::now();
-      steps.push_back(navigator.observe(*scan));
+    const Clock::time_point begin = Clock::now();
+    if (std::optional<core::StepReport> report = navigator.take(event)) {
+      steps.push_back(std::move(*report));
       trial.step_us.push_back(1e6 * std::chrono::duration<double>(Clock::now() - begin).count());
     }
   }

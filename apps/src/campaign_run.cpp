@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "campaign.hpp"
+#include "chosen_navigator.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/sim/referee.hpp"
 #include "helixnav/sim/simulate.hpp"
@@ -100,28 +101,24 @@ Json json_of(const sim::RunScore& score) {
 }
 
 bool has_closure(const core::StepReport& report) {
-  return std::any_of(report.decisions.begin(), report.decisions.end(),
-                     [](const core::Decision& decision) { return decision.kind == "closure"; });
+  return std::any_of(report.decisions.begin(), report.decisions.end(), core::is_closure);
 }
 
 sim::RunScore drive_and_judge(const Campaign& campaign, std::uint64_t seed, WallClock& wall) {
   const sim::World world = sim::build_world(campaign.scenario.world, seed);
   const core::Recording recording = sim::simulate_in(world, campaign.scenario, seed);
-  supervisor::Navigator navigator(recording.start, campaign.navigator);
+  ChosenNavigator navigator(recording, campaign.navigator, campaign.known_association);
   sim::Referee referee(recording, world.returns_at_m);
   std::size_t step = 0;
   for (const core::Event& event : recording.events) {
-    if (const auto* odometry = std::get_if<core::Odometry>(&event)) navigator.move(*odometry);
-    const auto* scan = std::get_if<core::Scan>(&event);
-    if (scan == nullptr) continue;
     const Clock::time_point begin = Clock::now();
-    const core::StepReport report =
-        campaign.known_association ? navigator.observe(*scan, recording.labels[step]) : navigator.observe(*scan);
+    const std::optional<core::StepReport> report = navigator.take(event, step);
+    if (!report) continue;
     const double seconds = seconds_since(begin);
     wall.run_s += seconds;
-    if (report.mode == core::Mode::searching) wall.search_s += seconds;
-    if (has_closure(report)) wall.closing_s += seconds;
-    referee.watch(report, [&navigator] { return navigator.map(); });
+    if (report->mode == core::Mode::searching) wall.search_s += seconds;
+    if (has_closure(*report)) wall.closing_s += seconds;
+    referee.watch(*report, [&navigator] { return navigator.map(); });
     ++step;
   }
   return referee.score(navigator.map());

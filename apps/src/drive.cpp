@@ -12,6 +12,7 @@
 
 #include "dead_reckoning.hpp"
 #include "estimator.hpp"
+#include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/run_writer.hpp"
 #include "interrupt.hpp"
@@ -53,7 +54,7 @@ struct Driven {
 
 void count_closings(const core::StepReport& report, Driven& driven) {
   for (const core::Decision& decision : report.decisions) {
-    if (decision.kind == "closure") ++driven.closings[decision.verdict];
+    if (core::is_closure(decision)) ++driven.closings[core::row_of(decision).verdict];
   }
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <variant>
 
+#include "chosen_navigator.hpp"
 #include "helixnav/core/errors.hpp"
 
 namespace helixnav::apps {
@@ -14,18 +15,18 @@ namespace {
 /// Infinite when the filter broke on the way.
 double mean_nis(core::Recording recording, double scale, const supervisor::NavigatorOptions& options) {
   divide_ranges(recording, scale);
-  supervisor::Navigator navigator(recording.start, options);
+  ChosenNavigator navigator(recording, options, true);
   std::size_t scans = 0;
   double nis = 0.0;
   int rows = 0;
   try {
     for (const core::Event& event : recording.events) {
-      if (const auto* odometry = std::get_if<core::Odometry>(&event)) navigator.move(*odometry);
-      if (const auto* scan = std::get_if<core::Scan>(&event)) {
-        const core::StepReport report = navigator.observe(*scan, recording.labels[scans++]);
-        nis += report.joint_nis;
-        rows += report.joint_dof;
-      }
+      if (std::holds_alternative<core::AbsoluteFix>(event)) continue;
+      const std::optional<core::StepReport> report = navigator.take(event, scans);
+      if (!report) continue;
+      nis += report->joint_nis;
+      rows += report->joint_dof;
+      ++scans;
     }
   } catch (const core::NumericalError&) {
     rows = 0;

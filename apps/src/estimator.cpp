@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "chosen_navigator.hpp"
 #include "helixnav/localization/localizer.hpp"
-#include "helixnav/supervisor/navigator.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -32,13 +32,11 @@ std::vector<core::LandmarkId> landmarks_of(const std::vector<core::Label>& label
 }  // namespace
 
 Estimator navigator_of(const Drive& job) {
-  const auto navigator = std::make_shared<supervisor::Navigator>(job.recording.start, job.navigator);
+  const auto navigator = std::make_shared<ChosenNavigator>(job.recording, job.navigator, job.known_association);
   Estimator estimator;
-  estimator.move = [navigator](const core::Odometry& odometry) { navigator->move(odometry); };
-  estimator.fix = [navigator](const core::AbsoluteFix& fix) { navigator->fix(fix); };
-  estimator.observe = [navigator, &job](const core::Scan& scan, std::size_t i) {
-    return job.known_association ? navigator->observe(scan, job.recording.labels[i]) : navigator->observe(scan);
-  };
+  estimator.move = [navigator](const core::Odometry& odometry) { navigator->take(odometry, 0); };
+  estimator.fix = [navigator](const core::AbsoluteFix& fix) { navigator->take(fix, 0); };
+  estimator.observe = [navigator](const core::Scan& scan, std::size_t i) { return *navigator->take(scan, i); };
   estimator.pose = [navigator] { return navigator->pose(); };
   estimator.map = [navigator] { return navigator->map(); };
   return estimator;

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 #include <vector>
 
 #include "decision_sentence.hpp"
+#include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 
 namespace helixnav::apps {
@@ -24,8 +26,10 @@ std::vector<Decided> decisions_of(const logs::RunFolder& run) {
   return decided;
 }
 
-bool is_closure(const Decided& decided) { return decided.decision->kind == "closure"; }
-bool is_trigger(const Decided& decided) { return decided.decision->kind == "trigger"; }
+bool is_closure(const Decided& decided) { return core::is_closure(*decided.decision); }
+bool is_trigger(const Decided& decided) { return core::is_trigger(*decided.decision); }
+
+std::string verdict_of(const Decided& decided) { return core::row_of(*decided.decision).verdict; }
 
 std::string when(const core::StepReport& step) {
   return "step " + std::to_string(step.step) + " (" + short_number(core::seconds(step.t_ns)) + " s)";
@@ -37,7 +41,7 @@ std::string line_of(const Decided& decided) {
 
 std::ptrdiff_t count_of(const std::vector<Decided>& closures, const char* verdict) {
   return std::count_if(closures.begin(), closures.end(),
-                       [&](const Decided& closure) { return closure.decision->verdict == verdict; });
+                       [&](const Decided& closure) { return verdict_of(closure) == verdict; });
 }
 
 std::string merges_of(const core::StepReport& step) {
@@ -125,11 +129,11 @@ std::string explain_closure(const logs::RunFolder& run, std::size_t closure) {
   }
   auto first = last;
   while (first != decided.begin() && !is_trigger(*first)) --first;
-  std::string text = "Closure " + std::to_string(closure) + " of this run: " + last->decision->verdict + ".\n";
+  std::string text = "Closure " + std::to_string(closure) + " of this run: " + verdict_of(*last) + ".\n";
   for (auto it = first; it != last + 1; ++it) text += line_of(*it);
   text += merges_of(*last->step);
   const auto next = last + 1;
-  return next != decided.end() && next->decision->kind == "smoothing" ? text + line_of(*next) : text;
+  return next != decided.end() && std::holds_alternative<core::SmoothingDecision>(*next->decision) ? text + line_of(*next) : text;
 }
 
 std::string explain_step(const logs::RunFolder& run, std::int64_t step) {

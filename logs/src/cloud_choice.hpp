@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <variant>
 
 #include "helixnav/core/step_report.hpp"
 
@@ -17,13 +18,13 @@ class CloudChoice {
     const auto any = [&](const auto& condition) {
       return std::any_of(report.decisions.begin(), report.decisions.end(), condition);
     };
-    if (any([](const core::Decision& d) { return d.kind == "search" && d.verdict == "started"; })) {
+    if (any([](const core::Decision& d) { return std::holds_alternative<core::AttemptStarted>(d); })) {
       scans_ = 0;
     } else {
       ++scans_;
     }
     const bool early = scans_ == 0 || scans_ == 1 || scans_ == 3 || scans_ == 6;
-    return early || any([](const core::Decision& d) { return d.kind == "closure"; });
+    return early || any(core::is_closure);
   }
 
  private:

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
+
+#include "helixnav/core/decision_row.hpp"
 
 namespace helixnav::logs {
 namespace {
@@ -13,33 +16,17 @@ Json pose_json(const core::Pose2& pose) {
   return {millimetres(pose.x_m), millimetres(pose.y_m), millimetres(pose.heading_rad)};
 }
 
-const double* number(const core::Decision& decision, const char* name) {
-  const auto found = std::find_if(decision.numbers.begin(), decision.numbers.end(),
-                                  [&](const auto& number) { return number.first == name; });
-  return found == decision.numbers.end() ? nullptr : &found->second;
-}
-
-/// The pose whose numbers are named `prefix`x_m and so on; null when one is missing.
-Json pose_of(const core::Decision& decision, const std::string& prefix) {
-  const double* x_m = number(decision, (prefix + "x_m").c_str());
-  const double* y_m = number(decision, (prefix + "y_m").c_str());
-  const double* heading_rad = number(decision, (prefix + "heading_rad").c_str());
-  if (x_m == nullptr || y_m == nullptr || heading_rad == nullptr) return nullptr;
-  return pose_json({*x_m, *y_m, *heading_rad});
-}
-
-bool has(const core::StepReport& step, const char* kind, const char* verdict) {
-  return std::any_of(step.decisions.begin(), step.decisions.end(),
-                     [&](const core::Decision& d) { return d.kind == kind && d.verdict == verdict; });
+bool begins_attempt(const core::Decision& decision) {
+  return core::is_trigger(decision) || std::holds_alternative<core::AttemptStarted>(decision);
 }
 
 /// Where the attempt began that step `k` belongs to.
 std::size_t attempt_begin(const std::vector<core::StepReport>& steps, std::size_t k) {
   std::size_t begin = k;
-  while (begin > 0 && !has(steps[begin], "search", "started") && !has(steps[begin], "trigger", "started") &&
-         !has(steps[begin], "trigger", "rewound")) {
-    --begin;
-  }
+  const auto has_begin = [](const core::StepReport& step) {
+    return std::any_of(step.decisions.begin(), step.decisions.end(), begins_attempt);
+  };
+  while (begin > 0 && !has_begin(steps[begin])) --begin;
   return begin;
 }
 
@@ -53,8 +40,7 @@ Json view_json(const RunFolder& run, const core::StepReport& step, std::int64_t 
   Json cloud = Json::array();
   for (const core::Pose2& pose : step.cloud) cloud.push_back(pose_json(pose));
   return {{"scans", scans},
-          {"closing", std::any_of(step.decisions.begin(), step.decisions.end(),
-                                  [](const core::Decision& d) { return d.kind == "closure"; })},
+          {"closing", std::any_of(step.decisions.begin(), step.decisions.end(), core::is_closure)},
           {"estimate", pose_json(step.pose.mean)},
           {"truth", true_pose_json(run.truth, step.t_ns)},
           {"cloud", cloud}};
@@ -74,17 +60,17 @@ Json matched_json(const RunFolder& run, const core::StepReport& step) {
 
 Json closure_json(const RunFolder& run, std::size_t k, const core::Decision& closure) {
   const std::size_t begin = attempt_begin(run.steps, k);
-  Json json = {{"step", run.steps[k].step}, {"verdict", closure.verdict},
+  Json json = {{"step", run.steps[k].step}, {"verdict", core::row_of(closure).verdict},
                {"views", Json::array()},    {"matched", matched_json(run, run.steps[k])},
                {"winner", nullptr},         {"rival", nullptr}};
   for (std::size_t i = begin; i <= k; ++i) {
     const core::StepReport& step = run.steps[i];
     if (!step.cloud.empty()) json["views"].push_back(view_json(run, step, step.step - run.steps[begin].step));
     for (const core::Decision& decision : step.decisions) {
-      if (decision.kind != "constellation") continue;
-      const double* rival_matched = number(decision, "rival_matched");
-      json["winner"] = pose_of(decision, "");
-      json["rival"] = rival_matched != nullptr && *rival_matched > 0.0 ? pose_of(decision, "rival_") : Json(nullptr);
+      const auto* test = std::get_if<core::VerificationDecision>(&decision);
+      if (test == nullptr) continue;
+      json["winner"] = pose_json(test->T_world_winner);
+      json["rival"] = test->rival_matched > 0 ? pose_json(test->T_world_rival) : Json(nullptr);
     }
   }
   return json;
@@ -96,7 +82,7 @@ Json closures_data(const RunFolder& run) {
   Json closures = Json::array();
   for (std::size_t k = 0; k < run.steps.size(); ++k) {
     for (const core::Decision& decision : run.steps[k].decisions) {
-      if (decision.kind == "closure") closures.push_back(closure_json(run, k, decision));
+      if (core::is_closure(decision)) closures.push_back(closure_json(run, k, decision));
     }
   }
   return closures;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "report_closures.hpp"
 #include "run_words.hpp"
@@ -196,14 +197,15 @@ Json observations_json(const std::vector<core::StepReport>& steps) {
 }
 
 Json decision_json(const core::StepReport& step, const core::Decision& decision) {
+  const core::DecisionRow row = core::row_of(decision);
   Json numbers = Json::array();
-  for (const auto& [name, value] : decision.numbers) numbers.push_back({name, Json(value)});
+  for (const auto& [name, value] : row.numbers) numbers.push_back({name, Json(value)});
   return {{"step", step.step},
           {"t", time_of(step.t_ns)},
           {"x", rounded(step.pose.mean.x_m)},
           {"y", rounded(step.pose.mean.y_m)},
-          {"kind", decision.kind},
-          {"verdict", decision.verdict},
+          {"kind", row.kind},
+          {"verdict", row.verdict},
           {"numbers", numbers}};
 }
 
@@ -213,7 +215,7 @@ void put_decisions(Json& json, const std::vector<core::StepReport>& steps) {
   std::size_t others = 0;
   for (const core::StepReport& step : steps) {
     for (const core::Decision& decision : step.decisions) {
-      if (decision.kind == "closure" || others++ < most_decisions) list.push_back(decision_json(step, decision));
+      if (core::is_closure(decision) || others++ < most_decisions) list.push_back(decision_json(step, decision));
     }
   }
   json["decisions_left_out"] = others > most_decisions ? others - most_decisions : 0;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "run_file.hpp"
 #include "run_json.hpp"
@@ -97,7 +98,7 @@ AssociationRow read_association_row(const RunRow& row) {
 }
 
 core::Decision read_decision_row(const RunRow& row) {
-  core::Decision decision;
+  core::DecisionRow decision;
   decision.kind = row.text(2);
   decision.verdict = row.text(3);
   for (std::string_view rest = row.text(4); !rest.empty();) {
@@ -109,7 +110,7 @@ core::Decision read_decision_row(const RunRow& row) {
     decision.numbers.emplace_back(pair.substr(0, equals), *value);
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
-  return decision;
+  return core::decision_of(decision);
 }
 
 RunTables read_tables(const std::string& folder) {

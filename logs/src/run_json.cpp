@@ -27,14 +27,17 @@ void put(Json& object, const std::string& dotted_key, double value) {
   }
 }
 
-std::int64_t count_decisions(const RunFolder& run, std::string_view kind, std::string_view verdict) {
-  std::int64_t count = 0;
+Json closures_to_json(const RunFolder& run) {
+  std::int64_t accepted = 0, refused = 0, undecided = 0;
   for (const core::StepReport& step : run.steps) {
-    count += std::count_if(step.decisions.begin(), step.decisions.end(), [&](const core::Decision& decision) {
-      return decision.kind == kind && decision.verdict == verdict;
-    });
+    for (const core::Decision& decision : step.decisions) {
+      const auto* closure = std::get_if<core::ClosureDecision>(&decision);
+      accepted += closure != nullptr && closure->accepted;
+      refused += closure != nullptr && !closure->accepted;
+      undecided += std::holds_alternative<core::UndecidedDecision>(decision);
+    }
   }
-  return count;
+  return {{"accepted", accepted}, {"refused", refused}, {"undecided", undecided}};
 }
 
 std::int64_t count_landmarks(const RunFolder& run, core::LandmarkState state) {
@@ -112,9 +115,7 @@ Json summary_to_json(const RunFolder& run, const Evaluation& evaluation,
   json["steps"] = run.steps.size();
   json["landmarks"] = {{"mature", count_landmarks(run, core::LandmarkState::mature)},
                        {"tentative", count_landmarks(run, core::LandmarkState::tentative)}};
-  json["closures"] = {{"accepted", count_decisions(run, "closure", "accepted")},
-                      {"refused", count_decisions(run, "closure", "refused")},
-                      {"undecided", count_decisions(run, "closure", "undecided")}};
+  json["closures"] = closures_to_json(run);
   json["observations"] = observations_to_json(run);
   json.update(evaluation_to_json(evaluation));
   for (const auto& [key, value] : numbers) put(json, key, value);

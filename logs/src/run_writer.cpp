@@ -7,6 +7,7 @@
 #include <initializer_list>
 
 #include "cloud_choice.hpp"
+#include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/report.hpp"
 #include "run_file.hpp"
@@ -73,19 +74,20 @@ void append_association(std::string& text, std::int64_t step, const core::Associ
 
 void append_decision(std::string& text, const core::StepReport& report, const core::Decision& decision) {
   append_step_and_time(text, report);
+  const core::DecisionRow row = core::row_of(decision);
   text += ',';
-  append_word(text, decision.kind);
+  append_word(text, row.kind);
   text += ',';
-  append_word(text, decision.verdict);
+  append_word(text, row.verdict);
   char separator = ',';
-  for (const auto& [name, value] : decision.numbers) {
+  for (const auto& [name, value] : row.numbers) {
     text += separator;
     append_word(text, name);
     text += '=';
     append_number(text, value);
     separator = ';';
   }
-  text += decision.numbers.empty() ? ",\n" : "\n";
+  text += row.numbers.empty() ? ",\n" : "\n";
 }
 
 void append_merge(std::string& text, std::int64_t step, const core::MergedLandmarks& merge) {

@@ -99,6 +99,7 @@ core::StepReport MapBuilder::Impl::observe(const NamedScan& scan) {
     }
     return navigator->observe(scan.scan, scan.identities);
   }
+  if (association_ == Association::open) return navigator->observe_nothing(scan.scan);
   if (named && options.use_landmark_ids) {
     warn("the first measurements had no landmarkID: association is unknown, and later IDs are passed over");
   }

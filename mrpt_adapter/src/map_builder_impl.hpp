@@ -14,9 +14,9 @@
 #include <mrpt/system/CTimeLogger.h>
 
 #include "convert_frame.hpp"
+#include "either_navigator.hpp"
 #include "helixnav/mrpt_adapter/map_builder.hpp"
 #include "helixnav/mrpt_adapter/run_access.hpp"
-#include "helixnav/supervisor/navigator.hpp"
 
 namespace helixnav::mrpt_adapter {
 
@@ -39,7 +39,7 @@ class MapBuilder::Impl {
   const MapBuilderOptions options;
   std::mutex& lock;
   mrpt::system::CTimeLogger profiler;
-  std::optional<supervisor::Navigator> navigator;
+  std::optional<EitherNavigator> navigator;
   mrpt::maps::CSimpleMap simple_map;
   std::vector<core::Pose2> path;         ///< after each step
   std::vector<Step> steps;               ///< of the last feed

@@ -55,16 +55,19 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-int count(const StepReport& report, const char* kind, const char* verdict) {
-  return static_cast<int>(std::count_if(report.decisions.begin(), report.decisions.end(), [&](const core::Decision& d) {
-    return d.kind == kind && d.verdict == verdict;
-  }));
+template <class Kind>
+int count(const StepReport& report) {
+  return static_cast<int>(
+      std::count_if(report.decisions.begin(), report.decisions.end(),
+                    [](const core::Decision& decision) { return std::holds_alternative<Kind>(decision); }));
 }
 
-double number(const core::Decision& decision, const char* name) {
-  const auto found = std::find_if(decision.numbers.begin(), decision.numbers.end(),
-                                  [&](const auto& number) { return number.first == name; });
-  return found == decision.numbers.end() ? no_number : found->second;
+int count_closings(const StepReport& report, bool accepted) {
+  return static_cast<int>(
+      std::count_if(report.decisions.begin(), report.decisions.end(), [&](const core::Decision& decision) {
+        const auto* closure = std::get_if<core::ClosureDecision>(&decision);
+        return closure != nullptr && closure->accepted == accepted;
+      }));
 }
 
 }  // namespace
@@ -148,9 +151,9 @@ void Referee::watch(const StepReport& report, const Map& map_now) {
   if (book.on_old_ground) book.last_on_old_ground = {report.pose, book.truth()};
   book.note_triggers(report);
   book.count_matches(report, labels);
-  book.score.refused += count(report, "closure", "refused");
-  book.score.undecided += count(report, "closure", "undecided");
-  if (count(report, "closure", "accepted") == 0) return;
+  book.score.refused += count_closings(report, false);
+  book.score.undecided += count<core::UndecidedDecision>(report);
+  if (count_closings(report, true) == 0) return;
   book.judge_closure(report, map_now());
   book.last_on_old_ground = {report.pose, book.truth()};  // what was wrong before the closing is no longer believed
 }
@@ -179,7 +182,7 @@ void Referee::Book::drive_on(const StepReport& report, const Map& map_now) {
   const std::size_t next = score.returns.size();
   if (next < returns_at_m.size() && driven_m >= returns_at_m[next] - in_sight_m) {
     if (next > 0 && last_on_old_ground) score.returns.back().left_behind = judge(*last_on_old_ground, map_now());
-    begin_return(report.mode == core::Mode::searching && count(report, "trigger", "started") == 0);
+    begin_return(report.mode == core::Mode::searching && count<core::TriggerDecision>(report) == 0);
   }
 }
 
@@ -194,8 +197,8 @@ void Referee::Book::begin_return(bool searching) {
 }
 
 void Referee::Book::note_triggers(const StepReport& report) {
-  const int rewound = count(report, "trigger", "rewound");
-  const int started = count(report, "trigger", "started");
+  const int rewound = count<core::RollbackDecision>(report);
+  const int started = count<core::TriggerDecision>(report);
   score.rewound += rewound;
   score.triggers += started;
   if (rewound > 0) revise(report);
@@ -263,7 +266,7 @@ void Referee::Book::judge_closure(const StepReport& report, const std::vector<Ma
     if (kept == core::no_label || kept != identities.identity(pair.removed)) ++closure.wrong_pairs;
   }
   for (const core::Decision& decision : report.decisions) {
-    if (decision.kind == "constellation") closure.rival_share = number(decision, "rival_share");
+    if (const auto* test = std::get_if<core::VerificationDecision>(&decision)) closure.rival_share = test->rival_share;
   }
   closure.pose = judge({pose, truth()}, map);
   closure.is_false =

@@ -2,6 +2,7 @@
 #include "close_by_replay.hpp"
 
 #include <map>
+#include <set>
 #include <utility>
 
 #include "branch_pairs.hpp"
@@ -14,22 +15,24 @@ namespace helixnav::supervisor {
 namespace {
 
 /// The filter as the pairs make it; false, with the filter in between, when it cannot believe them.
-bool replay(cekf::CompressedEkf& filter, const BranchJournal& journal, const KeptRemoved& pairs,
+bool replay(cekf::CompressedEkf& filter, const BranchRecord& record, const KeptRemoved& pairs,
             const SearchOptions& options, Closing& closing) {
+  const std::set<core::LandmarkId> born = born_in(record);
+  const cekf::UpdateResult before = innovation_cost(record.tape, record.trigger.position);
   std::map<core::LandmarkId, core::LandmarkId> old_of;
-  KeptRemoved older;  // than the journal
+  KeptRemoved older;  // than the branch
   for (const auto& [kept, removed] : pairs) {
-    if (journal.has_birth_of(removed)) {
+    if (born.count(removed) > 0) {
       old_of[removed] = kept;
     } else {
       older.emplace_back(kept, removed);
     }
   }
   try {
-    const cekf::UpdateResult again = journal.replay(filter, old_of);
+    const cekf::UpdateResult again = replay_branch(filter, record, old_of);
     const cekf::UpdateResult merged = filter.merge(older, options.merge_sigma_m);
-    closing.cost = again.nis + merged.nis - journal.cost().nis;
-    closing.dof = again.dof + merged.dof - journal.cost().dof;
+    closing.cost = again.nis + merged.nis - before.nis;
+    closing.dof = again.dof + merged.dof - before.dof;
   } catch (const core::NumericalError&) {
     return false;
   }
@@ -38,7 +41,7 @@ bool replay(cekf::CompressedEkf& filter, const BranchJournal& journal, const Kep
 }
 
 /// Replays with more and more pairs, as long as the filter believes them; true when there are no more.
-bool replay_leftovers(cekf::CompressedEkf& filter, const LeftBehind& left_behind, const BranchJournal& journal,
+bool replay_leftovers(cekf::CompressedEkf& filter, const LeftBehind& left_behind, const BranchRecord& record,
                       const Branch& branch, const std::vector<core::LandmarkId>& old, const SearchOptions& options,
                       KeptRemoved& pairs, Closing& closing) {
   constexpr int most_passes = 10;
@@ -50,7 +53,7 @@ bool replay_leftovers(cekf::CompressedEkf& filter, const LeftBehind& left_behind
     if (rest.empty() || !make_compatible(filter, options, rest, next)) return true;
     rest.insert(rest.begin(), pairs.begin(), pairs.end());
     const cekf::CompressedEkf before = filter;
-    if (!replay(filter, journal, rest, options, next)) {
+    if (!replay(filter, record, rest, options, next)) {
       filter = before;
       return false;
     }
@@ -63,7 +66,7 @@ bool replay_leftovers(cekf::CompressedEkf& filter, const LeftBehind& left_behind
 
 }  // namespace
 
-Closing close_by_replay(cekf::CompressedEkf& filter, const BranchJournal& journal,
+Closing close_by_replay(cekf::CompressedEkf& filter, const BranchRecord& record,
                         const std::vector<pf_relocalize::ConstellationPair>& pairs, const Branch& branch,
                         const std::vector<core::LandmarkId>& old, const SearchOptions& options) {
   Closing closing;
@@ -71,12 +74,12 @@ Closing close_by_replay(cekf::CompressedEkf& filter, const BranchJournal& journa
   KeptRemoved chosen = kept_removed(pairs);
   if (chosen.size() < least_pairs || !make_compatible(filter, options, chosen, closing)) return closing;
   const cekf::CompressedEkf before = filter;
-  if (!replay(filter, journal, chosen, options, closing)) {
+  if (!replay(filter, record, chosen, options, closing)) {
     filter = before;
     return closing;
   }
   closing.accepted = true;
-  const bool complete = replay_leftovers(filter, left_behind, journal, branch, old, options, chosen, closing);
+  const bool complete = replay_leftovers(filter, left_behind, record, branch, old, options, chosen, closing);
   note(chosen, closing);
   if (!complete) merge_leftovers(filter, left_behind, branch.confirmed, old, options, closing);
   forget_copies(filter, branch.unconfirmed, old, options.leftover_gate, closing);

@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "branch_journal.hpp"
 #include "closing.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/pf_relocalize/constellation.hpp"
 #include "helixnav/supervisor/search_options.hpp"
+#include "replay_branch.hpp"
 
 namespace helixnav::supervisor {
 
@@ -15,10 +15,10 @@ namespace helixnav::supervisor {
 /// that it stands on; then again with what else of the branch has become a duplicate of one of `old` (ascending), until
 /// nothing new does. Pairs are chosen as by close_by_merge. The cost of the pairs is what the replay costs more than the
 /// branch did: to first order the J of merging them. Refused when it exceeds its χ² limit or an iteration does not settle:
-/// filter as before. A branch landmark older than the journal is merged after the replay, and so are the duplicates when
+/// filter as before. A branch landmark older than the trigger is merged after the replay, and so are the duplicates when
 /// the replay with them costs too much.
 /// Exact: equal to a full EKF told the same associations. Test: supervisor/replay_test.cpp.
-Closing close_by_replay(cekf::CompressedEkf& filter, const BranchJournal& journal,
+Closing close_by_replay(cekf::CompressedEkf& filter, const BranchRecord& record,
                         const std::vector<pf_relocalize::ConstellationPair>& pairs, const Branch& branch,
                         const std::vector<core::LandmarkId>& old, const SearchOptions& options);
 

@@ -42,8 +42,8 @@ Closing close_map(cekf::CompressedEkf& filter, const ClosingView& view,
                             search.heaviest_mode(filter).value_or(filter.pose()));
   }
   const Branch branch = branch_of(view, options);
-  if (view.journal != nullptr) {
-    Closing closing = close_by_replay(filter, *view.journal, pairs, branch, search.old_landmarks(), options);
+  if (options.closing == ClosingMethod::replay) {
+    Closing closing = close_by_replay(filter, view.record, pairs, branch, search.old_landmarks(), options);
     if (closing.accepted) return closing;
   }
   return close_by_merge(filter, pairs, branch, search.old_landmarks(), options);

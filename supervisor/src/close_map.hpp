@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "branch_journal.hpp"
 #include "closing.hpp"
 #include "helixnav/association/landmark_life.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
+#include "replay_branch.hpp"
 #include "search.hpp"
-#include "track.hpp"
+#include "coverage_trace.hpp"
 
 namespace helixnav::supervisor {
 
@@ -16,9 +16,9 @@ namespace helixnav::supervisor {
 struct ClosingView {
   const Search& search;
   const association::LandmarkLife& life;
-  const Track& track;
+  const CoverageTrace& track;
   const core::Scan& scan;
-  const BranchJournal* journal;  ///< nullptr unless the method is replay
+  BranchRecord record;
 };
 
 /// Closes the map by the pairs that the search has found, as SearchOptions::closing says; leaves the filter as it is

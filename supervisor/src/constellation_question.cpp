@@ -71,16 +71,17 @@ pf_relocalize::ConstellationVerdict judge_rival(const pf_relocalize::Constellati
   return judge_constellation(constellation, candidate, others, options.constellation);
 }
 
-std::string_view word_of(pf_relocalize::ConstellationReason reason) {
+core::VerificationDecision::Verdict verdict_of(pf_relocalize::ConstellationReason reason) {
+  using Verdict = core::VerificationDecision::Verdict;
   switch (reason) {
     case pf_relocalize::ConstellationReason::accepted:
-      return "accepted";
+      return Verdict::accepted;
     case pf_relocalize::ConstellationReason::too_few_matches:
-      return "too-few-matches";
+      return Verdict::too_few_matches;
     case pf_relocalize::ConstellationReason::ratio_too_low:
-      return "ratio-too-low";
+      return Verdict::ratio_too_low;
     default:
-      return "rival-too-good";
+      return Verdict::rival_too_good;
   }
 }
 
@@ -153,25 +154,22 @@ ConstellationAnswer ask_constellation(const SearchView& view, const std::vector<
   return answer;
 }
 
-core::Decision constellation_decision(const ConstellationAnswer& answer) {
+core::VerificationDecision verification_decision(const ConstellationAnswer& answer) {
   const pf_relocalize::ConstellationVerdict& v = answer.verdict;
-  return {"constellation",
-          std::string(word_of(v.reason)),
-          {{"matched", v.winner.matched},
-           {"unmatched_branch", v.winner.unmatched_branch},
-           {"unmatched_old", v.winner.unmatched_old},
-           {"ratio", v.winner.ratio},
-           {"rival_matched", v.rival.matched},
-           {"rival_ratio", v.rival.ratio},
-           {"rival_share", v.rival_share},
-           {"rivals_tried", v.rivals_tried},
-           {"adopted", answer.adopted ? 1.0 : 0.0},
-           {"x_m", answer.T_world_winner.x_m},
-           {"y_m", answer.T_world_winner.y_m},
-           {"heading_rad", answer.T_world_winner.heading_rad},
-           {"rival_x_m", answer.T_world_rival.x_m},
-           {"rival_y_m", answer.T_world_rival.y_m},
-           {"rival_heading_rad", answer.T_world_rival.heading_rad}}};
+  core::VerificationDecision decision;
+  decision.verdict = verdict_of(v.reason);
+  decision.matched = v.winner.matched;
+  decision.unmatched_branch = v.winner.unmatched_branch;
+  decision.unmatched_old = v.winner.unmatched_old;
+  decision.ratio = v.winner.ratio;
+  decision.rival_matched = v.rival.matched;
+  decision.rival_ratio = v.rival.ratio;
+  decision.rival_share = v.rival_share;
+  decision.rivals_tried = v.rivals_tried;
+  decision.adopted = answer.adopted;
+  decision.T_world_winner = answer.T_world_winner;
+  decision.T_world_rival = answer.T_world_rival;
+  return decision;
 }
 
 }  // namespace helixnav::supervisor

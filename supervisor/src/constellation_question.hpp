@@ -36,7 +36,7 @@ ConstellationAnswer ask_constellation(const SearchView& view, const std::vector<
                                       double search_begun_path_m, const core::Pose2& T_world_robot,
                                       const SearchOptions& options, std::uint64_t seed);
 
-/// The answer as a decision of kind "constellation".
-core::Decision constellation_decision(const ConstellationAnswer& answer);
+/// The answer with the numbers that decided it.
+core::VerificationDecision verification_decision(const ConstellationAnswer& answer);
 
 }  // namespace helixnav::supervisor

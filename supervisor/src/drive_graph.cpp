@@ -19,11 +19,24 @@ namespace {
 
 using core::LandmarkGraph;
 
+/// The stops of the drive with its landmarks by their present ids.
+std::vector<Stop> present_stops(const Tape& tape) {
+  std::vector<Stop> stops = stops_of(tape);
+  const std::map<core::LandmarkId, core::LandmarkId> now = merged_into(tape);
+  for (Stop& stop : stops) {
+    for (cekf::Match& match : stop.seen) {
+      const auto found = now.find(match.landmark);
+      if (found != now.end()) match.landmark = found->second;
+    }
+  }
+  return stops;
+}
+
 /// How often each landmark was observed that is worth a place in the graph: one lost again after a single look says nothing.
-std::map<core::LandmarkId, int> sightings(const DriveLog& log, const cekf::CompressedEkf& filter) {
+std::map<core::LandmarkId, int> sightings(const std::vector<Stop>& stops, const cekf::CompressedEkf& filter) {
   std::map<core::LandmarkId, int> count;
-  for (const DriveLog::Stop& stop : log.stops()) {
-    for (const cekf::Match& match : stop.seen) ++count[log.present(match.landmark)];
+  for (const Stop& stop : stops) {
+    for (const cekf::Match& match : stop.seen) ++count[match.landmark];
   }
   for (auto one = count.begin(); one != count.end();) {
     one = one->second > 1 || filter.contains(one->first) ? std::next(one) : count.erase(one);
@@ -66,20 +79,24 @@ class PoseOnMap {
 
 class Builder {
  public:
-  Builder(const DriveLog& log, const cekf::CompressedEkf& filter)
-      : log_(log), filter_(filter), sightings_(sightings(log, filter)), vehicle_(log.start()) {
+  Builder(const core::PoseGaussian& start, const Tape& tape, const cekf::CompressedEkf& filter)
+      : stops_(present_stops(tape)),
+        last_motion_(motion_after_stops(tape)),
+        filter_(filter),
+        sightings_(sightings(stops_, filter)),
+        vehicle_(start) {
     open_pose();
   }
 
   LandmarkGraph build() {
-    for (const DriveLog::Stop& stop : log_.stops()) {
+    for (const Stop& stop : stops_) {
       drive(stop.motion);
       const std::vector<cekf::Match> seen = worthwhile(stop);
       const bool observed = stop.fix || !seen.empty();
       if (observed && motion_) reach_pose();
       if (observed) observe(stop, seen);
     }
-    drive(log_.motion());
+    drive(last_motion_);
     if (motion_) reach_pose();  // where the vehicle is now, even if nothing is seen from there
     return std::move(graph_);
   }
@@ -104,17 +121,16 @@ class Builder {
     motion_.reset();
   }
 
-  std::vector<cekf::Match> worthwhile(const DriveLog::Stop& stop) const {
+  std::vector<cekf::Match> worthwhile(const Stop& stop) const {
     std::vector<cekf::Match> seen;
-    for (cekf::Match match : stop.seen) {
-      match.landmark = log_.present(match.landmark);
+    for (const cekf::Match& match : stop.seen) {
       if (sightings_.count(match.landmark) > 0) seen.push_back(match);
     }
     return seen;
   }
 
   /// Landmarks whose places are known say where the vehicle is, and it says where the others are.
-  void observe(const DriveLog::Stop& stop, const std::vector<cekf::Match>& seen) {
+  void observe(const Stop& stop, const std::vector<cekf::Match>& seen) {
     for (const cekf::Match& match : seen) {
       if (const auto point_m = place_of(match.landmark)) vehicle_.see(match, *point_m);
     }
@@ -144,7 +160,8 @@ class Builder {
     return next;
   }
 
-  const DriveLog& log_;
+  std::vector<Stop> stops_;
+  std::optional<core::Odometry> last_motion_;
   const cekf::CompressedEkf& filter_;
   std::map<core::LandmarkId, int> sightings_;
   PoseOnMap vehicle_;
@@ -155,6 +172,8 @@ class Builder {
 
 }  // namespace
 
-LandmarkGraph graph_of(const DriveLog& log, const cekf::CompressedEkf& filter) { return Builder(log, filter).build(); }
+LandmarkGraph graph_of(const core::PoseGaussian& start, const Tape& tape, const cekf::CompressedEkf& filter) {
+  return Builder(start, tape, filter).build();
+}
 
 }  // namespace helixnav::supervisor

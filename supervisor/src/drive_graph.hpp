@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "drive_log.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/landmark_graph.hpp"
+#include "tape.hpp"
 
 namespace helixnav::supervisor {
 
@@ -12,6 +13,6 @@ namespace helixnav::supervisor {
 /// and those lost again that were seen more than once.
 /// Start values: landmarks where the map has them, poses where the landmarks seen say that they were.
 /// Test: supervisor/smooth_drive_test.cpp.
-core::LandmarkGraph graph_of(const DriveLog& log, const cekf::CompressedEkf& filter);
+core::LandmarkGraph graph_of(const core::PoseGaussian& start, const Tape& tape, const cekf::CompressedEkf& filter);
 
 }  // namespace helixnav::supervisor

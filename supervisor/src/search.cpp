@@ -80,10 +80,10 @@ std::optional<std::vector<ConstellationPair>> Search::look(const SearchView& vie
       if (options_.acceptance == Acceptance::constellation) return question(view, decisions);
       break;
     case SearchOutcome::timed_out:
-      end_attempt("timed-out", path_m, decisions);
+      end_attempt(Reason::timed_out, path_m, decisions);
       break;
     case SearchOutcome::nothing_here:
-      end_attempt("nothing-here", path_m, decisions);
+      end_attempt(Reason::nothing_here, path_m, decisions);
       break;
     default:
       break;
@@ -127,12 +127,9 @@ void Search::start(const SearchView& view, std::vector<core::Decision>& decision
   attempt_.emplace(Attempt{
       pf_relocalize::Relocalizer(std::move(map), view.scan, options_.relocalizer, seed), a, b, path_m, path_m, {}, 0});
   has_just_started_ = true;
-  decisions.push_back({"search",
-                       "started",
-                       {{"attempt", starts_},
-                        {"reference_landmarks", static_cast<double>(joint.ids.size())},
-                        {"helix_pairs", static_cast<double>(attempt_->relocalizer.helix_pairs())},
-                        {"log_evidence", attempt_->relocalizer.state().log_evidence}}});
+  decisions.emplace_back(core::AttemptStarted{starts_, static_cast<int>(joint.ids.size()),
+                                           static_cast<int>(attempt_->relocalizer.helix_pairs()),
+                                           attempt_->relocalizer.state().log_evidence});
 }
 
 std::optional<std::vector<ConstellationPair>> Search::question(const SearchView& view,
@@ -141,7 +138,7 @@ std::optional<std::vector<ConstellationPair>> Search::question(const SearchView&
   const double path_m = view.life.path_m();
   if (path_m < attempt.next_question_path_m) return std::nullopt;
   if (path_m - attempt.begun_path_m > options_.attempt_m) {
-    end_attempt("abandoned", path_m, decisions);
+    end_attempt(Reason::abandoned, path_m, decisions);
     return std::nullopt;
   }
   const core::Pose2 T_world_base = base_frame_now(view.filter, attempt.base_a, attempt.base_b);
@@ -150,13 +147,13 @@ std::optional<std::vector<ConstellationPair>> Search::question(const SearchView&
   const ConstellationAnswer answer =
       ask_constellation(view, old_, begun_path_m_, core::compose(T_world_base, T_base_robot), options_,
                         seed_ + static_cast<std::uint64_t>(questions_));
-  decisions.push_back(constellation_decision(answer));
+  decisions.emplace_back(verification_decision(answer));
   const bool accepted = answer.verdict.accepted;
   attempt.passes = !accepted ? 0 : agree(attempt.passed, answer.verdict.winner.pairs) ? attempt.passes + 1 : 1;
   attempt.passed = accepted ? answer.verdict.winner.pairs : std::vector<ConstellationPair>{};
   attempt.next_question_path_m = path_m + (accepted ? options_.confirm_m : options_.ask_again_m);
   if (answer.verdict.rival.matched > answer.verdict.winner.matched && answer.verdict.rival_share > 1.0) {
-    end_attempt("outdone", path_m, decisions);
+    end_attempt(Reason::outdone, path_m, decisions);
     next_start_path_m_ = path_m;
     return std::nullopt;
   }
@@ -164,15 +161,10 @@ std::optional<std::vector<ConstellationPair>> Search::question(const SearchView&
   return attempt.passed;
 }
 
-void Search::end_attempt(const char* verdict, double path_m, std::vector<core::Decision>& decisions) {
+void Search::end_attempt(Reason reason, double path_m, std::vector<core::Decision>& decisions) {
   const pf_relocalize::CloudState& state = attempt_->relocalizer.state();
-  decisions.push_back({"search",
-                       verdict,
-                       {{"attempt", starts_},
-                        {"scans", state.scans},
-                        {"log_evidence", state.log_evidence},
-                        {"largest_mode", state.modes.front().mass},
-                        {"driven_m", path_m - attempt_->begun_path_m}}});
+  decisions.emplace_back(core::AttemptEnded{reason, starts_, state.scans, state.log_evidence, state.modes.front().mass,
+                                         path_m - attempt_->begun_path_m});
   refuse(path_m);
 }
 

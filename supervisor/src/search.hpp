@@ -11,7 +11,7 @@
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/pf_relocalize/relocalizer.hpp"
 #include "helixnav/supervisor/search_options.hpp"
-#include "track.hpp"
+#include "coverage_trace.hpp"
 
 namespace helixnav::supervisor {
 
@@ -19,7 +19,7 @@ namespace helixnav::supervisor {
 struct SearchView {
   const cekf::CompressedEkf& filter;
   const association::LandmarkLife& life;
-  const Track& track;
+  const CoverageTrace& track;
   const core::Scan& scan;
 };
 
@@ -72,7 +72,8 @@ class Search {
   void start(const SearchView& view, std::vector<core::Decision>& decisions);
   std::optional<std::vector<pf_relocalize::ConstellationPair>> question(const SearchView& view,
                                                                         std::vector<core::Decision>& decisions);
-  void end_attempt(const char* verdict, double path_m, std::vector<core::Decision>& decisions);
+  using Reason = core::AttemptEnded::Reason;
+  void end_attempt(Reason reason, double path_m, std::vector<core::Decision>& decisions);
 
   SearchOptions options_;
   std::vector<core::LandmarkId> old_;

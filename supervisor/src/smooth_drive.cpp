@@ -116,21 +116,19 @@ smoothing::Report solve(const core::PoseGaussian& start, core::LandmarkGraph& gr
 
 }  // namespace
 
-Smoothing smooth_drive(cekf::CompressedEkf& filter, const DriveLog& log) {
+Smoothing smooth_drive(const cekf::CompressedEkf& filter, const core::PoseGaussian& start, const Tape& tape) {
   Smoothing result;
-  result.limit = log.cost() + slack();
+  result.limit = drive_cost(tape) + slack();
   try {
-    core::LandmarkGraph graph = graph_of(log, filter);
+    core::LandmarkGraph graph = graph_of(start, tape, filter);
     result.poses = static_cast<int>(graph.poses.size());
-    const smoothing::Report report = solve(log.start(), graph);
+    const smoothing::Report report = solve(start, graph);
     result.chi2 = report.chi2.total();
     result.iterations = static_cast<int>(report.iterations.size());
     if (report.reason != smoothing::Reason::converged || !(result.chi2 <= result.limit)) return result;
-    cekf::CompressedEkf again = Refilter(log.start(), graph, filter).run();
-    filter = std::move(again);
-    result.accepted = true;
+    result.solved.emplace(Refilter(start, graph, filter).run());
   } catch (const core::NumericalError&) {
-    result.accepted = false;  // what cannot be solved leaves the filter as it is
+    result.solved.reset();  // what cannot be solved leaves the filter as it is
   }
   return result;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/core/decision_row.hpp"
 #include "helixnav/logs/report.hpp"
 
 #include <regex>
@@ -50,16 +51,12 @@ TEST(Report, HoldsTheRunInItsDataElement) {
 TEST(Report, HoldsCloudsConstellationAndRivalOfEachClosure) {
   RunFolder run = example_run(100);
   core::StepReport& closing = run.steps[17];  // six scans after the attempt that begins in step 11
-  closing.decisions = {{"constellation",
-                        "accepted",
-                        {{"x_m", 1.0},
-                         {"y_m", 2.0},
-                         {"heading_rad", 0.5},
-                         {"rival_matched", 3.0},
-                         {"rival_x_m", 7.0},
-                         {"rival_y_m", 8.0},
-                         {"rival_heading_rad", -0.5}}},
-                       {"closure", "accepted", {}}};
+  core::VerificationDecision test;
+  test.verdict = core::VerificationDecision::Verdict::accepted;
+  test.T_world_winner = {1.0, 2.0, 0.5};
+  test.rival_matched = 3;
+  test.T_world_rival = {7.0, 8.0, -0.5};
+  closing.decisions = {test, core::decision_of({"closure", "accepted", {}})};
   closing.merged = {{2, 17}, {77, 18}};  // 77 has died since
   const nlohmann::json closure = element(render(run), "run-data")["closures"].at(1);
   EXPECT_EQ(closure["step"], 17);
@@ -105,7 +102,7 @@ TEST(Report, KeepsWallClockFiguresInTheirElement) {
 TEST(Report, CannotBeBrokenByTextsOfTheUser) {
   RunFolder run = example_run(20);
   run.manifest.recording = "</script><b>\xff{{script}}";
-  run.steps[3].decisions.push_back({"<!--", "<script>", {{"</script>", 1.0}}});
+  run.steps[3].decisions.push_back(core::decision_of({"<!--", "<script>", {{"</script>", 1.0}}}));
   const std::string page = render(run);
   EXPECT_EQ(element(page, "run-data")["manifest"]["recording"], "</script><b>\xef\xbf\xbd{{script}}");
   EXPECT_EQ(page.find("</script><b>"), std::string::npos);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/random.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/core/step_report.hpp"
@@ -47,12 +48,12 @@ inline core::StepReport example_step(std::int64_t k) {
   step.mapped_landmarks = static_cast<int>(k / 10);
   step.switched_region = k % 100 == 3;
   if (k % 40 == 11) {
-    step.decisions.push_back({"trigger", "raised", {{"sigma_m", 0.1 + 0.2}, {"foreign_expected", 1.0 / 3.0}}});
-    step.decisions.push_back({"closure", k % 80 == 11 ? "accepted" : "refused", {}});
+    step.decisions.push_back(core::decision_of({"trigger", "raised", {{"sigma_m", 0.1 + 0.2}, {"foreign_expected", 1.0 / 3.0}}}));
+    step.decisions.push_back(core::decision_of({"closure", k % 80 == 11 ? "accepted" : "refused", {}}));
   }
   if (k % 80 == 11) step.merged = {{4, 17}, {5, 18 + static_cast<int>(k)}};
   const std::int64_t since_trigger = k % 40 - 11;  // a search of seven scans
-  if (since_trigger == 0) step.decisions.push_back({"search", "started", {{"attempt", 1.0}}});
+  if (since_trigger == 0) step.decisions.push_back(core::decision_of({"search", "started", {{"attempt", 1.0}}}));
   if (since_trigger >= 0 && since_trigger < 7) {
     for (int i = 0; i < 3; ++i) step.cloud.emplace_back(random.uniform(), -1.0 / 3.0, 0.1 * i);
     if (since_trigger == 0) step.drawn = {{9.0, -1.0 / 3.0, 0.0}, {-9.0, 2.0, 0.5}, {0.1, -1.0 / 3.0, 1.0}};

@@ -49,9 +49,10 @@ void expect_same(const core::StepReport& a, const core::StepReport& b) {
   for (std::size_t i = 0; i < a.associations.size(); ++i) expect_same(a.associations[i], b.associations[i]);
   ASSERT_EQ(a.decisions.size(), b.decisions.size());
   for (std::size_t i = 0; i < a.decisions.size(); ++i) {
-    EXPECT_EQ(a.decisions[i].kind, b.decisions[i].kind);
-    EXPECT_EQ(a.decisions[i].verdict, b.decisions[i].verdict);
-    EXPECT_EQ(a.decisions[i].numbers, b.decisions[i].numbers);
+    const core::DecisionRow one = core::row_of(a.decisions[i]), other = core::row_of(b.decisions[i]);
+    EXPECT_EQ(one.kind, other.kind);
+    EXPECT_EQ(one.verdict, other.verdict);
+    EXPECT_EQ(one.numbers, other.numbers);
   }
   ASSERT_EQ(a.merged.size(), b.merged.size());
   for (std::size_t i = 0; i < a.merged.size(); ++i) {

@@ -8,6 +8,7 @@
 #include <mrpt/poses/CPose3DPDFParticles.h>
 
 #include "helixnav/sim/simulate.hpp"
+#include "helixnav/supervisor/named_navigator.hpp"
 #include "helixnav/supervisor/navigator.hpp"
 #include "quiet_builder.hpp"
 
@@ -27,6 +28,7 @@ bool same_bytes(const core::PoseGaussian& a, const core::PoseGaussian& b) {
 /// Poses of the navigator on what MRPT's types keep of a recording.
 std::vector<core::PoseGaussian> navigated(const core::Recording& recording, bool by_name, std::size_t scans) {
   supervisor::Navigator navigator(core::PoseGaussian{});
+  supervisor::NamedNavigator named(core::PoseGaussian{});
   std::vector<core::PoseGaussian> poses;
   std::optional<core::Odometry> motion;
   for (const core::Event& event : recording.events) {
@@ -34,10 +36,10 @@ std::vector<core::PoseGaussian> navigated(const core::Recording& recording, bool
     if (const auto* odometry = std::get_if<core::Odometry>(&event)) {
       motion = motion ? core::chain(*motion, *odometry) : *odometry;
     } else if (const auto* scan = std::get_if<core::Scan>(&event)) {
-      if (motion) navigator.move(as_mrpt_keeps(*motion));
+      if (motion) by_name ? named.move(as_mrpt_keeps(*motion)) : navigator.move(as_mrpt_keeps(*motion));
       motion.reset();
       const core::Scan kept = as_mrpt_keeps(*scan);
-      poses.push_back(by_name ? navigator.observe(kept, recording.labels[poses.size()]).pose
+      poses.push_back(by_name ? named.observe(kept, recording.labels[poses.size()]).pose
                               : navigator.observe(kept).pose);
     }
   }

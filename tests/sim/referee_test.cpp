@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/core/decision_row.hpp"
 #include "helixnav/sim/referee.hpp"
 
 #include <cmath>
@@ -97,7 +98,7 @@ class Run {
                                                                                          : script_.drift;
     report.pose.mean = core::compose(script_.T_map_true, core::compose(recording_.true_poses[k].T_world_robot, error));
     report.pose.covariance = Eigen::Vector3d(0.04, 0.04, 1e-4).asDiagonal();
-    if (at_m == script_.trigger_at_m) report.decisions.push_back({"trigger", script_.trigger, {}});
+    if (at_m == script_.trigger_at_m) report.decisions.push_back(core::decision_of({"trigger", script_.trigger, {}}));
     for (std::size_t j = 0; j < recording_.labels[k].size(); ++j) {
       report.associations.push_back(association(static_cast<int>(j), recording_.labels[k][j], at_m));
     }
@@ -117,7 +118,7 @@ class Run {
   }
 
   void close(core::StepReport& report) const {
-    report.decisions.push_back({"closure", "accepted", {}});
+    report.decisions.push_back(core::decision_of({"closure", "accepted", {}}));
     std::vector<LandmarkId> branch;
     for (const LandmarkId id : known_) {
       if (id >= 100) branch.push_back(id);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "circuits.hpp"
+#include "helixnav/supervisor/named_navigator.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/random.hpp"
 
@@ -23,7 +24,7 @@ struct FixedRun {
 FixedRun fixed_run(std::uint64_t seed, bool fixes, bool outliers) {
   const core::Recording run = sim::simulate(wide_circuit(), seed);
   core::RandomStream noise(seed + 1000);
-  Navigator navigator(run.start);
+  NamedNavigator navigator(run.start);
   FixedRun result;
   drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
     const core::Pose2& truth = run.true_poses[i].T_world_robot;
@@ -39,10 +40,9 @@ FixedRun fixed_run(std::uint64_t seed, bool fixes, bool outliers) {
     }
     core::Scan nothing = scan;
     nothing.observations.clear();
-    const core::StepReport report = navigator.observe(nothing, std::vector<std::int64_t>{});
+    const core::StepReport report = navigator.observe(nothing, {});
     for (const core::Decision& decision : report.decisions) {
-      EXPECT_EQ(decision.kind, "fix");
-      ++(decision.verdict == "accepted" ? result.accepted : result.refused);
+      ++(std::get<core::FixDecision>(decision).accepted ? result.accepted : result.refused);
     }
     result.worst_error_m = std::max(result.worst_error_m, (report.pose.mean.position_m() - truth.position_m()).norm());
     result.last_nees = nees(report.pose, truth);

@@ -11,7 +11,7 @@
 #include "gating.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/random.hpp"
-#include "probation.hpp"
+#include "confirmation.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -152,14 +152,14 @@ TEST(AmbiguousReturn, SaysHowMuchWiderThePoseMakesTheGate) {
   }
 }
 
-TEST(Probation, IsPassedByTheLandmarkThatWasMetJustBefore) {
-  Probation probation;
-  EXPECT_FALSE(probation.passes(7, 100.0, 5.0));
-  EXPECT_TRUE(probation.passes(7, 104.0, 5.0));
-  EXPECT_TRUE(probation.passes(7, 109.0, 5.0));
-  EXPECT_FALSE(probation.passes(8, 110.0, 5.0)) << "another one";
-  EXPECT_FALSE(probation.passes(7, 111.0, 5.0));
-  EXPECT_FALSE(probation.passes(7, 117.0, 5.0)) << "too long ago";
+TEST(Confirmation, IsGivenByTheLandmarkThatWasMetJustBefore) {
+  Confirmation confirmation;
+  EXPECT_FALSE(confirmation.confirms(7, 100.0, 5.0));
+  EXPECT_TRUE(confirmation.confirms(7, 104.0, 5.0));
+  EXPECT_TRUE(confirmation.confirms(7, 109.0, 5.0));
+  EXPECT_FALSE(confirmation.confirms(8, 110.0, 5.0)) << "another one";
+  EXPECT_FALSE(confirmation.confirms(7, 111.0, 5.0));
+  EXPECT_FALSE(confirmation.confirms(7, 117.0, 5.0)) << "too long ago";
 }
 
 TEST(AmbiguousReturn, CallsOldWhatIsMatureAndLongUnseen) {

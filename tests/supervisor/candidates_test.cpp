@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "circuits.hpp"
+#include "helixnav/supervisor/named_navigator.hpp"
 #include "helixnav/association/innovation_problem.hpp"
 #include "helixnav/core/random.hpp"
 
@@ -34,11 +35,11 @@ void on_a_drive(double scale_of_odometry_noise, const Check& check) {
   scenario.told_noise = scenario.true_noise;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const core::Recording run = sim::simulate(scenario, seed);
-    Navigator navigator(run.start);
+    NamedNavigator navigator(run.start);
     drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
       core::Scan nothing_seen = scan;
       nothing_seen.observations.clear();
-      navigator.observe(nothing_seen, std::vector<std::int64_t>{});  // brings the filter to where the scan was taken
+      navigator.observe(nothing_seen, {});  // brings the filter to where the scan was taken
       if (i % 10 == 9) check(navigator.filter(), scan);
       navigator.observe(scan, run.labels[i]);
     });

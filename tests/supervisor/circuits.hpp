@@ -35,8 +35,9 @@ inline sim::Scenario wide_circuit() {
 }
 
 /// Feeds the recording; `on_scan(scan, index)` observes it.
-inline void drive(const core::Recording& run, Navigator& navigator,
-                  const std::function<void(const core::Scan&, std::size_t)>& on_scan) {
+template <class AnyNavigator>
+void drive(const core::Recording& run, AnyNavigator& navigator,
+           const std::function<void(const core::Scan&, std::size_t)>& on_scan) {
   std::size_t scans = 0;
   for (const core::Event& event : run.events) {
     if (const auto* odometry = std::get_if<core::Odometry>(&event)) navigator.move(*odometry);

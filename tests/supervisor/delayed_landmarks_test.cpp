@@ -12,6 +12,7 @@
 #include "circuits.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/odometry.hpp"
+#include "helixnav/supervisor/named_navigator.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -50,7 +51,7 @@ Entrances entrances(ObservationKind kind) {
   Entrances seen;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const core::Recording run = sim::simulate(wide_circuit(), seed);
-    Navigator navigator(run.start);
+    NamedNavigator navigator(run.start);
     bool first = true;
     drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
       if (i > 200) return;
@@ -96,7 +97,7 @@ TEST(DelayedLandmarks, SeenAsBearingsEnterInsideTheirEllipse) {
 
 TEST(DelayedLandmarks, WaitOnAStraightPathUntilATurnTellsTheMirrorImageFromTheLandmark) {
   const Eigen::Vector2d landmark_m(25.0, 15.0);
-  Navigator navigator(core::PoseGaussian{});
+  NamedNavigator navigator(core::PoseGaussian{});
   core::Pose2 truth;
   bool entered = false;
   for (int i = 0; i < 90; ++i) {

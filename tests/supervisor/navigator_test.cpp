@@ -10,65 +10,11 @@
 
 #include "circuits.hpp"
 #include "helixnav/core/chi2.hpp"
-#include "helixnav/core/errors.hpp"
-#include "helixnav/core/odometry.hpp"
 
 namespace helixnav::supervisor {
 namespace {
 
 using core::Outcome;
-
-/// The compressed EKF driven by whoever knows all names: nothing of the supervisor.
-cekf::CompressedEkf driven_by_hand(const core::Recording& run) {
-  cekf::CompressedEkf filter(run.start);
-  std::map<core::Label, core::LandmarkId> landmarks;
-  std::optional<core::Odometry> motion;
-  std::size_t scans = 0;
-  for (const core::Event& event : run.events) {
-    if (const auto* odometry = std::get_if<core::Odometry>(&event)) {
-      motion = motion ? core::chain(*motion, *odometry) : *odometry;
-      continue;
-    }
-    const auto& scan = std::get<core::Scan>(event);
-    if (motion) filter.predict(*motion);
-    motion.reset();
-    const std::vector<core::Label>& labels = run.labels[scans++];
-    std::vector<cekf::Match> matches;
-    std::vector<std::size_t> fresh;
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-      if (landmarks.count(labels[i]) > 0) {
-        matches.push_back({landmarks[labels[i]], scan.observations[i], scan.T_robot_sensor});
-      } else if (labels[i] != core::no_label) {
-        fresh.push_back(i);
-      }
-    }
-    if (!matches.empty()) filter.update(matches);
-    for (const std::size_t i : fresh) landmarks[labels[i]] = filter.augment(scan.observations[i], scan.T_robot_sensor);
-    filter.switch_region_if_due();
-  }
-  return filter;
-}
-
-TEST(Navigator, OfKnownAssociationIsTheCompressedEkfBitForBit) {
-  sim::Scenario scenario = wide_circuit();
-  scenario.scanner.clutter_per_scan = 0.5;  // without a name, so without effect
-  const core::Recording run = sim::simulate(scenario, 1);
-  Navigator navigator(run.start);
-  int switches = 0;
-  drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
-    switches += navigator.observe(scan, run.labels[i]).switched_region ? 1 : 0;
-  });
-  const cekf::CompressedEkf by_hand = driven_by_hand(run);
-  EXPECT_GE(switches, 5);
-  EXPECT_EQ(navigator.pose().mean.vector(), by_hand.pose().mean.vector());
-  EXPECT_EQ(navigator.pose().covariance, by_hand.pose().covariance);
-  ASSERT_EQ(navigator.filter().landmarks(), by_hand.landmarks());
-  for (const core::MapLandmark& landmark : navigator.map()) {
-    EXPECT_EQ(landmark.point.mean_m, by_hand.landmark(landmark.id).mean_m);
-    EXPECT_EQ(landmark.point.covariance_m2, by_hand.landmark(landmark.id).covariance_m2);
-    EXPECT_EQ(landmark.state, core::LandmarkState::mature);
-  }
-}
 
 /// Matches to a landmark that another label began, over one run.
 struct Association {
@@ -173,64 +119,6 @@ TEST(Navigator, KeepsNoTraceOfALandmarkThatDied) {
     EXPECT_EQ(with[i].observations, without[i].observations);
     EXPECT_EQ(with[i].state, without[i].state);
   }
-}
-
-/// One scan of one landmark ahead.
-core::Scan one_look(core::Nanoseconds t_ns) {
-  core::Scan scan;
-  scan.t_ns = t_ns;
-  scan.field_of_view.max_range_m = 30.0;
-  scan.observations = {core::make_range_bearing(10.0, 0.1, 0.1, 0.02)};
-  return scan;
-}
-
-core::Odometry one_metre(core::Nanoseconds t_ns) {
-  core::Odometry odometry;
-  odometry.t_ns = t_ns;
-  odometry.T_before_after = core::Pose2(1.0, 0.0, 0.02);
-  odometry.covariance = Eigen::Vector3d(1e-2, 1e-3, 1e-4).asDiagonal();
-  return odometry;
-}
-
-TEST(Navigator, RefusesAWrongNumberOfIdentitiesAndStaysAsItWas) {
-  Navigator navigator(core::PoseGaussian{});
-  navigator.move(one_metre(1));
-  navigator.observe(one_look(1), {4});
-  const core::PoseGaussian before = navigator.pose();
-  navigator.move(one_metre(2));  // pending motion waits for the next scan that is taken
-  const std::vector<std::int64_t> none;
-  const std::vector<std::int64_t> two{4, 5};
-  EXPECT_THROW(navigator.observe(one_look(2), none), core::PreconditionError);
-  EXPECT_THROW(navigator.observe(one_look(2), two), core::PreconditionError);
-  EXPECT_EQ(navigator.pose().mean.vector(), before.mean.vector());
-  EXPECT_EQ(navigator.pose().covariance, before.covariance);
-  EXPECT_EQ(navigator.filter().mapped_count(), 1);
-  EXPECT_EQ(navigator.map().front().observations, 1);
-}
-
-TEST(Navigator, LosesNoMotionToACallThatItRefused) {
-  Navigator refused(core::PoseGaussian{});
-  Navigator plain(core::PoseGaussian{});
-  for (Navigator* navigator : {&refused, &plain}) {
-    navigator->observe(one_look(0), {4});
-    navigator->move(one_metre(1));
-  }
-  EXPECT_THROW(refused.observe(one_look(1), std::vector<std::int64_t>{}), core::PreconditionError);
-  const core::StepReport a = refused.observe(one_look(1), {4});
-  const core::StepReport b = plain.observe(one_look(1), {4});
-  EXPECT_EQ(a.step, b.step);
-  EXPECT_EQ(a.pose.mean.vector(), b.pose.mean.vector());
-  EXPECT_EQ(a.pose.covariance, b.pose.covariance);
-}
-
-TEST(Navigator, TakesANewIdentityOnceAScan) {
-  Navigator navigator(core::PoseGaussian{});
-  core::Scan scan = one_look(0);
-  scan.observations.push_back(scan.observations.front());
-  const core::StepReport report = navigator.observe(scan, {4, 4});
-  EXPECT_EQ(report.associations[0].outcome, Outcome::augmented);
-  EXPECT_EQ(report.associations[1].outcome, Outcome::rejected);
-  EXPECT_EQ(navigator.filter().mapped_count(), 1);
 }
 
 TEST(Navigator, ReportsEveryObservationOnceAndInOrder) {

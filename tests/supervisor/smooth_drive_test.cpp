@@ -33,7 +33,7 @@ class ToldDrive {
   enum class Kept { first_name, second_name };
 
   ToldDrive(const core::Recording& run, bool strangers, Kept kept = Kept::first_name)
-      : run_(run), strangers_(strangers), kept_(kept), filter(run.start), log(run.start, 100000) {
+      : run_(run), strangers_(strangers), kept_(kept), filter(run.start), tape(100000) {
     for (const core::Event& event : run.events) {
       if (const auto* odometry = std::get_if<core::Odometry>(&event)) {
         motion_.push_back(*odometry);  // what follows the last scan leads nowhere
@@ -41,12 +41,19 @@ class ToldDrive {
       }
       predict();
       if (const auto* fix = std::get_if<core::AbsoluteFix>(&event)) {
-        log.fix(*fix, filter.update_position(*fix).nis);
+        tape.append(Tape::Fix{*fix, filter.update_position(*fix).nis, true});
       } else {
         see(std::get<core::Scan>(event), run.labels[scans_++]);
       }
     }
     if (strangers_) merge();
+  }
+
+  /// Solves the drive; the filter is the solved one when that was accepted.
+  Smoothing solve() {
+    Smoothing smoothing = smooth_drive(filter, run_.start, tape);
+    if (smoothing.solved) filter = *smoothing.solved;
+    return smoothing;
   }
 
   LandmarkId id_of(core::Label label) const { return first_.at(label); }
@@ -56,7 +63,7 @@ class ToldDrive {
   void predict() {
     for (const core::Odometry& odometry : motion_) {
       filter.predict(odometry);
-      log.predict(odometry);
+      tape.append(Tape::Motion{odometry, 0.0});
     }
     motion_.clear();
   }
@@ -90,7 +97,7 @@ class ToldDrive {
         named[labels[index]] = one.landmark;
       }
     }
-    log.observe(scan, report);
+    tape.append(Tape::Scan{scan, report.associations, report.joint_nis, 0, clutter});
     for (const LandmarkId id : clutter) filter.remove(id);
     filter.switch_region_if_due();
   }
@@ -108,7 +115,7 @@ class ToldDrive {
         first_[label] = pairs.back().first;
       }
     }
-    log.close(merged, filter.merge(pairs, 0.001).nis);
+    tape.append(Tape::Merge{merged, filter.merge(pairs, 0.001).nis});
   }
 
   const core::Recording& run_;
@@ -121,7 +128,7 @@ class ToldDrive {
 
  public:
   CompressedEkf filter;
-  DriveLog log;
+  Tape tape;
 };
 
 /// Least squares over the recording with its labels.
@@ -170,8 +177,8 @@ TEST(SmoothDrive, IsLeastSquaresOverTheDrive) {
     const core::Recording run = circuit(seed, 2.0);
     ToldDrive drive(run, false);
     const core::Pose2 before = drive.filter.pose().mean;
-    const Smoothing smoothing = smooth_drive(drive.filter, drive.log);
-    ASSERT_TRUE(smoothing.accepted) << smoothing.chi2 << " > " << smoothing.limit;
+    const Smoothing smoothing = drive.solve();
+    ASSERT_TRUE(smoothing.solved) << smoothing.chi2 << " > " << smoothing.limit;
     const Solved solved(run);
     expect_solved(drive, solved);
     EXPECT_NEAR(smoothing.chi2, solved.report.chi2.total(), 0.05);
@@ -182,7 +189,7 @@ TEST(SmoothDrive, IsLeastSquaresOverTheDrive) {
 TEST(SmoothDrive, CountsObservationsOfBothNamesForTheOneLandmark) {
   const core::Recording run = circuit(4);
   ToldDrive drive(run, true);
-  ASSERT_TRUE(smooth_drive(drive.filter, drive.log).accepted);
+  ASSERT_TRUE(drive.solve().solved);
   expect_solved(drive, Solved(run));
 }
 
@@ -190,7 +197,7 @@ TEST(SmoothDrive, CountsObservationsOfBothNamesForTheOneLandmark) {
 TEST(SmoothDrive, KeepsTheYoungerNameWhereTheClosingDid) {
   const core::Recording run = circuit(4);
   ToldDrive drive(run, true, ToldDrive::Kept::second_name);
-  ASSERT_TRUE(smooth_drive(drive.filter, drive.log).accepted);
+  ASSERT_TRUE(drive.solve().solved);
   expect_solved(drive, Solved(run));
 }
 
@@ -201,7 +208,7 @@ TEST(SmoothDrive, KeepsNamesAndDoesNotBringBackWhatIsLost) {
   drive.filter.remove(lost);
   std::vector<LandmarkId> before = drive.filter.landmarks();
   const LandmarkId next = drive.filter.next_name();
-  ASSERT_TRUE(smooth_drive(drive.filter, drive.log).accepted);
+  ASSERT_TRUE(drive.solve().solved);
   std::vector<LandmarkId> after = drive.filter.landmarks();
   std::sort(before.begin(), before.end());
   std::sort(after.begin(), after.end());
@@ -215,8 +222,8 @@ TEST(SmoothDrive, LosesNothingWithALandmarkThatIsLost) {
   ToldDrive drive(run, false);
   ToldDrive poorer(run, false);
   poorer.filter.remove(poorer.trees().begin()->second);
-  ASSERT_TRUE(smooth_drive(drive.filter, drive.log).accepted);
-  ASSERT_TRUE(smooth_drive(poorer.filter, poorer.log).accepted);
+  ASSERT_TRUE(drive.solve().solved);
+  ASSERT_TRUE(poorer.solve().solved);
   EXPECT_LT((drive.filter.pose().mean.vector() - poorer.filter.pose().mean.vector()).norm(), 1e-6);
   EXPECT_LT((drive.filter.pose().covariance - poorer.filter.pose().covariance).norm(),
             1e-6 * drive.filter.pose().covariance.norm());
@@ -228,9 +235,9 @@ TEST(SmoothDrive, EndsWhereTheVehicleIs) {
   core::Odometry motion = std::get<core::Odometry>(run.events[1]);
   ToldDrive drive(run, false);
   drive.filter.predict(motion);
-  drive.log.predict(motion);
+  drive.tape.append(Tape::Motion{motion, 0.0});
   const CompressedEkf before = drive.filter;
-  ASSERT_TRUE(smooth_drive(drive.filter, drive.log).accepted);
+  ASSERT_TRUE(drive.solve().solved);
   const double sigma_m = std::sqrt(before.pose().covariance.topLeftCorner<2, 2>().trace());
   EXPECT_LT((drive.filter.pose().mean.position_m() - before.pose().mean.position_m()).norm(), 0.2 * sigma_m);
   EXPECT_LT((drive.filter.pose().covariance - before.pose().covariance).norm(), 0.05 * before.pose().covariance.norm());
@@ -244,7 +251,7 @@ TEST(SmoothDrive, UsesFixes) {
   fix.antenna_robot_m = {0.0, 0.0};
   run.events.emplace_back(fix);
   ToldDrive drive(run, false);
-  ASSERT_TRUE(smooth_drive(drive.filter, drive.log).accepted);
+  ASSERT_TRUE(drive.solve().solved);
   expect_solved(drive, Solved(run));
 }
 
@@ -253,9 +260,9 @@ TEST(SmoothDrive, RefusesWhatCostsMoreThanTheFilter) {
   const core::Recording run = circuit(8);
   ToldDrive drive(run, false);
   const core::PoseGaussian before = drive.filter.pose();
-  drive.log.settle(drive.log.cost() - 100.0);
-  const Smoothing smoothing = smooth_drive(drive.filter, drive.log);
-  EXPECT_FALSE(smoothing.accepted);
+  drive.tape.append(Tape::Solved{drive_cost(drive.tape) - 100.0});
+  const Smoothing smoothing = drive.solve();
+  EXPECT_FALSE(smoothing.solved);
   EXPECT_GT(smoothing.chi2, smoothing.limit);
   EXPECT_EQ(drive.filter.pose().mean.vector(), before.mean.vector());
   EXPECT_EQ(drive.filter.pose().covariance, before.covariance);
@@ -266,60 +273,9 @@ TEST(SmoothDrive, CostsWhatTheInnovationsOfTheFilterCost) {
   for (const std::uint64_t seed : {11u, 12u, 13u}) {
     const core::Recording run = circuit(seed, 0.2);
     ToldDrive drive(run, false);
-    const Smoothing smoothing = smooth_drive(drive.filter, drive.log);
-    EXPECT_NEAR(smoothing.chi2, drive.log.cost(), 2.0);
+    const Smoothing smoothing = drive.solve();
+    EXPECT_NEAR(smoothing.chi2, drive_cost(drive.tape), 2.0);
   }
-}
-
-TEST(DriveLog, IsAsItWasWhenGoneBackTo) {
-  const core::Recording run = circuit(9);
-  const core::Scan& scan = std::get<core::Scan>(
-      *std::find_if(run.events.begin(), run.events.end(), [](const auto& e) { return e.index() == 1; }));
-  core::StepReport report;
-  report.joint_nis = 2.0;
-  DriveLog log(run.start, 1000);
-  const core::Odometry motion = std::get<core::Odometry>(run.events[1]);
-  for (int k = 0; k < 4; ++k) {
-    log.predict(motion);
-    log.observe(scan, report);
-    log.predict(motion);
-    log.fix({}, 1.0);
-  }
-  ASSERT_EQ(log.stops().size(), 8u);
-  log.predict(motion);  // lost with what is gone back over
-  log.back_to(2);
-  EXPECT_EQ(log.stops().size(), 5u);
-  EXPECT_FALSE(log.stops().back().fix);
-  EXPECT_DOUBLE_EQ(log.cost(), 3 * 2.0 + 2 * 1.0);
-  log.observe(scan, report);
-  EXPECT_FALSE(log.stops().back().motion);
-}
-
-TEST(DriveLog, ChainsMotionThatLeadsNowhere) {
-  const core::Recording run = circuit(9);
-  const core::Odometry motion = std::get<core::Odometry>(run.events[1]);
-  DriveLog log(run.start, 1000);
-  log.predict(motion);
-  log.predict(motion);  // no scan, and a fix that was refused, between the two
-  log.observe({}, {});
-  EXPECT_EQ(log.stops().front().motion->T_before_after.vector(),
-            core::compose(motion.T_before_after, motion.T_before_after).vector());
-}
-
-TEST(DriveLog, LetsGoBeyondItsLimitForGood) {
-  DriveLog log({}, 2);
-  for (int k = 0; k < 2; ++k) log.observe({}, {});
-  EXPECT_EQ(log.stops().size(), 2u);
-  for (int k = 0; k < 3; ++k) log.observe({}, {});
-  EXPECT_TRUE(log.empty());
-}
-
-TEST(DriveLog, KnowsWhatALandmarkIsNow) {
-  DriveLog log({}, 2);
-  log.close({{3, 7}}, 0.0);
-  log.close({{1, 3}}, 0.0);
-  EXPECT_EQ(log.present(7), 1);
-  EXPECT_EQ(log.present(5), 5);
 }
 
 /// The figure of eight as far as its second lobe, which is mapped with 10° of drift and met again.
@@ -346,7 +302,7 @@ double nees_at_end_of_figure_of_eight(std::uint64_t seed, bool smoothed) {
   const core::Recording run = figure_of_eight_to_the_second_lobe(seed);
   ToldDrive drive(run, false);
   if (smoothed) {
-    EXPECT_TRUE(smooth_drive(drive.filter, drive.log).accepted) << "seed " << seed;
+    EXPECT_TRUE(drive.solve().solved) << "seed " << seed;
   }
   return nees(drive.filter.pose(), run.true_poses.back().T_world_robot);
 }

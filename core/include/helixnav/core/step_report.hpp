@@ -2,10 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <utility>
 #include <vector>
 
+#include "helixnav/core/decision.hpp"
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/landmark_id.hpp"
 #include "helixnav/core/se2.hpp"
@@ -33,14 +32,6 @@ struct AssociationReport {
   double nis = 0.0;          ///< νᵀS⁻¹ν of the pair chosen; NaN when there was none
   int dof = 0;               ///< rows of ν; 0 when there was none
   double margin_nats = 0.0;  ///< cost of the best alternative minus cost of the choice; +inf when there was none
-};
-
-/// A decision worth a sentence: trigger, relocalisation, verification, closure, refusal, landmark death. `numbers` are
-/// named with units and kept in order; `verdict` is a word such as "accepted".
-struct Decision {
-  std::string kind;
-  std::string verdict;
-  std::vector<std::pair<std::string, double>> numbers;
 };
 
 /// Two landmarks that turned out to be one: `removed` is gone, and what was seen of it was `kept`.

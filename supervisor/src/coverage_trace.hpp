@@ -8,7 +8,7 @@
 namespace helixnav::supervisor {
 
 /// Where the sensor has been, every few metres, in the map frame as estimated then: what ground the drive has looked at.
-class Track {
+class CoverageTrace {
  public:
   /// Adds the sensor's pose when it is `spacing` beyond the last one.
   void pass(double path_m, const core::Pose2& T_world_sensor);

@@ -8,7 +8,7 @@
 #include "circuits.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/sim/world.hpp"
-#include "missing_spawn.hpp"
+#include "integrity_monitor.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -29,7 +29,7 @@ association::LandmarkLife book_of(int n, double driven_m) {
 }
 
 /// Looks for them in so many scans, a metre apart.
-void look(MissingSpawn& doubts, association::LandmarkLife& life, int scans, const Ids& expected, const Ids& matched) {
+void look(IntegrityMonitor& doubts, association::LandmarkLife& life, int scans, const Ids& expected, const Ids& matched) {
   for (int i = 0; i < scans; ++i) {
     doubts.observe(life, expected, matched, old_after_m);
     life.drive(1.0);
@@ -44,39 +44,39 @@ void spawn(association::LandmarkLife& life, core::LandmarkId first, int n) {
   for (int look = 1; look <= 5; ++look) life.observe({100.0 + look, 0.0}, born, {}, {});
 }
 
-TEST(MissingSpawn, CountsEachLandmarkOnceHoweverOftenItIsLookedFor) {
+TEST(IntegrityMonitor, CountsEachLandmarkOnceHoweverOftenItIsLookedFor) {
   association::LandmarkLife life = book_of(5, 100.0);
-  MissingSpawn doubts;
+  IntegrityMonitor doubts;
   look(doubts, life, 2, {0, 1}, {});
   EXPECT_EQ(doubts.evidence(life, {}).missing, 0);
   look(doubts, life, 50, {0, 1, 2}, {2});
-  const MissingSpawn::Evidence evidence = doubts.evidence(life, {});
+  const IntegrityMonitor::Evidence evidence = doubts.evidence(life, {});
   EXPECT_EQ(evidence.missing, 2);
   EXPECT_EQ(evidence.seen, 1);
   EXPECT_DOUBLE_EQ(evidence.nats, 2 * 1.1 - 1.95);
 }
 
-TEST(MissingSpawn, IsLostWhereFourAreMissingAndTwoSpawn) {
+TEST(IntegrityMonitor, IsLostWhereFourAreMissingAndTwoSpawn) {
   association::LandmarkLife life = book_of(5, 100.0);
-  MissingSpawn doubts;
+  IntegrityMonitor doubts;
   look(doubts, life, 3, {0, 1, 2, 3}, {});
   EXPECT_FALSE(doubts.is_lost(life, {})) << "nothing is seen: the sensor may be covered";
   spawn(life, 10, 2);
   EXPECT_TRUE(doubts.is_lost(life, {}));
 }
 
-TEST(MissingSpawn, AFelledThirdIsNoReasonToDoubt) {
+TEST(IntegrityMonitor, AFelledThirdIsNoReasonToDoubt) {
   association::LandmarkLife life = book_of(9, 100.0);
-  MissingSpawn doubts;
+  IntegrityMonitor doubts;
   for (const core::LandmarkId standing : {0, 1, 2, 3, 4, 5}) look(doubts, life, 4, {standing, 6, 7, 8}, {standing});
   spawn(life, 10, 3);
   EXPECT_EQ(doubts.evidence(life, {}).missing, 3);
   EXPECT_FALSE(doubts.is_lost(life, {}));
 }
 
-TEST(MissingSpawn, TwoAtOnceTwiceVouchForThePose) {
+TEST(IntegrityMonitor, TwoAtOnceTwiceVouchForThePose) {
   association::LandmarkLife life = book_of(6, 100.0);
-  MissingSpawn doubts;
+  IntegrityMonitor doubts;
   EXPECT_TRUE(doubts.is_clear());
   look(doubts, life, 3, {0, 1, 2, 3}, {});
   EXPECT_FALSE(doubts.is_clear());
@@ -90,19 +90,19 @@ TEST(MissingSpawn, TwoAtOnceTwiceVouchForThePose) {
   EXPECT_FALSE(doubts.is_clear()) << "one alone vouches for nothing";
 }
 
-TEST(MissingSpawn, AClosingVouchesWithTheLandmarksThatItRecognised) {
+TEST(IntegrityMonitor, AClosingVouchesWithTheLandmarksThatItRecognised) {
   association::LandmarkLife life = book_of(9, 100.0);
   const Ids recognised{0, 1, 2, 3, 4};
   spawn(life, 10, 2);
   life.observe({110.0, 0.0}, recognised, {}, {});  // as merging enters them
-  const auto drive_on = [&](MissingSpawn doubts) {
+  const auto drive_on = [&](IntegrityMonitor doubts) {
     association::LandmarkLife book = life;
     EXPECT_TRUE(doubts.is_clear());
     look(doubts, book, 3, {0, 1, 5, 6, 7, 8}, {0, 1});
     return doubts;
   };
-  EXPECT_TRUE(drive_on(MissingSpawn()).is_lost(life, {})) << "those that were felled are all that it knows of";
-  MissingSpawn closed;
+  EXPECT_TRUE(drive_on(IntegrityMonitor()).is_lost(life, {})) << "those that were felled are all that it knows of";
+  IntegrityMonitor closed;
   closed.close(life.path_m(), recognised);
   EXPECT_FALSE(drive_on(closed).is_lost(life, {}));
   EXPECT_TRUE(drive_on(closed).is_clear());
@@ -113,9 +113,9 @@ TEST(MissingSpawn, AClosingVouchesWithTheLandmarksThatItRecognised) {
   EXPECT_TRUE(closed.is_lost(book, {})) << "and it may be wrong";
 }
 
-TEST(MissingSpawn, WhatWasSeenLatelyTellsNothingOfAReturn) {
+TEST(IntegrityMonitor, WhatWasSeenLatelyTellsNothingOfAReturn) {
   association::LandmarkLife life = book_of(4, 30.0);
-  MissingSpawn doubts;
+  IntegrityMonitor doubts;
   look(doubts, life, 10, {0, 1, 2, 3}, {});
   EXPECT_EQ(doubts.evidence(life, {}).missing, 0);
   EXPECT_TRUE(doubts.is_clear());
@@ -141,7 +141,7 @@ End end_of(std::uint64_t seed, bool missing_spawn) {
   drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
     const core::StepReport report = navigator.observe(scan);
     EXPECT_EQ(report.step, static_cast<std::int64_t>(i));
-    for (const core::Decision& d : report.decisions) end.rewound += d.kind == "trigger" && d.verdict == "rewound";
+    for (const core::Decision& d : report.decisions) end.rewound += std::holds_alternative<core::RollbackDecision>(d);
     const auto note = [&](const std::vector<core::AssociationReport>& associations) {
       for (const auto& a : associations) {
         if (a.outcome == core::Outcome::augmented) end.born.push_back(a.landmark);

@@ -5,12 +5,12 @@
 
 namespace helixnav::supervisor {
 
-/// An old landmark that is met alone is believed when it is met a second time: clutter does not stand twice in the same
-/// place. Test: supervisor/ambiguous_return_test.cpp, campaigns in docs/adr/0009-doubt.md.
-class Probation {
+/// Two-hit confirmation: an old landmark that is met alone is matched when it is met a second time, because clutter does not
+/// stand twice in the same place. Test: supervisor/ambiguous_return_test.cpp, campaigns in docs/adr/0009-doubt.md.
+class Confirmation {
  public:
   /// Meets the landmark, `path_m` along the drive. True when it was the last one met, at most `reach_m` before.
-  bool passes(core::LandmarkId landmark, double path_m, double reach_m) {
+  bool confirms(core::LandmarkId landmark, double path_m, double reach_m) {
     const bool again = landmark == landmark_ && path_m - path_m_ <= reach_m;
     landmark_ = landmark;
     path_m_ = path_m;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "missing_spawn.hpp"
+#include "integrity_monitor.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -16,7 +16,7 @@ std::vector<core::LandmarkId> united(std::vector<core::LandmarkId> a, const std:
 
 }  // namespace
 
-void MissingSpawn::observe(const association::LandmarkLife& life, const std::vector<core::LandmarkId>& expected,
+void IntegrityMonitor::observe(const association::LandmarkLife& life, const std::vector<core::LandmarkId>& expected,
                            const std::vector<core::LandmarkId>& matched, double old_after_m) {
   const double path_m = life.path_m();
   int looks = 0;
@@ -43,13 +43,13 @@ void MissingSpawn::observe(const association::LandmarkLife& life, const std::vec
   }
 }
 
-void MissingSpawn::close(double path_m, const std::vector<core::LandmarkId>& recognised) {
-  *this = MissingSpawn();
+void IntegrityMonitor::close(double path_m, const std::vector<core::LandmarkId>& recognised) {
+  *this = IntegrityMonitor();
   clear_path_m_ = path_m;
   for (const core::LandmarkId id : recognised) returned_[id].last_look_path_m = path_m;
 }
 
-MissingSpawn::Returned* MissingSpawn::find_returned(const association::LandmarkLife& life, core::LandmarkId id,
+IntegrityMonitor::Returned* IntegrityMonitor::find_returned(const association::LandmarkLife& life, core::LandmarkId id,
                                                     double old_after_m) {
   const auto known = returned_.find(id);
   if (known != returned_.end()) return &known->second;
@@ -58,7 +58,7 @@ MissingSpawn::Returned* MissingSpawn::find_returned(const association::LandmarkL
   return old && record.state == core::LandmarkState::mature ? &returned_[id] : nullptr;
 }
 
-MissingSpawn::Evidence MissingSpawn::evidence(const association::LandmarkLife& life,
+IntegrityMonitor::Evidence IntegrityMonitor::evidence(const association::LandmarkLife& life,
                                               const MissingSpawnLimits& limits) const {
   Evidence evidence;
   for (const auto& [id, one] : returned_) {
@@ -76,7 +76,7 @@ MissingSpawn::Evidence MissingSpawn::evidence(const association::LandmarkLife& l
   return evidence;
 }
 
-bool MissingSpawn::is_lost(const association::LandmarkLife& life, const MissingSpawnLimits& limits) const {
+bool IntegrityMonitor::is_lost(const association::LandmarkLife& life, const MissingSpawnLimits& limits) const {
   if (limits.missing_nats * static_cast<double>(returned_.size()) < limits.nats) return false;
   const Evidence found = evidence(life, limits);
   return found.nats >= limits.nats && found.spawned >= limits.spawned;

@@ -16,8 +16,8 @@ namespace helixnav::supervisor {
 /// The pose is vouched for where two scans in a row match two returned landmarks each (clutter may do it once), and all
 /// counts begin anew there.
 /// Cost of a scan: O(expected + landmarks returned to lately). Source: PROTOTYPE §7.
-/// Test: supervisor/missing_spawn_test.cpp.
-class MissingSpawn {
+/// Test: supervisor/integrity_monitor_test.cpp.
+class IntegrityMonitor {
  public:
   /// What speaks for a wrong pose since it was last vouched for.
   struct Evidence {

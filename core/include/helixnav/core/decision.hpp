@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "helixnav/core/landmark_id.hpp"
+#include "helixnav/core/se2.hpp"
+
+namespace helixnav::core {
+
+/// A search begins: an old landmark came into view that cannot be told apart from others scan by scan. The figures are those
+/// of the return with the most expected confusers (supervisor/revisit_ambiguity).
+struct TriggerDecision {
+  LandmarkId landmark = no_landmark;
+  double expected_confusers = 0.0;
+  int neighbours = 0;      ///< other old landmarks that the observation may be
+  double gate_area = 0.0;  ///< in the units of the observation
+  double pose_sigma_m = 0.0;
+  double heading_sigma_deg = 0.0;
+  int old_in_gate = 0;
+};
+
+/// A search begins from before: old landmarks were missing where new ones spawned, and the drive is gone through again
+/// from the trusted checkpoint.
+struct RollbackDecision {
+  int missing = 0;    ///< landmarks returned to, looked for and not seen
+  int seen = 0;       ///< landmarks returned to and mostly seen
+  int spawned = 0;    ///< landmarks matured since the checkpoint
+  double nats = 0.0;  ///< log-likelihood ratio of "pose wrong" against "pose right"
+  int scans = 0;      ///< gone through again
+};
+
+/// An attempt of a search began: particles drawn on helices around old landmarks.
+struct AttemptStarted {
+  int attempt = 0;
+  int reference_landmarks = 0;
+  int helix_pairs = 0;
+  double log_evidence = 0.0;
+};
+
+/// An attempt of a search ended without a closing.
+struct AttemptEnded {
+  enum class Reason {
+    timed_out,     ///< no single mode in time
+    nothing_here,  ///< "all of it is new" explains the scans better
+    abandoned,     ///< driven too far without passing the constellation test
+    outdone,       ///< another pose explains the constellation better than the particles'
+  };
+  Reason reason = Reason::timed_out;
+  int attempt = 0;
+  int scans = 0;
+  double log_evidence = 0.0;
+  double largest_mode = 0.0;  ///< its share of the particles' weight
+  double driven_m = 0.0;
+};
+
+/// An attempt could not begin: the old landmarks' joint covariance gives no reference map.
+struct ReferenceUnusable {
+  int attempt = 0;
+  int reference_landmarks = 0;
+};
+
+/// The constellation test of a pose: new landmarks against old ones.
+struct VerificationDecision {
+  enum class Verdict { accepted, too_few_matches, ratio_too_low, rival_too_good };
+  Verdict verdict = Verdict::too_few_matches;
+  int matched = 0;
+  int unmatched_branch = 0;
+  int unmatched_old = 0;
+  double ratio = 0.0;
+  int rival_matched = 0;
+  double rival_ratio = 0.0;
+  double rival_share = 0.0;  ///< of the winner's ratio
+  int rivals_tried = 0;
+  bool adopted = false;  ///< the winner is not the particle filter's hypothesis
+  Pose2 T_world_winner;
+  Pose2 T_world_rival;
+};
+
+/// The map was closed by pairs of landmarks, or was not because the cost was too high.
+struct ClosureDecision {
+  bool accepted = false;
+  int pairs = 0;
+  int dropped = 0;  ///< pairs that the cost did not let pass
+  int merged = 0;
+  double cost = 0.0;  ///< J, χ² with dof
+  int dof = 0;
+  double limit = 0.0;
+  double driven_m = 0.0;  ///< since the search began
+  double moved_m = 0.0;   ///< by how much the closing moved the pose
+};
+
+/// A search was given up: mapping goes on, the question stays open.
+struct UndecidedDecision {
+  double driven_m = 0.0;  ///< since the search began
+};
+
+/// The whole drive was solved by least squares after a closing.
+struct SmoothingDecision {
+  bool accepted = false;
+  double chi2 = 0.0;
+  double limit = 0.0;
+  int poses = 0;
+  int iterations = 0;
+  double moved_m = 0.0;
+};
+
+/// An absolute fix passed its gate or did not.
+struct FixDecision {
+  bool accepted = false;
+  double nis = 0.0;
+  double gate = 0.0;
+  Eigen::Vector2d position_world_m = Eigen::Vector2d::Zero();
+  double pose_sigma_m = 0.0;  ///< after it
+};
+
+/// A row of decisions.csv of a kind that this version does not know: listed as it stands.
+struct OtherDecision {
+  std::string kind;
+  std::string verdict;
+  std::vector<std::pair<std::string, double>> numbers;
+};
+
+/// A decision of the navigator that is worth a sentence, with the numbers that decided it.
+using Decision =
+    std::variant<TriggerDecision, RollbackDecision, AttemptStarted, AttemptEnded, ReferenceUnusable, VerificationDecision,
+                 ClosureDecision, UndecidedDecision, SmoothingDecision, FixDecision, OtherDecision>;
+
+/// True for what ends a question: a closing accepted or refused, or a search given up.
+inline bool is_closure(const Decision& decision) {
+  return std::holds_alternative<ClosureDecision>(decision) || std::holds_alternative<UndecidedDecision>(decision);
+}
+
+/// True for what begins a search.
+inline bool is_trigger(const Decision& decision) {
+  return std::holds_alternative<TriggerDecision>(decision) || std::holds_alternative<RollbackDecision>(decision);
+}
+
+}  // namespace helixnav::core

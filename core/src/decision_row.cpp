@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/core/decision_row.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <type_traits>
+
+namespace helixnav::core {
+namespace {
+
+// numbers(decision, visit): every number of a decision with its name, in the order of the row.
+
+template <class Visit>
+void numbers(TriggerDecision& d, Visit&& visit) {
+  visit("landmark", d.landmark);
+  visit("expected_confusers", d.expected_confusers);
+  visit("neighbours", d.neighbours);
+  visit("gate_area", d.gate_area);
+  visit("pose_sigma_m", d.pose_sigma_m);
+  visit("heading_sigma_deg", d.heading_sigma_deg);
+  visit("old_in_gate", d.old_in_gate);
+}
+
+template <class Visit>
+void numbers(RollbackDecision& d, Visit&& visit) {
+  visit("missing", d.missing);
+  visit("seen", d.seen);
+  visit("spawned", d.spawned);
+  visit("nats", d.nats);
+  visit("scans", d.scans);
+}
+
+template <class Visit>
+void numbers(AttemptStarted& d, Visit&& visit) {
+  visit("attempt", d.attempt);
+  visit("reference_landmarks", d.reference_landmarks);
+  visit("helix_pairs", d.helix_pairs);
+  visit("log_evidence", d.log_evidence);
+}
+
+template <class Visit>
+void numbers(AttemptEnded& d, Visit&& visit) {
+  visit("attempt", d.attempt);
+  visit("scans", d.scans);
+  visit("log_evidence", d.log_evidence);
+  visit("largest_mode", d.largest_mode);
+  visit("driven_m", d.driven_m);
+}
+
+template <class Visit>
+void numbers(ReferenceUnusable& d, Visit&& visit) {
+  visit("attempt", d.attempt);
+  visit("reference_landmarks", d.reference_landmarks);
+}
+
+template <class Visit>
+void numbers(VerificationDecision& d, Visit&& visit) {
+  visit("matched", d.matched);
+  visit("unmatched_branch", d.unmatched_branch);
+  visit("unmatched_old", d.unmatched_old);
+  visit("ratio", d.ratio);
+  visit("rival_matched", d.rival_matched);
+  visit("rival_ratio", d.rival_ratio);
+  visit("rival_share", d.rival_share);
+  visit("rivals_tried", d.rivals_tried);
+  visit("adopted", d.adopted);
+  visit("x_m", d.T_world_winner.x_m);
+  visit("y_m", d.T_world_winner.y_m);
+  visit("heading_rad", d.T_world_winner.heading_rad);
+  visit("rival_x_m", d.T_world_rival.x_m);
+  visit("rival_y_m", d.T_world_rival.y_m);
+  visit("rival_heading_rad", d.T_world_rival.heading_rad);
+}
+
+template <class Visit>
+void numbers(ClosureDecision& d, Visit&& visit) {
+  visit("pairs", d.pairs);
+  visit("dropped", d.dropped);
+  visit("merged", d.merged);
+  visit("cost", d.cost);
+  visit("dof", d.dof);
+  visit("limit", d.limit);
+  visit("driven_m", d.driven_m);
+  visit("moved_m", d.moved_m);
+}
+
+template <class Visit>
+void numbers(UndecidedDecision& d, Visit&& visit) {
+  visit("driven_m", d.driven_m);
+}
+
+template <class Visit>
+void numbers(SmoothingDecision& d, Visit&& visit) {
+  visit("chi2", d.chi2);
+  visit("limit", d.limit);
+  visit("poses", d.poses);
+  visit("iterations", d.iterations);
+  visit("moved_m", d.moved_m);
+}
+
+template <class Visit>
+void numbers(FixDecision& d, Visit&& visit) {
+  visit("nis", d.nis);
+  visit("gate", d.gate);
+  visit("x_m", d.position_world_m.x());
+  visit("y_m", d.position_world_m.y());
+  visit("pose_sigma_m", d.pose_sigma_m);
+}
+
+constexpr const char* reason_words[] = {"timed-out", "nothing-here", "abandoned", "outdone"};
+constexpr const char* verification_words[] = {"accepted", "too-few-matches", "ratio-too-low", "rival-too-good"};
+
+/// Index of the word; −1 when it is none of them.
+template <std::size_t n>
+int index_in(const char* const (&words)[n], std::string_view word) {
+  const auto found = std::find(words, words + n, word);
+  return found == words + n ? -1 : static_cast<int>(found - words);
+}
+
+const char* word_of(bool accepted) { return accepted ? "accepted" : "refused"; }
+
+struct KindAndVerdict {
+  const char* kind;
+  const char* verdict;
+};
+
+KindAndVerdict words_of(const TriggerDecision&) { return {"trigger", "started"}; }
+KindAndVerdict words_of(const RollbackDecision&) { return {"trigger", "rewound"}; }
+KindAndVerdict words_of(const AttemptStarted&) { return {"search", "started"}; }
+KindAndVerdict words_of(const AttemptEnded& d) { return {"search", reason_words[static_cast<int>(d.reason)]}; }
+KindAndVerdict words_of(const ReferenceUnusable&) { return {"search", "reference-unusable"}; }
+KindAndVerdict words_of(const VerificationDecision& d) {
+  return {"constellation", verification_words[static_cast<int>(d.verdict)]};
+}
+KindAndVerdict words_of(const ClosureDecision& d) { return {"closure", word_of(d.accepted)}; }
+KindAndVerdict words_of(const UndecidedDecision&) { return {"closure", "undecided"}; }
+KindAndVerdict words_of(const SmoothingDecision& d) { return {"smoothing", word_of(d.accepted)}; }
+KindAndVerdict words_of(const FixDecision& d) { return {"fix", word_of(d.accepted)}; }
+
+/// Names that rows of earlier versions have.
+std::string_view former_name(std::string_view name) {
+  return name == "expected_confusers" ? std::string_view("foreign_objects") : name;
+}
+
+const double* find_number(const DecisionRow& row, std::string_view name) {
+  const auto has = [&](std::string_view wanted) {
+    return std::find_if(row.numbers.begin(), row.numbers.end(), [&](const auto& one) { return one.first == wanted; });
+  };
+  auto found = has(name);
+  if (found == row.numbers.end()) found = has(former_name(name));
+  return found == row.numbers.end() ? nullptr : &found->second;
+}
+
+template <class Typed>
+Decision fill(Typed decision, const DecisionRow& row) {
+  numbers(decision, [&](const char* name, auto& number) {
+    if (const double* value = find_number(row, name)) number = static_cast<std::decay_t<decltype(number)>>(*value);
+  });
+  return decision;
+}
+
+template <class Typed>
+Decision fill(Typed decision, bool accepted, const DecisionRow& row) {
+  decision.accepted = accepted;
+  return fill(decision, row);
+}
+
+Decision search_decision(const DecisionRow& row) {
+  if (row.verdict == "started") return fill(AttemptStarted{}, row);
+  if (row.verdict == "reference-unusable") return fill(ReferenceUnusable{}, row);
+  const int reason = index_in(reason_words, row.verdict);
+  if (reason < 0) return OtherDecision{row.kind, row.verdict, row.numbers};
+  AttemptEnded ended;
+  ended.reason = static_cast<AttemptEnded::Reason>(reason);
+  return fill(ended, row);
+}
+
+}  // namespace
+
+DecisionRow row_of(const Decision& decision) {
+  return std::visit(
+      [](auto typed) {
+        if constexpr (std::is_same_v<decltype(typed), OtherDecision>) {
+          return DecisionRow{typed.kind, typed.verdict, typed.numbers};
+        } else {
+          const KindAndVerdict words = words_of(typed);
+          DecisionRow row{words.kind, words.verdict, {}};
+          numbers(typed, [&](const char* name, auto& number) {
+            row.numbers.emplace_back(name, static_cast<double>(number));
+          });
+          return row;
+        }
+      },
+      decision);
+}
+
+Decision decision_of(const DecisionRow& row) {
+  const bool accepted = row.verdict == "accepted";
+  const bool judged = accepted || row.verdict == "refused";
+  if (row.kind == "trigger" && row.verdict == "started") return fill(TriggerDecision{}, row);
+  if (row.kind == "trigger" && row.verdict == "rewound") return fill(RollbackDecision{}, row);
+  if (row.kind == "search") return search_decision(row);
+  if (row.kind == "closure" && row.verdict == "undecided") return fill(UndecidedDecision{}, row);
+  if (row.kind == "closure" && judged) return fill(ClosureDecision{}, accepted, row);
+  if (row.kind == "smoothing" && judged) return fill(SmoothingDecision{}, accepted, row);
+  if (row.kind == "fix" && judged) return fill(FixDecision{}, accepted, row);
+  const int verdict = row.kind == "constellation" ? index_in(verification_words, row.verdict) : -1;
+  if (verdict < 0) return OtherDecision{row.kind, row.verdict, row.numbers};
+  VerificationDecision verification;
+  verification.verdict = static_cast<VerificationDecision::Verdict>(verdict);
+  return fill(verification, row);
+}
+
+}  // namespace helixnav::core

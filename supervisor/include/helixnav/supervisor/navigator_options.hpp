@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "helixnav/association/associate.hpp"
+#include "helixnav/association/landmark_life.hpp"
+#include "helixnav/cekf/filter_options.hpp"
+#include "helixnav/supervisor/delayed_landmarks.hpp"
+#include "helixnav/supervisor/search_options.hpp"
+
+namespace helixnav::supervisor {
+
+/// What a Navigator and a NamedNavigator may be asked to do otherwise; the latter reads filter, delayed and
+/// fix_probability only.
+struct NavigatorOptions {
+  cekf::FilterOptions filter;
+  association::Method method = association::Method::likelihood_ratio;
+  association::Options association;
+  association::Gates gates;
+  association::LifeOptions life;
+  SearchOptions search;
+  DelayedOptions delayed;            ///< of landmarks known by name and seen as a range or a bearing only
+  double fix_probability = 0.999;    ///< χ² gate of an absolute fix
+  double extraneous_per_scan = 1.0;  ///< observations of no mapped landmark: clutter and new ones together
+  double candidate_sigmas = 4.0;     ///< how far the search for candidates reaches
+  double view_margin_m = 2.0;        ///< so far inside the field of view a landmark is expected to be seen
+};
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gated_scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "association_report.hpp"
+#include "helixnav/association/associate.hpp"
+#include "helixnav/core/angle.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+const AmbiguousReturn* find_return(const std::vector<AmbiguousReturn>& returns, core::LandmarkId landmark) {
+  const auto found = std::find_if(returns.begin(), returns.end(),
+                                  [&](const AmbiguousReturn& one) { return one.landmark == landmark; });
+  return found == returns.end() ? nullptr : &*found;
+}
+
+void defer_isolated_match(const std::vector<AmbiguousReturn>& returns, const SearchOptions& options, double path_m,
+                          Confirmation& confirmation, std::vector<core::AssociationReport>& reports) {
+  core::AssociationReport* isolated = nullptr;
+  for (core::AssociationReport& report : reports) {
+    if (report.outcome != core::Outcome::matched || find_return(returns, report.landmark) == nullptr) continue;
+    if (isolated != nullptr) return;
+    isolated = &report;
+  }
+  if (isolated == nullptr) return;
+  const AmbiguousReturn& met = *find_return(returns, isolated->landmark);
+  const bool ambiguous = met.foreign_objects > options.hold_objects;
+  const bool telling = met.widening > options.probation_widening;
+  const bool met_again = confirmation.confirms(isolated->landmark, path_m, options.probation_m);
+  if (ambiguous || (telling && !met_again)) isolated->outcome = core::Outcome::ambiguous;
+}
+
+}  // namespace
+
+std::optional<core::TriggerDecision> find_trigger(const GatedScan& scan, const core::PoseGaussian& pose,
+                                                  const SearchOptions& options) {
+  const AmbiguousReturn* worst = most_ambiguous(scan.returns);
+  if (worst == nullptr || worst->foreign_objects <= options.foreign_objects) return std::nullopt;
+  core::TriggerDecision trigger;
+  trigger.landmark = worst->landmark;
+  trigger.expected_confusers = worst->foreign_objects;
+  trigger.neighbours = worst->neighbours;
+  trigger.gate_area = worst->gate_area;
+  trigger.pose_sigma_m = std::sqrt(pose.covariance.topLeftCorner<2, 2>().trace());
+  trigger.heading_sigma_deg = std::sqrt(pose.covariance(2, 2)) * 180.0 / core::pi;
+  trigger.old_in_gate = static_cast<int>(scan.returns.size());
+  return trigger;
+}
+
+std::vector<core::AssociationReport> associate_scan(const core::Scan& scan, const GatedScan& gated,
+                                                    const NavigatorOptions& options, double path_m,
+                                                    Confirmation& confirmation) {
+  association::Options how = options.association;
+  if (std::isfinite(scan.field_of_view.max_range_m)) {
+    how.extraneous = association::uniform_density(scan.field_of_view, options.extraneous_per_scan);
+  }
+  std::vector<core::AssociationReport> reports =
+      association_reports(association::associate(options.method, gated.gating->problem, how));
+  defer_isolated_match(gated.returns, options.search, path_m, confirmation, reports);
+  return reports;
+}
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "helixnav/cekf/match.hpp"
+#include "helixnav/core/events.hpp"
+#include "helixnav/core/step_report.hpp"
+
+namespace helixnav::supervisor {
+
+/// What came in and what became of it, in order. Replaying a search, rolling back and solving the drive all read this.
+/// Memory: about 200 bytes a scan and 200 an observation used, over the whole drive while its scans and fixes are at most
+/// `most_stops`; beyond, or when that is let go, only what a checkpoint may still ask for. Scans are kept with all their
+/// observations since the last checkpoint and with those that were used before it. Test: supervisor/tape_test.cpp.
+class Tape {
+ public:
+  /// Motion as one prediction of the filter, with the length of road it covers.
+  struct Motion {
+    core::Odometry odometry;
+    double driven_m = 0.0;
+  };
+  struct Fix {
+    core::AbsoluteFix fix;
+    double nis = 0.0;
+    bool accepted = false;
+  };
+  struct Scan {
+    core::Scan scan;
+    std::vector<core::AssociationReport> fate;  ///< of its observations
+    double nis = 0.0;                           ///< νᵀS⁻¹ν of the joint update
+    int dof = 0;
+    std::vector<core::LandmarkId> died;  ///< removed after it
+  };
+  /// A closing made landmarks one; what that cost (J).
+  struct Merge {
+    std::vector<core::MergedLandmarks> merged;
+    double cost = 0.0;
+  };
+  /// The drive was solved as a whole: this is what all measurements before cost now.
+  struct Solved {
+    double cost = 0.0;
+  };
+  using Entry = std::variant<Motion, Fix, Scan, Merge, Solved>;
+
+  /// Counts entries from the begin of the drive.
+  using Position = std::size_t;
+
+  explicit Tape(int most_stops) : most_stops_(most_stops) {}
+
+  void append(Entry entry);
+  Position end() const { return forgotten_ + entries_.size(); }
+
+  /// Takes off everything from `position` on and returns it.
+  std::vector<Entry> cut(Position position);
+
+  /// Nobody will go back behind `position` any more: unused observations before it are dropped, and all entries when the
+  /// drive is not kept. Amortised O(1) an entry.
+  void settle(Position position);
+
+  /// From now on only what is needed since the last checkpoint is kept; no solving of the drive any more.
+  void let_go_of_drive() { most_stops_ = 0; }
+  bool holds_drive() const { return stops_ <= most_stops_ && stops_ > 0; }
+
+  /// Calls read(entry) for every entry from `position` on.
+  template <class Read>
+  void read_from(Position position, Read&& read) const {
+    const Position first = position > forgotten_ ? position - forgotten_ : 0;
+    for (Position i = first; i < entries_.size(); ++i) read(entries_[i]);
+  }
+
+ private:
+  std::vector<Entry> entries_;
+  Position forgotten_ = 0;
+  Position settled_ = 0;
+  int most_stops_;
+  int stops_ = 0;  ///< scans and fixes used since the begin of the drive
+};
+
+/// Observations that a scan's update and augmentation used: the matched ones, then those that began landmarks.
+std::vector<cekf::Match> used_observations(const Tape::Scan& scan);
+
+/// νᵀS⁻¹ν of all scans from `position` on.
+cekf::UpdateResult innovation_cost(const Tape& tape, Tape::Position position);
+
+/// What all measurements and closings of the drive cost: for a linear filter the least that any drive and map can have.
+double drive_cost(const Tape& tape);
+
+/// Which landmark every landmark merged by a closing is now.
+std::map<core::LandmarkId, core::LandmarkId> merged_into(const Tape& tape);
+
+/// A place where something may have been observed, and how the vehicle came there from the one before.
+struct Stop {
+  std::optional<core::Odometry> motion;
+  std::vector<cekf::Match> seen;  ///< used observations
+  std::optional<core::AbsoluteFix> fix;
+};
+
+/// The scans and accepted fixes of the drive, motion chained in between.
+std::vector<Stop> stops_of(const Tape& tape);
+/// Motion since the last stop.
+std::optional<core::Odometry> motion_after_stops(const Tape& tape);
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A call that throws leaves everything as before it: broken by failing allocations at many places of scans of every kind.
+#include <cstdlib>
+#include <limits>
+#include <new>
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "circuits.hpp"
+#include "helixnav/supervisor/named_navigator.hpp"
+
+namespace {
+
+thread_local long allocations_left = std::numeric_limits<long>::max();
+
+void* allocate(std::size_t bytes) {
+  if (allocations_left != std::numeric_limits<long>::max() && --allocations_left < 0) throw std::bad_alloc();
+  void* memory = std::malloc(bytes == 0 ? 1 : bytes);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) { return allocate(bytes); }
+void* operator new[](std::size_t bytes) { return allocate(bytes); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace helixnav::supervisor {
+namespace {
+
+/// Calls with the allocation of that number failing; true when the call threw.
+template <class Call>
+bool fails_at(long allocation, const Call& call) {
+  allocations_left = allocation;
+  try {
+    call();
+    allocations_left = std::numeric_limits<long>::max();
+    return false;
+  } catch (const std::bad_alloc&) {
+    allocations_left = std::numeric_limits<long>::max();
+    return true;
+  }
+}
+
+template <class Call>
+long allocations_of(const Call& call) {
+  constexpr long many = 1'000'000'000;
+  allocations_left = many;
+  call();
+  return many - std::exchange(allocations_left, std::numeric_limits<long>::max());
+}
+
+void expect_same_map(const std::vector<core::MapLandmark>& a, const std::vector<core::MapLandmark>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].id, b[i].id);
+    EXPECT_EQ(a[i].state, b[i].state);
+    EXPECT_EQ(a[i].observations, b[i].observations);
+    EXPECT_LT((a[i].point.mean_m - b[i].point.mean_m).norm(), 1e-12);
+    EXPECT_LT((a[i].point.covariance_m2 - b[i].point.covariance_m2).norm(), 1e-9 * b[i].point.covariance_m2.norm());
+  }
+}
+
+void expect_same_report(const core::StepReport& a, const core::StepReport& b) {
+  EXPECT_EQ(a.step, b.step);
+  EXPECT_LT((a.pose.mean.vector() - b.pose.mean.vector()).norm(), 1e-12);
+  EXPECT_LT((a.pose.covariance - b.pose.covariance).norm(), 1e-9 * b.pose.covariance.norm());
+  EXPECT_EQ(a.mapped_landmarks, b.mapped_landmarks);
+  EXPECT_EQ(a.mode, b.mode);
+  EXPECT_EQ(a.decisions.size(), b.decisions.size());
+  ASSERT_EQ(a.associations.size(), b.associations.size());
+  for (std::size_t i = 0; i < a.associations.size(); ++i) {
+    EXPECT_EQ(a.associations[i].outcome, b.associations[i].outcome);
+    EXPECT_EQ(a.associations[i].landmark, b.associations[i].landmark);
+  }
+}
+
+NavigatorOptions single_threaded(std::uint64_t seed) {
+  NavigatorOptions options;
+  options.search.relocalizer.threads = 1;
+  options.search.seed = seed;
+  return options;
+}
+
+/// What a scan did that is worth breaking.
+enum class Kind { mapping, trigger, searching, closing, rollback };
+
+Kind kind_of(const core::StepReport& report) {
+  for (const core::Decision& decision : report.decisions) {
+    const auto* closure = std::get_if<core::ClosureDecision>(&decision);
+    if (closure != nullptr && closure->accepted) return Kind::closing;
+    if (std::holds_alternative<core::RollbackDecision>(decision)) return Kind::rollback;
+    if (std::holds_alternative<core::TriggerDecision>(decision)) return Kind::trigger;
+  }
+  return report.mode == core::Mode::searching ? Kind::searching : Kind::mapping;
+}
+
+/// Drives twice; the second time scans of each kind are broken at `places` allocations each, spread over all of the scan's,
+/// and then go on as in the first drive. Returns the kinds that were broken.
+std::set<Kind> break_drive(const core::Recording& run, const NavigatorOptions& options, int places) {
+  std::vector<core::StepReport> reports;
+  Navigator first(run.start, options);
+  drive(run, first, [&](const core::Scan& scan, std::size_t) { reports.push_back(first.observe(scan)); });
+  std::set<Kind> broken;
+  Navigator second(run.start, options);
+  drive(run, second, [&](const core::Scan& scan, std::size_t i) {
+    const Kind kind = kind_of(reports[i]);
+    const bool worth_breaking = i > 120 && (kind != Kind::mapping || i % 60 == 0) && broken.count(kind) == 0;
+    if (!worth_breaking) {
+      expect_same_report(second.observe(scan), reports[i]);
+      return;
+    }
+    broken.insert(kind);
+    const core::PoseGaussian before = second.pose();
+    const std::vector<core::MapLandmark> map_before = second.map();
+    long spread = 0;
+    {
+      Navigator counted(run.start, options);  // a throw-away navigator has driven as far: its scan allocates as much
+      std::size_t scans = 0;
+      for (const core::Event& event : run.events) {
+        if (std::holds_alternative<core::Scan>(event) && scans++ == i) break;
+        counted.take(event);
+      }
+      spread = allocations_of([&] { counted.observe(scan); });
+    }
+    for (int k = 0; k < places; ++k) {
+      const long at = k * spread / places + (k % 3);
+      if (!fails_at(at, [&] { second.observe(scan); })) {
+        ADD_FAILURE() << "allocation " << at << " of " << spread << " did not fail";
+        return;
+      }
+      EXPECT_EQ(second.pose().mean.vector(), before.mean.vector()) << "allocation " << at << " of " << spread;
+      EXPECT_EQ(second.pose().covariance, before.covariance);
+      expect_same_map(second.map(), map_before);
+    }
+    expect_same_report(second.observe(scan), reports[i]);
+  });
+  return broken;
+}
+
+TEST(Guarantee, AScanThatThrowsLeavesTheNavigatorAsItWasWhereverItBreaks) {
+  const core::Recording run = sim::simulate(sim::named_scenario("large-loop-changed"), 3);
+  const std::set<Kind> broken = break_drive(run, single_threaded(3), 12);
+  for (const Kind kind : {Kind::mapping, Kind::trigger, Kind::searching, Kind::closing}) {
+    EXPECT_EQ(broken.count(kind), 1u) << static_cast<int>(kind);
+  }
+}
+
+TEST(Guarantee, HoldsInARollBack) {
+  const core::Recording run = sim::simulate(sim::named_scenario("sparse"), 1786);
+  EXPECT_EQ(break_drive(run, single_threaded(1786), 6).count(Kind::rollback), 1u);
+}
+
+TEST(Guarantee, HoldsForFixes) {
+  const core::Recording run = sim::simulate(wide_circuit(), 3);
+  Navigator navigator(run.start);
+  drive(run, navigator, [&](const core::Scan& scan, std::size_t) { navigator.observe(scan); });
+  const core::PoseGaussian before = navigator.pose();
+  core::Odometry motion = core::Odometry{};
+  motion.T_before_after = core::Pose2(1.0, 0.0, 0.1);
+  motion.covariance = 0.01 * Eigen::Matrix3d::Identity();
+  navigator.move(motion);
+  core::AbsoluteFix fix;
+  fix.position_world_m = before.mean.position_m();
+  long at = 0;
+  while (fails_at(at, [&] { navigator.fix(fix); })) {
+    EXPECT_EQ(navigator.pose().mean.vector(), before.mean.vector());
+    ++at;
+  }
+  EXPECT_GT(at, 0);
+  EXPECT_GT((navigator.pose().mean.vector() - before.mean.vector()).norm(), 0.01) << "the motion was not lost";
+}
+
+TEST(Guarantee, HoldsForObservationsKnownByName) {
+  const core::Recording run = sim::simulate(wide_circuit(), 5);
+  NamedNavigator twin(run.start);
+  NamedNavigator navigator(run.start);
+  int broken = 0;
+  std::size_t scans = 0;
+  for (const core::Event& event : run.events) {
+    const auto* scan = std::get_if<core::Scan>(&event);
+    if (scan == nullptr) {
+      twin.take(event, {});
+      navigator.take(event, {});
+      continue;
+    }
+    const std::vector<core::Label>& labels = run.labels[scans];
+    const std::vector<core::MapLandmark> before = navigator.map();
+    for (long at = 0; scans % 37 == 11 && at < 60; at += 1 + at / 5) {
+      if (!fails_at(at, [&] { navigator.observe(*scan, labels); })) {
+        ADD_FAILURE() << "allocation " << at << " did not fail";
+        return;
+      }
+      expect_same_map(navigator.map(), before);
+      ++broken;
+      if (navigator.map().size() != before.size()) return;
+    }
+    expect_same_report(navigator.observe(*scan, labels), twin.observe(*scan, labels));
+    ++scans;
+  }
+  EXPECT_GT(broken, 50);
+  expect_same_map(navigator.map(), twin.map());
+}
+
+}  // namespace
+}  // namespace helixnav::supervisor
