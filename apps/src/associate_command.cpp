@@ -12,9 +12,9 @@
 #include <CLI/CLI.hpp>
 
 #include "association_trial.hpp"
+#include "chosen_navigator.hpp"
 #include "commands.hpp"
 #include "config_file.hpp"
-#include "chosen_navigator.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/nearest_name.hpp"
 #include "helixnav/logs/read_recording.hpp"

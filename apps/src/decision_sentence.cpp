@@ -84,9 +84,10 @@ std::string verdict_of(core::VerificationDecision::Verdict verdict) {
 std::string sentence(const core::VerificationDecision& d) {
   return verdict_of(d.verdict) + ": at (" + short_number(d.T_world_winner.x_m) + ", " +
          short_number(d.T_world_winner.y_m) + ") m, heading " + degrees(d.T_world_winner.heading_rad) + ", " +
-         counted(d.matched, "new landmark") + " on old ones; unmatched on ground that both drives looked at: " +
-         short_number(d.unmatched_branch) + " new and " + short_number(d.unmatched_old) + " old; ratio " +
-         short_number(d.ratio) + ". " + rival_sentence(d);
+         counted(d.matched, "new landmark") +
+         " on old ones; unmatched on ground that both drives looked at: " + short_number(d.unmatched_branch) +
+         " new and " + short_number(d.unmatched_old) + " old; ratio " + short_number(d.ratio) + ". " +
+         rival_sentence(d);
 }
 
 std::string sentence(const core::UndecidedDecision& d) {
@@ -104,8 +105,7 @@ std::string refusal(const core::ClosureDecision& d, const std::string& cost, con
 std::string sentence(const core::ClosureDecision& d) {
   const std::string cost = "the cost " + short_number(d.cost) + " of " + counted(d.pairs, "pair");
   const std::string dropped = counted(d.dropped, "pair") + " dropped";
-  const std::string limit =
-      short_number(d.limit) + ", the limit for " + short_number(d.dof) + " degrees of freedom";
+  const std::string limit = short_number(d.limit) + ", the limit for " + short_number(d.dof) + " degrees of freedom";
   if (!d.accepted) return refusal(d, cost, limit, dropped);
   const std::string moved =
       "The pose moved by " + short_number(d.moved_m) + " m, " + short_number(d.driven_m) + " m after the trigger.";

@@ -133,7 +133,9 @@ std::string explain_closure(const logs::RunFolder& run, std::size_t closure) {
   for (auto it = first; it != last + 1; ++it) text += line_of(*it);
   text += merges_of(*last->step);
   const auto next = last + 1;
-  return next != decided.end() && std::holds_alternative<core::SmoothingDecision>(*next->decision) ? text + line_of(*next) : text;
+  return next != decided.end() && std::holds_alternative<core::SmoothingDecision>(*next->decision)
+             ? text + line_of(*next)
+             : text;
 }
 
 std::string explain_step(const logs::RunFolder& run, std::int64_t step) {

@@ -185,9 +185,8 @@ DecisionRow row_of(const Decision& decision) {
         } else {
           const KindAndVerdict words = words_of(typed);
           DecisionRow row{words.kind, words.verdict, {}};
-          numbers(typed, [&](const char* name, auto& number) {
-            row.numbers.emplace_back(name, static_cast<double>(number));
-          });
+          numbers(typed,
+                  [&](const char* name, auto& number) { row.numbers.emplace_back(name, static_cast<double>(number)); });
           return row;
         }
       },

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/chi2.hpp"
+#include "helixnav/core/decision_row.hpp"
 #include "report_closures.hpp"
 #include "run_words.hpp"
 #include "stride_for.hpp"

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "closing.hpp"
+#include "coverage_trace.hpp"
 #include "helixnav/association/landmark_life.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "replay_branch.hpp"
 #include "search.hpp"
-#include "coverage_trace.hpp"
 
 namespace helixnav::supervisor {
 

@@ -25,9 +25,8 @@ std::vector<LandmarkId> expected_unseen(const cekf::CompressedEkf& filter, const
 void drop_what_may_be_elsewhere(const association::LandmarkLife& existence, const Search* open, double old_after_m,
                                 const std::vector<LandmarkId>& seen, std::vector<LandmarkId>& expected) {
   const double old_before_m = existence.path_m() - old_after_m;
-  const auto recognised = std::count_if(seen.begin(), seen.end(), [&](LandmarkId id) {
-    return existence.record(id).born_path_m < old_before_m;
-  });
+  const auto recognised = std::count_if(seen.begin(), seen.end(),
+                                        [&](LandmarkId id) { return existence.record(id).born_path_m < old_before_m; });
   constexpr int enough = 2;
   const auto may_be_elsewhere = [&](LandmarkId id) {
     if (open != nullptr && open->excludes(id)) return true;

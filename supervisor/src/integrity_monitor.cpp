@@ -17,7 +17,7 @@ std::vector<core::LandmarkId> united(std::vector<core::LandmarkId> a, const std:
 }  // namespace
 
 void IntegrityMonitor::observe(const association::LandmarkLife& life, const std::vector<core::LandmarkId>& expected,
-                           const std::vector<core::LandmarkId>& matched, double old_after_m) {
+                               const std::vector<core::LandmarkId>& matched, double old_after_m) {
   const double path_m = life.path_m();
   int looks = 0;
   int hits = 0;
@@ -50,7 +50,7 @@ void IntegrityMonitor::close(double path_m, const std::vector<core::LandmarkId>&
 }
 
 IntegrityMonitor::Returned* IntegrityMonitor::find_returned(const association::LandmarkLife& life, core::LandmarkId id,
-                                                    double old_after_m) {
+                                                            double old_after_m) {
   const auto known = returned_.find(id);
   if (known != returned_.end()) return &known->second;
   const association::LandmarkRecord& record = life.record(id);
@@ -59,7 +59,7 @@ IntegrityMonitor::Returned* IntegrityMonitor::find_returned(const association::L
 }
 
 IntegrityMonitor::Evidence IntegrityMonitor::evidence(const association::LandmarkLife& life,
-                                              const MissingSpawnLimits& limits) const {
+                                                      const MissingSpawnLimits& limits) const {
   Evidence evidence;
   for (const auto& [id, one] : returned_) {
     if (one.looks < limits.looks) continue;

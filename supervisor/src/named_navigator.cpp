@@ -19,9 +19,7 @@ using core::Outcome;
 using core::StepReport;
 
 NamedNavigator::NamedNavigator(const core::PoseGaussian& start, const NavigatorOptions& options)
-    : options_(options),
-      filter_(start, options.filter),
-      delayed_(options.delayed) {}
+    : options_(options), filter_(start, options.filter), delayed_(options.delayed) {}
 
 /// The strong guarantee: the call takes effect as a whole, or what was before is made again from the checkpoint.
 template <class Call>

@@ -52,8 +52,7 @@ StepReport NavigationLoop::step(const Scan& scan) {
     begin_search();
     gated = gate(scan);
   }
-  report.associations =
-      associate_scan(scan, gated, options_, belief_.existence.path_m(), belief_.confirmation);
+  report.associations = associate_scan(scan, gated, options_, belief_.existence.path_m(), belief_.confirmation);
   update(scan, report);
   augment(scan, report);
   std::vector<LandmarkId> died = update_existence(scan, report);
@@ -92,8 +91,7 @@ GatedScan NavigationLoop::gate(const Scan& scan) const {
   GatedScan gated{std::make_unique<Gating>(belief_.filter, ids, scan, options_.gates), {}};
   if (options_.search.enabled && open == nullptr) {
     const std::vector<LandmarkId> old = old_landmarks(belief_.existence, options_.search.old_after_m);
-    gated.returns =
-        returns_in_gate(belief_.filter, gated.gating->problem, scan, old, options_.search.foreign_per_scan);
+    gated.returns = returns_in_gate(belief_.filter, gated.gating->problem, scan, old, options_.search.foreign_per_scan);
   }
   return gated;
 }
@@ -127,11 +125,10 @@ std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const
     mapping->monitor.observe(belief_.existence, expected, seen, options_.search.old_after_m);
   }
   const Searching* open = searching();
-  drop_what_may_be_elsewhere(belief_.existence, open != nullptr ? &open->search : nullptr,
-                             options_.search.old_after_m, seen, expected);
+  drop_what_may_be_elsewhere(belief_.existence, open != nullptr ? &open->search : nullptr, options_.search.old_after_m,
+                             seen, expected);
   const core::Pose2 T_world_sensor = core::compose(belief_.filter.pose().mean, scan.T_robot_sensor);
-  const association::LifeChanges changes =
-      belief_.existence.observe(T_world_sensor.position_m(), seen, born, expected);
+  const association::LifeChanges changes = belief_.existence.observe(T_world_sensor.position_m(), seen, born, expected);
   for (const LandmarkId id : changes.died) belief_.filter.remove(id);
   belief_.coverage.pass(belief_.existence.path_m(), T_world_sensor);
   return changes.died;
@@ -151,9 +148,7 @@ StepReport NavigationLoop::finish(const Scan& scan, StepReport report) {
   return report;
 }
 
-bool NavigationLoop::is_monitored() const {
-  return options_.search.enabled && options_.search.missing_spawn.enabled;
-}
+bool NavigationLoop::is_monitored() const { return options_.search.enabled && options_.search.missing_spawn.enabled; }
 
 /// The belief after this scan becomes the checkpoint to come back to when nothing speaks against it: not more often than
 /// every ten scans, but after every switch of the region, so that the phase closed by it is let go.

@@ -42,7 +42,7 @@ class NavigationLoop {
     Tape::Position tape_end;
     std::uint64_t searches;
     std::optional<Mode> mode;
-    std::optional<cekf::CompressedEkf> filter;             ///< before the drive was solved
+    std::optional<cekf::CompressedEkf> filter;            ///< before the drive was solved
     std::optional<std::vector<Tape::Entry>> rolled_back;  ///< taken off the tape
   };
 

@@ -31,9 +31,7 @@ void NavigationLoop::recover() {
   searches_ = undo.searches;
   const Checkpoint from = checkpoint();
   std::vector<Tape::Entry> since = tape_.cut(from.position);
-  if (undo.rolled_back) {
-    since = std::move(*undo.rolled_back);
-  }
+  if (undo.rolled_back) since = std::move(*undo.rolled_back);
   since.resize(undo.tape_end - from.position);
   roll_back(from, belief_);
   if (Searching* open = searching()) {
@@ -42,6 +40,7 @@ void NavigationLoop::recover() {
     Mapping& mapping = std::get<Mapping>(mode_);
     mapping.monitor = mapping.monitor_when_trusted;
   }
+  pending_ = {};
   for (const Tape::Entry& entry : since) {
     if (const auto* motion = std::get_if<Tape::Motion>(&entry)) {
       pending_.motion = motion->odometry;

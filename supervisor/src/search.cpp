@@ -128,8 +128,8 @@ void Search::start(const SearchView& view, std::vector<core::Decision>& decision
       pf_relocalize::Relocalizer(std::move(map), view.scan, options_.relocalizer, seed), a, b, path_m, path_m, {}, 0});
   has_just_started_ = true;
   decisions.emplace_back(core::AttemptStarted{starts_, static_cast<int>(joint.ids.size()),
-                                           static_cast<int>(attempt_->relocalizer.helix_pairs()),
-                                           attempt_->relocalizer.state().log_evidence});
+                                              static_cast<int>(attempt_->relocalizer.helix_pairs()),
+                                              attempt_->relocalizer.state().log_evidence});
 }
 
 std::optional<std::vector<ConstellationPair>> Search::question(const SearchView& view,
@@ -164,7 +164,7 @@ std::optional<std::vector<ConstellationPair>> Search::question(const SearchView&
 void Search::end_attempt(Reason reason, double path_m, std::vector<core::Decision>& decisions) {
   const pf_relocalize::CloudState& state = attempt_->relocalizer.state();
   decisions.emplace_back(core::AttemptEnded{reason, starts_, state.scans, state.log_evidence, state.modes.front().mass,
-                                         path_m - attempt_->begun_path_m});
+                                            path_m - attempt_->begun_path_m});
   refuse(path_m);
 }
 

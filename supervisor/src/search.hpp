@@ -5,13 +5,13 @@
 #include <optional>
 #include <vector>
 
+#include "coverage_trace.hpp"
 #include "helixnav/association/landmark_life.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/pf_relocalize/relocalizer.hpp"
 #include "helixnav/supervisor/search_options.hpp"
-#include "coverage_trace.hpp"
 
 namespace helixnav::supervisor {
 

@@ -84,7 +84,8 @@ void NavigationLoop::end_search(const Closing* closing) {
 }
 
 void NavigationLoop::solve_drive(StepReport& report) {
-  if (options_.search.closing == ClosingMethod::restart) tape_.let_go_of_drive();  // it has no say in what was restarted
+  if (options_.search.closing == ClosingMethod::restart)
+    tape_.let_go_of_drive();  // it has no say in what was restarted
   if (!tape_.holds_drive()) return;
   const core::Pose2 before = belief_.filter.pose().mean;
   Smoothing smoothing = smooth_drive(belief_.filter, start_, tape_);

@@ -12,8 +12,8 @@ namespace helixnav::supervisor {
 /// What solving the drive as a whole came to.
 struct Smoothing {
   std::optional<cekf::CompressedEkf> solved;  ///< nothing when not accepted
-  double chi2 = 0.0;   ///< least squares' cost at its solution
-  double limit = 0.0;  ///< what it must not exceed
+  double chi2 = 0.0;                          ///< least squares' cost at its solution
+  double limit = 0.0;                         ///< what it must not exceed
   int poses = 0;
   int iterations = 0;
 };

@@ -37,12 +37,12 @@ class Explain : public ::testing::Test {
     constexpr double alone = std::numeric_limits<double>::infinity();
     if (step.step == 1) {
       step.decisions.push_back(core::decision_of({"trigger",
-                                "started",
-                                {{"landmark", 7},
-                                 {"foreign_objects", 2.345},
-                                 {"neighbours", 1},
-                                 {"pose_sigma_m", 9.5},
-                                 {"heading_sigma_deg", 3.25}}}));
+                                                  "started",
+                                                  {{"landmark", 7},
+                                                   {"foreign_objects", 2.345},
+                                                   {"neighbours", 1},
+                                                   {"pose_sigma_m", 9.5},
+                                                   {"heading_sigma_deg", 3.25}}}));
       step.associations = {{0, core::Outcome::matched, 3, 1.5, 2, 4.25},
                            {1, core::Outcome::augmented, 12, none, 0, alone},
                            {2, core::Outcome::rejected, 5, 8.0, 2, 1.0},
@@ -50,34 +50,38 @@ class Explain : public ::testing::Test {
                            {4, core::Outcome::ambiguous, core::no_landmark, none, 0, alone}};
     }
     if (step.step == 0) {
-      step.decisions.push_back(core::decision_of({"trigger", "rewound", {{"missing", 5}, {"seen", 0}, {"spawned", 2}, {"nats", 5.5}, {"scans", 31}}}));
+      step.decisions.push_back(core::decision_of(
+          {"trigger", "rewound", {{"missing", 5}, {"seen", 0}, {"spawned", 2}, {"nats", 5.5}, {"scans", 31}}}));
     }
-    if (step.step == 2) step.decisions.push_back(core::decision_of({"search", "started", {{"attempt", 1}, {"helix_pairs", 15}}}));
+    if (step.step == 2)
+      step.decisions.push_back(core::decision_of({"search", "started", {{"attempt", 1}, {"helix_pairs", 15}}}));
     if (step.step == 3) step.decisions.push_back(constellation("rival-too-good"));
     if (step.step == 4) {
       step.decisions.push_back(core::decision_of({"closure",
-                                "refused",
-                                {{"pairs", 6},
-                                 {"dropped", 1},
-                                 {"cost", 45.5},
-                                 {"dof", 12},
-                                 {"limit", 32.9},
-                                 {"driven_m", 20},
-                                 {"moved_m", 0}}}));
-      step.decisions.push_back(core::decision_of({"smoothing", "refused", {{"chi2", 4000.0}, {"limit", 3170.25}, {"poses", 1}, {"iterations", 200}}}));
+                                                  "refused",
+                                                  {{"pairs", 6},
+                                                   {"dropped", 1},
+                                                   {"cost", 45.5},
+                                                   {"dof", 12},
+                                                   {"limit", 32.9},
+                                                   {"driven_m", 20},
+                                                   {"moved_m", 0}}}));
+      step.decisions.push_back(core::decision_of(
+          {"smoothing", "refused", {{"chi2", 4000.0}, {"limit", 3170.25}, {"poses", 1}, {"iterations", 200}}}));
     }
     if (step.step == 5) {
       step.decisions.push_back(constellation("accepted"));
       step.decisions.push_back(core::decision_of({"closure",
-                                "accepted",
-                                {{"pairs", 6},
-                                 {"dropped", 0},
-                                 {"cost", 11.5},
-                                 {"dof", 12},
-                                 {"limit", 32.9},
-                                 {"driven_m", 27},
-                                 {"moved_m", 8.25}}}));
-      step.decisions.push_back(core::decision_of({"smoothing",
+                                                  "accepted",
+                                                  {{"pairs", 6},
+                                                   {"dropped", 0},
+                                                   {"cost", 11.5},
+                                                   {"dof", 12},
+                                                   {"limit", 32.9},
+                                                   {"driven_m", 27},
+                                                   {"moved_m", 8.25}}}));
+      step.decisions.push_back(core::decision_of(
+          {"smoothing",
            "accepted",
            {{"chi2", 3145.75}, {"limit", 3170.25}, {"poses", 350}, {"iterations", 4}, {"moved_m", 0.25}}}));
       step.merged = {{7, 12}, {8, 13}};
@@ -86,21 +90,21 @@ class Explain : public ::testing::Test {
 
   static Decision constellation(const std::string& verdict) {
     return core::decision_of({"constellation",
-            verdict,
-            {{"matched", 8},
-             {"unmatched_branch", 2},
-             {"unmatched_old", 1},
-             {"ratio", 0.84},
-             {"rival_matched", 7},
-             {"rival_ratio", 0.8},
-             {"rival_share", 0.952},
-             {"rivals_tried", 25},
-             {"x_m", 1.0},
-             {"y_m", 2.0},
-             {"heading_rad", 0.5},
-             {"rival_x_m", 4.0},
-             {"rival_y_m", 6.0},
-             {"rival_heading_rad", 0.5}}});
+                              verdict,
+                              {{"matched", 8},
+                               {"unmatched_branch", 2},
+                               {"unmatched_old", 1},
+                               {"ratio", 0.84},
+                               {"rival_matched", 7},
+                               {"rival_ratio", 0.8},
+                               {"rival_share", 0.952},
+                               {"rivals_tried", 25},
+                               {"x_m", 1.0},
+                               {"y_m", 2.0},
+                               {"heading_rad", 0.5},
+                               {"rival_x_m", 4.0},
+                               {"rival_y_m", 6.0},
+                               {"rival_heading_rad", 0.5}}});
   }
 
   std::string path() const { return folder_.path() / "run"; }

@@ -48,7 +48,8 @@ inline core::StepReport example_step(std::int64_t k) {
   step.mapped_landmarks = static_cast<int>(k / 10);
   step.switched_region = k % 100 == 3;
   if (k % 40 == 11) {
-    step.decisions.push_back(core::decision_of({"trigger", "raised", {{"sigma_m", 0.1 + 0.2}, {"foreign_expected", 1.0 / 3.0}}}));
+    step.decisions.push_back(
+        core::decision_of({"trigger", "raised", {{"sigma_m", 0.1 + 0.2}, {"foreign_expected", 1.0 / 3.0}}}));
     step.decisions.push_back(core::decision_of({"closure", k % 80 == 11 ? "accepted" : "refused", {}}));
   }
   if (k % 80 == 11) step.merged = {{4, 17}, {5, 18 + static_cast<int>(k)}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "helixnav/core/decision_row.hpp"
 #include "helixnav/sim/referee.hpp"
+#include "helixnav/core/decision_row.hpp"
 
 #include <cmath>
 #include <map>

@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "circuits.hpp"
-#include "helixnav/supervisor/named_navigator.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/random.hpp"
+#include "helixnav/supervisor/named_navigator.hpp"
 
 namespace helixnav::supervisor {
 namespace {

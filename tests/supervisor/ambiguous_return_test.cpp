@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 #include <Eigen/LU>
 
+#include "confirmation.hpp"
 #include "gating.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/random.hpp"
-#include "confirmation.hpp"
 
 namespace helixnav::supervisor {
 namespace {

@@ -10,9 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "circuits.hpp"
-#include "helixnav/supervisor/named_navigator.hpp"
 #include "helixnav/association/innovation_problem.hpp"
 #include "helixnav/core/random.hpp"
+#include "helixnav/supervisor/named_navigator.hpp"
 
 namespace helixnav::supervisor {
 namespace {

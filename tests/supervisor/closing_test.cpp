@@ -10,8 +10,8 @@
 
 #include "circuits.hpp"
 #include "close_by_merge.hpp"
-#include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/chi2.hpp"
+#include "helixnav/core/decision_row.hpp"
 #include "helixnav/sim/world.hpp"
 #include "judged_drive.hpp"
 

@@ -29,7 +29,8 @@ association::LandmarkLife book_of(int n, double driven_m) {
 }
 
 /// Looks for them in so many scans, a metre apart.
-void look(IntegrityMonitor& doubts, association::LandmarkLife& life, int scans, const Ids& expected, const Ids& matched) {
+void look(IntegrityMonitor& doubts, association::LandmarkLife& life, int scans, const Ids& expected,
+          const Ids& matched) {
   for (int i = 0; i < scans; ++i) {
     doubts.observe(life, expected, matched, old_after_m);
     life.drive(1.0);

@@ -138,7 +138,8 @@ class TwoLaps {
       ids[sights[static_cast<std::size_t>(a.observation)].tree] = a.landmark;
     }
     twin_.emplace_back(sights);
-    if (writing != nullptr) writing->append(Tape::Scan{scan, report.associations, report.joint_nis, report.joint_dof, {}});
+    if (writing != nullptr)
+      writing->append(Tape::Scan{scan, report.associations, report.joint_nis, report.joint_dof, {}});
     filter.switch_region_if_due();
   }
 

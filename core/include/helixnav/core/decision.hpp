@@ -125,9 +125,9 @@ struct OtherDecision {
 };
 
 /// A decision of the navigator that is worth a sentence, with the numbers that decided it.
-using Decision =
-    std::variant<TriggerDecision, RollbackDecision, AttemptStarted, AttemptEnded, ReferenceUnusable, VerificationDecision,
-                 ClosureDecision, UndecidedDecision, SmoothingDecision, FixDecision, OtherDecision>;
+using Decision = std::variant<TriggerDecision, RollbackDecision, AttemptStarted, AttemptEnded, ReferenceUnusable,
+                              VerificationDecision, ClosureDecision, UndecidedDecision, SmoothingDecision, FixDecision,
+                              OtherDecision>;
 
 /// True for what ends a question: a closing accepted or refused, or a search given up.
 inline bool is_closure(const Decision& decision) {
