@@ -9,10 +9,32 @@ namespace {
 
 using Index = Eigen::Index;
 
-// Unaligned vectors of two, four and eight doubles; the compiler lowers them to what the function's target has.
-using Vector2 = double __attribute__((vector_size(16), aligned(8), may_alias));
-using Vector4 = double __attribute__((vector_size(32), aligned(8), may_alias));
-using Vector8 = double __attribute__((vector_size(64), aligned(8), may_alias));
+/// So many doubles in a vector, which the compiler lowers to what the function's target has. Written out: GCC drops the
+/// attribute where its argument depends on a template's.
+template <int lanes>
+struct Vector;
+template <>
+struct Vector<2> {
+  using Register = double __attribute__((vector_size(16)));
+};
+template <>
+struct Vector<4> {
+  using Register = double __attribute__((vector_size(32)));
+};
+template <>
+struct Vector<8> {
+  using Register = double __attribute__((vector_size(64)));
+};
+template <int lanes>
+using Register = typename Vector<lanes>::Register;
+
+/// The same where it lies in a matrix, aligned to one double only. A class, because an attribute of a vector type is lost
+/// where the type passes through a template: clang then moves it as if it were aligned to its size, and faults.
+template <int lanes>
+struct __attribute__((packed, aligned(8), may_alias)) Memory {
+  Register<lanes> vector;
+};
+static_assert(sizeof(Memory<8>) == 8 * sizeof(double) && alignof(Memory<8>) == alignof(double));
 
 struct Operands {
   double* C;
@@ -26,22 +48,22 @@ struct Operands {
 
 /// One tile of Blocks·lanes rows × Cols columns, kept in registers through the whole depth. The loops over the tile are
 /// unrolled by order: at -O2, the flags of most packages, GCC would leave them, and the sums in memory, six times slower.
-template <class Vector, int Blocks, int Cols>
+template <int lanes, int Blocks, int Cols>
 __attribute__((always_inline)) inline void tile(const Operands& o, Index i, Index j) {
-  constexpr Index lanes = sizeof(Vector) / sizeof(double);
-  Vector sum[Cols][Blocks];
+  Register<lanes> sum[Cols][Blocks];
   double* const c = o.C + i + j * o.stride_C;
 #pragma GCC unroll 8
   for (int q = 0; q < Cols; ++q) {
 #pragma GCC unroll 8
-    for (int b = 0; b < Blocks; ++b) sum[q][b] = *reinterpret_cast<const Vector*>(c + q * o.stride_C + b * lanes);
+    for (int b = 0; b < Blocks; ++b)
+      sum[q][b] = reinterpret_cast<const Memory<lanes>*>(c + q * o.stride_C + b * lanes)->vector;
   }
   const double* a = o.A + i;
   const double* bt = o.B + j;
   for (Index k = 0; k < o.depth; ++k, a += o.stride_A, bt += o.stride_B) {
-    Vector left[Blocks];
+    Register<lanes> left[Blocks];
 #pragma GCC unroll 8
-    for (int b = 0; b < Blocks; ++b) left[b] = *reinterpret_cast<const Vector*>(a + b * lanes);
+    for (int b = 0; b < Blocks; ++b) left[b] = reinterpret_cast<const Memory<lanes>*>(a + b * lanes)->vector;
 #pragma GCC unroll 8
     for (int q = 0; q < Cols; ++q) {
       const double right = bt[q];
@@ -52,39 +74,40 @@ __attribute__((always_inline)) inline void tile(const Operands& o, Index i, Inde
 #pragma GCC unroll 8
   for (int q = 0; q < Cols; ++q) {
 #pragma GCC unroll 8
-    for (int b = 0; b < Blocks; ++b) *reinterpret_cast<Vector*>(c + q * o.stride_C + b * lanes) = sum[q][b];
+    for (int b = 0; b < Blocks; ++b)
+      reinterpret_cast<Memory<lanes>*>(c + q * o.stride_C + b * lanes)->vector = sum[q][b];
   }
 }
 
 /// Rows, a multiple of eight, in tiles of Blocks vectors and, what these leave over, in tiles of eight rows.
-template <class Vector, int Blocks, int Cols>
+template <int lanes, int Blocks, int Cols>
 __attribute__((always_inline)) inline void columns(const Operands& o, Index rows, Index j) {
-  constexpr Index tall = Blocks * static_cast<Index>(sizeof(Vector) / sizeof(double));
+  constexpr Index tall = Blocks * lanes;
   Index i = 0;
   const auto divides = [&](Index rest) { return rest == 0 || rest >= 8; };
-  for (; divides(rows - i - tall); i += tall) tile<Vector, Blocks, Cols>(o, i, j);
-  constexpr int few = 8 * sizeof(double) / sizeof(Vector);  // blocks in eight rows
-  for (; i < rows; i += 8) tile<Vector, few, Cols>(o, i, j);
+  for (; divides(rows - i - tall); i += tall) tile<lanes, Blocks, Cols>(o, i, j);
+  constexpr int few = 8 / lanes;  // blocks in eight rows
+  for (; i < rows; i += 8) tile<lanes, few, Cols>(o, i, j);
 }
 
-template <class Vector, int Blocks, int Cols>
+template <int lanes, int Blocks, int Cols>
 __attribute__((always_inline)) inline void all(const Operands& o, Index rows, Index cols) {
   Index j = 0;
-  for (; j + Cols <= cols; j += Cols) columns<Vector, Blocks, Cols>(o, rows, j);
-  for (; j + 2 <= cols; j += 2) columns<Vector, Blocks, 2>(o, rows, j);
-  for (; j < cols; ++j) columns<Vector, Blocks, 1>(o, rows, j);
+  for (; j + Cols <= cols; j += Cols) columns<lanes, Blocks, Cols>(o, rows, j);
+  for (; j + 2 <= cols; j += 2) columns<lanes, Blocks, 2>(o, rows, j);
+  for (; j < cols; ++j) columns<lanes, Blocks, 1>(o, rows, j);
 }
 
-void all_baseline(const Operands& o, Index rows, Index cols) { all<Vector2, 4, 2>(o, rows, cols); }
+void all_baseline(const Operands& o, Index rows, Index cols) { all<2, 4, 2>(o, rows, cols); }
 
 using Kernel = void (*)(const Operands&, Index, Index);
 
 #if defined(__x86_64__)
 __attribute__((target("avx2,fma"))) void all_avx2(const Operands& o, Index rows, Index cols) {
-  all<Vector4, 3, 4>(o, rows, cols);
+  all<4, 3, 4>(o, rows, cols);
 }
 __attribute__((target("avx512f,fma"))) void all_avx512(const Operands& o, Index rows, Index cols) {
-  all<Vector8, 2, 8>(o, rows, cols);
+  all<8, 2, 8>(o, rows, cols);
 }
 
 #else
