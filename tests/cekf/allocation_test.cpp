@@ -3,7 +3,9 @@
 // operator new. Left out under sanitizers, which replace malloc themselves.
 #include <gtest/gtest.h>
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && defined(__GLIBC__)
+#include "sanitized.hpp"
+
+#if !defined(HELIXNAV_SANITIZED) && defined(__GLIBC__)
 
 #include <atomic>
 #include <cstdlib>
