@@ -3,12 +3,13 @@
 
 #include <cmath>
 
+#include "campaign.hpp"
 #include "scenario_study.hpp"
 
 namespace helixnav::cekf {
 namespace {
 
-constexpr int runs = 30;
+const int runs = support::campaign_runs(30);
 constexpr std::uint64_t first_seed = 740001;  // looked at by nobody when the filter was made
 
 // The errors of one run are strongly correlated over the last quarter, so that each run counts as one draw of χ²₃; the
@@ -18,11 +19,11 @@ void expect_consistent(const StudySums& sums) {
   EXPECT_NEAR(sums.nis_per_dof(), 1.0, 2.58 * std::sqrt(2.0 / sums.nis_dof));
 }
 
-TEST(Scenario, CircuitLeavesTheDefaultFilterConsistent) {
+TEST(ScenarioCampaign, CircuitLeavesTheDefaultFilterConsistent) {
   expect_consistent(drive_scenario("circuit", {}, first_seed, runs));
 }
 
-TEST(Scenario, CircuitWithLargeNoiseLeavesTheDefaultFilterConsistent) {
+TEST(ScenarioCampaign, CircuitWithLargeNoiseLeavesTheDefaultFilterConsistent) {
   expect_consistent(drive_scenario("circuit-large-noise", {}, first_seed, runs));
 }
 

@@ -12,6 +12,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "campaign.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/sim/simulate.hpp"
@@ -67,12 +68,12 @@ Driven drive(const core::Recording& run, bool known_association) {
 
 // 30 worlds, each with its own band: NEES of the last pose (3 rows each) and NIS of all updates. Each sum leaves its band
 // with probability 0.002. With exact linear models both are exact; the seeds are those not used while writing.
-TEST(Localizer, IsConsistentOnTheTrueMap) {
+TEST(LocalizerCampaign, IsConsistentOnTheTrueMap) {
   double nees = 0.0;
   double nis = 0.0;
   int rows = 0;
-  const int runs = 30;
-  for (std::uint64_t seed = 101; seed < 101 + runs; ++seed) {
+  const std::vector<std::uint64_t> seeds = support::campaign_seeds(101, 30);
+  for (const std::uint64_t seed : seeds) {
     const Driven driven = drive(sim::simulate(circuit(), seed), true);
     nees += driven.last_nees;
     for (const core::StepReport& report : driven.reports) {
@@ -80,8 +81,9 @@ TEST(Localizer, IsConsistentOnTheTrueMap) {
       rows += report.joint_dof;
     }
   }
-  EXPECT_GT(nees, core::chi2_quantile(0.001, 3 * runs));
-  EXPECT_LT(nees, core::chi2_quantile(0.999, 3 * runs));
+  const support::Band band = support::chi2_band(static_cast<int>(seeds.size()), 3, 0.002);
+  EXPECT_GT(nees, band.low);
+  EXPECT_LT(nees, band.high);
   EXPECT_GT(nis, core::chi2_quantile(0.001, rows));
   EXPECT_LT(nis, core::chi2_quantile(0.999, rows));
 }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "campaign.hpp"
 #include "circuits.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/random.hpp"
@@ -62,11 +63,12 @@ TEST(AbsoluteFix, KeepsTheErrorBoundedWhereDeadReckoningDrifts) {
 }
 
 // 100 independent runs: the sum of their NEES lies in the two-sided band with probability 0.998.
-TEST(AbsoluteFix, LeavesThePoseConsistent) {
+TEST(AbsoluteFixCampaign, LeavesThePoseConsistent) {
   double sum = 0.0;
-  for (std::uint64_t seed = 1; seed <= 100; ++seed) sum += fixed_run(seed, true, false).last_nees;
-  EXPECT_GT(sum, core::chi2_quantile(0.001, 300));
-  EXPECT_LT(sum, core::chi2_quantile(0.999, 300));
+  for (const std::uint64_t seed : support::campaign_seeds(1, 100)) sum += fixed_run(seed, true, false).last_nees;
+  const support::Band band = support::chi2_band(support::campaign_runs(100), 3, 0.002);
+  EXPECT_GT(sum, band.low);
+  EXPECT_LT(sum, band.high);
 }
 
 TEST(AbsoluteFix, IsRefusedWithItsNumbersWhenItIsAnOutlier) {

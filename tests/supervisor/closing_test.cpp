@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "campaign.hpp"
 #include "circuits.hpp"
 #include "close_by_merge.hpp"
 #include "helixnav/core/chi2.hpp"
@@ -101,8 +102,8 @@ Drive drive_scenario(const std::string& name, std::uint64_t seed, const Navigato
 
 /// Seeds that nothing was developed on. A false closing in twelve would show at a rate of 20 % with probability 0.93;
 /// campaigns of a thousand are `helixnav montecarlo`.
-TEST(Closing, ClosesLoopsWithTheRightLandmarksAndAPoseThatIsRight) {
-  for (std::uint64_t seed = 7001; seed <= 7006; ++seed) {
+TEST(ClosingCampaign, ClosesLoopsWithTheRightLandmarksAndAPoseThatIsRight) {
+  for (const std::uint64_t seed : support::campaign_seeds(7001, 6)) {
     for (const char* name : {"large-loop-changed", "sparse"}) {
       const Drive drive = drive_scenario(name, seed, one_thread());
       EXPECT_GE(drive.triggers, 1) << name << " " << seed;
@@ -123,8 +124,8 @@ TEST(Closing, ShowsWhatWasDrawnInOneStepOnly) {
   EXPECT_GT(drive_scenario("sparse", 7001, options).clouds, 3);
 }
 
-TEST(Closing, ClosesNothingOnARoadThatNeverReturns) {
-  for (std::uint64_t seed = 7101; seed <= 7106; ++seed) {
+TEST(ClosingCampaign, ClosesNothingOnARoadThatNeverReturns) {
+  for (const std::uint64_t seed : support::campaign_seeds(7101, 6)) {
     EXPECT_EQ(drive_scenario("open-road", seed, one_thread()).closures, 0) << seed;
   }
 }
@@ -158,18 +159,19 @@ TEST(Closing, SearchesWhereAnObservationMayBeEitherOfTwoOldLandmarks) {
 }
 
 // Three closings, the second on ground that was drawn with 10° of drift: two-sided, 0.1 %. What solving the drive is worth there
-// shows SmoothDrive.MakesTheFigureOfEightConsistent.
-TEST(Closing, SolvesTheDriveAndIsConsistentAfterwards) {
-  constexpr int runs = 12;
+// shows SmoothDriveCampaign.MakesTheFigureOfEightConsistent.
+TEST(ClosingCampaign, SolvesTheDriveAndIsConsistentAfterwards) {
+  const int runs = support::campaign_runs(12);
   double sum = 0.0;
-  for (std::uint64_t seed = 7301; seed < 7301 + runs; ++seed) {
+  for (const std::uint64_t seed : support::campaign_seeds(7301, 12)) {
     const Drive drive = drive_scenario("figure-of-eight", seed, one_thread());
     EXPECT_GE(drive.closures, 1);
     EXPECT_EQ(drive.smoothed, drive.closures);
     sum += drive.nees_at_end;
   }
-  EXPECT_GT(sum, core::chi2_quantile(0.0005, 3 * runs)) << "mean " << sum / runs;
-  EXPECT_LT(sum, core::chi2_quantile(0.9995, 3 * runs)) << "mean " << sum / runs;
+  const support::Band band = support::chi2_band(runs, 3, 0.001);
+  EXPECT_GT(sum, band.low) << "mean " << sum / runs;
+  EXPECT_LT(sum, band.high) << "mean " << sum / runs;
 }
 
 // A closing, scans gone through again in a search from before, another closing: the log holds what the filter holds.

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "campaign.hpp"
 #include "circuits.hpp"
 #include "helixnav/core/chi2.hpp"
 
@@ -44,10 +45,10 @@ Association associate_unknown(const core::Recording& run, Navigator& navigator) 
   return result;
 }
 
-TEST(Navigator, MakesNoWrongMatchAmongWellSeparatedLandmarksAndIsConsistent) {
-  constexpr int runs = 20;
+TEST(NavigatorCampaign, MakesNoWrongMatchAmongWellSeparatedLandmarksAndIsConsistent) {
+  const int runs = support::campaign_runs(20);
   double nees_sum = 0.0;
-  for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+  for (const std::uint64_t seed : support::campaign_seeds(1, 20)) {
     SCOPED_TRACE(seed);
     const core::Recording run = sim::simulate(wide_circuit(), seed);
     Navigator navigator(run.start);
@@ -58,8 +59,9 @@ TEST(Navigator, MakesNoWrongMatchAmongWellSeparatedLandmarksAndIsConsistent) {
     nees_sum += result.final_nees;
   }
   // One pose a run, so that the sum is χ² with 3 degrees of freedom a run; false alarm 1 %.
-  EXPECT_GE(nees_sum, core::chi2_quantile(0.005, 3 * runs));
-  EXPECT_LE(nees_sum, core::chi2_quantile(0.995, 3 * runs));
+  const support::Band band = support::chi2_band(runs, 3, 0.01);
+  EXPECT_GE(nees_sum, band.low);
+  EXPECT_LE(nees_sum, band.high);
 }
 
 TEST(Navigator, BuriesWhatClutterBegan) {

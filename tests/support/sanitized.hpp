@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-namespace helixnav::testing {
+namespace helixnav::support {
 
 /// HELIXNAV_SANITIZED is defined where the address or thread sanitizer is on; GCC and clang say so in ways of their own.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -18,4 +18,4 @@ inline constexpr bool sanitized = true;
 inline constexpr bool sanitized = false;
 #endif
 
-}  // namespace helixnav::testing
+}  // namespace helixnav::support
