@@ -63,6 +63,13 @@ bool has_range(ObservationKind kind) {
   return kind == ObservationKind::range_bearing || kind == ObservationKind::range;
 }
 
+/// Beyond ±2π: whoever writes such a bearing does not mean radians.
+bool has_impossible_bearing(const Observation& observation) {
+  constexpr double most_rad = 2.0 * pi;
+  if (observation.kind == ObservationKind::range_bearing) return std::abs(observation.z[1]) > most_rad;
+  return observation.kind == ObservationKind::bearing && std::abs(observation.z[0]) > most_rad;
+}
+
 /// is_symmetric_positive_definite for one or two rows, without the heap: every observation of every scan is checked.
 bool is_small_spd(const ObsMatrix& R) {
   if (!R.allFinite() || !(R(0, 0) > 0.0)) return false;
@@ -175,6 +182,8 @@ void check_observation(const Observation& observation) {
     refuse(observation, "z is not finite");
   } else if (has_range(observation.kind) && observation.z[0] <= 0.0) {
     refuse(observation, "the range must be positive");
+  } else if (has_impossible_bearing(observation)) {
+    refuse(observation, "the bearing must lie within ±2π");
   } else if (!is_small_spd(observation.R)) {
     refuse(observation, "R is not symmetric positive definite");
   }

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/localization/localizer.hpp"
 
-#include <cmath>
+#include <limits>
 #include <string>
+#include <utility>
 
+#include "helixnav/core/check_event.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/odometry.hpp"
+#include "helixnav/core/pose_on_map.hpp"
 #include "nearby.hpp"
 #include "update_pose.hpp"
 
@@ -23,7 +26,7 @@ core::Outcome outcome_of(const association::ObservationOutcome& observation) {
 
 Localizer::Localizer(const core::PoseGaussian& start, const std::vector<core::MapLandmark>& map,
                      const LocalizerOptions& options)
-    : options_(options), pose_(start) {
+    : options_(options), pose_(start), last_ns_(std::numeric_limits<core::Nanoseconds>::min()) {
   if (!start.mean.vector().allFinite() || !core::is_symmetric_positive_semidefinite(start.covariance)) {
     throw core::PreconditionError("localizer: the start is not finite or its covariance not positive semidefinite");
   }
@@ -36,49 +39,60 @@ Localizer::Localizer(const core::PoseGaussian& start, const std::vector<core::Ma
   }
 }
 
-void Localizer::move(const core::Odometry& odometry) { motion_ = motion_ ? core::chain(*motion_, odometry) : odometry; }
+void Localizer::move(const core::Odometry& odometry) {
+  core::check(odometry);
+  core::check_order(last_ns_, odometry.t_ns);
+  const core::Odometry motion = motion_ ? core::chain(*motion_, odometry) : odometry;
+  if (!motion.T_before_after.vector().allFinite() || !motion.covariance.allFinite()) {
+    throw core::NumericalError("localizer: the motion up to t_ns = " + std::to_string(odometry.t_ns) +
+                               " is not finite in step " + std::to_string(step_));
+  }
+  motion_ = motion;
+  last_ns_ = odometry.t_ns;
+}
 
 core::StepReport Localizer::observe(const core::Scan& scan) {
-  predict();
-  core::StepReport report;
-  report.associations = associate(scan);
-  update(scan, report);
-  return close_step(scan, std::move(report));
+  check_event(scan);
+  const core::PoseGaussian pose = predicted();
+  return update(pose, scan, associate(pose, scan));
 }
 
 core::StepReport Localizer::observe(const core::Scan& scan, const std::vector<core::LandmarkId>& landmarks) {
+  check_event(scan);
   if (landmarks.size() != scan.observations.size()) {
     throw core::PreconditionError("observe: " + std::to_string(landmarks.size()) + " landmarks for " +
                                   std::to_string(scan.observations.size()) + " observations");
   }
-  core::StepReport report;
+  std::vector<core::AssociationReport> associations;
   for (const core::LandmarkId id : landmarks) {
     if (id != core::no_landmark && map_m_.count(id) == 0) {
       throw core::PreconditionError("observe: landmark " + std::to_string(id) + " is not on the map");
     }
-    core::AssociationReport& association = report.associations.emplace_back();
-    association.observation = static_cast<int>(report.associations.size()) - 1;
+    core::AssociationReport& association = associations.emplace_back();
+    association.observation = static_cast<int>(associations.size()) - 1;
     association.outcome = id == core::no_landmark ? core::Outcome::rejected : core::Outcome::matched;
     association.landmark = id;
   }
-  predict();
-  update(scan, report);
-  return close_step(scan, std::move(report));
+  return update(predicted(), scan, std::move(associations));
 }
 
-void Localizer::predict() {
-  if (!motion_) return;
-  const core::ComposeJacobians J = core::compose_jacobians(pose_.mean, motion_->T_before_after);
-  pose_.covariance =
-      J.J_first * pose_.covariance * J.J_first.transpose() + J.J_second * motion_->covariance * J.J_second.transpose();
-  pose_.mean = core::compose(pose_.mean, motion_->T_before_after);
-  motion_.reset();
+void Localizer::check_event(const core::Scan& scan) const {
+  core::check(scan);
+  core::check_order(last_ns_, scan.t_ns);
 }
 
-core::JointGaussian Localizer::candidates(const core::Scan& scan) const {
+/// The pose after the motion since the last scan.
+core::PoseGaussian Localizer::predicted() const {
+  if (!motion_) return pose_;
+  core::PoseOnMap pose(pose_);
+  pose.move(*motion_);
+  return pose.estimate();
+}
+
+core::JointGaussian Localizer::candidates(const core::PoseGaussian& pose, const core::Scan& scan) const {
   core::JointGaussian joint;
-  joint.pose = pose_.mean;
-  const Nearby nearby(pose_, scan, options_.candidate_sigmas);
+  joint.pose = pose.mean;
+  const Nearby nearby(pose, scan, options_.candidate_sigmas);
   for (const auto& [id, point_m] : map_m_) {
     if (!nearby.holds(point_m)) continue;
     joint.ids.push_back(id);
@@ -86,12 +100,13 @@ core::JointGaussian Localizer::candidates(const core::Scan& scan) const {
   }
   const auto size = static_cast<Eigen::Index>(3 + 2 * joint.ids.size());
   joint.covariance = Eigen::MatrixXd::Zero(size, size);
-  joint.covariance.topLeftCorner<3, 3>() = pose_.covariance;
+  joint.covariance.topLeftCorner<3, 3>() = pose.covariance;
   return joint;
 }
 
-std::vector<core::AssociationReport> Localizer::associate(const core::Scan& scan) const {
-  const core::JointGaussian joint = candidates(scan);
+std::vector<core::AssociationReport> Localizer::associate(const core::PoseGaussian& pose,
+                                                          const core::Scan& scan) const {
+  const core::JointGaussian joint = candidates(pose, scan);
   association::Options how = options_.association;
   if (std::isfinite(scan.field_of_view.max_range_m)) {
     how.extraneous = association::uniform_density(scan.field_of_view, options_.extraneous_per_scan);
@@ -108,24 +123,27 @@ std::vector<core::AssociationReport> Localizer::associate(const core::Scan& scan
   return reports;
 }
 
-void Localizer::update(const core::Scan& scan, core::StepReport& report) {
+/// Updates the predicted pose with what is matched. Nothing throws once something has changed.
+core::StepReport Localizer::update(const core::PoseGaussian& pose, const core::Scan& scan,
+                                   std::vector<core::AssociationReport> associations) {
   std::vector<Sighting> sightings;
-  for (const core::AssociationReport& association : report.associations) {
+  for (const core::AssociationReport& association : associations) {
     if (association.outcome != core::Outcome::matched) continue;
     const auto index = static_cast<std::size_t>(association.observation);
     sightings.push_back({association.landmark, map_m_.at(association.landmark), &scan.observations[index]});
   }
-  const PoseUpdate updated = update_pose(pose_, scan.T_robot_sensor, sightings, step_);
-  pose_ = updated.pose;
+  const PoseUpdate updated = update_pose(pose, scan.T_robot_sensor, sightings, step_);
+  core::StepReport report;
+  report.associations = std::move(associations);
   report.joint_nis = updated.nis;
   report.joint_dof = updated.dof;
-}
-
-core::StepReport Localizer::close_step(const core::Scan& scan, core::StepReport report) {
-  report.step = step_++;
   report.t_ns = scan.t_ns;
-  report.pose = pose_;
+  report.pose = updated.pose;
   report.mapped_landmarks = static_cast<int>(map_m_.size());
+  report.step = step_++;
+  pose_ = updated.pose;
+  motion_.reset();
+  last_ns_ = scan.t_ns;
   return report;
 }
 

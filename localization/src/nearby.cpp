@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace helixnav::localization {
 
@@ -11,7 +12,9 @@ Nearby::Nearby(const core::PoseGaussian& pose, const core::Scan& scan, double si
                                         [](const core::Observation& o) { return core::dimension(o.kind) == 2; });
   if (!fixes_points) {
     const Eigen::Vector2d sensor_m = core::transform(pose.mean, scan.T_robot_sensor.position_m());
-    discs_.push_back({sensor_m, scan.field_of_view.max_range_m});
+    const double reach_m = scan.field_of_view.max_range_m;
+    const bool is_known = reach_m > 0.0;
+    discs_.push_back({sensor_m, is_known ? reach_m : std::numeric_limits<double>::infinity()});
     return;
   }
   discs_.reserve(scan.observations.size());

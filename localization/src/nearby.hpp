@@ -12,7 +12,8 @@ namespace helixnav::localization {
 
 /// Where the landmarks of a scan may stand: discs around the points that its observations see, with a radius of `sigmas`
 /// standard deviations of pose and noise together (their trace, so that nothing inside an exact gate is lost). A scan
-/// with an observation that fixes no point (one row) has one disc, its field of view.
+/// with an observation that fixes no point (one row) has one disc, its field of view, or the whole map where that is
+/// unknown (a greatest range of zero).
 class Nearby {
  public:
   Nearby(const core::PoseGaussian& pose, const core::Scan& scan, double sigmas);

@@ -67,8 +67,8 @@ struct LocatedLandmark {
 LocatedLandmark locate_landmark(const Observation& observation, const Pose2& T_world_robot,
                                 const Pose2& T_robot_sensor);
 
-/// Throws PreconditionError unless z is finite, ranges are positive, shapes fit the kind and R is symmetric positive
-/// definite. No allocation unless it throws. Test: core/observation_test.cpp.
+/// Throws PreconditionError unless z is finite, ranges are positive, bearings lie within ±2π, shapes fit the kind and R is
+/// symmetric positive definite. No allocation unless it throws. Test: core/observation_test.cpp.
 void check_observation(const Observation& observation);
 
 }  // namespace helixnav::core

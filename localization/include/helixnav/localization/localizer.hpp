@@ -28,10 +28,11 @@ struct LocalizerOptions {
 /// stays as it is. The landmarks' positions are taken as exact: what a scan tells is where the robot is relative to them,
 /// and the error that they have in common is the frame's, not the robot's.
 /// Map frame, covariances in (x, y, heading) [m, m, rad]. Cost of a scan of m observations: O(m · landmarks) to find
-/// candidates, O(m³) to update. Throws PreconditionError (arguments, an observation that is none) and NumericalError (S
-/// not positive definite); the pose is then that before the scan's update.
+/// candidates, O(m³) to update. Every call either succeeds or throws PreconditionError (what core::check refuses, an event
+/// that goes back in time, arguments) or NumericalError (S not positive definite, a pose that is not finite) and leaves
+/// the localizer as it was, also where memory runs out.
 /// Source: dlr_kurlbaum2009 §3.4 (EKF localiser using the calculated map). Test: localization/localizer_test.cpp
-/// (information-form twin, NEES and NIS in their bands).
+/// (information-form twin, NEES and NIS in their bands), localization/bad_input_test.cpp, tests/faults.
 class Localizer {
  public:
   /// Ids of the map must differ. The start is where the robot is in the frame of the map.
@@ -51,17 +52,19 @@ class Localizer {
   core::PoseGaussian pose() const { return pose_; }
 
  private:
-  void predict();
-  core::JointGaussian candidates(const core::Scan& scan) const;
-  std::vector<core::AssociationReport> associate(const core::Scan& scan) const;
-  void update(const core::Scan& scan, core::StepReport& report);
-  core::StepReport close_step(const core::Scan& scan, core::StepReport report);
+  void check_event(const core::Scan& scan) const;
+  core::PoseGaussian predicted() const;
+  core::JointGaussian candidates(const core::PoseGaussian& pose, const core::Scan& scan) const;
+  std::vector<core::AssociationReport> associate(const core::PoseGaussian& pose, const core::Scan& scan) const;
+  core::StepReport update(const core::PoseGaussian& pose, const core::Scan& scan,
+                          std::vector<core::AssociationReport> associations);
 
   LocalizerOptions options_;
   core::PoseGaussian pose_;
   std::map<core::LandmarkId, Eigen::Vector2d> map_m_;
   std::optional<core::Odometry> motion_;  ///< since the last scan
   std::int64_t step_ = 0;
+  core::Nanoseconds last_ns_;  ///< of the last event
 };
 
 }  // namespace helixnav::localization

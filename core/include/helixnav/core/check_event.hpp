@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "helixnav/core/events.hpp"
+
+namespace helixnav::core {
+
+/// What every estimator demands of an event at its door, before anything changes; PreconditionError names the time and
+/// the value. No allocation unless it throws. Test: core/check_event_test.cpp.
+///
+/// Odometry: finite increment, covariance finite, symmetric and positive semidefinite to 1e-9 of its largest element.
+void check(const Odometry& odometry);
+/// Scan: finite mounting, a field of view whose bounds are in order (its range may be infinite, or zero where nobody knows
+/// it), every observation as check_observation wants it. O(observations).
+void check(const Scan& scan);
+/// Fix: finite position and antenna, covariance symmetric positive definite.
+void check(const AbsoluteFix& fix);
+/// Whichever it is.
+void check(const Event& event);
+
+/// PreconditionError when an event at t_ns would go back behind one at last_ns. Equal times are in order.
+void check_order(Nanoseconds last_ns, Nanoseconds t_ns);
+
+}  // namespace helixnav::core

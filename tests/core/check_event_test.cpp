@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/core/check_event.hpp"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "helixnav/core/errors.hpp"
+
+namespace helixnav::core {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Odometry good_odometry() {
+  Odometry odometry;
+  odometry.t_ns = 42;
+  odometry.T_before_after = Pose2(0.3, 0.0, 0.01);
+  odometry.covariance = Eigen::Vector3d(1e-3, 0.0, 1e-5).asDiagonal();
+  return odometry;
+}
+
+Scan good_scan() {
+  Scan scan;
+  scan.t_ns = 42;
+  scan.field_of_view = {0.1, 30.0, -1.0, 1.0};
+  scan.observations = {make_range_bearing(5.0, 0.2, 0.1, 0.01),
+                       make_cartesian({3.0, 1.0}, Eigen::Matrix2d::Identity())};
+  return scan;
+}
+
+void expect_refused(const Event& event, const std::string& named) {
+  try {
+    check(event);
+    ADD_FAILURE() << "accepted: " << named;
+  } catch (const PreconditionError& error) {
+    EXPECT_NE(std::string(error.what()).find(named), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("t_ns = 42"), std::string::npos) << error.what();
+  }
+}
+
+TEST(CheckEvent, AcceptsWhatSensorsSay) {
+  EXPECT_NO_THROW(check(Event(good_odometry())));
+  EXPECT_NO_THROW(check(Event(good_scan())));
+  EXPECT_NO_THROW(check(Event(AbsoluteFix{})));
+  Scan blank = good_scan();
+  blank.observations.clear();
+  blank.field_of_view = FieldOfView{};
+  EXPECT_NO_THROW(check(blank)) << "a view without bound";
+  blank.field_of_view.max_range_m = 0.0;
+  EXPECT_NO_THROW(check(blank)) << "a view that nobody knows";
+}
+
+TEST(CheckEvent, AcceptsACovarianceOfRankOneToThree) {
+  Odometry odometry = good_odometry();
+  odometry.covariance.setZero();
+  EXPECT_NO_THROW(check(odometry));
+  for (int rank = 1; rank <= 3; ++rank) {
+    Eigen::Matrix3d L = Eigen::Matrix3d::Zero();
+    for (int k = 0; k < rank; ++k) L.col(k) = Eigen::Vector3d(0.1 + k, 0.37 * k * k - 0.2, 0.01 * (k + 1));
+    odometry.covariance = L * L.transpose();
+    EXPECT_NO_THROW(check(odometry)) << rank;
+  }
+}
+
+TEST(CheckEvent, RefusesOdometryThatIsNotFiniteOrHasNoCovariance) {
+  for (const double wrong : {nan, infinity, -infinity}) {
+    Odometry odometry = good_odometry();
+    odometry.T_before_after.y_m = wrong;
+    expect_refused(odometry, "increment");
+    odometry = good_odometry();
+    odometry.T_before_after.heading_rad = wrong;
+    expect_refused(odometry, "increment");
+    odometry = good_odometry();
+    odometry.covariance(1, 2) = wrong;
+    expect_refused(odometry, "covariance");
+  }
+  Odometry odometry = good_odometry();
+  odometry.covariance(2, 2) = -1e-5;
+  expect_refused(odometry, "covariance");
+  odometry = good_odometry();
+  odometry.covariance(0, 2) = odometry.covariance(2, 0) = 1e-3;  // correlation of 10
+  expect_refused(odometry, "covariance");
+  odometry = good_odometry();
+  odometry.covariance(0, 2) = 1e-6;
+  expect_refused(odometry, "covariance");
+}
+
+TEST(CheckEvent, RefusesAScanByTheFirstObservationThatIsNone) {
+  Scan scan = good_scan();
+  scan.observations.push_back(make_range_bearing(-0.5, 0.0, 0.1, 0.01));
+  expect_refused(scan, "observation 2");
+  scan = good_scan();
+  scan.observations[1].z[0] = nan;
+  expect_refused(scan, "observation 1");
+  scan = good_scan();
+  scan.observations[0].z[1] = 6.4;
+  expect_refused(scan, "2π");
+  scan.observations[0] = make_bearing(-6.4, 0.1);
+  expect_refused(scan, "2π");
+  scan.observations[0] = make_bearing(-6.2, 0.1);
+  EXPECT_NO_THROW(check(scan));
+  scan.observations[0].R(0, 0) = 0.0;
+  expect_refused(scan, "positive definite");
+}
+
+TEST(CheckEvent, RefusesAMountingOrAViewThatIsNotFiniteOrNotInOrder) {
+  Scan scan = good_scan();
+  scan.T_robot_sensor.x_m = nan;
+  expect_refused(scan, "T_robot_sensor");
+  const std::vector<FieldOfView> wrong = {
+      {nan, 30.0, -1.0, 1.0}, {-1.0, 30.0, -1.0, 1.0},     {0.0, nan, -1.0, 1.0},
+      {5.0, 4.0, -1.0, 1.0},  {0.0, 30.0, 1.0, -1.0},      {0.0, 30.0, nan, 1.0},
+      {0.0, -1.0, -1.0, 1.0}, {infinity, 30.0, -1.0, 1.0}, {0.0, 30.0, -1.0, infinity}};
+  for (const FieldOfView& view : wrong) {
+    scan = good_scan();
+    scan.field_of_view = view;
+    expect_refused(scan, "field of view");
+  }
+}
+
+TEST(CheckEvent, RefusesAFixThatIsNotFiniteOrExactlyKnown) {
+  AbsoluteFix fix;
+  fix.t_ns = 42;
+  fix.position_world_m.x() = infinity;
+  expect_refused(fix, "position");
+  fix = {};
+  fix.t_ns = 42;
+  fix.antenna_robot_m.y() = nan;
+  expect_refused(fix, "antenna");
+  fix = {};
+  fix.t_ns = 42;
+  fix.covariance_m2.setZero();
+  expect_refused(fix, "covariance");
+  fix.covariance_m2 << 1.0, 2.0, 2.0, 1.0;
+  expect_refused(fix, "covariance");
+}
+
+TEST(CheckOrder, RefusesToGoBackAndAcceptsTheSameInstant) {
+  EXPECT_NO_THROW(check_order(5, 5));
+  EXPECT_NO_THROW(check_order(std::numeric_limits<Nanoseconds>::min(), 5));
+  EXPECT_THROW(check_order(5, 4), PreconditionError);
+}
+
+}  // namespace
+}  // namespace helixnav::core
