@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <unistd.h>
+
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -27,9 +29,9 @@ using Clock = std::chrono::steady_clock;
 struct SmoothJob {
   std::string path;
   std::string start = "odometry";
-  std::string method = "levenberg-marquardt";
   double first_damping = 0.0;  ///< 0: by the start
   int max_iterations = 200;
+  double max_seconds = 300.0;
   RunOptions run;
 };
 
@@ -63,11 +65,17 @@ smoothing::SmoothOptions options_of(const SmoothJob& job) {
   smoothing::SmoothOptions options;
   if (job.start == "grown") options.start = smoothing::Start::grown;
   if (job.start == "softened") options.start = smoothing::Start::softened;
-  if (job.method == "gauss-newton") options.solver.method = smoothing::Method::gauss_newton;
-  if (job.method == "dogleg") options.solver.method = smoothing::Method::dogleg;
   options.solver.max_iterations = job.max_iterations;
   if (starts_from_run(job.start)) options.solver.first_damping = 1e-8;
   if (job.first_damping > 0.0) options.solver.first_damping = job.first_damping;
+  const bool shown = !job.run.quiet && isatty(STDERR_FILENO) == 1;
+  options.solver.go_on = [begin = Clock::now(), most_s = job.max_seconds,
+                          shown](const std::vector<smoothing::Iteration>& steps) {
+    if (shown && !steps.empty()) {
+      std::fprintf(stderr, "\r%4zu iterations, chi2 %.6g  ", steps.size(), steps.back().chi2.cost);
+    }
+    return seconds_since(begin) < most_s;
+  };
   return options;
 }
 
@@ -79,6 +87,7 @@ ExitCode smooth(CLI::App& command, SmoothJob& job) {
   if (starts_from_run(job.start)) start_from_folder(job.start, task);
   const double reading_s = seconds_since(begin);
   SmoothingResult result = solve(task, options_of(job));
+  if (!job.run.quiet && isatty(STDERR_FILENO) == 1) std::fputs("\r\033[K", stderr);
   fill_drive(task_info, job.run, "");
   task_info.manifest.inputs = input_files(job.path);
 
@@ -113,9 +122,10 @@ void add_smooth_command(CLI::App& app, ExitCode& code) {
                    "first), or the run folder of a replay of the same log")
       ->capture_default_str()
       ->type_name("odometry|grown|softened|RUN");
-  command->add_option("--method", job->method, "Solver")
-      ->check(one_of({"levenberg-marquardt", "gauss-newton", "dogleg"}))
+  command->add_option("--max-seconds", job->max_seconds, "Stop at the best solution found after so long")
+      ->check(number_between(0.001, 1e6))
       ->capture_default_str();
+  command->add_flag("--quiet", job->run.quiet, "No progress line");
   command->add_option("--max-iterations", job->max_iterations, "Give up after so many")
       ->check(number_between(1, 100000))
       ->capture_default_str();

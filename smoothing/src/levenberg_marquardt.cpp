@@ -30,7 +30,8 @@ Reason levenberg_marquardt(Session& session) {
   for (int i = 0; i < session.options.max_iterations; ++i) {
     session.linearize();
     for (;;) {
-      if (damping > largest_damping) return Reason::stalled;
+      if (!(damping <= largest_damping)) return Reason::stalled;
+      if (!session.may_go_on()) return Reason::stopped;
       if (damped_step(session, damping, damped, step)) {
         const double promise = session.promised_decrease(step);
         if (session.is_negligible(promise) && damping <= light_damping) return Reason::converged;

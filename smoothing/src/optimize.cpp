@@ -4,26 +4,11 @@
 #include "session.hpp"
 
 namespace helixnav::smoothing {
-namespace {
-
-Reason run(Session& session) {
-  switch (session.options.method) {
-    case Method::gauss_newton:
-      return gauss_newton(session);
-    case Method::dogleg:
-      return dogleg(session);
-    default:
-      return levenberg_marquardt(session);
-  }
-}
-
-}  // namespace
-
 Report optimize(Problem& problem, const Options& options) {
   check_problem(problem);
   Session session(problem, options);
   if (session.layout.columns > 0) {
-    session.report.reason = run(session);
+    session.report.reason = levenberg_marquardt(session);
     session.linearize();
     session.factorize_undamped();  // damping hides what the measurements leave open
   } else {
@@ -46,8 +31,8 @@ std::string to_string(Reason reason) {
       return "converged";
     case Reason::stalled:
       return "stalled";
-    case Reason::diverged:
-      return "diverged";
+    case Reason::stopped:
+      return "stopped";
     default:
       return "max_iterations";
   }

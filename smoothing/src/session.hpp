@@ -9,7 +9,7 @@ namespace helixnav::smoothing {
 /// Pivots of an undamped H below this share of their diagonal element mean that H is singular to rounding.
 inline constexpr double singular_pivot = 1e-13;
 
-/// One run of an optimiser: what the three methods share.
+/// One run of the optimiser.
 class Session {
  public:
   Session(const Problem& problem, const Options& options);
@@ -38,6 +38,8 @@ class Session {
   /// −2gᵀs − sᵀHs: what the quadratic model says the step will take off the cost.
   double promised_decrease(const Eigen::VectorXd& step);
 
+  bool may_go_on() const { return !options.go_on || options.go_on(report.iterations); }
+
   bool is_negligible(double decrease) const {
     return decrease <= options.tolerance_chi2 || decrease <= 1e-11 * chi2.cost;
   }
@@ -47,8 +49,6 @@ class Session {
   Eigen::VectorXd H_step_;
 };
 
-Reason gauss_newton(Session& session);
 Reason levenberg_marquardt(Session& session);
-Reason dogleg(Session& session);
 
 }  // namespace helixnav::smoothing

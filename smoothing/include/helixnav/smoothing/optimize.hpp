@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -9,30 +10,11 @@
 
 namespace helixnav::smoothing {
 
-enum class Method {
-  gauss_newton,         ///< full steps; fast from a good start, may diverge from a bad one
-  levenberg_marquardt,  ///< damped by λ·diag(H), gain-controlled
-  dogleg,               ///< Powell's dogleg in the metric of diag(H)
-};
-
 /// Fill-reducing ordering of the Cholesky factor.
 enum class Ordering {
   least_fill,  ///< AMD and METIS analysed, the one with fewer nonzeros kept
   amd,
   metis,
-};
-
-struct Options {
-  Method method = Method::levenberg_marquardt;
-  RobustKernel kernel;
-  Ordering ordering = Ordering::least_fill;
-  int max_iterations = 200;
-  /// λ of the first Levenberg–Marquardt step. From a good start (a filter's result) 1e-8 saves half of the steps: DLR from
-  /// odometry takes 11 instead of 36. From a bad one 1e-4 is safer: labelled Victoria Park with softened odometry ends at
-  /// χ² 9012.7 instead of 158 000.
-  double first_damping = 1e-4;
-  double tolerance_chi2 =
-      1e-6;  ///< converged when the quadratic model promises less than this [χ²], or 1e-11 of the cost
 };
 
 /// χ² of a state, by kind. `cost` is what is minimised: landmarks pass through the robust kernel.
@@ -49,14 +31,29 @@ struct Iteration {
   Chi2 chi2;              ///< after the step
   double step_m = 0.0;    ///< largest move of a pose or landmark
   double step_rad = 0.0;  ///< largest turn of a pose
-  double damping = 0.0;   ///< λ (Levenberg–Marquardt), trust radius in σ (dogleg), 0 (Gauss–Newton)
+  double damping = 0.0;   ///< λ
+};
+
+struct Options {
+  RobustKernel kernel;
+  Ordering ordering = Ordering::least_fill;
+  int max_iterations = 200;
+  /// λ of the first Levenberg–Marquardt step. From a good start (a filter's result) 1e-8 saves half of the steps: DLR from
+  /// odometry takes 11 instead of 36. From a bad one 1e-4 is safer: labelled Victoria Park with softened odometry ends at
+  /// χ² 9012.7 instead of 158 000.
+  double first_damping = 1e-4;
+  double tolerance_chi2 =
+      1e-6;  ///< converged when the quadratic model promises less than this [χ²], or 1e-11 of the cost
+  /// Asked before every factorisation with the accepted steps so far (none before the first); false ends the iteration at
+  /// the best state found. For progress, and for a caller who has a clock and no more patience. Empty: goes on.
+  std::function<bool(const std::vector<Iteration>&)> go_on;
 };
 
 enum class Reason {
   converged,  ///< the quadratic model promises nothing more
   stalled,    ///< no damping gives a decrease although the model promises one
-  diverged,   ///< Gauss–Newton: the cost grew beyond all bounds; the best state is kept
   max_iterations,
+  stopped,  ///< Options::go_on said so
 };
 
 struct Report {
@@ -70,8 +67,9 @@ struct Report {
 };
 
 /// Moves the graph's values to the minimum of χ² near the start. The structure is analysed once; a factorisation per step.
-/// Errors: those of check_problem; NumericalError naming the variable when H is singular at the solution (for Gauss–Newton
-/// and dogleg: at any step) or a residual is not finite at the start. The problem is left as it was when anything is thrown.
+/// Levenberg–Marquardt: damped by λ·diag(H), gain-controlled. Errors: those of check_problem; NumericalError naming the
+/// variable when H is singular at the solution, or when a residual is not finite at the start. The problem is left as it was
+/// when anything is thrown.
 /// Licence: CHOLMOD's simplicial LLᵀ (LGPL); no GPL module is called.
 /// Test: smoothing/optimize_test.cpp, smoothing/dlr_test.cpp (published χ² 56871.4), smoothing/victoria_park_test.cpp.
 Report optimize(Problem& problem, const Options& options = {});
