@@ -15,11 +15,6 @@ using core::LandmarkState;
 
 bool before(const LandmarkRecord& record, LandmarkId id) { return record.id < id; }
 
-void insert_sorted(std::vector<LandmarkId>& ids, LandmarkId id) {
-  const auto at = std::lower_bound(ids.begin(), ids.end(), id);
-  if (at == ids.end() || *at != id) ids.insert(at, id);
-}
-
 bool is_listed(const std::vector<LandmarkId>& ids, LandmarkId id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
@@ -59,10 +54,6 @@ LifeChanges LandmarkLife::observe(const Eigen::Vector2d& sensor_m, const std::ve
     record.born_path_m = record.last_seen_path_m = path_m_;
     records_.insert(std::lower_bound(records_.begin(), records_.end(), id, before), record);
   }
-  std::vector<LandmarkId> company = seen;
-  company.insert(company.end(), born.begin(), born.end());
-  note_company(company);
-
   LifeChanges changes;
   for (LandmarkRecord& record : records_) {
     if (record.state == LandmarkState::tentative && record.hits >= options_.mature_looks &&
@@ -106,15 +97,6 @@ void LandmarkLife::miss(LandmarkRecord& record, const Eigen::Vector2d& sensor_m)
   record.log_odds += miss_nats_;
 }
 
-void LandmarkLife::note_company(const std::vector<LandmarkId>& company) {
-  for (const LandmarkId a : company) {
-    LandmarkRecord& record = *find(a);
-    for (const LandmarkId b : company) {
-      if (b != a) insert_sorted(record.seen_with, b);
-    }
-  }
-}
-
 bool LandmarkLife::is_dying(const LandmarkRecord& record) const {
   if (record.state == LandmarkState::mature) {
     return options_.mature_may_die && record.log_odds <= options_.mature_death_log_odds;
@@ -126,13 +108,6 @@ bool LandmarkLife::is_dying(const LandmarkRecord& record) const {
 void LandmarkLife::remove(LandmarkId id) {
   LandmarkRecord* record = find(id);
   if (record == nullptr) throw core::PreconditionError("landmark life: no landmark " + std::to_string(id));
-  for (const LandmarkId other : record->seen_with) {
-    if (LandmarkRecord* friend_record = find(other)) {
-      std::vector<LandmarkId>& ids = friend_record->seen_with;
-      const auto at = std::lower_bound(ids.begin(), ids.end(), id);
-      if (at != ids.end() && *at == id) ids.erase(at);
-    }
-  }
   records_.erase(records_.begin() + (record - records_.data()));
 }
 
@@ -153,12 +128,6 @@ void LandmarkLife::merge(LandmarkId kept, LandmarkId removed) {
     one.last_seen_path_m = gone.last_seen_path_m;
     one.last_hit_at_m = gone.last_hit_at_m;
     one.last_miss_at_m = gone.last_miss_at_m;
-  }
-  for (const LandmarkId other : gone.seen_with) {
-    LandmarkRecord* friend_record = other == kept ? nullptr : find(other);
-    if (friend_record == nullptr) continue;
-    insert_sorted(one.seen_with, other);
-    insert_sorted(friend_record->seen_with, kept);
   }
 }
 
@@ -183,11 +152,6 @@ const LandmarkRecord& LandmarkLife::record(LandmarkId id) const {
 LandmarkState LandmarkLife::state(LandmarkId id) const {
   const LandmarkRecord* record = find(id);
   return record == nullptr ? LandmarkState::dead : record->state;
-}
-
-bool LandmarkLife::seen_together(LandmarkId a, LandmarkId b) const {
-  const std::vector<LandmarkId>& company = record(a).seen_with;
-  return std::binary_search(company.begin(), company.end(), b);
 }
 
 }  // namespace helixnav::association

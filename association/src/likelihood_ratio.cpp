@@ -1,12 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/association/likelihood_ratio.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "helixnav/core/errors.hpp"
 
 namespace helixnav::association {
+namespace {
+
+/// Distance of the furthest observation that tells one; zero when none does.
+double furthest_m(const core::Scan& scan) {
+  double reach_m = 0.0;
+  for (const core::Observation& observation : scan.observations) {
+    const bool is_point = observation.kind == core::ObservationKind::cartesian;
+    if (is_point) reach_m = std::max(reach_m, observation.z.norm());
+    const bool is_ranged =
+        observation.kind == core::ObservationKind::range_bearing || observation.kind == core::ObservationKind::range;
+    if (is_ranged) reach_m = std::max(reach_m, observation.z[0]);
+  }
+  return reach_m;
+}
+
+}  // namespace
 
 double ExtraneousDensity::of(core::ObservationKind kind) const {
   switch (kind) {
@@ -32,6 +49,17 @@ ExtraneousDensity uniform_density(const core::FieldOfView& field_of_view, double
   }
   return {expected_per_scan / (depth_m * width_rad), expected_per_scan / area_m2, expected_per_scan / width_rad,
           expected_per_scan / depth_m};
+}
+
+ExtraneousDensity density_in_view(const core::Scan& scan, double expected_per_scan,
+                                  const ExtraneousDensity& unbounded) {
+  core::FieldOfView view = scan.field_of_view;
+  if (!std::isfinite(view.max_range_m)) return unbounded;
+  if (!(view.max_range_m > 0.0)) {
+    view.min_range_m = 0.0;
+    view.max_range_m = furthest_m(scan);
+  }
+  return view.max_range_m > 0.0 ? uniform_density(view, expected_per_scan) : unbounded;
 }
 
 AssignmentProblem likelihood_ratio_costs(const InnovationProblem& problem, double detection_probability,

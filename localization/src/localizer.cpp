@@ -108,9 +108,7 @@ std::vector<core::AssociationReport> Localizer::associate(const core::PoseGaussi
                                                           const core::Scan& scan) const {
   const core::JointGaussian joint = candidates(pose, scan);
   association::Options how = options_.association;
-  if (std::isfinite(scan.field_of_view.max_range_m)) {
-    how.extraneous = association::uniform_density(scan.field_of_view, options_.extraneous_per_scan);
-  }
+  how.extraneous = association::density_in_view(scan, options_.extraneous_per_scan, how.extraneous);
   const association::Assignment assignment =
       association::associate(options_.method, association::make_innovation_problem(joint, scan, options_.gates), how);
   std::vector<core::AssociationReport> reports;

@@ -37,14 +37,12 @@ TEST(LandmarkLife, LearnsNothingWhileStandingStill) {
 TEST(LandmarkLife, TentativeOnesDieUnconfirmedAndLeaveNoTrace) {
   LandmarkLife life;
   life.observe(at(0.0), {}, {4, 5}, {});
-  EXPECT_TRUE(life.seen_together(4, 5));
   LifeChanges changes;
   for (int k = 1; k <= 2; ++k) changes = life.observe(at(k), {5}, {}, {4, 5});
   EXPECT_EQ(changes.died, std::vector<core::LandmarkId>{4});
   EXPECT_FALSE(life.contains(4));
   EXPECT_EQ(life.state(4), LandmarkState::dead);
   EXPECT_EQ(life.records().size(), 1u);
-  EXPECT_TRUE(life.record(5).seen_with.empty());
 }
 
 TEST(LandmarkLife, TentativeOnesDieWhenTheDriveLeavesThemBehind) {
@@ -109,18 +107,6 @@ TEST(LandmarkLife, KeepsATreeThatIsOftenHiddenAndDropsClutter) {
   EXPECT_LE(phantoms_matured, 12);  // two hits before two net misses: about 0.01 + 0.01, here 2 % expected
 }
 
-TEST(LandmarkLife, KnowsWhoWasEverSeenTogether) {
-  LandmarkLife life;
-  life.observe(at(0.0), {}, {1, 2}, {});
-  life.observe(at(1.0), {2}, {3}, {});
-  EXPECT_TRUE(life.seen_together(1, 2));
-  EXPECT_TRUE(life.seen_together(3, 2));
-  EXPECT_FALSE(life.seen_together(1, 3));
-  life.remove(2);
-  EXPECT_FALSE(life.contains(2));
-  EXPECT_TRUE(life.record(1).seen_with.empty());
-}
-
 TEST(LandmarkLife, RefusesUnknownAndRebornLandmarksAndStaysAsItWas) {
   LandmarkLife life;
   life.observe(at(0.0), {}, {1}, {});
@@ -154,9 +140,6 @@ TEST(LandmarkLife, OfTwoThatAreOneGoesOnAsOne) {
   EXPECT_EQ(life.record(4).hits, 6);
   EXPECT_EQ(life.record(4).last_seen_path_m, 101.0);
   EXPECT_EQ(life.record(4).born_path_m, 0.0);
-  EXPECT_TRUE(life.seen_together(4, 5));
-  EXPECT_TRUE(life.seen_together(4, 10));
-  EXPECT_TRUE(life.seen_together(10, 4));
   EXPECT_THROW(life.merge(4, 4), core::PreconditionError);
   EXPECT_THROW(life.merge(4, 9), core::PreconditionError);
   EXPECT_THROW(life.merge(9, 4), core::PreconditionError);

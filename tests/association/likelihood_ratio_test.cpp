@@ -114,5 +114,39 @@ TEST(LikelihoodRatio, SpreadsExtraneousObservationsEvenly) {
   EXPECT_THROW(uniform_density(view, 0.0), core::PreconditionError);
 }
 
+core::Scan scan_of(const core::FieldOfView& view) {
+  core::Scan scan;
+  scan.field_of_view = view;
+  scan.observations = {core::make_range_bearing(4.0, 0.3, 0.1, 0.01), core::make_bearing(1.0, 0.01),
+                       core::make_cartesian({3.0, 4.0}, Eigen::Matrix2d::Identity())};
+  return scan;
+}
+
+TEST(DensityInView, IsThatOfTheViewWhereTheViewIsBounded) {
+  const core::FieldOfView view{1.0, 31.0, -1.0, 1.0};
+  const ExtraneousDensity density = density_in_view(scan_of(view), 3.0, {});
+  for (const auto kind : {core::ObservationKind::range_bearing, core::ObservationKind::cartesian,
+                          core::ObservationKind::bearing, core::ObservationKind::range}) {
+    EXPECT_EQ(density.of(kind), uniform_density(view, 3.0).of(kind));
+  }
+}
+
+TEST(DensityInView, ReachesToTheFurthestPointSeenWhereNobodyKnowsTheView) {
+  core::FieldOfView unknown;
+  unknown.max_range_m = 0.0;
+  const ExtraneousDensity density = density_in_view(scan_of(unknown), 2.0, {});
+  EXPECT_NEAR(density.of(core::ObservationKind::cartesian), 2.0 / (core::pi * 25.0), 1e-15);
+  EXPECT_NEAR(density.of(core::ObservationKind::range_bearing), 2.0 / (5.0 * 2.0 * core::pi), 1e-15);
+}
+
+TEST(DensityInView, IsTheCallersWhereNothingBoundsIt) {
+  ExtraneousDensity given;
+  given.cartesian_per_m2 = 0.123;
+  EXPECT_EQ(density_in_view(scan_of(core::FieldOfView{}), 1.0, given).cartesian_per_m2, 0.123);
+  core::Scan blind = scan_of({0.0, 0.0, -core::pi, core::pi});
+  blind.observations = {core::make_bearing(1.0, 0.01)};
+  EXPECT_EQ(density_in_view(blind, 1.0, given).cartesian_per_m2, 0.123);
+}
+
 }  // namespace
 }  // namespace helixnav::association

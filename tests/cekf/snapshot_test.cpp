@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "helixnav/cekf/snapshot_ring.hpp"
 
 #include <gtest/gtest.h>
 
@@ -105,22 +104,6 @@ TEST_P(Rewind, OfAPhaseThatWasUndoneIsRefused) {
   program.filter.restore(early);
   program.filter.switch_region();
   EXPECT_THROW(program.filter.restore(undone), core::PreconditionError);
-}
-
-TEST_P(Rewind, ByTheRingReachesTwoHundredStepsBackAcrossSwitches) {
-  RandomProgram program(26, {GetParam(), 220, 40, false});
-  SnapshotRing ring(200, 10);
-  std::string at_210;
-  for (int k = 0; k < 420; ++k) {
-    program.step();
-    ring.offer(program.filter, k);
-    if (k == 210) at_210 = bytes_of(program.filter, Passive::means_only);
-  }
-  EXPECT_TRUE(ring.reaches(219));
-  EXPECT_FALSE(ring.reaches(150));
-  EXPECT_THROW(ring.rewind(program.filter, 150), core::PreconditionError);
-  EXPECT_EQ(ring.rewind(program.filter, 219), 210);
-  EXPECT_TRUE(bytes_of(program.filter, Passive::means_only) == at_210);
 }
 
 TEST_P(Rewind, NamesNoLandmarkTwiceWhenAskedTo) {

@@ -100,5 +100,32 @@ TEST_F(BadInput, AnEventBeforeTheLastOneIsRefused) {
   EXPECT_THROW(localizer_->observe(scan_), core::PreconditionError);
 }
 
+// Graph files leave the view at a greatest range of zero: what was not seen from there, nobody knows.
+TEST(UnknownView, IsLocalisedInAllTheSame) {
+  const core::Recording run = sim::simulate(sim::named_scenario("circuit"), 8);
+  std::vector<core::MapLandmark> map;
+  for (const core::TrueLandmark& landmark : run.true_landmarks) {
+    core::MapLandmark& known = map.emplace_back();
+    known.id = static_cast<core::LandmarkId>(landmark.label);
+    known.point.mean_m = landmark.point_m;
+  }
+  Localizer localizer(run.start, map);
+  int matched = 0;
+  int observations = 0;
+  for (const core::Event& event : run.events) {
+    if (const auto* odometry = std::get_if<core::Odometry>(&event)) localizer.move(*odometry);
+    const auto* scan = std::get_if<core::Scan>(&event);
+    if (scan == nullptr) continue;
+    core::Scan unbounded = *scan;
+    unbounded.field_of_view = {};
+    unbounded.field_of_view.max_range_m = 0.0;
+    for (const core::AssociationReport& a : localizer.observe(unbounded).associations) {
+      matched += a.outcome == core::Outcome::matched;
+      ++observations;
+    }
+  }
+  EXPECT_GT(matched, observations / 2);
+}
+
 }  // namespace
 }  // namespace helixnav::localization

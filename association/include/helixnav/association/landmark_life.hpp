@@ -38,7 +38,6 @@ struct LandmarkRecord {
   Eigen::Vector2d last_miss_at_m = Eigen::Vector2d::Zero();
   double born_path_m = 0.0;  ///< length of the drive then
   double last_seen_path_m = 0.0;
-  std::vector<core::LandmarkId> seen_with;  ///< ever in the same scan, ascending
 };
 
 /// What one scan changed. Whoever owns the filter removes the dead ones from it.
@@ -49,7 +48,7 @@ struct LifeChanges {
 
 /// Who of the map is tentative, mature or dead: bookkeeping only, a value without a filter, copied with a snapshot.
 /// log-odds += ln(P_D/P_F) for a hit and ln((1−P_D)/(1−P_F)) for a miss. Dead landmarks leave the book.
-/// Cost of a scan O((seen + expected) log n + seen²). Test: association/landmark_life_test.cpp.
+/// Cost of a scan O((seen + expected) log n + n + seen · expected). Test: association/landmark_life_test.cpp.
 class LandmarkLife {
  public:
   /// PreconditionError unless 0 < P_F < P_D < 1, deaths lie below birth and maturity above it.
@@ -76,8 +75,6 @@ class LandmarkLife {
   core::LandmarkState state(core::LandmarkId id) const;     ///< dead when it is not in the book
   const std::vector<LandmarkRecord>& records() const { return records_; }  ///< ascending by id
 
-  bool seen_together(core::LandmarkId a, core::LandmarkId b) const;
-
   /// Length of the drive so far, what last_seen_path_m is measured on.
   double path_m() const { return path_m_; }
 
@@ -88,7 +85,6 @@ class LandmarkLife {
                   const std::vector<core::LandmarkId>& expected) const;
   void hit(LandmarkRecord& record, const Eigen::Vector2d& sensor_m);
   void miss(LandmarkRecord& record, const Eigen::Vector2d& sensor_m);
-  void note_company(const std::vector<core::LandmarkId>& company);
   bool is_dying(const LandmarkRecord& record) const;
 
   LifeOptions options_;

@@ -19,8 +19,14 @@ struct ExtraneousDensity {
 };
 
 /// `expected_per_scan` observations spread evenly over the field of view in the coordinates of each kind. Throws
-/// PreconditionError unless the field of view is bounded and has an area.
+/// PreconditionError unless the field of view is bounded and has an area, and the number is positive.
 ExtraneousDensity uniform_density(const core::FieldOfView& field_of_view, double expected_per_scan);
+
+/// The same for one scan of whatever view: even over the view where it is bounded and has an area; over the disc out to
+/// the furthest point seen where nobody knows the view (its greatest range is zero, as in graph files); `unbounded` where
+/// the view has no bound or the scan holds no range. PreconditionError unless the number is positive.
+/// Test: association/likelihood_ratio_test.cpp.
+ExtraneousDensity density_in_view(const core::Scan& scan, double expected_per_scan, const ExtraneousDensity& unbounded);
 
 /// Costs in nats: −ln[P_D N(ν; 0, S)/(1 − P_D)] for a pair, −ln λ for an observation without one; entry e of the
 /// result is pair e of the problem. The ratio of two hypotheses is the posterior odds
