@@ -8,11 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/LU>
-
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/observation.hpp"
 #include "helixnav/core/odometry.hpp"
+#include "helixnav/core/pose_on_map.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -43,39 +42,6 @@ std::map<core::LandmarkId, int> sightings(const std::vector<Stop>& stops, const 
   }
   return count;
 }
-
-/// The vehicle among landmarks whose places are known: an EKF of its pose alone.
-class PoseOnMap {
- public:
-  explicit PoseOnMap(const core::PoseGaussian& start) : pose_(start) {}
-
-  const core::Pose2& mean() const { return pose_.mean; }
-
-  void move(const core::Odometry& odometry) {
-    const core::ComposeJacobians J = core::compose_jacobians(pose_.mean, odometry.T_before_after);
-    pose_.mean = core::compose(pose_.mean, odometry.T_before_after);
-    pose_.covariance = (J.J_first * pose_.covariance * J.J_first.transpose() +
-                        J.J_second * odometry.covariance * J.J_second.transpose())
-                           .eval();
-  }
-
-  void see(const cekf::Match& match, const Eigen::Vector2d& point_m) {
-    const core::Observation& seen = match.observation;
-    const core::PredictedObservation predicted =
-        core::predict_observation(seen.kind, pose_.mean, match.T_robot_sensor, point_m);
-    using PoseByObs = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 2>;
-    const PoseByObs PHt = pose_.covariance * predicted.H_pose.transpose();
-    const core::ObsMatrix S = predicted.H_pose * PHt + seen.R;
-    const PoseByObs K = PHt * S.inverse();
-    const core::ObsVector nu = core::innovation(seen.kind, seen.z, predicted.z_hat);
-    pose_.mean = core::Pose2(Eigen::Vector3d(pose_.mean.vector() + K * nu));
-    const Eigen::Matrix3d P = pose_.covariance - K * PHt.transpose();
-    pose_.covariance = 0.5 * (P + P.transpose());
-  }
-
- private:
-  core::PoseGaussian pose_;
-};
 
 class Builder {
  public:
@@ -132,7 +98,7 @@ class Builder {
   /// Landmarks whose places are known say where the vehicle is, and it says where the others are.
   void observe(const Stop& stop, const std::vector<cekf::Match>& seen) {
     for (const cekf::Match& match : seen) {
-      if (const auto point_m = place_of(match.landmark)) vehicle_.see(match, *point_m);
+      if (const auto point_m = place_of(match.landmark)) vehicle_.see(match.observation, match.T_robot_sensor, *point_m);
     }
     for (const cekf::Match& match : seen) {
       graph_.landmark_edges.push_back({last_pose(), index_of(match), match.T_robot_sensor, match.observation});
@@ -164,7 +130,7 @@ class Builder {
   std::optional<core::Odometry> last_motion_;
   const cekf::CompressedEkf& filter_;
   std::map<core::LandmarkId, int> sightings_;
-  PoseOnMap vehicle_;
+  core::PoseOnMap vehicle_;
   std::optional<core::Odometry> motion_;  ///< since the last pose
   LandmarkGraph graph_;
   std::map<core::LandmarkId, int> index_of_landmark_;

@@ -54,9 +54,7 @@ std::vector<core::AssociationReport> associate_scan(const core::Scan& scan, cons
                                                     const NavigatorOptions& options, double path_m,
                                                     Confirmation& confirmation) {
   association::Options how = options.association;
-  if (std::isfinite(scan.field_of_view.max_range_m)) {
-    how.extraneous = association::uniform_density(scan.field_of_view, options.extraneous_per_scan);
-  }
+  how.extraneous = association::density_in_view(scan, options.extraneous_per_scan, how.extraneous);
   std::vector<core::AssociationReport> reports =
       association_reports(association::associate(options.method, gated.gating->problem, how));
   defer_isolated_match(gated.returns, options.search, path_m, confirmation, reports);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "association_report.hpp"
+#include "helixnav/core/check_event.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "judge_fix.hpp"
@@ -47,10 +48,12 @@ std::optional<StepReport> NamedNavigator::take(const core::Event& event, const s
 }
 
 void NamedNavigator::move(const core::Odometry& odometry) {
+  core::check(odometry);
   pending_.motion = pending_.motion ? core::chain(*pending_.motion, odometry) : odometry;
 }
 
 StepReport NamedNavigator::observe(const core::Scan& scan, const std::vector<std::int64_t>& identities) {
+  core::check(scan);
   if (identities.size() != scan.observations.size()) {
     throw core::PreconditionError("observe: " + std::to_string(identities.size()) + " identities for " +
                                   std::to_string(scan.observations.size()) + " observations");
@@ -59,6 +62,7 @@ StepReport NamedNavigator::observe(const core::Scan& scan, const std::vector<std
 }
 
 bool NamedNavigator::fix(const core::AbsoluteFix& fix) {
+  core::check(fix);
   return all_or_nothing([&] { return use_fix(fix); });
 }
 

@@ -3,6 +3,7 @@
 
 #include <variant>
 
+#include "helixnav/core/check_event.hpp"
 #include "navigation_loop.hpp"
 
 namespace helixnav::supervisor {
@@ -21,9 +22,20 @@ std::optional<core::StepReport> Navigator::take(const core::Event& event) {
   return std::nullopt;
 }
 
-void Navigator::move(const core::Odometry& odometry) { loop_->move(odometry); }
-core::StepReport Navigator::observe(const core::Scan& scan) { return loop_->observe(scan); }
-bool Navigator::fix(const core::AbsoluteFix& fix) { return loop_->fix(fix); }
+void Navigator::move(const core::Odometry& odometry) {
+  core::check(odometry);
+  loop_->move(odometry);
+}
+
+core::StepReport Navigator::observe(const core::Scan& scan) {
+  core::check(scan);
+  return loop_->observe(scan);
+}
+
+bool Navigator::fix(const core::AbsoluteFix& fix) {
+  core::check(fix);
+  return loop_->fix(fix);
+}
 
 core::PoseGaussian Navigator::pose() const { return filter().pose(); }
 const cekf::CompressedEkf& Navigator::filter() const { return loop_->belief().filter; }

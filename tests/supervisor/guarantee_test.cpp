@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "circuits.hpp"
+#include "helixnav/core/errors.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
 
 namespace {
@@ -209,6 +210,26 @@ TEST(Guarantee, HoldsForObservationsKnownByName) {
   }
   EXPECT_GT(broken, 50);
   expect_same_map(navigator.map(), twin.map());
+}
+
+TEST(Guarantee, WhatNoEventMayHoldIsRefusedAtTheDoor) {
+  Navigator navigator{core::PoseGaussian{}};
+  NamedNavigator named{core::PoseGaussian{}};
+  core::Odometry lost;
+  lost.T_before_after.x_m = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(navigator.move(lost), core::PreconditionError);
+  EXPECT_THROW(named.move(lost), core::PreconditionError);
+  core::Scan scan;
+  scan.field_of_view.max_range_m = 30.0;
+  scan.observations = {core::make_range_bearing(10.0, 0.1, 0.1, 0.02), core::make_range_bearing(12.0, 0.5, 0.1, 0.02)};
+  scan.observations.back().z[0] = -12.0;
+  EXPECT_THROW(navigator.observe(scan), core::PreconditionError);
+  EXPECT_THROW(named.observe(scan, {1, 2}), core::PreconditionError);
+  EXPECT_EQ(navigator.filter().mapped_count(), 0) << "the good one before it left no landmark";
+  EXPECT_EQ(named.filter().mapped_count(), 0);
+  scan.observations.back().z[0] = 12.0;
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(navigator.observe(scan).step, k);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(named.observe(scan, {1, 2}).mapped_landmarks, 2);
 }
 
 }  // namespace

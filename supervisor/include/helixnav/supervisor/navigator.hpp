@@ -25,7 +25,7 @@ class NavigationLoop;
 /// (docs/adr/0010-solving-the-drive.md, SearchOptions::smooth_up_to_scans). Source: hybrid_masson2003 §3, PROTOTYPE.
 /// The map frame is that of the start pose; nothing here knows of truth, files or screens.
 ///
-/// Strong guarantee: a call that throws (PreconditionError for arguments, NumericalError for broken mathematics,
+/// Strong guarantee: a call that throws (PreconditionError for events that core::check refuses, NumericalError for broken mathematics,
 /// std::bad_alloc) leaves everything as before it. It rolls back to its last checkpoint and goes through what came since
 /// again, so that a failure costs as much as these scans did, and nothing is copied as long as none occurs; covariances
 /// between landmarks outside the active region come back to round-off, everything else bit for bit.
