@@ -4,7 +4,7 @@ include(GNUInstallDirs)
 # Folder = namespace = target (helixnav::<room>) = include path (helixnav/<room>/…).
 function(helixnav_module room)
   cmake_parse_arguments(ARG "" "" "DEPENDS;PRIVATE_DEPENDS" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/*.cpp)
   set(target helixnav_${room})
   add_library(${target} STATIC ${sources})
   add_library(helixnav::${room} ALIAS ${target})
