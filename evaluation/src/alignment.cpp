@@ -2,12 +2,12 @@
 #include "helixnav/evaluation/alignment.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/random.hpp"
+#include "rigid_fit.hpp"
 
 namespace helixnav::evaluation {
 
@@ -22,31 +22,15 @@ std::vector<double> residuals_m(const Points& a, const Points& b, const core::Po
   return residuals;
 }
 
-core::Pose2 fit(const Points& a, const Points& b, const std::vector<bool>& used) {
-  Eigen::Vector2d mean_a = Eigen::Vector2d::Zero();
-  Eigen::Vector2d mean_b = Eigen::Vector2d::Zero();
-  double count = 0.0;
+core::Pose2 fit_used(const Points& a, const Points& b, const std::vector<bool>& used) {
+  Points used_a;
+  Points used_b;
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (!used[i]) continue;
-    mean_a += a[i];
-    mean_b += b[i];
-    count += 1.0;
+    used_a.push_back(a[i]);
+    used_b.push_back(b[i]);
   }
-  if (count == 0.0) return {};
-  mean_a /= count;
-  mean_b /= count;
-  double cross = 0.0;
-  double dot = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (!used[i]) continue;
-    const Eigen::Vector2d da = a[i] - mean_a;
-    const Eigen::Vector2d db = b[i] - mean_b;
-    cross += db.x() * da.y() - db.y() * da.x();
-    dot += db.dot(da);
-  }
-  const double heading = std::atan2(cross, dot);
-  const Eigen::Vector2d position = mean_a - core::rotation(heading) * mean_b;
-  return {position.x(), position.y(), heading};
+  return fit_rigidly(used_a, used_b);
 }
 
 RigidAlignment within(const Points& a, const Points& b, const core::Pose2& T_a_b, double limit_m) {
@@ -63,7 +47,7 @@ RigidAlignment within(const Points& a, const Points& b, const core::Pose2& T_a_b
 RigidAlignment refine(const Points& a, const Points& b, const core::Pose2& begin, double limit_m) {
   RigidAlignment now = within(a, b, begin, limit_m);
   for (int iteration = 0; iteration < 100; ++iteration) {
-    RigidAlignment next = within(a, b, fit(a, b, now.used), limit_m);
+    RigidAlignment next = within(a, b, fit_used(a, b, now.used), limit_m);
     const bool stays = next.used == now.used;
     now = std::move(next);
     if (stays) break;
@@ -80,7 +64,7 @@ core::Pose2 least_median(const Points& a, const Points& b) {
     const auto i = static_cast<std::size_t>(random.below(a.size()));
     const auto j = static_cast<std::size_t>(random.below(a.size()));
     if (i == j || a[i] == a[j] || b[i] == b[j]) continue;
-    const core::Pose2 candidate = fit({a[i], a[j]}, {b[i], b[j]}, {true, true});
+    const core::Pose2 candidate = fit_rigidly({a[i], a[j]}, {b[i], b[j]});
     std::vector<double> residuals = residuals_m(a, b, candidate);
     const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
     std::nth_element(residuals.begin(), middle, residuals.end());
@@ -100,8 +84,7 @@ RigidAlignment align_rigidly(const Points& points_a, const Points& points_b, dou
                                   std::to_string(points_b.size()) + " points, expected as many of one as of the other");
   }
   if (points_a.empty()) return {};
-  const std::vector<bool> all(points_a.size(), true);
-  RigidAlignment from_all = refine(points_a, points_b, fit(points_a, points_b, all), limit_m);
+  RigidAlignment from_all = refine(points_a, points_b, fit_rigidly(points_a, points_b), limit_m);
   RigidAlignment from_median = refine(points_a, points_b, least_median(points_a, points_b), limit_m);
   return from_median.used_count > from_all.used_count ? from_median : from_all;
 }

@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "helixnav/core/merged_ids.hpp"
+
 namespace helixnav::evaluation {
 namespace {
 
@@ -26,28 +28,9 @@ std::size_t pairs_in(const std::map<Key, std::size_t>& counts) {
   return pairs;
 }
 
-/// Which landmark stands for which after all merges.
-class Survivors {
- public:
-  explicit Survivors(const std::vector<core::StepReport>& steps) {
-    for (const core::StepReport& step : steps) {
-      for (const core::MergedLandmarks& merged : step.merged) heir_[of(merged.removed)] = of(merged.kept);
-    }
-  }
-  LandmarkId of(LandmarkId id) const {
-    for (auto heir = heir_.find(id); heir != heir_.end() && heir->second != id; heir = heir_.find(id)) {
-      id = heir->second;
-    }
-    return id;
-  }
-
- private:
-  std::map<LandmarkId, LandmarkId> heir_;
-};
-
 class Scorer {
  public:
-  explicit Scorer(const std::vector<core::StepReport>& steps) : survivors_(steps) {}
+  explicit Scorer(const std::vector<core::StepReport>& steps) : merged_(steps) {}
 
   void add(const core::StepReport& step, const core::AssociationReport& association, Label label) {
     const bool matched = association.outcome == core::Outcome::matched;
@@ -90,7 +73,7 @@ class Scorer {
   }
 
   void attribute(LandmarkId landmark, Label label, const Visit& visit) {
-    ++by_landmark_[survivors_.of(landmark)][visit];
+    ++by_landmark_[merged_.now(landmark)][visit];
     identity_.try_emplace(landmark, label);
   }
 
@@ -106,7 +89,7 @@ class Scorer {
   void count_map(const std::vector<core::MapLandmark>& map) {
     std::map<Label, std::size_t> landmarks_of_label;
     for (const core::MapLandmark& landmark : map) {
-      const auto visits = by_landmark_.find(survivors_.of(landmark.id));
+      const auto visits = by_landmark_.find(merged_.now(landmark.id));
       if (landmark.state != core::LandmarkState::mature || visits == by_landmark_.end()) continue;
       std::map<Label, std::size_t> by_label;
       for (const auto& [visit, n] : visits->second) by_label[visit.first] += n;
@@ -120,7 +103,7 @@ class Scorer {
   }
 
   AssociationScore score_;
-  Survivors survivors_;
+  core::MergedIds merged_;
   std::map<Label, std::pair<std::int64_t, int>> last_seen_;  ///< scan and number of the visit
   std::map<Label, std::size_t> of_label_;
   std::map<Visit, std::size_t> of_visit_;

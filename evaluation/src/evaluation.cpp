@@ -6,11 +6,10 @@
 #include <limits>
 #include <map>
 
-#include <Eigen/Cholesky>
-
 #include "evaluation_map.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/evaluation/alignment.hpp"
+#include "helixnav/evaluation/nees.hpp"
 #include "run_interpolation.hpp"
 
 namespace helixnav::evaluation {
@@ -79,12 +78,6 @@ PositionEvaluation evaluate_positions(const runs::Run& run, const runs::RunTruth
   return result;
 }
 
-double nees_of(const Eigen::Vector3d& error, const Eigen::Matrix3d& P) {
-  const Eigen::LLT<Eigen::Matrix3d> llt(P);
-  if (llt.info() != Eigen::Success) return nan;
-  return llt.matrixL().solve(error).squaredNorm();
-}
-
 void summarize_poses(PoseEvaluation& result) {
   const Band band = two_sided_95(3);
   std::vector<double> headings;
@@ -116,7 +109,7 @@ void evaluate_poses(const runs::Run& run, const runs::RunTruth& truth, Evaluatio
     error.z() = core::wrap_to_pi(error.z());
     const Eigen::Vector3d sigma = estimate->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
     position.errors.push_back({known.t_ns, known.T_world_robot.position_m(), error.head<2>(), sigma.head<2>(), true});
-    pose.errors.push_back({known.t_ns, error.z(), sigma.z(), nees_of(error, estimate->covariance)});
+    pose.errors.push_back({known.t_ns, error.z(), sigma.z(), nees(*estimate, known.T_world_robot)});
   }
   position.fixes_used = position.errors.size();
   position.error_m = statistics_of_used(position.errors);

@@ -9,17 +9,8 @@
 
 namespace helixnav::evaluation {
 
-/// One landmark, where the map has it and where its tree stands.
-struct PlacedTwice {
-  Eigen::Vector2d map_m = Eigen::Vector2d::Zero();
-  Eigen::Vector2d true_m = Eigen::Vector2d::Zero();
-};
-
-/// T_true_map of least squared distance, closed form: heading = atan2(Σ m×t, Σ m·t) over centred points; heading 0 with
-/// fewer than two distinct points.
-core::Pose2 rigid_fit(const std::vector<PlacedTwice>& points);
-
-/// Root of the mean squared distance after that; NaN with fewer than two points.
-double rms_after_fit(const std::vector<PlacedTwice>& points);
+/// T_a_b of least Σ|a − T_a_b·b|², closed form: heading = atan2(Σ b×a, Σ b·a) over centred points. Heading 0 with fewer
+/// than two distinct points, the identity without any. The lists are equally long.
+core::Pose2 fit_rigidly(const std::vector<Eigen::Vector2d>& points_a, const std::vector<Eigen::Vector2d>& points_b);
 
 }  // namespace helixnav::evaluation

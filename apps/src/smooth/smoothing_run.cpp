@@ -12,6 +12,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "helixnav/core/errors.hpp"
+#include "helixnav/core/merged_ids.hpp"
 #include "helixnav/smoothing/marginals.hpp"
 #include "helixnav/smoothing/residuals.hpp"
 
@@ -122,28 +123,9 @@ std::vector<std::pair<std::string, double>> numbers_of(const smoothing::Report& 
           {"converged", report.reason == smoothing::Reason::converged ? 1.0 : 0.0}};
 }
 
-/// [removed] what the closures of a run kept in its stead.
-std::map<core::LandmarkId, core::LandmarkId> kept_landmarks(const std::vector<core::StepReport>& steps) {
-  std::map<core::LandmarkId, core::LandmarkId> kept;
-  for (const core::StepReport& step : steps) {
-    for (const core::MergedLandmarks& merge : step.merged) kept[merge.removed] = merge.kept;
-  }
-  return kept;
-}
-
-/// What a landmark is at the end. As many merges as there are, so that a folder that was tampered with ends, too.
-core::LandmarkId survivor(const std::map<core::LandmarkId, core::LandmarkId>& kept, core::LandmarkId id) {
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    const auto found = kept.find(id);
-    if (found == kept.end()) break;
-    id = found->second;
-  }
-  return id;
-}
-
 /// [landmark of the task] the run's landmark that shares most observations with it.
 std::vector<core::LandmarkId> partners_in_run(const SmoothingTask& task, const std::vector<core::StepReport>& steps) {
-  const std::map<core::LandmarkId, core::LandmarkId> kept = kept_landmarks(steps);
+  const core::MergedIds ids(steps);
   std::vector<std::map<core::LandmarkId, int>> votes(task.problem.graph.landmarks.size());
   for (std::size_t k = 0; k < steps.size(); ++k) {
     for (const core::AssociationReport& a : steps[k].associations) {
@@ -151,7 +133,7 @@ std::vector<core::LandmarkId> partners_in_run(const SmoothingTask& task, const s
       if (!counts || index(a.observation) >= task.edge_of[k].size()) continue;
       const int edge = task.edge_of[k][index(a.observation)];
       if (edge < 0) continue;
-      ++votes[index(task.problem.graph.landmark_edges[index(edge)].landmark)][survivor(kept, a.landmark)];
+      ++votes[index(task.problem.graph.landmark_edges[index(edge)].landmark)][ids.now(a.landmark)];
     }
   }
   std::vector<core::LandmarkId> partners;
@@ -192,7 +174,7 @@ SmoothingTask task_from_graph(core::LandmarkGraph graph) {
 }
 
 Ids ids_of_run(const std::vector<core::StepReport>& steps, const core::Recording& recording) {
-  const std::map<core::LandmarkId, core::LandmarkId> kept = kept_landmarks(steps);
+  const core::MergedIds merged(steps);
   Ids ids;
   for (const core::Event& event : recording.events) {
     const auto* scan = std::get_if<core::Scan>(&event);
@@ -201,7 +183,7 @@ Ids ids_of_run(const std::vector<core::StepReport>& steps, const core::Recording
     if (ids.size() > steps.size()) continue;
     for (const core::AssociationReport& a : steps[ids.size() - 1].associations) {
       const bool settled = a.outcome == core::Outcome::matched || a.outcome == core::Outcome::augmented;
-      if (settled && index(a.observation) < here.size()) here[index(a.observation)] = survivor(kept, a.landmark);
+      if (settled && index(a.observation) < here.size()) here[index(a.observation)] = merged.now(a.landmark);
     }
   }
   return ids;
