@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "degrees.hpp"
 #include "helixnav/reports/summary.hpp"
 #include "json.hpp"
 
@@ -18,8 +19,6 @@ std::string format(const char* pattern, Values... values) {
   return text;
 }
 
-double degrees(double angle_rad) { return angle_rad * 180.0 / core::pi; }
-
 std::string position_text(const evaluation::PositionEvaluation& position) {
   const evaluation::ErrorStatistics& e = position.error_m;
   std::string text = format("position error       RMSE %.3f m, median %.3f m, 95 %% %.3f m, maximum %.3f m\n", e.rmse,
@@ -30,7 +29,7 @@ std::string position_text(const evaluation::PositionEvaluation& position) {
   if (position.aligned) {
     text += format("  fixes left out     %zu (farther than %g m)\n", position.fixes_left_out, position.limit_m);
     text += format("  alignment          x %.3f m, y %.3f m, heading %.3f deg (map in the frame of the fixes)\n",
-                   position.T_truth_map.x_m, position.T_truth_map.y_m, degrees(position.T_truth_map.heading_rad));
+                   position.T_truth_map.x_m, position.T_truth_map.y_m, in_degrees(position.T_truth_map.heading_rad));
   }
   if (position.fixes_outside > 0) text += format("  outside the run    %zu\n", position.fixes_outside);
   return text;
@@ -39,7 +38,7 @@ std::string position_text(const evaluation::PositionEvaluation& position) {
 std::string pose_text(const evaluation::PoseEvaluation& pose) {
   const evaluation::ErrorStatistics& e = pose.heading_error_rad;
   std::string text = format("heading error        RMSE %.3f deg, median %.3f deg, 95 %% %.3f deg, maximum %.3f deg\n",
-                            degrees(e.rmse), degrees(e.median), degrees(e.p95), degrees(e.max));
+                            in_degrees(e.rmse), in_degrees(e.median), in_degrees(e.p95), in_degrees(e.max));
   if (pose.nees_count > 0) {
     text += format("NEES                 mean %.3f (3 when consistent), %.1f %% inside the 95 %% band, %zu instants\n",
                    pose.nees_mean, 100.0 * pose.nees_inside_95, pose.nees_count);

@@ -13,7 +13,7 @@ Json pose_json(const core::Pose2& pose) {
   return {millimetres(pose.x_m), millimetres(pose.y_m), millimetres(pose.heading_rad)};
 }
 
-const double* number(const core::Decision& decision, const char* name) {
+const double* number_named(const core::Decision& decision, const char* name) {
   const auto found = std::find_if(decision.numbers.begin(), decision.numbers.end(),
                                   [&](const auto& number) { return number.first == name; });
   return found == decision.numbers.end() ? nullptr : &found->second;
@@ -21,9 +21,9 @@ const double* number(const core::Decision& decision, const char* name) {
 
 /// The pose whose numbers are named `prefix`x_m and so on; null when one is missing.
 Json pose_of(const core::Decision& decision, const std::string& prefix) {
-  const double* x_m = number(decision, (prefix + "x_m").c_str());
-  const double* y_m = number(decision, (prefix + "y_m").c_str());
-  const double* heading_rad = number(decision, (prefix + "heading_rad").c_str());
+  const double* x_m = number_named(decision, (prefix + "x_m").c_str());
+  const double* y_m = number_named(decision, (prefix + "y_m").c_str());
+  const double* heading_rad = number_named(decision, (prefix + "heading_rad").c_str());
   if (x_m == nullptr || y_m == nullptr || heading_rad == nullptr) return nullptr;
   return pose_json({*x_m, *y_m, *heading_rad});
 }
@@ -82,7 +82,7 @@ Json closure_json(const runs::Run& run, std::size_t k, const core::Decision& clo
     if (!step.cloud.empty()) json["views"].push_back(view_json(run, step, step.step - run.steps[begin].step));
     for (const core::Decision& decision : step.decisions) {
       if (decision.kind != "constellation") continue;
-      const double* rival_matched = number(decision, "rival_matched");
+      const double* rival_matched = number_named(decision, "rival_matched");
       json["winner"] = pose_of(decision, "");
       json["rival"] = rival_matched != nullptr && *rival_matched > 0.0 ? pose_of(decision, "rival_") : Json(nullptr);
     }

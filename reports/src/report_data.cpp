@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "degrees.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/runs/words.hpp"
 #include "report_closures.hpp"
@@ -30,8 +31,6 @@ Json rounded(double value, double unit = 1e-4) {
 Json time_of(core::Nanoseconds t_ns) { return rounded(core::seconds(t_ns), 1e-3); }
 
 double sigma(double variance) { return std::sqrt(std::max(variance, 0.0)); }
-
-double degrees(double angle_rad) { return angle_rad * 180.0 / core::pi; }
 
 // {"name": [value(item) of every stride-th item], …}
 template <typename Item>
@@ -61,7 +60,7 @@ constexpr Column<core::StepReport> health_columns[] = {
     {"active", [](const core::StepReport& s) -> Json { return s.active_landmarks; }},
     {"sx", [](const core::StepReport& s) { return rounded(sigma(s.pose.covariance(0, 0))); }},
     {"sy", [](const core::StepReport& s) { return rounded(sigma(s.pose.covariance(1, 1))); }},
-    {"sh", [](const core::StepReport& s) { return rounded(degrees(sigma(s.pose.covariance(2, 2)))); }}};
+    {"sh", [](const core::StepReport& s) { return rounded(in_degrees(sigma(s.pose.covariance(2, 2)))); }}};
 
 constexpr Column<evaluation::PositionError> error_columns[] = {
     {"t", [](const evaluation::PositionError& e) { return time_of(e.t_ns); }},
@@ -72,8 +71,8 @@ constexpr Column<evaluation::PositionError> error_columns[] = {
 
 constexpr Column<evaluation::HeadingError> heading_columns[] = {
     {"t", [](const evaluation::HeadingError& e) { return time_of(e.t_ns); }},
-    {"e", [](const evaluation::HeadingError& e) { return rounded(degrees(e.error_rad)); }},
-    {"s", [](const evaluation::HeadingError& e) { return rounded(degrees(e.sigma_rad)); }}};
+    {"e", [](const evaluation::HeadingError& e) { return rounded(in_degrees(e.error_rad)); }},
+    {"s", [](const evaluation::HeadingError& e) { return rounded(in_degrees(e.sigma_rad)); }}};
 
 constexpr Column<evaluation::PositionError> point_columns[] = {
     {"x", [](const evaluation::PositionError& e) { return rounded(e.true_map_m.x(), 1e-3); }},

@@ -30,10 +30,6 @@ struct Range {
   double range_m;
 };
 
-bool ends_with(std::string_view text, std::string_view ending) {
-  return text.size() >= ending.size() && text.substr(text.size() - ending.size()) == ending;
-}
-
 /// The run's path up to and without "_odometry.csv".
 std::string run_prefix(const std::filesystem::path& folder_or_odometry) {
   std::string found = folder_or_odometry.string();
