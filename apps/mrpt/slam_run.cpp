@@ -21,9 +21,8 @@
 #include "ground_truth.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
-#include "helixnav/evaluation/evaluation.hpp"
 #include "helixnav/mrpt_adapter/run_access.hpp"
-#include "helixnav/reports/report.hpp"
+#include "helixnav/reports/finish_run.hpp"
 #include "helixnav/reports/summary.hpp"
 #include "helixnav/runs/run_recorder.hpp"
 #include "helixnav/runs/run_writer.hpp"
@@ -149,9 +148,7 @@ class Run {
     if (writer_) {
       runs::Run run = recorder_->finish(RunAccess::map(builder_));
       run.timing = {{"median_us", median_us()}, {"reading_s", reading_s}, {"navigating_s", navigating_s}};
-      const evaluation::Evaluation judged = evaluation::evaluate(run);
-      writer_->finish(run, reports::render_report(run, judged), reports::summary_json(run, judged));
-      std::fputs(reports::evaluation_text(judged).c_str(), stdout);
+      std::fputs(reports::evaluation_text(reports::finish_run(run, *writer_)).c_str(), stdout);
     }
     if (files_) files_->write_end(builder_);
     print_summary();

@@ -156,6 +156,12 @@ TEST_F(Smooth, TakesALogOfSeveralFilesAndJudgesTheOptimum) {
   EXPECT_GE(json::parse(text_of(folder("optimum") / "manifest.json")).at("inputs").size(), 2u);
 }
 
+TEST_F(Smooth, TakesQuietLikeEveryCommandThatWritesARun) {
+  std::ofstream(folder("graph.g2o")) << "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nVERTEX_XY 42 3 1\n"
+                                        "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2_XY 1 42 2 1 1 0 1\n";
+  must({"smooth", folder("graph.g2o"), "--quiet", "--out", folder("run")});
+}
+
 TEST_F(Smooth, NamesTheVariableThatNothingFixes) {
   std::ofstream(folder("graph.g2o")) << "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nVERTEX_SE2 7 2 0 0\nVERTEX_XY 42 3 1\n"
                                         "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2_XY 1 42 2 1 1 0 1\n";

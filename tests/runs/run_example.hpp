@@ -8,9 +8,7 @@
 #include "helixnav/core/random.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/core/step_report.hpp"
-#include "helixnav/evaluation/evaluation.hpp"
-#include "helixnav/reports/report.hpp"
-#include "helixnav/reports/summary.hpp"
+#include "helixnav/reports/finish_run.hpp"
 #include "helixnav/runs/run_recorder.hpp"
 #include "helixnav/runs/run_writer.hpp"
 
@@ -101,9 +99,7 @@ inline Run example_run(std::int64_t steps, double microseconds = 12.3) {
 inline void write_example(const std::string& folder, std::int64_t steps, double microseconds = 12.3) {
   RunWriter writer(folder, example_manifest(), example_recording(steps));
   for (std::int64_t k = 0; k < steps; ++k) writer.write(example_step(k), microseconds);
-  const Run run = example_run(steps, microseconds);
-  const evaluation::Evaluation judged = evaluation::evaluate(run);
-  writer.finish(run, reports::render_report(run, judged), reports::summary_json(run, judged));
+  reports::finish_run(example_run(steps, microseconds), writer);
 }
 
 }  // namespace helixnav::runs

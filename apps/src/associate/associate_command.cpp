@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -15,11 +15,13 @@
 #include "common/commands.hpp"
 #include "common/config_file.hpp"
 #include "common/interrupt.hpp"
+#include "common/navigator_feed.hpp"
 #include "common/progress_bar.hpp"
 #include "common/settings.hpp"
 #include "common/suit_to_log.hpp"
 #include "common/validators.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/core/event_loop.hpp"
 #include "helixnav/core/nearest_name.hpp"
 #include "helixnav/logs/read_recording.hpp"
 #include "helixnav/sim/ihgr_circle.hpp"
@@ -104,26 +106,23 @@ ExitCode show_scan(const AssociateJob& job) {
     throw core::InputError(recording.name + ": --association known needs a labelled log, and this one has no labels");
   }
   supervisor::Navigator navigator(recording.start, job.settings.navigator);
-  std::size_t scans = 0;
-  for (const core::Event& event : recording.events) {
-    if (interrupted()) return ExitCode::interrupted;
-    if (const auto* odometry = std::get_if<core::Odometry>(&event)) navigator.move(*odometry);
-    if (const auto* fix = std::get_if<core::AbsoluteFix>(&event)) navigator.fix(*fix);
-    const auto* scan = std::get_if<core::Scan>(&event);
-    if (scan == nullptr) continue;
+  const bool known = job.settings.known_association;
+  NavigatorFeed feed = known ? NavigatorFeed(navigator, recording.labels) : NavigatorFeed(navigator);
+  core::EventLoop loop(recording.events, feed);
+  while (!interrupted()) {
     const std::vector<core::LandmarkId> before = navigator.filter().landmarks();
-    const core::StepReport report =
-        job.settings.known_association ? navigator.observe(*scan, recording.labels[scans]) : navigator.observe(*scan);
-    if (report.step == job.scan) {
-      std::printf("scan %lld: %zu observations (rows), %zu landmarks (columns: id + 1), 0 is the dummy\n",
-                  static_cast<long long>(job.scan), report.associations.size(), before.size());
-      std::fputs(matching_matrix(report, before).c_str(), stdout);
-      return ExitCode::ok;
+    const std::optional<core::StepReport> report = loop.next();
+    if (!report) {
+      throw core::InputError(recording.name + ": --scan " + std::to_string(job.scan) + " is beyond the last of " +
+                             std::to_string(loop.steps()) + " scans (the first is 0)");
     }
-    ++scans;
+    if (report->step != job.scan) continue;
+    std::printf("scan %lld: %zu observations (rows), %zu landmarks (columns: id + 1), 0 is the dummy\n",
+                static_cast<long long>(job.scan), report->associations.size(), before.size());
+    std::fputs(matching_matrix(*report, before).c_str(), stdout);
+    return ExitCode::ok;
   }
-  throw core::InputError(recording.name + ": --scan " + std::to_string(job.scan) + " is beyond the last of " +
-                         std::to_string(scans) + " scans (the first is 0)");
+  return ExitCode::interrupted;
 }
 
 ExitCode associate(CLI::App& command, AssociateJob& job) {

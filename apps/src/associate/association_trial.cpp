@@ -2,27 +2,25 @@
 #include "association_trial.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <sstream>
-#include <variant>
-
-#include <Eigen/Cholesky>
+#include <utility>
 
 #include "common/interrupt.hpp"
-#include "helixnav/core/angle.hpp"
+#include "common/navigator_feed.hpp"
+#include "common/timed.hpp"
 #include "helixnav/core/chi2.hpp"
+#include "helixnav/core/event_loop.hpp"
 #include "helixnav/evaluation/evaluation.hpp"
+#include "helixnav/evaluation/nees.hpp"
 
 namespace helixnav::apps {
 namespace {
 
 bool is_consistent(const core::PoseGaussian& pose, const core::Pose2& truth) {
-  Eigen::Vector3d error = pose.mean.vector() - truth.vector();
-  error.z() = core::wrap_to_pi(error.z());
-  const Eigen::LLT<Eigen::Matrix3d> llt(pose.covariance);
-  return llt.info() == Eigen::Success && error.dot(llt.solve(error)) <= core::chi2_quantile(0.999, 3);
+  return evaluation::nees(pose, truth) <= core::chi2_quantile(0.999, 3);  // no, where it is NaN
 }
 
 /// "97.5 % [94.3, 98.9]", or "-" without runs.
@@ -56,18 +54,16 @@ std::string table_row(const std::string& method, const AssociationTrial& trial) 
 
 void try_association(const core::Recording& recording, const supervisor::NavigatorOptions& options,
                      AssociationTrial& trial) {
-  using Clock = std::chrono::steady_clock;
   supervisor::Navigator navigator(recording.start, options);
+  NavigatorFeed feed(navigator);
+  Timed timed(feed);
+  core::EventLoop loop(recording.events, timed);
   std::vector<core::StepReport> steps;
-  for (std::size_t i = 0; i < recording.events.size() && !interrupted(); ++i) {
-    const core::Event& event = recording.events[i];
-    if (const auto* odometry = std::get_if<core::Odometry>(&event)) navigator.move(*odometry);
-    if (const auto* fix = std::get_if<core::AbsoluteFix>(&event)) navigator.fix(*fix);
-    if (const auto* scan = std::get_if<core::Scan>(&event)) {
-      const Clock::time_point begin = Clock::now();
-      steps.push_back(navigator.observe(*scan));
-      trial.step_us.push_back(1e6 * std::chrono::duration<double>(Clock::now() - begin).count());
-    }
+  while (!interrupted()) {
+    std::optional<core::StepReport> step = loop.next();
+    if (!step) break;
+    steps.push_back(std::move(*step));
+    trial.step_us.push_back(1e6 * timed.last_s());
   }
   const evaluation::AssociationScore score = evaluation::score_associations(steps, recording.labels, navigator.map());
   trial.score += score;

@@ -24,10 +24,14 @@ std::vector<std::string>& command_line() {
 
 void remember_command_line(int argc, char** argv) { command_line().assign(argv, argv + argc); }
 
-void add_run_options(CLI::App& command, RunOptions& options) {
+void add_folder_options(CLI::App& command, RunOptions& options) {
   command.add_option("--out", options.out, "Run folder to write; must be empty or new")->required()->type_name("DIR");
   command.add_flag("--overwrite", options.overwrite, "Replace the files of an earlier run in --out");
   command.add_flag("--quiet", options.quiet, "No progress bar");
+}
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  add_folder_options(command, options);
   command.add_option("--config", options.config, "INI or TOML file of the settings below (helixnav config --dump)")
       ->type_name("FILE");
 }

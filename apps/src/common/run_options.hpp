@@ -14,7 +14,7 @@ namespace helixnav::apps {
 
 struct Drive;
 
-/// Options of every command that writes a run folder.
+/// Options of commands that write a run folder.
 struct RunOptions {
   std::string out;
   std::string config;
@@ -22,6 +22,10 @@ struct RunOptions {
   bool quiet = false;
 };
 
+/// --out, --overwrite and --quiet: of every command that writes a run folder.
+void add_folder_options(CLI::App& command, RunOptions& options);
+
+/// These and --config: of the commands that navigate.
 void add_run_options(CLI::App& command, RunOptions& options);
 
 /// Applies --config and refuses an --out that is taken, before anything is read or computed. InputError for --out.

@@ -6,21 +6,22 @@
 #include <cstdint>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "common/interrupt.hpp"
 #include "common/progress_bar.hpp"
-#include "dead_reckoning.hpp"
+#include "common/timed.hpp"
 #include "estimator.hpp"
 #include "helixnav/core/errors.hpp"
-#include "helixnav/evaluation/evaluation.hpp"
-#include "helixnav/reports/report.hpp"
+#include "helixnav/core/event_loop.hpp"
+#include "helixnav/reports/finish_run.hpp"
 #include "helixnav/reports/summary.hpp"
 #include "helixnav/runs/run_recorder.hpp"
 #include "helixnav/runs/run_writer.hpp"
 #include "smooth/smooth_drive.hpp"
+#include "withholding.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -62,37 +63,23 @@ void count_closings(const core::StepReport& report, Driven& driven) {
 }
 
 /// Feeds all events, but for the scans withheld.
-Driven navigate(const Drive& job, const Estimator& estimator, runs::RunWriter& writer, runs::RunRecorder& recorder) {
+Driven navigate(const Drive& job, Estimator& estimator, runs::RunWriter& writer, runs::RunRecorder& recorder) {
   Driven driven;
-  DeadReckoning reckoning;
-  core::StepReport report;
+  Timed timed(estimator);
+  Withholding seen(timed, job.withheld, estimator.pose);
+  core::EventLoop loop(job.recording.events, seen);
   ProgressBar progress(job.given_map ? "localising" : "navigating", job.recording.events.size(), job.quiet);
-  const auto feed = [&](const core::Scan& scan) {
-    const Clock::time_point begin = Clock::now();
-    report = estimator.observe(scan, driven.steps);
-    driven.step_us.push_back(1e6 * seconds_since(begin));
-    reckoning.absorbed();
-    return driven.step_us.back();
-  };
-  for (std::size_t i = 0; i < job.recording.events.size() && !interrupted(); ++i) {
-    const core::Event& event = job.recording.events[i];
-    if (const auto* odometry = std::get_if<core::Odometry>(&event)) {
-      estimator.move(*odometry);
-      reckoning.move(*odometry);
-    } else if (const auto* fix = std::get_if<core::AbsoluteFix>(&event)) {
-      estimator.fix(*fix);
-      reckoning.absorbed();
-    } else if (const auto* scan = std::get_if<core::Scan>(&event)) {
-      const bool blind = !job.withheld.empty() && job.withheld[driven.steps];
-      if (blind) report = reckoning.report(scan->t_ns, estimator.pose(), report);
-      const double microseconds = blind ? 0.0 : feed(*scan);
-      report.step = static_cast<std::int64_t>(driven.steps++);  // estimators do not count what they never saw
-      count_closings(report, driven);
-      writer.write(report, microseconds);
-      recorder.add(report, microseconds);
-    }
-    progress.advance_to(i);
+  while (!interrupted()) {
+    const std::optional<core::StepReport> step = loop.next();
+    progress.advance_to(loop.fed() - 1);
+    if (!step) break;
+    const double microseconds = seen.last_scan_was_withheld() ? 0.0 : 1e6 * timed.last_s();
+    if (!seen.last_scan_was_withheld()) driven.step_us.push_back(microseconds);
+    count_closings(*step, driven);
+    writer.write(*step, microseconds);
+    recorder.add(*step, microseconds);
   }
+  driven.steps = static_cast<std::size_t>(loop.steps());
   return driven;
 }
 
@@ -107,7 +94,7 @@ ExitCode drive(const Drive& job) {
                          job.overwrite ? IfNotEmpty::overwrite : IfNotEmpty::refuse);
   runs::RunRecorder recorder(job.out, job.manifest, job.recording);
   LabelAgreement agreement;
-  const Estimator estimator = job.given_map ? localizer_of(job, agreement) : navigator_of(job);
+  Estimator estimator = job.given_map ? localizer_of(job, agreement) : navigator_of(job);
   auto [steps, step_us, closings] = navigate(job, estimator, writer, recorder);
 
   runs::Run run = recorder.finish(estimator.map());
@@ -122,9 +109,7 @@ ExitCode drive(const Drive& job) {
     run.numbers.emplace_back("blackout.scans", static_cast<double>(withheld));
   }
   const ExitCode smoothed = job.smooth && !interrupted() ? smooth_drive(job, run) : ExitCode::ok;
-  const evaluation::Evaluation judged = evaluation::evaluate(run);
-  writer.finish(run, reports::render_report(run, judged), reports::summary_json(run, judged));
-  std::fputs(reports::evaluation_text(judged).c_str(), stdout);
+  std::fputs(reports::evaluation_text(reports::finish_run(run, writer)).c_str(), stdout);
   std::fputs(text_of(agreement).c_str(), stdout);
   if (!job.given_map) {
     std::printf("closings             %d accepted, %d refused, %d left undecided\n", closings["accepted"],

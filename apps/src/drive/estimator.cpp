@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimator.hpp"
 
+#include <cstddef>
 #include <memory>
+#include <variant>
 
+#include "common/navigator_feed.hpp"
 #include "helixnav/localization/localizer.hpp"
 #include "helixnav/supervisor/navigator.hpp"
 
@@ -29,38 +32,54 @@ std::vector<core::LandmarkId> landmarks_of(const std::vector<core::Label>& label
   return landmarks;
 }
 
+/// The localizer as core::EventLoop wants it. Fixes are not used.
+struct LocalizerFeed {
+  localization::Localizer localizer;
+  const Drive& job;
+  LabelAgreement& agreement;
+  std::size_t scans = 0;
+
+  std::optional<core::StepReport> take(const core::Event& event) {
+    if (const auto* odometry = std::get_if<core::Odometry>(&event)) localizer.move(*odometry);
+    const auto* scan = std::get_if<core::Scan>(&event);
+    if (scan == nullptr) return std::nullopt;
+    return observe(*scan, scans++);
+  }
+
+  core::StepReport observe(const core::Scan& scan, std::size_t i) {
+    const GivenMap& map = *job.given_map;
+    if (job.recording.labels.empty()) return localizer.observe(scan);
+    const std::vector<core::Label>& labels = job.recording.labels[i];
+    const core::StepReport report =
+        job.known_association ? localizer.observe(scan, landmarks_of(labels, map)) : localizer.observe(scan);
+    agreement.count(report, labels, map);
+    return report;
+  }
+};
+
+struct NavigatorDrive {
+  supervisor::Navigator navigator;
+  NavigatorFeed feed;
+
+  explicit NavigatorDrive(const Drive& job)
+      : navigator(job.recording.start, job.navigator),
+        feed(job.known_association ? NavigatorFeed(navigator, job.recording.labels) : NavigatorFeed(navigator)) {}
+};
+
 }  // namespace
 
 Estimator navigator_of(const Drive& job) {
-  const auto navigator = std::make_shared<supervisor::Navigator>(job.recording.start, job.navigator);
-  Estimator estimator;
-  estimator.move = [navigator](const core::Odometry& odometry) { navigator->move(odometry); };
-  estimator.fix = [navigator](const core::AbsoluteFix& fix) { navigator->fix(fix); };
-  estimator.observe = [navigator, &job](const core::Scan& scan, std::size_t i) {
-    return job.known_association ? navigator->observe(scan, job.recording.labels[i]) : navigator->observe(scan);
-  };
-  estimator.pose = [navigator] { return navigator->pose(); };
-  estimator.map = [navigator] { return navigator->map(); };
-  return estimator;
+  const auto drive = std::make_shared<NavigatorDrive>(job);
+  return {[drive](const core::Event& event) { return drive->feed.take(event); },
+          [drive] { return drive->navigator.pose(); }, [drive] { return drive->navigator.map(); }};
 }
 
 Estimator localizer_of(const Drive& job, LabelAgreement& agreement) {
   const GivenMap& map = *job.given_map;
-  const auto localizer =
-      std::make_shared<localization::Localizer>(job.recording.start, map.landmarks, options_of(job.navigator));
-  Estimator estimator;
-  estimator.move = [localizer](const core::Odometry& odometry) { localizer->move(odometry); };
-  estimator.fix = [](const core::AbsoluteFix&) {};
-  estimator.observe = [localizer, &job, &map, &agreement](const core::Scan& scan, std::size_t i) {
-    const core::StepReport report = job.known_association
-                                        ? localizer->observe(scan, landmarks_of(job.recording.labels[i], map))
-                                        : localizer->observe(scan);
-    if (!job.recording.labels.empty()) agreement.count(report, job.recording.labels[i], map);
-    return report;
-  };
-  estimator.pose = [localizer] { return localizer->pose(); };
-  estimator.map = [&map] { return map.landmarks; };
-  return estimator;
+  const auto feed = std::make_shared<LocalizerFeed>(LocalizerFeed{
+      localization::Localizer(job.recording.start, map.landmarks, options_of(job.navigator)), job, agreement});
+  return {[feed](const core::Event& event) { return feed->take(event); }, [feed] { return feed->localizer.pose(); },
+          [&map] { return map.landmarks; }};
 }
 
 }  // namespace helixnav::apps

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "drive.hpp"
@@ -15,10 +15,8 @@ namespace helixnav::apps {
 /// What a drive feeds: the navigator or the localizer, with the labels given to it when the job says so. The job must
 /// outlive it.
 struct Estimator {
-  std::function<void(const core::Odometry&)> move;
-  std::function<void(const core::AbsoluteFix&)> fix;
-  std::function<core::StepReport(const core::Scan&, std::size_t scan)> observe;  ///< `scan` counts from 0
-  std::function<core::PoseGaussian()> pose;                                      ///< at the last scan or fix
+  std::function<std::optional<core::StepReport>(const core::Event&)> take;  ///< for core::EventLoop
+  std::function<core::PoseGaussian()> pose;                                 ///< at the last scan or fix
   std::function<std::vector<core::MapLandmark>()> map;
 };
 

@@ -2,13 +2,15 @@
 #include "campaign_run.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <variant>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
 #include "campaign.hpp"
+#include "common/navigator_feed.hpp"
+#include "common/timed.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/core/event_loop.hpp"
 #include "helixnav/evaluation/referee.hpp"
 #include "helixnav/sim/simulate.hpp"
 
@@ -16,10 +18,6 @@ namespace helixnav::apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
 double degrees(double angle_rad) { return angle_rad * 180.0 / core::pi; }
 
 struct WallClock {
@@ -109,20 +107,16 @@ evaluation::RunScore drive_and_judge(const Campaign& campaign, std::uint64_t see
   const core::Recording recording = sim::simulate_in(world, campaign.scenario, seed);
   supervisor::Navigator navigator(recording.start, campaign.navigator);
   evaluation::Referee referee(recording, world.returns_at_m);
-  std::size_t step = 0;
-  for (const core::Event& event : recording.events) {
-    if (const auto* odometry = std::get_if<core::Odometry>(&event)) navigator.move(*odometry);
-    const auto* scan = std::get_if<core::Scan>(&event);
-    if (scan == nullptr) continue;
-    const Clock::time_point begin = Clock::now();
-    const core::StepReport report =
-        campaign.known_association ? navigator.observe(*scan, recording.labels[step]) : navigator.observe(*scan);
-    const double seconds = seconds_since(begin);
+  NavigatorFeed feed =
+      campaign.known_association ? NavigatorFeed(navigator, recording.labels) : NavigatorFeed(navigator);
+  Timed timed(feed);
+  core::EventLoop loop(recording.events, timed);
+  while (const std::optional<core::StepReport> report = loop.next()) {
+    const double seconds = timed.last_s();
     wall.run_s += seconds;
-    if (report.mode == core::Mode::searching) wall.search_s += seconds;
-    if (has_closure(report)) wall.closing_s += seconds;
-    referee.watch(report, [&navigator] { return navigator.map(); });
-    ++step;
+    if (report->mode == core::Mode::searching) wall.search_s += seconds;
+    if (has_closure(*report)) wall.closing_s += seconds;
+    referee.watch(*report, [&navigator] { return navigator.map(); });
   }
   return referee.score(navigator.map());
 }

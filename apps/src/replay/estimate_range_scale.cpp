@@ -2,11 +2,13 @@
 #include "estimate_range_scale.hpp"
 
 #include <cmath>
-#include <cstddef>
 #include <limits>
+#include <optional>
 #include <variant>
 
+#include "common/navigator_feed.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/core/event_loop.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -15,17 +17,14 @@ namespace {
 double mean_nis(core::Recording recording, double scale, const supervisor::NavigatorOptions& options) {
   divide_ranges(recording, scale);
   supervisor::Navigator navigator(recording.start, options);
-  std::size_t scans = 0;
+  NavigatorFeed feed(navigator, recording.labels);
+  core::EventLoop loop(recording.events, feed);
   double nis = 0.0;
   int rows = 0;
   try {
-    for (const core::Event& event : recording.events) {
-      if (const auto* odometry = std::get_if<core::Odometry>(&event)) navigator.move(*odometry);
-      if (const auto* scan = std::get_if<core::Scan>(&event)) {
-        const core::StepReport report = navigator.observe(*scan, recording.labels[scans++]);
-        nis += report.joint_nis;
-        rows += report.joint_dof;
-      }
+    while (const std::optional<core::StepReport> report = loop.next()) {
+      nis += report->joint_nis;
+      rows += report->joint_dof;
     }
   } catch (const core::NumericalError&) {
     rows = 0;

@@ -13,11 +13,9 @@
 #include "common/validators.hpp"
 #include "drive/drive.hpp"
 #include "helixnav/core/errors.hpp"
-#include "helixnav/evaluation/evaluation.hpp"
 #include "helixnav/logs/graph_files.hpp"
 #include "helixnav/logs/read_recording.hpp"
-#include "helixnav/reports/report.hpp"
-#include "helixnav/reports/summary.hpp"
+#include "helixnav/reports/finish_run.hpp"
 #include "helixnav/runs/run_folder.hpp"
 #include "helixnav/runs/run_recorder.hpp"
 #include "helixnav/runs/run_writer.hpp"
@@ -100,8 +98,7 @@ ExitCode smooth(CLI::App& command, SmoothJob& job) {
   run.timing = {{"reading_s", reading_s}, {"solving_s", result.solving_s}};
   result.run.alone = true;
   runs::add_smoothed(run, std::move(result.run));
-  const evaluation::Evaluation judged = evaluation::evaluate(run);
-  writer.finish(run, reports::render_report(run, judged), reports::summary_json(run, judged));
+  reports::finish_run(run, writer);
   std::printf("reading %.3f s\nrun folder: %s   report: %s/report.html\n", reading_s, job.run.out.c_str(),
               job.run.out.c_str());
   return ExitCode::ok;
@@ -113,8 +110,7 @@ void add_smooth_command(CLI::App& app, ExitCode& code) {
   CLI::App* command = app.add_subcommand("smooth", "Batch optimum of a labelled log or graph by sparse least squares");
   const auto job = std::make_shared<SmoothJob>();
   command->add_option("PATH", job->path, "Labelled log or graph; the format is recognised")->required();
-  command->add_option("--out", job->run.out, "Run folder to write; must be empty or new")->required()->type_name("DIR");
-  command->add_flag("--overwrite", job->run.overwrite, "Replace the files of an earlier run in --out");
+  add_folder_options(*command, job->run);
   command
       ->add_option("--start", job->start,
                    "Start values: odometry (a g2o file: its own), grown (stage by stage), softened (odometry weakened\n"
