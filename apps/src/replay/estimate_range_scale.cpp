@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimate_range_scale.hpp"
 
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <variant>
+
+#include <boost/math/tools/minima.hpp>
 
 #include "common/navigator_feed.hpp"
 #include "helixnav/core/errors.hpp"
@@ -56,29 +57,8 @@ double estimate_range_scale(const core::Recording& recording, const supervisor::
       best_cost = now;
     }
   }
-  const double golden = (std::sqrt(5.0) - 1.0) / 2.0;
-  double low = best - step;
-  double high = best + step;
-  double a = high - golden * (high - low);
-  double b = low + golden * (high - low);
-  double cost_a = cost(a);
-  double cost_b = cost(b);
-  while (high - low > 5e-4) {
-    if (cost_a < cost_b) {
-      high = b;
-      b = a;
-      cost_b = cost_a;
-      a = high - golden * (high - low);
-      cost_a = cost(a);
-    } else {
-      low = a;
-      a = b;
-      cost_a = cost_b;
-      b = low + golden * (high - low);
-      cost_b = cost(b);
-    }
-  }
-  return (low + high) / 2.0;
+  constexpr int bits = 12;  // of the scale: 5e-4
+  return boost::math::tools::brent_find_minima(cost, best - step, best + step, bits).first;
 }
 
 }  // namespace helixnav::apps
