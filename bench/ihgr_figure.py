@@ -5,7 +5,7 @@
 usage: ihgr_figure.py SWEEP.csv FIGURE3.csv PAGE.html
 Then, as a developer's step:
   chromium --headless --window-size=1470,1180 --screenshot=docs/ihgr.png PAGE.html
-The page carries its data and takes Plotly from logs/report/node_modules.
+The page carries its data and takes Plotly from reports/page/node_modules.
 """
 import csv
 import json
@@ -81,7 +81,7 @@ def main(sweep, figure3, page):
     layout["annotations"].append({"text": "time against the number of features (the paper's Figure 3)",
                                   "xref": "x6 domain", "yref": "y6 domain", "x": 0, "y": 1.1, "showarrow": False,
                                   "xanchor": "left"})
-    plotly = Path(__file__).resolve().parent.parent / "logs/report/node_modules/plotly.js-basic-dist-min/plotly-basic.min.js"
+    plotly = Path(__file__).resolve().parent.parent / "reports/page/node_modules/plotly.js-basic-dist-min/plotly-basic.min.js"
     Path(page).write_text(
         f'<meta charset="utf-8"><div id="f"></div><script src="{plotly.as_uri()}"></script>'
         f'<script>Plotly.newPlot("f", {json.dumps(traces)}, {json.dumps(layout)}, {{staticPlot: true}})</script>',

@@ -56,7 +56,7 @@ void print_row(const Setting& setting, const bench::Contestant& contestant, int 
   int without_wrong = 0;
   int consistent = 0;
   int one_each = 0;
-  logs::AssociationScore score;
+  evaluation::AssociationScore score;
   for (int layout = 0; layout < layouts; ++layout) {
     const bench::Verdict verdict =
         bench::run_layout(setting.world, static_cast<std::uint64_t>(layout) + 1, contestant.mapping);

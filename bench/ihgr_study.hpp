@@ -10,7 +10,7 @@
 #include "helixnav/association/ihgr.hpp"
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/chi2.hpp"
-#include "helixnav/logs/association_score.hpp"
+#include "helixnav/evaluation/association_score.hpp"
 #include "helixnav/sim/ihgr_circle.hpp"
 #include "mapping_loop.hpp"
 
@@ -50,7 +50,7 @@ inline std::vector<Contestant> ihgr_contestants() {
 /// The verdicts on one layout: "no wrong association", "pose consistent at the end" (NEES within the 99.9 % quantile of
 /// χ²₃), and "12 features make 12 landmarks", the last a looser reading of a map that came out well.
 struct Verdict {
-  logs::AssociationScore score;
+  evaluation::AssociationScore score;
   bool without_wrong = false;
   bool consistent = false;
   bool one_landmark_each = false;
@@ -59,7 +59,7 @@ struct Verdict {
 
 inline Verdict judge(const core::Recording& recording, const MappingRun& run) {
   Verdict verdict;
-  verdict.score = logs::score_associations(run.steps, recording.labels, run.map);
+  verdict.score = evaluation::score_associations(run.steps, recording.labels, run.map);
   verdict.without_wrong = verdict.score.wrong == 0;
   const core::Pose2& truth = recording.true_poses.back().T_world_robot;
   Eigen::Vector3d error = run.pose.mean.vector() - truth.vector();

@@ -31,7 +31,7 @@
 
 #include "helixnav/core/random.hpp"
 #include "helixnav/core/se2.hpp"
-#include "helixnav/logs/alignment.hpp"
+#include "helixnav/evaluation/alignment.hpp"
 #include "helixnav/mrpt_adapter/map_builder.hpp"
 #include "kf_slam.hpp"
 
@@ -170,7 +170,7 @@ Errors errors_of(const Map& map_m, const Map& truth_m) {
     truths_m.push_back(truth_m.at(id));
   }
   constexpr double none_is_left_out_m = 1e3;
-  const core::Pose2 T_truth_map = logs::align_rigidly(truths_m, estimates_m, none_is_left_out_m).T_a_b;
+  const core::Pose2 T_truth_map = evaluation::align_rigidly(truths_m, estimates_m, none_is_left_out_m).T_a_b;
   Errors errors;
   errors.landmarks = map_m.size();
   const double share = 1.0 / static_cast<double>(map_m.size());

@@ -6,7 +6,7 @@ usage: relocalization_figures.py STUDY PAGE.html LOG [blind seconds [runs [unsee
 STUDY is the program, in the bench folder of a build; the numbers are its own. docs/relocalization.png is, as a developer's step,
   relocalization_figures.py STUDY PAGE.html victoria_park_ascii.zip 30
   chromium --headless --window-size=1470,1900 --screenshot=docs/relocalization.png PAGE.html
-The page carries its data and takes Plotly from logs/report/node_modules.
+The page carries its data and takes Plotly from reports/page/node_modules.
 """
 import json
 import math
@@ -143,7 +143,7 @@ class Figures:
             **self.axes,
         }
         plotly = (Path(__file__).resolve().parent.parent /
-                  "logs/report/node_modules/plotly.js-basic-dist-min/plotly-basic.min.js")
+                  "reports/page/node_modules/plotly.js-basic-dist-min/plotly-basic.min.js")
         Path(path).write_text(
             f'<meta charset="utf-8"><div id="f"></div><script src="{plotly.as_uri()}"></script><script>'
             f'Plotly.newPlot("f", {json.dumps(self.traces)}, {json.dumps(layout)}, {{staticPlot: true}})</script>',

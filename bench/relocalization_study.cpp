@@ -23,6 +23,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "helixnav/core/event_loop.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "helixnav/logs/read_recording.hpp"
 #include "helixnav/pf_relocalize/helix_proposal.hpp"
@@ -41,24 +42,24 @@ constexpr double degree = core::pi / 180.0;
 class Driver {
  public:
   Driver(const core::Recording& recording, double unseen_m)
-      : recording_(recording), navigator_(recording.start, scan_by_scan()), unseen_m_(unseen_m) {}
+      : navigator_(recording.start, scan_by_scan()), loop_(recording.events, ear_), unseen_m_(unseen_m) {}
+  Driver(const Driver&) = delete;
+  Driver& operator=(const Driver&) = delete;
 
   /// Up to and with the next scan; false at the end.
   bool next() {
-    motion.reset();
-    for (; at_ < recording_.events.size(); ++at_) {
-      if (const auto* odometry = std::get_if<core::Odometry>(&recording_.events[at_])) {
-        navigator_.move(*odometry);
-        motion = motion ? core::chain(*motion, *odometry) : *odometry;
-      }
-      scan = std::get_if<core::Scan>(&recording_.events[at_]);
-      if (scan == nullptr) continue;
-      observe();
-      ++at_;
-      return true;
-    }
-    return false;
+    ear_.motion.reset();
+    const Eigen::Vector2d before_m = navigator_.pose().mean.position_m();
+    const std::optional<core::StepReport> report = loop_.next();
+    if (!report) return false;
+    driven_m += (report->pose.mean.position_m() - before_m).norm();
+    note_landmarks(*report);
+    return true;
   }
+
+  const core::Scan* scan() const { return ear_.scan; }
+  /// Since the scan before.
+  const std::optional<core::Odometry>& motion() const { return ear_.motion; }
 
   std::vector<core::LandmarkId> old_landmarks() const {
     std::vector<core::LandmarkId> ids;
@@ -72,16 +73,25 @@ class Driver {
 
   const cekf::CompressedEkf& filter() const { return navigator_.filter(); }
 
-  const core::Scan* scan = nullptr;
-  std::optional<core::Odometry> motion;  ///< since the scan before
   double driven_m = 0.0;
   int long_unseen = 0;  ///< landmarks matched that were unseen for unseen_m
 
  private:
-  void observe() {
-    const Eigen::Vector2d before_m = navigator_.pose().mean.position_m();
-    const core::StepReport report = navigator_.observe(*scan);
-    driven_m += (report.pose.mean.position_m() - before_m).norm();
+  /// Overhears what the navigator is told.
+  struct Ear {
+    supervisor::Navigator& navigator;
+    const core::Scan* scan = nullptr;
+    std::optional<core::Odometry> motion;
+
+    std::optional<core::StepReport> take(const core::Event& event) {
+      const auto* odometry = std::get_if<core::Odometry>(&event);
+      if (odometry != nullptr) motion = motion ? core::chain(*motion, *odometry) : *odometry;
+      if (const auto* seen = std::get_if<core::Scan>(&event)) scan = seen;
+      return navigator.take(event);
+    }
+  };
+
+  void note_landmarks(const core::StepReport& report) {
     long_unseen = 0;
     for (const core::AssociationReport& a : report.associations) {
       if (a.outcome != core::Outcome::matched && a.outcome != core::Outcome::augmented) continue;
@@ -97,10 +107,10 @@ class Driver {
     return options;
   }
 
-  const core::Recording& recording_;
   supervisor::Navigator navigator_;
+  Ear ear_{navigator_, nullptr, std::nullopt};
+  core::EventLoop<Ear> loop_;
   double unseen_m_;
-  std::size_t at_ = 0;
   std::map<core::LandmarkId, double> last_seen_m_;
 };
 
@@ -119,7 +129,7 @@ std::vector<Step> drive(const core::Recording& recording, double unseen_m, int l
     const bool many = driver.long_unseen >= landmarks;
     const bool is_return = many && driver.driven_m - last_return_m > unseen_m;
     if (many) last_return_m = driver.driven_m;
-    steps.push_back({driver.scan, driver.motion.value_or(core::no_motion(driver.scan->t_ns)),
+    steps.push_back({driver.scan(), driver.motion().value_or(core::no_motion(driver.scan()->t_ns)),
                      driver.filter().pose().mean, driver.driven_m, is_return});
   }
   return steps;

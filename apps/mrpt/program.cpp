@@ -10,9 +10,9 @@
 #include <mrpt/core/exceptions.h>
 #include <mrpt/system/os.h>
 
+#include "common/usage_error.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
-#include "usage_error.hpp"
 
 namespace helixnav::apps {
 namespace {

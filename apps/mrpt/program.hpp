@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "exit_code.hpp"
+#include "common/exit_code.hpp"
 
 namespace CLI {
 class App;

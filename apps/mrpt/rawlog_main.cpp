@@ -5,14 +5,14 @@
 
 #include <CLI/CLI.hpp>
 
-#include "convert_log.hpp"
+#include "common/validators.hpp"
+#include "convert/convert_log.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/acfr_log.hpp"
 #include "helixnav/logs/read_recording.hpp"
 #include "observations_only.hpp"
 #include "program.hpp"
 #include "read_rawlog.hpp"
-#include "validators.hpp"
 #include "write_acfr.hpp"
 #include "write_recording.hpp"
 

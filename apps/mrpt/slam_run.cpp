@@ -16,15 +16,17 @@
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/opengl/COpenGLScene.h>
 
+#include "common/interrupt.hpp"
+#include "common/progress_bar.hpp"
 #include "ground_truth.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
-#include "helixnav/logs/evaluation.hpp"
-#include "helixnav/logs/run_writer.hpp"
 #include "helixnav/mrpt_adapter/run_access.hpp"
-#include "interrupt.hpp"
+#include "helixnav/reports/finish_run.hpp"
+#include "helixnav/reports/summary.hpp"
+#include "helixnav/runs/run_recorder.hpp"
+#include "helixnav/runs/run_writer.hpp"
 #include "live_window.hpp"
-#include "progress_bar.hpp"
 #include "rawlog_source.hpp"
 #include "read_rawlog.hpp"
 #include "slam_config.hpp"
@@ -58,11 +60,11 @@ void check_that_landmarks_are_seen(const RawlogSource& source, const std::string
                          (source.damage().empty() ? "" : "; " + source.damage()));
 }
 
-logs::RunManifest manifest_of(const SlamJob& job, const std::string& rawlog, const std::vector<std::string>& truths) {
-  logs::RunManifest manifest;
+runs::RunManifest manifest_of(const SlamJob& job, const std::string& rawlog, const std::vector<std::string>& truths) {
+  runs::RunManifest manifest;
   manifest.version = core::version();
   manifest.commit = core::commit();
-  manifest.command = logs::command_text(job.command_line);
+  manifest.command = runs::command_text(job.command_line);
   manifest.recording = rawlog;
   std::ifstream file(job.config);
   std::ostringstream config;
@@ -70,7 +72,7 @@ logs::RunManifest manifest_of(const SlamJob& job, const std::string& rawlog, con
   manifest.config = config.str();
   std::vector<std::string> names{job.config, rawlog};
   names.insert(names.end(), truths.begin(), truths.end());
-  for (const std::string& name : names) manifest.inputs.push_back({name, logs::sha256_of_file(name)});
+  for (const std::string& name : names) manifest.inputs.push_back({name, runs::sha256_of_file(name)});
   return manifest;
 }
 
@@ -111,11 +113,12 @@ class Run {
     if (!config_.ground_truth_file_robot.empty()) true_path_m_ = read_true_path(config_.ground_truth_file_robot);
   }
 
-  void open_folder(const logs::RunManifest& manifest, bool overwrite) {
-    using IfNotEmpty = logs::RunWriter::IfNotEmpty;
+  void open_folder(const runs::RunManifest& manifest, bool overwrite) {
+    using IfNotEmpty = runs::RunWriter::IfNotEmpty;
     recording_.name = manifest.recording;
-    writer_ = std::make_unique<logs::RunWriter>(out_, manifest, recording_,
+    writer_ = std::make_unique<runs::RunWriter>(out_, manifest, recording_,
                                                 overwrite ? IfNotEmpty::overwrite : IfNotEmpty::refuse);
+    recorder_ = std::make_unique<runs::RunRecorder>(out_, manifest, recording_);
     files_ = std::make_unique<SlamFiles>(config_, out_, true_path_m_);
   }
 
@@ -142,9 +145,11 @@ class Run {
 
   void finish(double reading_s, double navigating_s) {
     if (steps_ == 0) return;
-    logs::RunEnd end;
-    end.timing = {{"median_us", median_us()}, {"reading_s", reading_s}, {"navigating_s", navigating_s}};
-    if (writer_) std::fputs(logs::evaluation_text(writer_->finish(RunAccess::map(builder_), end)).c_str(), stdout);
+    if (writer_) {
+      runs::Run run = recorder_->finish(RunAccess::map(builder_));
+      run.timing = {{"median_us", median_us()}, {"reading_s", reading_s}, {"navigating_s", navigating_s}};
+      std::fputs(reports::evaluation_text(reports::finish_run(run, *writer_)).c_str(), stdout);
+    }
     if (files_) files_->write_end(builder_);
     print_summary();
   }
@@ -155,7 +160,10 @@ class Run {
  private:
   void note(const mrpt::obs::CObservation& seen) {
     for (const mrpt_adapter::Step& step : RunAccess::last_steps(builder_)) {
-      if (writer_) writer_->write(step.report, step.microseconds);
+      if (writer_) {
+        writer_->write(step.report, step.microseconds);
+        recorder_->add(step.report, step.microseconds);
+      }
       step_us_.push_back(step.microseconds);
       for (const core::Decision& decision : step.report.decisions) {
         if (core::is_closure(decision)) ++closings_[core::row_of(decision).verdict];
@@ -191,7 +199,8 @@ class Run {
   core::Recording recording_;  ///< truth only
   std::vector<Eigen::Vector2d> true_path_m_;
   mrpt_adapter::MapBuilder builder_{config_.builder};
-  std::unique_ptr<logs::RunWriter> writer_;
+  std::unique_ptr<runs::RunWriter> writer_;
+  std::unique_ptr<runs::RunRecorder> recorder_;
   std::unique_ptr<SlamFiles> files_;
   std::size_t steps_ = 0;
   std::vector<double> step_us_;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "exit_code.hpp"
+#include "common/exit_code.hpp"
 
 namespace helixnav::apps {
 

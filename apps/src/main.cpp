@@ -5,12 +5,12 @@
 
 #include <CLI/CLI.hpp>
 
-#include "commands.hpp"
-#include "exit_code.hpp"
+#include "common/commands.hpp"
+#include "common/exit_code.hpp"
+#include "common/run_options.hpp"
+#include "common/usage_error.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
-#include "run_options.hpp"
-#include "usage_error.hpp"
 
 namespace helixnav::apps {
 namespace {

@@ -4,9 +4,15 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace helixnav::logs {
+
+/// Of a file's name, say.
+inline bool ends_with(std::string_view text, std::string_view ending) {
+  return text.size() >= ending.size() && text.substr(text.size() - ending.size()) == ending;
+}
 
 /// The whole content of a file. Throws core::InputError naming the file when it cannot be read.
 std::string read_file(const std::filesystem::path& path);

@@ -21,12 +21,9 @@ using core::LandmarkGraph;
 /// The stops of the drive with its landmarks by their present ids.
 std::vector<Stop> present_stops(const Tape& tape) {
   std::vector<Stop> stops = stops_of(tape);
-  const std::map<core::LandmarkId, core::LandmarkId> now = merged_into(tape);
+  const core::MergedIds ids = merged_ids(tape);
   for (Stop& stop : stops) {
-    for (cekf::Match& match : stop.seen) {
-      const auto found = now.find(match.landmark);
-      if (found != now.end()) match.landmark = found->second;
-    }
+    for (cekf::Match& match : stop.seen) match.landmark = ids.now(match.landmark);
   }
   return stops;
 }

@@ -91,17 +91,14 @@ double drive_cost(const Tape& tape) {
   return cost;
 }
 
-std::map<core::LandmarkId, core::LandmarkId> merged_into(const Tape& tape) {
-  std::map<core::LandmarkId, core::LandmarkId> now;
+core::MergedIds merged_ids(const Tape& tape) {
+  core::MergedIds ids;
   tape.read_from(0, [&](const Tape::Entry& entry) {
     const auto* merge = std::get_if<Tape::Merge>(&entry);
     if (merge == nullptr) return;
-    for (const core::MergedLandmarks& one : merge->merged) {
-      for (auto& [id, kept] : now) kept = kept == one.removed ? one.kept : kept;
-      now[one.removed] = one.kept;
-    }
+    for (const core::MergedLandmarks& one : merge->merged) ids.merge(one);
   });
-  return now;
+  return ids;
 }
 
 std::vector<Stop> stops_of(const Tape& tape) {

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <variant>
 #include <vector>
 
 #include "helixnav/cekf/match.hpp"
 #include "helixnav/core/events.hpp"
+#include "helixnav/core/merged_ids.hpp"
 #include "helixnav/core/step_report.hpp"
 
 namespace helixnav::supervisor {
@@ -91,7 +91,7 @@ cekf::UpdateResult innovation_cost(const Tape& tape, Tape::Position position);
 double drive_cost(const Tape& tape);
 
 /// Which landmark every landmark merged by a closing is now.
-std::map<core::LandmarkId, core::LandmarkId> merged_into(const Tape& tape);
+core::MergedIds merged_ids(const Tape& tape);
 
 /// A place where something may have been observed, and how the vehicle came there from the one before.
 struct Stop {

@@ -7,7 +7,7 @@
 
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/recording.hpp"
-#include "helixnav/logs/run_writer.hpp"
+#include "helixnav/runs/run_writer.hpp"
 #include "program.hpp"
 
 namespace helixnav::apps {
@@ -19,7 +19,7 @@ using core::Decision;
 class Explain : public ::testing::Test {
  protected:
   Explain() {
-    logs::RunWriter writer(path(), {}, {});
+    runs::RunWriter writer(path(), {}, {});
     for (std::int64_t k = 0; k < 6; ++k) {
       core::StepReport step;
       step.step = k;
@@ -29,7 +29,7 @@ class Explain : public ::testing::Test {
       fill(step);
       writer.write(step, 1.0);
     }
-    writer.finish({});
+    writer.finish({}, "", "");
   }
 
   static void fill(core::StepReport& step) {

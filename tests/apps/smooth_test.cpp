@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "helixnav/logs/alignment.hpp"
-#include "helixnav/logs/run_folder.hpp"
+#include "helixnav/evaluation/alignment.hpp"
+#include "helixnav/runs/run_folder.hpp"
 #include "program.hpp"
 #include "real_data.hpp"
 
@@ -40,13 +40,13 @@ struct Pairs {
   std::vector<Eigen::Vector2d> b;
 };
 
-std::map<core::LandmarkId, Eigen::Vector2d> points(const logs::RunFolder& run) {
+std::map<core::LandmarkId, Eigen::Vector2d> points(const runs::Run& run) {
   std::map<core::LandmarkId, Eigen::Vector2d> points;
   for (const core::MapLandmark& landmark : run.map) points[landmark.id] = landmark.point.mean_m;
   return points;
 }
 
-Pairs pair_landmarks(const logs::RunFolder& a, const logs::RunFolder& b) {
+Pairs pair_landmarks(const runs::Run& a, const runs::Run& b) {
   std::map<core::LandmarkId, core::LandmarkId> partner;
   for (std::size_t k = 0; k < std::min(a.steps.size(), b.steps.size()); ++k) {
     const auto& of_b = b.steps[k].associations;
@@ -118,12 +118,12 @@ TEST_F(Smooth, TellsTheRetractionsApartOnTheISamGraph) {
   EXPECT_GT(summary("optimum").at("chi2"), 6183.9);
   EXPECT_LT(summary("optimum").at("chi2"), 6184.2);
 
-  const logs::RunFolder optimum = logs::read_run(folder("optimum"));
+  const runs::Run optimum = runs::read_run(folder("optimum"));
   std::map<std::string, std::pair<double, double>> aligned_and_raw_m;
   for (const char* retraction : {"right-invariant", "standard"}) {
-    const Pairs pairs = pair_landmarks(optimum, logs::read_run(folder(retraction)));
+    const Pairs pairs = pair_landmarks(optimum, runs::read_run(folder(retraction)));
     ASSERT_EQ(pairs.a.size(), 151u);
-    const core::Pose2 T = logs::align_rigidly(pairs.a, pairs.b, 1e9).T_a_b;
+    const core::Pose2 T = evaluation::align_rigidly(pairs.a, pairs.b, 1e9).T_a_b;
     aligned_and_raw_m[retraction] = {rms_m(pairs, T), rms_m(pairs, core::Pose2())};
     std::printf("%s: landmark RMS %.3f m aligned, %.3f m raw\n", retraction, rms_m(pairs, T),
                 rms_m(pairs, core::Pose2()));
@@ -154,6 +154,12 @@ TEST_F(Smooth, TakesALogOfSeveralFilesAndJudgesTheOptimum) {
   must({"smooth", path_.parent_path(), "--out", folder("optimum")});
   EXPECT_LT(summary("optimum").at("error").at("rmse_m"), 0.35) << "dead reckoning, the start, is off by metres";
   EXPECT_GE(json::parse(text_of(folder("optimum") / "manifest.json")).at("inputs").size(), 2u);
+}
+
+TEST_F(Smooth, TakesQuietLikeEveryCommandThatWritesARun) {
+  std::ofstream(folder("graph.g2o")) << "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nVERTEX_XY 42 3 1\n"
+                                        "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2_XY 1 42 2 1 1 0 1\n";
+  must({"smooth", folder("graph.g2o"), "--quiet", "--out", folder("run")});
 }
 
 TEST_F(Smooth, NamesTheVariableThatNothingFixes) {

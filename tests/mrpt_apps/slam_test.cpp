@@ -23,7 +23,7 @@
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/opengl/COpenGLScene.h>
 
-#include "helixnav/logs/run_folder.hpp"
+#include "helixnav/runs/run_folder.hpp"
 #include "input_error.hpp"
 #include "kf_slam.hpp"
 #include "live_window.hpp"
@@ -90,7 +90,7 @@ TEST_F(Slam, WritesTheRunFolderAndTheFilesOfKfSlam) {
         "landmarks.txt", "kf_state.3Dscene", "map.simplemap", "map.png"}) {
     EXPECT_EQ(names.count(name), 1U) << name;
   }
-  const logs::RunFolder read = logs::read_run(file("out"));
+  const runs::Run read = runs::read_run(file("out"));
   EXPECT_EQ(read.steps.size(), 21U);  // the first frame, too
   mrpt::maps::CSimpleMap map;
   ASSERT_TRUE(map.loadFromFile(file("out/map.simplemap")));
@@ -138,7 +138,7 @@ TEST_F(Slam, KeepsWhatCameBeforeADamagedPlace) {
   const std::string why = input_error_of([&] { run_slam(job(application, cut)); });
   EXPECT_NE(why.find("cut.rawlog: entry"), std::string::npos) << why;
   EXPECT_NE(why.find("steps before that were navigated and written to"), std::string::npos) << why;
-  EXPECT_GT(logs::read_run(file("out")).steps.size(), 5U);
+  EXPECT_GT(runs::read_run(file("out")).steps.size(), 5U);
   EXPECT_TRUE(fs::exists(file("out/map.simplemap")));
 }
 
@@ -159,7 +159,7 @@ TEST_F(Slam, StopsAtAnObservationWithoutTimeAndKeepsWhatCameBefore) {
   const std::string why = input_error_of([&] { run_slam(job(application, file("a.rawlog"))); });
   EXPECT_NE(why.find("entry 1: "), std::string::npos) << why;
   EXPECT_NE(why.find("\"TURRET\" has no time"), std::string::npos) << why;
-  EXPECT_EQ(logs::read_run(file("out")).steps.size(), 1U);
+  EXPECT_EQ(runs::read_run(file("out")).steps.size(), 1U);
 }
 
 TEST_F(Slam, RefusesARawlogWithNothingToNavigateBy) {
@@ -223,8 +223,8 @@ TEST_F(Demo, IsMappedAsWellAsByKfSlamAndTheSameFromObservationsOnly) {
   SlamJob again = job(ini_, file("observations.rawlog"));
   again.out = file("again");
   EXPECT_EQ(run_slam(again), ExitCode::ok);
-  const logs::RunFolder frames = logs::read_run(file("out"));
-  const logs::RunFolder single = logs::read_run(file("again"));
+  const runs::Run frames = runs::read_run(file("out"));
+  const runs::Run single = runs::read_run(file("again"));
   ASSERT_EQ(frames.steps.size(), 250U);
   ASSERT_EQ(single.steps.size(), 250U);
   for (std::size_t i = 0; i < frames.steps.size(); ++i) {

@@ -151,8 +151,8 @@ TEST(Closing, CanBeSwitchedOff) {
 // one, each outside the other's gate: 0.3 to 1.5 nats told them apart.
 TEST(Closing, SearchesWhereAnObservationMayBeEitherOfTwoOldLandmarks) {
   for (const std::uint64_t seed : {730u, 2073u, 2655u}) {
-    const sim::RunScore score = navigate_and_judge(sim::named_scenario("figure-of-eight"), seed);
-    EXPECT_EQ(score.verdict, sim::RunVerdict::closed) << seed;
+    const evaluation::RunScore score = navigate_and_judge(sim::named_scenario("figure-of-eight"), seed);
+    EXPECT_EQ(score.verdict, evaluation::RunVerdict::closed) << seed;
     EXPECT_EQ(score.wrong_before_trigger + score.wrong_without_trigger, 0) << seed;
     EXPECT_EQ(score.rewound, 0) << seed;
   }

@@ -4,18 +4,18 @@
 #include <cstdint>
 
 #include "circuits.hpp"
-#include "helixnav/sim/referee.hpp"
+#include "helixnav/evaluation/referee.hpp"
 
 namespace helixnav::supervisor {
 
 /// A navigator as it comes drives the scenario, and the truth judges it.
-inline sim::RunScore navigate_and_judge(const sim::Scenario& scenario, std::uint64_t seed) {
+inline evaluation::RunScore navigate_and_judge(const sim::Scenario& scenario, std::uint64_t seed) {
   const sim::World world = sim::build_world(scenario.world, seed);
   const core::Recording run = sim::simulate_in(world, scenario, seed);
   NavigatorOptions options;
   options.search.relocalizer.threads = 1;
   Navigator navigator(run.start, options);
-  sim::Referee referee(run, world.returns_at_m);
+  evaluation::Referee referee(run, world.returns_at_m);
   drive(run, navigator, [&](const core::Scan& scan, std::size_t) {
     referee.watch(navigator.observe(scan), [&] { return navigator.map(); });
   });

@@ -189,10 +189,10 @@ TEST(Tape, KnowsWhatALandmarkIsNow) {
   Tape tape(10);
   tape.append(Tape::Merge{{{3, 7}}, 0.5});
   tape.append(Tape::Merge{{{1, 3}}, 0.5});
-  const auto now = merged_into(tape);
-  EXPECT_EQ(now.at(7), 1);
-  EXPECT_EQ(now.at(3), 1);
-  EXPECT_EQ(now.count(1), 0u);
+  const core::MergedIds ids = merged_ids(tape);
+  EXPECT_EQ(ids.now(7), 1);
+  EXPECT_EQ(ids.now(3), 1);
+  EXPECT_EQ(ids.now(5), 5);
   EXPECT_DOUBLE_EQ(drive_cost(tape), 1.0);
   tape.append(Tape::Solved{0.25});
   EXPECT_DOUBLE_EQ(drive_cost(tape), 0.25);

@@ -47,7 +47,7 @@ struct RevisedScan {
   std::vector<AssociationReport> associations;
 };
 
-/// Everything one scan did to the map and the pose. Filled by supervisor::Navigator, written by logs::RunWriter.
+/// Everything one scan did to the map and the pose. Filled by supervisor::Navigator, written by runs::RunWriter.
 struct StepReport {
   std::int64_t step = 0;  ///< index of the scan, from 0
   Nanoseconds t_ns = 0;

@@ -14,7 +14,7 @@ struct Step {
   double microseconds = 0.0;  ///< wall clock of the navigator, without conversion
 };
 
-/// The builder in HelixNav's own types, as logs::RunWriter wants them. These hold Eigen matrices: who uses this must be
+/// The builder in HelixNav's own types, as runs::RunWriter wants them. These hold Eigen matrices: who uses this must be
 /// compiled with the same vector instructions as this library, which is why MapBuilder itself does not show them.
 /// Not locked against a thread that feeds the builder.
 class RunAccess {

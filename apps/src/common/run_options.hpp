@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "helixnav/runs/run_manifest.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace helixnav::apps {
+
+struct Drive;
+
+/// Options of commands that write a run folder.
+struct RunOptions {
+  std::string out;
+  std::string config;
+  bool overwrite = false;
+  bool quiet = false;
+};
+
+/// --out, --overwrite and --quiet: of every command that writes a run folder.
+void add_folder_options(CLI::App& command, RunOptions& options);
+
+/// These and --config: of the commands that navigate.
+void add_run_options(CLI::App& command, RunOptions& options);
+
+/// Applies --config and refuses an --out that is taken, before anything is read or computed. InputError for --out.
+void prepare_run(CLI::App& command, const RunOptions& options);
+
+/// Copies the options into the drive and begins its manifest; `config` is the configuration in force.
+void fill_drive(Drive& drive, const RunOptions& options, const std::string& config);
+
+/// The file, or the files of the folder in order of name, with their digests. InputError when one cannot be read.
+std::vector<runs::InputFile> input_files(const std::string& path);
+
+/// The words of this process's command line, for the manifest.
+void remember_command_line(int argc, char** argv);
+
+}  // namespace helixnav::apps

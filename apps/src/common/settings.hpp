@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "helixnav/association/associate.hpp"
+#include "helixnav/logs/read_recording.hpp"
+#include "helixnav/supervisor/navigator.hpp"
+#include "replay/fuse_gps.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace helixnav::apps {
+
+/// Everything that a configuration file may set, bound to the options --section.key of a command.
+struct Settings {
+  supervisor::NavigatorOptions navigator;
+  bool known_association = false;  ///< association.method is "known": the log's labels are the identities
+  logs::RecordingSettings logs;
+  double covariance_scale = 1.0;   ///< on the covariances that the log itself states or its sensor settings give
+  double plaza_range_scale = 0.0;  ///< 0: estimate it from the log
+  GpsSettings gps;
+};
+
+/// All association methods, in the order in which to show them.
+std::vector<association::Method> association_methods();
+
+/// Adds one option a key, with unit, range and default in its help.
+void add_settings(CLI::App& command, Settings& settings);
+
+}  // namespace helixnav::apps

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drive.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/interrupt.hpp"
+#include "common/progress_bar.hpp"
+#include "common/timed.hpp"
+#include "estimator.hpp"
+#include "helixnav/core/decision_row.hpp"
+#include "helixnav/core/errors.hpp"
+#include "helixnav/core/event_loop.hpp"
+#include "helixnav/reports/finish_run.hpp"
+#include "helixnav/reports/summary.hpp"
+#include "helixnav/runs/run_recorder.hpp"
+#include "helixnav/runs/run_writer.hpp"
+#include "smooth/smooth_drive.hpp"
+#include "withholding.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+/// Value below which the given fraction of the times lies; 0 without times.
+double quantile(std::vector<double> times, double fraction) {
+  if (times.empty()) return 0.0;
+  const auto nth = times.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(times.size() - 1));
+  std::nth_element(times.begin(), nth, times.end());
+  return *nth;
+}
+
+void check_labels(const Drive& job) {
+  if (job.known_association && job.recording.labels.empty()) {
+    throw core::InputError(job.recording.name +
+                           ": --association known needs a labelled log, and this one has no labels");
+  }
+  if (job.known_association && job.given_map && job.given_map->landmark_of.empty()) {
+    throw core::InputError(
+        "--association known needs to know the labels of the map's landmarks: give --map the folder "
+        "of a run over a labelled log");
+  }
+}
+
+struct Driven {
+  std::size_t steps = 0;
+  std::vector<double> step_us;          ///< of each scan that was fed
+  std::map<std::string, int> closings;  ///< how many of each verdict
+};
+
+void count_closings(const core::StepReport& report, Driven& driven) {
+  for (const core::Decision& decision : report.decisions) {
+    if (core::is_closure(decision)) ++driven.closings[core::row_of(decision).verdict];
+  }
+}
+
+/// Feeds all events, but for the scans withheld.
+Driven navigate(const Drive& job, Estimator& estimator, runs::RunWriter& writer, runs::RunRecorder& recorder) {
+  Driven driven;
+  Timed timed(estimator);
+  Withholding seen(timed, job.withheld, estimator.pose);
+  core::EventLoop loop(job.recording.events, seen);
+  ProgressBar progress(job.given_map ? "localising" : "navigating", job.recording.events.size(), job.quiet);
+  while (!interrupted()) {
+    const std::optional<core::StepReport> step = loop.next();
+    progress.advance_to(loop.fed() - 1);
+    if (!step) break;
+    const double microseconds = seen.last_scan_was_withheld() ? 0.0 : 1e6 * timed.last_s();
+    if (!seen.last_scan_was_withheld()) driven.step_us.push_back(microseconds);
+    count_closings(*step, driven);
+    writer.write(*step, microseconds);
+    recorder.add(*step, microseconds);
+  }
+  driven.steps = static_cast<std::size_t>(loop.steps());
+  return driven;
+}
+
+}  // namespace
+
+ExitCode drive(const Drive& job) {
+  check_labels(job);
+  catch_interrupts();
+  const Clock::time_point begin = Clock::now();
+  using IfNotEmpty = runs::RunWriter::IfNotEmpty;
+  runs::RunWriter writer(job.out, job.manifest, job.recording,
+                         job.overwrite ? IfNotEmpty::overwrite : IfNotEmpty::refuse);
+  runs::RunRecorder recorder(job.out, job.manifest, job.recording);
+  LabelAgreement agreement;
+  Estimator estimator = job.given_map ? localizer_of(job, agreement) : navigator_of(job);
+  auto [steps, step_us, closings] = navigate(job, estimator, writer, recorder);
+
+  runs::Run run = recorder.finish(estimator.map());
+  run.timing = {{"median_us", quantile(step_us, 0.5)},
+                {"p99_us", quantile(step_us, 0.99)},
+                {"max_us", quantile(step_us, 1.0)},
+                {"reading_s", job.reading_s},
+                {"navigating_s", seconds_since(begin)}};
+  run.numbers = numbers_of(agreement);
+  if (!job.withheld.empty()) {
+    const auto withheld = std::count(job.withheld.begin(), job.withheld.end(), true);
+    run.numbers.emplace_back("blackout.scans", static_cast<double>(withheld));
+  }
+  const ExitCode smoothed = job.smooth && !interrupted() ? smooth_drive(job, run) : ExitCode::ok;
+  std::fputs(reports::evaluation_text(reports::finish_run(run, writer)).c_str(), stdout);
+  std::fputs(text_of(agreement).c_str(), stdout);
+  if (!job.given_map) {
+    std::printf("closings             %d accepted, %d refused, %d left undecided\n", closings["accepted"],
+                closings["refused"], closings["undecided"]);
+  }
+  std::printf("run folder: %s   report: %s/report.html\n", job.out.c_str(), job.out.c_str());
+  if (!interrupted()) return smoothed;
+  std::fprintf(stderr, "helixnav: interrupted after %zu steps; the run folder is complete up to there\n", steps);
+  return ExitCode::interrupted;
+}
+
+}  // namespace helixnav::apps

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/exit_code.hpp"
+#include "given_map.hpp"
+#include "helixnav/core/recording.hpp"
+#include "helixnav/runs/run_manifest.hpp"
+#include "helixnav/supervisor/navigator.hpp"
+
+namespace helixnav::apps {
+
+/// What replay and simulate have in common: a recording is driven through the navigator, or through the
+/// localizer, into a run folder.
+struct Drive {
+  core::Recording recording;
+  supervisor::NavigatorOptions navigator;
+  std::optional<GivenMap> given_map;  ///< localise in it instead of mapping
+  bool known_association = false;     ///< use the recording's labels as identities
+  std::vector<bool> withheld;         ///< [scan] not to be fed (blackout.hpp); empty: none is
+  bool smooth = false;                ///< afterwards, with the filter's own associations
+  std::string out;
+  bool overwrite = false;
+  bool quiet = false;
+  runs::RunManifest manifest;
+  double reading_s = 0.0;  ///< wall clock spent before the drive
+};
+
+/// Runs it, prints the evaluation on stdout and where the report is. On SIGINT the run ends after the present step, its
+/// folder is closed properly and the code is `interrupted`.
+ExitCode drive(const Drive& job);
+
+}  // namespace helixnav::apps

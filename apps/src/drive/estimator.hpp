@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "drive.hpp"
+#include "helixnav/core/events.hpp"
+#include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/step_report.hpp"
+
+namespace helixnav::apps {
+
+/// What a drive feeds: the navigator or the localizer, with the labels given to it when the job says so. The job must
+/// outlive it.
+struct Estimator {
+  std::function<std::optional<core::StepReport>(const core::Event&)> take;  ///< for core::EventLoop
+  std::function<core::PoseGaussian()> pose;                                 ///< at the last scan or fix
+  std::function<std::vector<core::MapLandmark>()> map;
+};
+
+Estimator navigator_of(const Drive& job);
+
+/// Localises in job.given_map; `agreement` is counted up by each scan of a log with labels. Fixes are not used.
+Estimator localizer_of(const Drive& job, LabelAgreement& agreement);
+
+}  // namespace helixnav::apps

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "given_map.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "helixnav/core/errors.hpp"
+#include "helixnav/runs/run_folder.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+std::map<core::Label, core::LandmarkId> landmarks_by_label(const runs::Run& run) {
+  std::map<core::Label, std::map<core::LandmarkId, int>> votes;
+  for (std::size_t k = 0; k < std::min(run.steps.size(), run.truth.labels.size()); ++k) {
+    const std::vector<core::Label>& labels = run.truth.labels[k];
+    for (const core::AssociationReport& a : run.steps[k].associations) {
+      const auto observation = static_cast<std::size_t>(a.observation);
+      const bool settled = a.outcome == core::Outcome::matched || a.outcome == core::Outcome::augmented;
+      if (settled && observation < labels.size() && labels[observation] >= 0) ++votes[labels[observation]][a.landmark];
+    }
+  }
+  std::map<core::Label, core::LandmarkId> landmark_of;
+  for (const auto& [label, counts] : votes) {
+    const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
+    landmark_of[label] = std::max_element(counts.begin(), counts.end(), fewer)->first;
+  }
+  return landmark_of;
+}
+
+double ratio(std::size_t part, std::size_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace
+
+std::string map_file(const std::string& path) {
+  return std::filesystem::is_directory(path) ? (std::filesystem::path(path) / "map.csv").string() : path;
+}
+
+GivenMap read_given_map(const std::string& path) {
+  namespace fs = std::filesystem;
+  const fs::path file = map_file(path);
+  if (!fs::exists(file)) {
+    throw core::InputError(path + ": expected a map.csv, or the folder of a run that came to its end");
+  }
+  GivenMap map;
+  std::set<core::LandmarkId> ids;
+  for (const core::MapLandmark& landmark : runs::read_map(file.string())) {
+    if (landmark.state != core::LandmarkState::mature) continue;
+    if (!ids.insert(landmark.id).second) {
+      throw core::InputError(file.string() + ": landmark " + std::to_string(landmark.id) + " is there twice");
+    }
+    map.landmarks.push_back(landmark);
+  }
+  if (map.landmarks.empty()) throw core::InputError(file.string() + ": expected mature landmarks, found none");
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  if (!fs::exists(folder / "manifest.json")) return map;
+  for (const auto& [label, id] : landmarks_by_label(runs::read_run(folder.string()))) {
+    if (ids.count(id) > 0) map.landmark_of[label] = id;
+  }
+  return map;
+}
+
+void LabelAgreement::count(const core::StepReport& report, const std::vector<core::Label>& labels,
+                           const GivenMap& map) {
+  for (const core::AssociationReport& a : report.associations) {
+    const auto known = map.landmark_of.find(labels[static_cast<std::size_t>(a.observation)]);
+    const bool is_on_map = known != map.landmark_of.end();
+    const bool is_matched = a.outcome == core::Outcome::matched;
+    on_map += is_on_map ? 1 : 0;
+    matched += is_matched ? 1 : 0;
+    right += is_matched && is_on_map && known->second == a.landmark ? 1 : 0;
+  }
+}
+
+std::string text_of(const LabelAgreement& agreement) {
+  if (agreement.on_map == 0) return {};
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "association          precision %.4f (%zu of %zu matches), recall %.4f (%zu observations of the map)\n",
+                ratio(agreement.right, agreement.matched), agreement.right, agreement.matched,
+                ratio(agreement.right, agreement.on_map), agreement.on_map);
+  return text;
+}
+
+std::vector<std::pair<std::string, double>> numbers_of(const LabelAgreement& agreement) {
+  if (agreement.on_map == 0) return {};
+  return {{"association.matched", static_cast<double>(agreement.matched)},
+          {"association.right", static_cast<double>(agreement.right)},
+          {"association.on_map", static_cast<double>(agreement.on_map)},
+          {"association.precision", ratio(agreement.right, agreement.matched)},
+          {"association.recall", ratio(agreement.right, agreement.on_map)}};
+}
+
+}  // namespace helixnav::apps

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "campaign_summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+#include <boost/math/distributions/binomial.hpp>
+
+#include "helixnav/core/chi2.hpp"
+#include "helixnav/evaluation/evaluation.hpp"
+#include "helixnav/evaluation/referee.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Condition = std::function<bool(const Json&)>;
+
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+
+double number(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number() ? found->get<double>() : no_number;
+}
+
+Json list(const Json& row, const char* key) { return row.value(key, Json::array()); }
+
+bool has_verdict(const Json& row, const char* verdict) { return row.at("verdict") == verdict; }
+
+Json share(const std::vector<Json>& rows, const Condition& condition) {
+  using Binomial = boost::math::binomial_distribution<double>;
+  const auto n = static_cast<double>(rows.size());
+  const auto k = static_cast<double>(std::count_if(rows.begin(), rows.end(), condition));
+  Json json = {{"count", static_cast<std::int64_t>(k)}};
+  json["percent"] = n > 0.0 ? 100.0 * k / n : no_number;
+  const double low = n > 0.0 ? 100.0 * Binomial::find_lower_bound_on_p(n, k, 0.025) : no_number;
+  const double high = n > 0.0 ? 100.0 * Binomial::find_upper_bound_on_p(n, k, 0.025) : no_number;
+  json["interval_95_percent"] = {low, high};
+  return json;
+}
+
+Json quantiles(std::vector<double> values) {
+  values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return std::isnan(v); }), values.end());
+  std::sort(values.begin(), values.end());
+  return {{"count", values.size()},
+          {"median", evaluation::quantile_of_sorted(values, 0.5)},
+          {"p90", evaluation::quantile_of_sorted(values, 0.9)},
+          {"max", values.empty() ? no_number : values.back()}};
+}
+
+double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+Json nees(std::vector<double> values) {
+  constexpr int pose_dof = 3;
+  values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return std::isnan(v); }), values.end());
+  const auto n = static_cast<double>(values.size());
+  Json json = {{"count", values.size()}};
+  json["mean"] = values.empty() ? no_number : sum(values) / n;
+  const int dof = pose_dof * static_cast<int>(values.size());
+  json["band_95"] =
+      values.empty() ? Json(nullptr) : Json({core::chi2_quantile(0.025, dof) / n, core::chi2_quantile(0.975, dof) / n});
+  json["median"] = quantiles(values).at("median");
+  return json;
+}
+
+/// The figure of every row, or of every item in a list of the rows.
+std::vector<double> of_rows(const std::vector<Json>& rows, const char* key) {
+  std::vector<double> values;
+  for (const Json& row : rows) values.push_back(number(row, key));
+  return values;
+}
+
+std::vector<double> of_lists(const std::vector<Json>& rows, const char* where, const char* key) {
+  std::vector<double> values;
+  for (const Json& row : rows) {
+    for (const Json& item : list(row, where)) values.push_back(number(item, key));
+  }
+  return values;
+}
+
+std::vector<double> of_parts(const std::vector<Json>& rows, const char* where, const char* key) {
+  std::vector<double> values;
+  for (const Json& row : rows) values.push_back(number(row.value(where, Json::object()), key));
+  return values;
+}
+
+std::vector<Json> chosen(const std::vector<Json>& rows, const Condition& condition) {
+  std::vector<Json> those;
+  std::copy_if(rows.begin(), rows.end(), std::back_inserter(those), condition);
+  return those;
+}
+
+bool is_wrong_absolutely(const Json& pose) {
+  const evaluation::RefereeOptions limits;
+  return number(pose, "absolute_position_error_m") > limits.wrong_position_m ||
+         number(pose, "absolute_heading_error_deg") * core::pi / 180.0 > limits.wrong_heading_rad;
+}
+
+bool any_closure(const Json& row, const Condition& condition) {
+  const Json closures = list(row, "closures");
+  return std::any_of(closures.begin(), closures.end(), condition);
+}
+
+bool exceeds_spacing(const Json& row) {
+  const Json returns = list(row, "returns");
+  return !returns.empty() && number(returns.front(), "error_before_m") > number(row, "spacing_m");
+}
+
+void put_shares(Json& summary, const std::vector<Json>& rows) {
+  const evaluation::RefereeOptions limits;
+  const auto verdict = [](const char* word) { return [word](const Json& row) { return has_verdict(row, word); }; };
+  summary["closed"] = share(rows, verdict("closed"));
+  summary["false"] = share(rows, verdict("false"));
+  summary["undecided"] = share(rows, verdict("undecided"));
+  summary["failed"] = share(rows, verdict("failed"));
+  summary["late"] = share(rows, [](const Json& row) { return row.value("late", false); });
+  summary["closed_by_association"] =
+      share(rows, [](const Json& row) { return row.value("closed_by_association", false); });
+  summary["wrong_before_trigger"] =
+      share(rows, [](const Json& row) { return number(row, "wrong_before_trigger") > 0; });
+  summary["wrong_without_trigger"] =
+      share(rows, [](const Json& row) { return number(row, "wrong_without_trigger") > 0; });
+  summary["rewound"] = share(rows, [](const Json& row) { return number(row, "rewound") > 0; });
+  summary["any_wrong_old_match"] = share(rows, [](const Json& row) { return number(row, "wrong_old_matches") > 0; });
+  summary["error_at_return_exceeds_spacing"] = share(rows, exceeds_spacing);
+  summary["absolutely_wrong_at_closing"] =
+      share(rows, [](const Json& row) { return any_closure(row, is_wrong_absolutely); });
+  summary["wrong_at_end"] = share(rows, [&limits](const Json& row) {
+    return has_verdict(row, "closed") &&
+           number(row.value("end", Json::object()), "position_error_m") > limits.wrong_position_m;
+  });
+  summary["absolutely_wrong_at_end"] = share(rows, [&limits](const Json& row) {
+    return has_verdict(row, "closed") &&
+           number(row.value("end", Json::object()), "absolute_position_error_m") > limits.wrong_position_m;
+  });
+}
+
+void put_closures(Json& summary, const std::vector<Json>& rows, const std::vector<Json>& closed) {
+  const std::vector<double> pairs = of_lists(rows, "closures", "pairs");
+  summary["closures"] = {
+      {"accepted", pairs.size()},
+      {"refused", sum(of_rows(chosen(rows, [](const Json& r) { return r.contains("refused"); }), "refused"))},
+      {"pairs", sum(pairs)},
+      {"wrong_pairs", sum(of_lists(rows, "closures", "wrong_pairs"))}};
+  summary["metres_to_closure"] = quantiles(of_lists(closed, "closures", "after_reentry_m"));
+  summary["rival_share"] = quantiles(of_lists(rows, "closures", "rival_share"));
+  summary["position_error_at_closing_m"] = quantiles(of_lists(rows, "closures", "position_error_m"));
+  summary["position_error_at_end_m"] = quantiles(of_parts(closed, "end", "position_error_m"));
+  std::vector<double> first;  // closures of one run are not independent
+  for (const Json& row : rows) {
+    if (!list(row, "closures").empty()) first.push_back(number(list(row, "closures").front(), "nees"));
+  }
+  summary["nees_at_closing"] = nees(first);
+  summary["nees_at_end"] = nees(of_parts(closed, "end", "nees"));
+}
+
+void put_map(Json& summary, const std::vector<Json>& closed) {
+  const double duplicates = sum(of_rows(closed, "duplicates"));
+  const double trees = sum(of_rows(closed, "trees_seen"));
+  summary["duplicates"] = {{"count", duplicates},
+                           {"percent_of_trees", trees > 0.0 ? 100.0 * duplicates / trees : no_number}};
+  summary["map_rms_m"] = quantiles(of_rows(closed, "map_rms_m"));
+}
+
+std::string text_of_share(const char* name, const Json& value) {
+  char line[160];
+  std::snprintf(line, sizeof(line), "  %-34s %6.1f %%   [%.2f, %.2f]   %d\n", name, number(value, "percent"),
+                value.at("interval_95_percent").at(0).is_number() ? value.at("interval_95_percent").at(0).get<double>()
+                                                                  : no_number,
+                value.at("interval_95_percent").at(1).is_number() ? value.at("interval_95_percent").at(1).get<double>()
+                                                                  : no_number,
+                value.at("count").get<int>());
+  return line;
+}
+
+std::string text_of_quantiles(const char* name, const Json& value) {
+  char line[160];
+  std::snprintf(line, sizeof(line), "  %-34s median %.2f, p90 %.2f, max %.2f   (%d)\n", name, number(value, "median"),
+                number(value, "p90"), number(value, "max"), value.at("count").get<int>());
+  return line;
+}
+
+std::string text_of_nees(const char* name, const Json& value) {
+  char line[160];
+  if (value.at("count").get<int>() == 0) {
+    std::snprintf(line, sizeof(line), "  %-34s none\n", name);
+    return line;
+  }
+  std::snprintf(line, sizeof(line), "  %-34s mean %.2f, band [%.2f, %.2f], median %.2f   (%d)\n", name,
+                number(value, "mean"), value.at("band_95").at(0).get<double>(), value.at("band_95").at(1).get<double>(),
+                number(value, "median"), value.at("count").get<int>());
+  return line;
+}
+
+}  // namespace
+
+Json summary_of(const std::string& scenario, const std::vector<Json>& rows) {
+  const std::vector<Json> closed = chosen(rows, [](const Json& row) { return has_verdict(row, "closed"); });
+  Json summary = {{"scenario", scenario}, {"runs", rows.size()}};
+  if (!rows.empty()) summary["seeds"] = {rows.front().at("seed"), rows.back().at("seed")};
+  put_shares(summary, rows);
+  put_closures(summary, rows, closed);
+  put_map(summary, closed);
+  summary["wall"] = {{"run_s", quantiles(of_parts(rows, "wall", "run_s"))},
+                     {"search_s", quantiles(of_parts(rows, "wall", "search_s"))},
+                     {"closing_s", quantiles(of_parts(rows, "wall", "closing_s"))}};
+  return summary;
+}
+
+std::string summary_text(const Json& summary) {
+  std::string text = summary.at("scenario").get<std::string>() + ": " + summary.at("runs").dump() + " runs";
+  if (summary.contains("seeds")) {
+    text += ", seeds " + summary.at("seeds").at(0).dump() + " to " + summary.at("seeds").at(1).dump();
+  }
+  text += "; shares with their 95 % interval and count\n";
+  for (const auto& [key, name] :
+       {std::pair("closed", "closed"), std::pair("false", "false"), std::pair("undecided", "undecided"),
+        std::pair("failed", "failed"), std::pair("late", "late"),
+        std::pair("closed_by_association", "closed by association alone"),
+        std::pair("wrong_before_trigger", "wrong match before the trigger"),
+        std::pair("wrong_without_trigger", "wrong match, never a trigger"),
+        std::pair("rewound", "search begun from before"),
+        std::pair("any_wrong_old_match", "any wrong match with old ground"),
+        std::pair("error_at_return_exceeds_spacing", "error at return > spacing"),
+        std::pair("wrong_at_end", "wrong at the end of the drive"),
+        std::pair("absolutely_wrong_at_closing", "wrong at closing, map frame"),
+        std::pair("absolutely_wrong_at_end", "wrong at the end, map frame")}) {
+    text += text_of_share(name, summary.at(key));
+  }
+  text += text_of_quantiles("metres from re-entry to closure", summary.at("metres_to_closure"));
+  text += text_of_quantiles("position error at closing [m]", summary.at("position_error_at_closing_m"));
+  text += text_of_quantiles("position error at the end [m]", summary.at("position_error_at_end_m"));
+  text += text_of_nees("NEES at closing", summary.at("nees_at_closing"));
+  text += text_of_nees("NEES at the end", summary.at("nees_at_end"));
+  text += text_of_quantiles("rival's share of the winner's ratio", summary.at("rival_share"));
+  text += text_of_quantiles("map RMS, aligned [m]", summary.at("map_rms_m"));
+  const Json& closures = summary.at("closures");
+  char line[200];
+  std::snprintf(line, sizeof(line), "  %-34s %.0f of %.0f; closures refused %.0f\n", "wrong pairs of closings",
+                number(closures, "wrong_pairs"), number(closures, "pairs"), number(closures, "refused"));
+  text += line;
+  std::snprintf(line, sizeof(line), "  %-34s %.0f, %.2f %% of the trees\n", "duplicates",
+                number(summary.at("duplicates"), "count"), number(summary.at("duplicates"), "percent_of_trees"));
+  text += line;
+  for (const char* key : {"run_s", "search_s", "closing_s"}) {
+    text += text_of_quantiles((std::string("wall clock, ") + key).c_str(), summary.at("wall").at(key));
+  }
+  return text;
+}
+
+}  // namespace helixnav::apps

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+
+#include "campaign.hpp"
+#include "common/commands.hpp"
+#include "common/config_file.hpp"
+#include "common/settings.hpp"
+#include "common/validators.hpp"
+#include "helixnav/sim/scenario.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+struct MonteCarloJob {
+  std::string scenario;
+  std::string config;
+  Campaign campaign;
+  Settings settings;
+};
+
+ExitCode run(CLI::App& command, MonteCarloJob& job) {
+  if (!job.config.empty()) apply_config_file(command, job.config);
+  Campaign& campaign = job.campaign;
+  campaign.scenario = sim::named_scenario(job.scenario);
+  campaign.navigator = job.settings.navigator;
+  campaign.navigator.search.relocalizer.threads = 1;  // the runs themselves fill the cores
+  campaign.known_association = job.settings.known_association;
+  campaign.config = dump_config(command);
+  return run_campaign(campaign);
+}
+
+void add_options(CLI::App& command, MonteCarloJob& job) {
+  command.add_option("SCENARIO", job.scenario, "As for simulate")->required()->check(one_of(sim::scenario_names()));
+  command.add_option("--runs", job.campaign.runs, "How many seeds")
+      ->capture_default_str()
+      ->check(number_between(std::uint64_t{1}, std::uint64_t{10'000'000}));
+  command.add_option("--first-seed", job.campaign.first_seed, "Seed of the first run; the next ones follow it")
+      ->capture_default_str()
+      ->check(number_between(std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max() / 2));
+  job.campaign.jobs = std::max(1u, std::thread::hardware_concurrency());
+  command.add_option("--jobs", job.campaign.jobs, "Runs at a time; results do not depend on it. Default: every core")
+      ->check(number_between(1u, 1024u));
+  command
+      .add_option("--out", job.campaign.out,
+                  "Folder of the campaign; one that was begun by the same scenario, settings and build is gone on with")
+      ->required()
+      ->type_name("DIR");
+  command.add_flag("--overwrite", job.campaign.overwrite, "Begin the campaign in --out anew");
+  command.add_flag("--quiet", job.campaign.quiet, "No progress bar");
+  command.add_option("--config", job.config, "INI or TOML file of the settings below (helixnav config --dump)")
+      ->type_name("FILE");
+}
+
+}  // namespace
+
+void add_montecarlo_command(CLI::App& app, ExitCode& code) {
+  CLI::App* command =
+      app.add_subcommand("montecarlo", "Drive a scenario with many seeds and judge every run by the truth");
+  const auto job = std::make_shared<MonteCarloJob>();
+  add_options(*command, *job);
+  add_settings(*command, job->settings);
+  command->footer(
+      "Writes runs.jsonl, a line a run as it ends, and summary.json (docs/campaign.md); prints the summary. A "
+      "campaign\n"
+      "that was cut off goes on with the same command.\n\n"
+      "Examples:\n"
+      "  helixnav montecarlo large-loop-changed --runs 1000 --out campaigns/changed\n"
+      "  helixnav montecarlo sparse --association nearest-neighbour --out campaigns/sparse-nn\n");
+  command->callback([command, job, &code] { code = run(*command, *job); });
+}
+
+}  // namespace helixnav::apps

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "blackout.hpp"
+#include "common/commands.hpp"
+#include "common/config_file.hpp"
+#include "common/run_options.hpp"
+#include "common/settings.hpp"
+#include "common/suit_to_log.hpp"
+#include "drive/drive.hpp"
+#include "estimate_range_scale.hpp"
+#include "fuse_gps.hpp"
+#include "helixnav/logs/read_recording.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+struct ReplayJob {
+  std::string path;
+  bool smooth = false;
+  bool localize = false;
+  std::string map;
+  std::vector<Blackout> blackouts;
+  RunOptions run;
+  Settings settings;
+};
+
+/// Ranges that read long are made right: by the scale given, or by one estimated from the log itself.
+void scale_ranges(core::Recording& recording, const Settings& settings) {
+  double scale = settings.plaza_range_scale;
+  if (scale == 0.0 && !settings.known_association) return;  // the scale needs names; drive says what is missing
+  if (scale == 0.0) {
+    scale = estimate_range_scale(recording, settings.navigator);
+    std::printf("range scale estimated from the log: %.4f\n", scale);
+  }
+  divide_ranges(recording, scale);
+}
+
+ExitCode replay(CLI::App& command, ReplayJob& job) {
+  prepare_run(command, job.run);
+  if (job.localize && job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "excludes --localize");
+  const auto begin = std::chrono::steady_clock::now();
+  suit_to_log(command, job.path, job.settings.navigator.search);
+  Drive task;
+  job.settings.logs.plaza.range_scale = 1.0;  // see scale_ranges
+  task.recording = logs::read_recording(job.path, job.settings.logs);
+  task.navigator = job.settings.navigator;
+  if (logs::recognise(job.path) == logs::LogFormat::plaza) scale_ranges(task.recording, job.settings);
+  if (job.settings.gps.fuse) fuse_gps(task.recording, job.settings.gps);
+  if (!job.blackouts.empty()) task.withheld = withhold(task.recording, job.blackouts);
+  scale_covariances(task.recording, job.settings.covariance_scale);
+  fill_drive(task, job.run, dump_config(command));
+  task.smooth = job.smooth;
+  if (job.localize) task.given_map = read_given_map(job.map);
+  task.known_association = job.settings.known_association;
+  task.manifest.inputs = input_files(job.path);
+  if (job.localize) {
+    const std::vector<runs::InputFile> of_map = input_files(map_file(job.map));
+    task.manifest.inputs.insert(task.manifest.inputs.end(), of_map.begin(), of_map.end());
+  }
+  task.reading_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return drive(task);
+}
+
+void add_blackouts(CLI::App& command, ReplayJob& job) {
+  const auto objection_to = [](const std::string& word) {
+    std::string objection;
+    blackout_from(word, objection);
+    return objection;
+  };
+  const auto take = [&job](const std::vector<std::string>& words) {
+    std::string none;
+    for (const std::string& word : words) job.blackouts.push_back(blackout_from(word, none));
+  };
+  command
+      .add_option_function<std::vector<std::string>>("--blackout", take,
+                                                     "Withhold the scans from T0 to T1, seconds as in trajectory.tum; "
+                                                     "odometry goes on. May be given several times")
+      ->type_name("T0:T1")
+      ->allow_extra_args(false)
+      ->check(objection_to);
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app, ExitCode& code) {
+  CLI::App* command = app.add_subcommand("replay", "Navigate along a recorded log");
+  const auto job = std::make_shared<ReplayJob>();
+  command->add_option("PATH", job->path, "Log: file, folder or zip; the format is recognised")->required();
+  CLI::Option* smooth = command->add_flag(
+      "--smooth", job->smooth,
+      "Then smooth with the filter's associations: trajectory_final.tum, chi2 and dof (GPS fixes left out)");
+  CLI::Option* map = command->add_option("--map", job->map, "Map to localise in: a run folder or its map.csv");
+  map->type_name("FILE");
+  CLI::Option* localize =
+      command->add_flag("--localize", job->localize, "Estimate the pose alone, in the map given, which stays as it is");
+  localize->needs(map);
+  map->needs(localize);
+  localize->excludes(smooth);
+  add_blackouts(*command, *job);
+  add_run_options(*command, job->run);
+  add_settings(*command, job->settings);
+  command->footer(
+      "Formats: ACFR text release (folder, zip) and .mat, iSAM/GTSAM and g2o landmark graphs, 2D-I-SLSJF .mat,\n"
+      "DLR text, Plaza.\n\n"
+      "Examples:\n"
+      "  helixnav replay victoria_park_ascii.zip --out runs/vp\n"
+      "  helixnav replay isam_victoriaPark.txt --association known --out runs/graph\n"
+      "  helixnav replay data_set.mat --out runs/carpark --config mine.toml\n"
+      "  helixnav replay map.circles --localize --map runs/optimum --out runs/located\n"
+      "  helixnav replay victoria_park_ascii.zip --blackout 600:660 --blackout 900:930 --out runs/blind\n");
+  command->callback([command, job, &code] { code = replay(*command, *job); });
+}
+
+}  // namespace helixnav::apps

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "helixnav/core/events.hpp"
+#include "helixnav/core/step_report.hpp"
+
+namespace helixnav::core {
+
+/// The loop over the events of a drive. The estimator is anything with
+///   std::optional<StepReport> take(const Event&)
+/// that answers a scan with its step. Whoever asks for the steps decides when to stop, and sees the estimator as it was
+/// after each:
+///   EventLoop loop(recording.events, estimator);
+///   while (const auto step = loop.next()) …
+/// Events and estimator must outlive the loop. Test: core/event_loop_test.cpp.
+template <typename Estimator>
+class EventLoop {
+ public:
+  EventLoop(const std::vector<Event>& events, Estimator& estimator) : events_(events), estimator_(estimator) {}
+
+  /// Feeds the events up to and with the next one that makes a step; nothing when none is left. Steps are numbered as
+  /// they come, from 0.
+  std::optional<StepReport> next() {
+    while (fed_ < events_.size()) {
+      std::optional<StepReport> step = estimator_.take(events_[fed_++]);
+      if (!step) continue;
+      step->step = steps_++;
+      return step;
+    }
+    return std::nullopt;
+  }
+
+  /// How many events were fed; with a step at hand, the event before this number made it.
+  std::size_t fed() const { return fed_; }
+
+  /// How many steps were made.
+  std::int64_t steps() const { return steps_; }
+
+ private:
+  const std::vector<Event>& events_;
+  Estimator& estimator_;
+  std::size_t fed_ = 0;
+  std::int64_t steps_ = 0;
+};
+
+}  // namespace helixnav::core

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/core/se2.hpp"
+#include "helixnav/core/time.hpp"
+#include "helixnav/runs/run.hpp"
+
+namespace helixnav::evaluation {
+
+/// Of a list of non-negative errors; quantiles interpolate between order statistics. NaN when count is 0.
+struct ErrorStatistics {
+  std::size_t count = 0;
+  double rmse = 0.0;
+  double median = 0.0;
+  double p95 = 0.0;
+  double max = 0.0;
+};
+ErrorStatistics error_statistics(std::vector<double> errors);
+
+/// The `fraction` quantile of an ascending list, linear between order statistics; NaN of an empty list.
+double quantile_of_sorted(const std::vector<double>& sorted, double fraction);
+
+/// Estimate against truth at one instant, in the map frame.
+struct PositionError {
+  core::Nanoseconds t_ns = 0;
+  Eigen::Vector2d true_map_m = Eigen::Vector2d::Zero();  ///< the fix, brought into the map frame
+  Eigen::Vector2d error_m = Eigen::Vector2d::Zero();     ///< estimate − truth, along x and y of the map
+  Eigen::Vector2d sigma_m = Eigen::Vector2d::Zero();     ///< of the estimate, as the filter says
+  bool used = true;
+};
+
+/// Position of the reference point (against true poses) or of the antenna (against true positions).
+struct PositionEvaluation {
+  bool aligned = false;     ///< a rigid alignment stands between the frames; false: the truth is in the map frame
+  core::Pose2 T_truth_map;  ///< identity when not aligned
+  double limit_m = 0.0;     ///< beyond it a fix is left out; infinite against true poses
+  ErrorStatistics error_m;  ///< over the fixes used
+  std::size_t fixes_used = 0;
+  std::size_t fixes_left_out = 0;  ///< farther than limit_m after the alignment
+  std::size_t fixes_outside = 0;   ///< before the first or after the last step: nothing to compare with
+  std::vector<PositionError> errors;
+};
+
+struct HeadingError {
+  core::Nanoseconds t_ns = 0;
+  double error_rad = 0.0;  ///< estimate − truth, wrapped
+  double sigma_rad = 0.0;
+  double nees = 0.0;  ///< eᵀP⁻¹e of (x, y, heading); NaN where P is singular
+};
+
+/// Against true poses only.
+struct PoseEvaluation {
+  ErrorStatistics heading_error_rad;
+  std::size_t nees_count = 0;
+  double nees_mean = 0.0;       ///< 3 when the filter is consistent
+  double nees_inside_95 = 0.0;  ///< fraction within the two-sided 95 % band of χ²₃
+  std::vector<HeadingError> errors;
+};
+
+/// Mature landmarks against true landmarks, one to one.
+struct MapEvaluation {
+  bool by_label = false;       ///< paired by the labels of their observations; else by distance
+  double limit_m = 0.0;        ///< of pairing by distance
+  ErrorStatistics error_m;     ///< over the pairs
+  std::size_t missing = 0;     ///< true landmarks without partner; by label: of those in ≥ 10 observations
+  std::size_t duplicates = 0;  ///< further landmarks on a true landmark that has its partner
+  std::size_t spurious = 0;    ///< landmarks that belong to no true landmark
+};
+
+/// Innovations of the joint updates against χ² with their degrees of freedom.
+struct NisEvaluation {
+  std::size_t updates = 0;
+  double mean_per_dof = 0.0;  ///< 1 when the filter is consistent; NaN without updates
+  double mean_low_95 = 0.0;   ///< two-sided 95 % band of that mean, as if the updates were independent
+  double mean_high_95 = 0.0;
+  double inside_95 = 0.0;  ///< fraction within the two-sided 95 % band
+};
+
+/// First matches of landmarks that had not been seen for `unseen_steps` steps: what the map says after a detour, before it
+/// is corrected. Needs no truth, and systematic errors of odometry and sensor show in it first.
+struct RevisitEvaluation {
+  static constexpr std::int64_t unseen_steps = 150;
+  std::size_t revisits = 0;
+  double mean_nis_per_dof = 0.0;  ///< NaN without revisits
+};
+
+struct Evaluation {
+  std::size_t steps = 0;
+  std::optional<PositionEvaluation> position;
+  std::optional<PoseEvaluation> pose;
+  std::optional<MapEvaluation> map;
+  NisEvaluation nis;
+  RevisitEvaluation revisits;
+};
+
+struct EvaluationOptions {
+  double fix_limit_m = 10.0;
+  double landmark_limit_m = 2.0;
+};
+
+/// Compares a run with `truth`. The estimate is interpolated at the instants of the truth along arcs of constant twist.
+/// True positions: the antenna's estimated position (pose ∘ lever arm), rigid alignment with outliers left out. True
+/// poses: no alignment, the map frame is theirs; NEES at the same instants with the covariance of the step before.
+/// Landmarks: after the same alignment. Test: evaluation/evaluation_test.cpp (hand-computed values).
+Evaluation evaluate(const runs::Run& run, const runs::RunTruth& truth, const EvaluationOptions& options = {});
+inline Evaluation evaluate(const runs::Run& run, const EvaluationOptions& options = {}) {
+  return evaluate(run, run.truth, options);
+}
+
+}  // namespace helixnav::evaluation

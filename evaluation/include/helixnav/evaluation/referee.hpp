@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "helixnav/core/angle.hpp"
+#include "helixnav/core/recording.hpp"
+#include "helixnav/core/step_report.hpp"
+
+namespace helixnav::evaluation {
+
+/// Distances are driven ones, along the truth.
+struct RefereeOptions {
+  double wrong_position_m = 2.0;  ///< a pose farther from the truth is wrong …
+  double wrong_heading_rad = 8.0 * core::pi / 180.0;
+  double most_wrong_share = 0.05;  ///< … and so is a closing with a larger share of wrong pairs, if there are …
+  int least_wrong_pairs = 2;       ///< … so many of them
+  double old_after_m = 60.0;       ///< a landmark unseen for so long is old: who it is stands fixed
+  double left_behind_m = 30.0;     ///< where a return begins, so long is enough
+  int old_sightings = 3;           ///< with fewer it is no mapped landmark, and matches with it do not count
+  int reentry_observations = 3;    ///< of trees mapped before, in one scan: old ground is re-entered
+  int association_matches = 10;    ///< with old landmarks after a return: closed without any closure
+  int relative_landmarks = 8;      ///< nearest old ones that the relative error refers to
+};
+
+/// Estimate against truth, absolute values; NaN when unknown.
+struct PoseError {
+  double position_m = std::numeric_limits<double>::quiet_NaN();
+  double heading_rad = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// A pose in the map, judged. Absolute: in the map frame, which is that of the truth. Relative: after the rigid motion
+/// that lays the nearest old landmarks on the trees that they are; what the old map itself was wrong drops out. Absolute
+/// where fewer than three are within 80 m. NEES = eᵀP⁻¹e of the absolute error in (x, y, heading).
+struct JudgedPose {
+  PoseError absolute;
+  PoseError relative;
+  double nees = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// One accepted closure.
+struct ClosureScore {
+  std::int64_t step = 0;
+  double after_reentry_m = std::numeric_limits<double>::quiet_NaN();  ///< NaN: no old ground yet, or closed before
+  JudgedPose pose;                                                    ///< after the closing
+  int pairs = 0;
+  int wrong_pairs = 0;                                            ///< that are not the same tree, or none
+  double rival_share = std::numeric_limits<double>::quiet_NaN();  ///< of the last constellation test that was passed
+  bool is_false = false;
+};
+
+/// One return to old ground.
+struct ReturnScore {
+  double error_before_m = std::numeric_limits<double>::quiet_NaN();  ///< of the position, before an old tree is in view
+  std::int64_t reentry_step = -1;                                    ///< -1: the drive ended before
+  int old_matches = 0;                                               ///< by association, until the next return
+  int wrong_old_matches = 0;
+  bool closed = false;     ///< by a closure, or by association
+  JudgedPose left_behind;  ///< as RunScore::end_on_old_ground, before the next return or the end
+};
+
+enum class RunVerdict {
+  closed,         ///< every return was closed, none wrongly
+  false_closure,  ///< at least one closing is wrong; where nothing returns, any closing is
+  undecided,      ///< nothing wrong, but a return (or, where nothing returns, the road) was left open
+};
+
+/// One run, judged. Where nothing returns, `undecided` is the right verdict.
+struct RunScore {
+  RunVerdict verdict = RunVerdict::undecided;
+  bool late = false;                   ///< every closing was right, and yet end_on_old_ground is wrong by position
+  bool closed_by_association = false;  ///< a return was closed, rightly or not, without any closure
+  std::vector<ReturnScore> returns;
+  std::vector<ClosureScore> closures;
+  int triggers = 0;
+  int rewound = 0;    ///< searches begun from before
+  int refused = 0;    ///< closures
+  int undecided = 0;  ///< closures
+  int old_matches = 0;
+  int wrong_old_matches = 0;
+  int wrong_before_trigger = 0;   ///< wrong old matches before the first trigger of a return, begun from before or not
+  int wrong_without_trigger = 0;  ///< those of returns without any trigger
+  double spacing_m = 0.0;         ///< median distance from a tree seen before the first return to the nearest other
+  JudgedPose end;
+  JudgedPose end_on_old_ground;  ///< at the last scan with old trees in view, or that closed: behind them, all drift
+  int trees_seen = 0;
+  int mature_landmarks = 0;
+  int duplicates = 0;      ///< mature landmarks on a tree that has another one
+  double map_rms_m = 0.0;  ///< of the mature landmarks after a rigid alignment; NaN with fewer than two
+};
+
+/// Scores a navigator's run in a world whose truth is known; nothing of it reaches the navigator. A landmark is the tree
+/// that most of its observations came from. Who an old landmark is stands fixed where the return begins, if it was left
+/// behind by then, or since it was unseen for old_after_m, so that wrong matches cannot make it another. A return begins 1.5 times the sensor's range before
+/// `returns_at_m`, when no old tree is in view yet. A closing is wrong by its pose or by its pairs; a return that is
+/// closed by association alone (association_matches with old landmarks and no closure) is judged by the pose where its old
+/// ground is left behind and by its matches. Poses are judged by the relative error; the absolute one stands beside it.
+/// Test: evaluation/referee_test.cpp (a report made by hand for every verdict).
+class Referee {
+ public:
+  using Map = std::function<std::vector<core::MapLandmark>()>;
+
+  /// `recording` outlives the referee and has labels and a true pose for every scan, else PreconditionError.
+  /// `returns_at_m` ascending, as in World.
+  Referee(const core::Recording& recording, std::vector<double> returns_at_m, const RefereeOptions& options = {});
+  ~Referee();
+  Referee(Referee&&) noexcept;
+  Referee& operator=(Referee&&) noexcept;
+
+  /// Every report in order. `map_now` is called where a closing is to be judged or a return ends, and nowhere else.
+  /// PreconditionError for a step that is not the next.
+  void watch(const core::StepReport& report, const Map& map_now);
+
+  /// The verdict on what was watched, with the map at its end.
+  RunScore score(const std::vector<core::MapLandmark>& map) const;
+
+ private:
+  struct Book;
+  std::unique_ptr<Book> book_;
+};
+
+}  // namespace helixnav::evaluation

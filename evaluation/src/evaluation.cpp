@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/evaluation/evaluation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "evaluation_map.hpp"
+#include "helixnav/core/chi2.hpp"
+#include "helixnav/evaluation/alignment.hpp"
+#include "helixnav/evaluation/nees.hpp"
+#include "run_interpolation.hpp"
+
+namespace helixnav::evaluation {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+struct Band {
+  double low;
+  double high;
+  bool holds(double value) const { return value >= low && value <= high; }
+};
+
+Band two_sided_95(int dof) { return {core::chi2_quantile(0.025, dof), core::chi2_quantile(0.975, dof)}; }
+
+double fraction_of(std::size_t part, std::size_t whole) {
+  return whole == 0 ? nan : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+Eigen::Vector2d sigma_of_point(const core::PoseGaussian& pose, const Eigen::Vector2d& point_robot_m) {
+  Eigen::Matrix<double, 2, 3> J = Eigen::Matrix<double, 2, 3>::Identity();
+  const Eigen::Vector2d arm = core::rotation(pose.mean.heading_rad) * point_robot_m;
+  J.col(2) << -arm.y(), arm.x();
+  return (J * pose.covariance * J.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
+}
+
+ErrorStatistics statistics_of_used(const std::vector<PositionError>& errors) {
+  std::vector<double> norms;
+  for (const PositionError& error : errors) {
+    if (error.used) norms.push_back(error.error_m.norm());
+  }
+  return error_statistics(std::move(norms));
+}
+
+PositionEvaluation evaluate_positions(const runs::Run& run, const runs::RunTruth& truth, double limit_m) {
+  PositionEvaluation result;
+  result.aligned = true;
+  result.limit_m = limit_m;
+  std::vector<Eigen::Vector2d> fixes;
+  std::vector<Eigen::Vector2d> antennas;
+  for (const core::TruePosition& fix : truth.positions) {
+    const auto pose = estimate_at(run.steps, fix.t_ns);
+    if (!pose) {
+      ++result.fixes_outside;
+      continue;
+    }
+    fixes.push_back(fix.position_m);
+    antennas.push_back(core::transform(pose->mean, truth.antenna_robot_m));
+    PositionError& error = result.errors.emplace_back();
+    error.t_ns = fix.t_ns;
+    error.sigma_m = sigma_of_point(*pose, truth.antenna_robot_m);
+  }
+  const RigidAlignment alignment = align_rigidly(fixes, antennas, limit_m);
+  result.T_truth_map = alignment.T_a_b;
+  const core::Pose2 T_map_truth = core::inverse(alignment.T_a_b);
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    PositionError& error = result.errors[i];
+    error.true_map_m = core::transform(T_map_truth, fixes[i]);
+    error.error_m = antennas[i] - error.true_map_m;
+    error.used = alignment.used[i];
+  }
+  result.fixes_used = static_cast<std::size_t>(alignment.used_count);
+  result.fixes_left_out = fixes.size() - result.fixes_used;
+  result.error_m = statistics_of_used(result.errors);
+  return result;
+}
+
+void summarize_poses(PoseEvaluation& result) {
+  const Band band = two_sided_95(3);
+  std::vector<double> headings;
+  std::size_t inside = 0;
+  double sum = 0.0;
+  for (const HeadingError& error : result.errors) {
+    headings.push_back(std::abs(error.error_rad));
+    if (!std::isfinite(error.nees)) continue;
+    ++result.nees_count;
+    sum += error.nees;
+    inside += band.holds(error.nees) ? 1 : 0;
+  }
+  result.heading_error_rad = error_statistics(std::move(headings));
+  result.nees_mean = result.nees_count == 0 ? nan : sum / static_cast<double>(result.nees_count);
+  result.nees_inside_95 = fraction_of(inside, result.nees_count);
+}
+
+void evaluate_poses(const runs::Run& run, const runs::RunTruth& truth, Evaluation& evaluation) {
+  PositionEvaluation position;
+  position.limit_m = std::numeric_limits<double>::infinity();
+  PoseEvaluation pose;
+  for (const core::TruePose& known : truth.poses) {
+    const auto estimate = estimate_at(run.steps, known.t_ns);
+    if (!estimate) {
+      ++position.fixes_outside;
+      continue;
+    }
+    Eigen::Vector3d error = estimate->mean.vector() - known.T_world_robot.vector();
+    error.z() = core::wrap_to_pi(error.z());
+    const Eigen::Vector3d sigma = estimate->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    position.errors.push_back({known.t_ns, known.T_world_robot.position_m(), error.head<2>(), sigma.head<2>(), true});
+    pose.errors.push_back({known.t_ns, error.z(), sigma.z(), nees(*estimate, known.T_world_robot)});
+  }
+  position.fixes_used = position.errors.size();
+  position.error_m = statistics_of_used(position.errors);
+  summarize_poses(pose);
+  evaluation.pose = std::move(pose);
+  if (!evaluation.position) evaluation.position = std::move(position);
+}
+
+NisEvaluation evaluate_nis(const std::vector<core::StepReport>& steps) {
+  NisEvaluation result;
+  std::map<int, Band> bands;
+  std::size_t inside = 0;
+  double nis = 0.0;
+  double dof = 0.0;
+  for (const core::StepReport& step : steps) {
+    if (step.joint_dof < 1) continue;
+    const auto band = bands.try_emplace(step.joint_dof, Band{}).first;
+    if (band->second.high == 0.0) band->second = two_sided_95(step.joint_dof);
+    ++result.updates;
+    inside += band->second.holds(step.joint_nis) ? 1 : 0;
+    nis += step.joint_nis;
+    dof += step.joint_dof;
+  }
+  result.inside_95 = fraction_of(inside, result.updates);
+  result.mean_per_dof = result.mean_low_95 = result.mean_high_95 = nan;
+  if (result.updates == 0) return result;
+  const Band of_sum = two_sided_95(static_cast<int>(dof));
+  result.mean_per_dof = nis / dof;
+  result.mean_low_95 = of_sum.low / dof;
+  result.mean_high_95 = of_sum.high / dof;
+  return result;
+}
+
+RevisitEvaluation evaluate_revisits(const std::vector<core::StepReport>& steps) {
+  RevisitEvaluation result;
+  std::map<core::LandmarkId, std::int64_t> last_seen;
+  double nis = 0.0;
+  double dof = 0.0;
+  for (const core::StepReport& step : steps) {
+    for (const core::AssociationReport& a : step.associations) {
+      if (a.outcome != core::Outcome::matched && a.outcome != core::Outcome::augmented) continue;
+      const auto [seen, first] = last_seen.try_emplace(a.landmark, step.step);
+      if (!first && a.dof > 0 && step.step - seen->second > RevisitEvaluation::unseen_steps) {
+        ++result.revisits;
+        nis += a.nis;
+        dof += a.dof;
+      }
+      seen->second = step.step;
+    }
+  }
+  result.mean_nis_per_dof = result.revisits == 0 ? nan : nis / dof;
+  return result;
+}
+
+}  // namespace
+
+double quantile_of_sorted(const std::vector<double>& sorted, double fraction) {
+  if (sorted.empty()) return nan;
+  const double place = fraction * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  if (below + 1 == sorted.size()) return sorted.back();
+  return sorted[below] + (place - static_cast<double>(below)) * (sorted[below + 1] - sorted[below]);
+}
+
+ErrorStatistics error_statistics(std::vector<double> errors) {
+  if (errors.empty()) return {0, nan, nan, nan, nan};
+  std::sort(errors.begin(), errors.end());
+  double squares = 0.0;
+  for (const double error : errors) squares += error * error;
+  return {errors.size(), std::sqrt(squares / static_cast<double>(errors.size())), quantile_of_sorted(errors, 0.5),
+          quantile_of_sorted(errors, 0.95), errors.back()};
+}
+
+Evaluation evaluate(const runs::Run& run, const runs::RunTruth& truth, const EvaluationOptions& options) {
+  Evaluation evaluation;
+  evaluation.steps = run.steps.size();
+  if (!truth.positions.empty()) evaluation.position = evaluate_positions(run, truth, options.fix_limit_m);
+  if (!truth.poses.empty()) evaluate_poses(run, truth, evaluation);
+  const core::Pose2 T_truth_map = evaluation.position ? evaluation.position->T_truth_map : core::Pose2{};
+  if (!truth.landmarks.empty()) evaluation.map = evaluate_map(run, truth, T_truth_map, options.landmark_limit_m);
+  evaluation.nis = evaluate_nis(run.steps);
+  evaluation.revisits = evaluate_revisits(run.steps);
+  return evaluation;
+}
+
+}  // namespace helixnav::evaluation

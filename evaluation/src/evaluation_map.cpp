@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation_map.hpp"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+namespace helixnav::evaluation {
+
+namespace {
+
+struct MovedLandmark {
+  core::LandmarkId id;
+  int observations;
+  Eigen::Vector2d point_truth_m;
+};
+
+std::vector<MovedLandmark> mature_landmarks(const runs::Run& run, const core::Pose2& T_truth_map) {
+  std::vector<MovedLandmark> landmarks;
+  for (const core::MapLandmark& landmark : run.map) {
+    if (landmark.state != core::LandmarkState::mature) continue;
+    landmarks.push_back({landmark.id, landmark.observations, core::transform(T_truth_map, landmark.point.mean_m)});
+  }
+  return landmarks;
+}
+
+// How often each label was seen, in all and by each landmark.
+struct LabelCounts {
+  std::map<core::Label, int> in_all;
+  std::map<core::LandmarkId, std::map<core::Label, int>> by_landmark;
+};
+
+LabelCounts count_labels(const runs::Run& run, const runs::RunTruth& truth) {
+  LabelCounts counts;
+  for (const core::StepReport& step : run.steps) {
+    const auto index = static_cast<std::size_t>(step.step);
+    if (index >= truth.labels.size()) continue;
+    for (const core::AssociationReport& a : step.associations) {
+      const auto k = static_cast<std::size_t>(a.observation);
+      const core::Label label = k < truth.labels[index].size() ? truth.labels[index][k] : core::no_label;
+      if (label != core::no_label) ++counts.in_all[label];
+      if (a.landmark != core::no_landmark) ++counts.by_landmark[a.landmark][label];
+    }
+  }
+  return counts;
+}
+
+core::Label most_frequent(const std::map<core::Label, int>& counts) {
+  const auto most =
+      std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == counts.end() ? core::no_label : most->first;
+}
+
+MapEvaluation evaluate_by_label(const runs::Run& run, const runs::RunTruth& truth,
+                                const std::vector<MovedLandmark>& landmarks) {
+  constexpr int seen_often = 10;
+  MapEvaluation result;
+  result.by_label = true;
+  LabelCounts counts = count_labels(run, truth);
+  std::map<core::Label, std::vector<const MovedLandmark*>> of_label;
+  for (const MovedLandmark& landmark : landmarks) {
+    of_label[most_frequent(counts.by_landmark[landmark.id])].push_back(&landmark);
+  }
+  std::vector<double> errors_m;
+  std::size_t claimed = 0;
+  for (const core::TrueLandmark& known : truth.landmarks) {
+    const auto found = of_label.find(known.label);
+    if (found == of_label.end()) {
+      result.missing += counts.in_all[known.label] >= seen_often ? 1 : 0;
+      continue;
+    }
+    const auto& rivals = found->second;
+    const MovedLandmark* partner = *std::max_element(
+        rivals.begin(), rivals.end(), [](const auto* a, const auto* b) { return a->observations < b->observations; });
+    errors_m.push_back((partner->point_truth_m - known.point_m).norm());
+    result.duplicates += rivals.size() - 1;
+    claimed += rivals.size();
+  }
+  result.spurious = landmarks.size() - claimed;
+  result.error_m = error_statistics(std::move(errors_m));
+  return result;
+}
+
+MapEvaluation evaluate_by_distance(const runs::RunTruth& truth, const std::vector<MovedLandmark>& landmarks,
+                                   double limit_m) {
+  MapEvaluation result;
+  result.limit_m = limit_m;
+  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+  std::vector<bool> near_truth(landmarks.size(), false);
+  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    for (std::size_t j = 0; j < truth.landmarks.size(); ++j) {
+      const double distance_m = (landmarks[i].point_truth_m - truth.landmarks[j].point_m).norm();
+      if (distance_m > limit_m) continue;
+      pairs.emplace_back(distance_m, i, j);
+      near_truth[i] = true;
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  std::vector<bool> landmark_taken(landmarks.size(), false);
+  std::vector<bool> truth_taken(truth.landmarks.size(), false);
+  std::vector<double> errors_m;
+  for (const auto& [distance_m, i, j] : pairs) {
+    if (landmark_taken[i] || truth_taken[j]) continue;
+    landmark_taken[i] = truth_taken[j] = true;
+    errors_m.push_back(distance_m);
+  }
+  result.missing = truth.landmarks.size() - errors_m.size();
+  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    result.duplicates += near_truth[i] && !landmark_taken[i] ? 1 : 0;
+    result.spurious += near_truth[i] ? 0 : 1;
+  }
+  result.error_m = error_statistics(std::move(errors_m));
+  return result;
+}
+
+}  // namespace
+
+MapEvaluation evaluate_map(const runs::Run& run, const runs::RunTruth& truth, const core::Pose2& T_truth_map,
+                           double limit_m) {
+  const std::vector<MovedLandmark> landmarks = mature_landmarks(run, T_truth_map);
+  return truth.labels.empty() ? evaluate_by_distance(truth, landmarks, limit_m)
+                              : evaluate_by_label(run, truth, landmarks);
+}
+
+}  // namespace helixnav::evaluation

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <set>
+#include <vector>
+
+#include "helixnav/core/landmark_id.hpp"
+#include "helixnav/core/recording.hpp"
+
+namespace helixnav::evaluation {
+
+/// Which tree each landmark is, by the labels of the observations that it was given: the majority, until the landmark is
+/// old. Then it stands fixed: wrong matches afterwards must not make it another tree.
+class Identities {
+ public:
+  explicit Identities(int old_sightings) : old_sightings_(old_sightings) {}
+
+  void add_sighting(core::LandmarkId id, core::Label label, double driven_m);
+
+  /// Fixes those that were not seen since `seen_before_m`, all of them or one.
+  void fix_unseen(double seen_before_m);
+  void fix_if_unseen(core::LandmarkId id, double seen_before_m);
+
+  /// A fixed landmark that was some tree when it was fixed, and not just a few false detections.
+  bool is_old(core::LandmarkId id) const;
+
+  /// no_label for false detections and for landmarks never seen.
+  core::Label identity(core::LandmarkId id) const;
+
+  /// Trees that old landmarks are.
+  std::set<core::Label> old_trees() const;
+
+ private:
+  struct Record {
+    std::map<core::Label, int> votes;
+    double last_seen_m = 0.0;
+    bool fixed = false;
+  };
+  static core::Label majority(const Record& record);
+
+  int old_sightings_;
+  std::map<core::LandmarkId, Record> records_;
+};
+
+}  // namespace helixnav::evaluation

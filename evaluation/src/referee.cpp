@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/evaluation/referee.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "helixnav/core/errors.hpp"
+#include "referee_book.hpp"
+
+namespace helixnav::evaluation {
+namespace {
+
+using core::Label;
+using core::LandmarkId;
+using core::MapLandmark;
+using core::StepReport;
+
+double sight_m(const core::Recording& recording) {
+  double range_m = 0.0;
+  for (const core::Event& event : recording.events) {
+    if (const auto* scan = std::get_if<core::Scan>(&event)) {
+      range_m = std::max(range_m, scan->field_of_view.max_range_m);
+    }
+  }
+  return std::isfinite(range_m) ? 1.5 * range_m : 0.0;
+}
+
+template <class Kind>
+int count(const StepReport& report) {
+  return static_cast<int>(
+      std::count_if(report.decisions.begin(), report.decisions.end(),
+                    [](const core::Decision& decision) { return std::holds_alternative<Kind>(decision); }));
+}
+
+int count_closings(const StepReport& report, bool accepted) {
+  return static_cast<int>(
+      std::count_if(report.decisions.begin(), report.decisions.end(), [&](const core::Decision& decision) {
+        const auto* closure = std::get_if<core::ClosureDecision>(&decision);
+        return closure != nullptr && closure->accepted == accepted;
+      }));
+}
+
+}  // namespace
+
+Referee::Referee(const core::Recording& recording, std::vector<double> returns_at_m, const RefereeOptions& options)
+    : book_(std::make_unique<Book>(recording, std::move(returns_at_m), options, sight_m(recording))) {
+  if (recording.true_poses.size() != recording.labels.size()) {
+    throw core::PreconditionError("Referee: expected labels and a true pose for every scan");
+  }
+}
+
+Referee::~Referee() = default;
+Referee::Referee(Referee&&) noexcept = default;
+Referee& Referee::operator=(Referee&&) noexcept = default;
+
+void Referee::watch(const StepReport& report, const Map& map_now) {
+  Book& book = *book_;
+  if (report.step != static_cast<std::int64_t>(book.steps) || book.steps >= book.recording.labels.size()) {
+    throw core::PreconditionError("Referee: step " + std::to_string(report.step) + ", expected " +
+                                  std::to_string(book.steps) + " of " + std::to_string(book.recording.labels.size()));
+  }
+  const std::vector<Label>& labels = book.recording.labels[book.steps];
+  book.drive_on(report, map_now);
+  book.look_out(labels);
+  book.pose = report.pose;
+  if (book.on_old_ground) book.last_on_old_ground = {report.pose, book.truth()};
+  book.note_triggers(report);
+  book.count_matches(report, labels);
+  book.score.refused += count_closings(report, false);
+  book.score.undecided += count<core::UndecidedDecision>(report);
+  if (count_closings(report, true) == 0) return;
+  book.judge_closure(report, map_now());
+  book.last_on_old_ground = {report.pose, book.truth()};  // what was wrong before the closing is no longer believed
+}
+
+RunScore Referee::score(const std::vector<MapLandmark>& map) const {
+  RunScore result = book_->score;
+  if (book_->steps > 0) {
+    const Judgeable end{book_->pose, book_->truth()};
+    result.end = book_->judge(end, map);
+    result.end_on_old_ground = book_->judge(book_->last_on_old_ground.value_or(end), map);
+  }
+  if (!result.returns.empty()) result.returns.back().left_behind = result.end_on_old_ground;
+  result.wrong_without_trigger += book_->wrong_so_far;
+  result.spacing_m = book_->spacing_m();
+  result.trees_seen = static_cast<int>(book_->seen.size());
+  book_->score_map(map, result);
+  book_->pass_verdict(result);
+  return result;
+}
+
+void Referee::Book::drive_on(const StepReport& report, const Map& map_now) {
+  ++steps;
+  if (steps > 1) {
+    driven_m += (truth().position_m() - recording.true_poses[steps - 2].T_world_robot.position_m()).norm();
+  }
+  const std::size_t next = score.returns.size();
+  if (next < returns_at_m.size() && driven_m >= returns_at_m[next] - in_sight_m) {
+    if (next > 0 && last_on_old_ground) score.returns.back().left_behind = judge(*last_on_old_ground, map_now());
+    begin_return(report.mode == core::Mode::searching && count<core::TriggerDecision>(report) == 0);
+  }
+}
+
+void Referee::Book::begin_return(bool searching) {
+  score.returns.emplace_back();
+  identities.fix_unseen(driven_m - options.left_behind_m);
+  old_trees = identities.old_trees();
+  seen_until_return.push_back(seen);
+  reentered_at_m = std::numeric_limits<double>::quiet_NaN();
+  triggered = searching;
+  score.wrong_without_trigger += std::exchange(wrong_so_far, 0);
+}
+
+void Referee::Book::note_triggers(const StepReport& report) {
+  const int rewound = count<core::RollbackDecision>(report);
+  const int started = count<core::TriggerDecision>(report);
+  score.rewound += rewound;
+  score.triggers += started;
+  if (rewound > 0) revise(report);
+  if (rewound == 0 && started == 0) return;
+  triggered = true;
+  score.wrong_before_trigger += std::exchange(wrong_so_far, 0);
+}
+
+/// Notes which trees come into view, and when they are old ones. `pose` still is that of the scan before.
+void Referee::Book::look_out(const std::vector<Label>& labels) {
+  int old = 0;
+  for (const Label label : labels) {
+    if (label == core::no_label) continue;
+    seen.insert(label);
+    old += old_trees.count(label) > 0 ? 1 : 0;
+  }
+  on_old_ground = old >= options.reentry_observations;
+  if (score.returns.empty() || old == 0) return;
+  ReturnScore& now = score.returns.back();
+  if (std::isnan(now.error_before_m) && steps > 1) {
+    now.error_before_m = error_between(pose.mean, recording.true_poses[steps - 2].T_world_robot).position_m;
+  }
+  if (now.reentry_step >= 0 || old < options.reentry_observations) return;
+  now.reentry_step = static_cast<std::int64_t>(steps) - 1;
+  reentered_at_m = driven_m;
+}
+
+void Referee::Book::count_matches(const StepReport& report, const std::vector<Label>& labels) {
+  for (const core::AssociationReport& a : report.associations) {
+    const bool matched = a.outcome == core::Outcome::matched;
+    if (!matched && a.outcome != core::Outcome::augmented) continue;
+    const Label label = labels.at(static_cast<std::size_t>(a.observation));
+    identities.fix_if_unseen(a.landmark, driven_m - options.old_after_m);
+    if (matched && identities.is_old(a.landmark)) {
+      const int wrong = identities.identity(a.landmark) == label ? 0 : 1;
+      ++score.old_matches;
+      score.wrong_old_matches += wrong;
+      if (!triggered) wrong_so_far += wrong;
+      if (!score.returns.empty()) ++score.returns.back().old_matches;
+      if (!score.returns.empty()) score.returns.back().wrong_old_matches += wrong;
+    }
+    identities.add_sighting(a.landmark, label, driven_m);
+  }
+}
+
+/// Landmarks that earlier scans began when they were gone through again; and poses believed in between are no more.
+void Referee::Book::revise(const StepReport& report) {
+  for (const core::RevisedScan& scan : report.revised) {
+    const std::vector<Label>& labels = recording.labels.at(static_cast<std::size_t>(scan.step));
+    for (const core::AssociationReport& a : scan.associations) {
+      const bool used = a.outcome == core::Outcome::matched || a.outcome == core::Outcome::augmented;
+      if (used) identities.add_sighting(a.landmark, labels.at(static_cast<std::size_t>(a.observation)), driven_m);
+    }
+  }
+  last_on_old_ground = {report.pose, truth()};
+}
+
+}  // namespace helixnav::evaluation

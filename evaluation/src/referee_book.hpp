@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "helixnav/evaluation/referee.hpp"
+#include "identities.hpp"
+
+namespace helixnav::evaluation {
+
+/// An estimated pose and the true one.
+struct Judgeable {
+  core::PoseGaussian estimate;
+  core::Pose2 truth;
+};
+
+/// Absolute values.
+PoseError error_between(const core::Pose2& estimate, const core::Pose2& truth);
+
+/// What was seen so far.
+struct Referee::Book {
+  const core::Recording& recording;
+  std::vector<double> returns_at_m;
+  RefereeOptions options;
+  double in_sight_m;
+  Identities identities;
+  std::vector<std::set<core::Label>> seen_until_return;  ///< trees, by then
+  std::set<core::Label> seen;
+  std::set<core::Label> old_trees;  ///< at the present return
+  double driven_m = 0.0;
+  double reentered_at_m = std::numeric_limits<double>::quiet_NaN();  ///< of the present return
+  bool triggered = false;                                            ///< since the present return
+  int wrong_so_far = 0;        ///< wrong old matches since the present return, while nothing triggered
+  bool on_old_ground = false;  ///< in the present scan
+  std::size_t steps = 0;
+  core::PoseGaussian pose;
+  std::optional<Judgeable> last_on_old_ground;  ///< or at a closing behind it
+  RunScore score;
+
+  Book(const core::Recording& run, std::vector<double> returns_m, const RefereeOptions& how, double sight_m)
+      : recording(run),
+        returns_at_m(std::move(returns_m)),
+        options(how),
+        in_sight_m(sight_m),
+        identities(how.old_sightings) {}
+
+  const core::Pose2& truth() const { return recording.true_poses[steps - 1].T_world_robot; }
+  bool is_wrong(const PoseError& error) const {
+    return error.position_m > options.wrong_position_m || error.heading_rad > options.wrong_heading_rad;
+  }
+  bool too_many_wrong(int wrong, int all) const {
+    return wrong >= options.least_wrong_pairs && wrong > options.most_wrong_share * all;
+  }
+
+  void drive_on(const core::StepReport& report, const Map& map_now);
+  void begin_return(bool searching);
+  void note_triggers(const core::StepReport& report);
+  void look_out(const std::vector<core::Label>& labels);
+  void count_matches(const core::StepReport& report, const std::vector<core::Label>& labels);
+  void revise(const core::StepReport& report);
+  void judge_closure(const core::StepReport& report, const std::vector<core::MapLandmark>& map);
+  JudgedPose judge(const Judgeable& pose_at, const std::vector<core::MapLandmark>& map) const;
+  PoseError relative_error(const Judgeable& pose_at, const std::vector<core::MapLandmark>& map) const;
+  double spacing_m() const;
+  void score_map(const std::vector<core::MapLandmark>& map, RunScore& result) const;
+  void pass_verdict(RunScore& result) const;
+};
+
+}  // namespace helixnav::evaluation

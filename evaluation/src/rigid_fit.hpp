@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/core/se2.hpp"
+
+namespace helixnav::evaluation {
+
+/// T_a_b of least Σ|a − T_a_b·b|², closed form: heading = atan2(Σ b×a, Σ b·a) over centred points. Heading 0 with fewer
+/// than two distinct points, the identity without any. The lists are equally long.
+core::Pose2 fit_rigidly(const std::vector<Eigen::Vector2d>& points_a, const std::vector<Eigen::Vector2d>& points_b);
+
+}  // namespace helixnav::evaluation

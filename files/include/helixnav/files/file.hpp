@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace helixnav::files {
+
+/// A file that grows. What `append` was given is with the operating system when it returns, so that it survives the
+/// death of the process (not of the machine). InputError when the system refuses.
+class AppendFile {
+ public:
+  explicit AppendFile(const std::string& path);
+  ~AppendFile();
+  AppendFile(const AppendFile&) = delete;
+  AppendFile& operator=(const AppendFile&) = delete;
+
+  void append(std::string_view bytes);
+
+ private:
+  std::string path_;
+  int descriptor_ = -1;
+};
+
+/// Writes `bytes` under a temporary name and renames: the file is there whole or not at all. InputError.
+void write_whole_file(const std::string& path, std::string_view bytes);
+
+/// The file's bytes. InputError when it cannot be read.
+std::string read_whole_file(const std::string& path);
+
+}  // namespace helixnav::files

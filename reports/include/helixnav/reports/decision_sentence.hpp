@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "helixnav/core/step_report.hpp"
+
+namespace helixnav::reports {
+
+/// A decision of supervisor::Navigator in words, without the line's end. One of a kind that is not known here is listed as
+/// it stands.
+std::string sentence_of(const core::Decision& decision);
+
+/// `value` with three significant digits and the noun, in the plural unless it is 1: "3 pairs".
+std::string counted(double value, const std::string& noun);
+
+/// Three significant digits.
+std::string short_number(double value);
+
+}  // namespace helixnav::reports

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/reports/decision_sentence.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <variant>
+
+#include "helixnav/core/angle.hpp"
+
+namespace helixnav::reports {
+namespace {
+
+std::string degrees(double angle_rad) { return short_number(angle_rad * 180.0 / core::pi) + "°"; }
+
+std::string sentence(const core::RollbackDecision& d) {
+  return "The pose is not to be trusted: " + counted(d.missing, "landmark") +
+         " of earlier drives that should be in view are missing, " + short_number(d.seen) + " are there, and " +
+         counted(d.spawned, "new one") + " matured meanwhile (" + short_number(d.nats) +
+         " nats against the pose). A search begins from " + counted(d.scans, "scan") +
+         " ago, when the pose was last beyond doubt.";
+}
+
+std::string sentence(const core::TriggerDecision& d) {
+  return "A search began: an observation was about to be matched with the old landmark " + std::to_string(d.landmark) +
+         ", and it may as well have been one of " + short_number(d.expected_confusers) +
+         " other objects to be expected; " + counted(d.neighbours, "old landmark") +
+         " of the map among them. The pose was uncertain by " + short_number(d.pose_sigma_m) + " m and " +
+         short_number(d.heading_sigma_deg) + "°. The old landmarks are set aside until it is known which is which.";
+}
+
+std::string attempt_number(int attempt) { return "Attempt " + std::to_string(attempt); }
+
+std::string sentence(const core::AttemptStarted& d) {
+  return attempt_number(d.attempt) + ": the particle filter began on the helices of " + counted(d.helix_pairs, "pair") +
+         " of observation and old landmark.";
+}
+
+std::string sentence(const core::AttemptEnded& d) {
+  const std::string attempt = attempt_number(d.attempt);
+  const std::string after = " after " + counted(d.scans, "scan");
+  const std::string evidence = "log-evidence " + short_number(d.log_evidence) + " against nothing here being old";
+  switch (d.reason) {
+    case core::AttemptEnded::Reason::timed_out:
+      return attempt + " ended" + after + " without a single mode (" + evidence + ").";
+    case core::AttemptEnded::Reason::nothing_here:
+      return attempt + " ended" + after + ": this is no old ground (" + evidence + ").";
+    case core::AttemptEnded::Reason::abandoned:
+      return attempt + " was given up" + after + ": it held one mode, whose constellation was never accepted.";
+    case core::AttemptEnded::Reason::outdone:
+      return attempt + " ended" + after + ": its own rival explains the constellation better.";
+  }
+  return {};
+}
+
+std::string sentence(const core::ReferenceUnusable& d) {
+  return attempt_number(d.attempt) + " could not begin: where the " + counted(d.reference_landmarks, "old landmark") +
+         " in reach stand to one another is not known well enough.";
+}
+
+std::string rival_sentence(const core::VerificationDecision& d) {
+  const std::string tried = counted(d.rivals_tried, "other pose") + " tried";
+  if (d.rival_matched == 0) return "Of " + tried + ", none matches enough to count as a rival.";
+  const double away_m = (d.T_world_rival.position_m() - d.T_world_winner.position_m()).norm();
+  const double turned_rad = std::abs(core::wrap_to_pi(d.T_world_rival.heading_rad - d.T_world_winner.heading_rad));
+  return "Of " + tried + ", the best rival is " + short_number(away_m) + " m and " + degrees(turned_rad) +
+         " away: it matches " + short_number(d.rival_matched) + " with a ratio of " + short_number(d.rival_ratio) +
+         ", " + short_number(d.rival_share) + " of the winner's.";
+}
+
+std::string verdict_of(core::VerificationDecision::Verdict verdict) {
+  switch (verdict) {
+    case core::VerificationDecision::Verdict::accepted:
+      return "The constellation test was passed";
+    case core::VerificationDecision::Verdict::too_few_matches:
+      return "The constellation test was not passed, too few landmarks matched";
+    case core::VerificationDecision::Verdict::ratio_too_low:
+      return "The constellation test was not passed, too many landmarks contradict";
+    case core::VerificationDecision::Verdict::rival_too_good:
+      return "The constellation test was not passed, another pose explains as much";
+  }
+  return {};
+}
+
+std::string sentence(const core::VerificationDecision& d) {
+  return verdict_of(d.verdict) + ": at (" + short_number(d.T_world_winner.x_m) + ", " +
+         short_number(d.T_world_winner.y_m) + ") m, heading " + degrees(d.T_world_winner.heading_rad) + ", " +
+         counted(d.matched, "new landmark") +
+         " on old ones; unmatched on ground that both drives looked at: " + short_number(d.unmatched_branch) +
+         " new and " + short_number(d.unmatched_old) + " old; ratio " + short_number(d.ratio) + ". " +
+         rival_sentence(d);
+}
+
+std::string sentence(const core::UndecidedDecision& d) {
+  return "Left undecided: no closing was accepted in " + short_number(d.driven_m) +
+         " m. The map goes on as on new ground; the next ambiguous return asks again.";
+}
+
+std::string refusal(const core::ClosureDecision& d, const std::string& cost, const std::string& limit,
+                    const std::string& dropped) {
+  const bool too_dear = d.cost > d.limit;
+  return "Refused: " + cost + (too_dear ? " exceeds " : " stands against ") + limit + " (" + dropped +
+         (too_dear ? "): they cannot all be right. The map stays as it was." : "). The map stays as it was.");
+}
+
+std::string sentence(const core::ClosureDecision& d) {
+  const std::string cost = "the cost " + short_number(d.cost) + " of " + counted(d.pairs, "pair");
+  const std::string dropped = counted(d.dropped, "pair") + " dropped";
+  const std::string limit = short_number(d.limit) + ", the limit for " + short_number(d.dof) + " degrees of freedom";
+  if (!d.accepted) return refusal(d, cost, limit, dropped);
+  const std::string moved =
+      "The pose moved by " + short_number(d.moved_m) + " m, " + short_number(d.driven_m) + " m after the trigger.";
+  if (d.dof == 0) {
+    return "Accepted: the pose is that of the particles, and what was mapped since the trigger is forgotten; nothing "
+           "speaks for it but " +
+           counted(d.pairs, "pair") + ". " + moved;
+  }
+  return "Accepted: " + cost + " is within " + limit + " (" + dropped + "). " + moved;
+}
+
+std::string sentence(const core::SmoothingDecision& d) {
+  const std::string cost = short_number(std::round(d.chi2));
+  const std::string work = counted(d.poses, "pose") + ", " + counted(d.iterations, "iteration");
+  const std::string limit = short_number(std::round(d.limit)) + " (what the filter had come to, and some slack)";
+  if (!d.accepted) {
+    return "The drive was not solved as a whole: least squares ended at " + cost + " (" + work +
+           ") and had to settle within " + limit + ". The map stays as the closing left it.";
+  }
+  return "Then the drive was solved as a whole: least squares ended at " + cost + " (" + work + "), within " + limit +
+         ". The pose moved by another " + short_number(d.moved_m) + " m.";
+}
+
+std::string sentence(const core::FixDecision& d) {
+  return std::string("A position fix was ") + (d.accepted ? "used" : "refused") + ": NIS " + short_number(d.nis) +
+         (d.accepted ? " within the gate " : " beyond the gate ") + short_number(d.gate) + ".";
+}
+
+std::string sentence(const core::OtherDecision& d) {
+  std::string sentence = d.kind + " " + d.verdict;
+  char separator = ':';
+  for (const auto& [name, value] : d.numbers) {
+    sentence += std::string(1, separator) + ' ' + name + " = " + short_number(value);
+    separator = ',';
+  }
+  return sentence + '.';
+}
+
+}  // namespace
+
+std::string short_number(double value) {
+  if (std::isnan(value)) return "an unknown number";
+  char text[40];
+  const bool whole = std::abs(value) < 1e9 && value == std::round(value);
+  std::snprintf(text, sizeof(text), whole ? "%.0f" : "%.3g", value);
+  return text;
+}
+
+std::string counted(double value, const std::string& noun) {
+  return short_number(value) + ' ' + noun + (value == 1.0 ? "" : "s");
+}
+
+std::string sentence_of(const core::Decision& decision) {
+  return std::visit([](const auto& typed) { return sentence(typed); }, decision);
+}
+
+}  // namespace helixnav::reports

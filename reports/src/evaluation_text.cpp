@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <cstdio>
+
+#include "degrees.hpp"
+#include "helixnav/reports/summary.hpp"
+#include "json.hpp"
+
+namespace helixnav::reports {
+
+namespace {
+
+template <typename... Values>
+std::string format(const char* pattern, Values... values) {
+  const int length = std::snprintf(nullptr, 0, pattern, values...);
+  std::string text(static_cast<std::size_t>(length) + 1, '\0');
+  std::snprintf(text.data(), text.size(), pattern, values...);
+  text.pop_back();
+  return text;
+}
+
+std::string position_text(const evaluation::PositionEvaluation& position) {
+  const evaluation::ErrorStatistics& e = position.error_m;
+  std::string text = format("position error       RMSE %.3f m, median %.3f m, 95 %% %.3f m, maximum %.3f m\n", e.rmse,
+                            e.median, e.p95, e.max);
+  text += position.aligned ? "  against            position fixes, after rigid alignment\n"
+                           : "  against            true poses, in the map frame as it is\n";
+  text += format("  fixes used         %zu\n", position.fixes_used);
+  if (position.aligned) {
+    text += format("  fixes left out     %zu (farther than %g m)\n", position.fixes_left_out, position.limit_m);
+    text += format("  alignment          x %.3f m, y %.3f m, heading %.3f deg (map in the frame of the fixes)\n",
+                   position.T_truth_map.x_m, position.T_truth_map.y_m, in_degrees(position.T_truth_map.heading_rad));
+  }
+  if (position.fixes_outside > 0) text += format("  outside the run    %zu\n", position.fixes_outside);
+  return text;
+}
+
+std::string pose_text(const evaluation::PoseEvaluation& pose) {
+  const evaluation::ErrorStatistics& e = pose.heading_error_rad;
+  std::string text = format("heading error        RMSE %.3f deg, median %.3f deg, 95 %% %.3f deg, maximum %.3f deg\n",
+                            in_degrees(e.rmse), in_degrees(e.median), in_degrees(e.p95), in_degrees(e.max));
+  if (pose.nees_count > 0) {
+    text += format("NEES                 mean %.3f (3 when consistent), %.1f %% inside the 95 %% band, %zu instants\n",
+                   pose.nees_mean, 100.0 * pose.nees_inside_95, pose.nees_count);
+  }
+  return text;
+}
+
+std::string map_text(const evaluation::MapEvaluation& map) {
+  const evaluation::ErrorStatistics& e = map.error_m;
+  std::string text = format("landmark error       RMSE %.3f m, median %.3f m, 95 %% %.3f m, maximum %.3f m\n", e.rmse,
+                            e.median, e.p95, e.max);
+  text += format("  pairs              %zu ", e.count);
+  text += map.by_label ? std::string("(by label)\n") : format("(nearest first, within %g m)\n", map.limit_m);
+  text += format("  missing            %zu\n  duplicates         %zu\n  spurious           %zu\n", map.missing,
+                 map.duplicates, map.spurious);
+  return text;
+}
+
+Json statistics_to_json(const evaluation::ErrorStatistics& statistics, const std::string& unit) {
+  return {{"rmse_" + unit, statistics.rmse},
+          {"median_" + unit, statistics.median},
+          {"p95_" + unit, statistics.p95},
+          {"max_" + unit, statistics.max}};
+}
+
+Json position_to_json(const evaluation::PositionEvaluation& position) {
+  Json json = statistics_to_json(position.error_m, "m");
+  json["fixes_used"] = position.fixes_used;
+  json["fixes_left_out"] = position.fixes_left_out;
+  json["fixes_outside"] = position.fixes_outside;
+  json["against"] = position.aligned ? "positions" : "poses";
+  if (position.aligned) {
+    json["limit_m"] = position.limit_m;
+    json["alignment"] = {{"x_m", position.T_truth_map.x_m},
+                         {"y_m", position.T_truth_map.y_m},
+                         {"heading_rad", position.T_truth_map.heading_rad}};
+  }
+  return json;
+}
+
+Json map_to_json(const evaluation::MapEvaluation& map) {
+  Json json = statistics_to_json(map.error_m, "m");
+  json["pairs"] = map.error_m.count;
+  json["by"] = map.by_label ? "label" : "distance";
+  if (!map.by_label) json["limit_m"] = map.limit_m;
+  json["missing"] = map.missing;
+  json["duplicates"] = map.duplicates;
+  json["spurious"] = map.spurious;
+  return json;
+}
+
+}  // namespace
+
+std::string evaluation_text(const evaluation::Evaluation& evaluation) {
+  std::string text = format("steps                %zu\n", evaluation.steps);
+  if (evaluation.position) text += position_text(*evaluation.position);
+  if (evaluation.pose) text += pose_text(*evaluation.pose);
+  if (evaluation.map) text += map_text(*evaluation.map);
+  if (!evaluation.position && !evaluation.map) text += "no truth             nothing to compare the run with\n";
+  if (evaluation.nis.updates > 0) {
+    text += format("NIS                  mean %.3f per degree of freedom (95 %% band %.3f to %.3f)\n",
+                   evaluation.nis.mean_per_dof, evaluation.nis.mean_low_95, evaluation.nis.mean_high_95);
+    text += format("  single updates     %.1f %% inside their 95 %% bands, %zu updates\n",
+                   100.0 * evaluation.nis.inside_95, evaluation.nis.updates);
+  }
+  if (evaluation.revisits.revisits > 0) {
+    text += format("NIS of revisits      mean %.3f per degree of freedom, %zu landmarks unseen for %d steps\n",
+                   evaluation.revisits.mean_nis_per_dof, evaluation.revisits.revisits,
+                   static_cast<int>(evaluation::RevisitEvaluation::unseen_steps));
+  }
+  return text;
+}
+
+Json evaluation_to_json(const evaluation::Evaluation& evaluation) {
+  Json json = Json::object();
+  json["steps"] = evaluation.steps;
+  if (evaluation.position) json["error"] = position_to_json(*evaluation.position);
+  if (evaluation.pose) {
+    json["heading_error"] = statistics_to_json(evaluation.pose->heading_error_rad, "rad");
+    json["nees"] = {{"count", evaluation.pose->nees_count},
+                    {"mean", evaluation.pose->nees_mean},
+                    {"inside_95", evaluation.pose->nees_inside_95}};
+  }
+  if (evaluation.map) json["landmark_error"] = map_to_json(*evaluation.map);
+  json["nis"] = {{"updates", evaluation.nis.updates},
+                 {"mean_per_dof", evaluation.nis.mean_per_dof},
+                 {"mean_low_95", evaluation.nis.mean_low_95},
+                 {"mean_high_95", evaluation.nis.mean_high_95},
+                 {"inside_95", evaluation.nis.inside_95}};
+  json["revisits"] = {{"count", evaluation.revisits.revisits},
+                      {"mean_nis_per_dof", evaluation.revisits.mean_nis_per_dof}};
+  return json;
+}
+
+std::string evaluation_json(const evaluation::Evaluation& evaluation) {
+  return json_text(evaluation_to_json(evaluation));
+}
+
+}  // namespace helixnav::reports

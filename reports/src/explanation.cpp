@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/reports/explanation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+#include <vector>
+
+#include "helixnav/core/decision_row.hpp"
+#include "helixnav/core/errors.hpp"
+#include "helixnav/reports/decision_sentence.hpp"
+
+namespace helixnav::reports {
+namespace {
+
+struct Decided {
+  const core::StepReport* step;
+  const core::Decision* decision;
+};
+
+std::vector<Decided> decisions_of(const runs::Run& run) {
+  std::vector<Decided> decided;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::Decision& decision : step.decisions) decided.push_back({&step, &decision});
+  }
+  return decided;
+}
+
+bool is_closure(const Decided& decided) { return core::is_closure(*decided.decision); }
+bool is_trigger(const Decided& decided) { return core::is_trigger(*decided.decision); }
+
+std::string verdict_of(const Decided& decided) { return core::row_of(*decided.decision).verdict; }
+
+std::string when(const core::StepReport& step) {
+  return "step " + std::to_string(step.step) + " (" + short_number(core::seconds(step.t_ns)) + " s)";
+}
+
+std::string line_of(const Decided& decided) {
+  return "  " + when(*decided.step) + "  " + sentence_of(*decided.decision) + '\n';
+}
+
+std::ptrdiff_t count_of(const std::vector<Decided>& closures, const char* verdict) {
+  return std::count_if(closures.begin(), closures.end(),
+                       [&](const Decided& closure) { return verdict_of(closure) == verdict; });
+}
+
+std::string merges_of(const core::StepReport& step) {
+  if (step.merged.empty()) return {};
+  std::string text = "  Found to be one:";
+  for (const core::MergedLandmarks& merge : step.merged) {
+    text += ' ' + std::to_string(merge.removed) + " is " + std::to_string(merge.kept) + ',';
+  }
+  text.back() = '.';
+  return text + '\n';
+}
+
+std::string margin_of(const core::AssociationReport& a) {
+  if (std::isinf(a.margin_nats)) return "there is no other explanation";
+  return "the best other explanation costs " + short_number(a.margin_nats) + " nats more";
+}
+
+std::string nis_of(const core::AssociationReport& a) {
+  return "NIS " + short_number(a.nis) + " with " + std::to_string(a.dof) + " degrees of freedom";
+}
+
+std::string fate_of(const core::AssociationReport& a) {
+  const std::string landmark = "landmark " + std::to_string(a.landmark);
+  const bool has_pair = a.dof > 0 && !std::isnan(a.nis);
+  switch (a.outcome) {
+    case core::Outcome::matched:
+      return "updated " + landmark + ": " + (has_pair ? nis_of(a) + "; " + margin_of(a) : "known by name") + '.';
+    case core::Outcome::augmented:
+      return "began " + landmark + ": it is far from every landmark that it could be.";
+    case core::Outcome::rejected:
+      if (!has_pair) return "was dropped: it is known to be no landmark, or one that this scan has seen already.";
+      return "was dropped from " + landmark + " (" + nis_of(a) +
+             "): together with the other pairs of the scan it did not pass the joint test.";
+    case core::Outcome::ambiguous:
+      if (!has_pair) return "was dropped: it is neither near enough to a landmark to be it nor far enough to be new.";
+      return "was dropped: " + landmark + " is the nearest (" + nis_of(a) +
+             "), not near enough to be it or not clearly enough (" + margin_of(a) + "), and too near for a new one.";
+  }
+  return {};
+}
+
+const core::StepReport& step_numbered(const runs::Run& run, std::int64_t step) {
+  const auto found = std::find_if(run.steps.begin(), run.steps.end(),
+                                  [&](const core::StepReport& report) { return report.step == step; });
+  if (found != run.steps.end()) return *found;
+  const std::string steps =
+      run.steps.empty() ? "none"
+                        : std::to_string(run.steps.front().step) + " to " + std::to_string(run.steps.back().step);
+  throw core::InputError(run.path + ": no step " + std::to_string(step) + "; this run has " + steps);
+}
+
+}  // namespace
+
+std::string explain_run(const runs::Run& run) {
+  const std::vector<Decided> decided = decisions_of(run);
+  std::vector<Decided> closures;
+  std::copy_if(decided.begin(), decided.end(), std::back_inserter(closures), is_closure);
+  std::string text = std::to_string(run.steps.size()) +
+                     " steps; closings: " + std::to_string(count_of(closures, "accepted")) + " accepted, " +
+                     std::to_string(count_of(closures, "refused")) + " refused, " +
+                     std::to_string(count_of(closures, "undecided")) + " left undecided.\n";
+  if (decided.empty())
+    return text + "Nothing was ever ambiguous enough for a search: every scan was associated at once.\n";
+  for (std::size_t i = 0; i < closures.size(); ++i) {
+    text += "\nClosure " + std::to_string(i + 1) + ", " + when(*closures[i].step) + ". " +
+            sentence_of(*closures[i].decision) + '\n';
+  }
+  if (!run.steps.empty() && run.steps.back().mode == core::Mode::searching) {
+    text += "\nAt the end of the run a search was still open.\n";
+  }
+  if (!closures.empty()) text += "\nHow one came about: helixnav explain " + run.path + " --closure 1\n";
+  return text;
+}
+
+std::string explain_closure(const runs::Run& run, std::size_t closure) {
+  const std::vector<Decided> decided = decisions_of(run);
+  std::size_t found = 0;
+  auto last = decided.begin();
+  for (; last != decided.end(); ++last) {
+    if (is_closure(*last) && ++found == closure) break;
+  }
+  if (last == decided.end()) {
+    throw core::InputError(run.path + ": no closure " + std::to_string(closure) + "; this run has " +
+                           std::to_string(found));
+  }
+  auto first = last;
+  while (first != decided.begin() && !is_trigger(*first)) --first;
+  std::string text = "Closure " + std::to_string(closure) + " of this run: " + verdict_of(*last) + ".\n";
+  for (auto it = first; it != last + 1; ++it) text += line_of(*it);
+  text += merges_of(*last->step);
+  const auto next = last + 1;
+  return next != decided.end() && std::holds_alternative<core::SmoothingDecision>(*next->decision)
+             ? text + line_of(*next)
+             : text;
+}
+
+std::string explain_step(const runs::Run& run, std::int64_t step) {
+  const core::StepReport& report = step_numbered(run, step);
+  const Eigen::Matrix3d& P = report.pose.covariance;
+  std::string text = when(report) + ", " + (report.mode == core::Mode::searching ? "searching" : "mapping") +
+                     ": the pose is (" + short_number(report.pose.mean.x_m) + ", " +
+                     short_number(report.pose.mean.y_m) + ") m, uncertain by " +
+                     short_number(std::sqrt(P(0, 0) + P(1, 1))) + " m.\n";
+  text.front() = 'S';
+  if (report.mode == core::Mode::searching) text += "  Old landmarks are set aside while the search lasts.\n";
+  if (report.associations.empty()) text += "  Nothing was observed.\n";
+  for (const core::AssociationReport& a : report.associations) {
+    text += "  Observation " + std::to_string(a.observation) + ' ' + fate_of(a) + '\n';
+  }
+  for (const core::Decision& decision : report.decisions) text += "  " + sentence_of(decision) + '\n';
+  return text + merges_of(report);
+}
+
+}  // namespace helixnav::reports

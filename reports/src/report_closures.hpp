@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "helixnav/runs/run.hpp"
+#include "json.hpp"
+
+namespace helixnav::reports {
+
+/// What the report shows of each closure: the clouds of the attempt that led to it, the constellation that was matched, and
+/// where it would stand at the best rival. Lengths to 1 mm, map frame.
+Json closures_data(const runs::Run& run);
+
+}  // namespace helixnav::reports

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/reports/summary.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <numeric>
+#include <variant>
+
+#include "helixnav/runs/words.hpp"
+#include "json.hpp"
+
+namespace helixnav::reports {
+
+namespace {
+
+void put(Json& object, const std::string& dotted_key, double value) {
+  const std::size_t dot = dotted_key.find('.');
+  if (dot == std::string::npos) {
+    object[dotted_key] = value;
+  } else {
+    put(object[dotted_key.substr(0, dot)], dotted_key.substr(dot + 1), value);
+  }
+}
+
+Json closures_to_json(const runs::Run& run) {
+  std::int64_t accepted = 0, refused = 0, undecided = 0;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::Decision& decision : step.decisions) {
+      const auto* closure = std::get_if<core::ClosureDecision>(&decision);
+      accepted += closure != nullptr && closure->accepted;
+      refused += closure != nullptr && !closure->accepted;
+      undecided += std::holds_alternative<core::UndecidedDecision>(decision);
+    }
+  }
+  return {{"accepted", accepted}, {"refused", refused}, {"undecided", undecided}};
+}
+
+std::int64_t count_landmarks(const runs::Run& run, core::LandmarkState state) {
+  return std::count_if(run.map.begin(), run.map.end(),
+                       [&](const core::MapLandmark& landmark) { return landmark.state == state; });
+}
+
+Json observations_to_json(const runs::Run& run) {
+  std::array<std::int64_t, runs::outcome_words.size()> counts{};
+  for (const core::StepReport& step : run.steps) {
+    for (const core::AssociationReport& a : step.associations) ++counts[static_cast<std::size_t>(a.outcome)];
+  }
+  Json json = Json::object();
+  for (std::size_t i = 0; i < counts.size(); ++i) json[std::string(runs::outcome_words[i])] = counts[i];
+  return json;
+}
+
+}  // namespace
+
+std::string json_text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n'; }
+
+Json timing_to_json(const runs::Run& run) {
+  const evaluation::ErrorStatistics step = evaluation::error_statistics(run.microseconds);
+  std::vector<double> sorted = run.microseconds;
+  std::sort(sorted.begin(), sorted.end());
+  Json json = Json::object();
+  json["median_us"] = step.median;
+  json["p99_us"] = evaluation::quantile_of_sorted(sorted, 0.99);
+  json["max_us"] = step.max;
+  json["steps_s"] = std::accumulate(sorted.begin(), sorted.end(), 0.0) * 1e-6;
+  for (const auto& [name, value] : run.timing) json[name] = value;
+  return json;
+}
+
+Json summary_to_json(const runs::Run& run, const evaluation::Evaluation& evaluation) {
+  Json json = Json::object();
+  json["steps"] = run.steps.size();
+  json["landmarks"] = {{"mature", count_landmarks(run, core::LandmarkState::mature)},
+                       {"tentative", count_landmarks(run, core::LandmarkState::tentative)}};
+  json["closures"] = closures_to_json(run);
+  json["observations"] = observations_to_json(run);
+  json.update(evaluation_to_json(evaluation));
+  return json;
+}
+
+std::string summary_json(const runs::Run& run, const evaluation::Evaluation& evaluation) {
+  Json json = summary_to_json(run, evaluation);
+  for (const auto& [key, value] : run.numbers) put(json, key, value);
+  json["timing"] = timing_to_json(run);
+  return json_text(json);
+}
+
+}  // namespace helixnav::reports

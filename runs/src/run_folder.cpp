@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/runs/run_folder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "helixnav/core/decision_row.hpp"
+#include "helixnav/core/errors.hpp"
+#include "helixnav/files/file.hpp"
+#include "helixnav/files/number_text.hpp"
+#include "helixnav/runs/words.hpp"
+#include "manifest_json.hpp"
+#include "put_association.hpp"
+#include "run_rows.hpp"
+#include "run_tables.hpp"
+
+namespace helixnav::runs {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::int64_t int_max = std::numeric_limits<std::int32_t>::max();
+
+template <typename Enum, std::size_t n>
+Enum enumerator(const RunRow& row, std::size_t column, const std::array<std::string_view, n>& words) {
+  const auto value = value_of<Enum>(words, row.text(column));
+  if (!value) {
+    std::string expected;
+    for (const std::string_view word : words) expected += (expected.empty() ? "" : ", ") + std::string(word);
+    row.refuse(column, "one of " + expected);
+  }
+  return *value;
+}
+
+int small_integer(const RunRow& row, std::size_t column, std::int64_t low = 0) {
+  return static_cast<int>(row.integer_in(column, low, int_max));
+}
+
+// The tables as they stand, before the steps that lack a part are dropped.
+struct AssociationRow {
+  std::int64_t step;
+  bool revised;
+  core::AssociationReport report;
+};
+
+struct HealthRow {
+  core::StepReport report;
+  std::size_t association_rows;
+  std::size_t decision_rows;
+  std::size_t merge_rows;
+  std::size_t cloud_rows;
+  double microseconds;
+};
+
+struct RunTables {
+  std::vector<std::pair<core::Nanoseconds, core::Pose2>> trajectory;
+  std::vector<AssociationRow> associations;
+  std::vector<core::Decision> decisions;
+  std::vector<core::MergedLandmarks> merges;
+  std::vector<core::Pose2> particles;
+  std::vector<HealthRow> health;
+};
+
+HealthRow read_health_row(const RunRow& row) {
+  HealthRow health{};
+  core::StepReport& report = health.report;
+  report.step = row.integer(0);
+  report.t_ns = row.seconds(1);
+  report.mode = enumerator<core::Mode>(row, 2, mode_words);
+  Eigen::Matrix3d& P = report.pose.covariance;
+  P << row.number(3), row.number(4), row.number(5),  //
+      row.number(4), row.number(6), row.number(7),   //
+      row.number(5), row.number(7), row.number(8);
+  report.joint_nis = row.number(9);
+  report.joint_dof = small_integer(row, 10);
+  report.active_landmarks = small_integer(row, 11);
+  report.mapped_landmarks = small_integer(row, 12);
+  report.switched_region = row.integer_in(13, 0, 1) == 1;
+  health.association_rows = static_cast<std::size_t>(row.integer_in(14, 0, int_max));
+  health.decision_rows = static_cast<std::size_t>(row.integer_in(15, 0, int_max));
+  health.merge_rows = static_cast<std::size_t>(row.integer_in(16, 0, int_max));
+  health.cloud_rows = static_cast<std::size_t>(row.integer_in(17, 0, int_max));
+  health.microseconds = row.number(18);
+  return health;
+}
+
+AssociationRow read_association_row(const RunRow& row) {
+  core::AssociationReport report;
+  report.observation = small_integer(row, 1);
+  report.landmark = small_integer(row, 2, core::no_landmark);
+  report.outcome = enumerator<core::Outcome>(row, 3, outcome_words);
+  report.nis = row.number(4);
+  report.dof = small_integer(row, 5);
+  report.margin_nats = row.number(6);
+  return {row.integer(0), row.integer_in(7, 0, 1) == 1, report};
+}
+
+core::Decision read_decision_row(const RunRow& row) {
+  core::DecisionRow decision;
+  decision.kind = row.text(2);
+  decision.verdict = row.text(3);
+  for (std::string_view rest = row.text(4); !rest.empty();) {
+    const std::size_t end = std::min(rest.find(';'), rest.size());
+    const std::string_view pair = rest.substr(0, end);
+    const std::size_t equals = pair.find('=');
+    const auto value = equals < pair.size() ? files::parse_number(pair.substr(equals + 1)) : std::nullopt;
+    if (!value) row.refuse(4, "name=number;name=number");
+    decision.numbers.emplace_back(pair.substr(0, equals), *value);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return core::decision_of(decision);
+}
+
+RunTables read_tables(const std::string& folder) {
+  const auto path = [&](const RunTable& table) { return folder + '/' + std::string(table.file); };
+  RunTables tables;
+  for_each_row(path(health_table), health_table, [&](const RunRow& row) {
+    const bool first = tables.health.empty();
+    const core::StepReport before = first ? core::StepReport{} : tables.health.back().report;
+    const HealthRow& health = tables.health.emplace_back(read_health_row(row));
+    if (!first && health.report.step <= before.step) row.refuse(0, "more than " + std::to_string(before.step));
+    if (!first && health.report.t_ns < before.t_ns) row.refuse(1, "time that does not go backwards");
+  });
+  for_each_row(path(trajectory_table), trajectory_table, [&](const RunRow& row) {
+    tables.trajectory.emplace_back(
+        row.seconds(0), core::Pose2(row.number(1), row.number(2), 2.0 * std::atan2(row.number(6), row.number(7))));
+  });
+  for_each_row(path(associations_table), associations_table,
+               [&](const RunRow& row) { tables.associations.push_back(read_association_row(row)); });
+  for_each_row(path(decisions_table), decisions_table,
+               [&](const RunRow& row) { tables.decisions.push_back(read_decision_row(row)); });
+  for_each_row(path(merges_table), merges_table, [&](const RunRow& row) {
+    tables.merges.push_back({small_integer(row, 1), small_integer(row, 2)});
+  });
+  for_each_row(path(clouds_table), clouds_table,
+               [&](const RunRow& row) { tables.particles.emplace_back(row.finite(1), row.finite(2), row.finite(3)); });
+  return tables;
+}
+
+// Moves the next `count` rows of a table into a step.
+template <typename Row>
+void take(std::vector<Row>& rows, std::size_t& next, std::size_t count, std::vector<Row>& into) {
+  for (const std::size_t end = next + count; next < end; ++next) into.push_back(std::move(rows[next]));
+}
+
+// Takes steps as long as every table holds their rows.
+void assemble(RunTables& tables, Run& run) {
+  std::size_t next_association = 0;
+  std::size_t next_decision = 0;
+  std::size_t next_merge = 0;
+  std::size_t next_particle = 0;
+  const std::size_t most = std::min(tables.health.size(), tables.trajectory.size());
+  for (std::size_t k = 0; k < most; ++k) {
+    HealthRow& health = tables.health[k];
+    const std::size_t end_association = next_association + health.association_rows;
+    if (end_association > tables.associations.size() ||
+        next_decision + health.decision_rows > tables.decisions.size() ||
+        next_merge + health.merge_rows > tables.merges.size() ||
+        next_particle + health.cloud_rows > tables.particles.size()) {
+      break;
+    }
+    core::StepReport& step = run.steps.emplace_back(std::move(health.report));
+    run.microseconds.push_back(health.microseconds);
+    step.pose.mean = tables.trajectory[k].second;
+    take(tables.decisions, next_decision, health.decision_rows, step.decisions);
+    take(tables.merges, next_merge, health.merge_rows, step.merged);
+    take(tables.particles, next_particle, health.cloud_rows, step.cloud);
+    for (; next_association < end_association; ++next_association) {
+      const AssociationRow& row = tables.associations[next_association];
+      put_association(row.step, row.report, run.steps);
+    }
+  }
+}
+
+bool has_truth(const std::string& folder) {
+  return std::any_of(std::begin(run_files), std::end(run_files), [&](std::string_view name) {
+    return name.substr(0, 6) == "truth_" && fs::exists(folder + '/' + std::string(name));
+  });
+}
+
+}  // namespace
+
+std::vector<core::MapLandmark> read_map(const std::string& path) {
+  std::vector<core::MapLandmark> map;
+  for_each_row(path, map_table, [&](const RunRow& row) {
+    core::MapLandmark& landmark = map.emplace_back();
+    landmark.id = small_integer(row, 0);
+    landmark.point.mean_m = {row.number(1), row.number(2)};
+    landmark.point.covariance_m2 << row.number(3), row.number(4), row.number(4), row.number(5);
+    landmark.observations = small_integer(row, 6);
+    landmark.state = enumerator<core::LandmarkState>(row, 7, state_words);
+  });
+  return map;
+}
+
+Run read_run(const std::string& path) {
+  const std::string manifest = path + '/' + manifest_file;
+  if (!fs::exists(manifest)) {
+    throw core::InputError(path + ": not a run folder: expected a file " + manifest_file + " in it");
+  }
+  Run run;
+  run.path = path;
+  run.manifest = manifest_from_text(manifest, files::read_whole_file(manifest));
+  RunTables tables = read_tables(path);
+  assemble(tables, run);
+  if (fs::exists(path + "/map.csv")) run.map = read_map(path + "/map.csv");
+  if (has_truth(path)) run.truth = read_truth(path);
+  run.finished = fs::exists(path + '/' + summary_file);
+  return run;
+}
+
+}  // namespace helixnav::runs

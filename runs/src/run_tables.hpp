@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace helixnav::runs {
+
+/// Names and header lines of the tables in a run folder: the contract between writer and reader.
+/// docs/run-folder.md says what the columns mean.
+struct RunTable {
+  std::string_view file;
+  std::string_view header;
+  char separator = ',';
+};
+
+inline constexpr RunTable trajectory_table{"trajectory.tum", "# t x y z qx qy qz qw", ' '};
+inline constexpr RunTable associations_table{"associations.csv",
+                                             "step,observation,landmark,outcome,nis,dof,margin_nats,revision"};
+inline constexpr RunTable decisions_table{"decisions.csv", "step,t_s,kind,verdict,numbers"};
+inline constexpr RunTable health_table{
+    "health.csv",
+    "step,t_s,mode,sxx,sxy,sxh,syy,syh,shh,nis,dof,active,mapped,switched,association_rows,decision_rows,merge_rows,"
+    "cloud_rows,microseconds"};
+inline constexpr RunTable merges_table{"merges.csv", "step,kept,removed"};
+inline constexpr RunTable clouds_table{"clouds.csv", "step,x,y,heading"};
+inline constexpr RunTable map_table{"map.csv", "id,x,y,sxx,sxy,syy,observations,state"};
+inline constexpr RunTable truth_poses_table{"truth_poses.csv", "t_s,x,y,heading"};
+inline constexpr RunTable truth_positions_table{"truth_positions.csv", "t_s,x,y,antenna_x,antenna_y"};
+inline constexpr RunTable truth_landmarks_table{"truth_landmarks.csv", "label,x,y"};
+inline constexpr RunTable truth_labels_table{"truth_labels.csv", "step,observation,label"};
+
+inline constexpr const char* manifest_file = "manifest.json";
+inline constexpr const char* summary_file = "summary.json";
+inline constexpr const char* report_file = "report.html";
+
+inline constexpr const char* run_files[] = {
+    "manifest.json",       "trajectory.tum",      "trajectory_final.tum", "map.csv",     "associations.csv",
+    "decisions.csv",       "health.csv",          "summary.json",         "report.html", "truth_poses.csv",
+    "truth_positions.csv", "truth_landmarks.csv", "truth_labels.csv",     "merges.csv",  "clouds.csv"};
+
+}  // namespace helixnav::runs

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/core/event_loop.hpp"
+
+#include <string>
+#include <variant>
+
+#include <gtest/gtest.h>
+
+namespace helixnav::core {
+namespace {
+
+/// Writes down what it takes; answers scans, with a number of its own.
+struct Scribe {
+  std::string taken;
+
+  std::optional<StepReport> take(const Event& event) {
+    taken += "osf"[event.index()];
+    if (!std::holds_alternative<Scan>(event)) return std::nullopt;
+    StepReport report;
+    report.step = 77;
+    report.t_ns = time_of(event);
+    return report;
+  }
+};
+
+std::vector<Event> two_scans() {
+  Scan first;
+  first.t_ns = 5;
+  Scan second;
+  second.t_ns = 9;
+  return {Odometry{}, Odometry{}, first, AbsoluteFix{}, second, Odometry{}};
+}
+
+TEST(EventLoop, FeedsEveryEventOnceAndInOrder) {
+  const std::vector<Event> events = two_scans();
+  Scribe scribe;
+  EventLoop loop(events, scribe);
+  const auto first = loop.next();
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->t_ns, 5);
+  EXPECT_EQ(scribe.taken, "oos") << "nothing behind the scan is fed before its step was looked at";
+  EXPECT_EQ(loop.fed(), 3u);
+  ASSERT_TRUE(loop.next());
+  EXPECT_FALSE(loop.next());
+  EXPECT_EQ(scribe.taken, "oosfso") << "what follows the last scan is fed, too";
+  EXPECT_FALSE(loop.next());
+  EXPECT_EQ(scribe.taken, "oosfso");
+}
+
+TEST(EventLoop, NumbersTheStepsItself) {
+  const std::vector<Event> events = two_scans();
+  Scribe scribe;
+  EventLoop loop(events, scribe);
+  EXPECT_EQ(loop.next()->step, 0);
+  EXPECT_EQ(loop.next()->step, 1);
+  EXPECT_EQ(loop.steps(), 2);
+}
+
+TEST(EventLoop, OfNoEventsMakesNoStep) {
+  const std::vector<Event> events;
+  Scribe scribe;
+  EXPECT_FALSE(EventLoop(events, scribe).next());
+}
+
+}  // namespace
+}  // namespace helixnav::core

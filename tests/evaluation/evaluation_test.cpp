@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/evaluation/evaluation.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "helixnav/core/chi2.hpp"
+#include "helixnav/reports/summary.hpp"
+#include "run_interpolation.hpp"
+
+namespace helixnav::evaluation {
+namespace {
+
+core::StepReport step_at(std::int64_t index, double t_s, const core::Pose2& pose) {
+  core::StepReport step;
+  step.step = index;
+  step.t_ns = core::nanoseconds_from_seconds(t_s);
+  step.pose.mean = pose;
+  step.pose.covariance = Eigen::Vector3d(0.04, 0.09, 0.01).asDiagonal();
+  return step;
+}
+
+// Straight along x with 1 m/s for 10 s.
+runs::Run straight_run() {
+  runs::Run run;
+  for (int k = 0; k <= 10; ++k) run.steps.push_back(step_at(k, k, core::Pose2(k, 0.0, 0.0)));
+  return run;
+}
+
+TEST(ErrorStatistics, EqualHandComputedValues) {
+  const ErrorStatistics statistics = error_statistics({4.0, 0.0, 2.0, 1.0, 3.0});
+  EXPECT_EQ(statistics.count, 5u);
+  EXPECT_DOUBLE_EQ(statistics.rmse, std::sqrt(30.0 / 5.0));
+  EXPECT_DOUBLE_EQ(statistics.median, 2.0);
+  EXPECT_DOUBLE_EQ(statistics.p95, 3.8);  // place 0.95·4 = 3.8 between 3 and 4
+  EXPECT_DOUBLE_EQ(statistics.max, 4.0);
+  EXPECT_TRUE(std::isnan(error_statistics({}).rmse));
+}
+
+TEST(Interpolation, FollowsTheArcOfAQuarterCircle) {
+  const core::Pose2 end(10.0, 10.0, core::pi / 2);
+  const core::Pose2 middle = interpolate({}, end, 0.5);
+  EXPECT_NEAR(middle.x_m, 10.0 * std::sin(core::pi / 4), 1e-12);
+  EXPECT_NEAR(middle.y_m, 10.0 * (1.0 - std::cos(core::pi / 4)), 1e-12);
+  EXPECT_NEAR(middle.heading_rad, core::pi / 4, 1e-12);
+}
+
+TEST(Interpolation, TakesTheShortWayRoundAtPi) {
+  const core::Pose2 middle = interpolate({0.0, 0.0, 3.1}, {0.0, 0.0, -3.1}, 0.5);
+  EXPECT_NEAR(std::abs(middle.heading_rad), core::pi, 1e-12);
+}
+
+TEST(Interpolation, IsSilentOutsideTheRunAndExactAtItsSteps) {
+  const runs::Run run = straight_run();
+  EXPECT_FALSE(estimate_at(run.steps, -1));
+  EXPECT_FALSE(estimate_at(run.steps, 10'000'000'001));
+  EXPECT_EQ(estimate_at(run.steps, 10'000'000'000)->mean.x_m, 10.0);
+  EXPECT_NEAR(estimate_at(run.steps, 2'250'000'000)->mean.x_m, 2.25, 1e-12);
+}
+
+TEST(Evaluation, AlignsTheAntennaAndLeavesFarFixesOut) {
+  runs::Run run;  // a square, so that the alignment is well conditioned
+  const core::Pose2 corners[] = {{0, 0, 0}, {40, 0, core::pi / 2}, {40, 40, core::pi}, {0, 40, -core::pi / 2}};
+  for (int k = 0; k < 40; ++k) run.steps.push_back(step_at(k, k, corners[k % 4]));
+  const core::Pose2 T_truth_map(500.0, -20.0, 1.0);
+  run.truth.antenna_robot_m = {3.78, 0.5};
+  for (int k = 0; k < 40; ++k) {
+    const Eigen::Vector2d antenna = core::transform(corners[k % 4], run.truth.antenna_robot_m);
+    run.truth.positions.push_back({run.steps[static_cast<std::size_t>(k)].t_ns, core::transform(T_truth_map, antenna)});
+  }
+  run.truth.positions[5].position_m.x() += 300.0;
+  run.truth.positions.push_back({core::nanoseconds_from_seconds(99.0), {0.0, 0.0}});
+  const Evaluation evaluation = evaluate(run);
+  ASSERT_TRUE(evaluation.position);
+  EXPECT_TRUE(evaluation.position->aligned);
+  EXPECT_EQ(evaluation.position->fixes_used, 39u);
+  EXPECT_EQ(evaluation.position->fixes_left_out, 1u);
+  EXPECT_EQ(evaluation.position->fixes_outside, 1u);
+  EXPECT_LT(evaluation.position->error_m.max, 1e-9);
+  EXPECT_NEAR(evaluation.position->T_truth_map.x_m, 500.0, 1e-9);
+  EXPECT_FALSE(evaluation.position->errors[5].used);
+  EXPECT_FALSE(evaluation.pose);
+}
+
+TEST(Evaluation, AgainstTruePosesEqualsHandComputedValues) {
+  runs::Run run = straight_run();
+  for (int k = 0; k <= 10; ++k) {  // estimate − truth = (−0.2, −0.3, −0.1): one sigma in each coordinate
+    run.truth.poses.push_back({run.steps[static_cast<std::size_t>(k)].t_ns, core::Pose2(k + 0.2, 0.3, 0.1)});
+  }
+  run.truth.poses[10].T_world_robot = core::Pose2(10.0, 0.0, -0.1);  // (0, 0, +0.1)
+  const Evaluation evaluation = evaluate(run);
+  EXPECT_FALSE(evaluation.position->aligned);
+  EXPECT_NEAR(evaluation.position->error_m.rmse, std::sqrt(10.0 * 0.13 / 11.0), 1e-12);
+  EXPECT_NEAR(evaluation.position->error_m.median, std::sqrt(0.13), 1e-12);
+  EXPECT_NEAR(evaluation.position->errors[0].error_m.x(), -0.2, 1e-12);
+  EXPECT_NEAR(evaluation.pose->heading_error_rad.rmse, 0.1, 1e-12);
+  EXPECT_NEAR(evaluation.pose->errors[10].error_rad, 0.1, 1e-12);
+  EXPECT_NEAR(evaluation.pose->errors[0].nees, 3.0, 1e-9);
+  EXPECT_NEAR(evaluation.pose->nees_mean, 31.0 / 11.0, 1e-9);
+  EXPECT_EQ(evaluation.pose->nees_inside_95, 1.0);
+}
+
+TEST(Evaluation, LeavesNeesOutWhereTheCovarianceIsSingular) {
+  runs::Run run = straight_run();
+  run.steps[0].pose.covariance.setZero();
+  run.truth.poses = {{0, {}}, {run.steps[1].t_ns, core::Pose2(1.0, 0.0, 0.0)}};
+  const Evaluation evaluation = evaluate(run);
+  EXPECT_EQ(evaluation.pose->nees_count, 1u);
+  EXPECT_EQ(evaluation.pose->nees_mean, 0.0);
+}
+
+TEST(Evaluation, CountsNisAgainstItsTwoSidedBand) {
+  runs::Run run = straight_run();
+  const double low = core::chi2_quantile(0.025, 4);
+  const double high = core::chi2_quantile(0.975, 4);
+  const double nis[] = {low * 0.99, low * 1.01, high * 0.99, high * 1.01};
+  for (std::size_t k = 0; k < 4; ++k) {
+    run.steps[k].joint_dof = 4;
+    run.steps[k].joint_nis = nis[k];
+  }
+  const Evaluation evaluation = evaluate(run);
+  EXPECT_EQ(evaluation.nis.updates, 4u);
+  EXPECT_DOUBLE_EQ(evaluation.nis.inside_95, 0.5);
+  EXPECT_NEAR(evaluation.nis.mean_per_dof, (low + high) * 2.0 / 16.0, 1e-12);
+}
+
+TEST(Evaluation, CountsARevisitOnlyAfterALongAbsence) {
+  runs::Run run;
+  const auto match_at = [&run](std::int64_t step, double nis) {
+    core::StepReport report;
+    report.step = step;
+    core::AssociationReport match;
+    match.outcome = core::Outcome::matched;
+    match.landmark = 7;
+    match.nis = nis;
+    match.dof = 2;
+    report.associations = {match};
+    run.steps.push_back(report);
+  };
+  match_at(0, 100.0);    // first sight of all
+  match_at(150, 100.0);  // 150 steps later: not yet
+  match_at(301, 3.0);    // 151 steps later
+  const Evaluation evaluation = evaluate(run);
+  EXPECT_EQ(evaluation.revisits.revisits, 1u);
+  EXPECT_DOUBLE_EQ(evaluation.revisits.mean_nis_per_dof, 1.5);
+}
+
+TEST(Evaluation, OfARunWithoutStepsOrTruthSaysSo) {
+  const Evaluation evaluation = evaluate(runs::Run{});
+  EXPECT_FALSE(evaluation.position);
+  EXPECT_NE(reports::evaluation_text(evaluation).find("no truth"), std::string::npos);
+  EXPECT_TRUE(nlohmann::json::parse(reports::evaluation_json(evaluation))["nis"]["mean_per_dof"].is_null());
+  runs::Run empty;
+  empty.truth.positions = {{5, {1.0, 2.0}}};
+  EXPECT_EQ(evaluate(empty).position->fixes_outside, 1u);
+}
+
+TEST(EvaluationText, SaysTheFiguresWithUnits) {
+  runs::Run run = straight_run();
+  run.truth.poses = {{run.steps[1].t_ns, core::Pose2(1.0, 2.0, 0.0)}};
+  const std::string text = reports::evaluation_text(evaluate(run));
+  EXPECT_NE(text.find("RMSE 2.000 m"), std::string::npos) << text;
+  EXPECT_NE(text.find("NEES"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace helixnav::evaluation

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/reports/report.hpp"
+
+#include <regex>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "helixnav/core/decision_row.hpp"
+#include "report_assets.hpp"
+#include "run_example.hpp"
+
+namespace helixnav::reports {
+namespace {
+
+using runs::example_manifest;
+using runs::example_map;
+using runs::example_recording;
+using runs::example_step;
+
+runs::Run example_run(std::int64_t steps) {
+  runs::Run run;
+  run.manifest = example_manifest();
+  for (std::int64_t k = 0; k < steps; ++k) run.steps.push_back(example_step(k));
+  run.microseconds.assign(run.steps.size(), 12.3);
+  run.map = example_map();
+  const core::Recording recording = example_recording(steps);
+  run.truth.poses = recording.true_poses;
+  run.truth.landmarks = recording.true_landmarks;
+  run.timing = {{"total_s", 3.25}};
+  return run;
+}
+
+std::string render(const runs::Run& run) { return render_report(run, evaluation::evaluate(run)); }
+
+nlohmann::json element(const std::string& page, const std::string& id) {
+  const std::string opening = "<script id=\"" + id + "\" type=\"application/json\">";
+  const std::size_t begin = page.find(opening) + opening.size();
+  return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+}
+
+TEST(Report, HoldsTheRunInItsDataElement) {
+  const nlohmann::json data = element(render(example_run(100)), "run-data");
+  EXPECT_EQ(data["manifest"]["command"], example_manifest().command);
+  EXPECT_EQ(data["seed"], "18446744073709551615");
+  EXPECT_EQ(data["path"]["x"].size(), 100u);
+  EXPECT_NEAR(data["path"]["x"][99].get<double>(), example_step(99).pose.mean.x_m, 1e-3);
+  EXPECT_EQ(data["landmarks"].size(), 3u);
+  EXPECT_EQ(data["true_landmarks"].size(), 2u);
+  EXPECT_EQ(data["errors"]["x"].size(), 100u);
+  EXPECT_EQ(data["heading"]["e"].size(), 100u);
+  EXPECT_EQ(data["summary"]["closures"]["accepted"], 2);
+  EXPECT_EQ(data["decisions"].size(), 9u);
+  EXPECT_EQ(data["decisions"][0]["numbers"][1][0], "foreign_expected");
+}
+
+TEST(Report, HoldsCloudsConstellationAndRivalOfEachClosure) {
+  runs::Run run = example_run(100);
+  core::StepReport& closing = run.steps[17];  // six scans after the attempt that begins in step 11
+  core::VerificationDecision test;
+  test.verdict = core::VerificationDecision::Verdict::accepted;
+  test.T_world_winner = {1.0, 2.0, 0.5};
+  test.rival_matched = 3;
+  test.T_world_rival = {7.0, 8.0, -0.5};
+  closing.decisions = {test, core::decision_of({"closure", "accepted", {}})};
+  closing.merged = {{2, 17}, {77, 18}};  // 77 has died since
+  const nlohmann::json closure = element(render(run), "run-data")["closures"].at(1);
+  EXPECT_EQ(closure["step"], 17);
+  ASSERT_EQ(closure["views"].size(), 7u);
+  EXPECT_EQ(closure["views"][3]["scans"], 3);
+  EXPECT_EQ(closure["views"][3]["closing"], false);
+  EXPECT_EQ(closure["views"][6]["closing"], true);
+  EXPECT_EQ(closure["views"][0]["cloud"].size(), 3u);
+  EXPECT_NEAR(closure["views"][0]["cloud"][2][1].get<double>(), -1.0 / 3.0, 5e-4);
+  EXPECT_NEAR(closure["views"][6]["truth"][0].get<double>(), example_step(17).pose.mean.x_m, 5e-4);
+  EXPECT_EQ(closure["winner"], nlohmann::json({1.0, 2.0, 0.5}));
+  EXPECT_EQ(closure["rival"], nlohmann::json({7.0, 8.0, -0.5}));
+  EXPECT_EQ(closure["matched"], nlohmann::json({{10.0, 0.333}}));
+}
+
+TEST(Report, LoadsNothingFromElsewhere) {
+  std::string page = render(example_run(20));
+  const std::size_t charts = page.find(report_charts);
+  ASSERT_NE(charts, std::string::npos) << "the charting library is not inside";
+  page.erase(charts, report_charts.size());
+  EXPECT_EQ(page.find("http://"), std::string::npos);
+  EXPECT_EQ(page.find("https://"), std::string::npos);
+  EXPECT_FALSE(std::regex_search(page, std::regex(R"(<(script|img|iframe|link)[^>]*\s(src|href)=)")));
+  EXPECT_EQ(page.find("@import"), std::string::npos);
+  EXPECT_EQ(page.find("{{"), std::string::npos) << "a place of the template was left empty";
+}
+
+TEST(Report, KeepsWallClockFiguresInTheirElement) {
+  runs::Run fast = example_run(50);
+  runs::Run slow = fast;
+  slow.microseconds.assign(50, 99999.9);
+  std::string page = render(fast);
+  slow.timing = {{"total_s", 77.0}};
+  std::string other = render(slow);
+  EXPECT_EQ(element(other, "wall-clock")["timing"]["total_s"], 77.0);
+  EXPECT_EQ(element(other, "wall-clock")["steps"]["max_us"][0], 99999.9);
+  for (std::string* text : {&page, &other}) {
+    const std::size_t begin = text->find("<script id=\"wall-clock\"");
+    text->erase(begin, text->find("</script>", begin) - begin);
+  }
+  EXPECT_TRUE(page == other);
+}
+
+TEST(Report, CannotBeBrokenByTextsOfTheUser) {
+  runs::Run run = example_run(20);
+  run.manifest.recording = "</script><b>\xff{{script}}";
+  run.steps[3].decisions.push_back(core::decision_of({"<!--", "<script>", {{"</script>", 1.0}}}));
+  const std::string page = render(run);
+  EXPECT_EQ(element(page, "run-data")["manifest"]["recording"], "</script><b>\xef\xbf\xbd{{script}}");
+  EXPECT_EQ(page.find("</script><b>"), std::string::npos);
+}
+
+TEST(Report, ThinsLongRunsAndStaysSmall) {
+  const std::string page = render(example_run(7300));
+  EXPECT_LT(page.size(), 3'000'000u);
+  const nlohmann::json data = element(page, "run-data");
+  EXPECT_LE(data["path"]["x"].size(), 3650u);
+  EXPECT_LE(data["nis"]["t"].size(), 240u);
+  EXPECT_LE(element(page, "wall-clock")["steps"]["t"].size(), 1200u);
+}
+
+TEST(Report, HoldsWhatASmootherMadeOfTheRun) {
+  runs::Run run = example_run(20);
+  EXPECT_TRUE(element(render(run), "run-data")["smoothing"].is_null());
+  runs::SmoothedRun smoothed;
+  smoothed.alone = true;
+  smoothed.poses = {{1.0, 2.0, 0.1}, {3.0, 4.0, 0.2}};
+  smoothed.poses_before = {{-1.0, 2.0, 0.1}, {-3.0, 4.0, 0.2}};
+  smoothed.map_before = smoothed.map_after = example_map();
+  smoothed.chi2 = {900.0, 20.5};
+  smoothed.chi2_odometry = 8.25;
+  smoothed.chi2_landmarks = 12.25;
+  smoothed.dof = 10;
+  smoothed.largest = {{7, "pose 7 sees landmark 4", 9.5, 2}};
+  smoothed.normalised_residuals = {{3, 0.5}, {4, -2.5}};
+  run.smoothed = smoothed;
+  const nlohmann::json data = element(render(run), "run-data")["smoothing"];
+  EXPECT_EQ(data["alone"], true);
+  EXPECT_EQ(data["path"]["x"], (nlohmann::json{1.0, 3.0}));
+  EXPECT_EQ(data["path_before"]["x"], (nlohmann::json{-1.0, -3.0}));
+  EXPECT_EQ(data["chi2"], (nlohmann::json{900.0, 20.5}));
+  EXPECT_EQ(data["chi2_odometry"], 8.25);
+  EXPECT_EQ(data["dof"], 10);
+  EXPECT_EQ(data["largest"][0]["name"], "pose 7 sees landmark 4");
+  EXPECT_EQ(data["residuals"]["inside_2sigma"], 0.5);
+}
+
+TEST(Report, OfARunWithoutStepsIsAPageToo) {
+  runs::Run run;
+  run.manifest = example_manifest();
+  const nlohmann::json data = element(render(run), "run-data");
+  EXPECT_EQ(data["summary"]["steps"], 0);
+  EXPECT_TRUE(data["errors"].is_null());
+  EXPECT_FALSE(data["finished"]);
+}
+
+}  // namespace
+}  // namespace helixnav::reports

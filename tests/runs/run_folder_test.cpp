@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/runs/run_folder.hpp"
+
+#include <sys/wait.h>
+#include <unistd.h>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "helixnav/core/random.hpp"
+#include "helixnav/files/file.hpp"
+#include "input_error.hpp"
+#include "run_example.hpp"
+#include "temporary_folder.hpp"
+
+namespace helixnav::runs {
+namespace {
+
+namespace fs = std::filesystem;
+using helixnav::testing::input_error_of;
+using helixnav::testing::TemporaryFolder;
+
+void expect_same(const core::AssociationReport& a, const core::AssociationReport& b) {
+  EXPECT_EQ(a.observation, b.observation);
+  EXPECT_EQ(a.outcome, b.outcome);
+  EXPECT_EQ(a.landmark, b.landmark);
+  EXPECT_EQ(a.nis, b.nis);
+  EXPECT_EQ(a.dof, b.dof);
+  EXPECT_EQ(a.margin_nats, b.margin_nats);
+}
+
+void expect_same(const core::StepReport& a, const core::StepReport& b) {
+  EXPECT_EQ(a.step, b.step);
+  EXPECT_EQ(a.t_ns, b.t_ns);
+  EXPECT_EQ(a.mode, b.mode);
+  EXPECT_EQ(a.pose.mean.x_m, b.pose.mean.x_m);
+  EXPECT_EQ(a.pose.mean.y_m, b.pose.mean.y_m);
+  EXPECT_NEAR(a.pose.mean.heading_rad, b.pose.mean.heading_rad, 1e-15);
+  EXPECT_EQ(a.pose.covariance, b.pose.covariance);
+  EXPECT_EQ(a.joint_nis, b.joint_nis);
+  EXPECT_EQ(a.joint_dof, b.joint_dof);
+  EXPECT_EQ(a.active_landmarks, b.active_landmarks);
+  EXPECT_EQ(a.mapped_landmarks, b.mapped_landmarks);
+  EXPECT_EQ(a.switched_region, b.switched_region);
+  ASSERT_EQ(a.associations.size(), b.associations.size());
+  for (std::size_t i = 0; i < a.associations.size(); ++i) expect_same(a.associations[i], b.associations[i]);
+  ASSERT_EQ(a.decisions.size(), b.decisions.size());
+  for (std::size_t i = 0; i < a.decisions.size(); ++i) {
+    const core::DecisionRow one = core::row_of(a.decisions[i]), other = core::row_of(b.decisions[i]);
+    EXPECT_EQ(one.kind, other.kind);
+    EXPECT_EQ(one.verdict, other.verdict);
+    EXPECT_EQ(one.numbers, other.numbers);
+  }
+  ASSERT_EQ(a.merged.size(), b.merged.size());
+  for (std::size_t i = 0; i < a.merged.size(); ++i) {
+    EXPECT_EQ(a.merged[i].kept, b.merged[i].kept);
+    EXPECT_EQ(a.merged[i].removed, b.merged[i].removed);
+  }
+  const bool keeps_cloud = std::set<std::int64_t>{11, 12, 14, 17}.count(b.step % 40) > 0;
+  const std::vector<core::Pose2>& kept = b.drawn.empty() ? b.cloud : b.drawn;
+  ASSERT_EQ(a.cloud.size(), keeps_cloud ? kept.size() : 0u) << b.step;
+  for (std::size_t i = 0; i < a.cloud.size(); ++i) EXPECT_EQ(a.cloud[i].vector(), kept[i].vector());
+}
+
+void write_without_end(const std::string& folder, std::int64_t steps) {
+  RunWriter writer(folder, example_manifest(), {});
+  for (std::int64_t k = 0; k < steps; ++k) writer.write(example_step(k), 10.0);
+}
+
+TEST(RunFolder, ReadsBackExactlyWhatWasWritten) {
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "run").string();
+  write_example(path, 100);
+  const runs::Run run = read_run(path);
+  EXPECT_TRUE(run.finished);
+  ASSERT_EQ(run.steps.size(), 100u);
+  for (std::int64_t k = 0; k < 100; ++k) expect_same(run.steps[static_cast<std::size_t>(k)], example_step(k));
+  EXPECT_EQ(run.microseconds, std::vector<double>(100, 12.3));
+  ASSERT_EQ(run.map.size(), 3u);
+  EXPECT_EQ(run.map[1].point.mean_m, example_map()[1].point.mean_m);
+  EXPECT_EQ(run.map[2].state, core::LandmarkState::tentative);
+  EXPECT_EQ(run.manifest.seed, example_manifest().seed);
+  EXPECT_EQ(run.manifest.command, example_manifest().command);
+  EXPECT_EQ(run.truth.labels[7], std::vector<core::Label>(7, 4));
+  EXPECT_EQ(run.truth.poses[99].t_ns, example_step(99).t_ns);
+}
+
+TEST(RunFolder, ReadsToTheLastCompleteStepWhereverAnyTableIsCut) {
+  constexpr std::int64_t written = 60;
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "run").string();
+  write_without_end(path, written);
+  core::RandomStream random(3, "cuts");
+  for (const char* table :
+       {"trajectory.tum", "associations.csv", "decisions.csv", "merges.csv", "clouds.csv", "health.csv"}) {
+    const std::string file = path + '/' + table;
+    const std::string whole = files::read_whole_file(file);
+    for (int trial = 0; trial < 60; ++trial) {
+      const std::size_t cut = trial < 5 ? static_cast<std::size_t>(trial) : random.below(whole.size());
+      std::ofstream(file, std::ios::binary) << whole.substr(0, cut);
+      const runs::Run run = read_run(path);
+      ASSERT_LE(run.steps.size(), static_cast<std::size_t>(written));
+      for (const core::StepReport& step : run.steps) expect_same(step, example_step(step.step));
+      if (std::string(table) == "trajectory.tum") {
+        const auto lines = std::count(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(cut), '\n');
+        EXPECT_EQ(static_cast<std::ptrdiff_t>(run.steps.size()), std::max<std::ptrdiff_t>(lines - 1, 0));
+      }
+    }
+    std::ofstream(file, std::ios::binary) << whole;
+  }
+  EXPECT_EQ(read_run(path).steps.size(), static_cast<std::size_t>(written));
+}
+
+TEST(RunFolder, IsReadableAfterTheWriterWasKilled) {
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "run").string();
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    RunWriter writer(path, example_manifest(), {});
+    for (std::int64_t k = 0;; ++k) writer.write(example_step(k), 10.0);
+  }
+  while (!fs::exists(path + "/manifest.json") || fs::file_size(path + "/health.csv") < 5000) usleep(1000);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  const runs::Run run = read_run(path);
+  EXPECT_GT(run.steps.size(), 20u);
+  EXPECT_FALSE(run.finished);
+  for (const core::StepReport& step : run.steps) expect_same(step, example_step(step.step));
+}
+
+TEST(RunFolder, TakesTheLastRevisionOfAnAssociation) {
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "run").string();
+  RunWriter writer(path, example_manifest(), {});
+  for (std::int64_t k = 0; k < 10; ++k) writer.write(example_step(k), 10.0);
+  core::AssociationReport changed = example_step(5).associations[2];
+  changed.landmark = 77;
+  core::StepReport after = example_step(10);
+  after.revised.push_back({5, {changed}});
+  writer.write(after, 10.0);
+  const runs::Run run = read_run(path);
+  ASSERT_EQ(run.steps.size(), 11u);
+  EXPECT_EQ(run.steps[5].associations[2].landmark, 77);
+  EXPECT_EQ(run.steps[5].associations.size(), 5u);
+  expect_same(run.steps[10], example_step(10));
+}
+
+TEST(RunFolder, RefusesAFolderWithoutManifest) {
+  const TemporaryFolder folder;
+  EXPECT_NE(input_error_of([&] { read_run(folder.path().string()); }).find("manifest.json"), std::string::npos);
+}
+
+struct Damage {
+  const char* file;
+  int line;
+  const char* content;
+  const char* expected;
+};
+
+class DamagedRun : public ::testing::TestWithParam<Damage> {};
+
+TEST_P(DamagedRun, IsRefusedWithFileLineAndWhatWasExpected) {
+  const Damage& damage = GetParam();
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "run").string();
+  write_example(path, 20);
+  const std::string file = path + '/' + damage.file;
+  std::string text = files::read_whole_file(file);
+  std::size_t begin = 0;
+  for (int line = 1; line < damage.line; ++line) begin = text.find('\n', begin) + 1;
+  text.replace(begin, text.find('\n', begin) - begin, damage.content);
+  std::ofstream(file, std::ios::binary) << text;
+  const std::string message = input_error_of([&] { read_run(path); });
+  EXPECT_EQ(message.find(file + ':' + std::to_string(damage.line)), 0u) << message;
+  EXPECT_NE(message.find(damage.expected), std::string::npos) << message;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, DamagedRun,
+    ::testing::Values(Damage{"trajectory.tum", 3, "1 2 3", "expected 8"},
+                      Damage{"trajectory.tum", 4, "1 2 x 0 0 0 0 1", "y is \"x\", expected a number"},
+                      Damage{"health.csv", 1, "step,time", "expected \"step,t_s,mode"},
+                      Damage{"health.csv", 5, "\x01\xff\x7f", "expected 19"},
+                      Damage{"health.csv", 6, "1,1,mapping,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0", "more than 3"},
+                      Damage{"associations.csv", 4, "2,0,0,guessed,1,2,1,0", "one of matched"},
+                      Damage{"decisions.csv", 2, "11,1,trigger,raised,sigma", "name=number"},
+                      Damage{"merges.csv", 3, "11,5,-1", "from 0"}, Damage{"clouds.csv", 3, "11,0,inf,0", "finite"},
+                      Damage{"map.csv", 2, "0,1,2,0,0,0,-5,mature", "from 0"},
+                      Damage{"truth_poses.csv", 2, "1,nan,0,0", "finite"},
+                      Damage{"truth_labels.csv", 2, "-1,0,4", "from 0"}));
+
+TEST(RunTruth, IsReadFromOneFileOfAnyKind) {
+  const TemporaryFolder folder;
+  const auto positions = folder.write("gps.csv", "t_s,x,y,antenna_x,antenna_y\n1.5,2,3,3.78,0.5\n");
+  const RunTruth truth = read_truth(positions.string());
+  ASSERT_EQ(truth.positions.size(), 1u);
+  EXPECT_EQ(truth.positions[0].t_ns, 1'500'000'000);
+  EXPECT_EQ(truth.antenna_robot_m, Eigen::Vector2d(3.78, 0.5));
+  const auto other = folder.write("other.csv", "a,b\n1,2\n");
+  EXPECT_NE(input_error_of([&] { read_truth(other.string()); }).find("t_s,x,y,heading"), std::string::npos);
+  EXPECT_NE(input_error_of([&] { read_truth(folder.path().string()); }).find("no truth"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace helixnav::runs
