@@ -15,7 +15,7 @@
 namespace helixnav::pf_relocalize {
 namespace {
 
-constexpr SensorModel sensor{0.85, 2.5};
+constexpr SensorModel proposing_sensor{0.85, 2.5};
 
 test::ScatterOptions small_prior() {
   test::ScatterOptions options;
@@ -31,7 +31,7 @@ struct Draw {
 
 Draw draw(const ReferenceMap& map, const core::Scan& scan, const HelixOptions& options, std::size_t n,
           std::uint64_t seed) {
-  ScanLikelihood likelihood(map, sensor);
+  ScanLikelihood likelihood(map, proposing_sensor);
   likelihood.set_scan(scan);
   HelixProposal proposal(map, likelihood, options);
   core::RandomStream random(seed, "draw");
@@ -108,7 +108,7 @@ TEST(HelixProposal, DrawsFromTheDensityThatItReports) {
   // test of the whole prior could hide errors that cancel.
   test::ScatterWorld world(small_prior(), 6);
   const core::Scan scan = world.scan();
-  ScanLikelihood likelihood(world.map, sensor);
+  ScanLikelihood likelihood(world.map, proposing_sensor);
   likelihood.set_scan(scan);
   HelixProposal proposal(world.map, likelihood, {});
   core::RandomStream random(2, "density");
