@@ -8,5 +8,8 @@ add_custom_target(helixnav_version
   BYPRODUCTS ${helixnav_version_source}
   COMMENT "Reading the git commit"
   VERBATIM)
+# Else every commit would compile its neighbours in a unity build again.
+set_source_files_properties(${helixnav_version_source} TARGET_DIRECTORY helixnav_core
+  PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 target_sources(helixnav_core PRIVATE ${helixnav_version_source})
 add_dependencies(helixnav_core helixnav_version)
