@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/cekf/compressed_ekf.hpp"
+#include "make_room.hpp"
 
 namespace helixnav::cekf {
 
@@ -14,12 +15,23 @@ void CompressedEkf::activate(core::LandmarkId id) {
   const Eigen::Vector2d mean_m = passive_mean(slot);
 
   const int n = active_.dimension();
+  const int q = active_.weights();
+  const Eigen::MatrixXd cross = active_.A.view().transpose() * e.transpose();
+  Eigen::VectorXd theta = Eigen::VectorXd::Zero(q + 2 * weights_per_anchor());
+  theta.head(q) = active_.theta;
+  make_room_for_landmark(static_cast<int>(theta.size()));
+  make_room(active_.left_passive, 1);
+  make_room(active_.late_anchors, 1);
+  make_room(phases_.back().late_anchors, 1);
+  phases_.back().basis.make_room(phases_.back().basis.rows(), theta.size());
+
+  // Nothing below allocates or throws.
   active_.P.resize(n + 2, n + 2);
   auto P = active_.P.view();
-  P.block(0, n, n, 2).noalias() = active_.A.view().transpose() * e.transpose();
+  P.block(0, n, n, 2) = cross;
   P.block(n, 0, 2, n) = P.block(0, n, n, 2).transpose();
   P.block<2, 2>(n, n) = 0.5 * (own + own.transpose());
-  active_.A.resize(active_.weights(), n + 2);
+  active_.A.resize(q, n + 2);
   active_.A.view().rightCols<2>() = Me;
 
   places_[static_cast<std::size_t>(id)] = {Whereabouts::active, active_count()};
@@ -30,19 +42,38 @@ void CompressedEkf::activate(core::LandmarkId id) {
   active_.late_anchors.push_back(slot);
   phases_.back().late_anchors.push_back(slot);
   append_columns(phases_.back(), start_columns);
-  append_weights_for(n);
+  active_.theta.swap(theta);
+  append_weights_for(n, active_);
 }
 
-/// Takes back the activations since `active_before` landmarks were active: an activation only appends.
-void CompressedEkf::undo_activations(int active_before) {
+/// For one more active landmark, and `weights` weights in all.
+void CompressedEkf::make_room_for_landmark(int weights) {
+  const int n = active_.dimension() + 2;
+  active_.P.make_room(n, n);
+  active_.A.make_room(weights, n);
+  active_.M.make_room(weights, weights);
+  make_room(active_.ids, 1);
+  make_room(active_.slots, 1);
+  make_room(active_.points_m, 1);
+}
+
+/// Allocates only where an activation will.
+CompressedEkf::BeforeActivations CompressedEkf::before_activations(bool all_active) const {
+  BeforeActivations before;
+  before.active = active_count();
+  if (!all_active) before.theta = active_.theta;
+  return before;
+}
+
+/// Takes back the activations since then, and a landmark that was begun and not named: both only append.
+void CompressedEkf::undo_activations(BeforeActivations& before) {
   Phase& phase = phases_.back();
-  const int undone = active_count() - active_before;
-  if (undone == 0) return;
-  for (int i = active_before; i < active_count(); ++i) {
+  const int undone = active_count() - before.active;
+  for (int i = before.active; i < active_count(); ++i) {
     const std::size_t k = static_cast<std::size_t>(i);
     places_[static_cast<std::size_t>(active_.ids[k])] = {Whereabouts::passive, active_.slots[k]};
   }
-  const std::size_t n = static_cast<std::size_t>(active_before);
+  const std::size_t n = static_cast<std::size_t>(before.active);
   const std::size_t late = phase.late_anchors.size() - static_cast<std::size_t>(undone);
   active_.ids.resize(n);
   active_.slots.resize(n);
@@ -50,11 +81,11 @@ void CompressedEkf::undo_activations(int active_before) {
   active_.left_passive.resize(active_.left_passive.size() - static_cast<std::size_t>(undone));
   active_.late_anchors.resize(late);
   phase.late_anchors.resize(late);
-  const int q = active_.weights() - 2 * weights_per_anchor() * undone;
+  if (undone > 0) active_.theta.swap(before.theta);
+  const int q = active_.weights();
   active_.P.resize(active_.dimension(), active_.dimension());
   active_.A.resize(q, active_.dimension());
   active_.M.resize(q, q);
-  active_.theta.conservativeResize(q);
   phase.basis.resize(phase.basis.rows(), q);
 }
 
@@ -73,16 +104,16 @@ void CompressedEkf::append_columns(Phase& phase, const Eigen::MatrixXd& start_co
   }
 }
 
-/// Weights of anchors that are the active columns from `first_column` on: uncorrelated but for the anchor itself.
-void CompressedEkf::append_weights_for(int first_column) {
+/// Weights of anchors that are the active columns from `first_column` on: uncorrelated but for the anchor itself. theta
+/// has its new size already.
+void CompressedEkf::append_weights_for(int first_column, ActivePart& part) const {
   const int w = weights_per_anchor();
-  const int n = active_.dimension();
-  int q = active_.weights();
+  const int n = part.dimension();
+  int q = static_cast<int>(part.A.rows());
   const int q_after = q + w * (n - first_column);
-  active_.A.resize(q_after, n);
-  active_.M.resize(q_after, q_after);
-  active_.theta.conservativeResizeLike(Eigen::VectorXd::Zero(q_after));
-  for (int column = first_column; column < n; ++column, q += w) active_.A.view()(q, column) = 1.0;
+  part.A.resize(q_after, n);
+  part.M.resize(q_after, q_after);
+  for (int column = first_column; column < n; ++column, q += w) part.A.view()(q, column) = 1.0;
 }
 
 }  // namespace helixnav::cekf

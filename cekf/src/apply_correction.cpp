@@ -2,6 +2,8 @@
 // The one place where a correction enters: means by the retraction, covariances of active part and weights by one
 // product left·rightᵀ of low rank.
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 
 #include "add_outer.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
@@ -98,7 +100,35 @@ void quarter_turns(const ReservedMatrix& delta, Index first, Column&& n) {
   for (Index i = first; i + 1 < d.rows(); i += 2) n.template segment<2>(i) = quarter_turn(d.block<2, 1>(i, 0));
 }
 
+/// What the update would leave on the diagonal of P.
+void find_variances(const ReservedMatrix& P, const ReservedMatrix& left, const ReservedMatrix& right,
+                    ReservedMatrix& variances) {
+  variances.resize(P.rows(), 1);
+  auto d = variances.view();
+  d = P.view().diagonal();
+  for (Index k = 0; k < left.cols(); ++k) d += left.view().col(k).cwiseProduct(right.view().col(k));
+}
+
 }  // namespace
+
+void CompressedEkf::check_variances(const UpdateWorkspace& w, const char* verb) const {
+  constexpr double rounding = 1e-18;  // (1 nm)², (1 nrad)²: what is known exactly comes out as that, of either sign
+  const auto variances = w.variances.view();
+  if (variances.minCoeff() >= -rounding && variances.allFinite()) return;
+  for (Index i = 0; i < variances.rows(); ++i) {
+    if (variances(i, 0) >= -rounding && std::isfinite(variances(i, 0))) continue;
+    const bool is_pose = i < 3;
+    std::ostringstream problem;
+    problem << "the variance of ";
+    if (is_pose) {
+      problem << (i == 0 ? "x" : i == 1 ? "y" : "the heading") << " of the pose";
+    } else {
+      problem << "landmark " << active_.ids[static_cast<std::size_t>((i - 3) / 2)];
+    }
+    problem << " would go from " << active_.P.view()(i, i) << " to " << variances(i, 0);
+    throw core::NumericalError(problem_with(w, verb, problem.str().c_str()));
+  }
+}
 
 void CompressedEkf::apply_correction(UpdateWorkspace& w, const char* verb) {
   const bool transported = options_.retraction == Retraction::right_invariant;
@@ -115,7 +145,10 @@ void CompressedEkf::apply_correction(UpdateWorkspace& w, const char* verb) {
   if (transported) add_transport(w);
   mirror_columns(w.left_active, transported, w.right_active);
   mirror_columns(w.left_weights, transported, w.right_weights);
+  find_variances(active_.P, w.left_active, w.right_active, w.variances);
+  check_variances(w, verb);
 
+  // Nothing below allocates or throws.
   add_to_lower(active_.P, w.left_active, w.right_active);
   copy_lower_to_upper(active_.P);
   add_to_lower(active_.M, w.left_weights, w.right_weights);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstddef>
+#include <limits>
+#include <sstream>
 #include <string>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/errors.hpp"
 #include "innovation.hpp"
+#include "make_room.hpp"
 
 namespace helixnav::cekf {
 
@@ -17,21 +20,25 @@ core::LandmarkId CompressedEkf::augment(const core::Observation& observation, co
 void CompressedEkf::augment(const core::Observation& observation, const core::Pose2& T_robot_sensor,
                             core::LandmarkId name) {
   check_observation_of({name, observation, T_robot_sensor}, "augment");
-  if (name < 0 || contains(name)) {
-    throw core::PreconditionError("augment: the name " + std::to_string(name) + " is taken or negative");
+  const bool is_last = name == std::numeric_limits<core::LandmarkId>::max();  // no name would be left above it
+  if (name < 0 || is_last || contains(name)) {
+    throw core::PreconditionError("augment: the name " + std::to_string(name) + " is taken, negative or the last");
   }
   const core::LocatedLandmark located = core::locate_landmark(observation, active_.pose, T_robot_sensor);
+  const Eigen::Matrix<double, 3, 2> G = located.G_pose.transpose();
+  const Eigen::Matrix2d own = located.G_pose * active_.P.view().topLeftCorner<3, 3>() * G +
+                              located.G_z * Eigen::Matrix2d(observation.R) * located.G_z.transpose();
+  check_newest(located.point_world_m, own);
+  make_room_for_newest(name);
 
+  // Nothing below allocates or throws.
   const int n = active_.dimension();
   active_.P.resize(n + 2, n + 2);
   active_.A.resize(active_.weights(), n + 2);
   auto P = active_.P.view();
   auto A = active_.A.view();
-  const Eigen::Matrix<double, 3, 2> G = located.G_pose.transpose();
   P.block(0, n, n, 2).noalias() = P.topLeftCorner(n, 3).lazyProduct(G);
   P.block(n, 0, 2, n) = P.block(0, n, n, 2).transpose();
-  const Eigen::Matrix2d own = located.G_pose * P.topLeftCorner<3, 3>() * G +
-                              located.G_z * Eigen::Matrix2d(observation.R) * located.G_z.transpose();
   P.block<2, 2>(n, n) = 0.5 * (own + own.transpose());
   A.rightCols<2>().noalias() = A.leftCols<3>().lazyProduct(G);
 
@@ -40,8 +47,22 @@ void CompressedEkf::augment(const core::Observation& observation, const core::Po
 
 core::LandmarkId CompressedEkf::augment(const DerivedPoint& point) {
   check_derived_point(point);
-  for (const core::LandmarkId id : point.ids) activate(id);
+  const core::LandmarkId name = active_.next_id;
+  BeforeActivations before = before_activations(false);
+  try {
+    for (const core::LandmarkId id : point.ids) activate(id);
+    make_room_for_newest(name);
+    derive_newest(point);
+  } catch (...) {
+    undo_activations(before);
+    throw;
+  }
+  name_newest(point.point_m, name);
+  return name;
+}
 
+/// Row and column of a landmark that has no name yet.
+void CompressedEkf::derive_newest(const DerivedPoint& point) {
   const int n = active_.dimension();
   active_.P.resize(n + 2, n + 2);
   active_.A.resize(active_.weights(), n + 2);
@@ -63,9 +84,23 @@ core::LandmarkId CompressedEkf::augment(const DerivedPoint& point) {
     const int column = ActivePart::column(place_of(point.ids[k], "augment").index);
     own += point.G.middleCols(3 + 2 * static_cast<Eigen::Index>(k), 2) * P.block(column, n, 2, 2);
   }
+  check_newest(point.point_m, own);
   P.block(n, 0, 2, n) = P.block(0, n, n, 2).transpose();
   P.block<2, 2>(n, n) = 0.5 * (own + own.transpose());
-  return name_newest(point.point_m, active_.next_id);
+}
+
+void CompressedEkf::check_newest(const Eigen::Vector2d& point_m, const Eigen::Matrix2d& covariance_m2) const {
+  if (point_m.allFinite() && covariance_m2.allFinite() && covariance_m2.diagonal().minCoeff() >= 0.0) return;
+  std::ostringstream problem;
+  problem << "augment: the landmark would stand at (" << point_m.x() << " m, " << point_m.y() << " m) with variances "
+          << covariance_m2(0, 0) << " m2 and " << covariance_m2(1, 1) << " m2";
+  throw core::NumericalError(problem.str());
+}
+
+void CompressedEkf::make_room_for_newest(core::LandmarkId name) {
+  make_room_for_landmark(active_.weights());
+  const auto named = static_cast<std::size_t>(name) + 1;
+  if (named > places_.size()) make_room(places_, named - places_.size());
 }
 
 void CompressedEkf::check_derived_point(const DerivedPoint& point) const {
@@ -77,14 +112,13 @@ void CompressedEkf::check_derived_point(const DerivedPoint& point) const {
   }
 }
 
-core::LandmarkId CompressedEkf::name_newest(const Eigen::Vector2d& point_m, core::LandmarkId id) {
+void CompressedEkf::name_newest(const Eigen::Vector2d& point_m, core::LandmarkId id) {
   name_from(id + 1);
   places_[static_cast<std::size_t>(id)] = {Whereabouts::active, active_count()};
   active_.ids.push_back(id);
   active_.slots.push_back(-1);
   active_.points_m.push_back(point_m);
   ++mapped_;
-  return id;
 }
 
 }  // namespace helixnav::cekf

@@ -2,8 +2,13 @@
 // The end of a phase: what its weights say is written down, and applied to the passive covariance when nothing needs to
 // be undone any more.
 #include <memory>
+#include <sstream>
+#include <utility>
+#include <vector>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/errors.hpp"
+#include "make_room.hpp"
 #include "packed_product.hpp"
 
 namespace helixnav::cekf {
@@ -76,9 +81,27 @@ Eigen::MatrixXd CompressedEkf::end_columns(const Panels& basis, int slots) const
   return columns.view();
 }
 
+/// An own variance that has become negative or is not finite: nothing of such a phase may be written down.
+void CompressedEkf::check_own_covariances(const Phase& next) const {
+  for (std::size_t id = 0; id < places_.size(); ++id) {
+    const Place& place = places_[id];
+    if (place.where == Whereabouts::nowhere) continue;
+    const bool is_active = place.where == Whereabouts::active;
+    const int slot = is_active ? active_.slots[static_cast<std::size_t>(place.index)] : place.index;
+    const auto own = next.own_covariance_m2.middleRows<2>(2 * static_cast<Eigen::Index>(slot));
+    constexpr double rounding = 1e-18;
+    if (own(0, 0) >= -rounding && own(1, 1) >= -rounding && own.allFinite()) continue;
+    std::ostringstream problem;
+    problem << "switch_region: after phase " << phases_.back().number << " landmark " << id << " would have variances "
+            << own(0, 0) << " m2 and " << own(1, 1) << " m2";
+    throw core::NumericalError(problem.str());
+  }
+}
+
 /// Fills what only a closed phase has, and what the next one freezes.
 Eigen::MatrixXd CompressedEkf::close_phase(Phase& next) {
   Phase& phase = phases_.back();
+  make_room(phase.taken, active_.slots.size());
   const int slots = assign_slots(phase);
   const Panels basis(phase.basis.view(), left_width);
   Eigen::MatrixXd columns = end_columns(basis, slots);
@@ -103,16 +126,31 @@ Eigen::MatrixXd CompressedEkf::close_phase(Phase& next) {
     next.mean_m.segment<2>(row) = active_.points_m[i];
     next.own_covariance_m2.middleRows<2>(row) = active_.P.view().block<2, 2>(column, column);
   }
+  check_own_covariances(next);
   return columns;
 }
 
-void CompressedEkf::absorb_closed_phases() {
-  while (phases_.size() > 1 && phases_.front().number < keep_since_) {
+/// Closed phases before `until` become part of the passive covariance. Whatever allocates comes first.
+void CompressedEkf::absorb_closed_phases(long until) {
+  std::size_t count = 0;
+  std::size_t dead = 0;
+  std::vector<std::pair<Panels, Panels>> products;
+  for (; count + 1 < phases_.size() && phases_[count].number < until; ++count) {
+    const Phase& phase = phases_[count];
+    products.emplace_back(Panels(phase.response, phase.touched, left_width),
+                          Panels(phase.basis.view(), phase.touched, right_width));
+    dead += phase.dead.size();
+  }
+  if (count == 0) return;
+  make_room(free_slots_, dead);
+  const bool is_shared = absorbed_.use_count() > 1;
+  if (is_shared) absorbed_ = std::make_shared<PassiveCovariance>(*absorbed_);
+  absorbed_->grow(static_cast<int>(phases_[count - 1].written_covariance.rows()));
+
+  // Nothing below allocates or throws.
+  for (const auto& [response, basis] : products) {
     const Phase& phase = phases_.front();
-    const bool is_shared = absorbed_.use_count() > 1;
-    if (is_shared) absorbed_ = std::make_shared<PassiveCovariance>(*absorbed_);
-    absorbed_->grow(static_cast<int>(phase.written_covariance.rows()));
-    absorbed_->add_symmetric_product(phase.response, phase.basis.view(), phase.touched);
+    absorbed_->add_symmetric_product(response, basis);
     absorbed_->overwrite(phase.written, phase.written_covariance);
     free_slots_.insert(free_slots_.end(), phase.dead.begin(), phase.dead.end());
     phases_.pop_front();
@@ -120,8 +158,8 @@ void CompressedEkf::absorb_closed_phases() {
 }
 
 void CompressedEkf::keep_since(long phase) {
+  absorb_closed_phases(phase);
   keep_since_ = phase;
-  absorb_closed_phases();
 }
 
 }  // namespace helixnav::cekf

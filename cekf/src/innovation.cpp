@@ -7,23 +7,13 @@
 
 #include "add_outer.hpp"
 #include "helixnav/cekf/active_part.hpp"
+#include "helixnav/core/check_event.hpp"
 #include "helixnav/core/errors.hpp"
-#include "helixnav/core/gaussian.hpp"
 
 namespace helixnav::cekf {
 namespace {
 
 using Index = Eigen::Index;
-
-/// The common case of core::check_observation without its allocation; doubt is left to that function.
-bool is_plainly_valid(const core::Observation& o) {
-  const int d = core::dimension(o.kind);
-  if (o.z.size() != d || o.R.rows() != d || o.R.cols() != d || !o.z.allFinite() || !o.R.allFinite()) return false;
-  const bool has_range = o.kind == core::ObservationKind::range_bearing || o.kind == core::ObservationKind::range;
-  if (has_range && o.z[0] <= 0.0) return false;
-  if (!(o.R(0, 0) > 0.0)) return false;
-  return d == 1 || (o.R(0, 1) == o.R(1, 0) && o.R(0, 0) * o.R(1, 1) - o.R(0, 1) * o.R(1, 0) > 0.0);
-}
 
 void size_rows(UpdateWorkspace& w, Index rows) {
   w.H.resize(rows, static_cast<Index>(w.involved.size()));
@@ -65,7 +55,6 @@ void solve_in_place(const ReservedMatrix& lower, ReservedMatrix& right) {
 }  // namespace
 
 void check_observation_of(const Match& match, const char* verb) {
-  if (is_plainly_valid(match.observation) && match.T_robot_sensor.vector().allFinite()) return;
   try {
     core::check_observation(match.observation);
     if (!match.T_robot_sensor.vector().allFinite()) throw core::PreconditionError("T_robot_sensor is not finite");
@@ -77,13 +66,11 @@ void check_observation_of(const Match& match, const char* verb) {
 }
 
 void check_fix(const core::AbsoluteFix& fix, const char* verb) {
-  if (fix.position_world_m.allFinite() && fix.antenna_robot_m.allFinite() &&
-      core::is_symmetric_positive_definite(fix.covariance_m2)) {
-    return;
+  try {
+    core::check(fix);
+  } catch (const core::PreconditionError& error) {
+    throw core::PreconditionError(std::string(verb) + ": " + error.what());
   }
-  std::ostringstream problem;
-  problem << verb << ": the fix at t_ns = " << fix.t_ns << " is not finite or its covariance not positive definite";
-  throw core::PreconditionError(problem.str());
 }
 
 std::string problem_with(const UpdateWorkspace& w, const char* verb, const char* what) {

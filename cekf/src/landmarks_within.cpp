@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/errors.hpp"
 
 namespace helixnav::cekf {
 
@@ -29,6 +30,9 @@ std::vector<core::LandmarkId> CompressedEkf::passive_in_cells(const Eigen::Vecto
 }
 
 std::vector<core::LandmarkId> CompressedEkf::landmarks_within(const Eigen::Vector2d& point_m, double radius_m) const {
+  if (!point_m.allFinite() || !(radius_m >= 0.0)) {
+    throw core::PreconditionError("landmarks_within: a finite point and a radius of zero or more expected");
+  }
   std::vector<core::LandmarkId> found;
   for (double slack_m = options_.hysteresis_m + 1.0;;) {
     found.clear();

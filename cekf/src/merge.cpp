@@ -5,6 +5,7 @@
 
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "iterate_and_apply.hpp"
+#include "make_room.hpp"
 
 namespace helixnav::cekf {
 namespace {
@@ -25,7 +26,8 @@ void name_pairs(const std::vector<CompressedEkf::LandmarkPair>& pairs, UpdateWor
 UpdateResult CompressedEkf::merge(const std::vector<LandmarkPair>& kept_removed, double sigma_m) {
   check_pairs(kept_removed, sigma_m, "merge");
   if (kept_removed.empty()) return {};
-  const int before = active_count();
+  make_room(active_.dead_slots, kept_removed.size());  // what follows the update must not throw
+  BeforeActivations before = before_activations(false);
   UpdateResult result;
   try {
     for (const auto& [kept, removed] : kept_removed) {

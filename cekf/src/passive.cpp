@@ -66,13 +66,21 @@ void replay_on_blocks(const Phase& phase, const std::vector<int>& slots, Eigen::
 
 }  // namespace
 
-Eigen::MatrixXd CompressedEkf::phase_start_columns(const std::vector<int>& slots) const {
+/// Covariance of all slots with the slots given, when the phase began.
+Eigen::MatrixXd CompressedEkf::start_columns(const std::vector<int>& slots, std::size_t phase) const {
   Eigen::MatrixXd columns =
-      Eigen::MatrixXd::Zero(2 * phases_.back().slots, 2 * static_cast<Eigen::Index>(slots.size()));
+      Eigen::MatrixXd::Zero(2 * phases_[phase].slots, 2 * static_cast<Eigen::Index>(slots.size()));
+  fill_start_columns(slots, phase, columns);
+  return columns;
+}
+
+/// The same into columns that are zero. Allocates only where closed phases are kept.
+void CompressedEkf::fill_start_columns(const std::vector<int>& slots, std::size_t phase,
+                                       Eigen::Ref<Eigen::MatrixXd> columns) const {
   for (std::size_t k = 0; k < slots.size(); ++k) {
     auto own = columns.middleCols<2>(2 * static_cast<Eigen::Index>(k));
     int w = -1;
-    std::size_t p = phases_.size() - 1;  // back to the last closed phase that wrote the slot
+    std::size_t p = phase;  // back to the last closed phase that wrote the slot
     while (w < 0 && p > 0) w = written_index(phases_[--p], slots[k]);
     if (w >= 0) {
       const Eigen::MatrixXd& written = phases_[p++].written_covariance;
@@ -80,9 +88,8 @@ Eigen::MatrixXd CompressedEkf::phase_start_columns(const std::vector<int>& slots
     } else if (2 * slots[k] < absorbed_->rows()) {
       absorbed_->copy_columns(slots[k], own.topRows(absorbed_->rows()));
     }
-    for (; p + 1 < phases_.size(); ++p) replay_on_columns(phases_[p], slots[k], own);
+    for (; p < phase; ++p) replay_on_columns(phases_[p], slots[k], own);
   }
-  return columns;
 }
 
 Eigen::MatrixXd CompressedEkf::phase_start_blocks(const std::vector<int>& slots) const {

@@ -10,9 +10,9 @@ namespace helixnav::cekf {
 
 void PassiveCovariance::grow(int rows) {
   if (rows <= rows_) return;
-  rows_ = rows;
   const std::size_t side = static_cast<std::size_t>((rows + tile - 1) / tile);
   tiles_.resize(side * (side + 1) / 2, Tile::Zero());
+  rows_ = rows;
 }
 
 double PassiveCovariance::at(int i, int j) const {
@@ -45,10 +45,12 @@ void PassiveCovariance::copy_columns(int slot, Eigen::Ref<Eigen::MatrixXd> colum
 void PassiveCovariance::add_symmetric_product(const Eigen::Ref<const Eigen::MatrixXd>& left,
                                               const Eigen::Ref<const Eigen::MatrixXd>& right,
                                               const std::vector<int>& columns) {
-  const Panels tall(left, columns, left_width);
-  const Panels wide(right, columns, right_width);
+  add_symmetric_product(Panels(left, columns, left_width), Panels(right, columns, right_width));
+}
+
+void PassiveCovariance::add_symmetric_product(const Panels& left, const Panels& right) {
   for (int I = 0; I * tile < left.rows(); ++I) {
-    for (int J = 0; J <= I; ++J) add_to_tile(I, J, tall, wide);
+    for (int J = 0; J <= I; ++J) add_to_tile(I, J, left, right);
   }
 }
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/cekf/compressed_ekf.hpp"
+#include "make_room.hpp"
 
 namespace helixnav::cekf {
 
 void CompressedEkf::remove(core::LandmarkId id) {
   const Place place = place_of(id, "remove");
+  make_room(active_.left_passive, 1);
+  make_room(active_.dead_slots, 1);
   if (place.where == Whereabouts::passive) {
     active_.left_passive.push_back(id);
     active_.dead_slots.push_back(place.index);

@@ -39,10 +39,13 @@ void ReservedMatrix::reserve(Eigen::Index rows, Eigen::Index cols) {
   storage_.swap(larger);
 }
 
+void ReservedMatrix::make_room(Eigen::Index rows, Eigen::Index cols) {
+  if (rows <= storage_.rows() && cols <= storage_.cols()) return;
+  reserve(rows > storage_.rows() ? rows + rows / 2 : rows, cols > storage_.cols() ? cols + cols / 2 : cols);
+}
+
 void ReservedMatrix::resize(Eigen::Index rows, Eigen::Index cols) {
-  if (rows > storage_.rows() || cols > storage_.cols()) {
-    reserve(rows > storage_.rows() ? rows + rows / 2 : rows, cols > storage_.cols() ? cols + cols / 2 : cols);
-  }
+  make_room(rows, cols);
   if (rows < rows_) view().bottomRows(rows_ - rows).setZero();
   if (cols < cols_) view().rightCols(cols_ - cols).setZero();
   rows_ = rows;

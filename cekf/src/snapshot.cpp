@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/errors.hpp"
+#include "make_room.hpp"
 
 namespace helixnav::cekf {
 
@@ -30,25 +32,49 @@ void CompressedEkf::restore(const Snapshot& snapshot) {
             << phases_.front().number << " to " << phases_.back().number << " (see keep_since)";
     throw core::PreconditionError(problem.str());
   }
-  while (phases_.back().number != snapshot.phase) {
+  std::size_t at = 0;
+  while (phases_[at].number != snapshot.phase) ++at;
+  ActivePart active = snapshot.active;
+  const std::vector<int>& have = phases_[at].late_anchors;
+  const auto common = static_cast<std::size_t>(
+      std::mismatch(have.begin(), have.end(), active.late_anchors.begin(), active.late_anchors.end()).first -
+      have.begin());
+  const Eigen::MatrixXd missing = missing_anchors(at, active, common);
+  std::vector<int> late_anchors = active.late_anchors;
+  std::size_t taken = 0;
+  for (std::size_t p = at; p < phases_.size(); ++p) taken += phases_[p].taken.size();
+  make_room(free_slots_, taken);
+  places_.reserve(static_cast<std::size_t>(active.next_id));
+  phases_[at].basis.make_room(phases_[at].basis.rows(), active.weights());
+
+  // Nothing below allocates or throws.
+  while (phases_.size() > at + 1) {
     return_slots(phases_.back());
     phases_.pop_back();
   }
   Phase& phase = phases_.back();
   return_slots(phase);
+  open_again(phase);
+  active_ = std::move(active);
+  phase.basis.resize(phase.basis.rows(), active_.weights() - weights_per_anchor() * missing.cols());
+  append_columns(phase, missing);
+  phase.late_anchors.swap(late_anchors);
+  rebuild_places();
+}
+
+/// What only a closed phase has.
+void CompressedEkf::open_again(Phase& phase) {
   phase.touched.clear();
   phase.response.resize(0, 0);
   phase.written.clear();
   phase.written_covariance.resize(0, 0);
   phase.dead.clear();
-  active_ = snapshot.active;
-  align_late_anchors(phase);
-  rebuild_places();
 }
 
 void CompressedEkf::name_from(core::LandmarkId id) {
-  active_.next_id = std::max(active_.next_id, id);
-  places_.resize(static_cast<std::size_t>(active_.next_id));
+  if (id <= active_.next_id) return;
+  places_.resize(static_cast<std::size_t>(id));
+  active_.next_id = id;
 }
 
 std::size_t CompressedEkf::kept_bytes() const {
@@ -68,19 +94,11 @@ void CompressedEkf::return_slots(Phase& phase) {
   phase.taken.clear();
 }
 
-/// The basis keeps the anchors that phase and snapshot have in common and gets those that are missing.
-void CompressedEkf::align_late_anchors(Phase& phase) {
-  const std::vector<int>& wanted = active_.late_anchors;
-  std::vector<int>& have = phase.late_anchors;
-  const auto [have_end, wanted_end] = std::mismatch(have.begin(), have.end(), wanted.begin(), wanted.end());
-  const Eigen::Index surplus = 2 * weights_per_anchor() * (have.end() - have_end);
-  const std::vector<int> missing(wanted_end, wanted.end());
-  have.erase(have_end, have.end());
-  phase.basis.resize(phase.basis.rows(), phase.basis.cols() - surplus);
-  for (const int slot : missing) {
-    append_columns(phase, phase_start_columns({slot}));
-    have.push_back(slot);
-  }
+/// Start columns of the anchors that the snapshot has beyond the `common` first ones of the phase.
+Eigen::MatrixXd CompressedEkf::missing_anchors(std::size_t phase, const ActivePart& wanted, std::size_t common) const {
+  const std::vector<int> slots(wanted.late_anchors.begin() + static_cast<std::ptrdiff_t>(common),
+                               wanted.late_anchors.end());
+  return start_columns(slots, phase);
 }
 
 }  // namespace helixnav::cekf

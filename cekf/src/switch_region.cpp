@@ -7,7 +7,9 @@
 namespace helixnav::cekf {
 
 Eigen::Vector2i CompressedEkf::cell_of(const Eigen::Vector2d& point_m) const {
-  return (point_m / options_.cell_side_m).array().floor().cast<int>();
+  // Beyond the range of int the cast would be anything; half of it leaves room for the neighbours of the last cell.
+  constexpr double last = 1 << 30;
+  return (point_m / options_.cell_side_m).array().floor().max(-last).min(last).cast<int>();
 }
 
 bool CompressedEkf::switch_region_if_due() {
@@ -22,15 +24,39 @@ bool CompressedEkf::switch_region_if_due() {
 
 void CompressedEkf::switch_region() { switch_region(region_around_vehicle()); }
 
+/// What closing a phase changes of the filter before the next one stands.
+struct CompressedEkf::BeforeSwitch {
+  std::vector<int> slots;
+  std::vector<int> free_slots;
+  long last_phase = 0;
+  std::size_t taken = 0;
+};
+
 void CompressedEkf::switch_region(const std::vector<core::LandmarkId>& active) {
   for (const core::LandmarkId id : active) place_of(id, "switch_region");
   std::vector<core::LandmarkId> wanted = active;
   std::sort(wanted.begin(), wanted.end());
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-  Phase next;
-  next.cell = cell_of(active_.pose.position_m());
-  const Eigen::MatrixXd columns = close_phase(next);
-  open_phase(std::move(next), columns, wanted);
+  BeforeSwitch before{active_.slots, free_slots_, last_phase_, phases_.back().taken.size()};
+  const std::size_t phases = phases_.size();
+  try {
+    Phase next;
+    next.cell = cell_of(active_.pose.position_m());
+    const Eigen::MatrixXd columns = close_phase(next);
+    open_phase(std::move(next), columns, wanted);
+  } catch (...) {
+    if (phases_.size() > phases) phases_.pop_back();
+    reopen_phase(before);
+    throw;
+  }
+}
+
+void CompressedEkf::reopen_phase(BeforeSwitch& before) {
+  open_again(phases_.back());
+  phases_.back().taken.resize(before.taken);
+  active_.slots.swap(before.slots);
+  free_slots_.swap(before.free_slots);
+  last_phase_ = before.last_phase;
 }
 
 /// Landmarks of the vehicle's cell and its eight neighbours; when they are too many the nearest, and fewer than may be
@@ -61,42 +87,44 @@ std::vector<core::LandmarkId> CompressedEkf::region_around_vehicle() const {
 }
 
 /// Begins a phase with these active landmarks. `columns` are the covariances of all slots with the active part so far.
+/// Where the closed phase is absorbed at once, what allocates comes before and cannot fail behind; where it is kept,
+/// nothing but the list of phases has changed until the end.
 void CompressedEkf::open_phase(Phase&& next, const Eigen::MatrixXd& columns,
                                const std::vector<core::LandmarkId>& active) {
-  phases_.push_back(std::move(next));
-  absorb_closed_phases();
-  Phase& phase = phases_.back();
-
+  std::vector<int> slots;
   std::vector<int> entering;
   for (const core::LandmarkId id : active) {
     const Place& place = places_[static_cast<std::size_t>(id)];
-    if (place.where == Whereabouts::passive) entering.push_back(place.index);
+    const bool was_active = place.where == Whereabouts::active;
+    slots.push_back(was_active ? active_.slots[static_cast<std::size_t>(place.index)] : place.index);
+    if (!was_active) entering.push_back(place.index);
   }
-  const Eigen::MatrixXd entering_columns = phase_start_columns(entering);
+  freeze_slots(next, active);
+  ActivePart part = room_for(next, active, slots);
+  next.basis = ReservedMatrix(2 * next.slots, 0);
+  next.basis.reserve(2 * next.slots, weights_per_anchor() * (part.dimension() + 16));
+  Eigen::MatrixXd entering_columns =
+      Eigen::MatrixXd::Zero(2 * next.slots, 2 * static_cast<Eigen::Index>(entering.size()));
+  Eigen::MatrixXd anchors(2 * next.slots, part.dimension());
+  phases_.push_back(std::move(next));
+  absorb_closed_phases(keep_since_);
+  fill_start_columns(entering, phases_.size() - 1, entering_columns);
 
-  // Anchors of the phase: covariances of all slots with the vehicle and with each active landmark.
-  const Eigen::Index n = 3 + 2 * static_cast<Eigen::Index>(active.size());
-  Eigen::MatrixXd anchors(2 * phase.slots, n);
+  // Nothing below allocates or throws. Anchors: covariances of all slots with the vehicle and each active landmark.
   anchors.leftCols<3>() = columns.leftCols<3>();
-  std::vector<int> slots;
   Eigen::Index entered = 0;
   for (std::size_t i = 0; i < active.size(); ++i) {
     const Place& place = places_[static_cast<std::size_t>(active[i])];
     auto own = anchors.middleCols<2>(ActivePart::column(static_cast<int>(i)));
     if (place.where == Whereabouts::active) {
       own = columns.middleCols<2>(ActivePart::column(place.index));
-      slots.push_back(active_.slots[static_cast<std::size_t>(place.index)]);
     } else {
       own = entering_columns.middleCols<2>(2 * entered++);
-      slots.push_back(place.index);
     }
   }
-  freeze_slots(phase, active);
-  start_active_part(phase, anchors, active, slots);
-  phase.basis = ReservedMatrix(2 * phase.slots, 0);
-  phase.basis.reserve(2 * phase.slots, weights_per_anchor() * (n + 16));
-  phase.late_anchors.clear();
-  append_columns(phase, anchors);
+  start_covariance(anchors, part);
+  active_ = std::move(part);
+  append_columns(phases_.back(), anchors);
   rebuild_places();
 }
 
@@ -119,29 +147,29 @@ void CompressedEkf::freeze_slots(Phase& phase, const std::vector<core::LandmarkI
   std::sort(phase.by_cell.begin(), phase.by_cell.end());
 }
 
-void CompressedEkf::start_active_part(const Phase& phase, const Eigen::MatrixXd& anchors,
-                                      const std::vector<core::LandmarkId>& active, const std::vector<int>& slots) {
-  const int n = static_cast<int>(anchors.cols());
-  const Eigen::Matrix3d P_vv = active_.P.view().topLeftCorner<3, 3>();
-  active_.P.resize(0, 0);
-  active_.P.resize(n, n);
-  auto P = active_.P.view();
-  P.topLeftCorner<3, 3>() = P_vv;
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    P.middleRows<2>(ActivePart::column(static_cast<int>(i))) = anchors.middleRows<2>(2 * slots[i]);
+/// The active part that the phase begins with, all but its covariance.
+ActivePart CompressedEkf::room_for(const Phase& phase, const std::vector<core::LandmarkId>& active,
+                                   const std::vector<int>& slots) const {
+  ActivePart part;
+  part.pose = active_.pose;
+  part.next_id = active_.next_id;
+  part.ids = active;
+  part.slots = slots;
+  for (const int slot : slots) part.points_m.push_back(phase.mean_m.segment<2>(2 * slot));
+  const int n = part.dimension();
+  part.P.resize(n, n);
+  part.theta = Eigen::VectorXd::Zero(weights_per_anchor() * n);
+  append_weights_for(0, part);
+  return part;
+}
+
+void CompressedEkf::start_covariance(const Eigen::MatrixXd& anchors, ActivePart& part) const {
+  auto P = part.P.view();
+  P.topLeftCorner<3, 3>() = active_.P.view().topLeftCorner<3, 3>();
+  for (std::size_t i = 0; i < part.slots.size(); ++i) {
+    P.middleRows<2>(ActivePart::column(static_cast<int>(i))) = anchors.middleRows<2>(2 * part.slots[i]);
   }
   P.triangularView<Eigen::StrictlyUpper>() = P.transpose();
-  active_.ids = active;
-  active_.slots = slots;
-  active_.points_m.clear();
-  for (const int slot : slots) active_.points_m.push_back(phase.mean_m.segment<2>(2 * slot));
-  active_.left_passive.clear();
-  active_.dead_slots.clear();
-  active_.late_anchors.clear();
-  active_.A.resize(0, 0);
-  active_.M.resize(0, 0);
-  active_.theta.resize(0);
-  append_weights_for(0);
 }
 
 }  // namespace helixnav::cekf

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "innovation.hpp"
 
@@ -11,10 +13,14 @@ void CompressedEkf::check_matches(const std::vector<Match>& matches, const char*
   }
 }
 
+bool CompressedEkf::are_active(const std::vector<Match>& matches) const {
+  return std::all_of(matches.begin(), matches.end(), [&](const Match& match) { return is_active(match.landmark); });
+}
+
 UpdateResult CompressedEkf::update(const std::vector<Match>& matches) {
   check_matches(matches, "update");
   if (matches.empty()) return {};
-  const int before = active_count();
+  BeforeActivations before = before_activations(are_active(matches));
   try {
     for (const Match& match : matches) activate(match.landmark);
     UpdateWorkspace& w = workspace_;

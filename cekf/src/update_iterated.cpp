@@ -10,7 +10,7 @@ UpdateResult CompressedEkf::update_iterated(const std::vector<Match>& matches, i
   const char* const verb = "update_iterated";
   check_matches(matches, verb);
   if (matches.empty()) return {};
-  const int before = active_count();
+  BeforeActivations before = before_activations(are_active(matches));
   try {
     for (const Match& match : matches) activate(match.landmark);
     name_landmarks(matches, workspace_);

@@ -17,6 +17,7 @@ namespace {
 bool is_covariance(const Eigen::Matrix3d& Q) {
   if (!Q.allFinite()) return false;
   const double scale = Q.cwiseAbs().maxCoeff();
+  if (!std::isfinite(scale * scale * scale)) return false;  // its determinant says nothing
   const double tiny = 1e-9 * scale;
   if ((Q - Q.transpose()).cwiseAbs().maxCoeff() > tiny || Q.diagonal().minCoeff() < -tiny) return false;
   const auto minor = [&](int i, int j) { return Q(i, i) * Q(j, j) - Q(i, j) * Q(j, i); };

@@ -125,6 +125,56 @@ TEST_P(BadInput, ABearingAloneDoesNotBeginALandmark) {
   expect_refused<core::PreconditionError>([&] { filter_.augment(core::make_bearing(0.1, 0.01), {}); });
 }
 
+TEST_P(BadInput, ABearingBeyondATurnIsRefused) {
+  const core::Observation z = core::make_range_bearing(5.0, 7.0, 0.1, 0.01);
+  expect_refused<core::PreconditionError>([&] { filter_.update({{active_, z, {}}}); }, std::to_string(active_));
+}
+
+TEST_P(BadInput, MotionBeyondAllNumbersIsANumericalErrorWithItsTime) {
+  core::Odometry odometry;
+  odometry.t_ns = 4711;
+  odometry.T_before_after = core::Pose2(1e308, 1e308, 0.0);
+  expect_refused<core::NumericalError>([&] { filter_.predict(odometry); }, "t_ns = 4711");
+  odometry.T_before_after = core::Pose2();
+  odometry.covariance.diagonal().setConstant(1e300);
+  expect_refused<core::PreconditionError>([&] { filter_.predict(odometry); }, "4711");
+}
+
+TEST_P(BadInput, TheLastOfAllNamesIsNotGiven) {
+  const core::Observation z = core::make_range_bearing(5.0, 0.1, 0.1, 0.01);
+  const core::LandmarkId last = std::numeric_limits<core::LandmarkId>::max();
+  expect_refused<core::PreconditionError>([&] { filter_.augment(z, {}, last); });
+}
+
+// The steps of 1e6 m that a broken encoder reports: the filter refuses or stays a covariance, but goes on either way.
+TEST_P(BadInput, AbsurdStepsNeverLeaveANegativeVariance) {
+  core::Odometry odometry;
+  odometry.covariance = Eigen::Vector3d(1.0, 1.0, 1e-2).asDiagonal();
+  for (int k = 0; k < 40; ++k) {
+    odometry.T_before_after = core::Pose2(k % 2 == 0 ? 1e6 : -1e6, 3.0, 0.1);
+    const core::Observation z = core::make_range_bearing(5.0, 0.1, 0.1, 0.01);
+    try {
+      filter_.predict(odometry);
+      filter_.update({{k % 3 == 0 ? passive_ : active_, z, {}}});
+      filter_.switch_region_if_due();
+    } catch (const core::NumericalError&) {
+    }
+    const Eigen::VectorXd variances = filter_.joint(filter_.landmarks()).covariance.diagonal();
+    ASSERT_TRUE(variances.allFinite()) << k;
+    ASSERT_GE(filter_.pose().covariance.diagonal().minCoeff(), -1e-18) << k;
+  }
+}
+
+TEST_P(BadInput, ARadiusWithoutBoundHoldsTheWholeMap) {
+  const Eigen::Vector2d here_m = filter_.pose().mean.position_m();
+  for (const double radius_m : {1e9, 1e11, 1e300, std::numeric_limits<double>::infinity()}) {
+    EXPECT_EQ(filter_.landmarks_within(here_m, radius_m), filter_.landmarks()) << radius_m;
+  }
+  EXPECT_TRUE(filter_.landmarks_within({1e12, -1e12}, 10.0).empty());
+  expect_refused<core::PreconditionError>([&] { filter_.landmarks_within(here_m, nan); });
+  expect_refused<core::PreconditionError>([&] { filter_.landmarks_within({nan, 0.0}, 1.0); });
+}
+
 TEST(Start, MayBeExactlyKnownButNotIndefinite) {
   EXPECT_NO_THROW(CompressedEkf(core::PoseGaussian{}));
   core::PoseGaussian start;

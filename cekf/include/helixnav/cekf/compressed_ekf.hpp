@@ -28,8 +28,8 @@ class Panels;
 ///
 /// Frames: everything is in the map frame; the pose is T_world_robot, covariances in (x, y, heading) [m, m, rad].
 /// A copy shares the covariance of the passive landmarks until one of the two absorbs a phase into it: O(N·q) a phase kept.
-/// Every call either succeeds or throws PreconditionError (arguments) or NumericalError (S not positive definite, a
-/// correction that is not finite) and leaves the filter as it was. Cost below with n active landmarks, q weights
+/// Every call either succeeds or throws PreconditionError (arguments), NumericalError (S not positive definite, a variance
+/// that would be negative or not finite) or std::bad_alloc and leaves the filter as it was. Cost below with n active landmarks, q weights
 /// (2·3+4·n right-invariant, 3+2·n standard), m rows of innovation. Source: THEORY §1 and §1b. Test: tests/cekf (equal
 /// to a plain full EKF on random programs, both retractions).
 class CompressedEkf {
@@ -151,44 +151,64 @@ class CompressedEkf {
   int weights_per_anchor() const { return options_.retraction == Retraction::right_invariant ? 2 : 1; }
 
   // augment.cpp
-  core::LandmarkId name_newest(const Eigen::Vector2d& point_m, core::LandmarkId id);
+  void name_newest(const Eigen::Vector2d& point_m, core::LandmarkId id);
+  void derive_newest(const DerivedPoint& point);
+  void check_newest(const Eigen::Vector2d& point_m, const Eigen::Matrix2d& covariance_m2) const;
+  void make_room_for_newest(core::LandmarkId name);
   void check_derived_point(const DerivedPoint& point) const;
 
   // update.cpp, update_iterated.cpp, merge.cpp, apply_correction.cpp
   void check_matches(const std::vector<Match>& matches, const char* verb) const;
+  bool are_active(const std::vector<Match>& matches) const;
   void check_pairs(const std::vector<LandmarkPair>& kept_removed, double sigma_m, const char* verb) const;
   void gather_involved(UpdateWorkspace& w) const;
   void gather_involved_unactivated(UpdateWorkspace& w) const;
   template <class Linearise>
   UpdateResult iterate_and_apply(int max_iterations, const char* verb, const Linearise& linearise);
+  void check_variances(const UpdateWorkspace& w, const char* verb) const;
   void apply_correction(UpdateWorkspace& w, const char* verb);
   void add_transport(UpdateWorkspace& w) const;
   void move_means(const UpdateWorkspace& w);
 
   // remove.cpp, activate.cpp, passive.cpp
   void remove_active(int index);
-  void undo_activations(int active_before);
+  struct BeforeActivations {
+    int active = 0;
+    Eigen::VectorXd theta;  ///< where something was passive
+  };
+  BeforeActivations before_activations(bool all_active) const;
+  void undo_activations(BeforeActivations& before);
+  void make_room_for_landmark(int weights);
   void append_columns(Phase& phase, const Eigen::MatrixXd& start_columns) const;
-  void append_weights_for(int first_column);
-  Eigen::MatrixXd phase_start_columns(const std::vector<int>& slots) const;
+  void append_weights_for(int first_column, ActivePart& part) const;
+  Eigen::MatrixXd phase_start_columns(const std::vector<int>& slots) const {
+    return start_columns(slots, phases_.size() - 1);
+  }
+  Eigen::MatrixXd start_columns(const std::vector<int>& slots, std::size_t phase) const;
+  void fill_start_columns(const std::vector<int>& slots, std::size_t phase, Eigen::Ref<Eigen::MatrixXd> columns) const;
   Eigen::MatrixXd phase_start_blocks(const std::vector<int>& slots) const;
   Eigen::Vector2d passive_mean(int slot) const;
   std::vector<core::LandmarkId> passive_in_cells(const Eigen::Vector2d& point_m, double reach_m) const;
   Eigen::MatrixXd basis_rows(const std::vector<int>& slots) const;
 
   // global_update.cpp, switch_region.cpp, snapshot.cpp
+  struct BeforeSwitch;
   int assign_slots(Phase& phase);
   Eigen::MatrixXd end_columns(const Panels& basis, int slots) const;
   Eigen::MatrixXd close_phase(Phase& next);
-  void absorb_closed_phases();
+  void absorb_closed_phases(long until);
+  void check_own_covariances(const Phase& next) const;
+  void reopen_phase(BeforeSwitch& before);
   void open_phase(Phase&& next, const Eigen::MatrixXd& columns, const std::vector<core::LandmarkId>& active);
   void freeze_slots(Phase& phase, const std::vector<core::LandmarkId>& active) const;
-  void start_active_part(const Phase& phase, const Eigen::MatrixXd& anchors,
-                         const std::vector<core::LandmarkId>& active, const std::vector<int>& slots);
+  ActivePart room_for(const Phase& phase, const std::vector<core::LandmarkId>& active,
+                      const std::vector<int>& slots) const;
+  void start_covariance(const Eigen::MatrixXd& anchors, ActivePart& part) const;
   std::vector<core::LandmarkId> region_around_vehicle() const;
   Eigen::Vector2i cell_of(const Eigen::Vector2d& point_m) const;
   void return_slots(Phase& phase);
-  void align_late_anchors(Phase& phase);
+  static void open_again(Phase& phase);
+  Eigen::MatrixXd missing_anchors(std::size_t phase, const ActivePart& wanted, std::size_t common) const;
   void rebuild_places();
 
   FilterOptions options_;

@@ -27,6 +27,8 @@ class PassiveCovariance {
   /// flops a column.
   void add_symmetric_product(const Eigen::Ref<const Eigen::MatrixXd>& left,
                              const Eigen::Ref<const Eigen::MatrixXd>& right, const std::vector<int>& columns);
+  /// The same with both sides packed (widths of packed_product.hpp). No allocation.
+  void add_symmetric_product(const Panels& left, const Panels& right);
   /// Overwrites rows and columns of the slots; columns is rows() × 2·|slots|.
   void overwrite(const std::vector<int>& slots, const Eigen::Ref<const Eigen::MatrixXd>& columns);
   std::size_t bytes() const { return tiles_.size() * tile * tile * sizeof(double); }

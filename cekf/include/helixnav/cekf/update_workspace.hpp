@@ -35,6 +35,7 @@ struct UpdateWorkspace {
   ReservedMatrix left_active, left_weights;
   ReservedMatrix right_active, right_weights;
   ReservedMatrix delta_active, delta_weights;  ///< correction δ, then Δ of the retraction
+  ReservedMatrix variances;                    ///< diagonal of the active covariance after the update
 };
 
 }  // namespace helixnav::cekf
