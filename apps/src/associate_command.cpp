@@ -14,6 +14,7 @@
 #include "association_trial.hpp"
 #include "commands.hpp"
 #include "config_file.hpp"
+#include "fit_to_recording.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/nearest_name.hpp"
 #include "helixnav/logs/read_recording.hpp"
@@ -22,7 +23,6 @@
 #include "interrupt.hpp"
 #include "progress_bar.hpp"
 #include "settings.hpp"
-#include "suit_to_log.hpp"
 #include "validators.hpp"
 
 namespace helixnav::apps {
@@ -63,7 +63,7 @@ core::Recording recording_of(const AssociateJob& job, std::uint64_t seed) {
                            core::nearest_name(job.input, known_scenarios()) + "'");
   }
   core::Recording recording = logs::read_recording(job.input, job.settings.logs);
-  scale_covariances(recording, job.settings.covariance_scale);
+  tell_recording(recording, job.settings);
   return recording;
 }
 
@@ -85,7 +85,7 @@ ExitCode compare(const AssociateJob& job) {
       throw core::InputError(recording.name + ": this log has no labels to compare with; --scan N needs none");
     }
     for (std::size_t m = 0; m < job.methods.size() && !interrupted(); ++m) {
-      supervisor::NavigatorOptions options = job.settings.navigator;
+      supervisor::NavigatorOptions options = fit_to_recording(job.settings, recording);
       options.method = method_named(job.methods[m]);
       try_association(recording, options, trials[m]);
       progress.advance_to(static_cast<std::size_t>(run) * job.methods.size() + m);
@@ -103,7 +103,7 @@ ExitCode show_scan(const AssociateJob& job) {
   if (job.settings.known_association && recording.labels.empty()) {
     throw core::InputError(recording.name + ": --association known needs a labelled log, and this one has no labels");
   }
-  supervisor::Navigator navigator(recording.start, job.settings.navigator);
+  supervisor::Navigator navigator(recording.start, fit_to_recording(job.settings, recording));
   std::size_t scans = 0;
   for (const core::Event& event : recording.events) {
     if (interrupted()) return ExitCode::interrupted;
@@ -129,8 +129,6 @@ ExitCode show_scan(const AssociateJob& job) {
 ExitCode associate(CLI::App& command, AssociateJob& job) {
   if (!job.config.empty()) apply_config_file(command, job.config);
   if (job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "has no part in comparing associations");
-  if (!is_scenario(job.input) && std::filesystem::exists(job.input))
-    suit_to_log(command, job.input, job.settings.navigator.search);
   catch_interrupts();
   return job.scan >= 0 ? show_scan(job) : compare(job);
 }

@@ -15,6 +15,7 @@
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/odometry.hpp"
+#include "helixnav/supervisor/lengths.hpp"
 #include "history.hpp"
 #include "missing_spawn.hpp"
 #include "probation.hpp"
@@ -33,7 +34,7 @@ Navigator::Navigator(const core::PoseGaussian& start, const NavigatorOptions& op
     : options_(options),
       filter_(start, options.filter),
       life_(options.life),
-      track_(std::make_unique<Track>()),
+      track_(std::make_unique<Track>(options.search.coverage_spacing_m)),
       drive_(std::make_unique<DriveLog>(start, options.search.enabled ? options.search.smooth_up_to_scans : 0)),
       probation_(std::make_unique<Probation>()),
       doubts_(std::make_unique<MissingSpawn>()),
@@ -49,7 +50,25 @@ void Navigator::move(const core::Odometry& odometry) {
   driven_m_ += odometry.T_before_after.position_m().norm();
 }
 
+/// Before the first landmark; what was predicted and fixed until then is in the pose.
+void Navigator::fit_to(const core::FieldOfView& view) {
+  const std::optional<double> reach_m = view.reach();
+  if (fitted_ || !reach_m) return;
+  fitted_ = true;
+  view_ = view;
+  if (!options_.fit_lengths) return;
+  const cekf::FilterOptions before = options_.filter;
+  options_ = fit_lengths(options_, *reach_m);
+  const bool new_cells =
+      before.cell_side_m != options_.filter.cell_side_m || before.hysteresis_m != options_.filter.hysteresis_m;
+  if (new_cells && step_ == 0) filter_ = cekf::CompressedEkf(filter_.pose(), options_.filter);
+  life_.set_lengths(options_.life.look_distance_m, options_.life.tentative_patience_m);
+  track_->set_spacing(options_.search.coverage_spacing_m);
+  delayed_.set_lengths(options_.delayed);
+}
+
 StepReport Navigator::observe(const Scan& scan) {
+  fit_to(scan.field_of_view);
   StepReport report = navigate(scan);
   keep_in_mind(scan, report);
   return has_got_lost() ? search_from_before(std::move(report)) : report;
@@ -80,6 +99,7 @@ StepReport Navigator::navigate(const Scan& scan) {
 StepReport Navigator::observe(const Scan& scan, const std::vector<std::int64_t>& identities) {
   StepReport report;
   report.associations = known_associations(scan, identities);
+  fit_to(scan.field_of_view);
   if (search_) end_search();  // it asked for what is known now
   drive_->let_go();
   if (!history_->empty()) history_->clear(filter_);
@@ -134,7 +154,7 @@ std::vector<LandmarkId> Navigator::candidates_of(const Scan& scan) const {
 std::vector<AmbiguousReturn> Navigator::old_ones_in_gate(const Scan& scan, const Gating& gating) const {
   if (!options_.search.enabled || search_) return {};
   return returns_in_gate(filter_, gating.problem, scan, old_landmarks(life_, options_.search.old_after_m),
-                         options_.search.foreign_per_scan);
+                         with_foreign(options_.search, life_.born_per_scan(), view_).foreign_per_scan);
 }
 
 bool Navigator::is_lost(const std::vector<AmbiguousReturn>& returns, StepReport& report) const {

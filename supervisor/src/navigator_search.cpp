@@ -11,6 +11,7 @@
 #include "close_map.hpp"
 #include "drive_log.hpp"
 #include "helixnav/core/angle.hpp"
+#include "helixnav/supervisor/lengths.hpp"
 #include "helixnav/supervisor/navigator.hpp"
 #include "history.hpp"
 #include "missing_spawn.hpp"
@@ -82,7 +83,7 @@ void Navigator::begin_search() {
   *doubts_ = MissingSpawn();
   const std::uint64_t seed = options_.search.seed + 1000000u * ++searches_;
   search_ = std::make_unique<Search>(old_landmarks(life_, options_.search.old_after_m), life_.path_m(), seed,
-                                     options_.search);
+                                     with_foreign(options_.search, life_.born_per_scan(), view_));
   if (options_.search.closing == ClosingMethod::replay) journal_ = std::make_unique<BranchJournal>(filter_);
 }
 

@@ -128,7 +128,7 @@ TEST(History, NotesNothingBeforeThereIsAMoment) {
 }
 
 TEST(Track, ForgetsWhatWasPassedLater) {
-  Track track;
+  Track track(4.0);
   for (int i = 0; i < 10; ++i) track.pass(5.0 * i, core::Pose2(5.0 * i, 0.0, 0.0));
   track.back_to(20.0);
   EXPECT_EQ(track.between(0.0, 1e9).size(), 5u);

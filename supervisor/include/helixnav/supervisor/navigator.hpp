@@ -27,7 +27,10 @@ class Probation;
 class Search;
 class Track;
 
+/// Every length stands here for a sensor that sees reference_reach_m far; the navigator fits it to the sensor that the
+/// first scan speaks of (lengths.hpp).
 struct NavigatorOptions {
+  bool fit_lengths = true;  ///< false: they are used as they stand
   cekf::FilterOptions filter;
   association::Method method = association::Method::likelihood_ratio;
   association::Options association;
@@ -84,6 +87,7 @@ class Navigator {
   const cekf::CompressedEkf& filter() const { return filter_; }
 
  private:
+  void fit_to(const core::FieldOfView& view);
   core::StepReport navigate(const core::Scan& scan);
   void keep_in_mind(const core::Scan& scan, const core::StepReport& report);
   bool has_got_lost() const;
@@ -113,6 +117,8 @@ class Navigator {
   core::StepReport close_step(const core::Scan& scan, core::StepReport report);
 
   NavigatorOptions options_;
+  bool fitted_ = false;  ///< the lengths of options_, to the sensor
+  core::FieldOfView view_;
   cekf::CompressedEkf filter_;
   association::LandmarkLife life_;
   std::optional<core::Odometry> motion_;   ///< since the last scan
