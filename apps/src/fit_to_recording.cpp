@@ -29,9 +29,7 @@ void tell_recording(core::Recording& recording, const Settings& settings) {
 }
 
 supervisor::NavigatorOptions fit_to_sensor(const Settings& settings, const core::FieldOfView& view) {
-  supervisor::NavigatorOptions options = settings.navigator;
-  const std::optional<double> reach_m = view.reach();
-  if (reach_m) options = supervisor::fit_lengths(options, *reach_m);
+  supervisor::NavigatorOptions options = supervisor::fit_lengths(settings.navigator, view);
   for (const auto& [name, length_m] : settings.given_lengths_m) supervisor::set_length(options, name, length_m);
   options.fit_lengths = false;
   return options;

@@ -70,8 +70,9 @@ void add_filter(CLI::App& command, Settings& settings) {
       ->check(one_of({"right-invariant", "standard"}))
       ->default_str("right-invariant")
       ->group(group);
-  add_length(command, settings, "filter.cell_side_m", 1e-3, 1e6,
-             "Side of a cell; the cell of the vehicle and its 8 neighbours are active; auto: 2/3 of the sensor's reach");
+  add_length(
+      command, settings, "filter.cell_side_m", 1e-3, 1e6,
+      "Side of a cell; the cell of the vehicle and its 8 neighbours are active; auto: 2/3 of the sensor's reach");
   add_length(command, settings, "filter.hysteresis_m", 0.0, 1e6,
              "So far beyond its cell the vehicle goes before the region switches; auto: 2/3 of the reach");
   add_number(command, "--filter.max_active_landmarks", filter.max_active_landmarks, 1, 100000,

@@ -57,8 +57,8 @@ core::FieldOfView estimate_field_of_view(const core::Recording& recording) {
   view.max_range_m = quantile(polar.ranges_m, 0.75);
   view.reach_m = quantile(polar.ranges_m, 0.95);
   constexpr double nearly_behind_rad = 0.97 * core::pi;  // 1 % of bearings all around go beyond 0.98 π
-  const bool all_around = quantile(polar.bearings_rad, 0.01) < -nearly_behind_rad &&
-                          quantile(polar.bearings_rad, 0.99) > nearly_behind_rad;
+  const bool all_around =
+      quantile(polar.bearings_rad, 0.01) < -nearly_behind_rad && quantile(polar.bearings_rad, 0.99) > nearly_behind_rad;
   if (all_around) return view;
   view.min_bearing_rad = quantile(polar.bearings_rad, 0.05);
   view.max_bearing_rad = quantile(polar.bearings_rad, 0.95);

@@ -13,7 +13,7 @@ namespace {
 /// Of one version ago: the reach of the sensor over 30 m, now taken from the observations where it is 1.
 void apply_old_scale(double search_scale, supervisor::NavigatorOptions& options) {
   if (search_scale == 1.0) return;
-  options = supervisor::fit_lengths(options, search_scale * supervisor::reference_reach_m);
+  options = supervisor::fit_lengths(options, {0.0, search_scale * supervisor::reference_reach_m});
   options.fit_lengths = false;
 }
 

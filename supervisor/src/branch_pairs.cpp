@@ -56,8 +56,7 @@ bool may_be_a_neighbours(const Leftover& leftover, double neighbour_m) {
 
 /// Old landmarks that `id` may be, as far as one looks, nearest first.
 std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::LandmarkId id,
-                                 const std::vector<core::LandmarkId>& old, double gate, double look_m,
-                                 double sigma_m) {
+                                 const std::vector<core::LandmarkId>& old, double gate, double look_m, double sigma_m) {
   const Eigen::Vector2d at_m = filter.landmark_mean(id);
   std::vector<Leftover> found;
   for (const core::LandmarkId kept : filter.landmarks_within(at_m, look_m)) {

@@ -146,11 +146,10 @@ std::optional<LandmarkId> DelayedLandmarks::sight(cekf::CompressedEkf& filter, s
     return std::nullopt;
   }
   if (static_cast<int>(window.sightings.size()) >= options_.window) thin_out(filter, window);
-  Sighting sighting{observation, clone(filter, T_robot_sensor.position_m(), options_.clone_sigma_m),
-                    core::no_landmark};
+  Sighting sighting{observation, clone(filter, T_robot_sensor.position_m(), options_.clone_sigma_m), core::no_landmark};
   if (observation.kind == core::ObservationKind::bearing) {
-    sighting.ahead = clone(filter, core::transform(T_robot_sensor, Eigen::Vector2d(options_.ahead_m, 0.0)),
-                           options_.clone_sigma_m);
+    sighting.ahead =
+        clone(filter, core::transform(T_robot_sensor, Eigen::Vector2d(options_.ahead_m, 0.0)), options_.clone_sigma_m);
   }
   window.sightings.push_back(sighting);
 

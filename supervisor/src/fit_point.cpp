@@ -76,7 +76,8 @@ std::vector<Eigen::Vector2d> starts(const FitRow& row, double spacing_m) {
   std::vector<Eigen::Vector2d> points;
   if (row.kind == core::ObservationKind::bearing) {
     for (const double spacings : {1.0, 3.0, 10.0, 30.0, 100.0}) {
-      points.push_back(core::transform(row.sensor, spacings * spacing_m * Eigen::Vector2d(std::cos(row.z), std::sin(row.z))));
+      points.push_back(
+          core::transform(row.sensor, spacings * spacing_m * Eigen::Vector2d(std::cos(row.z), std::sin(row.z))));
     }
     return points;
   }

@@ -172,8 +172,7 @@ KeptRemoved LeftBehind::place(const cekf::CompressedEkf& filter, const std::vect
                               const SearchOptions& options) const {
   std::vector<Copy> copies = copies_among(confirmed_, filter, old, options);
   if (copies.empty()) return {};
-  const double reach_m =
-      options.stretch_m + options.stretch_rim_m + std::sqrt(wide_gate * copies.back().variance_m2);
+  const double reach_m = options.stretch_m + options.stretch_rim_m + std::sqrt(wide_gate * copies.back().variance_m2);
   const Stretch stretch(ground_around(copies.front().id, reach_m, filter, old, options), filter, options);
   copies.erase(std::remove_if(copies.begin(), copies.end(), [&](const Copy& copy) { return !stretch.holds(copy.id); }),
                copies.end());

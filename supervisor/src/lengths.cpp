@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "helixnav/core/angle.hpp"
 #include "helixnav/core/errors.hpp"
 
 namespace helixnav::supervisor {
@@ -38,7 +39,8 @@ constexpr std::array rows{
     Row{"search.coverage_spacing_m", 2, 15, [](Options& o) -> double& { return o.search.coverage_spacing_m; }},
 
     // When a search begins, goes on and ends.
-    Row{"search.old_after_m", 2, 1, [](Options& o) -> double& { return o.search.old_after_m; }},
+    Row{"search.old_after_m", 2, 1,  // of a sensor that looks all around in two views, see views_around
+        [](Options& o) -> double& { return o.search.old_after_m; }},
     Row{"search.probation_m", 1, 6, [](Options& o) -> double& { return o.search.probation_m; }},
     Row{"search.look_distance_m", 1, 30, [](Options& o) -> double& { return o.search.look_distance_m; }},
     Row{"search.reach_m", 11, 3, [](Options& o) -> double& { return o.search.reach_m; }},
@@ -84,6 +86,12 @@ constexpr std::array rows{
     Row{"delayed.clone_sigma_m", 1, 30000, [](Options& o) -> double& { return o.delayed.clone_sigma_m; }},
 };
 
+/// That it takes to look all around, 2 at the least.
+double views_around(const core::FieldOfView& view) {
+  const double width_rad = view.max_bearing_rad - view.min_bearing_rad;
+  return width_rad > 0.0 ? std::max(2.0, std::round(2.0 * core::pi / width_rad)) : 2.0;
+}
+
 double area_m2(const core::FieldOfView& view) {
   return 0.5 * (view.max_bearing_rad - view.min_bearing_rad) *
          (view.max_range_m * view.max_range_m - view.min_range_m * view.min_range_m);
@@ -91,14 +99,15 @@ double area_m2(const core::FieldOfView& view) {
 
 }  // namespace
 
-NavigatorOptions fit_lengths(NavigatorOptions options, double reach_m) {
-  if (!(reach_m > 0.0 && std::isfinite(reach_m))) {
-    throw core::PreconditionError("fit_lengths: reach_m > 0 and finite expected, found " + std::to_string(reach_m));
-  }
+NavigatorOptions fit_lengths(NavigatorOptions options, const core::FieldOfView& view) {
+  const std::optional<double> reach_m = view.reach();
+  if (!reach_m) return options;
+  const bool own_old_after = options.search.old_after_m != SearchOptions{}.old_after_m;
   for (const Row& row : rows) {
     double& value = row.of(options);
-    if (value == row.at(reference_reach_m)) value = row.at(reach_m);
+    if (value == row.at(reference_reach_m)) value = row.at(*reach_m);
   }
+  if (!own_old_after) options.search.old_after_m *= 0.5 * views_around(view);
   return options;
 }
 

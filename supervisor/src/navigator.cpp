@@ -52,13 +52,12 @@ void Navigator::move(const core::Odometry& odometry) {
 
 /// Before the first landmark; what was predicted and fixed until then is in the pose.
 void Navigator::fit_to(const core::FieldOfView& view) {
-  const std::optional<double> reach_m = view.reach();
-  if (fitted_ || !reach_m) return;
+  if (fitted_ || !view.reach()) return;
   fitted_ = true;
   view_ = view;
   if (!options_.fit_lengths) return;
   const cekf::FilterOptions before = options_.filter;
-  options_ = fit_lengths(options_, *reach_m);
+  options_ = fit_lengths(options_, view);
   const bool new_cells =
       before.cell_side_m != options_.filter.cell_side_m || before.hysteresis_m != options_.filter.hysteresis_m;
   if (new_cells && step_ == 0) filter_ = cekf::CompressedEkf(filter_.pose(), options_.filter);

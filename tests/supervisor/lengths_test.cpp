@@ -16,6 +16,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+core::FieldOfView half_disc(double reach_m) { return {0.0, reach_m, -core::pi / 2, core::pi / 2}; }
+
 core::Pose2 scaled(const core::Pose2& pose, double scale) {
   return {scale * pose.x_m, scale * pose.y_m, pose.heading_rad};
 }
@@ -100,8 +102,8 @@ TEST(Lengths, AWorldAtATenthOfItsSizeClosesLikeTheOriginal) {
 
 TEST(Lengths, OfTheReferenceReachAreTheDefaults) {
   const std::vector<LengthInForce> before = lengths_in_force({});
-  const std::vector<LengthInForce> after = lengths_in_force(fit_lengths({}, reference_reach_m));
-  const std::vector<LengthInForce> elsewhere = lengths_in_force(fit_lengths({}, 3.0));
+  const std::vector<LengthInForce> after = lengths_in_force(fit_lengths({}, half_disc(reference_reach_m)));
+  const std::vector<LengthInForce> elsewhere = lengths_in_force(fit_lengths({}, half_disc(3.0)));
   ASSERT_EQ(before.size(), after.size());
   for (std::size_t i = 0; i < before.size(); ++i) {
     EXPECT_EQ(before[i].value, after[i].value) << before[i].name;
@@ -112,17 +114,23 @@ TEST(Lengths, OfTheReferenceReachAreTheDefaults) {
 TEST(Lengths, ChosenByTheCallerStay) {
   NavigatorOptions options;
   set_length(options, "search.old_after_m", 80.0);
-  options = fit_lengths(options, 3.0);
+  options = fit_lengths(options, half_disc(3.0));
   EXPECT_EQ(options.search.old_after_m, 80.0);
   EXPECT_DOUBLE_EQ(options.search.rivals.distinct_m, 0.1);
   EXPECT_DOUBLE_EQ(options.search.rivals.extraneous_per_m2, 0.14);
   EXPECT_THROW(set_length(options, "search.old", 1.0), core::PreconditionError);
 }
 
-TEST(Lengths, NeedAReach) {
+TEST(Lengths, StayWhereNobodyKnowsTheReach) {
   for (const double reach_m : {0.0, -1.0, infinity, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THROW(fit_lengths({}, reach_m), core::PreconditionError) << reach_m;
+    EXPECT_EQ(fit_lengths({}, half_disc(reach_m)).search.reach_m, SearchOptions{}.reach_m) << reach_m;
   }
+}
+
+TEST(Lengths, OfANarrowViewLetLandmarksGetOldLater) {
+  EXPECT_EQ(fit_lengths({}, {1.0, 30.0, -0.7, 0.7}).search.old_after_m, 120.0);
+  EXPECT_EQ(fit_lengths({}, {1.0, 30.0, -1.52, 1.52}).search.old_after_m, 60.0);
+  EXPECT_EQ(fit_lengths({}, {1.0, 30.0, -core::pi, core::pi}).search.old_after_m, 60.0);
 }
 
 TEST(Lengths, ObjectsInNoMapAreCountedWhereNobodyTellsThem) {

@@ -18,12 +18,14 @@ struct LengthInForce {
   double value = 0.0;     ///< [m], or [1/m²] of a density
 };
 
-/// The options for a sensor that sees `reach_m` far. Whatever is a length in mapping, search, verification and closing is
-/// a multiple of the reach: a world, its sensor and its noise at a tenth of their size are navigated as the original is.
-/// The multiples stand in lengths.cpp, in one table, and nowhere else. A length that is not that of reference_reach_m was
-/// chosen by the caller and stays. PreconditionError unless 0 < reach_m < infinity.
+/// The options for a sensor of this field of view; as they are when it says nothing of the reach. Whatever is a length in
+/// mapping, search, verification and closing is a multiple of the reach: a world, its sensor and its noise at a tenth of
+/// their size are navigated as the original is. The multiples stand in lengths.cpp, in one table, and nowhere else. A
+/// landmark gets old the later the narrower the view is, because the vehicle loses it by turning, too: after one reach for
+/// every view that it takes to look all around, two at the least. A length that is not that of reference_reach_m was
+/// chosen by the caller and stays.
 /// Test: supervisor/lengths_test.cpp (a world at 1/8 of its size is associated and closed alike, to the last decision).
-NavigatorOptions fit_lengths(NavigatorOptions options, double reach_m);
+NavigatorOptions fit_lengths(NavigatorOptions options, const core::FieldOfView& view);
 
 /// All rows of that table with their values in `options`, in its order.
 std::vector<LengthInForce> lengths_in_force(const NavigatorOptions& options);

@@ -85,10 +85,10 @@ struct SearchOptions {
   double leftover_gate = 9.21;        ///< χ² within which remaining duplicates are merged after a closing
   double leftover_least_m = 1.0;      ///< so near to an old landmark one may be its duplicate, and …
   double leftover_most_m = 2.5;       ///< … never farther off, wherever its neighbours stand
-  double stretch_m = 40.0;            ///< of duplicates placed as a whole, around the best known; 25 and 60 m do as well
-  double stretch_rim_m = 3.0;         ///< beyond it landmarks are partners, but nobody misses one
-  double stretch_rigid_m = 0.7;       ///< two duplicates are as far apart as their partners, but for this
-  int smooth_up_to_scans = 20000;     ///< and fixes; a drive of more is not solved as a whole after a closing
+  double stretch_m = 40.0;         ///< of duplicates placed as a whole, around the best known; 25 and 60 m do as well
+  double stretch_rim_m = 3.0;      ///< beyond it landmarks are partners, but nobody misses one
+  double stretch_rigid_m = 0.7;    ///< two duplicates are as far apart as their partners, but for this
+  int smooth_up_to_scans = 20000;  ///< and fixes; a drive of more is not solved as a whole after a closing
 };
 
 }  // namespace helixnav::supervisor
