@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "constellation_question.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -20,22 +22,23 @@ struct Twice {
 
   Twice() {
     scan.field_of_view = {0.5, 30.0, -core::pi, core::pi};
-    old = map_row();
+    old = map_row(0.0);
     life.observe({0.0, 0.0}, {}, old, {});
     core::Odometry motion;
     motion.covariance.diagonal() << 0.25, 0.25, 1e-3;
     filter.predict(motion);
     life.drive(100.0);
-    const std::vector<core::LandmarkId> branch = map_row();
+    const std::vector<core::LandmarkId> branch = map_row(0.2);
     life.observe({0.0, 0.0}, {}, branch, {});
     for (int look = 1; look <= 3; ++look) life.observe({1.0 * look, 0.0}, branch, {}, {});
   }
 
-  std::vector<core::LandmarkId> map_row() {
+  std::vector<core::LandmarkId> map_row(double apart_m) {
     std::vector<core::LandmarkId> ids;
     for (int i = 0; i < 8; ++i) {
       const Eigen::Vector2d at_m(4.0 * i - 12.0, i % 2 == 0 ? 5.0 : -6.0 - 0.3 * i);
-      ids.push_back(filter.augment(core::make_cartesian(at_m, 0.01 * Eigen::Matrix2d::Identity()), {}));
+      const Eigen::Vector2d off_m(apart_m * std::sin(3.0 * i), apart_m * std::cos(5.0 * i));
+      ids.push_back(filter.augment(core::make_cartesian(at_m + off_m, 0.01 * Eigen::Matrix2d::Identity()), {}));
     }
     return ids;
   }
