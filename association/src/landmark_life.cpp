@@ -38,9 +38,19 @@ LandmarkLife::LandmarkLife(const LifeOptions& options)
   }
 }
 
+void LandmarkLife::set_lengths(double look_distance_m, double tentative_patience_m) {
+  if (!(look_distance_m >= 0.0 && tentative_patience_m > 0.0)) {
+    throw core::PreconditionError("landmark life: look_distance_m >= 0 and tentative_patience_m > 0 expected");
+  }
+  options_.look_distance_m = look_distance_m;
+  options_.tentative_patience_m = tentative_patience_m;
+}
+
 LifeChanges LandmarkLife::observe(const Eigen::Vector2d& sensor_m, const std::vector<LandmarkId>& seen,
                                   const std::vector<LandmarkId>& born, const std::vector<LandmarkId>& expected) {
   check_scan(seen, born, expected);
+  ++scans_;
+  born_ += born.size();
   for (const LandmarkId id : seen) hit(*find(id), sensor_m);
   for (const LandmarkId id : expected) {
     if (!is_listed(seen, id) && !is_listed(born, id)) miss(*find(id), sensor_m);

@@ -61,7 +61,10 @@ core::FieldOfView field_of_view(const CObservationBearingRange& observation, con
   view.min_range_m = std::fmax(0.0, observation.minSensorDistance);
   view.max_range_m = observation.maxSensorDistance > 0.0F ? static_cast<double>(observation.maxSensorDistance)
                                                           : std::numeric_limits<double>::infinity();
-  if (options.max_sensor_range > 0.0) view.max_range_m = options.max_sensor_range;
+  if (options.max_sensor_range > 0.0) {
+    if (std::isfinite(view.max_range_m)) view.reach_m = view.max_range_m;
+    view.max_range_m = options.max_sensor_range;
+  }
   const double half_rad = static_cast<double>(observation.fieldOfView_yaw) / 2.0;
   constexpr double of_a_float = 1e-6;  // 2π in single precision, or 360° in it, is a full circle
   if (half_rad > 0.0 && half_rad < core::pi - of_a_float) {

@@ -73,18 +73,20 @@ struct Detector {
     sigma_range_m = either(options.std_detector_range, measured.sigma_range_m);
     sigma_bearing_rad = either(options.std_detector_yaw_rad, measured.sigma_bearing_rad);
     view_range_m = either(options.detector_view_range, measured.view_range_m);
+    reach_m = measured.reach_m;
   }
 
   bool trees;
   double sigma_range_m;
   double sigma_bearing_rad;
   double view_range_m;
+  double reach_m;
 };
 
 core::FieldOfView field_of_view(const Rays& rays, const Detector& detector) {
   const logs::TreeRules rules;
   const double half_rad = std::min(core::pi, rays.aperture_rad) / 2.0 - (detector.trees ? rules.edge_margin_rad : 0.0);
-  return {detector.trees ? rules.min_range_m : 0.0, detector.view_range_m, -half_rad, half_rad};
+  return {detector.trees ? rules.min_range_m : 0.0, detector.view_range_m, -half_rad, half_rad, detector.reach_m};
 }
 
 }  // namespace

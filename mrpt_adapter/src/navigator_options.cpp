@@ -3,18 +3,23 @@
 
 #include <algorithm>
 
-#include "helixnav/supervisor/scale_lengths.hpp"
+#include "helixnav/supervisor/lengths.hpp"
 #include "option_names.hpp"
 
 namespace helixnav::mrpt_adapter {
 
 namespace {
 
-supervisor::SearchOptions search_options(const MapBuilderOptions& options) {
-  supervisor::SearchOptions search = supervisor::scale_lengths({}, options.search_scale);
+/// Of one version ago: the reach of the sensor over 30 m, now taken from the observations where it is 1.
+void apply_old_scale(double search_scale, supervisor::NavigatorOptions& options) {
+  if (search_scale == 1.0) return;
+  options = supervisor::fit_lengths(options, {0.0, search_scale * supervisor::reference_reach_m});
+  options.fit_lengths = false;
+}
+
+void set_search(const MapBuilderOptions& options, supervisor::SearchOptions& search) {
   search.enabled = options.search_enabled;
   search.seed = options.search_seed;
-  search.old_after_m = options.search_old_after;
   search.relocalizer.threads = static_cast<unsigned>(options.search_threads);
   constexpr double among_reflectors = 0.5;  // hardly anything else shines
   if (options.detector == "reflectors") search.foreign_per_scan = among_reflectors;
@@ -25,7 +30,6 @@ supervisor::SearchOptions search_options(const MapBuilderOptions& options) {
   if (options.search_view_area > 0.0) {
     search.rivals.extraneous_per_m2 = search.foreign_per_scan / options.search_view_area;
   }
-  return search;
 }
 
 }  // namespace
@@ -44,7 +48,9 @@ supervisor::NavigatorOptions navigator_options(const MapBuilderOptions& options)
   const double widest = 1.0 - share * (1.0 - options.data_assoc_IC_chi2_thres);
   result.gates.new_probability = std::max(defaults.new_probability, widest);
   result.fix_probability = options.gps_probability;
-  result.search = search_options(options);
+  result.search.old_after_m = options.search_old_after;
+  apply_old_scale(options.search_scale, result);
+  set_search(options, result.search);
   return result;
 }
 

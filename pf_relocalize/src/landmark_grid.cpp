@@ -18,7 +18,8 @@ LandmarkGrid::LandmarkGrid(const std::vector<Eigen::Vector2d>& points_m) {
   }
   const Eigen::Vector2d size = high - low;
   const double count = static_cast<double>(points_m.size());
-  const double cell_m = std::max({1.0, std::sqrt(size.x() * size.y() / count), size.maxCoeff() / (4.0 * count)});
+  const double spread_m = std::max(std::sqrt(size.x() * size.y() / count), size.maxCoeff() / (4.0 * count));
+  const double cell_m = spread_m > 0.0 ? spread_m : 1.0;  // all in one place: any cell will do
   origin_x_m_ = low.x();
   origin_y_m_ = low.y();
   inverse_cell_ = 1.0 / cell_m;

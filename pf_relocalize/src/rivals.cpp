@@ -15,7 +15,7 @@
 namespace helixnav::pf_relocalize {
 namespace {
 
-constexpr std::array<double, 9> softening_m{0.5, 0.5, 0.5, 0.25, 0.25, 0.12, 0.12, 0.0, 0.0};
+constexpr std::array<double, 9> softening{1.0, 1.0, 1.0, 0.5, 0.5, 0.24, 0.24, 0.0, 0.0};  // of soften_m
 constexpr double detection_probability = 0.77;
 
 /// Branch landmarks as points of the vehicle, less certain across the line of sight the further they are.
@@ -77,8 +77,8 @@ class RivalRegion {
 };
 
 core::Pose2 refined(const LandmarkTable& table, const std::vector<RobotPoint>& points, double density_ratio_m2,
-                    core::Pose2 pose) {
-  for (const double soften_m : softening_m) pose = refine_pose(table, points, density_ratio_m2, soften_m, pose);
+                    double soften_m, core::Pose2 pose) {
+  for (const double share : softening) pose = refine_pose(table, points, density_ratio_m2, share * soften_m, pose);
   return pose;
 }
 
@@ -107,7 +107,7 @@ RivalPoses find_rivals(const ReferenceMap& reference, const std::vector<BranchLa
   likelihood.set_points(points, options.extraneous_per_m2);
 
   RivalPoses poses;
-  poses.winner = refined(table, points, density_ratio_m2, winner);
+  poses.winner = refined(table, points, density_ratio_m2, options.soften_m, winner);
   const RivalRegion region(reference, poses.winner, options);
 
   Particles cloud;
@@ -123,7 +123,7 @@ RivalPoses find_rivals(const ReferenceMap& reference, const std::vector<BranchLa
       best_apart(cloud, options.starts, 0.5 * options.distinct_m, 0.25 * options.apart_rad);
   cloud.resize(starts.size());
   for (std::size_t i = 0; i < starts.size(); ++i) {
-    cloud.set_pose(i, refined(table, points, density_ratio_m2, starts[i]));
+    cloud.set_pose(i, refined(table, points, density_ratio_m2, options.soften_m, starts[i]));
   }
   weigh(likelihood, region, cloud);
   poses.rivals = best_apart(cloud, options.most_rivals, options.distinct_m, options.apart_rad);

@@ -13,24 +13,23 @@ namespace helixnav::supervisor {
 namespace {
 
 // Of the distance of old landmarks a third says well enough who is whose copy.
-constexpr double least_reach_m = 1.0;
 constexpr double reach_share = 0.35;
 
-Leftover compare(const cekf::CompressedEkf& filter, core::LandmarkId kept, core::LandmarkId removed) {
+Leftover compare(const cekf::CompressedEkf& filter, core::LandmarkId kept, core::LandmarkId removed, double sigma_m) {
   const core::JointGaussian both = filter.joint({kept, removed});
   const Eigen::MatrixXd& P = both.covariance;
   const Eigen::Matrix2d S = P.block<2, 2>(3, 3) + P.block<2, 2>(5, 5) - P.block<2, 2>(3, 5) - P.block<2, 2>(5, 3) +
-                            1e-4 * Eigen::Matrix2d::Identity();
+                            sigma_m * sigma_m * Eigen::Matrix2d::Identity();
   const Eigen::Matrix2d information = S.inverse();
   const Eigen::Vector2d d = both.points_m[1] - both.points_m[0];
   return {kept, removed, d, information, d.dot(information * d)};
 }
 
 /// From an old landmark to its nearest old neighbour, as far as that matters.
-double nearest_old_m(const cekf::CompressedEkf& filter, core::LandmarkId kept,
-                     const std::vector<core::LandmarkId>& old) {
+double nearest_old_m(const cekf::CompressedEkf& filter, core::LandmarkId kept, const std::vector<core::LandmarkId>& old,
+                     double matters_m) {
   const Eigen::Vector2d at_m = filter.landmark_mean(kept);
-  double nearest_m = most_reach_m / reach_share;
+  double nearest_m = matters_m;
   for (const core::LandmarkId other : filter.landmarks_within(at_m, nearest_m)) {
     if (other == kept || !std::binary_search(old.begin(), old.end(), other)) continue;
     nearest_m = std::min(nearest_m, (filter.landmark_mean(other) - at_m).norm());
@@ -57,12 +56,12 @@ bool may_be_a_neighbours(const Leftover& leftover, double neighbour_m) {
 
 /// Old landmarks that `id` may be, as far as one looks, nearest first.
 std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::LandmarkId id,
-                                 const std::vector<core::LandmarkId>& old, double gate, double look_m) {
+                                 const std::vector<core::LandmarkId>& old, double gate, double look_m, double sigma_m) {
   const Eigen::Vector2d at_m = filter.landmark_mean(id);
   std::vector<Leftover> found;
   for (const core::LandmarkId kept : filter.landmarks_within(at_m, look_m)) {
     if (!std::binary_search(old.begin(), old.end(), kept)) continue;
-    const Leftover leftover = compare(filter, kept, id);
+    const Leftover leftover = compare(filter, kept, id, sigma_m);
     if (leftover.nis < gate) found.push_back(leftover);
   }
   std::sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.nis < b.nis; });
@@ -95,15 +94,16 @@ bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& opt
 }
 
 KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
-                      const std::vector<core::LandmarkId>& old, double gate) {
+                      const std::vector<core::LandmarkId>& old, const SearchOptions& options) {
+  const double gate = options.leftover_gate;
   std::vector<Leftover> found;
   for (const core::LandmarkId id : confirmed) {
     if (!filter.contains(id)) continue;
-    const double look_m = most_reach_m + std::sqrt(gate) * filter.landmark_sigma_bound_m(id);
-    const std::vector<Leftover> here = compatible(filter, id, old, gate, look_m);
+    const double look_m = options.leftover_most_m + std::sqrt(gate) * filter.landmark_sigma_bound_m(id);
+    const std::vector<Leftover> here = compatible(filter, id, old, gate, look_m, options.duplicate_sigma_m);
     if (here.size() != 1) continue;
-    const double neighbour_m = nearest_old_m(filter, here.front().kept, old);
-    const double reach_m = std::max(least_reach_m, reach_share * neighbour_m);
+    const double neighbour_m = nearest_old_m(filter, here.front().kept, old, options.leftover_most_m / reach_share);
+    const double reach_m = std::max(options.leftover_least_m, reach_share * neighbour_m);
     if (here.front().difference_m.norm() > reach_m || may_be_a_neighbours(here.front(), neighbour_m)) continue;
     found.push_back(here.front());
   }
@@ -117,9 +117,11 @@ KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core:
 }
 
 void forget_copies(cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& unconfirmed,
-                   const std::vector<core::LandmarkId>& old, double gate, Closing& closing) {
+                   const std::vector<core::LandmarkId>& old, const SearchOptions& options, Closing& closing) {
   for (const core::LandmarkId id : unconfirmed) {
-    if (compatible(filter, id, old, gate, least_reach_m).empty()) continue;
+    const std::vector<Leftover> here =
+        compatible(filter, id, old, options.leftover_gate, options.leftover_least_m, options.duplicate_sigma_m);
+    if (here.empty()) continue;
     filter.remove(id);
     closing.forgotten.push_back(id);
   }

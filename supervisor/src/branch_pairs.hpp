@@ -16,23 +16,19 @@ using KeptRemoved = std::vector<cekf::CompressedEkf::LandmarkPair>;
 
 constexpr std::size_t least_pairs = 3;  ///< of a closing
 
-/// How far from one another two landmarks may be one, where old ones stand far apart: beyond it, compatible only means
-/// uncertain.
-constexpr double most_reach_m = 2.5;
-
 KeptRemoved kept_removed(const std::vector<pf_relocalize::ConstellationPair>& pairs);
 
 /// An old landmark that one of the branch may be.
 struct Leftover {
   core::LandmarkId kept, removed;
   Eigen::Vector2d difference_m;  ///< removed less kept
-  Eigen::Matrix2d information;   ///< of it, correlations included, on top of 1 cm each way
+  Eigen::Matrix2d information;   ///< of it, correlations included, on top of duplicate_sigma_m each way
   double nis;
 };
 
 /// Old landmarks that `id` may be, as far as one looks, nearest first.
 std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::LandmarkId id,
-                                 const std::vector<core::LandmarkId>& old, double gate, double look_m);
+                                 const std::vector<core::LandmarkId>& old, double gate, double look_m, double sigma_m);
 
 /// The pairs belong to what the closing merged.
 void note(const KeptRemoved& pairs, Closing& closing);
@@ -44,13 +40,13 @@ bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& opt
 
 /// Confirmed branch landmarks that are compatible with one landmark of `old` (ascending) and with no other, by the joint
 /// covariance of the closed map, a thousand times likelier it than one that stood as near to it as its nearest old
-/// neighbour on another side, and not farther from it than a third of that distance, 1 m at the least and 2.5 m at the
-/// most; of several on the same one the nearest. Test: supervisor/branch_pairs_test.cpp.
+/// neighbour on another side, and not farther from it than a third of that distance, leftover_least_m at the least and leftover_most_m at
+/// the most; of several on the same one the nearest. Test: supervisor/branch_pairs_test.cpp.
 KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
-                      const std::vector<core::LandmarkId>& old, double gate);
+                      const std::vector<core::LandmarkId>& old, const SearchOptions& options);
 
 /// Removes unconfirmed landmarks of the branch that stand on an old one: they may be clutter and are never merged.
 void forget_copies(cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& unconfirmed,
-                   const std::vector<core::LandmarkId>& old, double gate, Closing& closing);
+                   const std::vector<core::LandmarkId>& old, const SearchOptions& options, Closing& closing);
 
 }  // namespace helixnav::supervisor

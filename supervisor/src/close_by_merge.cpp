@@ -11,7 +11,7 @@ void merge_leftovers(cekf::CompressedEkf& filter, const LeftBehind& left_behind,
                      const SearchOptions& options, Closing& closing) {
   constexpr int most_passes = 10;
   for (int pass = 0; pass < most_passes; ++pass) {
-    KeptRemoved rest = leftovers(filter, confirmed, old, options.leftover_gate);
+    KeptRemoved rest = leftovers(filter, confirmed, old, options);
     if (rest.empty()) rest = left_behind.place(filter, old, options);
     Closing rest_closing;
     if (rest.empty() || !make_compatible(filter, options, rest, rest_closing)) return;
@@ -31,7 +31,7 @@ Closing close_by_merge(cekf::CompressedEkf& filter, const std::vector<pf_relocal
   closing.accepted = true;
 
   merge_leftovers(filter, left_behind, branch.confirmed, old, options, closing);
-  forget_copies(filter, branch.unconfirmed, old, options.leftover_gate, closing);
+  forget_copies(filter, branch.unconfirmed, old, options, closing);
   return closing;
 }
 

@@ -46,7 +46,7 @@ bool replay_leftovers(cekf::CompressedEkf& filter, const LeftBehind& left_behind
                       KeptRemoved& pairs, Closing& closing) {
   constexpr int most_passes = 10;
   for (int pass = 0; pass < most_passes; ++pass) {
-    KeptRemoved rest = leftovers(filter, branch.confirmed, old, options.leftover_gate);
+    KeptRemoved rest = leftovers(filter, branch.confirmed, old, options);
     if (rest.empty()) rest = left_behind.place(filter, old, options);
     Closing next = closing;
     next.dropped = 0;
@@ -82,7 +82,7 @@ Closing close_by_replay(cekf::CompressedEkf& filter, const BranchRecord& record,
   const bool complete = replay_leftovers(filter, left_behind, record, branch, old, options, chosen, closing);
   note(chosen, closing);
   if (!complete) merge_leftovers(filter, left_behind, branch.confirmed, old, options, closing);
-  forget_copies(filter, branch.unconfirmed, old, options.leftover_gate, closing);
+  forget_copies(filter, branch.unconfirmed, old, options, closing);
   return closing;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "close_map.hpp"
 
+#include <limits>
+
 #include "close_by_merge.hpp"
 #include "close_by_replay.hpp"
 #include "close_by_restart.hpp"
@@ -18,7 +20,7 @@ Branch branch_of(const ClosingView& view, const SearchOptions& options) {
   }
   branch.old_drive.T_frame_sensor = view.track.between(0.0, left_old_ground_m);
   branch.old_drive.field_of_view = view.scan.field_of_view;
-  branch.new_drive.T_frame_sensor = view.track.between(left_old_ground_m, view.life.path_m() + 1.0);
+  branch.new_drive.T_frame_sensor = view.track.between(left_old_ground_m, std::numeric_limits<double>::infinity());
   branch.new_drive.field_of_view = view.scan.field_of_view;
   branch.new_drive.least_views = 2;
   return branch;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <Eigen/LU>
@@ -12,6 +13,8 @@
 
 namespace helixnav::supervisor {
 namespace {
+
+constexpr double until_now = std::numeric_limits<double>::infinity();
 
 bool contains(const std::vector<core::LandmarkId>& sorted, core::LandmarkId id) {
   return std::binary_search(sorted.begin(), sorted.end(), id);
@@ -30,7 +33,7 @@ void add_coverage(const SearchView& view, const core::Pose2& T_world_base, doubl
   constellation.old_drive.T_frame_sensor = in_frame(T_world_base, view.track.between(0.0, old_until_m));
   constellation.old_drive.field_of_view = view.scan.field_of_view;
   constellation.new_drive.T_frame_sensor =
-      in_frame(view.filter.pose().mean, view.track.between(now_m - options.old_after_m, now_m + 1.0));
+      in_frame(view.filter.pose().mean, view.track.between(now_m - options.old_after_m, until_now));
   constellation.new_drive.field_of_view = view.scan.field_of_view;
   constellation.new_drive.least_views = 2;
 }
@@ -123,8 +126,7 @@ ConstellationAnswer ask_constellation(const SearchView& view, const std::vector<
   answer.T_world_winner = answer.T_world_rival = T_world_robot;
   const core::JointGaussian ground = reference_ground(view, old, options.reach_m);
   if (ground.ids.size() < 3) return answer;
-  const pf_relocalize::ReferenceMap map =
-      pf_relocalize::build_reference_map(ground, pf_relocalize::ReferenceMapOptions{});
+  const pf_relocalize::ReferenceMap map = pf_relocalize::build_reference_map(ground, options.reference);
 
   pf_relocalize::Constellation constellation;
   constellation.branch = branch_landmarks(view, old, options);

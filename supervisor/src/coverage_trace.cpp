@@ -2,14 +2,9 @@
 #include "coverage_trace.hpp"
 
 namespace helixnav::supervisor {
-namespace {
-
-constexpr double spacing_m = 4.0;
-
-}  // namespace
 
 void CoverageTrace::pass(double path_m, const core::Pose2& T_world_sensor) {
-  if (!points_.empty() && path_m - points_.back().path_m < spacing_m) return;
+  if (!points_.empty() && path_m - points_.back().path_m < spacing_m_) return;
   points_.push_back({path_m, T_world_sensor});
 }
 

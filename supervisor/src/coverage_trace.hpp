@@ -7,10 +7,14 @@
 
 namespace helixnav::supervisor {
 
-/// Where the sensor has been, every few metres, in the map frame as estimated then: what ground the drive has looked at.
+/// Where the sensor has been, at places so near that their views overlap, in the map frame as estimated then: what ground
+/// the drive has looked at.
 class CoverageTrace {
  public:
-  /// Adds the sensor's pose when it is `spacing` beyond the last one.
+  explicit CoverageTrace(double spacing_m) : spacing_m_(spacing_m) {}
+  void set_spacing(double spacing_m) { spacing_m_ = spacing_m; }
+
+  /// Adds the sensor's pose when it is the spacing beyond the last one.
   void pass(double path_m, const core::Pose2& T_world_sensor);
 
   /// Forgets what was passed after `path_m`.
@@ -24,6 +28,7 @@ class CoverageTrace {
     double path_m;
     core::Pose2 T_world_sensor;
   };
+  double spacing_m_;
   std::vector<Point> points_;
 };
 

@@ -18,10 +18,7 @@ namespace {
 using core::LandmarkId;
 using Index = Eigen::Index;
 
-constexpr double ahead_m = 10.0;         ///< of the second point of a clone
-constexpr double clone_sigma_m = 0.001;  ///< keeps the filter's covariance positive definite
-
-LandmarkId clone(cekf::CompressedEkf& filter, const Eigen::Vector2d& point_robot_m) {
+LandmarkId clone(cekf::CompressedEkf& filter, const Eigen::Vector2d& point_robot_m, double clone_sigma_m) {
   return filter.augment(
       core::make_cartesian(point_robot_m, clone_sigma_m * clone_sigma_m * Eigen::Matrix2d::Identity()), {});
 }
@@ -126,7 +123,7 @@ std::optional<cekf::DerivedPoint> locate(const cekf::CompressedEkf& filter, cons
     place_sensor(relative, first, row);
     first += sighting.ahead == core::no_landmark ? 2 : 4;
   }
-  const std::vector<FittedPoint> solutions = fit_from_everywhere(rows, relative.P);
+  const std::vector<FittedPoint> solutions = fit_from_everywhere(rows, relative.P, options.spacing_m, options.same_m);
   if (!is_settled(solutions, rows, options) || !looks_gaussian(rows, relative.P, solutions.front()))
     return std::nullopt;
   return in_map(solutions.front(), joint, relative);
@@ -149,9 +146,10 @@ std::optional<LandmarkId> DelayedLandmarks::sight(cekf::CompressedEkf& filter, s
     return std::nullopt;
   }
   if (static_cast<int>(window.sightings.size()) >= options_.window) thin_out(filter, window);
-  Sighting sighting{observation, clone(filter, T_robot_sensor.position_m()), core::no_landmark};
+  Sighting sighting{observation, clone(filter, T_robot_sensor.position_m(), options_.clone_sigma_m), core::no_landmark};
   if (observation.kind == core::ObservationKind::bearing) {
-    sighting.ahead = clone(filter, core::transform(T_robot_sensor, Eigen::Vector2d(ahead_m, 0.0)));
+    sighting.ahead =
+        clone(filter, core::transform(T_robot_sensor, Eigen::Vector2d(options_.ahead_m, 0.0)), options_.clone_sigma_m);
   }
   window.sightings.push_back(sighting);
 

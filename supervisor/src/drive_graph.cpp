@@ -95,7 +95,8 @@ class Builder {
   /// Landmarks whose places are known say where the vehicle is, and it says where the others are.
   void observe(const Stop& stop, const std::vector<cekf::Match>& seen) {
     for (const cekf::Match& match : seen) {
-      if (const auto point_m = place_of(match.landmark)) vehicle_.see(match.observation, match.T_robot_sensor, *point_m);
+      if (const auto point_m = place_of(match.landmark))
+        vehicle_.see(match.observation, match.T_robot_sensor, *point_m);
     }
     for (const cekf::Match& match : seen) {
       graph_.landmark_edges.push_back({last_pose(), index_of(match), match.T_robot_sensor, match.observation});

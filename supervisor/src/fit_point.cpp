@@ -18,6 +18,8 @@ namespace {
 
 using Index = Eigen::Index;
 
+constexpr double at_the_sensor_m = 1e-6;  // there no direction is defined, whatever the world's size
+
 struct Linearised {
   Eigen::VectorXd nu;
   Eigen::MatrixXd H_point;   ///< rows × 2
@@ -37,7 +39,7 @@ Linearised linearise(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P, 
   Eigen::VectorXd R(size);
   for (Index i = 0; i < size; ++i) {
     const FitRow& row = rows[static_cast<std::size_t>(i)];
-    if ((point_m - row.sensor.position_m()).norm() < 1e-3) return l;
+    if ((point_m - row.sensor.position_m()).norm() < at_the_sensor_m) return l;
     const core::PredictedObservation predicted = core::predict_observation(row.kind, row.sensor, {}, point_m);
     l.nu[i] = core::innovation(row.kind, core::ObsVector::Constant(1, row.z), predicted.z_hat)[0];
     l.H_point.row(i) = predicted.H_landmark.row(0);
@@ -70,11 +72,12 @@ FittedPoint finish(const std::vector<FitRow>& rows, const Linearised& l, const E
   return fitted;
 }
 
-std::vector<Eigen::Vector2d> starts(const FitRow& row) {
+std::vector<Eigen::Vector2d> starts(const FitRow& row, double spacing_m) {
   std::vector<Eigen::Vector2d> points;
   if (row.kind == core::ObservationKind::bearing) {
-    for (const double far_m : {1.0, 3.0, 10.0, 30.0, 100.0}) {
-      points.push_back(core::transform(row.sensor, far_m * Eigen::Vector2d(std::cos(row.z), std::sin(row.z))));
+    for (const double spacings : {1.0, 3.0, 10.0, 30.0, 100.0}) {
+      points.push_back(
+          core::transform(row.sensor, spacings * spacing_m * Eigen::Vector2d(std::cos(row.z), std::sin(row.z))));
     }
     return points;
   }
@@ -89,8 +92,9 @@ std::vector<Eigen::Vector2d> starts(const FitRow& row) {
 }  // namespace
 
 std::optional<FittedPoint> fit_point(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P,
-                                     const Eigen::Vector2d& start_m) {
+                                     const Eigen::Vector2d& start_m, double same_m) {
   constexpr int max_steps = 60;
+  const double settled_m = 1e-3 * same_m;
   Eigen::Vector2d point_m = start_m;
   Linearised now = linearise(rows, P, point_m);
   if (!now.good) return std::nullopt;
@@ -102,7 +106,7 @@ std::optional<FittedPoint> fit_point(const std::vector<FitRow>& rows, const Eige
     damped.diagonal().array() += damping * information.trace();
     const Eigen::Vector2d move_m = damped.inverse() * gradient;
     if (!move_m.allFinite()) return std::nullopt;
-    if ((information.inverse() * gradient).norm() < 1e-4) return finish(rows, now, point_m, information);
+    if ((information.inverse() * gradient).norm() < settled_m) return finish(rows, now, point_m, information);
     const Linearised next = linearise(rows, P, point_m + move_m);
     // S is held while steps are judged: its own dependence on the point is no part of the Gauss-Newton descent.
     if (next.good && next.nu.dot(now.S.solve(next.nu)) <= now.nis) {
@@ -132,11 +136,11 @@ bool looks_gaussian(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P, c
   return true;
 }
 
-std::vector<FittedPoint> fit_from_everywhere(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P) {
-  constexpr double same_m = 0.1;
+std::vector<FittedPoint> fit_from_everywhere(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P,
+                                             double spacing_m, double same_m) {
   std::vector<FittedPoint> solutions;
-  for (const Eigen::Vector2d& start_m : starts(rows.back())) {
-    const std::optional<FittedPoint> found = fit_point(rows, P, start_m);
+  for (const Eigen::Vector2d& start_m : starts(rows.back(), spacing_m)) {
+    const std::optional<FittedPoint> found = fit_point(rows, P, start_m, same_m);
     if (!found || !found->covariance_m2.allFinite()) continue;
     const bool known = std::any_of(solutions.begin(), solutions.end(), [&](const FittedPoint& other) {
       return (other.point_m - found->point_m).norm() < same_m;

@@ -32,12 +32,14 @@ struct FittedPoint {
 };
 
 /// Weighted least squares by Levenberg-Marquardt, S = H·P·Hᵀ + R taken anew at every step. Nothing when it has not settled
-/// or the point is not determined.
+/// (a step far below `same_m`) or the point is not determined.
 std::optional<FittedPoint> fit_point(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P,
-                                     const Eigen::Vector2d& start_m);
+                                     const Eigen::Vector2d& start_m, double same_m);
 
-/// The distinct solutions from starts all around (ranges) or along the ray (bearings) of the last row, best first.
-std::vector<FittedPoint> fit_from_everywhere(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P);
+/// The distinct solutions, `same_m` apart, from starts all around (ranges) or along the ray (bearings, 1 to 100 times
+/// `spacing_m` away) of the last row, best first.
+std::vector<FittedPoint> fit_from_everywhere(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P,
+                                             double spacing_m, double same_m);
 
 /// True when the cost three standard deviations from the point, along both axes of its ellipse and to both sides, rises
 /// by 9 as a Gaussian's does, within a factor of 1.6. Two basins that have run together do not pass.

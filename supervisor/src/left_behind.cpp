@@ -17,9 +17,6 @@ using core::LandmarkId;
 using pf_relocalize::Constellation;
 using pf_relocalize::ConstellationPair;
 
-constexpr double stretch_m = 40.0;  // around the best-known copy; 25 and 60 m do as well
-constexpr double rim_m = 3.0;       // beyond it landmarks are partners, but nobody misses one
-constexpr double rigid_m = 0.7;     // two copies and the old landmarks that they may be are so equally far apart
 constexpr std::size_t most_anchors = 6;
 // χ² of what a copy may be. To first order the true one was beyond 9.2 for most trees of a stretch in one of 50 orchards;
 // the cost of merging, which is iterated, was 41 for 42 degrees of freedom there.
@@ -34,12 +31,12 @@ struct Copy {
 
 /// Confirmed landmarks that stand where an old one may be, best known first.
 std::vector<Copy> copies_among(const std::vector<LandmarkId>& confirmed, const cekf::CompressedEkf& filter,
-                               const std::vector<LandmarkId>& old) {
+                               const std::vector<LandmarkId>& old, const SearchOptions& options) {
   std::vector<Copy> copies;
   for (const LandmarkId id : confirmed) {
     if (!filter.contains(id)) continue;
-    std::vector<Leftover> may_be =
-        compatible(filter, id, old, wide_gate, most_reach_m + std::sqrt(wide_gate) * filter.landmark_sigma_bound_m(id));
+    const double look_m = options.leftover_most_m + std::sqrt(wide_gate) * filter.landmark_sigma_bound_m(id);
+    std::vector<Leftover> may_be = compatible(filter, id, old, wide_gate, look_m, options.duplicate_sigma_m);
     if (may_be.empty()) continue;
     const double variance_m2 = may_be.front().information.inverse().trace();
     copies.push_back({id, std::move(may_be), variance_m2});
@@ -122,7 +119,7 @@ class Stretch {
       for (const Leftover& to_b : b.may_be) {
         const Eigen::Vector2d to_a_m = filter_.landmark_mean(to_a.kept);
         const Eigen::Vector2d to_b_m = filter_.landmark_mean(to_b.kept);
-        if (std::abs((to_b_m - to_a_m).norm() - (b_m - a_m).norm()) > rigid_m) continue;
+        if (std::abs((to_b_m - to_a_m).norm() - (b_m - a_m).norm()) > options_.stretch_rigid_m) continue;
         Placing placing{motion_between(a_m, b_m, to_a_m, to_b_m), {}};
         placing.pairs = score_constellation(ground_, placing.T_world_stretch, options_.constellation).pairs;
         const bool known = std::any_of(found.begin(), found.end(),
@@ -139,13 +136,13 @@ class Stretch {
     for (const ConstellationPair& pair : placing.pairs) paired[pair.branch] = paired[pair.old_landmark] = true;
     int alone = 0;
     for (const auto& landmark : ground_.branch) {
-      if (paired.count(landmark.id) > 0 || landmark.point_robot_m.norm() > stretch_m) continue;
+      if (paired.count(landmark.id) > 0 || landmark.point_robot_m.norm() > options_.stretch_m) continue;
       if (ground_.old_drive.covers(core::transform(placing.T_world_stretch, landmark.point_robot_m))) ++alone;
     }
     const core::Pose2 T_stretch_world = core::inverse(placing.T_world_stretch);
     for (const auto& landmark : ground_.old_landmarks) {
       const Eigen::Vector2d at_m = core::transform(T_stretch_world, landmark.point.mean_m);
-      if (paired.count(landmark.id) > 0 || at_m.norm() > stretch_m) continue;
+      if (paired.count(landmark.id) > 0 || at_m.norm() > options_.stretch_m) continue;
       if (ground_.new_drive.covers(at_m)) ++alone;
     }
     return alone;
@@ -173,10 +170,10 @@ LeftBehind::LeftBehind(const cekf::CompressedEkf& filter, const Branch& branch)
 
 KeptRemoved LeftBehind::place(const cekf::CompressedEkf& filter, const std::vector<LandmarkId>& old,
                               const SearchOptions& options) const {
-  std::vector<Copy> copies = copies_among(confirmed_, filter, old);
+  std::vector<Copy> copies = copies_among(confirmed_, filter, old, options);
   if (copies.empty()) return {};
-  const double reach_m = stretch_m + rim_m + std::sqrt(wide_gate * copies.back().variance_m2);
-  const Stretch stretch(ground_around(copies.front().id, reach_m, filter, old), filter, options);
+  const double reach_m = options.stretch_m + options.stretch_rim_m + std::sqrt(wide_gate * copies.back().variance_m2);
+  const Stretch stretch(ground_around(copies.front().id, reach_m, filter, old, options), filter, options);
   copies.erase(std::remove_if(copies.begin(), copies.end(), [&](const Copy& copy) { return !stretch.holds(copy.id); }),
                copies.end());
   std::vector<Placing> placings = stretch.placings(copies);
@@ -191,13 +188,13 @@ KeptRemoved LeftBehind::place(const cekf::CompressedEkf& filter, const std::vect
 }
 
 Constellation LeftBehind::ground_around(LandmarkId middle, double reach_m, const cekf::CompressedEkf& filter,
-                                        const std::vector<LandmarkId>& old) const {
+                                        const std::vector<LandmarkId>& old, const SearchOptions& options) const {
   const Eigen::Vector2d origin_m = before_m_.at(middle);
   const Eigen::Vector2d now_m = filter.landmark_mean(middle);
   Constellation ground;
   for (const LandmarkId id : confirmed_) {
     const Eigen::Vector2d at_m = before_m_.at(id) - origin_m;
-    if (!filter.contains(id) || at_m.norm() > stretch_m + rim_m) continue;
+    if (!filter.contains(id) || at_m.norm() > options.stretch_m + options.stretch_rim_m) continue;
     ground.branch.push_back({id, at_m, std::numeric_limits<int>::max()});
   }
   for (const LandmarkId id : filter.landmarks_within(now_m, reach_m)) {
@@ -208,7 +205,7 @@ Constellation LeftBehind::ground_around(LandmarkId middle, double reach_m, const
   ground.old_drive = old_drive_;
   ground.old_drive.T_frame_sensor = near(old_drive_.T_frame_sensor, now_m, reach_m + range_m);
   ground.new_drive = new_drive_;
-  ground.new_drive.T_frame_sensor = near(new_drive_.T_frame_sensor, origin_m, stretch_m + range_m);
+  ground.new_drive.T_frame_sensor = near(new_drive_.T_frame_sensor, origin_m, options.stretch_m + range_m);
   const core::Pose2 T_stretch_before(-origin_m.x(), -origin_m.y(), 0.0);
   for (core::Pose2& pose : ground.new_drive.T_frame_sensor) pose = core::compose(T_stretch_before, pose);
   return ground;

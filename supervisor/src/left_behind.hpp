@@ -33,7 +33,8 @@ class LeftBehind {
   /// The stretch around a landmark of the branch, in a frame there with the axes of the map before the closing, and the
   /// old ground within reach_m of where the landmark is now.
   pf_relocalize::Constellation ground_around(core::LandmarkId middle, double reach_m, const cekf::CompressedEkf& filter,
-                                             const std::vector<core::LandmarkId>& old) const;
+                                             const std::vector<core::LandmarkId>& old,
+                                             const SearchOptions& options) const;
 
   std::vector<core::LandmarkId> confirmed_;
   std::map<core::LandmarkId, Eigen::Vector2d> before_m_;  ///< where the branch had them

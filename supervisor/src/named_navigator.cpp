@@ -10,6 +10,7 @@
 #include "helixnav/core/check_event.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/odometry.hpp"
+#include "helixnav/supervisor/lengths.hpp"
 #include "judge_fix.hpp"
 
 namespace helixnav::supervisor {
@@ -58,7 +59,25 @@ StepReport NamedNavigator::observe(const core::Scan& scan, const std::vector<std
     throw core::PreconditionError("observe: " + std::to_string(identities.size()) + " identities for " +
                                   std::to_string(scan.observations.size()) + " observations");
   }
+  fit_to(scan.field_of_view);
   return all_or_nothing([&] { return step({scan, identities, {}}); });
+}
+
+/// As the Navigator's.
+void NamedNavigator::fit_to(const core::FieldOfView& view) {
+  if (fitted_ || !view.reach()) return;
+  if (options_.fit_lengths) {
+    NavigatorOptions fitted = fit_lengths(options_, view);
+    const bool new_cells = fitted.filter.cell_side_m != options_.filter.cell_side_m ||
+                           fitted.filter.hysteresis_m != options_.filter.hysteresis_m;
+    if (new_cells && step_ == 0) {
+      filter_ = cekf::CompressedEkf(filter_.pose(), fitted.filter);
+      checkpoint_.reset();
+    }
+    options_ = std::move(fitted);
+    delayed_.set_lengths(options_.delayed);
+  }
+  fitted_ = true;
 }
 
 bool NamedNavigator::fix(const core::AbsoluteFix& fix) {

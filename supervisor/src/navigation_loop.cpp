@@ -9,6 +9,7 @@
 #include "candidates.hpp"
 #include "expected_landmarks.hpp"
 #include "helixnav/core/odometry.hpp"
+#include "helixnav/supervisor/lengths.hpp"
 #include "judge_fix.hpp"
 #include "recover.hpp"
 
@@ -22,7 +23,11 @@ using core::StepReport;
 NavigationLoop::NavigationLoop(const core::PoseGaussian& start, const NavigatorOptions& options)
     : options_(options),
       start_(start),
-      belief_{cekf::CompressedEkf(start, options.filter), association::LandmarkLife(options.life), {}, {}, 0},
+      belief_{cekf::CompressedEkf(start, options.filter),
+              association::LandmarkLife(options.life),
+              CoverageTrace(options.search.coverage_spacing_m),
+              {},
+              0},
       tape_(options.search.enabled ? options.search.smooth_up_to_scans : 0),
       mode_(Mapping{{}, take_checkpoint(belief_, tape_), {}}) {}
 
@@ -31,7 +36,27 @@ void NavigationLoop::move(const core::Odometry& odometry) {
   pending_.driven_m += odometry.T_before_after.position_m().norm();
 }
 
+/// The lengths of the options to the first sensor that says how far it sees; what was predicted and fixed before the first
+/// scan is in the pose.
+void NavigationLoop::fit_to(const core::FieldOfView& view) {
+  if (view_.reach() || !view.reach()) return;
+  if (options_.fit_lengths) {
+    NavigatorOptions fitted = fit_lengths(options_, view);
+    const bool new_cells = fitted.filter.cell_side_m != options_.filter.cell_side_m ||
+                           fitted.filter.hysteresis_m != options_.filter.hysteresis_m;
+    if (new_cells && belief_.step == 0) {
+      belief_.filter = cekf::CompressedEkf(belief_.filter.pose(), fitted.filter);
+      std::get<Mapping>(mode_).trust(take_checkpoint(belief_, tape_));
+    }
+    options_ = std::move(fitted);
+    belief_.existence.set_lengths(options_.life.look_distance_m, options_.life.tentative_patience_m);
+    belief_.coverage.set_spacing(options_.search.coverage_spacing_m);
+  }
+  view_ = view;
+}
+
 StepReport NavigationLoop::observe(const Scan& scan) {
+  fit_to(scan.field_of_view);
   return all_or_nothing([&] {
     StepReport report = step(scan);
     checkpoint_if_settled();
@@ -91,7 +116,8 @@ GatedScan NavigationLoop::gate(const Scan& scan) const {
   GatedScan gated{std::make_unique<Gating>(belief_.filter, ids, scan, options_.gates), {}};
   if (options_.search.enabled && open == nullptr) {
     const std::vector<LandmarkId> old = old_landmarks(belief_.existence, options_.search.old_after_m);
-    gated.returns = returns_in_gate(belief_.filter, gated.gating->problem, scan, old, options_.search.foreign_per_scan);
+    const SearchOptions now = with_foreign(options_.search, belief_.existence.born_per_scan(), view_);
+    gated.returns = returns_in_gate(belief_.filter, gated.gating->problem, scan, old, now.foreign_per_scan);
   }
   return gated;
 }

@@ -47,6 +47,7 @@ class NavigationLoop {
   };
 
   // navigation_loop.cpp
+  void fit_to(const core::FieldOfView& view);
   core::StepReport step(const core::Scan& scan);
   void predict();
   bool use_fix(const core::AbsoluteFix& fix);
@@ -82,6 +83,7 @@ class NavigationLoop {
   const Searching* searching() const { return std::get_if<Searching>(&mode_); }
 
   NavigatorOptions options_;
+  core::FieldOfView view_;  ///< of the first scan that says one
   core::PoseGaussian start_;
   Belief belief_;
   Tape tape_;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "close_map.hpp"
+#include "helixnav/supervisor/lengths.hpp"
 #include "navigation_loop.hpp"
 #include "smooth_drive.hpp"
 
@@ -16,7 +17,7 @@ using core::StepReport;
 Search NavigationLoop::search_from(const Checkpoint& trigger) const {
   const std::uint64_t seed = options_.search.seed + 1000000u * searches_;
   return Search(old_landmarks(trigger.existence, options_.search.old_after_m), trigger.existence.path_m(), seed,
-                options_.search);
+                with_foreign(options_.search, trigger.existence.born_per_scan(), view_));
 }
 
 void NavigationLoop::begin_search() {

@@ -36,7 +36,8 @@ TEST(SearchKeys, ScaleMultipliesLengthsAndDividesDensities) {
   EXPECT_DOUBLE_EQ(search.rivals.distinct_m, 0.1 * defaults.rivals.distinct_m);
   EXPECT_DOUBLE_EQ(search.rivals.extraneous_per_m2, 100.0 * defaults.rivals.extraneous_per_m2);
   EXPECT_EQ(search.foreign_per_scan, defaults.foreign_per_scan);
-  EXPECT_EQ(search.old_after_m, defaults.old_after_m);  // has a key of its own
+  EXPECT_DOUBLE_EQ(search.old_after_m, 0.1 * defaults.old_after_m);
+  EXPECT_EQ(search_of("search_scale = 0.1\nsearch_old_after = 80\n").old_after_m, 80.0);
 }
 
 TEST(SearchKeys, ForeignObservationsReachTheDecisionsAndTheParticles) {

@@ -8,8 +8,6 @@
 namespace helixnav::supervisor {
 namespace {
 
-constexpr double gate = 9.21;
-
 /// Old landmarks, and their copies seen from a pose that is off by `offset_m` along x and knows no better than `sigma_m`.
 struct TwoMaps {
   cekf::CompressedEkf filter{core::PoseGaussian{}};
@@ -27,7 +25,7 @@ struct TwoMaps {
   }
 
   std::size_t found() const {
-    const KeptRemoved pairs = leftovers(filter, copies, old, gate);
+    const KeptRemoved pairs = leftovers(filter, copies, old, {});
     for (const auto& [kept, removed] : pairs) {
       EXPECT_EQ(kept - old.front(), removed - copies.front()) << "a copy went to another's original";
     }

@@ -79,7 +79,7 @@ struct Orchard {
 
 TEST(LeftBehind, IsPlacedAsAWholeWhereNoTreeCanBeToldAlone) {
   const Orchard orchard(9, 0, 8, 1.9, 1.5);
-  EXPECT_TRUE(leftovers(orchard.filter, orchard.branch.confirmed, orchard.old, SearchOptions{}.leftover_gate).empty());
+  EXPECT_TRUE(leftovers(orchard.filter, orchard.branch.confirmed, orchard.old, SearchOptions{}).empty());
   const KeptRemoved pairs = orchard.placed();
   EXPECT_EQ(pairs.size(), 36u);
   EXPECT_EQ(orchard.wrong(pairs), 0);

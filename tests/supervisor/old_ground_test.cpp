@@ -91,7 +91,7 @@ std::size_t still_compared(double sigma_m) {
   life.observe({0.0, 0.0}, {}, trees, {});
   life.drive(30.0);
   filter.predict(motion(30.0, sigma_m, 1e-4));
-  return branch_landmarks({filter, life, CoverageTrace{}, core::Scan{}}, {}, {}).size();
+  return branch_landmarks({filter, life, CoverageTrace(4.0), core::Scan{}}, {}, {}).size();
 }
 
 TEST(BranchLandmarks, AreThoseThatTheVehicleHasNotDriftedOffFrom) {

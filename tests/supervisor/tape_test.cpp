@@ -33,7 +33,7 @@ Tape::Fix fix_that_cost(double nis, bool accepted = true) { return {core::Absolu
 
 /// A belief on the wide circuit with known association, and its tape.
 struct Driver {
-  Belief belief{cekf::CompressedEkf{core::PoseGaussian{}}, association::LandmarkLife{}, {}, {}, 0};
+  Belief belief{cekf::CompressedEkf{core::PoseGaussian{}}, association::LandmarkLife{}, CoverageTrace(4.0), {}, 0};
   Tape tape{0};
   std::map<core::Label, core::LandmarkId> known;
 
@@ -199,7 +199,7 @@ TEST(Tape, KnowsWhatALandmarkIsNow) {
 }
 
 TEST(CoverageTrace, ForgetsWhatWasPassedLater) {
-  CoverageTrace trace;
+  CoverageTrace trace(4.0);
   for (int i = 0; i < 10; ++i) trace.pass(5.0 * i, core::Pose2(5.0 * i, 0.0, 0.0));
   trace.back_to(20.0);
   EXPECT_EQ(trace.between(0.0, 1e9).size(), 5u);

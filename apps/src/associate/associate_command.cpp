@@ -12,13 +12,13 @@
 #include <CLI/CLI.hpp>
 
 #include "association_trial.hpp"
+#include "common/chosen_navigator.hpp"
 #include "common/commands.hpp"
 #include "common/config_file.hpp"
+#include "common/fit_to_recording.hpp"
 #include "common/interrupt.hpp"
-#include "common/chosen_navigator.hpp"
 #include "common/progress_bar.hpp"
 #include "common/settings.hpp"
-#include "common/suit_to_log.hpp"
 #include "common/validators.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/event_loop.hpp"
@@ -65,7 +65,7 @@ core::Recording recording_of(const AssociateJob& job, std::uint64_t seed) {
                            core::nearest_name(job.input, known_scenarios()) + "'");
   }
   core::Recording recording = logs::read_recording(job.input, job.settings.logs);
-  scale_covariances(recording, job.settings.covariance_scale);
+  tell_recording(recording, job.settings);
   return recording;
 }
 
@@ -87,7 +87,7 @@ ExitCode compare(const AssociateJob& job) {
       throw core::InputError(recording.name + ": this log has no labels to compare with; --scan N needs none");
     }
     for (std::size_t m = 0; m < job.methods.size() && !interrupted(); ++m) {
-      supervisor::NavigatorOptions options = job.settings.navigator;
+      supervisor::NavigatorOptions options = fit_to_recording(job.settings, recording);
       options.method = method_named(job.methods[m]);
       try_association(recording, options, trials[m]);
       progress.advance_to(static_cast<std::size_t>(run) * job.methods.size() + m);
@@ -105,7 +105,7 @@ ExitCode show_scan(const AssociateJob& job) {
   if (job.settings.known_association && recording.labels.empty()) {
     throw core::InputError(recording.name + ": --association known needs a labelled log, and this one has no labels");
   }
-  ChosenNavigator navigator(recording, job.settings.navigator, job.settings.known_association);
+  ChosenNavigator navigator(recording, fit_to_recording(job.settings, recording), job.settings.known_association);
   core::EventLoop loop(recording.events, navigator);
   while (!interrupted()) {
     const std::vector<core::LandmarkId> before = navigator.filter().landmarks();
@@ -126,8 +126,6 @@ ExitCode show_scan(const AssociateJob& job) {
 ExitCode associate(CLI::App& command, AssociateJob& job) {
   if (!job.config.empty()) apply_config_file(command, job.config);
   if (job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "has no part in comparing associations");
-  if (!is_scenario(job.input) && std::filesystem::exists(job.input))
-    suit_to_log(command, job.input, job.settings.navigator.search);
   catch_interrupts();
   return job.scan >= 0 ? show_scan(job) : compare(job);
 }

@@ -15,11 +15,32 @@
 namespace helixnav::apps {
 namespace {
 
+const char* const by_reach = "auto";
 const char* const group = "Settings (keys of --config)";
 
 template <typename T>
 CLI::Option* add_number(CLI::App& command, const char* name, T& value, T low, T high, const char* help) {
   return command.add_option(name, value, help)->capture_default_str()->check(number_between(low, high))->group(group);
+}
+
+/// "auto", or metres.
+CLI::Validator length_between(double low, double high) {
+  const CLI::Validator number = number_between(low, high);
+  const auto objection = [number](std::string& word) { return word == by_reach ? std::string() : number(word); };
+  return CLI::Validator(objection, number.get_description() + " or auto");
+}
+
+/// A length that is a multiple of the sensor's reach unless it is given.
+CLI::Option* add_length(CLI::App& command, Settings& settings, const std::string& key, double low, double high,
+                        const std::string& help) {
+  const auto set = [&settings, key](const std::string& word) {
+    settings.given_lengths_m.erase(key);
+    if (word != by_reach) settings.given_lengths_m[key] = std::stod(word);
+  };
+  return command.add_option_function<std::string>("--" + key, set, help)
+      ->check(length_between(low, high))
+      ->default_str(by_reach)
+      ->group(group);
 }
 
 void choose_method(const std::string& chosen, Settings& settings) {
@@ -40,7 +61,8 @@ std::vector<std::string> decorrelations() {
   return names;
 }
 
-void add_filter(CLI::App& command, cekf::FilterOptions& filter) {
+void add_filter(CLI::App& command, Settings& settings) {
+  cekf::FilterOptions& filter = settings.navigator.filter;
   const auto set_retraction = [&filter](const std::string& word) {
     filter.retraction = word == "standard" ? cekf::Retraction::standard : cekf::Retraction::right_invariant;
   };
@@ -48,10 +70,11 @@ void add_filter(CLI::App& command, cekf::FilterOptions& filter) {
       ->check(one_of({"right-invariant", "standard"}))
       ->default_str("right-invariant")
       ->group(group);
-  add_number(command, "--filter.cell_side_m", filter.cell_side_m, 1.0, 1e6,
-             "Side of a cell; the cell of the vehicle and its 8 neighbours are active");
-  add_number(command, "--filter.hysteresis_m", filter.hysteresis_m, 0.0, 1e6,
-             "So far beyond its cell the vehicle goes before the region switches");
+  add_length(
+      command, settings, "filter.cell_side_m", 1e-3, 1e6,
+      "Side of a cell; the cell of the vehicle and its 8 neighbours are active; auto: 2/3 of the sensor's reach");
+  add_length(command, settings, "filter.hysteresis_m", 0.0, 1e6,
+             "So far beyond its cell the vehicle goes before the region switches; auto: 2/3 of the reach");
   add_number(command, "--filter.max_active_landmarks", filter.max_active_landmarks, 1, 100000,
              "More active landmarks than this make a switch due");
 }
@@ -81,12 +104,12 @@ void add_association(CLI::App& command, Settings& settings) {
              "A match whose best alternative is nearer than this is ambiguous and not used");
 }
 
-void add_landmarks(CLI::App& command, supervisor::NavigatorOptions& navigator) {
-  association::LifeOptions& life = navigator.life;
+void add_landmarks(CLI::App& command, Settings& settings) {
+  association::LifeOptions& life = settings.navigator.life;
   add_number(command, "--landmarks.mature_looks", life.mature_looks, 1, 1000,
              "Looks from different places that make a landmark mature");
-  add_number(command, "--landmarks.tentative_patience_m", life.tentative_patience_m, 0.1, 1e6,
-             "A tentative landmark unseen over so long a drive dies");
+  add_length(command, settings, "landmarks.tentative_patience_m", 1e-3, 1e6,
+             "A tentative landmark unseen over so long a drive dies; auto: the sensor's reach");
   add_number(command, "--landmarks.detection_probability", life.detection_probability, 0.01, 0.999,
              "That an expected landmark is seen in one look, occlusion included");
 }
@@ -149,7 +172,8 @@ void add_acceptance(CLI::App& command, supervisor::SearchOptions& search) {
              "A test is not passed when another pose explains this share of what the best pose does");
 }
 
-void add_search(CLI::App& command, supervisor::SearchOptions& search) {
+void add_search(CLI::App& command, Settings& settings) {
+  supervisor::SearchOptions& search = settings.navigator.search;
   command
       .add_option_function<std::string>(
           "--search.enabled", [&search](const std::string& word) { search.enabled = word == "true"; },
@@ -167,8 +191,9 @@ void add_search(CLI::App& command, supervisor::SearchOptions& search) {
       ->group(group);
   add_number(command, "--search.seed", search.seed, std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max(),
              "Seed of the particle filter and of the rivals tried; apart from the seed of a simulated world");
-  add_number(command, "--search.old_after_m", search.old_after_m, 1.0, 1e6,
-             "A mature landmark unseen over so long a drive is old: met again, it may begin a search");
+  add_length(command, settings, "search.old_after_m", 1e-3, 1e6,
+             "A mature landmark unseen over so long a drive is old: met again, it may begin a search; auto: twice the "
+             "sensor's reach");
   add_number(command, "--search.foreign_objects", search.foreign_objects, 1e-6, 1e3,
              "A search begins when so many objects other than the old landmark may be what was observed");
   const auto set_closing = [&search](const std::string& word) {
@@ -186,8 +211,8 @@ void add_search(CLI::App& command, supervisor::SearchOptions& search) {
       ->check(one_of({"replay", "merge", "restart"}))
       ->default_str("replay")
       ->group(group);
-  add_number(command, "--search.undecided_m", search.undecided_m, 1.0, 1e6,
-             "After so long a drive without a closing the question is left open");
+  add_length(command, settings, "search.undecided_m", 1e-3, 1e6,
+             "After so long a drive without a closing the question is left open; auto: 11 times the reach");
   add_number(command, "--search.smooth_up_to_scans", search.smooth_up_to_scans, 0, 100'000'000,
              "After a closing the whole drive is solved by least squares, unless it has more scans; 0: never");
   add_particle_filter(command, search);
@@ -217,6 +242,18 @@ void add_plaza(CLI::App& command, Settings& settings) {
   add_number(command, "--plaza.range_scale", settings.plaza_range_scale, 0.0, 2.0,
              "Recorded range over true one; 0: estimated from the log by the least innovations (known association)");
   add_number(command, "--plaza.sigma_range_m", settings.logs.plaza.sigma_range_m, 1e-3, 100.0, "Noise of a range");
+}
+
+void add_sensor(CLI::App& command, logs::ToldFieldOfView& told) {
+  add_number(command, "--log.max_range_m", told.max_range_m, 0.0, 1e5,
+             "The sensor sees so far; 0: as the log says, or estimated from its observations (DLR)");
+  const auto set_width = [&told](double width_deg) { told.width_rad = width_deg * core::pi / 180.0; };
+  command
+      .add_option_function<double>("--log.view_deg", set_width,
+                                   "Width of the field of view about straight ahead; 0: likewise")
+      ->check(number_between(0.0, 360.0))
+      ->default_str("0")
+      ->group(group);
 }
 
 void add_gps(CLI::App& command, Settings& settings) {
@@ -252,10 +289,11 @@ std::vector<association::Method> association_methods() {
 void add_settings(CLI::App& command, Settings& settings) {
   add_number(command, "--log.covariance_scale", settings.covariance_scale, 1e-6, 1e6,
              "Factor on every covariance of odometry and observations; DLR run e is right with 2.07");
-  add_filter(command, settings.navigator.filter);
+  add_sensor(command, settings.field_of_view);
+  add_filter(command, settings);
   add_association(command, settings);
-  add_landmarks(command, settings.navigator);
-  add_search(command, settings.navigator.search);
+  add_landmarks(command, settings);
+  add_search(command, settings);
   add_truck(command, "victoria_park", settings.logs.victoria_park);
   add_truck(command, "car_park", settings.logs.car_park);
   add_plaza(command, settings);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
 #include "helixnav/association/associate.hpp"
+#include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/read_recording.hpp"
 #include "helixnav/supervisor/navigator.hpp"
 #include "replay/fuse_gps.hpp"
@@ -20,6 +22,8 @@ struct Settings {
   supervisor::NavigatorOptions navigator;
   bool known_association = false;  ///< association.method is "known": the log's labels are the identities
   logs::RecordingSettings logs;
+  std::map<std::string, double> given_lengths_m;  ///< by their names in supervisor/lengths.cpp; all others by the reach
+  logs::ToldFieldOfView field_of_view;
   double covariance_scale = 1.0;   ///< on the covariances that the log itself states or its sensor settings give
   double plaza_range_scale = 0.0;  ///< 0: estimate it from the log
   GpsSettings gps;

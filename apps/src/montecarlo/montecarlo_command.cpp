@@ -11,6 +11,7 @@
 #include "campaign.hpp"
 #include "common/commands.hpp"
 #include "common/config_file.hpp"
+#include "common/fit_to_recording.hpp"
 #include "common/settings.hpp"
 #include "common/validators.hpp"
 #include "helixnav/sim/scenario.hpp"
@@ -29,10 +30,11 @@ ExitCode run(CLI::App& command, MonteCarloJob& job) {
   if (!job.config.empty()) apply_config_file(command, job.config);
   Campaign& campaign = job.campaign;
   campaign.scenario = sim::named_scenario(job.scenario);
-  campaign.navigator = job.settings.navigator;
+  const core::FieldOfView& view = campaign.scenario.scanner.field_of_view;
+  campaign.navigator = fit_to_sensor(job.settings, view);
   campaign.navigator.search.relocalizer.threads = 1;  // the runs themselves fill the cores
   campaign.known_association = job.settings.known_association;
-  campaign.config = dump_config(command);
+  campaign.config = dump_config(command) + lengths_text(campaign.navigator, view);
   return run_campaign(campaign);
 }
 

@@ -10,12 +10,13 @@
 #include "blackout.hpp"
 #include "common/commands.hpp"
 #include "common/config_file.hpp"
+#include "common/fit_to_recording.hpp"
 #include "common/run_options.hpp"
 #include "common/settings.hpp"
-#include "common/suit_to_log.hpp"
 #include "drive/drive.hpp"
 #include "estimate_range_scale.hpp"
 #include "fuse_gps.hpp"
+#include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/read_recording.hpp"
 
 namespace helixnav::apps {
@@ -46,16 +47,16 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   prepare_run(command, job.run);
   if (job.localize && job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "excludes --localize");
   const auto begin = std::chrono::steady_clock::now();
-  suit_to_log(command, job.path, job.settings.navigator.search);
   Drive task;
   job.settings.logs.plaza.range_scale = 1.0;  // see scale_ranges
   task.recording = logs::read_recording(job.path, job.settings.logs);
-  task.navigator = job.settings.navigator;
   if (logs::recognise(job.path) == logs::LogFormat::plaza) scale_ranges(task.recording, job.settings);
   if (job.settings.gps.fuse) fuse_gps(task.recording, job.settings.gps);
   if (!job.blackouts.empty()) task.withheld = withhold(task.recording, job.blackouts);
-  scale_covariances(task.recording, job.settings.covariance_scale);
-  fill_drive(task, job.run, dump_config(command));
+  tell_recording(task.recording, job.settings);
+  task.navigator = fit_to_recording(job.settings, task.recording);
+  const std::string sensor_text = lengths_text(task.navigator, logs::field_of_view_of(task.recording));
+  fill_drive(task, job.run, dump_config(command) + sensor_text);
   task.smooth = job.smooth;
   if (job.localize) task.given_map = read_given_map(job.map);
   task.known_association = job.settings.known_association;

@@ -8,10 +8,12 @@
 
 #include "common/commands.hpp"
 #include "common/config_file.hpp"
+#include "common/fit_to_recording.hpp"
 #include "common/run_options.hpp"
 #include "common/settings.hpp"
 #include "common/validators.hpp"
 #include "drive/drive.hpp"
+#include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/sim/simulate.hpp"
 
 namespace helixnav::apps {
@@ -37,8 +39,9 @@ ExitCode simulate(CLI::App& command, SimulateJob& job) {
   prepare_run(command, job.run);
   Drive task;
   task.recording = sim::simulate(sim::named_scenario(job.scenario), job.seed);
-  task.navigator = job.settings.navigator;
-  fill_drive(task, job.run, dump_config(command));
+  task.navigator = fit_to_recording(job.settings, task.recording);
+  const std::string sensor_text = lengths_text(task.navigator, logs::field_of_view_of(task.recording));
+  fill_drive(task, job.run, dump_config(command) + sensor_text);
   task.known_association = job.settings.known_association;
   task.manifest.seed = job.seed;
   return drive(task);

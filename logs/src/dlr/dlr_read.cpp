@@ -10,6 +10,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/logs/dlr.hpp"
+#include "helixnav/logs/field_of_view.hpp"
 #include "input_files.hpp"
 #include "text_cursor.hpp"
 
@@ -19,9 +20,7 @@ namespace {
 /// Place of the camera on the robot, dlr_kurlbaum2009 §3.2.2, in the file's axes.
 const Eigen::Vector2d published_camera_offset_m(0.0179777, -0.0808609);
 
-/// Where run e's circles are seen in at least two of three chances (measured with the smoothed map; at 4 m it is one of
-/// five), and what the camera's picture holds of lines.
-constexpr core::FieldOfView circles_field{1.0, 3.0, -0.7, 0.7};
+/// What the camera's picture holds of lines.
 constexpr core::FieldOfView lines_field{0.0, std::numeric_limits<double>::infinity(), -0.75, 0.75};
 
 /// Joins lines that end in a backslash with the next one; line ends move behind the joined line, so that the numbers of
@@ -96,7 +95,7 @@ class DlrReader {
     core::Scan scan;
     scan.t_ns = odometry.t_ns;
     scan.T_robot_sensor = content_ == Content::lines ? T_robot_camera_ : core::Pose2();
-    scan.field_of_view = content_ == Content::lines ? lines_field : circles_field;
+    if (content_ == Content::lines) scan.field_of_view = lines_field;
     recording_.events.emplace_back(odometry);
     recording_.events.emplace_back(std::move(scan));
     recording_.labels.emplace_back();
@@ -215,6 +214,8 @@ core::Recording read_dlr(const std::filesystem::path& path, const DlrOptions& op
   join_continued_lines(text);
   core::Recording recording = DlrReader(text, path, camera_pose(path, options)).read();
   count_bearings_from_ahead(recording, options.bearing_zero);
+  estimate_missing_field_of_view(recording);
+  recording.foreign_per_scan = 0.0;
   return recording;
 }
 

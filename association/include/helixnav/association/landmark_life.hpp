@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -75,6 +76,12 @@ class LandmarkLife {
   core::LandmarkState state(core::LandmarkId id) const;     ///< dead when it is not in the book
   const std::vector<LandmarkRecord>& records() const { return records_; }  ///< ascending by id
 
+  /// Landmarks begun in one scan, on average: clutter and new ones together. 0 before the first scan.
+  double born_per_scan() const { return scans_ == 0 ? 0.0 : static_cast<double>(born_) / static_cast<double>(scans_); }
+
+  /// Once the sensor is known; what was counted stays.
+  void set_lengths(double look_distance_m, double tentative_patience_m);
+
   /// Length of the drive so far, what last_seen_path_m is measured on.
   double path_m() const { return path_m_; }
 
@@ -92,6 +99,7 @@ class LandmarkLife {
   double miss_nats_;
   std::vector<LandmarkRecord> records_;
   double path_m_ = 0.0;
+  std::size_t scans_ = 0, born_ = 0;
 };
 
 }  // namespace helixnav::association

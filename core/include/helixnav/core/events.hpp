@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <limits>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -27,6 +29,15 @@ struct FieldOfView {
   double max_range_m = std::numeric_limits<double>::infinity();
   double min_bearing_rad = -pi;  ///< in the sensor frame, counter-clockwise
   double max_bearing_rad = pi;
+  double reach_m = 0.0;  ///< landmarks are seen up to here, if not as reliably; 0: up to max_range_m
+
+  /// How far the sensor sees landmarks at all: what lengths are measured by (supervisor/lengths.hpp). Nothing when the
+  /// log or the sensor does not say (max_range_m 0 or infinite).
+  std::optional<double> reach() const {
+    const double reach = reach_m > 0.0 ? reach_m : max_range_m;
+    if (!(reach > 0.0 && std::isfinite(reach))) return std::nullopt;
+    return reach;
+  }
 };
 
 /// The observations of one instant by one sensor. May be empty: "nothing was seen" is information.

@@ -55,6 +55,9 @@ struct Recording {
   std::vector<TruePose> true_poses;
   std::vector<TrueLandmark> true_landmarks;
   std::vector<TruePosition> true_positions;
+  /// Observations of no mapped landmark in a scan, clutter and new ones together, as known of the sensor; 0: nobody knows,
+  /// and they are to be learnt from the drive. Nothing: as the navigator takes it.
+  std::optional<double> foreign_per_scan;
   Eigen::Vector2d antenna_robot_m = Eigen::Vector2d::Zero();  ///< lever arm that true_positions refer to
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include "helixnav/core/ackermann.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/core/se2.hpp"
@@ -31,6 +33,8 @@ struct AcfrSettings {
   /// negative information kills the map: of the mapped trees in front, 67 % are seen at 5 … 20 m, 40 % at 25 … 30 m,
   /// 14 % at 35 … 40 m, 1 % beyond 50 m.
   double view_range_m = 22.0;
+  std::optional<double> foreign_per_scan;  ///< Recording::foreign_per_scan
+  double reach_m = 30.0;  ///< two of five trees in front are still seen there; the limit of the rules for reflectors
 };
 
 /// For ACFR's car park: poles with reflecting tape, of which 44 % are seen within 5 m and 22 % at 5 … 10 m. The steering

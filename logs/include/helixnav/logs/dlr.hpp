@@ -49,7 +49,8 @@ struct DlrOptions {
 /// lines continued by a backslash. The file's robot axes (X left, Y backward) become x ahead, y left; covariances turn with
 /// them. One Odometry and one Scan per STEP, both at t = index of the STEP in seconds; circles are Cartesian observations
 /// in the robot frame, lines are bearings from the camera. Labels are the file's identifiers, −1 is core::no_label; an
-/// observation with several is also in shared_observations. Image names, qualities and picture coordinates are dropped.
+/// observation with several is also in shared_observations. The format knows no field of view: that of circles is
+/// estimated from them (field_of_view.hpp), for a camera as for any other sensor. Image names, qualities and picture coordinates are dropped.
 /// Run e, 1.6 MB: 0.05 s. Throws core::InputError naming file:line for an unknown keyword, a field too few or too many, a
 /// number that is none, a missing identifier, an observation before the first STEP, a covariance that is not positive
 /// definite, circles and lines in one file.

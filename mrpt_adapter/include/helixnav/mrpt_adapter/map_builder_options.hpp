@@ -61,15 +61,16 @@ class MapBuilderOptions : public mrpt::config::CLoadableOptions {
 
   // The filter and the search for old ground.
   std::string retraction = "right-invariant";  ///< or standard: as kf-slam corrects
+  // Lengths that are left at their defaults follow the reach that the first observation states (supervisor/lengths.hpp).
   double cell_side = 20.0;
   double hysteresis = 20.0;
   bool search_enabled = true;
   std::uint64_t search_seed = 1;
   double search_old_after = 60.0;
   std::uint64_t search_threads = 2;      ///< results do not depend on it
-  double search_scale = 1.0;             ///< reach of the sensor over 30 m, see supervisor::scale_lengths
+  double search_scale = 1.0;             ///< obsolete: reach over 30 m, in place of what observations state
   double search_foreign_per_scan = 0.0;  ///< observations of no old landmark in a scan; 0: 2.5, of reflectors 0.5
-  double search_view_area = 0.0;         ///< [m²] where these are seen; 0: that of the scale
+  double search_view_area = 0.0;         ///< [m²] where these are seen; 0: by the reach
 
   bool enable_profiler = false;  ///< of MapBuilder::getProfiler
 };

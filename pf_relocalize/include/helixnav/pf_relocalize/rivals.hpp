@@ -20,6 +20,7 @@ struct RivalOptions {
   double prior_chi2 = 64.0;
   double apart_m = 2.5;  ///< further than this from the winner, or turned further …
   double apart_rad = 8.0 * core::pi / 180.0;
+  double soften_m = 0.5;              ///< σ added to every point at the beginning of the refinement
   double distinct_m = 1.0;            ///< rivals are at least this far from one another
   double branch_sigma_m = 0.15;       ///< of a branch landmark relative to the vehicle
   double lever_rad = 0.004;           ///< its σ across, per metre of distance
@@ -34,7 +35,7 @@ struct RivalPoses {
 
 /// Where else could the constellation of branch landmarks stand? Helices of the branch landmarks over the reference map
 /// (built from the state as it is now, so that map.prior is the branch's pose), best ones refined by expectation
-/// maximisation of the scan likelihood with σ of the points shrinking from 0.5 m, then kept apart from the winner and
+/// maximisation of the scan likelihood with σ of the points shrinking from soften_m, then kept apart from the winner and
 /// from one another. All poses T_base_robot. Cost: about 10 ms for 20 × 60 landmarks. Fewer than three branch landmarks: no rivals.
 /// Source: PROTOTYPE §4. Test: pf_relocalize/rivals_test.cpp (all shifts of a lattice are found; none in a world without).
 RivalPoses find_rivals(const ReferenceMap& map, const std::vector<BranchLandmark>& branch, const core::Pose2& winner,

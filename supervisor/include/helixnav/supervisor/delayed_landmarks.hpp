@@ -14,6 +14,9 @@ namespace helixnav::supervisor {
 struct DelayedOptions {
   int window = 16;         ///< sightings kept of one landmark; when full, every second one goes and the spacing doubles
   double spacing_m = 1.0;  ///< so far the sensor moves between two sightings that are kept
+  double same_m = 0.1;     ///< solutions of a fit nearer to one another are one
+  double ahead_m = 10.0;   ///< from a clone of the sensor to the point that keeps its heading
+  double clone_sigma_m = 0.001;     ///< keeps the filter's covariance positive definite
   double max_relative_sigma = 0.1;  ///< largest σ of the landmark, relative to the robot, by its distance
   double fit_probability = 0.999;   ///< χ² gate of the fit to all sightings kept
   double min_rival_margin = 14.0;   ///< twice the log-likelihood by which every other solution must be worse
@@ -31,6 +34,9 @@ struct DelayedOptions {
 class DelayedLandmarks {
  public:
   explicit DelayedLandmarks(const DelayedOptions& options = {}) : options_(options) {}
+
+  /// Once the sensor is known, before the first sighting.
+  void set_lengths(const DelayedOptions& options) { options_ = options; }
 
   /// A sighting, from the filter's present pose, of something that is not yet in the map. The landmark, when it entered.
   std::optional<core::LandmarkId> sight(cekf::CompressedEkf& filter, std::int64_t identity,

@@ -64,6 +64,7 @@ class NamedNavigator {
     std::int64_t step;
   };
 
+  void fit_to(const core::FieldOfView& view);
   core::StepReport step(const NamedScan& scan);
   bool use_fix(const core::AbsoluteFix& fix);
   void predict();
@@ -78,6 +79,7 @@ class NamedNavigator {
   void recover(std::size_t events, Pending pending);
 
   NavigatorOptions options_;
+  bool fitted_ = false;  ///< the lengths of the options to the sensor
   cekf::CompressedEkf filter_;
   DelayedLandmarks delayed_;
   std::map<std::int64_t, core::LandmarkId> landmark_of_identity_;

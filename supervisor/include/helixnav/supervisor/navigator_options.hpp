@@ -10,8 +10,10 @@
 namespace helixnav::supervisor {
 
 /// What a Navigator and a NamedNavigator may be asked to do otherwise; the latter reads filter, delayed and
-/// fix_probability only.
+/// fix_probability only. Every length stands here for a sensor that sees reference_reach_m far; the navigator fits it to
+/// the sensor that the first scan speaks of (lengths.hpp).
 struct NavigatorOptions {
+  bool fit_lengths = true;  ///< false: they are used as they stand
   cekf::FilterOptions filter;
   association::Method method = association::Method::likelihood_ratio;
   association::Options association;

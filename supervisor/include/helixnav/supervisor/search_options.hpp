@@ -35,6 +35,7 @@ struct MissingSpawnLimits {
 
 /// When a return to old ground is too ambiguous to be associated scan by scan, how it is resolved by the particle filter,
 /// and what is asked before the map is closed. Distances are driven ones. Source of the figures: PROTOTYPE §2 to §6.
+/// Lengths and densities stand here for a sensor of reference_reach_m; what they are for another one: lengths.hpp.
 struct SearchOptions {
   bool enabled = true;
   std::uint64_t seed = 1;
@@ -46,6 +47,7 @@ struct SearchOptions {
   double probation_widening = 2.0;  ///< √(|S|/|R|) above which an old landmark is matched alone only when met again, …
   double probation_m = 5.0;         ///< … within so long a drive
   double foreign_per_scan = 2.5;  ///< observations of no old landmark in one scan: clutter and new ones together
+  bool learn_foreign = false;     ///< instead, as many as the drive so far has begun landmarks, see with_foreign
 
   MissingSpawnLimits missing_spawn;
 
@@ -65,6 +67,7 @@ struct SearchOptions {
   pf_relocalize::GiveUpLimits give_up;
 
   // Acceptance.
+  double coverage_spacing_m = 4.0;  ///< between the places whose views make up the ground looked at
   Acceptance acceptance = Acceptance::constellation;
   double branch_seen_within_m = 67.5;  ///< landmarks mapped since the trigger count while seen so lately
   double ask_again_m = 4.5;            ///< after a test that was not passed
@@ -76,10 +79,16 @@ struct SearchOptions {
   // Closing.
   ClosingMethod closing = ClosingMethod::replay;
   double merge_sigma_m = 0.02;        ///< two landmarks that are one differ by so little
+  double duplicate_sigma_m = 0.01;    ///< on top of the covariance, where it is asked whether two may be one
   double closing_probability = 0.99;  ///< χ² quantile that the cost of a closing must not exceed
   int most_dropped = 1;               ///< pairs that may go, worst first, until the cost passes
   double leftover_gate = 9.21;        ///< χ² within which remaining duplicates are merged after a closing
-  int smooth_up_to_scans = 20000;     ///< and fixes; a drive of more is not solved as a whole after a closing
+  double leftover_least_m = 1.0;      ///< so near to an old landmark one may be its duplicate, and …
+  double leftover_most_m = 2.5;       ///< … never farther off, wherever its neighbours stand
+  double stretch_m = 40.0;         ///< of duplicates placed as a whole, around the best known; 25 and 60 m do as well
+  double stretch_rim_m = 3.0;      ///< beyond it landmarks are partners, but nobody misses one
+  double stretch_rigid_m = 0.7;    ///< two duplicates are as far apart as their partners, but for this
+  int smooth_up_to_scans = 20000;  ///< and fixes; a drive of more is not solved as a whole after a closing
 };
 
 }  // namespace helixnav::supervisor

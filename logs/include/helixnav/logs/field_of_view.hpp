@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "helixnav/core/events.hpp"
+#include "helixnav/core/recording.hpp"
+
+namespace helixnav::logs {
+
+/// What a user says of the sensor; 0: what the log says, or what is estimated from it.
+struct ToldFieldOfView {
+  double max_range_m = 0.0;
+  double width_rad = 0.0;  ///< all of it, as much on either side of straight ahead; 2π: all around
+};
+
+/// Field of view that the observations of a log speak of, by quantiles, so that false detections do not count: nearest 1 %
+/// of the ranges, three quarters of them up to max_range_m (beyond it a landmark may well be missed), 95 % up to reach_m;
+/// bearings without 5 % on either side, all around where they go all around. The default (unknown) when no observation
+/// fixes a point. O(n log n). Test: logs/field_of_view_test.cpp (a simulated sensor's own).
+core::FieldOfView estimate_field_of_view(const core::Recording& recording);
+
+/// Gives every scan of a log that says nothing of its sensor (unlimited in range) that estimate.
+void estimate_missing_field_of_view(core::Recording& recording);
+
+/// Overwrites what is told in every scan. A range told is the reach as well.
+void tell_field_of_view(core::Recording& recording, const ToldFieldOfView& told);
+
+/// That of the first scan whose reach is known, else of the first scan, else the default.
+core::FieldOfView field_of_view_of(const core::Recording& recording);
+
+}  // namespace helixnav::logs
