@@ -13,17 +13,23 @@
 namespace helixnav::apps {
 
 /// The navigator of a recording, as core::EventLoop wants it: by its labels when association is known, else without. The
-/// recording must outlive it.
+/// labels must outlive it.
 class ChosenNavigator {
  public:
-  ChosenNavigator(const core::Recording& recording, const supervisor::NavigatorOptions& options, bool known_association)
-      : recording_(&recording), navigator_(chosen(recording, options, known_association)) {}
+  using Labels = std::vector<std::vector<core::Label>>;
 
-  /// The recording's events in order. The report of a scan.
+  ChosenNavigator(const core::Recording& recording, const supervisor::NavigatorOptions& options, bool known_association)
+      : ChosenNavigator(recording, options, known_association, recording.labels) {}
+  /// With the labels of the scans that are fed, where they are not all of the recording's.
+  ChosenNavigator(const core::Recording& recording, const supervisor::NavigatorOptions& options, bool known_association,
+                  const Labels& labels)
+      : labels_(&labels), navigator_(chosen(recording, options, known_association)) {}
+
+  /// Events in order. The report of a scan.
   std::optional<core::StepReport> take(const core::Event& event) {
     if (auto* unnamed = std::get_if<supervisor::Navigator>(&navigator_)) return unnamed->take(event);
     auto& named = std::get<supervisor::NamedNavigator>(navigator_);
-    if (std::holds_alternative<core::Scan>(event)) return named.take(event, recording_->labels.at(scans_++));
+    if (std::holds_alternative<core::Scan>(event)) return named.take(event, labels_->at(scans_++));
     return named.take(event, {});
   }
 
@@ -46,7 +52,7 @@ class ChosenNavigator {
     return Either(std::in_place_type<supervisor::Navigator>, recording.start, options);
   }
 
-  const core::Recording* recording_;
+  const Labels* labels_;
   std::size_t scans_ = 0;
   Either navigator_;
 };

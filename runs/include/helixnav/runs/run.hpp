@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "helixnav/core/recording.hpp"
+#include "helixnav/core/step_report.hpp"
+#include "helixnav/runs/run_manifest.hpp"
+#include "helixnav/runs/smoothed_run.hpp"
+
+namespace helixnav::runs {
+
+/// What is known from elsewhere about a run; any part may be empty.
+struct RunTruth {
+  std::vector<core::TruePose> poses;          ///< of the reference point, in the map frame
+  std::vector<core::TruePosition> positions;  ///< of the antenna, in a frame of their own
+  Eigen::Vector2d antenna_robot_m = Eigen::Vector2d::Zero();
+  std::vector<core::TrueLandmark> landmarks;     ///< in the frame of the poses, or of the positions if there are any
+  std::vector<std::vector<core::Label>> labels;  ///< [step][observation]
+};
+
+/// What a recording knows of the truth.
+RunTruth truth_of(const core::Recording& recording);
+
+/// A drive as a value: what an estimator reported step by step, what came of it, and what is known from elsewhere. It is
+/// made by RunRecorder while the drive goes on, or read from a folder by read_run.
+struct Run {
+  std::string path;  ///< of its folder
+  RunManifest manifest;
+  std::vector<core::StepReport> steps;  ///< in order of time; revisions applied; only the clouds that were kept
+  std::vector<double> microseconds;     ///< [step] wall clock
+  std::vector<core::MapLandmark> map;   ///< empty unless the run came to its end
+  RunTruth truth;
+  bool finished = false;  ///< the run came to its end
+
+  // Known to whoever drove; read_run leaves them empty.
+  /// Into summary.json, such as chi2 and dof of a smoother. Keys with dots nest: ("closures.pending", 2) becomes
+  /// {"closures": {"pending": 2}}.
+  std::vector<std::pair<std::string, double>> numbers;
+  std::vector<std::pair<std::string, double>> timing;  ///< wall clock, into summary.json under "timing"
+  std::optional<SmoothedRun> smoothed;
+};
+
+/// Adds what a smoother made of the run. Where it ran alone, its poses are the run's from now on.
+void add_smoothed(Run& run, SmoothedRun smoothed);
+
+}  // namespace helixnav::runs
