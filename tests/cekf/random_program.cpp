@@ -47,8 +47,11 @@ RandomProgram::RandomProgram(std::uint64_t seed, const Settings& settings)
       random_(seed, "random program"),
       settings_(settings),
       truth_(start(true).mean) {
-  for (int i = 0; i < settings.landmarks; ++i)
-    points_m_.emplace_back(random_.uniform(-60, 60), random_.uniform(-60, 60));
+  // One draw a statement, here and below: compilers evaluate arguments in orders of their own.
+  for (int i = 0; i < settings.landmarks; ++i) {
+    const double y_m = random_.uniform(-60, 60);
+    points_m_.emplace_back(random_.uniform(-60, 60), y_m);
+  }
   ids_.assign(points_m_.size(), core::no_landmark);
 }
 
@@ -58,10 +61,11 @@ core::Observation RandomProgram::observe(const Eigen::Vector2d& point_m, bool ca
   if (cartesian) {
     Eigen::Matrix2d R;
     R << 0.02, 0.005, 0.005, 0.01;
-    return core::make_cartesian(p + Eigen::Vector2d(random_.normal(0, 0.1), random_.normal(0, 0.1)), R);
+    const double noise_y_m = random_.normal(0, 0.1);
+    return core::make_cartesian(p + Eigen::Vector2d(random_.normal(0, 0.1), noise_y_m), R);
   }
-  return core::make_range_bearing(std::max(0.1, p.norm() + random_.normal(0.0, 0.1)),
-                                  core::wrap_to_pi(std::atan2(p.y(), p.x()) + random_.normal(0.0, 0.01)), 0.1, 0.01);
+  const double bearing_rad = core::wrap_to_pi(std::atan2(p.y(), p.x()) + random_.normal(0.0, 0.01));
+  return core::make_range_bearing(std::max(0.1, p.norm() + random_.normal(0.0, 0.1)), bearing_rad, 0.1, 0.01);
 }
 
 core::LandmarkId RandomProgram::map_again(core::LandmarkId id) {
