@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/pf_relocalize/reference_map.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <sstream>
 #include <string>
 #include <utility>
+
+#include <Eigen/Eigenvalues>
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/pf_relocalize/conservative_bound.hpp"
@@ -19,6 +24,15 @@ constexpr std::array<std::pair<Decorrelation, std::string_view>, 6> names{{
     {Decorrelation::constellations, "constellations"},
     {Decorrelation::latent_modes, "latent-modes"},
 }};
+
+/// Share of the largest element that core takes for rounding of a covariance.
+constexpr double rounding = 1e-9;
+
+std::string in_digits(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
 
 /// Blocks of the decorrelated map; fills the latent parts of `map` where the rule has any.
 Blocks decorrelate(const core::JointGaussian& relative, const ReferenceMapOptions& options, ReferenceMap& map) {
@@ -44,6 +58,76 @@ Blocks decorrelate(const core::JointGaussian& relative, const ReferenceMapOption
   return bound.residual;
 }
 
+std::string unusable(const core::JointGaussian& joint) {
+  const std::size_t n = joint.points_m.size();
+  if (n < 3 || joint.ids.size() != n) {
+    return "at least three landmarks with their ids are needed, there are " + std::to_string(n);
+  }
+  const Eigen::MatrixXd& P = joint.covariance;
+  if (P.rows() != 3 + 2 * static_cast<Eigen::Index>(n) || P.cols() != P.rows()) {
+    return "the joint covariance has the wrong size";
+  }
+  const bool finite = P.allFinite() && joint.pose.vector().allFinite() &&
+                      std::all_of(joint.points_m.begin(), joint.points_m.end(),
+                                  [](const Eigen::Vector2d& point) { return point.allFinite(); });
+  if (!finite) return "the joint estimate is not finite";
+  const double asymmetry = (P - P.transpose()).cwiseAbs().maxCoeff();
+  if (asymmetry > rounding * P.cwiseAbs().maxCoeff()) {
+    return "the joint covariance is not symmetric: off by " + in_digits(asymmetry);
+  }
+  return {};
+}
+
+/// How much the change of frame can enlarge an error of the covariance: |J|² by rows, a position relative to the bases
+/// being (its own) − (the first base's) − (lever)·(the difference of the bases).
+double enlargement(const core::JointGaussian& relative, const Bases& bases) {
+  double furthest_m = relative.pose.position_m().norm();
+  for (const Eigen::Vector2d& point : relative.points_m) furthest_m = std::max(furthest_m, point.norm());
+  const double row = 2.0 + 2.0 * furthest_m / relative.points_m[static_cast<std::size_t>(bases.b)].norm();
+  return row * row;
+}
+
+/// Raises the eigenvalues that rounding made negative; the least one before.
+double raise_to_zero(double tolerance, Eigen::MatrixXd& P) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(P);
+  const double least = eigen.eigenvalues().minCoeff();
+  if (least < -tolerance || !std::isfinite(least)) return least;
+  const Eigen::MatrixXd V = eigen.eigenvectors();
+  P = V * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * V.transpose();
+  P = (0.5 * (P + P.transpose())).eval();
+  return least;
+}
+
+ReferenceMapResult on_bases(const core::JointGaussian& joint, const Bases& bases, const ReferenceMapOptions& options) {
+  ReferenceMapResult result;
+  core::JointGaussian relative = in_base_frame(joint, bases);
+  if (!core::is_symmetric_positive_semidefinite(relative.covariance)) {
+    const double tolerance = rounding * joint.covariance.cwiseAbs().maxCoeff() * enlargement(relative, bases);
+    result.least_eigenvalue = raise_to_zero(tolerance, relative.covariance);
+    const bool is_rounding = result.least_eigenvalue >= -tolerance;
+    if (!is_rounding) {
+      result.reason = "the joint covariance is not positive semidefinite: in the base frame its least eigenvalue is " +
+                      in_digits(result.least_eigenvalue) + ", which rounding explains down to " + in_digits(-tolerance);
+      return result;
+    }
+  }
+  ReferenceMap& map = result.map.emplace();
+  map.T_world_base = base_frame(joint, bases);
+  map.bases = bases;
+  map.ids = joint.ids;
+  map.prior = {relative.pose, relative.covariance.topLeftCorner<3, 3>()};
+  map.latent.resize(2 * static_cast<Eigen::Index>(joint.points_m.size()), 0);
+  map.prior_by_latent.resize(3, 0);
+  const Blocks blocks = decorrelate(relative, options, map);
+  for (std::size_t i = 0; i < blocks.size(); ++i) map.landmarks.push_back({relative.points_m[i], blocks[i]});
+  return result;
+}
+
+ReferenceMap map_or_throw(ReferenceMapResult&& result) {
+  if (!result.map) throw core::PreconditionError("build_reference_map: " + result.reason);
+  return std::move(*result.map);
+}
+
 }  // namespace
 
 std::string_view name_of(Decorrelation decorrelation) {
@@ -62,29 +146,29 @@ Decorrelation decorrelation_from(std::string_view name) {
   throw core::InputError("decorrelation '" + std::string(name) + "' is unknown; one of: " + known);
 }
 
+ReferenceMapResult try_reference_map(const core::JointGaussian& joint, const ReferenceMapOptions& options) {
+  ReferenceMapResult result;
+  result.reason = unusable(joint);
+  if (!result.reason.empty()) return result;
+  const Bases bases = choose_bases(joint);
+  const Eigen::Vector2d base_m =
+      joint.points_m[static_cast<std::size_t>(bases.b)] - joint.points_m[static_cast<std::size_t>(bases.a)];
+  if (base_m.norm() < 1e-6) {
+    result.reason = "all landmarks stand at one place";
+    return result;
+  }
+  return on_bases(joint, bases, options);
+}
+
 ReferenceMap build_reference_map(const core::JointGaussian& joint, const ReferenceMapOptions& options) {
-  return build_reference_map(joint, choose_bases(joint), options);
+  return map_or_throw(try_reference_map(joint, options));
 }
 
 ReferenceMap build_reference_map(const core::JointGaussian& joint, const Bases& bases,
                                  const ReferenceMapOptions& options) {
-  if (joint.points_m.size() < 3 || joint.ids.size() != joint.points_m.size()) {
-    throw core::PreconditionError("build_reference_map: at least three landmarks with their ids are needed");
-  }
-  if (!core::is_symmetric_positive_semidefinite(joint.covariance)) {
-    throw core::PreconditionError("build_reference_map: the joint covariance is not symmetric positive semidefinite");
-  }
-  const core::JointGaussian relative = in_base_frame(joint, bases);
-  ReferenceMap map;
-  map.T_world_base = base_frame(joint, bases);
-  map.bases = bases;
-  map.ids = joint.ids;
-  map.prior = {relative.pose, relative.covariance.topLeftCorner<3, 3>()};
-  map.latent.resize(2 * static_cast<Eigen::Index>(joint.points_m.size()), 0);
-  map.prior_by_latent.resize(3, 0);
-  const Blocks blocks = decorrelate(relative, options, map);
-  for (std::size_t i = 0; i < blocks.size(); ++i) map.landmarks.push_back({relative.points_m[i], blocks[i]});
-  return map;
+  const std::string reason = unusable(joint);
+  if (!reason.empty()) throw core::PreconditionError("build_reference_map: " + reason);
+  return map_or_throw(on_bases(joint, bases, options));
 }
 
 }  // namespace helixnav::pf_relocalize

@@ -196,5 +196,51 @@ TEST(ReferenceMap, RefusesTooFewLandmarksAndBrokenCovariances) {
   EXPECT_THROW(build_reference_map(test::drive_map(5, 62), Bases{1, 1}, {}), core::PreconditionError);
 }
 
+TEST(TryReferenceMap, SaysWhyThereIsNone) {
+  EXPECT_NE(try_reference_map(test::drive_map(2, 60)).reason.find("three landmarks"), std::string::npos);
+  core::JointGaussian joint = test::drive_map(5, 61);
+  joint.covariance(0, 0) = -1.0;
+  const ReferenceMapResult indefinite = try_reference_map(joint);
+  EXPECT_FALSE(indefinite.map.has_value());
+  EXPECT_NE(indefinite.reason.find("least eigenvalue"), std::string::npos) << indefinite.reason;
+  joint = test::drive_map(5, 61);
+  joint.covariance(4, 4) = std::nan("");
+  EXPECT_NE(try_reference_map(joint).reason.find("not finite"), std::string::npos);
+  joint = test::drive_map(5, 61);
+  joint.covariance(4, 7) += 1.0;
+  EXPECT_NE(try_reference_map(joint).reason.find("not symmetric"), std::string::npos);
+  joint = test::drive_map(5, 61);
+  for (Eigen::Vector2d& point : joint.points_m) point = joint.points_m.front();
+  EXPECT_NE(try_reference_map(joint).reason.find("one place"), std::string::npos);
+}
+
+// All landmarks shifted together with a sigma of 3 km, their differences known to a centimetre: the joint covariance is
+// right to eight digits only, and yet what the search needs of it is sound.
+TEST(TryReferenceMap, SurvivesTheRoundingOfAMapThatDriftedFar) {
+  int raised = 0;
+  for (std::uint64_t seed = 70; seed < 80; ++seed) {
+    core::JointGaussian joint = test::drive_map(12, seed, 0.0, 0.0);
+    const Eigen::MatrixXd own = joint.covariance;
+    core::RandomStream random(seed, "rounding");
+    for (Eigen::Index i = 0; i < own.rows(); ++i) {
+      for (Eigen::Index j = 0; j < i; ++j) {
+        const bool same_axis = i != 2 && j != 2 && (i < 2 ? i : i - 3) % 2 == (j < 2 ? j : j - 3) % 2;
+        if (!same_axis) continue;
+        joint.covariance(i, j) += 1e7 * (1.0 + 2e-10 * random.normal(0.0, 1.0));
+        joint.covariance(j, i) = joint.covariance(i, j);
+      }
+      if (i != 2) joint.covariance(i, i) += 1e7;
+    }
+    const ReferenceMapResult result = try_reference_map(joint);
+    ASSERT_TRUE(result.map.has_value()) << result.reason;
+    raised += result.least_eigenvalue < 0.0;
+    for (const core::PointGaussian& landmark : result.map->landmarks) {
+      EXPECT_GE(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(landmark.covariance_m2).eigenvalues().minCoeff(),
+                -1e-12);
+    }
+  }
+  EXPECT_GT(raised, 0);
+}
+
 }  // namespace
 }  // namespace helixnav::pf_relocalize

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -49,8 +51,22 @@ struct ReferenceMap {
   int latent_modes() const { return static_cast<int>(latent.cols()); }
 };
 
-/// Builds the map from a joint estimate (pose and n ≥ 3 landmarks, covariance symmetric positive semidefinite, else
-/// PreconditionError). Bases are chosen by choose_bases, or given. Cost: bound O(n²), latent modes O(n³).
+/// A reference map, or why there is none.
+struct ReferenceMapResult {
+  std::optional<ReferenceMap> map;
+  std::string reason;             ///< empty where there is a map; else a clause with its numbers
+  double least_eigenvalue = 0.0;  ///< of the covariance in the base frame, below zero only where some were raised to it
+};
+
+/// Builds the map from a joint estimate (pose and n ≥ 3 landmarks). The covariance is judged in the base frame, where the
+/// drift that all share is gone: eigenvalues down to minus the rounding of the input (1e-9 of its largest element, as
+/// core::is_symmetric_positive_semidefinite has it, times the square of the change of frame) are raised to zero; what is not
+/// finite, not symmetric or further below zero gives a reason and no map. Throws nothing of its own. Cost: bound O(n²),
+/// latent modes, and raising eigenvalues, O(n³). Test: pf_relocalize/reference_map_test.cpp.
+ReferenceMapResult try_reference_map(const core::JointGaussian& joint, const ReferenceMapOptions& options = {});
+
+/// The same for callers whose input is a covariance by construction: PreconditionError with the reason where
+/// try_reference_map has no map. Bases are chosen by choose_bases, or given. Cost: bound O(n²), latent modes O(n³).
 /// Source: hybrid_masson2003 §3.1 eq (10)-(11), THEORY §2. Test: pf_relocalize/reference_map_test.cpp.
 ReferenceMap build_reference_map(const core::JointGaussian& joint, const ReferenceMapOptions& options = {});
 ReferenceMap build_reference_map(const core::JointGaussian& joint, const Bases& bases,
