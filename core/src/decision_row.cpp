@@ -51,6 +51,7 @@ template <class Visit>
 void numbers(ReferenceUnusable& d, Visit&& visit) {
   visit("attempt", d.attempt);
   visit("reference_landmarks", d.reference_landmarks);
+  visit("least_eigenvalue", d.least_eigenvalue);
 }
 
 template <class Visit>

@@ -126,7 +126,9 @@ ConstellationAnswer ask_constellation(const SearchView& view, const std::vector<
   answer.T_world_winner = answer.T_world_rival = T_world_robot;
   const core::JointGaussian ground = reference_ground(view, old, options.reach_m);
   if (ground.ids.size() < 3) return answer;
-  const pf_relocalize::ReferenceMap map = pf_relocalize::build_reference_map(ground, options.reference);
+  const pf_relocalize::ReferenceMapResult reference = pf_relocalize::try_reference_map(ground, options.reference);
+  if (!reference.map) return answer;  // nothing to stand on matches nothing
+  const pf_relocalize::ReferenceMap& map = *reference.map;
 
   pf_relocalize::Constellation constellation;
   constellation.branch = branch_landmarks(view, old, options);

@@ -118,11 +118,18 @@ bool Search::is_promising(const SearchView& view) {
 void Search::start(const SearchView& view, std::vector<core::Decision>& decisions) {
   const core::JointGaussian joint = reference_ground(view, old_, options_.reach_m);
   if (joint.ids.size() < 3) return;
-  pf_relocalize::ReferenceMap map = pf_relocalize::build_reference_map(joint, options_.reference);
-  const core::LandmarkId a = joint.ids[static_cast<std::size_t>(map.bases.a)];
-  const core::LandmarkId b = joint.ids[static_cast<std::size_t>(map.bases.b)];
+  pf_relocalize::ReferenceMapResult reference = pf_relocalize::try_reference_map(joint, options_.reference);
   const double path_m = view.life.path_m();
   ++starts_;
+  if (!reference.map) {
+    decisions.emplace_back(core::ReferenceUnusable{starts_, static_cast<int>(joint.ids.size()),
+                                                   reference.least_eigenvalue});
+    next_start_path_m_ = path_m + options_.rest_m;
+    return;
+  }
+  pf_relocalize::ReferenceMap& map = *reference.map;
+  const core::LandmarkId a = joint.ids[static_cast<std::size_t>(map.bases.a)];
+  const core::LandmarkId b = joint.ids[static_cast<std::size_t>(map.bases.b)];
   const std::uint64_t seed = seed_ + 1000u * static_cast<std::uint64_t>(starts_);
   attempt_.emplace(Attempt{
       pf_relocalize::Relocalizer(std::move(map), view.scan, options_.relocalizer, seed), a, b, path_m, path_m, {}, 0});

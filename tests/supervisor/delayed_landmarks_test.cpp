@@ -87,14 +87,18 @@ void expect_consistent(const std::vector<double>& nees) {
 
 TEST(DelayedLandmarksCampaign, SeenAsRangesEnterInsideTheirEllipse) {
   const Entrances seen = entrances(ObservationKind::range);
-  if (support::whole_campaign) EXPECT_GE(seen.first_nees.size(), 55u);
+  if (support::whole_campaign) {
+    EXPECT_GE(seen.first_nees.size(), 55u);
+  }
   EXPECT_LT(seen.worst_error_m, 20.0) << "15 m are the drift of the worst run; mirror images gave 30 to 70 m";
   expect_consistent(seen.first_nees);
 }
 
 TEST(DelayedLandmarksCampaign, SeenAsBearingsEnterInsideTheirEllipse) {
   const Entrances seen = entrances(ObservationKind::bearing);
-  if (support::whole_campaign) EXPECT_GE(seen.first_nees.size(), 55u);
+  if (support::whole_campaign) {
+    EXPECT_GE(seen.first_nees.size(), 55u);
+  }
   expect_consistent(seen.first_nees);
 }
 

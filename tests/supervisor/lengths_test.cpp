@@ -61,7 +61,8 @@ Navigated navigate(const core::Recording& run) {
     decided = decided || !report.decisions.empty();
     navigated.associations.insert(navigated.associations.end(), report.associations.begin(), report.associations.end());
     for (const core::Decision& decision : report.decisions) {
-      navigated.closed += decision.kind == "closure" && decision.verdict == "accepted";
+      const auto* closure = std::get_if<core::ClosureDecision>(&decision);
+      navigated.closed += closure != nullptr && closure->accepted;
     }
   });
   navigated.end = navigator.pose().mean;

@@ -61,6 +61,7 @@ struct AttemptEnded {
 struct ReferenceUnusable {
   int attempt = 0;
   int reference_landmarks = 0;
+  double least_eigenvalue = 0.0;  ///< of that covariance in the frame of the reference map
 };
 
 /// The constellation test of a pose: new landmarks against old ones.
