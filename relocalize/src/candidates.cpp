@@ -12,7 +12,7 @@ namespace helixnav::relocalize {
 
 namespace {
 
-constexpr std::size_t most_triangles = 400;
+constexpr std::size_t most_triangles = 240;
 constexpr std::size_t most_kept = 400;
 constexpr double hit_probability = 0.45;  ///< of a point of the right place: detection, change and noise together
 constexpr float abandoned_below = -3.0F;
@@ -86,6 +86,31 @@ struct Fan {
 /// Rotation and centroid that lay the fan's triangle on three landmarks.
 struct Laid {
   float x_m, y_m, cosine, sine;
+  TileGrid::Probe first_look;
+};
+
+/// Sides within the tolerance of a triangle's. One branch for all three: which of them disagrees cannot be foretold.
+class SideGate {
+ public:
+  SideGate(const Sides& sides_m, float tolerance_m) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float low_m = std::max(0.0F, sides_m[k] - tolerance_m);
+      const float high_m = sides_m[k] + tolerance_m;
+      middle_m2_[k] = 0.5F * (high_m * high_m + low_m * low_m);
+      half_m2_[k] = 0.5F * (high_m * high_m - low_m * low_m);
+    }
+  }
+
+  bool passes(const Node& a, const Node& b, const Node& c) const {
+    const bool first = std::abs(squared_distance_m2(a, b) - middle_m2_[0]) <= half_m2_[0];
+    const bool second = std::abs(squared_distance_m2(b, c) - middle_m2_[1]) <= half_m2_[1];
+    const bool third = std::abs(squared_distance_m2(c, a) - middle_m2_[2]) <= half_m2_[2];
+    return static_cast<int>(first) + static_cast<int>(second) + static_cast<int>(third) == 3;
+  }
+
+ private:
+  std::array<float, 3> middle_m2_;
+  std::array<float, 3> half_m2_;
 };
 
 class Search {
@@ -100,35 +125,43 @@ class Search {
   /// Returns how many triangles of the map have these sides.
   double look_up(const QuestionTriangle& triangle) {
     const Fan fan(asked_, triangle);
+    const SideGate gate(triangle.sides_m, asked_.map.side_tolerance_m());
     double found = 0.0;
     asked_.map.bins.near(triangle.sides_m, asked_.map.side_tolerance_m(), [&](const Code* codes, std::uint32_t count) {
       for (std::uint32_t k = 0; k < count; ++k) __builtin_prefetch(&nodes_[owner_of(codes[k])]);
-      std::array<Corners, 16> corners;
-      for (std::uint32_t k = 0; k < count; ++k) {
-        corners[k] = corners_of(nodes_, codes[k]);
-        for (const Slot slot : corners[k]) __builtin_prefetch(&nodes_[slot]);
-      }
-      for (std::uint32_t k = 0; k < count; ++k)
-        if (sides_agree(corners[k], triangle.sides_m)) {
-          ++found;
-          consider(fan, corners[k]);
-        }
+      batch_.insert(batch_.end(), codes, codes + count);
+      if (batch_.size() >= batch_size) found += consider_batch(fan, gate);
     });
-    return found;
+    return found + consider_batch(fan, gate);
   }
 
   std::vector<Candidate> sorted() const { return cells_.sorted(); }
 
  private:
-  bool sides_agree(const Corners& corners, const Sides& sides_m) const {
-    const float tolerance_m = asked_.map.side_tolerance_m();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const float d2 = squared_distance_m2(nodes_[corners[k]], nodes_[corners[(k + 1) % 3]]);
-      const float low = std::max(0.0F, sides_m[k] - tolerance_m);
-      const float high = sides_m[k] + tolerance_m;
-      if (d2 < low * low || d2 > high * high) return false;
+  /// Landmarks come from all over the map: all of a batch are called from memory before the first is looked at.
+  static constexpr std::size_t batch_size = 64;
+
+  double consider_batch(const Fan& fan, const SideGate& gate) {
+    corners_.clear();
+    for (const Code code : batch_) {
+      corners_.push_back(corners_of(nodes_, code));
+      for (const Slot slot : corners_.back()) __builtin_prefetch(&nodes_[slot]);
     }
-    return true;
+    batch_.clear();
+    laid_.clear();
+    double found = 0.0;
+    for (const Corners& at : corners_) {
+      if (!gate.passes(nodes_[at[0]], nodes_[at[1]], nodes_[at[2]])) continue;
+      ++found;
+      Laid fit{};
+      if (!lay(fan, at, fit)) continue;
+      const Point first = place(fit, fan.others.front());
+      fit.first_look = asked_.map.grid.probe(first.x_m, first.y_m);
+      __builtin_prefetch(fit.first_look.word);
+      laid_.push_back(fit);
+    }
+    for (const Laid& fit : laid_) test(fan, fit);
+    return found;
   }
 
   /// Closed-form rigid fit of three points; false when its residual has a χ² (three degrees of freedom) above 16.
@@ -152,21 +185,23 @@ class Search {
     return spread - 2.0F * length <= 16.0F * asked_.map.noise_m * asked_.map.noise_m;
   }
 
-  void consider(const Fan& fan, const Corners& corners) {
-    Laid laid{};
-    if (!lay(fan, corners, laid)) return;
+  static Point place(const Laid& fit, const Point& p) {
+    return {fit.x_m + fit.cosine * p.x_m - fit.sine * p.y_m, fit.y_m + fit.sine * p.x_m + fit.cosine * p.y_m};
+  }
+
+  void test(const Fan& fan, const Laid& fit) {
+    const TileGrid& grid = asked_.map.grid;
     const auto near_m = static_cast<float>(asked_.near_m);
     float score = 0.0F;
-    for (const Point& p : fan.others) {
-      const float x_m = laid.x_m + laid.cosine * p.x_m - laid.sine * p.y_m;
-      const float y_m = laid.y_m + laid.sine * p.x_m + laid.cosine * p.y_m;
-      score += asked_.map.grid.occupied(nodes_, x_m, y_m, near_m) ? hit_ : miss_;
+    for (std::size_t k = 0; k < fan.others.size(); ++k) {
+      const Point at = place(fit, fan.others[k]);
+      const bool marked = k == 0 ? fit.first_look.set() : grid.probe(at.x_m, at.y_m).set();
+      score += marked && grid.holds(nodes_, at.x_m, at.y_m, near_m) ? hit_ : miss_;
       if (score < abandoned_below) return;
     }
     if (score < 0.0F) return;
-    const float x_m = laid.x_m - laid.cosine * fan.centroid.x_m + laid.sine * fan.centroid.y_m;
-    const float y_m = laid.y_m - laid.sine * fan.centroid.x_m - laid.cosine * fan.centroid.y_m;
-    cells_.offer({score, core::Pose2(x_m, y_m, std::atan2(laid.sine, laid.cosine))});
+    const Point centre = place(fit, {-fan.centroid.x_m, -fan.centroid.y_m});
+    cells_.offer({score, core::Pose2(centre.x_m, centre.y_m, std::atan2(fit.sine, fit.cosine))});
   }
 
   const Prepared& asked_;
@@ -174,6 +209,9 @@ class Search {
   PoseCells cells_;
   float hit_;
   float miss_;
+  std::vector<Code> batch_;
+  std::vector<Corners> corners_;
+  std::vector<Laid> laid_;
 };
 
 }  // namespace

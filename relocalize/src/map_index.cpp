@@ -16,9 +16,9 @@ namespace {
   throw core::PreconditionError("map index: landmark " + std::to_string(id) + why);
 }
 
-void halve_tiles_when_crowded(MapIndex::Parts& parts) {
+void shrink_tiles_when_crowded(MapIndex::Parts& parts) {
   if (!parts.grid.crowded()) return;
-  TileGrid finer = parts.grid.halved();
+  TileGrid finer = parts.grid.finer();
   // Slots that are free are in no list of neighbours and in no cell: only those in use have their id's slot.
   for (std::size_t slot = 0; slot < parts.nodes.size(); ++slot)
     if (parts.slot_of(parts.details[slot].id) == slot) finer.insert(parts.nodes, static_cast<Slot>(slot));
@@ -49,7 +49,7 @@ MapIndex::MapIndex(const IndexOptions& options, const std::vector<Landmark>& lan
     const Landmark& landmark = landmarks[static_cast<std::size_t>(entry[3])];
     if (contains(landmark.id)) refuse(landmark.id, " is there twice");
     parts.add_node(landmark);
-    halve_tiles_when_crowded(parts);
+    shrink_tiles_when_crowded(parts);
   }
   parts.store_all_triangles();
 }
@@ -60,7 +60,7 @@ void MapIndex::insert(const Landmark& landmark) {
   parts_->place_origin(landmark.point.mean_m);
   const Slot slot = parts_->add_node(landmark);
   parts_->link(slot);
-  halve_tiles_when_crowded(*parts_);
+  shrink_tiles_when_crowded(*parts_);
   if (parts_->bins.outgrown()) parts_->refit();
 }
 

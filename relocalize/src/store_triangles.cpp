@@ -27,7 +27,7 @@ float usual_longest_m(const Nodes& nodes, const std::vector<Code>& codes, float 
 }
 
 TriangleBins bins_for(const MapIndex::Parts& parts, const std::vector<Code>& codes, std::size_t expected) {
-  TriangleBins bins(expected, usual_longest_m(parts.nodes, codes, parts.reach_m), parts.side_tolerance_m() / 4.0F);
+  TriangleBins bins(expected, usual_longest_m(parts.nodes, codes, parts.reach_m), parts.side_tolerance_m() / 3.0F);
   for (const Code code : codes) bins.insert(sides_of(parts.nodes, code), code);
   return bins;
 }
@@ -54,11 +54,11 @@ void MapIndex::Parts::store_all_triangles() {
   bins = bins_for(*this, codes, codes.size());
 }
 
-/// Bins for a map that has outgrown its own, with room to grow almost threefold.
+/// Bins for a map that has outgrown its own, with room to grow almost twofold.
 void MapIndex::Parts::refit() {
   std::vector<Code> codes;
   bins.all([&](const Code* some, std::uint32_t number) { codes.insert(codes.end(), some, some + number); });
-  bins = bins_for(*this, codes, codes.size() * 7 / 5);
+  bins = bins_for(*this, codes, codes.size() * 5 / 4);
 }
 
 }  // namespace helixnav::relocalize

@@ -26,9 +26,9 @@ TileGrid::Box TileGrid::bits_near(const Node& node) const {
 void TileGrid::write_bits(const Box& box, bool value) {
   for (std::int32_t row = box.first_row; row <= box.last_row; ++row)
     for (std::int32_t column = box.first_column; column <= box.last_column; ++column) {
-      std::uint32_t& word =
+      std::uint64_t& word =
           tile_at(column >> bit_bits, row >> bit_bits).bit[static_cast<std::size_t>(row & (bits - 1))];
-      const std::uint32_t mask = 1U << (column & (bits - 1));
+      const std::uint64_t mask = std::uint64_t{1} << (column & (bits - 1));
       word = value ? word | mask : word & ~mask;
     }
 }

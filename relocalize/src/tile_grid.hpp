@@ -12,8 +12,8 @@
 
 namespace helixnav::relocalize {
 
-/// Where landmarks stand: tiles that exist only where there are any, each with 8×8 lists of landmarks and 32×32 bits that
-/// tell in one look that no landmark is near. Tiles are halved as landmarks become dense; what is asked depends on neither.
+/// Where landmarks stand: tiles that exist only where there are any, each with 8×8 lists of landmarks and 64×64 bits that
+/// tell in one look that no landmark is near. Tiles shrink as landmarks become dense; what is asked depends on neither.
 class TileGrid {
  public:
   /// A bit is set when a landmark may stand within `near_m` of some point of its square.
@@ -22,9 +22,9 @@ class TileGrid {
   void insert(Nodes& nodes, Slot slot);
   void erase(Nodes& nodes, Slot slot);
 
-  /// More landmarks a tile than is quick: time for tiles of half the side, unless these came near `near_m`.
+  /// More landmarks a tile than is quick: time for smaller tiles, unless these came near `near_m`.
   bool crowded() const { return landmarks_ > 64 * (tiles_.size() + 1) && side_m_ > 12.0F * near_m_; }
-  TileGrid halved() const { return TileGrid(0.5F * side_m_, near_m_); }
+  TileGrid finer() const { return TileGrid(0.7F * side_m_, near_m_); }
 
   float cell_m() const { return side_m_ / cells; }
   std::size_t memory_bytes() const { return table_.memory_bytes() + tiles_.memory_bytes(); }
@@ -50,14 +50,28 @@ class TileGrid {
     }
   }
 
-  /// Is a landmark within radius_m ≤ near_m?
-  bool occupied(const Nodes& nodes, float x_m, float y_m, float radius_m) const {
+  /// Where the bit of a point stands; null where there is no tile.
+  struct Probe {
+    const std::uint64_t* word = nullptr;
+    std::uint64_t mask = 0;
+    bool set() const { return word != nullptr && (*word & mask) != 0; }
+  };
+  Probe probe(float x_m, float y_m) const {
     const float scale = bits / side_m_;
     const std::int32_t column = floor_of(x_m * scale);
     const std::int32_t row = floor_of(y_m * scale);
     const std::uint32_t tile = table_.find(column >> bit_bits, row >> bit_bits);
-    if (tile == CellTable::none) return false;
-    if ((tiles_[tile].bit[row & (bits - 1)] >> (column & (bits - 1)) & 1U) == 0) return false;
+    if (tile == CellTable::none) return {};
+    return {&tiles_[tile].bit[static_cast<std::size_t>(row & (bits - 1))], std::uint64_t{1} << (column & (bits - 1))};
+  }
+
+  /// Is a landmark within radius_m ≤ near_m?
+  bool occupied(const Nodes& nodes, float x_m, float y_m, float radius_m) const {
+    return probe(x_m, y_m).set() && holds(nodes, x_m, y_m, radius_m);
+  }
+
+  /// The same without the look at the bit.
+  bool holds(const Nodes& nodes, float x_m, float y_m, float radius_m) const {
     bool found = false;
     within(nodes, x_m, y_m, radius_m, [&](Slot, float) { found = true; });
     return found;
@@ -66,13 +80,13 @@ class TileGrid {
  private:
   static constexpr std::int32_t cell_bits = 3;
   static constexpr std::int32_t cells = 1 << cell_bits;
-  static constexpr std::int32_t bit_bits = 5;
+  static constexpr std::int32_t bit_bits = 6;
   static constexpr std::int32_t bits = 1 << bit_bits;
 
   struct Tile {
     Tile() { head.fill(no_slot); }
     std::array<Slot, cells * cells> head;
-    std::array<std::uint32_t, bits> bit{};
+    std::array<std::uint64_t, bits> bit{};
   };
   struct Box {
     std::int32_t first_column, last_column, first_row, last_row;

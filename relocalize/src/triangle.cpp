@@ -13,13 +13,13 @@ constexpr int pairs = neighbours * (neighbours - 1) / 2;
 constexpr int pair_number(int i, int j) { return i * (2 * neighbours - 1 - i) / 2 + j - i - 1; }
 
 /// Turns 0–2 keep the orientation of (owner, i, j), 3–5 reverse it; the start advances.
-std::array<int, 3> order_of(int turn) {
+constexpr std::array<int, 3> order_of(int turn) {
   const std::array<int, 3> base = turn < 3 ? std::array<int, 3>{0, 1, 2} : std::array<int, 3>{0, 2, 1};
-  const auto at = [&](int k) { return base[static_cast<std::size_t>((turn + k) % 3)]; };
-  return {at(0), at(1), at(2)};
+  const auto start = static_cast<std::size_t>(turn % 3);
+  return {base[start], base[(start + 1) % 3], base[(start + 2) % 3]};
 }
 
-std::array<Decoded, 256> make_table() {
+constexpr std::array<Decoded, 256> make_table() {
   std::array<Decoded, 256> table{};
   for (int i = 0; i < neighbours; ++i)
     for (int j = i + 1; j < neighbours; ++j)
@@ -43,10 +43,8 @@ Code encode(Slot owner, int i, int j, const std::array<int, 3>& order) {
   return owner << 8U | static_cast<Code>(pair_number(i, j) * turns + turn);
 }
 
-const Decoded& decode(Code code) {
-  static const std::array<Decoded, 256> table = make_table();
-  return table[code & 0xFFU];
-}
+constexpr std::array<Decoded, 256> table = make_table();
+const std::array<Decoded, 256> decoded = table;
 
 std::optional<Stored> stored(const Nodes& nodes, std::array<Slot, 3> corners, float least_m) {
   std::sort(corners.begin(), corners.end());

@@ -56,20 +56,20 @@ using Corners = std::array<Slot, 3>;
 /// Code of {owner, its neighbours at places i < j}, whose corner k is order[k] of these three.
 Code encode(Slot owner, int i, int j, const std::array<int, 3>& order);
 
-/// What a code's lower byte says: places among the neighbours, and the corner that each of (owner, i, j) is.
+/// What a code's lower byte says: places among the neighbours, and which of (owner, i, j) each corner is.
 struct Decoded {
   std::uint8_t i, j;
   std::array<std::uint8_t, 3> order;
 };
-const Decoded& decode(Code code);
+extern const std::array<Decoded, 256> decoded;
 
 inline Slot owner_of(Code code) { return code >> 8U; }
 
 inline Corners corners_of(const Nodes& nodes, Code code) {
-  const Decoded& decoded = decode(code);
+  const Decoded& how = decoded[code & 0xFFU];
   const Node& owner = nodes[owner_of(code)];
-  const std::array<Slot, 3> points = {owner_of(code), owner.near[decoded.i], owner.near[decoded.j]};
-  return {points[decoded.order[0]], points[decoded.order[1]], points[decoded.order[2]]};
+  const std::array<Slot, 3> points = {owner_of(code), owner.near[how.i], owner.near[how.j]};
+  return {points[how.order[0]], points[how.order[1]], points[how.order[2]]};
 }
 
 /// Place of `other` among the neighbours of `slot`, −1 when it is none.

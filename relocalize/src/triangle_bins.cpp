@@ -7,7 +7,7 @@ namespace helixnav::relocalize {
 
 namespace {
 
-constexpr double codes_a_bin = 32.0;
+constexpr double codes_a_bin = 16.0;
 
 /// B bins a side make about B³/6 that the triangle inequality allows.
 int side_count(std::size_t expected, float usual_m, float finest_m) {

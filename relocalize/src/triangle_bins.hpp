@@ -13,7 +13,7 @@
 namespace helixnav::relocalize {
 
 /// Codes of triangles in bins of their three sides; only bins that the triangle inequality allows exist. A bin is a list of
-/// cache lines with fifteen codes each. Which bins there are is a matter of speed: readers compare the sides themselves.
+/// lines of seven codes. Which bins there are is a matter of speed: readers compare the sides themselves.
 class TriangleBins {
  public:
   /// Bins for `expected` triangles, of which one in twenty has a longest side above `usual_m`; none finer than `finest_m`.
@@ -23,7 +23,7 @@ class TriangleBins {
   void erase(const Sides& sides_m, Code code);
 
   std::size_t size() const { return size_; }
-  bool outgrown() const { return size_ > 2 * expected_; }
+  bool outgrown() const { return 2 * size_ > 3 * expected_; }
   std::size_t memory_bytes() const;
 
   /// Calls visit(codes, count) until all bins that may hold sides within tolerance_m of these were visited.
@@ -44,7 +44,7 @@ class TriangleBins {
   }
 
  private:
-  static constexpr std::uint32_t line_codes = 15;
+  static constexpr std::uint32_t line_codes = 7;
   struct Line {
     std::array<Code, line_codes> code{};
     std::uint32_t next = 0xFFFFFFFFU;
@@ -77,7 +77,7 @@ class TriangleBins {
   float per_metre_;
   std::vector<std::uint32_t> start_;  ///< [a, b] number of the first bin of that row
   std::vector<Bin> bins_;
-  Paged<Line, 9> lines_;
+  Paged<Line, 10> lines_;
   std::uint32_t free_line_ = 0xFFFFFFFFU;
 };
 
