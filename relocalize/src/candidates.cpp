@@ -32,6 +32,15 @@ class PoseCells {
     if (!is_new && before(fresh, at->second)) at->second = fresh;
   }
 
+  /// Do more poses than are kept score like the best, but for one nat?
+  bool crowded() const {
+    float best = 0.0F;
+    for (const auto& entry : best_) best = std::max(best, entry.second.score);
+    const auto ties = std::count_if(best_.begin(), best_.end(),
+                                    [&](const auto& entry) { return entry.second.score > best - 1.0F; });
+    return static_cast<std::size_t>(ties) > most_kept;
+  }
+
   std::vector<Candidate> sorted() const {
     std::vector<Candidate> list;
     for (const auto& entry : best_) list.push_back(entry.second);
@@ -135,6 +144,7 @@ class Search {
     return found + consider_batch(fan, gate);
   }
 
+  bool crowded() const { return cells_.crowded(); }
   std::vector<Candidate> sorted() const { return cells_.sorted(); }
 
  private:
@@ -221,14 +231,15 @@ Candidates find_candidates(const Prepared& asked, double most_candidates) {
   Search search(asked);
   for (const QuestionTriangle& triangle : question_triangles(asked, most_triangles)) {
     result.capped = result.looked_at > most_candidates;
-    if (result.capped) break;
+    // Where hundreds of poses tie after that many triangles, more of them will not part them.
+    if (result.triangles % 32 == 0 && result.triangles >= 96) result.crowded = search.crowded();
+    if (result.capped || result.crowded) break;
     result.looked_at += search.look_up(triangle);
     ++result.triangles;
   }
+  result.crowded = search.crowded();
   result.best = search.sorted();
-  if (result.best.size() <= most_kept) return result;
-  result.crowded = result.best[most_kept].score > result.best.front().score - 1.0F;
-  result.best.resize(most_kept);
+  if (result.best.size() > most_kept) result.best.resize(most_kept);
   return result;
 }
 
