@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // How often a constellation finds itself in a map without a prior, how often wrongly, and at what cost.
-//   helixnav_relocalize_study absent SEED [questions a world = 2000]   places that the map does not have
+//   helixnav_relocalize_study absent SEED [questions a cell = 2000]    places that the map does not have
+//   helixnav_relocalize_study orchards SEED [questions = 2000]         the same in orchards of several pitches and jitters
 //   helixnav_relocalize_study present SEED [questions a cell = 600]    places that it has, some of them changed
 //   helixnav_relocalize_study size SEED [questions a cell = 50]        maps of 10⁴, 10⁵ and 10⁶ landmarks
 //   helixnav_relocalize_study one SEED WORLD N n CHANGE NOISE CLUTTER JITTER GAPS QUESTIONS present|absent
@@ -116,6 +117,11 @@ std::vector<Cell> absent_cells(int questions) {
   for (const char* name : {"uniform", "town"})
     for (const std::size_t n : {6U, 10U, 20U}) cells.push_back({{name}, {n}, true, questions, 1});
   for (const std::size_t n : {10U, 20U}) cells.push_back({{"avenues", 10000, 0.3}, {n}, true, questions / 2, 1});
+  return cells;
+}
+
+std::vector<Cell> orchard_cells(int questions) {
+  std::vector<Cell> cells;
   for (const char* name : {"rectangular", "hexagonal"})
     for (const double scale : {0.8, 1.0, 1.4})
       for (const double jitter_m : {0.0, 0.1, 0.3})
@@ -167,10 +173,11 @@ std::vector<Cell> cells_of(int count, char** arguments) {
   const std::string what = count > 2 ? arguments[1] : "";
   const auto questions = [&](int otherwise) { return count > 3 ? std::atoi(arguments[3]) : otherwise; };
   if (what == "absent") return absent_cells(questions(2000));
+  if (what == "orchards") return orchard_cells(questions(2000));
   if (what == "present") return present_cells(questions(600));
   if (what == "size") return size_cells(questions(50));
   if (what == "one" && count == 13) return {one_cell(arguments + 3)};
-  throw std::runtime_error("usage: absent|present|size SEED [QUESTIONS], or one SEED with ten values");
+  throw std::runtime_error("usage: absent|orchards|present|size SEED [QUESTIONS], or one SEED with ten values");
 }
 
 }  // namespace

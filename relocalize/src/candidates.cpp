@@ -36,8 +36,8 @@ class PoseCells {
   bool crowded() const {
     float best = 0.0F;
     for (const auto& entry : best_) best = std::max(best, entry.second.score);
-    const auto ties = std::count_if(best_.begin(), best_.end(),
-                                    [&](const auto& entry) { return entry.second.score > best - 1.0F; });
+    const auto ties =
+        std::count_if(best_.begin(), best_.end(), [&](const auto& entry) { return entry.second.score > best - 1.0F; });
     return static_cast<std::size_t>(ties) > most_kept;
   }
 

@@ -74,7 +74,8 @@ TEST(Ask, DoesNotDependOnTheFrameOfTheBranch) {
   const test::Asked asked = test::ask_somewhere(world, {20, 0.3}, random);
   Question moved = asked.question;
   const core::Pose2 T_new_branch(40.0, -7.0, 2.2);
-  for (Landmark& landmark : moved.landmarks) landmark.point.mean_m = core::transform(T_new_branch, landmark.point.mean_m);
+  for (Landmark& landmark : moved.landmarks)
+    landmark.point.mean_m = core::transform(T_new_branch, landmark.point.mean_m);
   for (Disc& disc : moved.looked) disc.centre_m = core::transform(T_new_branch, disc.centre_m);
   const MapIndex index = test::index_of(world, options);
   const Place there = ask(index, moved).places.front();
@@ -129,7 +130,8 @@ TEST(Ask, UsesALongAndThinCovarianceWhereARoundOneMisleads) {
   }
   const MapIndex index = test::index_of(world, options);
   const Answer thin = ask(index, asked.question);
-  for (Landmark& landmark : asked.question.landmarks) landmark.point.covariance_m2 = 0.001 * Eigen::Matrix2d::Identity();
+  for (Landmark& landmark : asked.question.landmarks)
+    landmark.point.covariance_m2 = 0.001 * Eigen::Matrix2d::Identity();
   const Answer round = ask(index, asked.question);
   EXPECT_EQ(thin.verdict, Verdict::closed);
   EXPECT_FALSE(test::wrong(asked, thin.places.front().T_map_branch));

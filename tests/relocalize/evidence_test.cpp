@@ -19,7 +19,8 @@ constexpr IndexOptions options = {30.0, 0.1};
 /// Seven landmarks of a map and a branch that sees five of them and a foreign one, with noise that is not round.
 struct SmallCase {
   SmallCase() {
-    const test::Points points = {{52.0, 41.0}, {60.5, 44.0}, {57.0, 52.5}, {48.0, 50.0}, {66.0, 51.0}, {50.0, 60.0}, {61.0, 61.5}};
+    const test::Points points = {{52.0, 41.0}, {60.5, 44.0}, {57.0, 52.5}, {48.0, 50.0},
+                                 {66.0, 51.0}, {50.0, 60.0}, {61.0, 61.5}};
     core::RandomStream random(1);
     Eigen::Matrix2d covariance;
     covariance << 0.006, 0.002, 0.002, 0.003;
@@ -28,7 +29,8 @@ struct SmallCase {
     const core::Pose2 T_branch_map = core::inverse(T_map_branch);
     for (const std::size_t seen : {0U, 1U, 2U, 3U, 4U}) {
       const Eigen::Vector2d noise(0.1 * random.normal(), 0.05 * random.normal());
-      Landmark landmark = test::landmark(static_cast<int>(seen), core::transform(T_branch_map, points[seen] + noise), 0.07);
+      Landmark landmark =
+          test::landmark(static_cast<int>(seen), core::transform(T_branch_map, points[seen] + noise), 0.07);
       landmark.point.covariance_m2(0, 0) = 0.009;
       question.landmarks.push_back(landmark);
     }
@@ -60,7 +62,8 @@ double likelihood_ratio(const SmallCase& world, const core::Pose2& T) {
   // weight[m]: sum over all assignments with m pairs of Π N(map − T·seen; 0, V) / density
   std::vector<double> weight(seen.size() + 1, 0.0);
   std::vector<bool> taken(world.map.size(), false);
-  const std::function<void(std::size_t, std::size_t, double)> assign = [&](std::size_t i, std::size_t pairs, double product) {
+  const std::function<void(std::size_t, std::size_t, double)> assign = [&](std::size_t i, std::size_t pairs,
+                                                                           double product) {
     if (i == seen.size()) {
       weight[pairs] += product;
       return;
@@ -107,8 +110,8 @@ TEST(Evidence, IsTheIntegralOverAllPosesOfTheSumOverAllAssignments) {
   for (int a = -half; a <= half; ++a)
     for (int b = -half; b <= half; ++b)
       for (int c = -half; c <= half; ++c)
-        sum += likelihood_ratio(
-            world, core::Pose2(best.T_map_branch.vector() + root * (step * Eigen::Vector3d(a, b, c))));
+        sum +=
+            likelihood_ratio(world, core::Pose2(best.T_map_branch.vector() + root * (step * Eigen::Vector3d(a, b, c))));
   const double integral = sum * std::pow(step, 3) * root.determinant();
   EXPECT_NEAR(best.evidence, std::log(integral / (2.0 * core::pi * index.looked_at_m2())), 0.05);
 }
