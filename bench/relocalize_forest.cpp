@@ -382,8 +382,7 @@ void run(const Study& study) {
     for (const MapState& candidate : study.states)
       if (candidate.driven_m <= study.scans[s].driven_m - apart_drive_m) state = &candidate;
     if (state == nullptr || state->trees_m.size() < 30) continue;
-    if (state != before)
-      index = std::make_unique<relocalize::MapIndex>(index_of(*state, study.pair_noise_m));
+    if (state != before) index = std::make_unique<relocalize::MapIndex>(index_of(*state, study.pair_noise_m));
     ask_at(study, s, *state, *index, sum);
   }
   std::fprintf(

@@ -5,6 +5,7 @@
 //   helixnav_relocalize_study orchards SEED [questions = 2000]         the same in orchards of several pitches and jitters
 //   helixnav_relocalize_study present SEED [questions a cell = 600]    places that it has, some of them changed
 //   helixnav_relocalize_study size SEED [questions a cell = 50]        maps of 10⁴, 10⁵ and 10⁶ landmarks
+//   helixnav_relocalize_study told SEED [questions a cell = 300]       no prior, a true one, a wrong one; two kinds, four; absent
 //   helixnav_relocalize_study one SEED WORLD N n CHANGE NOISE CLUTTER JITTER GAPS QUESTIONS present|absent
 // Times are processor time of the one thread that asks.
 #include <algorithm>
@@ -12,7 +13,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <exception>
-#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct Cell {
   bool absent = false;  ///< the question is of another world of the same kind
   int questions = 600;
   int worlds = 1;
+  std::optional<double> prior_off_m = std::nullopt;  ///< a prior of 2 m and 3 degrees whose mean is wrong by this much
 };
 
 double processor_s() {
@@ -44,6 +46,22 @@ struct Tally {
   std::size_t bytes = 0, landmarks = 0;
   double build_s = 0.0;
 };
+
+/// The prior speaks of the middle of what was asked: the branch's frame is moved there.
+void believe(test::Asked& asked, double off_m) {
+  const core::Pose2 T_branch_middle(asked.question.looked.front().centre_m.x(),
+                                    asked.question.looked.front().centre_m.y(), 0.0);
+  const core::Pose2 T_middle_branch = core::inverse(T_branch_middle);
+  for (Landmark& landmark : asked.question.landmarks)
+    landmark.point.mean_m = core::transform(T_middle_branch, landmark.point.mean_m);
+  asked.question.looked.front().centre_m.setZero();
+  asked.T_map_branch = core::compose(asked.T_map_branch, T_branch_middle);
+  Prior prior;
+  prior.T_map_branch.mean = asked.T_map_branch;
+  prior.T_map_branch.mean.x_m += off_m;
+  prior.T_map_branch.covariance = Eigen::Vector3d(4.0, 4.0, 0.0025).asDiagonal();
+  asked.question.prior = prior;
+}
 
 void take(const test::Asked& asked, const Answer& answer, bool absent, Tally& tally) {
   ++tally.asked;
@@ -74,13 +92,14 @@ Tally run(const Cell& cell, std::uint64_t seed) {
     smaller.landmarks = std::min<std::size_t>(smaller.landmarks, 20000);
     const test::Points& from = cell.absent ? test::world_of(smaller, other) : world;
     const double begun_s = processor_s();
-    const MapIndex index = test::index_of(world, {30.0, cell.asking.noise_m});
+    const MapIndex index = test::index_of(world, {30.0, cell.asking.noise_m}, cell.asking.kinds);
     tally.build_s += processor_s() - begun_s;
     tally.bytes += index.memory_bytes();
     tally.landmarks += index.size();
     for (int q = w; q < cell.questions; q += cell.worlds) {
       core::RandomStream stream(seed, "question " + std::to_string(q));
-      const test::Asked asked = test::ask_somewhere(from, cell.asking, stream);
+      test::Asked asked = test::ask_somewhere(from, cell.asking, stream);
+      if (cell.prior_off_m) believe(asked, *cell.prior_off_m);
       const double asked_s = processor_s();
       const Answer answer = ask(index, asked.question);
       const double took_s = processor_s() - asked_s;
@@ -154,6 +173,20 @@ std::vector<Cell> size_cells(int questions) {
   return cells;
 }
 
+/// What priors (true, and wrong by 40 m where 2 m are told) and kinds add where geometry alone is not enough.
+std::vector<Cell> told_cells(int questions) {
+  std::vector<Cell> cells(5, {{"uniform"}, {10, 0.3}, false, questions, 1, {}});
+  cells[1].prior_off_m = 0.0;
+  cells[2].prior_off_m = 40.0;
+  cells[3].asking.kinds = 2;
+  cells[4].asking.kinds = 4;
+  for (const int kinds : {2, 4}) {
+    cells.push_back({{"uniform"}, {10}, true, questions, 1, {}});
+    cells.back().asking.kinds = kinds;
+  }
+  return cells;
+}
+
 Cell one_cell(char** argument) {
   Cell cell;
   cell.kind.name = argument[0];
@@ -175,9 +208,10 @@ std::vector<Cell> cells_of(int count, char** arguments) {
   if (what == "absent") return absent_cells(questions(2000));
   if (what == "orchards") return orchard_cells(questions(2000));
   if (what == "present") return present_cells(questions(600));
+  if (what == "told") return told_cells(questions(300));
   if (what == "size") return size_cells(questions(50));
   if (what == "one" && count == 13) return {one_cell(arguments + 3)};
-  throw std::runtime_error("usage: absent|orchards|present|size SEED [QUESTIONS], or one SEED with ten values");
+  throw std::runtime_error("usage: absent|orchards|present|told|size SEED [QUESTIONS], or one SEED with ten values");
 }
 
 }  // namespace

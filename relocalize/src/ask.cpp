@@ -31,8 +31,20 @@ Place place_of(const Prepared& asked, const Hypothesis& h) {
   return place;
 }
 
-/// Mean excess of the rivals' evidence over that of the twentieth place, or over nothing; two of 1 nat are taken as seen.
-double rival_scale(const std::vector<Place>& places) {
+/// How much evidence rivals have by chance: their mean excess over the twentieth place, or over nothing; two of 1 nat are
+/// taken as seen.
+struct RivalScale {
+  double mean = 1.0;
+  double known_from = 0.0;  ///< rivals; 0 where places do not look alike and theory says 1
+
+  /// −ln of the probability that chance leads by this much. A mean that was itself estimated from k exponential rivals makes
+  /// it (1 + lead / (k·mean))^−k in place of an exponential.
+  double score(double lead) const {
+    return known_from > 0.0 ? known_from * std::log1p(lead / (known_from * mean)) : lead / mean;
+  }
+};
+
+RivalScale rival_scale(const std::vector<Place>& places) {
   const bool full = places.size() == most_places;
   const double floor = full ? std::max(0.0, places.back().evidence) : 0.0;
   double sum = 2.0;
@@ -42,7 +54,7 @@ double rival_scale(const std::vector<Place>& places) {
     sum += places[i].evidence - floor;
     ++count;
   }
-  return std::max(1.0, sum / count);
+  return {std::max(1.0, sum / count), floor > 0.0 ? count : 0.0};
 }
 
 Verdict decide(const Answer& answer, double alpha) {
@@ -79,9 +91,10 @@ Answer ask(const MapIndex& map, const Question& question, const AskOptions& opti
   answer.crowded = candidates.crowded;
   for (const Hypothesis& h : find_places(asked, candidates.best)) answer.places.push_back(place_of(asked, h));
   if (answer.places.empty()) return answer;
-  answer.rival_scale = rival_scale(answer.places);
+  const RivalScale scale = rival_scale(answer.places);
+  answer.rival_scale = scale.mean;
   const double rival = answer.places.size() > 1 ? std::max(0.0, answer.places[1].evidence) : 0.0;
-  answer.gap = (answer.places.front().evidence - rival) / answer.rival_scale;
+  answer.gap = scale.score(answer.places.front().evidence - rival);
   answer.verdict = decide(answer, options.alpha);
   return answer;
 }

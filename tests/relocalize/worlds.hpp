@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,16 +46,25 @@ inline Landmark landmark(core::LandmarkId id, const Eigen::Vector2d& point_m, do
   return result;
 }
 
+/// Kinds 0 … kinds − 1 as if drawn; none for kinds = 0.
+inline std::optional<int> kind_of(std::size_t index, int kinds) {
+  if (kinds == 0) return std::nullopt;
+  return static_cast<int>((index * 2654435761U >> 7U) % static_cast<std::size_t>(kinds));
+}
+
 /// Map and query share the noise of a pair evenly.
-inline std::vector<Landmark> landmarks(const Points& points, double pair_noise_m) {
+inline std::vector<Landmark> landmarks(const Points& points, double pair_noise_m, int kinds = 0) {
   std::vector<Landmark> list;
-  for (const Eigen::Vector2d& point : points)
-    list.push_back(landmark(static_cast<core::LandmarkId>(list.size()), point, std::sqrt(0.5) * pair_noise_m));
+  for (const Eigen::Vector2d& point : points) {
+    const std::size_t index = list.size();
+    list.push_back(landmark(static_cast<core::LandmarkId>(index), point, std::sqrt(0.5) * pair_noise_m));
+    list.back().kind = kind_of(index, kinds);
+  }
   return list;
 }
 
-inline MapIndex index_of(const Points& points, const IndexOptions& options) {
-  MapIndex index(options, landmarks(points, options.pair_noise_m));
+inline MapIndex index_of(const Points& points, const IndexOptions& options, int kinds = 0) {
+  MapIndex index(options, landmarks(points, options.pair_noise_m, kinds));
   index.look_around_landmarks();
   return index;
 }
@@ -72,6 +82,7 @@ struct Asking {
   double change = 0.0;   ///< share replaced; their old selves stay in the map
   double clutter = 0.0;  ///< foreign ones added, as a share of `landmarks`
   double noise_m = 0.1;  ///< of the difference of a pair; all of it is put on the question
+  int kinds = 0;         ///< told of each landmark, wrongly for one in twenty
 };
 
 inline Asked ask_somewhere(const Points& world, const Asking& asking, core::RandomStream& random) {
@@ -91,6 +102,11 @@ inline Asked ask_somewhere(const Points& world, const Asking& asking, core::Rand
     asked.question.landmarks.push_back(
         landmark(id, core::transform(T_branch_map, point_m), std::sqrt(0.5) * asking.noise_m));
     asked.truth.push_back(index);
+    if (asking.kinds == 0) return;
+    const bool told_wrongly = index < 0 || random.bernoulli(0.05);
+    asked.question.landmarks.back().kind =
+        told_wrongly ? static_cast<int>(random.below(static_cast<std::uint64_t>(asking.kinds)))
+                     : *kind_of(static_cast<std::size_t>(index), asking.kinds);
   };
   const auto foreign = [&] {
     const double r_m = asked.radius_m * std::sqrt(random.uniform());

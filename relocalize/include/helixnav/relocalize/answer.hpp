@@ -41,8 +41,10 @@ struct Answer {
   Verdict verdict = Verdict::not_here;
   std::vector<Place> places;  ///< different ones by falling evidence, at most 20; the first is the answer
   double rival_scale =
-      1.0;           ///< β: how much evidence rivals have by chance here, in nats; 1 where places do not look alike
-  double gap = 0.0;  ///< lead of the first place over its best rival (over 0 when there is none), in units of β
+      1.0;  ///< β: how much evidence rivals have by chance here, in nats; 1 where places do not look alike
+  /// Lead of the first place over its best rival (over 0 when there is none), in units of β and less where β is known from
+  /// the rivals only: −ln of the probability that chance leads so far.
+  double gap = 0.0;
   std::size_t triangles = 0;  ///< of the question that were looked up
   double candidates = 0.0;    ///< triangles of the map that had the sides of one of these
   bool capped = false;        ///< the limit of candidates ended the search

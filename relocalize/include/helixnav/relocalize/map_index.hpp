@@ -21,8 +21,8 @@ struct IndexOptions {
 /// and discs given and not on the order of calls, but for the rounding of positions to 1e-7 of the distance from the first.
 /// At most 2²⁴ landmarks, within 4e5 pair noises of the first.
 ///
-/// Cost: about 20 µs an insertion or removal, of which the bins are rebuilt whenever the map has almost doubled; below
-/// 200 bytes a landmark. Equations: docs/relocalize.md. Test: relocalize/map_index_test.cpp (equals brute force and an index
+/// Cost: about 20 µs an insertion or removal, over and above which the bins are rebuilt whenever the map has almost doubled;
+/// below 200 bytes a landmark from some thousands on. Equations: docs/relocalize.md. Test: relocalize/map_index_test.cpp (equals brute force and an index
 /// built anew after any calls).
 class MapIndex {
  public:
