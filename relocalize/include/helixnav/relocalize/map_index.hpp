@@ -22,8 +22,8 @@ struct IndexOptions {
 /// At most 2²⁴ landmarks, within 4e5 pair noises of the first.
 ///
 /// Cost: about 20 µs an insertion or removal, over and above which the bins are rebuilt whenever the map has almost doubled;
-/// below 200 bytes a landmark from some thousands on, 16 more with kinds or sizes. Equations: docs/relocalize.md. Test: relocalize/map_index_test.cpp (equals brute force and an index
-/// built anew after any calls).
+/// below 200 bytes a landmark from some thousands on, 16 more with kinds or sizes. Equations: docs/relocalize.md.
+/// Test: relocalize/map_index_test.cpp (equals brute force and an index built anew after any calls).
 class MapIndex {
  public:
   /// PreconditionError unless both lengths are positive and the reach is at least 20 pair noises.
