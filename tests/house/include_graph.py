@@ -8,7 +8,8 @@ import re
 import sys
 from pathlib import Path
 
-ESTIMATORS = {"core", "association", "cekf", "pf_relocalize", "smoothing", "localization", "fastslam", "supervisor"}
+ESTIMATORS = {"core", "association", "cekf", "pf_relocalize", "smoothing", "localization", "fastslam", "relocalize",
+              "supervisor"}
 SEE_MRPT = {"mrpt_adapter", "apps"}
 TRUTH = "helixnav/core/recording.hpp"
 FILES_AND_SCREENS = {"iostream", "fstream", "filesystem"}

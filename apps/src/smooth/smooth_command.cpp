@@ -129,7 +129,6 @@ void add_smooth_command(CLI::App& app, ExitCode& code) {
   command->add_option("--max-seconds", job->max_seconds, "Stop at the best solution found after so long")
       ->check(number_between(0.001, 1e6))
       ->capture_default_str();
-  command->add_flag("--quiet", job->run.quiet, "No progress line");
   command->add_option("--max-iterations", job->max_iterations, "Give up after so many")
       ->check(number_between(1, 100000))
       ->capture_default_str();

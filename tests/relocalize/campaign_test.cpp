@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Small campaigns of one seed each; docs/relocalize.md has the large ones.
+#include <gtest/gtest.h>
+
+#include "worlds.hpp"
+
+namespace helixnav::relocalize {
+namespace {
+
+constexpr IndexOptions options = {30.0, 0.1};
+
+struct Tally {
+  int right = 0, wrong = 0, ambiguous = 0;
+};
+
+Tally campaign(const test::Points& map, const test::Points& asked_world, const test::Asking& asking, int questions,
+               std::uint64_t seed) {
+  const bool absent = &map != &asked_world;
+  const MapIndex index = test::index_of(map, options);
+  Tally tally;
+  for (int q = 0; q < questions; ++q) {
+    core::RandomStream random(seed, "question " + std::to_string(q));
+    const test::Asked asked = test::ask_somewhere(asked_world, asking, random);
+    const Answer answer = ask(index, asked.question);
+    tally.ambiguous += answer.verdict == Verdict::ambiguous ? 1 : 0;
+    if (answer.verdict != Verdict::closed) continue;
+    const bool wrong = absent || test::wrong(asked, answer.places.front().T_map_branch);
+    ++(wrong ? tally.wrong : tally.right);
+  }
+  return tally;
+}
+
+TEST(Campaign, AcceptsNoneOfFourHundredAbsentPlaces) {
+  core::RandomStream random(11);
+  const test::Points map = test::uniform_world(2000, random);
+  const test::Points elsewhere = test::uniform_world(2000, random);
+  for (const std::size_t n : {10U, 20U}) EXPECT_EQ(campaign(map, elsewhere, {n}, 200, 11).wrong, 0);
+}
+
+TEST(Campaign, ClosesTwentyLandmarksAtThirtyPercentChangeAndTenAtNone) {
+  core::RandomStream random(12);
+  const test::Points map = test::uniform_world(2000, random);
+  // 0.99 of 100 are asked for: fewer than 94 have a probability below 1e-4.
+  const Tally changed = campaign(map, map, {20, 0.3}, 100, 12);
+  EXPECT_GE(changed.right, 94);
+  EXPECT_EQ(changed.wrong, 0);
+  const Tally few = campaign(map, map, {10}, 100, 13);
+  EXPECT_GE(few.right, 97);
+  EXPECT_EQ(few.wrong, 0);
+}
+
+TEST(Campaign, ClosesNothingInALattice) {
+  for (const bool hexagonal : {false, true}) {
+    core::RandomStream random(14);
+    const test::Points map = test::orchard(400, hexagonal, 0.0, random);
+    const Tally present = campaign(map, map, {20}, 5, 14);
+    EXPECT_EQ(present.right + present.wrong, 0);
+    EXPECT_EQ(present.ambiguous, 5);
+    const test::Points elsewhere = test::orchard(400, hexagonal, 0.1, random);
+    EXPECT_EQ(campaign(map, elsewhere, {20}, 5, 15).wrong, 0);
+  }
+}
+
+}  // namespace
+}  // namespace helixnav::relocalize
