@@ -20,13 +20,19 @@ struct Candidate {
   double log_likelihood = 0.0;  ///< ln N(ν; 0, S)
 };
 
+/// A lineage that an observation, or the view, of some particle of a block may concern.
+struct Neighbour {
+  LineageId id = 0;
+  float reach_m = 0.0F;
+  Eigen::Vector2d anchor_m;
+};
+
 /// Memory that one worker uses over and over.
 struct AssociationScratch {
-  std::vector<std::vector<LineageId>> near;  ///< [observation] lineages that may be its own, for a block of hypotheses
-  std::vector<LineageId> in_reach;           ///< lineages that may be in view
+  std::vector<std::vector<Neighbour>> near;  ///< [observation] lineages that may be its own, for a block of hypotheses
+  std::vector<Neighbour> in_reach;           ///< lineages that may be in view
   std::vector<Candidate> candidates, pairs;
   std::vector<double> nearest_nis, share;
-  std::vector<LineageId> taken;
   HypothesisSet children;
 };
 
@@ -66,11 +72,13 @@ class Associator {
     Symmetric2 S;
     double determinant, nis;
   };
-  Innovation innovation(const Hypothesis& h, const TurnedPose& pose, const Eigen::Vector2d& landmark_m,
-                        const Symmetric2& landmark_m2, const PreparedObservation& z) const;
+  Innovation innovation(const Hypothesis& h, const Eigen::Vector2d& landmark_m, const Symmetric2& landmark_m2,
+                        const PreparedObservation& z) const;
   Eigen::Vector2d place_m(LineageId id, const LandmarkRecord& landmark) const {
     return lineages_.anchor_m(id) + Eigen::Vector2d(landmark.dx_m, landmark.dy_m);
   }
+  std::vector<Neighbour>& neighbours(const Eigen::Vector2d& low_m, const Eigen::Vector2d& high_m, double margin_m,
+                                     std::vector<Neighbour>& out) const;
   double spread_m2(const Hypothesis& h, const PreparedObservation& z) const;
   void find_candidates(const Hypothesis& h, std::size_t observation, double gate, bool likelihood,
                        AssociationScratch& scratch) const;
@@ -94,7 +102,7 @@ inline constexpr double search_slack = 1.3;
 
 /// What a landmark's own uncertainty adds to how far it may be found from its estimate.
 inline double search_reach_m(const Options& options, const LandmarkRecord& landmark) {
-  const double farthest = std::fmax(options.match_gate, options.new_gate);
+  const double farthest = std::max(options.match_gate, options.new_gate);
   return std::sqrt(search_slack * farthest * landmark.covariance_m2().trace());
 }
 

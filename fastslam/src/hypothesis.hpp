@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+#include "scan_model.hpp"
+
 namespace helixnav::fastslam {
 
 /// What an observation was taken for: a lineage, or one of these.
@@ -18,6 +20,7 @@ inline constexpr Choice of_nothing = -2;  ///< spurious, ambiguous, or not looke
 struct Hypothesis {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   Eigen::Matrix3d P = Eigen::Matrix3d::Zero();
+  TurnedPose pose;  ///< of x
   double log_weight = 0.0;
   std::uint32_t parent = 0;
 };

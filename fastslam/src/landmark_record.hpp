@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -43,7 +44,7 @@ struct LandmarkRecord {
     const double a = std::sqrt(P.xx), b = P.xy / a;
     l11_m = static_cast<float>(a);
     l21_m = static_cast<float>(b);
-    l22_m = static_cast<float>(std::sqrt(std::fmax(P.yy - b * b, 1e-12 * P.yy)));
+    l22_m = static_cast<float>(std::sqrt(std::max(P.yy - b * b, 1e-12 * P.yy)));
   }
 };
 static_assert(sizeof(LandmarkRecord) == 32, "eight of these make a leaf of the map");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -50,8 +51,8 @@ class Lineages {
         for (std::uint32_t id = buckets_[bucket(column, row)]; id != none; id = lineages_[id].next) {
           const Lineage& l = lineages_[id];
           if (cell(l.x_m) != column || cell(l.y_m) != row) continue;  // of another cell with the same bucket
-          const double beside_x = std::fmax(std::fmax(low_m.x() - l.x_m, l.x_m - high_m.x()), 0.0);
-          const double beside_y = std::fmax(std::fmax(low_m.y() - l.y_m, l.y_m - high_m.y()), 0.0);
+          const double beside_x = std::max(std::max(low_m.x() - l.x_m, l.x_m - high_m.x()), 0.0);
+          const double beside_y = std::max(std::max(low_m.y() - l.y_m, l.y_m - high_m.y()), 0.0);
           const double within_m = margin_m + static_cast<double>(l.reach_m);
           if (beside_x * beside_x + beside_y * beside_y <= within_m * within_m) f(id);
         }

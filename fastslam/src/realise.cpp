@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/LU>
+
 #include "associate.hpp"
 
 namespace helixnav::fastslam {
@@ -71,9 +73,7 @@ void MapUpdate::update(const TurnedPose& pose, LineageId id, const PreparedObser
   const Eigen::Matrix2d S = pair.H_point * PHt + z.R;
   const Eigen::Matrix2d K = PHt * S.inverse();
   const Eigen::Vector2d step = K * pair.nu;
-  // Joseph's form: rounding cannot make it indefinite.
-  const Eigen::Matrix2d I_KH = Eigen::Matrix2d::Identity() - K * pair.H_point;
-  const Eigen::Matrix2d after = I_KH * P * I_KH.transpose() + K * z.R * K.transpose();
+  const Eigen::Matrix2d after = P - K * PHt.transpose();
   landmark.dx_m += static_cast<float>(step.x());
   landmark.dy_m += static_cast<float>(step.y());
   landmark.set_covariance_m2({after(0, 0), 0.5 * (after(0, 1) + after(1, 0)), after(1, 1)});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -64,10 +65,19 @@ inline PreparedScan prepare(const core::Scan& scan) {
   return out;
 }
 
+/// atan2(y, x), by its series where the angle is small: as exact, and several times faster.
+inline double angle_of(double y, double x) {
+  if (!(std::abs(y) < 0.1 * x)) return std::atan2(y, x);
+  const double t = y / x, q = t * t;
+  const double tail = 1.0 / 9.0 - q * (1.0 / 11.0 - q * (1.0 / 13.0 - q / 15.0));
+  return t * (1.0 - q * (1.0 / 3.0 - q * (1.0 / 5.0 - q * (1.0 / 7.0 - q * tail))));
+}
+
 /// A pose with the sine and cosine of its heading.
 struct TurnedPose {
-  double x_m, y_m, c, s;
+  double x_m = 0.0, y_m = 0.0, c = 1.0, s = 0.0;
 
+  TurnedPose() = default;
   explicit TurnedPose(const Eigen::Vector3d& pose)
       : x_m(pose[0]), y_m(pose[1]), c(std::cos(pose[2])), s(std::sin(pose[2])) {}
   Eigen::Vector2d turn(const Eigen::Vector2d& v) const { return {c * v.x() - s * v.y(), s * v.x() + c * v.y()}; }
@@ -89,9 +99,9 @@ inline Pair compare(const PreparedScan& scan, const PreparedObservation& z, cons
   const Eigen::Vector2d arm = pose.turn(scan.sensor_robot_m);
   const double dx = landmark_m.x() - pose.x_m - arm.x(), dy = landmark_m.y() - pose.y_m - arm.y();
   if (z.polar) {
-    const double q = std::fmax(dx * dx + dy * dy, 1e-12), r = std::sqrt(q);
+    const double q = std::max(dx * dx + dy * dy, 1e-12), r = std::sqrt(q);
     const Eigen::Vector2d to = pose.turn(z.direction_robot);
-    out.nu << z.range_m - r, std::atan2(dx * to.y() - dy * to.x(), dx * to.x() + dy * to.y());
+    out.nu << z.range_m - r, angle_of(dx * to.y() - dy * to.x(), dx * to.x() + dy * to.y());
     out.H_point << dx / r, dy / r, -dy / q, dx / q;
     out.H_pose.leftCols<2>() = -out.H_point;
     out.H_pose(0, 2) = (dx * arm.y() - dy * arm.x()) / r;

@@ -95,7 +95,7 @@ std::vector<LineageId> FastSlam::Impl::begin_lineages(const PreparedScan& scan, 
     const auto bears = [&](std::uint32_t h) { return set.choices_of(h)[j] == begins_landmark; };
     const auto first = std::find_if(chosen.begin(), chosen.end(), bears);
     if (first == chosen.end()) continue;
-    births[j] = lineages.add(TurnedPose(set.all[*first].x).place(scan.observations[j].point_robot_m));
+    births[j] = lineages.add(set.all[*first].pose.place(scan.observations[j].point_robot_m));
     if (names == nullptr) continue;
     named[(*names)[j]] = births[j];
     names_of_lineages[births[j]] = (*names)[j];

@@ -83,6 +83,7 @@ void FastSlam::Impl::propose(const Robot& robot, const core::Odometry& motion, s
       core::Pose2 moved = motion.T_before_after;
       if (draws) moved = core::Pose2(moved.vector() + L * normals[i]);
       h.x = core::compose(robot.poses[i], moved).vector();
+      h.pose = TurnedPose(h.x);
       if (draws) {
         h.P.setZero();
         continue;
