@@ -126,7 +126,8 @@ std::vector<Method> log_methods(bool known) {
       {"FS2 mht", false, two, Association::multiple_hypotheses},
   };
   for (Method& m : methods) m.weigh_unseen = false;
-  methods.push_back({"FS1 mht, no middle zone", false, one, Association::multiple_hypotheses, true, false, false, false});
+  methods.push_back(
+      {"FS1 mht, no middle zone", false, one, Association::multiple_hypotheses, true, false, false, false});
   methods.push_back({"FS2 lr, view term", false, two, Association::likelihood_ratio});
   return methods;
 }
@@ -140,9 +141,11 @@ fastslam::Options log_options(const StudySettings& settings, std::size_t particl
 }
 
 void print_navigator(const LogScore& s) {
-  std::printf("  %-26s RMSE %.3f m, median %.3f m (%zu fixes, %zu beyond 10 m), beacons %d at %.3f m, mature %d, %.0f us a scan\n",
-              "compressed EKF", s.path.rmse_m, s.path.median_m, s.path.used, s.path.beyond, s.found, s.beacon_rmse_m,
-              s.mapped, s.scan_us);
+  std::printf(
+      "  %-26s RMSE %.3f m, median %.3f m (%zu fixes, %zu beyond 10 m), beacons %d at %.3f m, mature %d, %.0f us a "
+      "scan\n",
+      "compressed EKF", s.path.rmse_m, s.path.median_m, s.path.used, s.path.beyond, s.found, s.beacon_rmse_m, s.mapped,
+      s.scan_us);
   std::fflush(stdout);
 }
 
@@ -174,13 +177,16 @@ int run_car_park(const StudySettings& settings, bool known) {
     if (known) options.existence.remove = false;
     std::vector<double> rmse, beacons, found, mapped, us;
     for (int seed = 1; seed <= seeds; ++seed) {
-      const LogScore s = run_particles(recording, end_ns, options, known ? &names : nullptr, static_cast<std::uint64_t>(seed));
+      const LogScore s =
+          run_particles(recording, end_ns, options, known ? &names : nullptr, static_cast<std::uint64_t>(seed));
       rmse.push_back(s.path.rmse_m), beacons.push_back(s.beacon_rmse_m);
       found.push_back(s.found), mapped.push_back(s.mapped), us.push_back(s.scan_us);
     }
-    std::printf("  %-26s RMSE %.3f [%.3f .. %.3f] m, beacons %.3f [%.3f .. %.3f] m, found %.2f (least %.0f), mature %.1f, %.0f us\n",
-                method.name.c_str(), mean(rmse), quantile(rmse, 0.0), quantile(rmse, 1.0), mean(beacons),
-                quantile(beacons, 0.0), quantile(beacons, 1.0), mean(found), quantile(found, 0.0), mean(mapped), mean(us));
+    std::printf(
+        "  %-26s RMSE %.3f [%.3f .. %.3f] m, beacons %.3f [%.3f .. %.3f] m, found %.2f (least %.0f), mature %.1f, %.0f "
+        "us\n",
+        method.name.c_str(), mean(rmse), quantile(rmse, 0.0), quantile(rmse, 1.0), mean(beacons),
+        quantile(beacons, 0.0), quantile(beacons, 1.0), mean(found), quantile(found, 0.0), mean(mapped), mean(us));
     std::fflush(stdout);
   }
   return 0;
@@ -204,10 +210,13 @@ int run_victoria_park(const StudySettings& settings, double until_s, const std::
     options.hypotheses.resample_every_scans = 1;
     options.hypotheses.most_children = 4;
     for (int seed = 1; seed <= seeds; ++seed) {
-      const LogScore s = run_particles(recording, until_ns, options, known ? &names : nullptr, static_cast<std::uint64_t>(seed));
-      std::printf("  %-26s seed %d RMSE %.3f m, median %.3f m (%zu fixes, %zu beyond), mature %d, ESS share %.2f, ancestors of 100 m ago %.1f, %.0f us a scan, p99 %.0f\n",
-                  method.name.c_str(), seed, s.path.rmse_m, s.path.median_m, s.path.used, s.path.beyond, s.mapped,
-                  s.effective_share, s.ancestors, s.scan_us, s.worst_percent_us);
+      const LogScore s =
+          run_particles(recording, until_ns, options, known ? &names : nullptr, static_cast<std::uint64_t>(seed));
+      std::printf(
+          "  %-26s seed %d RMSE %.3f m, median %.3f m (%zu fixes, %zu beyond), mature %d, ESS share %.2f, ancestors of "
+          "100 m ago %.1f, %.0f us a scan, p99 %.0f\n",
+          method.name.c_str(), seed, s.path.rmse_m, s.path.median_m, s.path.used, s.path.beyond, s.mapped,
+          s.effective_share, s.ancestors, s.scan_us, s.worst_percent_us);
       std::fflush(stdout);
     }
   }

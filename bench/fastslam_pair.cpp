@@ -62,9 +62,14 @@ PairWorld make_world(int run, bool one_return) {
   const double angle = random.uniform(0.0, core::pi);
   const Eigen::Vector2d half_m = 0.09 * Eigen::Vector2d(std::cos(angle), std::sin(angle));
   const core::Pose2 T_start_world = core::inverse(T_world_start);
-  for (const Eigen::Vector2d& p :
-       std::initializer_list<Eigen::Vector2d>{pair_m - half_m, pair_m + half_m, {-2.0, 0.0}, {10.0, 0.5}, {-1.5, 7.5},
-                                              {9.5, 8.0}, {4.0, -3.5}, {4.0, 12.0}}) {
+  for (const Eigen::Vector2d& p : std::initializer_list<Eigen::Vector2d>{pair_m - half_m,
+                                                                         pair_m + half_m,
+                                                                         {-2.0, 0.0},
+                                                                         {10.0, 0.5},
+                                                                         {-1.5, 7.5},
+                                                                         {9.5, 8.0},
+                                                                         {4.0, -3.5},
+                                                                         {4.0, 12.0}}) {
     world.landmarks_m.push_back(core::transform(T_start_world, p));
   }
   core::Pose2 truth;
@@ -185,14 +190,16 @@ int run_pair(const StudySettings& settings, bool one_return) {
     if (method.known()) options.existence.remove = false;
     for (int run = 0; run < runs; ++run) {
       const PairWorld world = make_world(run, one_return);
-      const Verdicts v = method.kalman ? run_kalman(world, method.known())
-                                       : run_particles(world, options, method.known(), run, us);
+      const Verdicts v =
+          method.kalman ? run_kalman(world, method.known()) : run_particles(world, options, method.known(), run, us);
       for (std::size_t at = 0; at < 2; ++at) two[at] += v[at].two, vector[at] += v[at].vector, near[at] += v[at].near;
       landmarks += v[1].landmarks / runs;
     }
-    std::printf("  %-24s two: lap 1 %-20s lap 3 %-20s | vector right: %3d, %-20s | both within 15 cm %3d, %3d | landmarks there %.2f, %.0f us\n",
-                method.name.c_str(), share(two[0], runs).c_str(), share(two[1], runs).c_str(), vector[0],
-                share(vector[1], runs).c_str(), near[0], near[1], landmarks, us / runs);
+    std::printf(
+        "  %-24s two: lap 1 %-20s lap 3 %-20s | vector right: %3d, %-20s | both within 15 cm %3d, %3d | landmarks "
+        "there %.2f, %.0f us\n",
+        method.name.c_str(), share(two[0], runs).c_str(), share(two[1], runs).c_str(), vector[0],
+        share(vector[1], runs).c_str(), near[0], near[1], landmarks, us / runs);
     std::fflush(stdout);
   }
   return 0;

@@ -95,7 +95,8 @@ inline double quantile(std::vector<double> v, double share_below) {
 inline core::Odometry unicycle(double speed_mps, double turn_radps, double duration_s, double sigma_speed,
                                double sigma_turn) {
   const double a = turn_radps * duration_s, d = speed_mps * duration_s;
-  const double along = std::abs(a) < 1e-9 ? 1.0 : std::sin(a) / a, beside = std::abs(a) < 1e-9 ? a / 2 : (1 - std::cos(a)) / a;
+  const double along = std::abs(a) < 1e-9 ? 1.0 : std::sin(a) / a,
+               beside = std::abs(a) < 1e-9 ? a / 2 : (1 - std::cos(a)) / a;
   core::Odometry odometry;
   odometry.T_before_after = core::Pose2(d * along, d * beside, a);
   Eigen::Matrix<double, 3, 2> J;
@@ -125,11 +126,12 @@ inline PathScore score_path(const std::vector<TimedPose>& path, const core::Reco
     if (path.size() < 2 || fix.t_ns < path.front().t_ns || fix.t_ns > path.back().t_ns) continue;
     while (k + 2 < path.size() && path[k + 1].t_ns < fix.t_ns) ++k;
     const TimedPose &a = path[k], &b = path[k + 1];
-    const double w = b.t_ns > a.t_ns ? static_cast<double>(fix.t_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns) : 0.0;
-    const core::Pose2 at(a.T_world_robot.x_m + w * (b.T_world_robot.x_m - a.T_world_robot.x_m),
-                         a.T_world_robot.y_m + w * (b.T_world_robot.y_m - a.T_world_robot.y_m),
-                         a.T_world_robot.heading_rad +
-                             w * core::wrap_to_pi(b.T_world_robot.heading_rad - a.T_world_robot.heading_rad));
+    const double w =
+        b.t_ns > a.t_ns ? static_cast<double>(fix.t_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns) : 0.0;
+    const core::Pose2 at(
+        a.T_world_robot.x_m + w * (b.T_world_robot.x_m - a.T_world_robot.x_m),
+        a.T_world_robot.y_m + w * (b.T_world_robot.y_m - a.T_world_robot.y_m),
+        a.T_world_robot.heading_rad + w * core::wrap_to_pi(b.T_world_robot.heading_rad - a.T_world_robot.heading_rad));
     fixes.push_back(fix.position_m);
     antenna.push_back(core::transform(at, recording.antenna_robot_m));
   }

@@ -112,9 +112,7 @@ Associator::Innovation Associator::innovation(const Hypothesis& h, const Eigen::
 
 double Associator::nis(const Hypothesis& h, LineageId id, std::size_t observation) const {
   const LandmarkRecord* landmark = maps_[h.parent].find(id);
-  return innovation(h, place_m(id, *landmark), landmark->covariance_m2(),
-                    scan_.observations[observation])
-      .nis;
+  return innovation(h, place_m(id, *landmark), landmark->covariance_m2(), scan_.observations[observation]).nis;
 }
 
 void Associator::find_candidates(const Hypothesis& h, std::size_t observation, double gate, bool likelihood,
