@@ -91,6 +91,7 @@ struct FastSlam::Impl {
   void weigh(std::size_t robot);
   void choose(bool sees);
   void resample();
+  bool repeats(std::size_t k) const;
   void draw_poses();
   std::vector<LineageId> begin_lineages(const PreparedScan& scan, const std::vector<KnownName>* names);
   void take_over_maps();

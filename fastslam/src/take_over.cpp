@@ -103,15 +103,16 @@ std::vector<LineageId> FastSlam::Impl::begin_lineages(const PreparedScan& scan, 
   return births;
 }
 
+/// A child has its parent's copy of the hypothesis to itself, unless the pose was drawn before the scan. With FastSLAM
+/// 2.0 the weight does not depend on the pose drawn, so that every child may draw its own after resampling.
+bool FastSlam::Impl::repeats(std::size_t k) const {
+  return options.proposal == Proposal::motion && k > 0 && chosen[k] == chosen[k - 1];
+}
+
 void FastSlam::Impl::draw_poses() {
   new_poses.resize(chosen.size());
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     const Hypothesis& h = set.all[chosen[k]];
-    const bool again = k > 0 && chosen[k] == chosen[k - 1];
-    if (again) {
-      new_poses[k] = new_poses[k - 1];
-      continue;
-    }
     new_poses[k] = h.x;
     if (options.proposal == Proposal::motion) continue;
     Eigen::Vector3d n;
@@ -120,16 +121,15 @@ void FastSlam::Impl::draw_poses() {
   }
 }
 
-/// Every hypothesis chosen gets its parent's map: the last one the map itself, those before it copies.
+/// Every particle that is not a repetition gets its parent's map: the last one the map itself, those before it copies.
 void FastSlam::Impl::take_over_maps() {
   NodePool& pool = workers.front().pool;
   new_maps.resize(chosen.size());
   for (std::size_t k = 0; k < chosen.size(); ++k) {
-    if (k > 0 && chosen[k] == chosen[k - 1]) continue;
+    if (repeats(k)) continue;
     std::size_t next = k + 1;
-    while (next < chosen.size() && chosen[next] == chosen[k]) ++next;
-    const bool needed_again = next < chosen.size() && parents[next] == parents[k];
-    if (needed_again) {
+    while (next < chosen.size() && repeats(next)) ++next;
+    if (next < chosen.size() && parents[next] == parents[k]) {
       new_maps[k].share(maps[parents[k]], pool);
     } else {
       new_maps[k] = std::move(maps[parents[k]]);
@@ -144,12 +144,12 @@ void FastSlam::Impl::realise(const MapUpdate& map_update) {
   for_blocks(chosen.size(), [&](Worker& worker, std::size_t begin, std::size_t end) {
     map_update.look_around(new_poses, begin, end, worker.realise);
     for (std::size_t k = begin; k < end; ++k) {
-      if (k > 0 && chosen[k] == chosen[k - 1]) continue;
+      if (repeats(k)) continue;
       map_update.apply(new_poses[k], set.choices_of(chosen[k]), new_maps[k], worker.pool, worker.realise);
     }
   });
   for (std::size_t k = 1; k < chosen.size(); ++k) {
-    if (chosen[k] == chosen[k - 1]) new_maps[k].share(new_maps[k - 1], workers.front().pool);
+    if (repeats(k)) new_maps[k].share(new_maps[k - 1], workers.front().pool);
   }
   for (Worker& worker : workers) {
     for (const auto& [id, reach_m] : worker.realise.growth) lineages.grow(id, reach_m);
