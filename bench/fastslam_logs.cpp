@@ -98,7 +98,7 @@ LogScore run_particles(const core::Recording& recording, core::Nanoseconds until
     if (scan == nullptr) continue;
     const double begin_us = processor_us();
     const bool known = names != nullptr;
-    const core::StepReport report = known ? slam.update(*scan, (*names)[path.size()]) : slam.update(*scan);
+    const core::StepReport report = known ? slam.update_known(*scan, (*names)[path.size()]) : slam.update(*scan);
     if (!scan->observations.empty()) times_us.push_back(processor_us() - begin_us);
     path.push_back({scan->t_ns, report.pose.mean});
     ancestors.push_back(static_cast<double>(slam.cloud().distinct_ancestors));

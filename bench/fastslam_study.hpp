@@ -60,7 +60,7 @@ struct DrivenScan {
 
 inline core::StepReport step(fastslam::FastSlam& slam, const DrivenScan& driven, bool known) {
   slam.predict(driven.odometry, driven.robot);
-  return known ? slam.update(driven.scan, driven.names, driven.robot) : slam.update(driven.scan, driven.robot);
+  return known ? slam.update_known(driven.scan, driven.names, driven.robot) : slam.update(driven.scan, driven.robot);
 }
 
 inline double processor_us() {

@@ -62,6 +62,15 @@ FastSlam::~FastSlam() = default;
 FastSlam::FastSlam(FastSlam&&) noexcept = default;
 FastSlam& FastSlam::operator=(FastSlam&&) noexcept = default;
 
+void FastSlam::begin_with(const std::vector<core::PointGaussian>& landmarks) {
+  require(impl_->step == 0 && impl_->lineages.size() == 0, "a map can be given only before anything else");
+  for (const core::PointGaussian& landmark : landmarks) {
+    require(landmark.mean_m.allFinite() && core::is_symmetric_positive_definite(landmark.covariance_m2),
+            "a landmark must be finite with a positive definite covariance");
+  }
+  impl_->begin_with(landmarks);
+}
+
 void FastSlam::predict(const core::Odometry& odometry, std::size_t robot) {
   require(robot < impl_->robots.size(), "there is no such robot");
   require(odometry.T_before_after.vector().allFinite() && odometry.covariance.allFinite() &&
@@ -78,7 +87,8 @@ core::StepReport FastSlam::update(const core::Scan& scan, std::size_t robot) {
   return impl_->update(scan, nullptr, robot);
 }
 
-core::StepReport FastSlam::update(const core::Scan& scan, const std::vector<KnownName>& names, std::size_t robot) {
+core::StepReport FastSlam::update_known(const core::Scan& scan, const std::vector<KnownName>& names,
+                                        std::size_t robot) {
   require(robot < impl_->robots.size(), "there is no such robot");
   require(impl_->options.association == Association::known, "names are for Association::known");
   require(names.size() == scan.observations.size(), "there must be one name an observation");

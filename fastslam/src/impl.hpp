@@ -21,6 +21,7 @@ struct FastSlam::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
+  void begin_with(const std::vector<core::PointGaussian>& landmarks);
   core::StepReport update(const core::Scan& scan, const std::vector<KnownName>* names, std::size_t robot);
   std::vector<core::MapLandmark> map_of(std::size_t particle) const;
   MemoryReport memory() const;

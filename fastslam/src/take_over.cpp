@@ -48,6 +48,24 @@ FastSlam::Impl::Impl(const std::vector<core::PoseGaussian>& starts, const Option
 
 FastSlam::Impl::~Impl() = default;  // nodes go with their pools
 
+void FastSlam::Impl::begin_with(const std::vector<core::PointGaussian>& landmarks) {
+  NodePool& pool = workers.front().pool;
+  for (const core::PointGaussian& given : landmarks) {
+    const LineageId id = lineages.add(given.mean_m);
+    const Eigen::Vector2d offset_m = given.mean_m - lineages.anchor_m(id);
+    LandmarkRecord& landmark = maps.front().write(id, pool);
+    landmark = {};
+    landmark.dx_m = static_cast<float>(offset_m.x()), landmark.dy_m = static_cast<float>(offset_m.y());
+    landmark.set_covariance_m2({given.covariance_m2(0, 0), given.covariance_m2(0, 1), given.covariance_m2(1, 1)});
+    landmark.log_odds = static_cast<float>(options.existence.max_log_odds);
+    landmark.hits = static_cast<std::uint16_t>(options.existence.mature_looks);
+    landmark.mature = 1;
+    lineages.grow(id, Lineages::reach_for(offset_m.norm() + search_reach_m(options, landmark)));
+  }
+  swept_at = lineages.size();
+  for (std::size_t i = 1; i < maps.size(); ++i) maps[i].share(maps.front(), pool);
+}
+
 /// Looks are counted by how far the sensor has come, so that standing still says nothing twice.
 void FastSlam::Impl::drive(Robot& robot, const core::Odometry& motion, const core::Pose2& T_robot_sensor) {
   robot.motion.reset();

@@ -130,7 +130,7 @@ TEST(PersistentMap, ThreadsMayWriteMapsThatShareNodes) {
   std::vector<PersistentMap> maps(slices * each);
   for (LineageId id = 0; id < 400; ++id) write(maps[0], id, 0.0F, pools[0]);
   core::WorkerPool workers(slices);
-  for (int round = 0; round < 30; ++round) {
+  for (int round = 0; round < 10; ++round) {
     for (std::size_t i = 1; i < maps.size(); ++i) maps[i].share(maps[0], pools[0]);
     workers.for_each(slices, [&](std::size_t s) {
       for (std::size_t i = s * each; i < (s + 1) * each; ++i) {

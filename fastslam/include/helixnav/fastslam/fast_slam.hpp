@@ -42,7 +42,7 @@ struct MemoryReport {
 ///
 ///   FastSlam slam(start, options, seed);
 ///   slam.predict(odometry);                            // as often as it comes
-///   core::StepReport report = slam.update(scan);       // or update(scan, names) when the landmarks are known
+///   core::StepReport report = slam.update(scan);       // or update_known(scan, names)
 ///   slam.map(), slam.pose()
 ///
 /// FastSLAM 1.0 and 2.0 are one algorithm with two proposals: a particle's pose before the scan is (x̂, P), with P = 0
@@ -68,6 +68,10 @@ class FastSlam {
   FastSlam(FastSlam&&) noexcept;
   FastSlam& operator=(FastSlam&&) noexcept;
 
+  /// Gives every particle these landmarks, mature, with ids 0, 1, …: a map from elsewhere to begin with. PreconditionError
+  /// after the first scan, and for covariances that are not positive definite.
+  void begin_with(const std::vector<core::PointGaussian>& landmarks);
+
   /// Collects motion of a robot; it reaches the particles with that robot's next scan (exact, see core::chain).
   void predict(const core::Odometry& odometry, std::size_t robot = 0);
 
@@ -75,7 +79,7 @@ class FastSlam {
   core::StepReport update(const core::Scan& scan, std::size_t robot = 0);
 
   /// One scan whose landmarks are known: one name an observation. A name not heard before begins a landmark.
-  core::StepReport update(const core::Scan& scan, const std::vector<KnownName>& names, std::size_t robot = 0);
+  core::StepReport update_known(const core::Scan& scan, const std::vector<KnownName>& names, std::size_t robot = 0);
 
   /// T_world_robot with the motion since the robot's last scan.
   core::PoseGaussian pose(std::size_t robot = 0) const;
