@@ -10,9 +10,10 @@
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/random.hpp"
+#include "helixnav/core/resampling.hpp"
+#include "helixnav/core/worker_pool.hpp"
 #include "helixnav/pf_relocalize/resample.hpp"
 #include "lineage.hpp"
-#include "worker_pool.hpp"
 
 namespace helixnav::pf_relocalize {
 namespace {
@@ -68,7 +69,7 @@ struct Relocalizer::Impl {
   RelocalizerOptions options;
   ReferenceMap map;
   ScanLikelihood likelihood;
-  WorkerPool pool;
+  core::WorkerPool pool;
   core::RandomStream random;
   std::vector<core::RandomStream> block_random;  // one a block of particles, whichever thread takes it
   Particles particles, resampled;
@@ -134,11 +135,11 @@ void Relocalizer::Impl::step(const core::Odometry& motion, const core::Scan& sca
 }
 
 void Relocalizer::Impl::absorb_weights(core::Nanoseconds t_ns) {
-  state.log_evidence += normalise(particles);
+  state.log_evidence += core::normalise(particles.log_weight);
   state.t_ns = t_ns;
   ++state.scans;
   state.particles = particles.size();
-  state.effective_size = effective_sample_size(particles);
+  state.effective_size = core::effective_sample_size(particles.log_weight);
   state.cloud = cloud_moments(particles);
   find_modes(particles, options.mode_radius, options.most_modes, 1e-4, taken, state.modes);
   lineage.append(t_ns, particles, parents, state.modes.front().best);
@@ -151,11 +152,11 @@ void Relocalizer::Impl::resample_when_due() {
   parents.clear();  // empty: everyone is its own parent
   if (!state.resampled) return;
   const double offset = random.uniform();
-  systematic_parents(particles, particles.size(), offset, parents);
+  core::systematic_parents(particles.log_weight, particles.size(), offset, parents);
   const std::size_t bins = occupied_bins(particles, parents, options.bin_m, options.bin_rad, keys);
   const std::size_t wanted =
       std::clamp(kld_sample_size(bins, options.kld_error), options.least_particles, options.most_particles);
-  systematic_parents(particles, wanted, offset, parents);
+  core::systematic_parents(particles.log_weight, wanted, offset, parents);
   take_parents(particles, parents, resampled);
   std::swap(particles, resampled);
 }

@@ -4,43 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "helixnav/core/errors.hpp"
-
 namespace helixnav::pf_relocalize {
-
-double normalise(Particles& particles) {
-  double largest = -HUGE_VAL;
-  for (const double lw : particles.log_weight) {
-    if (std::isnan(lw)) throw core::NumericalError("particle filter: a weight is NaN");
-    largest = std::max(largest, lw);
-  }
-  if (!std::isfinite(largest)) throw core::NumericalError("particle filter: no particle has a finite weight");
-  double sum = 0.0;
-  for (const double lw : particles.log_weight) sum += std::exp(lw - largest);
-  const double log_sum = largest + std::log(sum);
-  for (double& lw : particles.log_weight) lw -= log_sum;
-  return log_sum;
-}
-
-double effective_sample_size(const Particles& particles) {
-  double squares = 0.0;
-  for (const double lw : particles.log_weight) squares += std::exp(2.0 * lw);
-  return 1.0 / squares;
-}
-
-void systematic_parents(const Particles& particles, std::size_t m, double offset, std::vector<std::uint32_t>& parents) {
-  parents.clear();
-  double reached = 0.0;
-  std::uint32_t heaviest = 0;
-  for (std::size_t i = 0; i < particles.size() && parents.size() < m; ++i) {
-    reached += std::exp(particles.log_weight[i]) * static_cast<double>(m);
-    if (particles.log_weight[i] > particles.log_weight[heaviest]) heaviest = static_cast<std::uint32_t>(i);
-    while (static_cast<double>(parents.size()) + offset < reached && parents.size() < m) {
-      parents.push_back(static_cast<std::uint32_t>(i));
-    }
-  }
-  while (parents.size() < m) parents.push_back(parents.empty() ? heaviest : parents.back());  // round-off at the end
-}
 
 void take_parents(const Particles& particles, const std::vector<std::uint32_t>& parents, Particles& out) {
   out.latent.resize(particles.latent.size());

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "helixnav/core/random.hpp"
-#include "helixnav/pf_relocalize/resample.hpp"
+#include "helixnav/core/resampling.hpp"
 
 namespace helixnav::pf_relocalize {
 namespace {
@@ -30,7 +30,7 @@ TEST(Modes, FindsEachClusterWithItsMassMeanAndSpread) {
   add(cloud, 4000, {10.0, 5.0, 3.14}, sigma, 1.0, random);  // headings on both sides of the wrap
   add(cloud, 4000, {16.0, 5.0, 3.14}, sigma, 0.5, random);
   add(cloud, 4000, {10.0, 5.0, 2.5}, sigma, 0.25, random);
-  normalise(cloud);
+  core::normalise(cloud.log_weight);
   std::vector<std::uint8_t> taken;
   std::vector<Mode> modes;
   find_modes(cloud, {}, 8, 1e-3, taken, modes);
@@ -48,7 +48,7 @@ TEST(Modes, MomentsOfTheWholeCloudDoNotBreakAtTheWrap) {
   core::RandomStream random(2, "moments");
   Particles cloud;
   add(cloud, 20000, {1.0, 2.0, 3.1}, {0.5, 0.5, 0.2}, 1.0, random);
-  normalise(cloud);
+  core::normalise(cloud.log_weight);
   const core::PoseGaussian moments = cloud_moments(cloud);
   EXPECT_NEAR(core::wrap_to_pi(moments.mean.heading_rad - 3.1), 0.0, 0.01);
   EXPECT_NEAR(std::sqrt(moments.covariance(2, 2)), 0.2, 0.01);
@@ -59,7 +59,7 @@ TEST(Modes, StopsAtTheNumberAskedFor) {
   core::RandomStream random(3, "many");
   Particles cloud;
   for (int k = 0; k < 20; ++k) add(cloud, 5, {10.0 * k, 0.0, 0.0}, {0.1, 0.1, 0.01}, 1.0, random);
-  normalise(cloud);
+  core::normalise(cloud.log_weight);
   std::vector<std::uint8_t> taken;
   std::vector<Mode> modes;
   find_modes(cloud, {}, 6, 1e-3, taken, modes);

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "helixnav/core/errors.hpp"
-#include "helixnav/pf_relocalize/resample.hpp"
+#include "helixnav/core/resampling.hpp"
 #include "scatter_world.hpp"
 
 namespace {
@@ -109,7 +109,7 @@ TEST(Relocalizer, AgreesWithBayesRuleOnAGridOfPosesAfterTheFirstScan) {
     ASSERT_GT(state.effective_size, 300.0);
     const Particles& drawn = search.weighted_particles();
     EXPECT_EQ(drawn.size(), state.particles);
-    EXPECT_DOUBLE_EQ(effective_sample_size(drawn), state.effective_size);
+    EXPECT_DOUBLE_EQ(core::effective_sample_size(drawn.log_weight), state.effective_size);
     const double error = 4.0 / std::sqrt(state.effective_size);  // 4 σ; 12 numbers: false alarm 1e-3
     EXPECT_NEAR(std::exp(state.log_evidence) / exact.evidence, 1.0, 2.0 * error) << seed;
     const Eigen::Vector3d sigma = state.cloud.covariance.diagonal().cwiseSqrt();

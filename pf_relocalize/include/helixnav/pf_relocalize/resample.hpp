@@ -9,18 +9,6 @@
 
 namespace helixnav::pf_relocalize {
 
-/// Shifts log_weight so that Σ exp(log_weight) = 1 and returns the logarithm of the sum before. Weights that are all −∞
-/// or NaN: NumericalError, the particles as they were.
-double normalise(Particles& particles);
-
-/// Effective sample size 1 / Σ w² of normalised weights, in [1, n].
-double effective_sample_size(const Particles& particles);
-
-/// Systematic resampling: `parents` receives m indices, particle i about m·w_i times (its floor or ceiling), in
-/// ascending order. One uniform number `offset` in [0, 1). Cost O(n + m); allocates only when `parents` grows.
-/// Test: pf_relocalize/resample_test.cpp.
-void systematic_parents(const Particles& particles, std::size_t m, double offset, std::vector<std::uint32_t>& parents);
-
 /// Copies the particles named by `parents` into `out`, weights equal and normalised.
 void take_parents(const Particles& particles, const std::vector<std::uint32_t>& parents, Particles& out);
 

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace helixnav::pf_relocalize {
+namespace helixnav::core {
 
 /// Threads that share the indices of a loop. Which thread takes which index is left to chance; callers write to places
 /// that belong to the index, so that results do not depend on it. One thread: no threads at all. Nothing is allocated by
@@ -49,4 +49,4 @@ class WorkerPool {
   std::vector<std::thread> threads_;
 };
 
-}  // namespace helixnav::pf_relocalize
+}  // namespace helixnav::core

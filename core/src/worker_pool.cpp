@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "worker_pool.hpp"
+#include "helixnav/core/worker_pool.hpp"
 
-namespace helixnav::pf_relocalize {
+namespace helixnav::core {
 
 WorkerPool::WorkerPool(unsigned threads) {
   for (unsigned k = 1; k < threads; ++k) threads_.emplace_back([this] { wait_for_jobs(); });
@@ -53,4 +53,4 @@ void WorkerPool::wait_for_jobs() {
   }
 }
 
-}  // namespace helixnav::pf_relocalize
+}  // namespace helixnav::core
