@@ -154,7 +154,7 @@ void lay_out(State& state, int subtree) {
 void rebalance(State& state, int leaf) {
   int height = 0;
   int node = leaf;
-  const auto deepest = [&state](int id) { return 4.0 + 1.7 * std::log2(static_cast<double>(state.node(id).leaves)); };
+  const auto deepest = [&state](int id) { return 4.0 + 2.2 * std::log2(static_cast<double>(state.node(id).leaves)); };
   while (node != state.root) {
     node = state.node(node).parent;
     ++height;

@@ -25,9 +25,10 @@ bool redo(State& state, int id, Workspace& workspace, int& redone, const std::fu
 /// One way up and one way down. False when it was stopped.
 bool sweep(State& state, int& redone, const std::function<bool()>& should_stop) {
   if (!state.descending) {
-    if (!redo_dirty(state, redone, should_stop)) return false;
-    state.descending = true;
-    state.to_open.assign(1, state.root);
+    const bool stopped = !redo_dirty(state, redone, should_stop);
+    state.descending = !state.node(state.root).dirty;
+    if (state.descending) state.to_open.assign(1, state.root);
+    if (stopped) return false;
   }
   while (!state.to_open.empty()) {
     const int node = state.to_open.back();

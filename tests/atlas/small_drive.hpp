@@ -49,7 +49,8 @@ inline SmallDrive make_small_drive(std::uint64_t seed, const SmallDriveOptions& 
   std::vector<Eigen::Vector2d> points_m;
   for (int i = 0; i < o.landmarks; ++i) {
     const double angle_rad = 2.0 * core::pi * (i + random.uniform(0.0, 1.0)) / o.landmarks;
-    const double r_m = o.radius_m + random.uniform(-6.0, 6.0);
+    const double side = random.uniform() < 0.5 ? -1.0 : 1.0;
+    const double r_m = o.radius_m + side * random.uniform(2.0, 6.0);
     points_m.emplace_back(r_m * std::sin(angle_rad), o.radius_m - r_m * std::cos(angle_rad));
   }
   const double turn_rad = 2.0 * core::pi * o.rounds / o.steps;

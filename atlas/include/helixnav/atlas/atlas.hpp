@@ -22,10 +22,11 @@ struct State;
 struct Options {
   /// A part of the map is linearised again where that would move it by more than this (the second-order error of what is
   /// there). 0: until nothing moves by more than 1e-8 m.
-  double bend_m = 0.01;
-  /// A phase is derived from its log again when its shape has moved by more than this since. 0 and 0: until nothing moves.
-  double rederive_m = 0.5;
-  double rederive_rad = 0.05;
+  double bend_m = 1e-3;
+  /// A phase is derived from its log again when its shape has moved by more than this since: over 20 m, 0.1 m bend by half a
+  /// millimetre. 0 and 0: until nothing moves.
+  double rederive_m = 0.1;
+  double rederive_rad = 0.01;
   int max_rounds = 50;  ///< of one settling, up and down the tree
 };
 
