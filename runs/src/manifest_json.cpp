@@ -24,13 +24,13 @@ std::string manifest_json(const RunManifest& manifest) {
   Json inputs = Json::array();
   for (const InputFile& input : manifest.inputs) inputs.push_back({{"name", input.name}, {"sha256", input.sha256}});
   const Json json = {{"format", format_name},
-          {"version", manifest.version},
-          {"commit", manifest.commit},
-          {"command", manifest.command},
-          {"recording", manifest.recording},
-          {"seed", manifest.seed},
-          {"inputs", inputs},
-          {"config", config_to_json(manifest.config)}};
+                     {"version", manifest.version},
+                     {"commit", manifest.commit},
+                     {"command", manifest.command},
+                     {"recording", manifest.recording},
+                     {"seed", manifest.seed},
+                     {"inputs", inputs},
+                     {"config", config_to_json(manifest.config)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 

@@ -122,8 +122,8 @@ void Search::start(const SearchView& view, std::vector<core::Decision>& decision
   const double path_m = view.life.path_m();
   ++starts_;
   if (!reference.map) {
-    decisions.emplace_back(core::ReferenceUnusable{starts_, static_cast<int>(joint.ids.size()),
-                                                   reference.least_eigenvalue});
+    decisions.emplace_back(
+        core::ReferenceUnusable{starts_, static_cast<int>(joint.ids.size()), reference.least_eigenvalue});
     next_start_path_m_ = path_m + options_.rest_m;
     return;
   }

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/angle.hpp"
+#include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 
 namespace helixnav::evaluation {
