@@ -86,7 +86,7 @@ RunScore Referee::score(const std::vector<MapLandmark>& map) const {
     result.end = book_->judge(end, map);
     result.end_on_old_ground = book_->judge(book_->last_on_old_ground.value_or(end), map);
   }
-  if (!result.returns.empty()) result.returns.back().left_behind = result.end_on_old_ground;
+  if (!result.returns.empty()) result.returns.back().duplicate_segment = result.end_on_old_ground;
   result.wrong_without_trigger += book_->wrong_so_far;
   result.spacing_m = book_->spacing_m();
   result.trees_seen = static_cast<int>(book_->seen.size());
@@ -102,7 +102,7 @@ void Referee::Book::drive_on(const StepReport& report, const Map& map_now) {
   }
   const std::size_t next = score.returns.size();
   if (next < returns_at_m.size() && driven_m >= returns_at_m[next] - in_sight_m) {
-    if (next > 0 && last_on_old_ground) score.returns.back().left_behind = judge(*last_on_old_ground, map_now());
+    if (next > 0 && last_on_old_ground) score.returns.back().duplicate_segment = judge(*last_on_old_ground, map_now());
     begin_return(report.mode == core::Mode::searching && count<core::TriggerDecision>(report) == 0);
   }
 }

@@ -140,13 +140,13 @@ void Referee::Book::pass_verdict(RunScore& result) const {
   for (ReturnScore& one : result.returns) {
     if (one.closed || one.old_matches < options.association_matches) continue;
     one.closed = result.closed_by_association = true;
-    wrong = wrong || is_wrong(one.left_behind.relative) || too_many_wrong(one.wrong_old_matches, one.old_matches);
+    wrong = wrong || is_wrong(one.duplicate_segment.relative) || too_many_wrong(one.wrong_old_matches, one.old_matches);
   }
   const bool all_closed =
       !returns_at_m.empty() && result.returns.size() == returns_at_m.size() &&
       std::all_of(result.returns.begin(), result.returns.end(), [](const ReturnScore& one) { return one.closed; });
   result.verdict = wrong ? RunVerdict::false_closure : all_closed ? RunVerdict::closed : RunVerdict::undecided;
-  result.late =
+  result.diverged_after_closure =
       result.verdict == RunVerdict::closed && result.end_on_old_ground.relative.position_m > options.wrong_position_m;
 }
 

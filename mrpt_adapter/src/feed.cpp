@@ -6,6 +6,7 @@
 
 #include <mrpt/obs/CSensoryFrame.h>
 
+#include "helixnav/reports/decision_sentence.hpp"
 #include "map_builder_impl.hpp"
 #include "pose_pdf.hpp"
 
@@ -24,13 +25,6 @@ core::Odometry unknown_motion(const MapBuilderOptions& options) {
   odometry.covariance =
       Eigen::Vector3d(xy_m2, xy_m2, options.stdPhi_no_odo_rad * options.stdPhi_no_odo_rad).asDiagonal();
   return odometry;
-}
-
-std::string sentence(const core::Decision& decision) {
-  std::ostringstream text;
-  text << decision.kind << " " << decision.verdict;
-  for (const auto& [name, number] : decision.numbers) text << ", " << name << " " << number;
-  return text.str();
 }
 
 }  // namespace
@@ -117,7 +111,9 @@ void MapBuilder::Impl::remember(const NamedScan& scan, const core::StepReport& r
 }
 
 void MapBuilder::Impl::tell(const core::StepReport& report) const {
-  for (const core::Decision& decision : report.decisions) log_.logStr(mrpt::system::LVL_INFO, sentence(decision));
+  for (const core::Decision& decision : report.decisions) {
+    log_.logStr(mrpt::system::LVL_INFO, reports::sentence_of(decision));
+  }
   if (!log_.isLoggingLevelVisible(mrpt::system::LVL_DEBUG)) return;
   std::ostringstream text;
   text << "step " << report.step << ": " << report.associations.size() << " measurements, " << report.joint_dof / 2

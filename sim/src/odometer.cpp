@@ -8,7 +8,7 @@ namespace helixnav::sim {
 Odometer::Odometer(const Scenario& scenario, std::uint64_t seed)
     : geometry_(scenario.vehicle.geometry),
       true_noise_(scenario.true_noise.odometry),
-      told_noise_(scenario.told_noise.odometry),
+      assumed_noise_(scenario.assumed_noise.odometry),
       bias_(scenario.bias),
       noise_(seed, "sim.odometry"),
       slow_(seed, "sim.odometry.bias"),
@@ -22,7 +22,7 @@ core::Odometry Odometer::measure(const core::AckermannSample& truth, core::Nanos
   measured.steering_rad += bias_.sigma_steering_rad * steering_error_sigmas_;
   measured.steering_rad += noise_.normal(0.0, true_noise_.sigma_steering_rad);
   drift(truth.duration_s);
-  core::Odometry odometry = core::ackermann_increment(geometry_, told_noise_, measured);
+  core::Odometry odometry = core::ackermann_increment(geometry_, assumed_noise_, measured);
   odometry.t_ns = t_ns;
   return odometry;
 }

@@ -21,7 +21,7 @@ class Odometer {
 
   core::AckermannGeometry geometry_;
   core::AckermannNoise true_noise_;
-  core::AckermannNoise told_noise_;
+  core::AckermannNoise assumed_noise_;
   OdometryBias bias_;
   core::RandomStream noise_;
   core::RandomStream slow_;

@@ -21,7 +21,7 @@ Scanner::Scanner(const Scenario& scenario, const World& world, std::uint64_t see
     : world_(world),
       options_(scenario.scanner),
       true_noise_(scenario.true_noise),
-      told_noise_(scenario.told_noise),
+      assumed_noise_(scenario.assumed_noise),
       random_(seed, "sim.scanner") {}
 
 LabelledScan Scanner::look(const core::Pose2& T_world_robot, double along_m, core::Nanoseconds t_ns) {
@@ -71,7 +71,7 @@ void Scanner::add_tree(const Sighting& truth, LabelledScan& into) {
   const double bearing_rad = core::wrap_to_pi(random_.normal(truth.bearing_rad, true_noise_.sigma_bearing_rad));
   if (range_m <= 0.0) return;  // a scanner has no negative ranges: a miss
   into.scan.observations.push_back(
-      core::make_range_bearing(range_m, bearing_rad, told_noise_.sigma_range_m, told_noise_.sigma_bearing_rad));
+      core::make_range_bearing(range_m, bearing_rad, assumed_noise_.sigma_range_m, assumed_noise_.sigma_bearing_rad));
   into.labels.push_back(truth.label);
 }
 
@@ -81,7 +81,7 @@ void Scanner::add_clutter(LabelledScan& into) {
       std::sqrt(random_.uniform(view.min_range_m * view.min_range_m, view.max_range_m * view.max_range_m));
   const double bearing_rad = random_.uniform(view.min_bearing_rad, view.max_bearing_rad);
   into.scan.observations.push_back(
-      core::make_range_bearing(range_m, bearing_rad, told_noise_.sigma_range_m, told_noise_.sigma_bearing_rad));
+      core::make_range_bearing(range_m, bearing_rad, assumed_noise_.sigma_range_m, assumed_noise_.sigma_bearing_rad));
   into.labels.push_back(core::no_label);
 }
 

@@ -39,7 +39,7 @@ class Scanner {
   const World& world_;
   ScannerOptions options_;
   NoiseLevels true_noise_;
-  NoiseLevels told_noise_;
+  NoiseLevels assumed_noise_;
   core::RandomStream random_;
 };
 

@@ -50,7 +50,7 @@ Scenario big_drift() {
   Scenario s = changed_loop();
   s.scanner.clutter_per_scan = 1.5;
   s.true_noise.odometry = {1.6 * s.true_noise.odometry.sigma_speed_mps, 1.6 * s.true_noise.odometry.sigma_steering_rad};
-  s.told_noise = s.true_noise;
+  s.assumed_noise = s.true_noise;
   return s;
 }
 
@@ -73,7 +73,7 @@ Scenario orchard() {
   s.world.changed_share = 0.05;
   s.world.drive_on_m = 220.0;
   s.true_noise.odometry = {0.8, 0.0147};
-  s.told_noise = s.true_noise;
+  s.assumed_noise = s.true_noise;
   return s;
 }
 
@@ -96,14 +96,14 @@ Scenario odometry_bias() {
   return s;
 }
 
-Scenario told_noise(double factor) {
+Scenario assumed_noise(double factor) {
   Scenario s;
-  s.told_noise = scaled(s.true_noise, factor);
+  s.assumed_noise = scaled(s.true_noise, factor);
   return s;
 }
 
-Scenario told_half() { return told_noise(0.5); }
-Scenario told_double() { return told_noise(2.0); }
+Scenario assumed_half() { return assumed_noise(0.5); }
+Scenario assumed_double() { return assumed_noise(2.0); }
 
 Scenario occlusion() {
   Scenario s;
@@ -142,7 +142,7 @@ Scenario circuit(double sigma_turn_rad, double sigma_range_m, double sigma_beari
   s.true_noise.odometry.sigma_steering_rad = sigma_turn_rad * s.vehicle.geometry.wheelbase_m / sample_m;
   s.true_noise.sigma_range_m = sigma_range_m;
   s.true_noise.sigma_bearing_rad = sigma_bearing_rad;
-  s.told_noise = s.true_noise;
+  s.assumed_noise = s.true_noise;
   return s;
 }
 
@@ -180,8 +180,8 @@ constexpr std::array<Entry, 17> entries{{
      figure_of_eight_scenario},
     {"odometry-bias",
      "loop of two-laps, closed once, with slow errors of steering (0.002 rad) and speed (1 %) not told", odometry_bias},
-    {"told-noise-half", "loop of two-laps, closed once, whose events claim half of the true noise", told_half},
-    {"told-noise-double", "loop of two-laps, closed once, whose events claim twice the true noise", told_double},
+    {"assumed-noise-half", "loop of two-laps, closed once, whose events claim half of the true noise", assumed_half},
+    {"assumed-noise-double", "loop of two-laps, closed once, whose events claim twice the true noise", assumed_double},
     {"occlusion", "loop of two-laps, closed once, whose trunks of 0.5 m radius hide the trees behind them", occlusion},
     {"blackout", "loop of two-laps, closed once, whose scanner sees nothing for 50 m of the first lap", blackout},
     {"circuit", "circle of 50 m driven four times (800 scans) among 20 landmarks, moderate noise", circuit_moderate},
@@ -261,6 +261,8 @@ std::vector<std::string> scenario_names() {
 }
 
 Scenario named_scenario(std::string_view name) {
+  if (name == "told-noise-half") name = "assumed-noise-half";  // the names of version 0.1
+  if (name == "told-noise-double") name = "assumed-noise-double";
   for (const Entry& entry : entries) {
     if (entry.name != name) continue;
     Scenario scenario = entry.make();
@@ -273,12 +275,12 @@ Scenario named_scenario(std::string_view name) {
 }
 
 void check_scenario(const Scenario& scenario) {
-  constexpr double least_told_sigma = 1e-9;  // an observation's R must be positive definite
+  constexpr double least_assumed_sigma = 1e-9;  // an observation's R must be positive definite
   check_world(scenario.world);
   check_vehicle(scenario.vehicle);
   check_scanner(scenario.scanner);
   check_noise(scenario.true_noise, "true_noise", 0.0);
-  check_noise(scenario.told_noise, "told_noise", least_told_sigma);
+  check_noise(scenario.assumed_noise, "assumed_noise", least_assumed_sigma);
   require("bias.sigma_steering_rad", scenario.bias.sigma_steering_rad, 0.0, unlimited);
   require("bias.sigma_speed_scale", scenario.bias.sigma_speed_scale, 0.0, unlimited);
   require("bias.time_constant_s", scenario.bias.time_constant_s, 1e-3, unlimited);

@@ -19,7 +19,7 @@ struct Prefix {
   std::vector<int> landmarks;  ///< [index in the prefix] index in the whole
 };
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
+std::size_t as_index(int i) { return static_cast<std::size_t>(i); }
 
 /// Rows needed beyond the two unknowns when no observation fixes the landmark alone.
 constexpr int rows_to_spare = 2;
@@ -30,8 +30,8 @@ std::vector<char> landmarks_fixed_by(const Graph& graph, int n_poses) {
   for (const auto& edge : graph.landmark_edges) {
     if (edge.pose >= n_poses) continue;
     const int dimension = core::dimension(edge.observation.kind);
-    rows[index(edge.landmark)] += dimension;
-    if (dimension == 2 || rows[index(edge.landmark)] >= 2 + rows_to_spare) fixed[index(edge.landmark)] = 1;
+    rows[as_index(edge.landmark)] += dimension;
+    if (dimension == 2 || rows[as_index(edge.landmark)] >= 2 + rows_to_spare) fixed[as_index(edge.landmark)] = 1;
   }
   return fixed;
 }
@@ -52,9 +52,9 @@ Prefix make_prefix(const Problem& whole, int n_poses) {
     if (std::max(edge.from, edge.to) < n_poses) graph.pose_edges.push_back(edge);
   }
   for (const auto& edge : whole.graph.landmark_edges) {
-    if (edge.pose >= n_poses || new_index[index(edge.landmark)] < 0) continue;
+    if (edge.pose >= n_poses || new_index[as_index(edge.landmark)] < 0) continue;
     graph.landmark_edges.push_back(edge);
-    graph.landmark_edges.back().landmark = new_index[index(edge.landmark)];
+    graph.landmark_edges.back().landmark = new_index[as_index(edge.landmark)];
   }
   for (const auto& edge : whole.graph.fix_edges) {
     if (edge.pose < n_poses) graph.fix_edges.push_back(edge);
@@ -66,7 +66,7 @@ Prefix make_prefix(const Problem& whole, int n_poses) {
     if (prior.pose < n_poses) prefix.problem.pose_priors.push_back(prior);
   }
   for (LandmarkPrior prior : whole.landmark_priors) {
-    prior.landmark = new_index[index(prior.landmark)];
+    prior.landmark = new_index[as_index(prior.landmark)];
     if (prior.landmark >= 0) prefix.problem.landmark_priors.push_back(prior);
   }
   return prefix;
@@ -77,7 +77,7 @@ std::vector<int> edges_into(const Graph& graph) {
   std::vector<int> into(graph.poses.size(), -1);
   for (std::size_t i = 0; i < graph.pose_edges.size(); ++i) {
     const auto& edge = graph.pose_edges[i];
-    if (edge.from < edge.to && into[index(edge.to)] < 0) into[index(edge.to)] = static_cast<int>(i);
+    if (edge.from < edge.to && into[as_index(edge.to)] < 0) into[as_index(edge.to)] = static_cast<int>(i);
   }
   return into;
 }
@@ -87,10 +87,10 @@ void place_new_landmarks(Prefix& prefix, std::vector<char>& placed, Graph& whole
   Graph located = prefix.problem.graph;
   core::locate_landmarks(located);
   for (std::size_t i = 0; i < prefix.landmarks.size(); ++i) {
-    char& known = placed[index(prefix.landmarks[i])];
+    char& known = placed[as_index(prefix.landmarks[i])];
     if (!known) prefix.problem.graph.landmarks[i].point_m = located.landmarks[i].point_m;
     known = 1;
-    whole.landmarks[index(prefix.landmarks[i])].point_m = prefix.problem.graph.landmarks[i].point_m;
+    whole.landmarks[as_index(prefix.landmarks[i])].point_m = prefix.problem.graph.landmarks[i].point_m;
   }
 }
 
@@ -108,7 +108,7 @@ void solve_loosely(Prefix& prefix, Problem& whole) {
     whole.graph.poses[i].T_world_robot = session.state.poses[i];
   }
   for (std::size_t i = 0; i < prefix.landmarks.size(); ++i) {
-    whole.graph.landmarks[index(prefix.landmarks[i])].point_m = session.state.landmarks[i];
+    whole.graph.landmarks[as_index(prefix.landmarks[i])].point_m = session.state.landmarks[i];
   }
 }
 
@@ -124,10 +124,10 @@ void grow_start(Problem& problem, int poses_per_stage) {
   for (int done = 0; done < n;) {
     const int until = std::min(n, done + poses_per_stage);
     for (int pose = std::max(done, 1); pose < until; ++pose) {
-      if (into[index(pose)] < 0) continue;
-      const auto& edge = grown.graph.pose_edges[index(into[index(pose)])];
-      grown.graph.poses[index(pose)].T_world_robot =
-          core::compose(grown.graph.poses[index(edge.from)].T_world_robot, edge.T_from_to);
+      if (into[as_index(pose)] < 0) continue;
+      const auto& edge = grown.graph.pose_edges[as_index(into[as_index(pose)])];
+      grown.graph.poses[as_index(pose)].T_world_robot =
+          core::compose(grown.graph.poses[as_index(edge.from)].T_world_robot, edge.T_from_to);
     }
     Prefix prefix = make_prefix(grown, until);
     place_new_landmarks(prefix, placed, grown.graph);

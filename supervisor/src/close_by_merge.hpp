@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "closing.hpp"
+#include "duplicate_segment.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/pf_relocalize/constellation.hpp"
 #include "helixnav/supervisor/search_options.hpp"
-#include "left_behind.hpp"
 
 namespace helixnav::supervisor {
 
@@ -20,9 +20,9 @@ Closing close_by_merge(cekf::CompressedEkf& filter, const std::vector<pf_relocal
                        const Branch& branch, const std::vector<core::LandmarkId>& old, const SearchOptions& options);
 
 /// Merges what has become a copy, in passes: each draws the branch nearer to the old map, so that copies farther along come
-/// within reach in the next; where none can be told alone, a stretch as a whole (LeftBehind). Adds to `closing`. Test:
+/// within reach in the next; where none can be told alone, a stretch as a whole (DuplicateSegment). Adds to `closing`. Test:
 /// supervisor/closing_test.cpp, supervisor/lattice_test.cpp.
-void merge_leftovers(cekf::CompressedEkf& filter, const LeftBehind& left_behind,
+void merge_leftovers(cekf::CompressedEkf& filter, const DuplicateSegment& duplicate_segment,
                      const std::vector<core::LandmarkId>& confirmed, const std::vector<core::LandmarkId>& old,
                      const SearchOptions& options, Closing& closing);
 

@@ -7,9 +7,9 @@
 
 #include "branch_pairs.hpp"
 #include "close_by_merge.hpp"
+#include "duplicate_segment.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
-#include "left_behind.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -41,13 +41,13 @@ bool replay(cekf::CompressedEkf& filter, const BranchRecord& record, const KeptR
 }
 
 /// Replays with more and more pairs, as long as the filter believes them; true when there are no more.
-bool replay_leftovers(cekf::CompressedEkf& filter, const LeftBehind& left_behind, const BranchRecord& record,
-                      const Branch& branch, const std::vector<core::LandmarkId>& old, const SearchOptions& options,
-                      KeptRemoved& pairs, Closing& closing) {
+bool replay_leftovers(cekf::CompressedEkf& filter, const DuplicateSegment& duplicate_segment,
+                      const BranchRecord& record, const Branch& branch, const std::vector<core::LandmarkId>& old,
+                      const SearchOptions& options, KeptRemoved& pairs, Closing& closing) {
   constexpr int most_passes = 10;
   for (int pass = 0; pass < most_passes; ++pass) {
     KeptRemoved rest = leftovers(filter, branch.confirmed, old, options);
-    if (rest.empty()) rest = left_behind.place(filter, old, options);
+    if (rest.empty()) rest = duplicate_segment.place(filter, old, options);
     Closing next = closing;
     next.dropped = 0;
     if (rest.empty() || !make_compatible(filter, options, rest, next)) return true;
@@ -70,7 +70,7 @@ Closing close_by_replay(cekf::CompressedEkf& filter, const BranchRecord& record,
                         const std::vector<pf_relocalize::ConstellationPair>& pairs, const Branch& branch,
                         const std::vector<core::LandmarkId>& old, const SearchOptions& options) {
   Closing closing;
-  const LeftBehind left_behind(filter, branch);
+  const DuplicateSegment duplicate_segment(filter, branch);
   KeptRemoved chosen = kept_removed(pairs);
   if (chosen.size() < least_pairs || !make_compatible(filter, options, chosen, closing)) return closing;
   const cekf::CompressedEkf before = filter;
@@ -79,9 +79,9 @@ Closing close_by_replay(cekf::CompressedEkf& filter, const BranchRecord& record,
     return closing;
   }
   closing.accepted = true;
-  const bool complete = replay_leftovers(filter, left_behind, record, branch, old, options, chosen, closing);
+  const bool complete = replay_leftovers(filter, duplicate_segment, record, branch, old, options, chosen, closing);
   note(chosen, closing);
-  if (!complete) merge_leftovers(filter, left_behind, branch.confirmed, old, options, closing);
+  if (!complete) merge_leftovers(filter, duplicate_segment, branch.confirmed, old, options, closing);
   forget_copies(filter, branch.unconfirmed, old, options, closing);
   return closing;
 }

@@ -6,7 +6,7 @@
 namespace helixnav::supervisor {
 
 /// Two-hit confirmation: an old landmark that is met alone is matched when it is met a second time, because clutter does not
-/// stand twice in the same place. Test: supervisor/ambiguous_return_test.cpp, campaigns in docs/adr/0009-doubt.md.
+/// stand twice in the same place. Test: supervisor/revisit_ambiguity_test.cpp, campaigns in docs/adr/0009-doubt.md.
 class Confirmation {
  public:
   /// Meets the landmark, `path_m` along the drive. True when it was the last one met, at most `reach_m` before.

@@ -11,13 +11,13 @@
 namespace helixnav::supervisor {
 namespace {
 
-const AmbiguousReturn* find_return(const std::vector<AmbiguousReturn>& returns, core::LandmarkId landmark) {
+const RevisitAmbiguity* find_return(const std::vector<RevisitAmbiguity>& returns, core::LandmarkId landmark) {
   const auto found = std::find_if(returns.begin(), returns.end(),
-                                  [&](const AmbiguousReturn& one) { return one.landmark == landmark; });
+                                  [&](const RevisitAmbiguity& one) { return one.landmark == landmark; });
   return found == returns.end() ? nullptr : &*found;
 }
 
-void defer_isolated_match(const std::vector<AmbiguousReturn>& returns, const SearchOptions& options, double path_m,
+void defer_isolated_match(const std::vector<RevisitAmbiguity>& returns, const SearchOptions& options, double path_m,
                           Confirmation& confirmation, std::vector<core::AssociationReport>& reports) {
   core::AssociationReport* isolated = nullptr;
   for (core::AssociationReport& report : reports) {
@@ -26,10 +26,10 @@ void defer_isolated_match(const std::vector<AmbiguousReturn>& returns, const Sea
     isolated = &report;
   }
   if (isolated == nullptr) return;
-  const AmbiguousReturn& met = *find_return(returns, isolated->landmark);
-  const bool ambiguous = met.foreign_objects > options.hold_objects;
-  const bool telling = met.widening > options.probation_widening;
-  const bool met_again = confirmation.confirms(isolated->landmark, path_m, options.probation_m);
+  const RevisitAmbiguity& met = *find_return(returns, isolated->landmark);
+  const bool ambiguous = met.expected_confusers > options.defer_confusers;
+  const bool telling = met.widening > options.confirmation_widening;
+  const bool met_again = confirmation.confirms(isolated->landmark, path_m, options.confirmation_m);
   if (ambiguous || (telling && !met_again)) isolated->outcome = core::Outcome::ambiguous;
 }
 
@@ -37,11 +37,11 @@ void defer_isolated_match(const std::vector<AmbiguousReturn>& returns, const Sea
 
 std::optional<core::TriggerDecision> find_trigger(const GatedScan& scan, const core::PoseGaussian& pose,
                                                   const SearchOptions& options) {
-  const AmbiguousReturn* worst = most_ambiguous(scan.returns);
-  if (worst == nullptr || worst->foreign_objects <= options.foreign_objects) return std::nullopt;
+  const RevisitAmbiguity* worst = most_ambiguous(scan.returns);
+  if (worst == nullptr || worst->expected_confusers <= options.expected_confusers) return std::nullopt;
   core::TriggerDecision trigger;
   trigger.landmark = worst->landmark;
-  trigger.expected_confusers = worst->foreign_objects;
+  trigger.expected_confusers = worst->expected_confusers;
   trigger.neighbours = worst->neighbours;
   trigger.gate_area = worst->gate_area;
   trigger.pose_sigma_m = std::sqrt(pose.covariance.topLeftCorner<2, 2>().trace());

@@ -4,18 +4,18 @@
 #include <memory>
 #include <vector>
 
-#include "ambiguous_return.hpp"
 #include "confirmation.hpp"
 #include "gating.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/supervisor/navigator_options.hpp"
+#include "revisit_ambiguity.hpp"
 
 namespace helixnav::supervisor {
 
 /// What the map expects a scan to look like, and which old landmarks it may have returned to.
 struct GatedScan {
   std::unique_ptr<Gating> gating;
-  std::vector<AmbiguousReturn> returns;
+  std::vector<RevisitAmbiguity> returns;
 };
 
 /// The scan that is too ambiguous to be associated, as a decision; nothing when it is not.
@@ -24,7 +24,7 @@ std::optional<core::TriggerDecision> find_trigger(const GatedScan& scan, const c
 
 /// The fate of every observation. Two old landmarks that fit together confirm each other; one alone, with room for others
 /// in its gate, is deferred, and so is one that would tell the vehicle much about where it is, until it is met again.
-/// Test: supervisor/ambiguous_return_test.cpp.
+/// Test: supervisor/revisit_ambiguity_test.cpp.
 std::vector<core::AssociationReport> associate_scan(const core::Scan& scan, const GatedScan& gated,
                                                     const NavigatorOptions& options, double path_m,
                                                     Confirmation& confirmation);

@@ -59,7 +59,7 @@ IntegrityMonitor::Returned* IntegrityMonitor::find_returned(const association::L
 }
 
 IntegrityMonitor::Evidence IntegrityMonitor::evidence(const association::LandmarkLife& life,
-                                                      const MissingSpawnLimits& limits) const {
+                                                      const IntegrityLimits& limits) const {
   Evidence evidence;
   for (const auto& [id, one] : returned_) {
     if (one.looks < limits.looks) continue;
@@ -76,7 +76,7 @@ IntegrityMonitor::Evidence IntegrityMonitor::evidence(const association::Landmar
   return evidence;
 }
 
-bool IntegrityMonitor::is_lost(const association::LandmarkLife& life, const MissingSpawnLimits& limits) const {
+bool IntegrityMonitor::is_lost(const association::LandmarkLife& life, const IntegrityLimits& limits) const {
   if (limits.missing_nats * static_cast<double>(returned_.size()) < limits.nats) return false;
   const Evidence found = evidence(life, limits);
   return found.nats >= limits.nats && found.spawned >= limits.spawned;

@@ -38,8 +38,8 @@ class IntegrityMonitor {
 
   /// No landmark that was returned to was looked for since the pose was vouched for.
   bool is_clear() const { return clear_; }
-  Evidence evidence(const association::LandmarkLife& life, const MissingSpawnLimits& limits) const;
-  bool is_lost(const association::LandmarkLife& life, const MissingSpawnLimits& limits) const;
+  Evidence evidence(const association::LandmarkLife& life, const IntegrityLimits& limits) const;
+  bool is_lost(const association::LandmarkLife& life, const IntegrityLimits& limits) const;
 
  private:
   struct Returned {

@@ -41,7 +41,7 @@ constexpr std::array rows{
     // When a search begins, goes on and ends.
     Row{"search.old_after_m", 2, 1,  // of a sensor that looks all around in two views, see views_around
         [](Options& o) -> double& { return o.search.old_after_m; }},
-    Row{"search.probation_m", 1, 6, [](Options& o) -> double& { return o.search.probation_m; }},
+    Row{"search.confirmation_m", 1, 6, [](Options& o) -> double& { return o.search.confirmation_m; }},
     Row{"search.look_distance_m", 1, 30, [](Options& o) -> double& { return o.search.look_distance_m; }},
     Row{"search.reach_m", 11, 3, [](Options& o) -> double& { return o.search.reach_m; }},
     Row{"search.rest_m", 3, 10, [](Options& o) -> double& { return o.search.rest_m; }},

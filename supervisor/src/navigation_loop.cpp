@@ -174,7 +174,7 @@ StepReport NavigationLoop::finish(const Scan& scan, StepReport report) {
   return report;
 }
 
-bool NavigationLoop::is_monitored() const { return options_.search.enabled && options_.search.missing_spawn.enabled; }
+bool NavigationLoop::is_monitored() const { return options_.search.enabled && options_.search.integrity.enabled; }
 
 /// The belief after this scan becomes the checkpoint to come back to when nothing speaks against it: not more often than
 /// every ten scans, but after every switch of the region, so that the phase closed by it is let go.
@@ -183,7 +183,7 @@ void NavigationLoop::checkpoint_if_settled() {
   if (mapping == nullptr) return;
   constexpr std::int64_t stride = 10;
   const std::int64_t scans = belief_.step - mapping->trusted->step;
-  if (is_monitored() && scans > options_.search.missing_spawn.reach) mapping->monitor = IntegrityMonitor();
+  if (is_monitored() && scans > options_.search.integrity.reach) mapping->monitor = IntegrityMonitor();
   if (is_monitored() && !mapping->monitor.is_clear()) return;
   const bool first_scan = mapping->trusted->step == 0;
   if (!first_scan && scans < stride && belief_.filter.phase() == mapping->trusted->filter.phase) return;

@@ -12,14 +12,12 @@ using core::StepReport;
 
 bool NavigationLoop::has_lost_its_place() const {
   const Mapping* mapping = std::get_if<Mapping>(&mode_);
-  return mapping != nullptr && is_monitored() &&
-         mapping->monitor.is_lost(belief_.existence, options_.search.missing_spawn);
+  return mapping != nullptr && is_monitored() && mapping->monitor.is_lost(belief_.existence, options_.search.integrity);
 }
 
 StepReport NavigationLoop::roll_back_and_relocalise(StepReport report) {
   const Mapping& mapping = std::get<Mapping>(mode_);
-  const IntegrityMonitor::Evidence evidence =
-      mapping.monitor.evidence(belief_.existence, options_.search.missing_spawn);
+  const IntegrityMonitor::Evidence evidence = mapping.monitor.evidence(belief_.existence, options_.search.integrity);
   const Checkpoint trusted = *mapping.trusted;
   const auto scans = static_cast<int>(belief_.step - trusted.step);
   const core::LandmarkId next = belief_.filter.next_name();

@@ -132,7 +132,7 @@ std::string row(int seed, const std::string& verdict, double nees, double metres
   closure.update({{"after_reentry_m", metres}, {"pairs", 10}, {"wrong_pairs", verdict == "false" ? 3 : 0}});
   const Json json = {{"seed", seed},
                      {"verdict", verdict},
-                     {"late", false},
+                     {"diverged_after_closure", false},
                      {"closures", {closure}},
                      {"returns", {{{"error_before_m", seed}}}},
                      {"spacing_m", 8.5},

@@ -50,7 +50,7 @@ TEST_F(SearchSettings, EachReachTheSearchButThreadsAndTheDumpOfTheDefaultsChange
 TEST_F(SearchSettings, CanForbidTheSearchOrItsClosing) {
   EXPECT_FALSE(has(decisions({"--search.enabled", "false"}), "trigger,started"));
   EXPECT_FALSE(has(decisions({"--search.old_after_m", "1e6"}), "trigger,started"));
-  EXPECT_FALSE(has(decisions({"--search.foreign_objects", "1000"}), "trigger,started"));
+  EXPECT_FALSE(has(decisions({"--search.expected_confusers", "1000"}), "trigger,started"));
   const std::string strict = decisions({"--search.least_matches", "1000"});
   EXPECT_TRUE(has(strict, "trigger,started"));
   EXPECT_FALSE(has(strict, "closure,accepted"));
@@ -81,7 +81,7 @@ TEST_F(SearchSettings, OutOfRangeAreMisuse) {
                                {"--search.least_matches", "2"},
                                {"--search.smooth_up_to_scans", "-1"},
                                {"--search.rival_ratio", "1.5"},
-                               {"--search.foreign_objects", "nan"}}) {
+                               {"--search.expected_confusers", "nan"}}) {
     Words words{"config", "--dump"};
     words.insert(words.end(), options.begin(), options.end());
     const Outcome outcome = run(words);

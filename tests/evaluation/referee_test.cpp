@@ -166,7 +166,7 @@ Script association_alone() {
 TEST(Referee, CallsARightClosingClosed) {
   const RunScore score = judged({});
   EXPECT_EQ(score.verdict, RunVerdict::closed);
-  EXPECT_FALSE(score.late);
+  EXPECT_FALSE(score.diverged_after_closure);
   EXPECT_FALSE(score.closed_by_association);
   ASSERT_EQ(score.closures.size(), 1u);
   EXPECT_GT(score.closures[0].pairs, 15);
@@ -229,7 +229,7 @@ TEST(Referee, CallsLateWhatWasClosedRightlyAndThenLost) {
   script.end_error = {2.1, 0.0, 0.0};
   const RunScore score = judged(script);
   EXPECT_EQ(score.verdict, RunVerdict::closed);
-  EXPECT_TRUE(score.late);
+  EXPECT_TRUE(score.diverged_after_closure);
 }
 
 TEST(Referee, DoesNotCallLateWhatDriftsAfterOldGroundIsLeft) {
@@ -237,7 +237,7 @@ TEST(Referee, DoesNotCallLateWhatDriftsAfterOldGroundIsLeft) {
   script.length_m = 600.0;  // the last tree is out of view from 500 m on
   script.end_error = {5.0, 0.0, 0.0};
   const RunScore score = judged(script);
-  EXPECT_FALSE(score.late);
+  EXPECT_FALSE(score.diverged_after_closure);
   EXPECT_NEAR(score.end.relative.position_m, 5.0, 1e-9);
   EXPECT_NEAR(score.end_on_old_ground.relative.position_m, 0.0, 1e-9);
 }
@@ -249,7 +249,7 @@ TEST(Referee, JudgesTheEndByAClosingThatComesAfterOldGroundIsLeft) {
   script.drift = {6.0, 0.0, 0.0};
   const RunScore right = judged(script);
   EXPECT_EQ(right.verdict, RunVerdict::closed);
-  EXPECT_FALSE(right.late) << "what the closing put right was wrong before it";
+  EXPECT_FALSE(right.diverged_after_closure) << "what the closing put right was wrong before it";
   EXPECT_NEAR(right.end_on_old_ground.relative.position_m, 0.0, 1e-9);
   script.error = {1.5, 0.0, 0.0};
   EXPECT_NEAR(judged(script).end_on_old_ground.relative.position_m, 1.5, 1e-9);
@@ -260,7 +260,7 @@ TEST(Referee, CallsLateWhatIsLostOnOldGroundAfterTheClosing) {
   script.drift = {6.0, 0.0, 0.0};
   script.close_at_m = 480.0;
   script.end_error = {2.1, 0.0, 0.0};  // at 490 m
-  EXPECT_TRUE(judged(script).late);
+  EXPECT_TRUE(judged(script).diverged_after_closure);
 }
 
 TEST(Referee, CallsAnyClosingFalseWhereNothingReturns) {
@@ -308,8 +308,8 @@ TEST(Referee, JudgesWhatAssociationClosedWhereThatGroundIsLeft) {
   script.drift = {2.1, 0.0, 0.0};
   const RunScore score = judged(script);
   EXPECT_EQ(score.verdict, RunVerdict::false_closure) << "that the second return is right does not help the first";
-  EXPECT_NEAR(score.returns.at(0).left_behind.relative.position_m, 2.1, 1e-9);
-  EXPECT_NEAR(score.returns.at(1).left_behind.relative.position_m, 0.0, 1e-9);
+  EXPECT_NEAR(score.returns.at(0).duplicate_segment.relative.position_m, 2.1, 1e-9);
+  EXPECT_NEAR(score.returns.at(1).duplicate_segment.relative.position_m, 0.0, 1e-9);
 }
 
 TEST(Referee, JudgesWhatAssociationClosedByTheEndAndByItsMatches) {

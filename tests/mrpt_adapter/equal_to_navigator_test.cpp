@@ -71,7 +71,7 @@ TEST(EqualToNavigator, ThroughALargeLoopAndItsClosing) {
   ASSERT_GT(expected.size(), 300u);
   std::string said;
   expect_same(built(recording, false, all_scans, &said), expected);
-  EXPECT_NE(said.find("closure accepted"), std::string::npos);
+  EXPECT_NE(said.find("Accepted: the cost"), std::string::npos);
 }
 
 TEST(EqualToNavigator, WithLandmarksKnownByName) {
@@ -117,7 +117,7 @@ TEST(PoseEstimation, IsAGaussianWhileMappingAndParticlesWhileRelocalising) {
   });
   EXPECT_GT(clouds, 3u);
   EXPECT_EQ(gaussians_after_closing, 10u);
-  EXPECT_NE(builder.said().find("closure accepted"), std::string::npos);
+  EXPECT_NE(builder.said().find("Accepted: the cost"), std::string::npos);
 }
 
 }  // namespace

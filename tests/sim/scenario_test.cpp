@@ -63,8 +63,8 @@ TEST(CheckScenario, RefusesToldNoiseThatNoFilterCouldUse) {
   Scenario scenario = named_scenario("large-loop");
   scenario.true_noise.sigma_range_m = 0.0;
   EXPECT_EQ(refusal(scenario), "");
-  scenario.told_noise.sigma_range_m = 0.0;
-  EXPECT_NE(refusal(scenario).find("told_noise.sigma_range_m"), std::string::npos);
+  scenario.assumed_noise.sigma_range_m = 0.0;
+  EXPECT_NE(refusal(scenario).find("assumed_noise.sigma_range_m"), std::string::npos);
 }
 
 TEST(CheckScenario, RefusesALoopThatIsAllBare) {

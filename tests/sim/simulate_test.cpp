@@ -57,7 +57,7 @@ TEST(Simulate, TheScannerLeavesTruthAndOdometryAsTheyWere) {
 
 TEST(Simulate, ToldNoiseChangesWhatIsClaimedAndNothingElse) {
   const core::Recording honest = simulate(Scenario{}, 5);
-  const core::Recording modest = simulate(named_scenario("told-noise-half"), 5);
+  const core::Recording modest = simulate(named_scenario("assumed-noise-half"), 5);
   EXPECT_EQ(truth_bytes(honest), truth_bytes(modest));
   const auto u = events_of<core::Odometry>(honest), v = events_of<core::Odometry>(modest);
   ASSERT_EQ(u.size(), v.size());

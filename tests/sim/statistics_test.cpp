@@ -196,8 +196,8 @@ TEST(Statistics, OdometryErrorsInXAndHeadingHaveTheCovarianceThatIsToldAlsoWhenT
 
 /// About 2000 degrees of freedom: the bands are four sigma wide.
 TEST(Statistics, OdometryThatClaimsHalfOrTwiceItsNoiseIsFoundOut) {
-  const OdometryNees half = odometry_nees(named_scenario("told-noise-half"), 2);
-  const OdometryNees twice = odometry_nees(named_scenario("told-noise-double"), 2);
+  const OdometryNees half = odometry_nees(named_scenario("assumed-noise-half"), 2);
+  const OdometryNees twice = odometry_nees(named_scenario("assumed-noise-double"), 2);
   EXPECT_NEAR(half.x_heading / (2.0 * half.scans), 4.0, 0.5);
   EXPECT_NEAR(twice.x_heading / (2.0 * twice.scans), 0.25, 0.03);
 }

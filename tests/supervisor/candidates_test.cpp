@@ -32,7 +32,7 @@ void on_a_drive(double scale_of_odometry_noise, const Check& check) {
   scenario.scanner.clutter_per_scan = 1.0;
   scenario.true_noise.odometry.sigma_speed_mps *= scale_of_odometry_noise;
   scenario.true_noise.odometry.sigma_steering_rad *= scale_of_odometry_noise;
-  scenario.told_noise = scenario.true_noise;
+  scenario.assumed_noise = scenario.true_noise;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const core::Recording run = sim::simulate(scenario, seed);
     NamedNavigator navigator(run.start);

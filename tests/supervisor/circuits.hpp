@@ -30,7 +30,7 @@ inline sim::Scenario wide_circuit() {
   s.true_noise.odometry = {0.1, 0.02};
   s.true_noise.sigma_range_m = 0.1;
   s.true_noise.sigma_bearing_rad = 1.0 * core::pi / 180.0;
-  s.told_noise = s.true_noise;
+  s.assumed_noise = s.true_noise;
   return s;
 }
 

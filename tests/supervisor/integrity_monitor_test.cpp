@@ -136,7 +136,7 @@ End end_of(std::uint64_t seed, bool missing_spawn) {
   NavigatorOptions options;
   options.search.relocalizer.threads = 1;
   options.search.seed = seed;
-  options.search.missing_spawn.enabled = missing_spawn;
+  options.search.integrity.enabled = missing_spawn;
   Navigator navigator(run.start, options);
   End end;
   drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {

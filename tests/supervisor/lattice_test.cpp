@@ -11,7 +11,7 @@ evaluation::RunScore navigate_orchard(std::uint64_t seed, double odometry_noise)
   sim::Scenario scenario = sim::named_scenario("orchard");
   scenario.true_noise.odometry.sigma_speed_mps *= odometry_noise;
   scenario.true_noise.odometry.sigma_steering_rad *= odometry_noise;
-  scenario.told_noise = scenario.true_noise;
+  scenario.assumed_noise = scenario.true_noise;
   return navigate_and_judge(scenario, seed);
 }
 

@@ -39,8 +39,11 @@ CLI::ValidationError config_error(const std::string& path, int line, const std::
 void apply_item(const std::vector<CLI::Option*>& options, const CLI::ConfigItem& item, const std::string& path) {
   const std::string key = item.fullname();
   const std::string section = item.parents.empty() ? "" : item.parents.front();
-  const auto found =
-      std::find_if(options.begin(), options.end(), [&](const CLI::Option* o) { return key_of(*o) == key; });
+  const auto is_called = [&](const CLI::Option* option) {  // now or in an earlier version
+    const std::vector<std::string>& names = option->get_lnames();
+    return std::find(names.begin(), names.end(), key) != names.end();
+  };
+  const auto found = std::find_if(options.begin(), options.end(), is_called);
   if (found == options.end()) {
     std::vector<std::string> keys;
     keys.reserve(options.size());

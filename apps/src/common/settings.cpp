@@ -183,8 +183,8 @@ void add_search(CLI::App& command, Settings& settings) {
       ->group(group);
   command
       .add_option_function<std::string>(
-          "--search.missing_spawn",
-          [&search](const std::string& word) { search.missing_spawn.enabled = word == "true"; },
+          "--search.integrity_monitor,--search.missing_spawn",
+          [&search](const std::string& word) { search.integrity.enabled = word == "true"; },
           "A search also begins, from before, where old landmarks are missing and new ones spawn instead")
       ->check(one_of({"true", "false"}))
       ->default_str("true")
@@ -194,7 +194,7 @@ void add_search(CLI::App& command, Settings& settings) {
   add_length(command, settings, "search.old_after_m", 1e-3, 1e6,
              "A mature landmark unseen over so long a drive is old: met again, it may begin a search; auto: twice the "
              "sensor's reach");
-  add_number(command, "--search.foreign_objects", search.foreign_objects, 1e-6, 1e3,
+  add_number(command, "--search.expected_confusers,--search.foreign_objects", search.expected_confusers, 1e-6, 1e3,
              "A search begins when so many objects other than the old landmark may be what was observed");
   const auto set_closing = [&search](const std::string& word) {
     using supervisor::ClosingMethod;

@@ -63,7 +63,7 @@ Json json_of(const evaluation::ReturnScore& one) {
                {"error_before_m", one.error_before_m},
                {"old_matches", one.old_matches},
                {"wrong_old_matches", one.wrong_old_matches}};
-  json.update(json_of(one.left_behind));
+  json.update(json_of(one.duplicate_segment));
   return json;
 }
 
@@ -76,7 +76,7 @@ Json list_of(const std::vector<Item>& items) {
 
 Json json_of(const evaluation::RunScore& score) {
   return {{"verdict", word_of(score.verdict)},
-          {"late", score.late},
+          {"diverged_after_closure", score.diverged_after_closure},
           {"closed_by_association", score.closed_by_association},
           {"returns", list_of(score.returns)},
           {"closures", list_of(score.closures)},

@@ -117,7 +117,9 @@ void put_shares(Json& summary, const std::vector<Json>& rows) {
   summary["false"] = share(rows, verdict("false"));
   summary["undecided"] = share(rows, verdict("undecided"));
   summary["failed"] = share(rows, verdict("failed"));
-  summary["late"] = share(rows, [](const Json& row) { return row.value("late", false); });
+  summary["diverged_after_closure"] = share(rows, [](const Json& row) {
+    return row.value("diverged_after_closure", row.value("late", false));  // "late" in rows of earlier versions
+  });
   summary["closed_by_association"] =
       share(rows, [](const Json& row) { return row.value("closed_by_association", false); });
   summary["wrong_before_trigger"] =
@@ -219,7 +221,7 @@ std::string summary_text(const Json& summary) {
   text += "; shares with their 95 % interval and count\n";
   for (const auto& [key, name] :
        {std::pair("closed", "closed"), std::pair("false", "false"), std::pair("undecided", "undecided"),
-        std::pair("failed", "failed"), std::pair("late", "late"),
+        std::pair("failed", "failed"), std::pair("diverged_after_closure", "diverged after closure"),
         std::pair("closed_by_association", "closed by association alone"),
         std::pair("wrong_before_trigger", "wrong match before the trigger"),
         std::pair("wrong_without_trigger", "wrong match, never a trigger"),

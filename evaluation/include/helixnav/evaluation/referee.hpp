@@ -59,8 +59,8 @@ struct ReturnScore {
   std::int64_t reentry_step = -1;                                    ///< -1: the drive ended before
   int old_matches = 0;                                               ///< by association, until the next return
   int wrong_old_matches = 0;
-  bool closed = false;     ///< by a closure, or by association
-  JudgedPose left_behind;  ///< as RunScore::end_on_old_ground, before the next return or the end
+  bool closed = false;           ///< by a closure, or by association
+  JudgedPose duplicate_segment;  ///< as RunScore::end_on_old_ground, before the next return or the end
 };
 
 enum class RunVerdict {
@@ -72,8 +72,8 @@ enum class RunVerdict {
 /// One run, judged. Where nothing returns, `undecided` is the right verdict.
 struct RunScore {
   RunVerdict verdict = RunVerdict::undecided;
-  bool late = false;                   ///< every closing was right, and yet end_on_old_ground is wrong by position
-  bool closed_by_association = false;  ///< a return was closed, rightly or not, without any closure
+  bool diverged_after_closure = false;  ///< every closing was right, and yet end_on_old_ground is wrong by position
+  bool closed_by_association = false;   ///< a return was closed, rightly or not, without any closure
   std::vector<ReturnScore> returns;
   std::vector<ClosureScore> closures;
   int triggers = 0;

@@ -53,7 +53,7 @@ struct Scenario {
   VehicleOptions vehicle;
   ScannerOptions scanner;
   NoiseLevels true_noise;
-  NoiseLevels told_noise;
+  NoiseLevels assumed_noise;
   OdometryBias bias;
 };
 

@@ -23,7 +23,7 @@ enum class Acceptance { constellation, paper_rule };
 
 /// What makes a pose doubtful whose covariance says nothing: old landmarks that are missing where new ones spawn.
 /// Source of the figures: LifeOptions (log-odds of a hit and a miss). Measured: docs/adr/0009-doubt.md.
-struct MissingSpawnLimits {
+struct IntegrityLimits {
   bool enabled = true;
   int looks = 3;              ///< scans that looked for a landmark make it count
   double missing_nats = 1.1;  ///< for a wrong pose, of each that was looked for and not seen
@@ -42,14 +42,15 @@ struct SearchOptions {
 
   // Trigger.
   double old_after_m = 60.0;        ///< a mature landmark unseen over so long a drive is old
-  double foreign_objects = 0.1;     ///< expected objects that may be seen in an old one's stead that begin a search
-  double hold_objects = 0.05;       ///< above it an old landmark is not matched alone, but no search begins yet
-  double probation_widening = 2.0;  ///< √(|S|/|R|) above which an old landmark is matched alone only when met again, …
-  double probation_m = 5.0;         ///< … within so long a drive
+  double expected_confusers = 0.1;  ///< expected objects that may be seen in an old one's stead that begin a search
+  double defer_confusers = 0.05;    ///< above it an old landmark is not matched alone, but no search begins yet
+  double confirmation_widening =
+      2.0;                      ///< √(|S|/|R|) above which an old landmark is matched alone only when met again, …
+  double confirmation_m = 5.0;  ///< … within so long a drive
   double foreign_per_scan = 2.5;  ///< observations of no old landmark in one scan: clutter and new ones together
   bool learn_foreign = false;     ///< instead, as many as the drive so far has begun landmarks, see with_foreign
 
-  MissingSpawnLimits missing_spawn;
+  IntegrityLimits integrity;
 
   // Search.
   double look_distance_m = 1.0;  ///< scans nearer to one another are no new look for the particle filter

@@ -16,16 +16,16 @@ namespace helixnav::supervisor {
 /// Copies that the vehicle left behind before the loop was closed. Their error is large beside the distance to the next
 /// old landmark, so that none can be told alone, but they have it in common: a stretch of them is placed as a whole, and
 /// what the wrong places cost grows with its size. Built before the closing moves the branch, asked after it.
-class LeftBehind {
+class DuplicateSegment {
  public:
-  LeftBehind(const cekf::CompressedEkf& filter, const Branch& branch);
+  DuplicateSegment(const cekf::CompressedEkf& filter, const Branch& branch);
 
   /// Pairs of the stretch around the copy that the closed map knows best, nothing when there is no such stretch or when a
   /// rival place is not a thousand times less likely. A place is weighed by log ∫ rᴹ(1 − r)ᵘ dr − (J − dof)/2: M
   /// landmarks stand where the other drive has one, u stand alone on ground that both looked at, at a rate r that nobody
   /// knows, and J is the cost of merging the M. J's expectation is its dof where the place is right, so that a place is
   /// not worse for having more pairs. `old` ascending. Some ms for 40 copies in a lattice.
-  /// Measured: docs/closing.md. Test: supervisor/left_behind_test.cpp, supervisor/lattice_test.cpp.
+  /// Measured: docs/closing.md. Test: supervisor/duplicate_segment_test.cpp, supervisor/lattice_test.cpp.
   KeptRemoved place(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& old,
                     const SearchOptions& options) const;
 

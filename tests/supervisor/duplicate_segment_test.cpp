@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "left_behind.hpp"
+#include "duplicate_segment.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -24,7 +24,7 @@ struct Orchard {
 
   Orchard(int columns, int first_again, int last_again, double shift_m, double sigma_m, double jitter_m = 0.05)
       : jitter_m_(jitter_m) {
-    core::RandomStream jitter(1, "left_behind_test");
+    core::RandomStream jitter(1, "duplicate_segment_test");
     const Eigen::Matrix2d R = 2.5e-3 * Eigen::Matrix2d::Identity();
     std::vector<Eigen::Vector2d> trees;
     for (int column = 0; column < columns; ++column) {
@@ -49,7 +49,7 @@ struct Orchard {
     look_around({first_again * pitch_m + shift_m, last_again * pitch_m + shift_m}, branch.new_drive);
   }
 
-  KeptRemoved placed() const { return LeftBehind(filter, branch).place(filter, old, {}); }
+  KeptRemoved placed() const { return DuplicateSegment(filter, branch).place(filter, old, {}); }
 
   int wrong(const KeptRemoved& pairs) const {
     int wrong = 0;
@@ -77,7 +77,7 @@ struct Orchard {
   }
 };
 
-TEST(LeftBehind, IsPlacedAsAWholeWhereNoTreeCanBeToldAlone) {
+TEST(DuplicateSegment, IsPlacedAsAWholeWhereNoTreeCanBeToldAlone) {
   const Orchard orchard(9, 0, 8, 1.9, 1.5);
   EXPECT_TRUE(leftovers(orchard.filter, orchard.branch.confirmed, orchard.old, SearchOptions{}).empty());
   const KeptRemoved pairs = orchard.placed();
@@ -85,25 +85,25 @@ TEST(LeftBehind, IsPlacedAsAWholeWhereNoTreeCanBeToldAlone) {
   EXPECT_EQ(orchard.wrong(pairs), 0);
 }
 
-TEST(LeftBehind, IsPlacedByItsShapeWhereItIsLikelierAPitchOffAndMatchesMoreThere) {
+TEST(DuplicateSegment, IsPlacedByItsShapeWhereItIsLikelierAPitchOffAndMatchesMoreThere) {
   const Orchard orchard(12, 4, 15, 2.8, 1.5);
   const KeptRemoved pairs = orchard.placed();
   EXPECT_EQ(pairs.size(), 32u);
   EXPECT_EQ(orchard.wrong(pairs), 0);
 }
 
-TEST(LeftBehind, IsPlacedByTheEndOfALatticeThatHasNoShapeWhereItIsLikelierAPitchOff) {
+TEST(DuplicateSegment, IsPlacedByTheEndOfALatticeThatHasNoShapeWhereItIsLikelierAPitchOff) {
   const Orchard orchard(12, 4, 11, 2.8, 1.5, 0.0);
   const KeptRemoved pairs = orchard.placed();
   EXPECT_EQ(pairs.size(), 32u);
   EXPECT_EQ(orchard.wrong(pairs), 0);
 }
 
-TEST(LeftBehind, StaysWhereNothingTellsOnePitchFromAnother) {
+TEST(DuplicateSegment, StaysWhereNothingTellsOnePitchFromAnother) {
   EXPECT_TRUE(Orchard(30, 10, 12, 2.0, 3.0).placed().empty());
 }
 
-TEST(LeftBehind, IsNothingWithoutCopies) {
+TEST(DuplicateSegment, IsNothingWithoutCopies) {
   Orchard orchard(6, 0, 5, 0.0, 0.5);
   orchard.old.clear();
   EXPECT_TRUE(orchard.placed().empty());

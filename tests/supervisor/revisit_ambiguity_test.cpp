@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ambiguous_return.hpp"
+#include "revisit_ambiguity.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -75,12 +75,12 @@ double expected_objects(const Scene& scene, core::LandmarkId id, const core::Obs
   return objects + density * core::pi * gate * (std::sqrt(S.determinant()) - sensor_area);
 }
 
-TEST(AmbiguousReturn, CountsForeignObjectsByTheirDefinition) {
+TEST(RevisitAmbiguity, CountsForeignObjectsByTheirDefinition) {
   int checked = 0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     const Scene scene(seed, 0.1 * static_cast<double>(1 + seed % 30));
     const Gating gating(scene.filter, scene.ids, scene.scan, {});
-    for (const AmbiguousReturn& found :
+    for (const RevisitAmbiguity& found :
          returns_in_gate(scene.filter, gating.problem, scene.scan, scene.ids, per_scan)) {
       double most = 0.0;
       EXPECT_GE(found.widening, 1.0);
@@ -89,7 +89,7 @@ TEST(AmbiguousReturn, CountsForeignObjectsByTheirDefinition) {
         const auto& observation = scene.scan.observations[static_cast<std::size_t>(pair.observation)];
         most = std::max(most, expected_objects(scene, found.landmark, observation));
       }
-      EXPECT_NEAR(found.foreign_objects, most, 1e-9 * (1.0 + most)) << seed;
+      EXPECT_NEAR(found.expected_confusers, most, 1e-9 * (1.0 + most)) << seed;
       ++checked;
     }
   }
@@ -97,7 +97,7 @@ TEST(AmbiguousReturn, CountsForeignObjectsByTheirDefinition) {
 }
 
 /// 1.8 gates apart, an observation halfway: neither stands in the gate of the other, and either may be what was seen.
-TEST(AmbiguousReturn, CountsTheLandmarkOnTheOtherSideOfTheObservation) {
+TEST(RevisitAmbiguity, CountsTheLandmarkOnTheOtherSideOfTheObservation) {
   cekf::CompressedEkf filter{core::PoseGaussian{}};
   const Eigen::Matrix2d R = 1e-4 * Eigen::Matrix2d::Identity();
   std::vector<core::LandmarkId> ids;
@@ -107,46 +107,46 @@ TEST(AmbiguousReturn, CountsTheLandmarkOnTheOtherSideOfTheObservation) {
   filter.predict(odometry);
   core::Scan scan;
   scan.field_of_view = {1.0, 30.0, -core::pi / 2, core::pi / 2};
-  const auto foreign_objects = [&](double y_m) {
+  const auto confusers = [&](double y_m) {
     scan.observations = {core::make_range_bearing(10.0, std::atan2(y_m, 10.0), 0.01, 0.001)};
     const Gating gating(filter, ids, scan, {});
-    return most_ambiguous(returns_in_gate(filter, gating.problem, scan, ids, per_scan))->foreign_objects;
+    return most_ambiguous(returns_in_gate(filter, gating.problem, scan, ids, per_scan))->expected_confusers;
   };
-  EXPECT_GT(foreign_objects(0.1), 1.0);
-  EXPECT_GT(foreign_objects(-0.1), 1.0);
-  EXPECT_LT(foreign_objects(-4.0), 0.2) << "beyond the gate of the farther one";
+  EXPECT_GT(confusers(0.1), 1.0);
+  EXPECT_GT(confusers(-0.1), 1.0);
+  EXPECT_LT(confusers(-4.0), 0.2) << "beyond the gate of the farther one";
 }
 
-TEST(AmbiguousReturn, IsNoneWhereThePoseIsCertainAndTreesStandApart) {
+TEST(RevisitAmbiguity, IsNoneWhereThePoseIsCertainAndTreesStandApart) {
   const Scene scene(3, 1e-3, 3);
   const Gating gating(scene.filter, scene.ids, scene.scan, {});
   const auto found = returns_in_gate(scene.filter, gating.problem, scene.scan, scene.ids, per_scan);
   ASSERT_EQ(found.size(), 3u);
-  EXPECT_LT(most_ambiguous(found)->foreign_objects, 0.05);
+  EXPECT_LT(most_ambiguous(found)->expected_confusers, 0.05);
 }
 
-TEST(AmbiguousReturn, SpeaksOfOldLandmarksOnly) {
+TEST(RevisitAmbiguity, SpeaksOfOldLandmarksOnly) {
   const Scene scene(4, 2.0);
   const Gating gating(scene.filter, scene.ids, scene.scan, {});
   EXPECT_TRUE(returns_in_gate(scene.filter, gating.problem, scene.scan, {}, per_scan).empty());
   const std::vector<core::LandmarkId> one{scene.ids[1]};
-  for (const AmbiguousReturn& found : returns_in_gate(scene.filter, gating.problem, scene.scan, one, per_scan)) {
+  for (const RevisitAmbiguity& found : returns_in_gate(scene.filter, gating.problem, scene.scan, one, per_scan)) {
     EXPECT_EQ(found.landmark, one.front());
     EXPECT_EQ(found.neighbours, 0);
   }
   EXPECT_EQ(most_ambiguous({}), nullptr);
 }
 
-TEST(AmbiguousReturn, SaysHowMuchWiderThePoseMakesTheGate) {
+TEST(RevisitAmbiguity, SaysHowMuchWiderThePoseMakesTheGate) {
   const Scene certain(3, 1e-3, 3);
   const Gating gating(certain.filter, certain.ids, certain.scan, {});
-  for (const AmbiguousReturn& found :
+  for (const RevisitAmbiguity& found :
        returns_in_gate(certain.filter, gating.problem, certain.scan, certain.ids, per_scan)) {
     EXPECT_LT(found.widening, 2.0) << "the landmarks are known as well as the sensor sees them";
   }
   const Scene uncertain(3, 2.0, 3);
   const Gating wide(uncertain.filter, uncertain.ids, uncertain.scan, {});
-  for (const AmbiguousReturn& found :
+  for (const RevisitAmbiguity& found :
        returns_in_gate(uncertain.filter, wide.problem, uncertain.scan, uncertain.ids, per_scan)) {
     EXPECT_GT(found.widening, 10.0);
   }
@@ -162,7 +162,7 @@ TEST(Confirmation, IsGivenByTheLandmarkThatWasMetJustBefore) {
   EXPECT_FALSE(confirmation.confirms(7, 117.0, 5.0)) << "too long ago";
 }
 
-TEST(AmbiguousReturn, CallsOldWhatIsMatureAndLongUnseen) {
+TEST(RevisitAmbiguity, CallsOldWhatIsMatureAndLongUnseen) {
   association::LandmarkLife life;
   life.observe({0.0, 0.0}, {}, {1}, {});
   for (double x = 1.0; x <= 3.0; x += 1.0) life.observe({x, 0.0}, {1}, {}, {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "left_behind.hpp"
+#include "duplicate_segment.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -163,13 +163,13 @@ std::vector<core::Pose2> near(std::vector<core::Pose2> poses, const Eigen::Vecto
 
 }  // namespace
 
-LeftBehind::LeftBehind(const cekf::CompressedEkf& filter, const Branch& branch)
+DuplicateSegment::DuplicateSegment(const cekf::CompressedEkf& filter, const Branch& branch)
     : confirmed_(branch.confirmed), old_drive_(branch.old_drive), new_drive_(branch.new_drive) {
   for (const LandmarkId id : confirmed_) before_m_[id] = filter.landmark_mean(id);
 }
 
-KeptRemoved LeftBehind::place(const cekf::CompressedEkf& filter, const std::vector<LandmarkId>& old,
-                              const SearchOptions& options) const {
+KeptRemoved DuplicateSegment::place(const cekf::CompressedEkf& filter, const std::vector<LandmarkId>& old,
+                                    const SearchOptions& options) const {
   std::vector<Copy> copies = copies_among(confirmed_, filter, old, options);
   if (copies.empty()) return {};
   const double reach_m = options.stretch_m + options.stretch_rim_m + std::sqrt(wide_gate * copies.back().variance_m2);
@@ -187,8 +187,8 @@ KeptRemoved LeftBehind::place(const cekf::CompressedEkf& filter, const std::vect
   return has_rival ? KeptRemoved{} : kept_removed(best.pairs);
 }
 
-Constellation LeftBehind::ground_around(LandmarkId middle, double reach_m, const cekf::CompressedEkf& filter,
-                                        const std::vector<LandmarkId>& old, const SearchOptions& options) const {
+Constellation DuplicateSegment::ground_around(LandmarkId middle, double reach_m, const cekf::CompressedEkf& filter,
+                                              const std::vector<LandmarkId>& old, const SearchOptions& options) const {
   const Eigen::Vector2d origin_m = before_m_.at(middle);
   const Eigen::Vector2d now_m = filter.landmark_mean(middle);
   Constellation ground;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ambiguous_return.hpp"
+#include "revisit_ambiguity.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -80,10 +80,10 @@ std::vector<core::LandmarkId> old_landmarks(const association::LandmarkLife& lif
   return old;
 }
 
-std::vector<AmbiguousReturn> returns_in_gate(const cekf::CompressedEkf& filter,
-                                             const association::InnovationProblem& problem, const core::Scan& scan,
-                                             const std::vector<core::LandmarkId>& old, double foreign_per_scan) {
-  std::vector<AmbiguousReturn> returns;
+std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
+                                              const association::InnovationProblem& problem, const core::Scan& scan,
+                                              const std::vector<core::LandmarkId>& old, double foreign_per_scan) {
+  std::vector<RevisitAmbiguity> returns;
   if (old.empty() || !std::isfinite(scan.field_of_view.max_range_m)) return returns;
   static const double gate = core::chi2_quantile(gate_probability, 2);
   std::vector<core::LandmarkId> others;  // looked up when the first old landmark is gated
@@ -92,30 +92,30 @@ std::vector<AmbiguousReturn> returns_in_gate(const cekf::CompressedEkf& filter,
     if (pair.dof != 2 || !contains(old, id)) continue;
     if (others.empty()) others = old_in_view(filter, scan, old);
     const association::Prediction& prediction = problem.predictions[static_cast<std::size_t>(pair.prediction)];
-    AmbiguousReturn here;
+    RevisitAmbiguity here;
     here.landmark = id;
     here.neighbours = neighbours_in_gate(filter, scan, others, id, pair, problem);
     const Eigen::Matrix2d R = scan.observations[static_cast<std::size_t>(pair.observation)].R;
     const double sensor_area = std::sqrt(R.determinant());
     here.widening = std::sqrt(pair.S.determinant()) / sensor_area;
     here.gate_area = core::pi * gate * sensor_area * (here.widening - 1.0);
-    here.foreign_objects =
+    here.expected_confusers =
         here.neighbours + density_at(prediction, scan.field_of_view, foreign_per_scan) * here.gate_area;
     const auto at = std::lower_bound(returns.begin(), returns.end(), id,
-                                     [](const AmbiguousReturn& r, core::LandmarkId l) { return r.landmark < l; });
+                                     [](const RevisitAmbiguity& r, core::LandmarkId l) { return r.landmark < l; });
     if (at == returns.end() || at->landmark != id) {
       returns.insert(at, here);
-    } else if (here.foreign_objects > at->foreign_objects) {
+    } else if (here.expected_confusers > at->expected_confusers) {
       *at = here;
     }
   }
   return returns;
 }
 
-const AmbiguousReturn* most_ambiguous(const std::vector<AmbiguousReturn>& returns) {
+const RevisitAmbiguity* most_ambiguous(const std::vector<RevisitAmbiguity>& returns) {
   const auto worst = std::max_element(
       returns.begin(), returns.end(),
-      [](const AmbiguousReturn& a, const AmbiguousReturn& b) { return a.foreign_objects < b.foreign_objects; });
+      [](const RevisitAmbiguity& a, const RevisitAmbiguity& b) { return a.expected_confusers < b.expected_confusers; });
   return worst == returns.end() ? nullptr : &*worst;
 }
 
