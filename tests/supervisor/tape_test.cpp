@@ -112,6 +112,16 @@ TEST(Checkpoint, GoingThroughTheTapeAgainEndsWhereItEnded) {
   EXPECT_EQ(driver.belief.filter.pose().covariance, end.covariance);
 }
 
+TEST(Checkpoint, RestoresTheLandmarkThatWaitsForItsConfirmation) {
+  Driver driver;
+  constexpr double reach_m = 5.0;
+  EXPECT_FALSE(driver.belief.confirmation.confirms(7, 1.0, reach_m));
+  const Checkpoint checkpoint = take_checkpoint(driver.belief, driver.tape);
+  EXPECT_FALSE(driver.belief.confirmation.confirms(8, 2.0, reach_m));
+  roll_back(checkpoint, driver.belief);
+  EXPECT_TRUE(driver.belief.confirmation.confirms(7, 3.0, reach_m));
+}
+
 TEST(Tape, CutTakesOffWhatCameAfterThePosition) {
   Tape tape(1000);
   Tape::Position after_third_scan = 0;

@@ -8,8 +8,7 @@ int main() {
   const core::Recording drive = sim::simulate(sim::named_scenario("large-loop"), /*seed=*/1);
   supervisor::Navigator navigator(drive.start);
   for (const core::Event& event : drive.events) {
-    if (const auto* odometry = std::get_if<core::Odometry>(&event)) navigator.move(*odometry);
-    if (const auto* scan = std::get_if<core::Scan>(&event)) navigator.observe(*scan);
+    if (const auto report = navigator.take(event)) std::cout << report->pose.mean.vector().transpose() << '\n';
   }
   std::cout << navigator.map().size() << " landmarks, robot at " << navigator.pose().mean.vector().transpose() << '\n';
 }
