@@ -19,6 +19,7 @@
 #include "common/interrupt.hpp"
 #include "common/progress_bar.hpp"
 #include "ground_truth.hpp"
+#include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
 #include "helixnav/mrpt_adapter/run_access.hpp"

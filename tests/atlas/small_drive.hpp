@@ -128,8 +128,9 @@ inline Atlas driven(const SmallDrive& drive, const Options& options = exact()) {
 /// χ² of the optimum; the problem's values move there.
 inline double solve(smoothing::Problem& problem) {
   smoothing::Options options;
-  options.method = smoothing::Method::gauss_newton;  // its last step goes far beyond its tolerance
+  options.first_damping = 1e-12;  // as good as Gauss-Newton, whose last step goes far beyond its tolerance
   options.tolerance_chi2 = 1e-12;
+  smoothing::optimize(problem, options);
   return smoothing::optimize(problem, options).chi2.total();
 }
 
