@@ -14,7 +14,7 @@ namespace {
 
 constexpr double gate_probability = 0.95;  // of the gate whose foreign objects are counted
 
-bool contains(const std::vector<core::LandmarkId>& sorted, core::LandmarkId id) {
+bool is_among(const std::vector<core::LandmarkId>& sorted, core::LandmarkId id) {
   return std::binary_search(sorted.begin(), sorted.end(), id);
 }
 
@@ -34,7 +34,7 @@ std::vector<core::LandmarkId> old_in_view(const cekf::CompressedEkf& filter, con
   const Eigen::Vector2d sensor_m = core::transform(now.mean, scan.T_robot_sensor.position_m());
   std::vector<core::LandmarkId> near =
       filter.landmarks_within(sensor_m, scan.field_of_view.max_range_m + 3.0 * sigma_m);
-  near.erase(std::remove_if(near.begin(), near.end(), [&](core::LandmarkId id) { return !contains(old, id); }),
+  near.erase(std::remove_if(near.begin(), near.end(), [&](core::LandmarkId id) { return !is_among(old, id); }),
              near.end());
   return near;
 }
@@ -89,7 +89,7 @@ std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
   std::vector<core::LandmarkId> others;  // looked up when the first old landmark is gated
   for (const association::GatedPair& pair : problem.pairs) {
     const core::LandmarkId id = problem.ids[static_cast<std::size_t>(pair.candidate)];
-    if (pair.dof != 2 || !contains(old, id)) continue;
+    if (pair.dof != 2 || !is_among(old, id)) continue;
     if (others.empty()) others = old_in_view(filter, scan, old);
     const association::Prediction& prediction = problem.predictions[static_cast<std::size_t>(pair.prediction)];
     RevisitAmbiguity here;

@@ -14,8 +14,8 @@
 namespace helixnav::core {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 Odometry good_odometry() {
   Odometry odometry;
@@ -69,7 +69,7 @@ TEST(CheckEvent, AcceptsACovarianceOfRankOneToThree) {
 }
 
 TEST(CheckEvent, RefusesOdometryThatIsNotFiniteOrHasNoCovariance) {
-  for (const double wrong : {nan, infinity, -infinity}) {
+  for (const double wrong : {not_a_number, infinite, -infinite}) {
     Odometry odometry = good_odometry();
     odometry.T_before_after.y_m = wrong;
     expect_refused(odometry, "increment");
@@ -96,7 +96,7 @@ TEST(CheckEvent, RefusesAScanByTheFirstObservationThatIsNone) {
   scan.observations.push_back(make_range_bearing(-0.5, 0.0, 0.1, 0.01));
   expect_refused(scan, "observation 2");
   scan = good_scan();
-  scan.observations[1].z[0] = nan;
+  scan.observations[1].z[0] = not_a_number;
   expect_refused(scan, "observation 1");
   scan = good_scan();
   scan.observations[0].z[1] = 6.4;
@@ -111,12 +111,12 @@ TEST(CheckEvent, RefusesAScanByTheFirstObservationThatIsNone) {
 
 TEST(CheckEvent, RefusesAMountingOrAViewThatIsNotFiniteOrNotInOrder) {
   Scan scan = good_scan();
-  scan.T_robot_sensor.x_m = nan;
+  scan.T_robot_sensor.x_m = not_a_number;
   expect_refused(scan, "T_robot_sensor");
   const std::vector<FieldOfView> wrong = {
-      {nan, 30.0, -1.0, 1.0}, {-1.0, 30.0, -1.0, 1.0},     {0.0, nan, -1.0, 1.0},
-      {5.0, 4.0, -1.0, 1.0},  {0.0, 30.0, 1.0, -1.0},      {0.0, 30.0, nan, 1.0},
-      {0.0, -1.0, -1.0, 1.0}, {infinity, 30.0, -1.0, 1.0}, {0.0, 30.0, -1.0, infinity}};
+      {not_a_number, 30.0, -1.0, 1.0}, {-1.0, 30.0, -1.0, 1.0},     {0.0, not_a_number, -1.0, 1.0},
+      {5.0, 4.0, -1.0, 1.0},  {0.0, 30.0, 1.0, -1.0},      {0.0, 30.0, not_a_number, 1.0},
+      {0.0, -1.0, -1.0, 1.0}, {infinite, 30.0, -1.0, 1.0}, {0.0, 30.0, -1.0, infinite}};
   for (const FieldOfView& view : wrong) {
     scan = good_scan();
     scan.field_of_view = view;
@@ -127,11 +127,11 @@ TEST(CheckEvent, RefusesAMountingOrAViewThatIsNotFiniteOrNotInOrder) {
 TEST(CheckEvent, RefusesAFixThatIsNotFiniteOrExactlyKnown) {
   AbsoluteFix fix;
   fix.t_ns = 42;
-  fix.position_world_m.x() = infinity;
+  fix.position_world_m.x() = infinite;
   expect_refused(fix, "position");
   fix = {};
   fix.t_ns = 42;
-  fix.antenna_robot_m.y() = nan;
+  fix.antenna_robot_m.y() = not_a_number;
   expect_refused(fix, "antenna");
   fix = {};
   fix.t_ns = 42;

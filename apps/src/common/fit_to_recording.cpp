@@ -19,7 +19,7 @@ void scale_covariances(core::Recording& recording, double scale) {
   }
 }
 
-double degrees(double angle_rad) { return angle_rad * 180.0 / core::pi; }
+double in_degrees(double angle_rad) { return angle_rad * 180.0 / core::pi; }
 
 }  // namespace
 
@@ -49,7 +49,7 @@ std::string lengths_text(const supervisor::NavigatorOptions& options, const core
   std::ostringstream text;
   text.precision(6);
   text << "\n# Field of view: " << view.min_range_m << " to " << view.max_range_m << " m, "
-       << degrees(view.min_bearing_rad) << " to " << degrees(view.max_bearing_rad) << " deg; reach ";
+       << in_degrees(view.min_bearing_rad) << " to " << in_degrees(view.max_bearing_rad) << " deg; reach ";
   if (view.reach()) {
     text << *view.reach() << " m";
   } else {

@@ -37,7 +37,7 @@ struct SmoothJob {
   RunOptions run;
 };
 
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+double elapsed_s(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 SmoothingTask read_task(const std::string& path, core::Recording& recording) {
   if (logs::recognise(path) == logs::LogFormat::g2o) {
@@ -76,7 +76,7 @@ smoothing::SmoothOptions options_of(const SmoothJob& job) {
     if (shown && !steps.empty()) {
       std::fprintf(stderr, "\r%4zu iterations, chi2 %.6g  ", steps.size(), steps.back().chi2.cost);
     }
-    return seconds_since(begin) < most_s;
+    return elapsed_s(begin) < most_s;
   };
   return options;
 }
@@ -87,7 +87,7 @@ ExitCode smooth(CLI::App& command, SmoothJob& job) {
   Drive task_info;  // for its manifest
   SmoothingTask task = read_task(job.path, task_info.recording);
   if (starts_from_run(job.start)) start_from_folder(job.start, task);
-  const double reading_s = seconds_since(begin);
+  const double reading_s = elapsed_s(begin);
   SmoothingResult result = solve(task, options_of(job));
   if (!job.run.quiet && isatty(STDERR_FILENO) == 1) std::fputs("\r\033[K", stderr);
   fill_drive(task_info, job.run, "");
