@@ -11,7 +11,7 @@
 namespace helixnav::relocalize {
 namespace {
 
-constexpr IndexOptions options = {30.0, 0.1};
+constexpr IndexOptions ask_index = {30.0, 0.1};
 
 test::Points world_of(std::uint64_t seed, std::size_t count = 1000) {
   core::RandomStream random(seed);
@@ -37,7 +37,7 @@ TEST(Ask, FindsThePlaceItsPairsAndTheirNoise) {
   const test::Points world = world_of(1);
   core::RandomStream random(1);
   const test::Asked asked = test::ask_somewhere(world, {20, 0.3}, random);
-  const Answer answer = ask(test::index_of(world, options), asked.question);
+  const Answer answer = ask(test::index_of(world, ask_index), asked.question);
   ASSERT_EQ(answer.verdict, Verdict::closed);
   const Place& best = answer.places.front();
   EXPECT_FALSE(test::wrong(asked, best.T_map_branch));
@@ -51,10 +51,10 @@ TEST(Ask, AnswersTheSameAgainAndFromAnIndexThatGrewInAnotherOrder) {
   const test::Points world = world_of(2);
   core::RandomStream random(2);
   const test::Asked asked = test::ask_somewhere(world, {15, 0.4}, random);
-  const MapIndex index = test::index_of(world, options);
+  const MapIndex index = test::index_of(world, ask_index);
   const Answer answer = ask(index, asked.question);
   expect_same(answer, ask(index, asked.question), 0.0);
-  MapIndex grown(options);
+  MapIndex grown(ask_index);
   auto landmarks = test::landmarks(world, options.pair_noise_m);
   std::reverse(landmarks.begin(), landmarks.end());
   for (const Landmark& landmark : landmarks) grown.insert(landmark);
@@ -77,7 +77,7 @@ TEST(Ask, DoesNotDependOnTheFrameOfTheBranch) {
   for (Landmark& landmark : moved.landmarks)
     landmark.point.mean_m = core::transform(T_new_branch, landmark.point.mean_m);
   for (Disc& disc : moved.looked) disc.centre_m = core::transform(T_new_branch, disc.centre_m);
-  const MapIndex index = test::index_of(world, options);
+  const MapIndex index = test::index_of(world, ask_index);
   const Place there = ask(index, moved).places.front();
   const Place here = ask(index, asked.question).places.front();
   EXPECT_NEAR(there.evidence, here.evidence, 1e-3);
@@ -109,7 +109,7 @@ TEST(Ask, DoubtsWhatASearchCutShortHasFound) {
   const test::Points world = world_of(5);
   core::RandomStream random(5);
   const test::Asked asked = test::ask_somewhere(world, {20, 0.0}, random);
-  const MapIndex index = test::index_of(world, options);
+  const MapIndex index = test::index_of(world, ask_index);
   AskOptions capped;
   capped.most_candidates = 200.0;
   const Answer answer = ask(index, asked.question, capped);
@@ -128,7 +128,7 @@ TEST(Ask, UsesALongAndThinCovarianceWhereARoundOneMisleads) {
     landmark.point.mean_m.x() += 0.2 * random.normal();
     landmark.point.covariance_m2 << 0.04, 0.0, 0.0, 0.001;
   }
-  const MapIndex index = test::index_of(world, options);
+  const MapIndex index = test::index_of(world, ask_index);
   const Answer thin = ask(index, asked.question);
   for (Landmark& landmark : asked.question.landmarks)
     landmark.point.covariance_m2 = 0.001 * Eigen::Matrix2d::Identity();
@@ -141,13 +141,13 @@ TEST(Ask, UsesALongAndThinCovarianceWhereARoundOneMisleads) {
 
 TEST(Ask, SaysNotHereForTooLittle) {
   const test::Points world = world_of(7);
-  const MapIndex index = test::index_of(world, options);
+  const MapIndex index = test::index_of(world, ask_index);
   EXPECT_EQ(ask(index, Question()).verdict, Verdict::not_here);
   core::RandomStream random(7);
   Question three = test::ask_somewhere(world, {3}, random).question;
   EXPECT_EQ(ask(index, three).verdict, Verdict::not_here);
-  EXPECT_EQ(ask(MapIndex(options), three).verdict, Verdict::not_here);
-  MapIndex one(options);
+  EXPECT_EQ(ask(MapIndex(ask_index), three).verdict, Verdict::not_here);
+  MapIndex one(ask_index);
   one.insert(test::landmark(0, {0.0, 0.0}, 0.1));
   one.look_at({{0.0, 0.0}, 20.0});
   EXPECT_EQ(ask(one, test::ask_somewhere(world, {10}, random).question).verdict, Verdict::not_here);
@@ -155,7 +155,7 @@ TEST(Ask, SaysNotHereForTooLittle) {
 
 TEST(Ask, RefusesAQuestionThatMakesNoSense) {
   const test::Points world = world_of(8, 100);
-  const MapIndex index = test::index_of(world, options);
+  const MapIndex index = test::index_of(world, ask_index);
   core::RandomStream random(8);
   const Question good = test::ask_somewhere(world, {10}, random).question;
   EXPECT_THROW(ask(index, good, {0.0}), core::PreconditionError);

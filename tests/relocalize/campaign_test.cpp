@@ -8,7 +8,7 @@
 namespace helixnav::relocalize {
 namespace {
 
-constexpr IndexOptions options = {30.0, 0.1};
+constexpr IndexOptions campaign_index = {30.0, 0.1};
 
 struct Tally {
   int right = 0, wrong = 0, ambiguous = 0;
@@ -17,7 +17,7 @@ struct Tally {
 Tally campaign(const test::Points& map, const test::Points& asked_world, const test::Asking& asking, int questions,
                std::uint64_t seed) {
   const bool absent = &map != &asked_world;
-  const MapIndex index = test::index_of(map, options);
+  const MapIndex index = test::index_of(map, campaign_index);
   Tally tally;
   for (int q = 0; q < questions; ++q) {
     core::RandomStream random(seed, "question " + std::to_string(q));

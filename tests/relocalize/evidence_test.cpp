@@ -14,7 +14,7 @@
 namespace helixnav::relocalize {
 namespace {
 
-constexpr IndexOptions options = {30.0, 0.1};
+constexpr IndexOptions evidence_index = {30.0, 0.1};
 
 /// Seven landmarks of a map and a branch that sees five of them and a foreign one, with noise that is not round.
 struct SmallCase {
@@ -143,7 +143,7 @@ TEST(Evidence, HasTheInformationOfItsPairsOnTheBranchsPose) {
 TEST(Evidence, HasThePoseOfTheClosedFormWhereNoiseIsRound) {
   core::RandomStream random(2);
   const test::Points world = test::uniform_world(600, random);
-  const MapIndex index = test::index_of(world, options);
+  const MapIndex index = test::index_of(world, evidence_index);
   const test::Asked asked = test::ask_somewhere(world, {20, 0.3}, random);
   const Place best = ask(index, asked.question).places.front();
   // Complex numbers: map ≈ translation + turn · branch.

@@ -14,7 +14,7 @@ namespace helixnav::relocalize {
 namespace {
 
 constexpr double noise_m = 0.1;
-constexpr IndexOptions options = {30.0, noise_m};
+constexpr IndexOptions index_options = {30.0, noise_m};
 
 using Triple = std::array<core::LandmarkId, 3>;
 
@@ -25,7 +25,7 @@ std::vector<Triple> brute_force(const std::vector<Landmark>& map) {
     std::vector<std::pair<double, std::size_t>> near;
     for (std::size_t i = 0; i < map.size(); ++i) {
       const double d_m = (map[i].point.mean_m - centre.point.mean_m).norm();
-      if (map[i].id != centre.id && d_m <= options.reach_m) near.emplace_back(d_m, i);
+      if (map[i].id != centre.id && d_m <= index_options.reach_m) near.emplace_back(d_m, i);
     }
     std::sort(near.begin(), near.end());
     near.resize(std::min<std::size_t>(near.size(), 8));
@@ -54,20 +54,20 @@ std::vector<Landmark> scattered(std::size_t count, std::uint64_t seed) {
 
 TEST(MapIndex, HoldsTheTrianglesThatTheDefinitionNames) {
   const auto map = scattered(300, 1);
-  EXPECT_EQ(MapIndex(options, map).list_triangles(), brute_force(map));
+  EXPECT_EQ(MapIndex(index_options, map).list_triangles(), brute_force(map));
 }
 
 TEST(MapIndex, IsTheSameWhetherBuiltAtOnceOrLandmarkByLandmark) {
   const auto map = scattered(1500, 2);
-  MapIndex grown(options);
+  MapIndex grown(index_options);
   for (const Landmark& landmark : map) grown.insert(landmark);
-  EXPECT_EQ(grown.list_triangles(), MapIndex(options, map).list_triangles());
+  EXPECT_EQ(grown.list_triangles(), MapIndex(index_options, map).list_triangles());
 }
 
 TEST(MapIndex, IsThatOfWhatIsLeftAfterAThousandInsertionsRemovalsAndMoves) {
   core::RandomStream random(3);
   auto map = scattered(250, 3);
-  MapIndex index(options, map);
+  MapIndex index(index_options, map);
   core::LandmarkId next = 250;
   for (int step = 0; step < 1000; ++step) {
     const std::size_t at = random.below(map.size());
@@ -92,7 +92,7 @@ TEST(MapIndex, IsThatOfWhatIsLeftAfterAThousandInsertionsRemovalsAndMoves) {
 
 TEST(MapIndex, CanBeEmptiedAndFilledAgain) {
   const auto map = scattered(100, 4);
-  MapIndex index(options, map);
+  MapIndex index(index_options, map);
   for (const Landmark& landmark : map) index.erase(landmark.id);
   EXPECT_EQ(index.size(), 0U);
   EXPECT_EQ(index.triangles(), 0U);
@@ -103,9 +103,9 @@ TEST(MapIndex, CanBeEmptiedAndFilledAgain) {
 TEST(MapIndex, BreaksTiesOfALatticeByIdAndNotByTheOrderOfInsertion) {
   core::RandomStream random(5);
   auto map = test::landmarks(test::orchard(400, false, 0.0, random), noise_m);
-  const MapIndex forwards(options, map);
+  const MapIndex forwards(index_options, map);
   std::reverse(map.begin(), map.end());
-  MapIndex backwards(options);
+  MapIndex backwards(index_options);
   for (const Landmark& landmark : map) backwards.insert(landmark);
   EXPECT_EQ(forwards.list_triangles(), backwards.list_triangles());
 }
@@ -113,9 +113,9 @@ TEST(MapIndex, BreaksTiesOfALatticeByIdAndNotByTheOrderOfInsertion) {
 TEST(MapIndex, CostsLessThanTwoHundredBytesALandmark) {
   for (const std::size_t count : {10000U, 40000U}) {
     core::RandomStream random(6);
-    const MapIndex at_once = test::index_of(test::uniform_world(count, random), options);
+    const MapIndex at_once = test::index_of(test::uniform_world(count, random), index_options);
     EXPECT_LT(at_once.memory_bytes(), 200U * count);
-    MapIndex grown(options);
+    MapIndex grown(index_options);
     for (const Landmark& landmark : scattered(count, 7)) grown.insert(landmark);
     grown.look_around_landmarks();
     EXPECT_LT(grown.memory_bytes(), 200U * count);
@@ -123,7 +123,7 @@ TEST(MapIndex, CostsLessThanTwoHundredBytesALandmark) {
 }
 
 TEST(MapIndex, MeasuresTheGroundThatWasLookedAtOnce) {
-  MapIndex index(options);
+  MapIndex index(index_options);
   index.look_at({{100.0, 50.0}, 40.0});
   const double disc_m2 = core::pi * 1600.0;
   EXPECT_NEAR(index.looked_at_m2(), disc_m2, 0.02 * disc_m2);
@@ -136,7 +136,7 @@ TEST(MapIndex, RefusesWhatItCannotHoldAndStaysAsItWas) {
   EXPECT_THROW(MapIndex({1.0, 0.1}), core::PreconditionError);
   EXPECT_THROW(MapIndex({std::numeric_limits<double>::quiet_NaN(), 0.1}), core::PreconditionError);
   auto map = scattered(50, 8);
-  MapIndex index(options, map);
+  MapIndex index(index_options, map);
   const auto before = index.list_triangles();
   EXPECT_THROW(index.insert(map[3]), core::PreconditionError);
   EXPECT_THROW(index.erase(77), core::PreconditionError);
@@ -153,7 +153,7 @@ TEST(MapIndex, RefusesWhatItCannotHoldAndStaysAsItWas) {
   EXPECT_THROW(index.move(bad), core::PreconditionError);
   EXPECT_THROW(index.look_at({{0.0, 0.0}, -1.0}), core::PreconditionError);
   map.push_back(map.front());
-  EXPECT_THROW(MapIndex(options, map), core::PreconditionError);
+  EXPECT_THROW(MapIndex(index_options, map), core::PreconditionError);
   EXPECT_EQ(index.list_triangles(), before);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/runs/run_recorder.hpp"
+#include "helixnav/core/decision_row.hpp"
 
 #include <gtest/gtest.h>
 
@@ -37,7 +38,10 @@ void expect_equal(const core::StepReport& a, const core::StepReport& b) {
   ASSERT_EQ(a.associations.size(), b.associations.size());
   for (std::size_t i = 0; i < a.associations.size(); ++i) expect_equal(a.associations[i], b.associations[i]);
   ASSERT_EQ(a.decisions.size(), b.decisions.size());
-  for (std::size_t i = 0; i < a.decisions.size(); ++i) EXPECT_EQ(a.decisions[i].kind, b.decisions[i].kind);
+  for (std::size_t i = 0; i < a.decisions.size(); ++i) {
+    EXPECT_EQ(core::row_of(a.decisions[i]).kind, core::row_of(b.decisions[i]).kind);
+    EXPECT_EQ(core::row_of(a.decisions[i]).numbers, core::row_of(b.decisions[i]).numbers);
+  }
   ASSERT_EQ(a.merged.size(), b.merged.size());
   for (std::size_t i = 0; i < a.merged.size(); ++i) EXPECT_EQ(a.merged[i].removed, b.merged[i].removed);
   ASSERT_EQ(a.cloud.size(), b.cloud.size());
