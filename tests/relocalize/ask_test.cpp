@@ -55,7 +55,7 @@ TEST(Ask, AnswersTheSameAgainAndFromAnIndexThatGrewInAnotherOrder) {
   const Answer answer = ask(index, asked.question);
   expect_same(answer, ask(index, asked.question), 0.0);
   MapIndex grown(ask_index);
-  auto landmarks = test::landmarks(world, options.pair_noise_m);
+  auto landmarks = test::landmarks(world, ask_index.pair_noise_m);
   std::reverse(landmarks.begin(), landmarks.end());
   for (const Landmark& landmark : landmarks) grown.insert(landmark);
   for (int id = 0; id < 1000; id += 7) {
@@ -87,10 +87,10 @@ TEST(Ask, DoesNotDependOnTheFrameOfTheBranch) {
 
 TEST(Ask, DoubtsAPlaceThatTheMapHasTwiceUntilOneIsTakenOut) {
   const test::Points once = world_of(4, 150);
-  auto landmarks = test::landmarks(once, options.pair_noise_m);
+  auto landmarks = test::landmarks(once, ask_index.pair_noise_m);
   for (std::size_t i = 0; i < 150; ++i)
     landmarks.push_back(test::landmark(static_cast<int>(150 + i), once[i] + Eigen::Vector2d(400.0, 30.0), 0.07));
-  MapIndex index(options, landmarks);
+  MapIndex index(ask_index, landmarks);
   index.look_around_landmarks();
   core::RandomStream random(4);
   const test::Asked asked = test::ask_somewhere(once, {20, 0.1}, random);
@@ -160,7 +160,7 @@ TEST(Ask, RefusesAQuestionThatMakesNoSense) {
   const Question good = test::ask_somewhere(world, {10}, random).question;
   EXPECT_THROW(ask(index, good, {0.0}), core::PreconditionError);
   EXPECT_THROW(ask(index, good, {1.0}), core::PreconditionError);
-  EXPECT_THROW(ask(MapIndex(options, test::landmarks(world, 0.1)), good), core::PreconditionError);
+  EXPECT_THROW(ask(MapIndex(ask_index, test::landmarks(world, 0.1)), good), core::PreconditionError);
   Question bad = good;
   bad.looked.clear();
   EXPECT_THROW(ask(index, bad), core::PreconditionError);

@@ -24,7 +24,7 @@ struct SmallCase {
     core::RandomStream random(1);
     Eigen::Matrix2d covariance;
     covariance << 0.006, 0.002, 0.002, 0.003;
-    map = test::landmarks(points, options.pair_noise_m);
+    map = test::landmarks(points, evidence_index.pair_noise_m);
     for (Landmark& landmark : map) landmark.point.covariance_m2 = covariance;
     const core::Pose2 T_branch_map = core::inverse(T_map_branch);
     for (const std::size_t seen : {0U, 1U, 2U, 3U, 4U}) {
@@ -39,7 +39,7 @@ struct SmallCase {
   }
 
   MapIndex index() const {
-    MapIndex result(options, map);
+    MapIndex result(evidence_index, map);
     result.look_at({{57.0, 51.0}, 40.0});
     return result;
   }
