@@ -171,7 +171,7 @@ TEST_P(FailedAllocation, LeavesThePhasesThatWereToBeAbsorbed) {
   const long now = filter_.phase();
   EXPECT_GE(fail_each_allocation(
                 filter_, [&](CompressedEkf& f) { f.keep_since(now); }, with_reach),
-            8);
+            6);
   EXPECT_FALSE(filter_.can_restore(snapshot));
 }
 
