@@ -84,7 +84,7 @@ std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
                                               const association::InnovationProblem& problem, const core::Scan& scan,
                                               const std::vector<core::LandmarkId>& old, double foreign_per_scan) {
   std::vector<RevisitAmbiguity> returns;
-  if (old.empty() || !std::isfinite(scan.field_of_view.max_range_m)) return returns;
+  if (old.empty() || !scan.field_of_view.reach()) return returns;  // a sensor of no known view
   static const double gate = core::chi2_quantile(gate_probability, 2);
   std::vector<core::LandmarkId> others;  // looked up when the first old landmark is gated
   for (const association::GatedPair& pair : problem.pairs) {

@@ -115,8 +115,8 @@ TEST(CheckEvent, RefusesAMountingOrAViewThatIsNotFiniteOrNotInOrder) {
   expect_refused(scan, "T_robot_sensor");
   const std::vector<FieldOfView> wrong = {
       {not_a_number, 30.0, -1.0, 1.0}, {-1.0, 30.0, -1.0, 1.0},     {0.0, not_a_number, -1.0, 1.0},
-      {5.0, 4.0, -1.0, 1.0},  {0.0, 30.0, 1.0, -1.0},      {0.0, 30.0, not_a_number, 1.0},
-      {0.0, -1.0, -1.0, 1.0}, {infinite, 30.0, -1.0, 1.0}, {0.0, 30.0, -1.0, infinite}};
+      {5.0, 4.0, -1.0, 1.0},           {0.0, 30.0, 1.0, -1.0},      {0.0, 30.0, not_a_number, 1.0},
+      {0.0, -1.0, -1.0, 1.0},          {infinite, 30.0, -1.0, 1.0}, {0.0, 30.0, -1.0, infinite}};
   for (const FieldOfView& view : wrong) {
     scan = good_scan();
     scan.field_of_view = view;
