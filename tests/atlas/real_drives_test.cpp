@@ -32,8 +32,13 @@ TEST_F(RealDrive, ThroughVictoriaParkIsTheOptimumLiveToCentimetresAndExactlyOnce
   for (const auto& log : testing::phases_of_graph(problem.graph, 20.0)) testing::add_phase(atlas, log);
   smoothing::grow_start(problem);
   testing::solve(problem);
-  for (auto& landmark : problem.graph.landmarks) landmark.point_m.x() += 1e-4;  // far enough for one more step
-  const double chi2 = testing::solve(problem);
+  // The twin takes a step only where that promises something: landmarks pushed to and fro make it take some more.
+  double chi2 = 0.0;
+  for (int more = 0; more < 6; ++more) {
+    double push_m = 1e-5;
+    for (auto& landmark : problem.graph.landmarks) landmark.point_m.x() += push_m *= -1.0;
+    chi2 = testing::solve(problem);
+  }
   EXPECT_NEAR(chi2, 6183.933, 1e-3);
   EXPECT_LT(rms_m(atlas, problem), 0.02);
   AtlasAccess::settle_with(atlas, testing::exact());
