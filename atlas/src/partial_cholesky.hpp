@@ -10,10 +10,10 @@ using Square = Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 
 /// Eliminates the first `ne` rows of a symmetric matrix given by its lower triangle, in place: L₁₁, L₂₁ = F₂₁L₁₁⁻ᵀ, and the Schur
 /// complement F₂₂ − L₂₁L₂₁ᵀ. False when F₁₁ is not positive definite. The result does not depend on threads.
-/// Test: atlas/partial_cholesky_test.cpp.
+/// Test: atlas/joint_test.cpp.
 bool partial_cholesky(Square F, Eigen::Index ne);
 
-/// B ← L⁻¹B, L lower triangular. Test: atlas/partial_cholesky_test.cpp.
+/// B ← L⁻¹B, L lower triangular. Test: atlas/joint_test.cpp.
 void solve_lower(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& L,
                  Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>> B);
 

@@ -16,7 +16,7 @@ Eigen::VectorXd relative_coordinates(const Values& values);
 /// A relative factor as information on its variables where they are: rows of the reference, the pose, the points, and last the
 /// right-hand side with χ² in its corner, all as a lower triangle of (3+3+2n+1). Values in the same order. With
 /// D = blkdiag(R, 1, R, …) and G the motion of everything by the reference: [GᵀWG, −GᵀW; −WG, W], W = DΛDᵀ. Rigid motions of all
-/// are its null vectors, to rounding. Cost O(n²). Test: atlas/world_form_test.cpp.
+/// are its null vectors, to rounding. Cost O(n²). Test: atlas/phase_factor_test.cpp.
 Eigen::MatrixXd world_form(const RelativeGaussian& factor, const Values& values);
 
 }  // namespace helixnav::atlas

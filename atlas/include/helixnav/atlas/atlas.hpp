@@ -68,11 +68,11 @@ class Atlas {
   /// Appends a phase that begins at the last clone; the clone where it ends gets the next number. With a log it can be derived again
   /// when its shape has moved. Only structure: O(path) without numerics. NumericalError, naming them, when given its
   /// entry and the landmarks known before, the phase leaves landmarks undetermined (a range-only point seen once): these must stay in the
-  /// window. Returns the index of the phase. Test: atlas/insert_test.cpp (equals a full pass bit for bit).
+  /// window. Returns the index of the phase. Test: atlas/settle_test.cpp (equals a full pass bit for bit).
   int add(PhaseFactor factor, std::shared_ptr<const PhaseLog> log = nullptr);
 
   /// An absolute position of the robot at a clone. It is a factor relative to the map frame, so that messages still turn.
-  /// Test: atlas/fix_test.cpp.
+  /// Test: atlas/joint_test.cpp.
   void fix(int clone, const core::AbsoluteFix& fix);
 
   /// Makes one landmark of each pair; both names mean it from now on. Exact: the factors that hold the one are rewritten to

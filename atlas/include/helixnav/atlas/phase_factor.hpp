@@ -50,7 +50,7 @@ PhaseFactor derive_factor(const PhaseLog& log, PhaseShape start, const PointPrio
 
 /// The factor linearised again about another exit and other points, relative to the entry: they stay, only interior
 /// poses move (`rounds` Gauss–Newton steps from those of `old`). Repeated with the solution of the whole, this ends at the optimum of all measurements.
-/// Errors as derive_factor. Test: atlas/victoria_park_test.cpp.
+/// Errors as derive_factor. Test: atlas/real_drives_test.cpp.
 PhaseFactor rederive_factor(const PhaseLog& log, const PhaseFactor& old, const core::Pose2& T_entry_exit,
                             const std::vector<Eigen::Vector2d>& points_m, int rounds = 3);
 
