@@ -71,10 +71,11 @@ void PassiveCovariance::add_to_tile(int I, int J, const Panels& left, const Pane
 }
 
 void PassiveCovariance::overwrite(const std::vector<int>& slots, const Eigen::Ref<const Eigen::MatrixXd>& columns) {
+  const int rows = static_cast<int>(columns.rows());  // those of the phase; a later one may have made room for more
   for (std::size_t k = 0; k < slots.size(); ++k) {
     for (int c = 0; c < 2; ++c) {
       const int j = 2 * slots[k] + c;
-      for (int i = 0; i < rows_; ++i) set(i, j, columns(i, 2 * static_cast<Eigen::Index>(k) + c));
+      for (int i = 0; i < rows; ++i) set(i, j, columns(i, 2 * static_cast<Eigen::Index>(k) + c));
     }
   }
 }

@@ -84,8 +84,8 @@ TEST_F(Usage, OfAnOptionBeforeItsCommandSaysWhereItBelongs) {
 }
 
 TEST_F(Usage, OfAValueOutOfItsRangeNamesTheRange) {
-  expect_misused({"simulate", "--filter.cell_side_m", "-5"}, {"--filter.cell_side_m", "from 1 to 1000000", "'-5'"});
-  expect_misused({"simulate", "--filter.cell_side_m", "nan"}, {"--filter.cell_side_m", "a number from 1", "'nan'"});
+  expect_misused({"simulate", "--filter.cell_side_m", "-5"}, {"--filter.cell_side_m", "from 0.001 to 1000000", "'-5'"});
+  expect_misused({"simulate", "--filter.cell_side_m", "nan"}, {"--filter.cell_side_m", "a number from 0.001", "'nan'"});
   expect_misused({"simulate", "--landmarks.mature_looks", "2.5"},
                  {"--landmarks.mature_looks", "a whole number", "'2.5'"});
   expect_misused({"simulate", "--seed", "-1"}, {"--seed", "a whole number from 0", "'-1'"});

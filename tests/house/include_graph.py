@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 ESTIMATORS = {"core", "association", "cekf", "pf_relocalize", "smoothing", "localization", "fastslam", "relocalize",
-              "supervisor"}
+              "atlas", "supervisor"}
 SEE_MRPT = {"mrpt_adapter", "apps"}
 TRUTH = "helixnav/core/recording.hpp"
 FILES_AND_SCREENS = {"iostream", "fstream", "filesystem"}

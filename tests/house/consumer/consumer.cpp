@@ -7,8 +7,6 @@ int main() {
   using namespace helixnav;
   const core::Recording drive = sim::simulate(sim::named_scenario("large-loop"), /*seed=*/1);
   supervisor::Navigator navigator(drive.start);
-  for (const core::Event& event : drive.events) {
-    if (const auto report = navigator.take(event)) std::cout << report->pose.mean.vector().transpose() << '\n';
-  }
+  for (const core::Event& event : drive.events) navigator.take(event);
   std::cout << navigator.map().size() << " landmarks, robot at " << navigator.pose().mean.vector().transpose() << '\n';
 }
