@@ -102,7 +102,7 @@ TEST_F(Usage, OfAMissingArgumentNamesIt) {
 TEST_F(Usage, OfAConfigurationNamesFileAndLine) {
   expect_misconfigured("[filter]\n# a comment\ncell_sid_m = 30\n",
                        {"mine.toml:3", "unknown key 'filter.cell_sid_m'", "'filter.cell_side_m'"});
-  expect_misconfigured("[filter]\ncell_side_m = 0.5\n", {"mine.toml:2", "from 1 to 1000000", "'0.5'"});
+  expect_misconfigured("[filter]\ncell_side_m = -0.5\n", {"mine.toml:2", "from 0.001 to 1000000", "'-0.5'"});
   expect_misconfigured("[filter]\ncell_side_m = nan\n", {"mine.toml:2", "'nan'"});
   expect_misconfigured("[filters]\ncell_side_m = 30\n", {"mine.toml:2", "'filter.cell_side_m'"});
   expect_misconfigured("[association]\nmethod = \"jbcc\"\n", {"mine.toml:2", "did you mean 'jcbb'"});
