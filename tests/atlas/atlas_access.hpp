@@ -49,8 +49,9 @@ namespace testing {
 
 template <class Vector>
 bool same_bytes(const Vector& a, const Vector& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(a.data()[0])) == 0;
+  if (a.size() != b.size()) return false;
+  if (a.size() == 0) return true;  // there may be no address to compare
+  return std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(a.data()[0])) == 0;
 }
 
 /// Bit for bit: estimates, factors and messages of both.
