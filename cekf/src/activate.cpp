@@ -8,7 +8,7 @@ void CompressedEkf::activate(core::LandmarkId id) {
   const Place place = place_of(id, "activate");
   if (place.where == Whereabouts::active) return;
   const int slot = place.index;
-  const Eigen::MatrixXd start_columns = phase_start_columns({slot});
+  Eigen::MatrixXd start_columns = phase_start_columns({slot});
   const Eigen::MatrixXd e = basis_rows({slot});  // 2 × q
   const Eigen::MatrixXd Me = active_.M.view().selfadjointView<Eigen::Lower>() * e.transpose();
   const Eigen::Matrix2d own = phases_.back().own_covariance_m2.middleRows<2>(2 * slot) + e * Me;
@@ -19,6 +19,8 @@ void CompressedEkf::activate(core::LandmarkId id) {
   const Eigen::MatrixXd cross = active_.A.view().transpose() * e.transpose();
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(q + 2 * weights_per_anchor());
   theta.head(q) = active_.theta;
+  const std::vector<int> own_slot = {slot};
+  const std::vector<Eigen::Vector2d> own_offset = {phases_.back().mean_m.segment<2>(2 * slot) - phases_.back().start_m};
   make_room_for_landmark(static_cast<int>(theta.size()));
   make_room(active_.left_passive, 1);
   make_room(active_.late_anchors, 1);
@@ -41,9 +43,9 @@ void CompressedEkf::activate(core::LandmarkId id) {
   active_.left_passive.push_back(id);
   active_.late_anchors.push_back(slot);
   phases_.back().late_anchors.push_back(slot);
-  append_columns(phases_.back(), start_columns);
+  append_late_columns(phases_.back(), own_slot, start_columns);
   active_.theta.swap(theta);
-  append_weights_for(n, active_);
+  append_weights_for(own_offset, false, active_);
 }
 
 /// For one more active landmark, and `weights` weights in all.
@@ -104,16 +106,57 @@ void CompressedEkf::append_columns(Phase& phase, const Eigen::MatrixXd& start_co
   }
 }
 
-/// Weights of anchors that are the active columns from `first_column` on: uncorrelated but for the anchor itself. theta
-/// has its new size already.
-void CompressedEkf::append_weights_for(int first_column, ActivePart& part) const {
+/// Weights of the newest landmarks, which stood at these places seen from the vehicle when the phase began, behind those of
+/// the vehicle where it has none yet. theta has its new size already.
+void CompressedEkf::append_weights_for(const std::vector<Eigen::Vector2d>& offsets_m, bool with_vehicle,
+                                       ActivePart& part) const {
   const int w = weights_per_anchor();
   const int n = part.dimension();
+  int column = n - 2 * static_cast<int>(offsets_m.size());
+  const int first_column = with_vehicle ? 0 : column;
   int q = static_cast<int>(part.A.rows());
   const int q_after = q + w * (n - first_column);
   part.A.resize(q_after, n);
   part.M.resize(q_after, q_after);
-  for (int column = first_column; column < n; ++column, q += w) part.A.view()(q, column) = 1.0;
+  auto A = part.A.view();
+  for (int own = first_column; own < n; ++own, q += w) A(q, own) = 1.0;
+  for (const Eigen::Vector2d& offset_m : offsets_m) {
+    A(0, column) += 1.0;
+    A(w, column + 1) += 1.0;
+    A(2 * w, column) -= offset_m.y();
+    A(2 * w, column + 1) += offset_m.x();
+    column += 2;
+  }
+}
+
+/// Anchors of landmarks become relative to the vehicle; `vehicle` gives the columns of its x, y and heading.
+template <class Vehicle>
+void CompressedEkf::refer_to_vehicle(const Phase& phase, const std::vector<int>& slots, const Vehicle& vehicle,
+                                     Eigen::Ref<Eigen::MatrixXd> columns) {
+  Eigen::Index k = 0;
+  for (const int slot : slots) {
+    const Eigen::Vector2d offset_m = phase.mean_m.segment<2>(2 * slot) - phase.start_m;
+    columns.col(k) -= vehicle(0);
+    columns.col(k) += offset_m.y() * vehicle(2);
+    columns.col(k + 1) -= vehicle(1);
+    columns.col(k + 1) -= offset_m.x() * vehicle(2);
+    k += 2;
+  }
+}
+
+void CompressedEkf::append_first_columns(Phase& phase, const std::vector<int>& slots, Eigen::MatrixXd& anchors) const {
+  refer_to_vehicle(
+      phase, slots, [&](int i) { return anchors.col(i); }, anchors.rightCols(anchors.cols() - 3));
+  append_columns(phase, anchors);
+}
+
+void CompressedEkf::append_late_columns(Phase& phase, const std::vector<int>& slots,
+                                        Eigen::MatrixXd& start_columns) const {
+  const int w = weights_per_anchor();
+  const auto basis = phase.basis.view();
+  refer_to_vehicle(
+      phase, slots, [&](int i) { return basis.col(w * i); }, start_columns);
+  append_columns(phase, start_columns);
 }
 
 }  // namespace helixnav::cekf

@@ -39,7 +39,9 @@ void CompressedEkf::restore(const Snapshot& snapshot) {
   const auto common = static_cast<std::size_t>(
       std::mismatch(have.begin(), have.end(), active.late_anchors.begin(), active.late_anchors.end()).first -
       have.begin());
-  const Eigen::MatrixXd missing = missing_anchors(at, active, common);
+  std::vector<int> missing_slots(active.late_anchors.begin() + static_cast<std::ptrdiff_t>(common),
+                                 active.late_anchors.end());
+  Eigen::MatrixXd missing = start_columns(missing_slots, at);
   std::vector<int> late_anchors = active.late_anchors;
   std::size_t taken = 0;
   for (std::size_t p = at; p < phases_.size(); ++p) taken += phases_[p].taken.size();
@@ -57,7 +59,7 @@ void CompressedEkf::restore(const Snapshot& snapshot) {
   open_again(phase);
   active_ = std::move(active);
   phase.basis.resize(phase.basis.rows(), active_.weights() - weights_per_anchor() * missing.cols());
-  append_columns(phase, missing);
+  append_late_columns(phase, missing_slots, missing);
   phase.late_anchors.swap(late_anchors);
   rebuild_places();
 }
@@ -92,13 +94,6 @@ std::size_t CompressedEkf::kept_bytes() const {
 void CompressedEkf::return_slots(Phase& phase) {
   free_slots_.insert(free_slots_.end(), phase.taken.rbegin(), phase.taken.rend());
   phase.taken.clear();
-}
-
-/// Start columns of the anchors that the snapshot has beyond the `common` first ones of the phase.
-Eigen::MatrixXd CompressedEkf::missing_anchors(std::size_t phase, const ActivePart& wanted, std::size_t common) const {
-  const std::vector<int> slots(wanted.late_anchors.begin() + static_cast<std::ptrdiff_t>(common),
-                               wanted.late_anchors.end());
-  return start_columns(slots, phase);
 }
 
 }  // namespace helixnav::cekf

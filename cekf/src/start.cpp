@@ -20,7 +20,8 @@ CompressedEkf::CompressedEkf(const core::PoseGaussian& start, const FilterOption
   active_.P.view() = 0.5 * (start.covariance + start.covariance.transpose());
   active_.A.resize(0, 3);
   Phase first;
-  first.cell = cell_of(start.mean.position_m());
+  first.start_m = start.mean.position_m();
+  first.cell = cell_of(first.start_m);
   open_phase(std::move(first), Eigen::MatrixXd(0, 3), {});
 }
 

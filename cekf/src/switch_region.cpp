@@ -41,7 +41,8 @@ void CompressedEkf::switch_region(const std::vector<core::LandmarkId>& active) {
   const std::size_t phases = phases_.size();
   try {
     Phase next;
-    next.cell = cell_of(active_.pose.position_m());
+    next.start_m = active_.pose.position_m();
+    next.cell = cell_of(next.start_m);
     const Eigen::MatrixXd columns = close_phase(next);
     open_phase(std::move(next), columns, wanted);
   } catch (...) {
@@ -124,7 +125,7 @@ void CompressedEkf::open_phase(Phase&& next, const Eigen::MatrixXd& columns,
   }
   start_covariance(anchors, part);
   active_ = std::move(part);
-  append_columns(phases_.back(), anchors);
+  append_first_columns(phases_.back(), active_.slots, anchors);
   rebuild_places();
 }
 
@@ -159,7 +160,9 @@ ActivePart CompressedEkf::room_for(const Phase& phase, const std::vector<core::L
   const int n = part.dimension();
   part.P.resize(n, n);
   part.theta = Eigen::VectorXd::Zero(weights_per_anchor() * n);
-  append_weights_for(0, part);
+  std::vector<Eigen::Vector2d> offsets_m;
+  for (const Eigen::Vector2d& point_m : part.points_m) offsets_m.push_back(point_m - phase.start_m);
+  append_weights_for(offsets_m, true, part);
   return part;
 }
 

@@ -18,6 +18,9 @@ namespace helixnav::cekf {
 /// filter:
 ///   mean of s = theta,  cov(s, active) = A,  cov(s, s) = M,
 /// so that P_ab = AᵀEᵀ, P_bb = P_bb0 + E·M·Eᵀ, x_b = x_b0 + E·theta. In THEORY §1 these are Φ = Aᵀ, Ψ = −M, θ = theta.
+/// Anchors are the vehicle's coordinates and, of each active landmark, its error relative to the vehicle: that of the
+/// landmark minus that of a rigid motion by the vehicle's error. What all have in common is thus one weight, which
+/// sightings do not touch, and E·M·Eᵀ has no terms that are larger than what they add up to by (drift / noise)².
 /// One anchor coordinate (a coordinate of the active part at the start of the phase) has one weight in the standard
 /// filter and, in the right-invariant one, a pair of weights that turns like a landmark.
 struct ActivePart {

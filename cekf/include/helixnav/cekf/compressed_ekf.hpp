@@ -180,7 +180,12 @@ class CompressedEkf {
   void undo_activations(BeforeActivations& before);
   void make_room_for_landmark(int weights);
   void append_columns(Phase& phase, const Eigen::MatrixXd& start_columns) const;
-  void append_weights_for(int first_column, ActivePart& part) const;
+  void append_weights_for(const std::vector<Eigen::Vector2d>& offsets_m, bool with_vehicle, ActivePart& part) const;
+  template <class Vehicle>
+  static void refer_to_vehicle(const Phase& phase, const std::vector<int>& slots, const Vehicle& vehicle,
+                               Eigen::Ref<Eigen::MatrixXd> columns);
+  void append_first_columns(Phase& phase, const std::vector<int>& slots, Eigen::MatrixXd& anchors) const;
+  void append_late_columns(Phase& phase, const std::vector<int>& slots, Eigen::MatrixXd& start_columns) const;
   Eigen::MatrixXd phase_start_columns(const std::vector<int>& slots) const {
     return start_columns(slots, phases_.size() - 1);
   }
@@ -208,7 +213,6 @@ class CompressedEkf {
   Eigen::Vector2i cell_of(const Eigen::Vector2d& point_m) const;
   void return_slots(Phase& phase);
   static void open_again(Phase& phase);
-  Eigen::MatrixXd missing_anchors(std::size_t phase, const ActivePart& wanted, std::size_t common) const;
   void rebuild_places();
 
   FilterOptions options_;
