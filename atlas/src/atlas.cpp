@@ -3,7 +3,7 @@
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/gaussian.hpp"
-#include "state.hpp"
+#include "tree/state.hpp"
 
 namespace helixnav::atlas {
 namespace {

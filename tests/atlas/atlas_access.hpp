@@ -3,11 +3,11 @@
 
 #include <cstring>
 
-#include "estimates.hpp"
-#include "front_shape.hpp"
 #include "helixnav/atlas/atlas.hpp"
-#include "settle.hpp"
-#include "state.hpp"
+#include "solve/estimates.hpp"
+#include "solve/settle.hpp"
+#include "tree/front_shape.hpp"
+#include "tree/state.hpp"
 
 namespace helixnav::atlas {
 

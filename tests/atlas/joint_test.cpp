@@ -8,9 +8,9 @@
 #include "atlas_access.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/smoothing/marginals.hpp"
-#include "joint.hpp"
+#include "phase/world_form.hpp"
+#include "read/joint.hpp"
 #include "small_drive.hpp"
-#include "world_form.hpp"
 
 namespace helixnav::atlas {
 namespace {

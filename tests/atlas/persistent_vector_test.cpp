@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "helixnav/core/random.hpp"
-#include "persistent_vector.hpp"
+#include "tree/persistent_vector.hpp"
 
 namespace helixnav::atlas {
 namespace {

@@ -4,8 +4,8 @@
 #include <Eigen/LU>
 
 #include "helixnav/core/errors.hpp"
+#include "phase/world_form.hpp"
 #include "small_drive.hpp"
-#include "world_form.hpp"
 
 namespace helixnav::atlas {
 namespace {

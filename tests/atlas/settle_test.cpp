@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "atlas_access.hpp"
-#include "eliminate.hpp"
 #include "small_drive.hpp"
+#include "solve/eliminate.hpp"
 
 namespace helixnav::atlas {
 namespace {

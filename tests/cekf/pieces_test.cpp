@@ -5,11 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include "add_outer.hpp"
 #include "helixnav/cekf/passive_covariance.hpp"
 #include "helixnav/cekf/reserved_matrix.hpp"
 #include "helixnav/core/random.hpp"
-#include "packed_product.hpp"
+#include "matrices/add_outer.hpp"
+#include "matrices/packed_product.hpp"
 
 namespace helixnav::cekf {
 namespace {

@@ -76,8 +76,9 @@ def check_include(room, path, source_root, quote, target, table):
     if quote == '"':
         if ".." in parts or is_public:
             return f'say "helixnav/<room>/…" instead of {target}'
-        beside = (path.parent / target).is_file() or (source_root / target).is_file()
-        return None if beside else f"{target} is no header of {room}/src; what is not ours goes into <>"
+        room_root = source_root.parent
+        above = [folder for folder in path.parents if folder.is_relative_to(room_root)]
+        return None if any((folder / target).is_file() for folder in [source_root, *above]) else f"{target} is no header of {room}/src; what is not ours goes into <>"
     if room in ESTIMATORS and target in FILES_AND_SCREENS:
         return f"estimators see no files and no screens (<{target}>)"
     if is_public and room != "mrpt_adapter" and parts[0] != "Eigen" and target not in STANDARD_HEADERS:

@@ -37,6 +37,8 @@ class IncludeGraph(unittest.TestCase):
             "cekf/src/update.cpp": '#include <Eigen/Cholesky>\n#include "helixnav/core/se2.hpp"\n#include "blocks.hpp"\n',
             "cekf/src/blocks.hpp": "#pragma once\n",
             "cekf/src/deeper/a.cpp": '#include "blocks.hpp"\n',
+            "apps/mrpt/slam/a.cpp": '#include "reading/b.hpp"\n',
+            "apps/mrpt/reading/b.hpp": "#pragma once\n",
             "logs/src/reader.cpp": '#include <fstream>\n#include "helixnav/core/recording.hpp"\n',
             "apps/replay.cpp": '#include <iostream>\n#include "helixnav/cekf/cekf.hpp"\nvoid f() { std::cout << 1; }\n',
         }))

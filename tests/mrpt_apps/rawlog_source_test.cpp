@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rawlog_source.hpp"
+#include "slam/rawlog_source.hpp"
 
 #include <string>
 
@@ -10,7 +10,7 @@
 
 #include "input_error.hpp"
 #include "program.hpp"
-#include "rawlog_sink.hpp"
+#include "rawlog/rawlog_sink.hpp"
 #include "temporary_folder.hpp"
 
 namespace helixnav::apps {

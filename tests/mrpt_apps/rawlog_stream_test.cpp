@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rawlog_stream.hpp"
+#include "reading/rawlog_stream.hpp"
 
 #include <cstdlib>
 #include <fstream>
@@ -9,9 +9,9 @@
 #include <mrpt/io/CFileGZInputStream.h>
 
 #include "input_error.hpp"
+#include "rawlog/write_recording.hpp"
 #include "small_rawlogs.hpp"
 #include "temporary_folder.hpp"
-#include "write_recording.hpp"
 
 namespace helixnav::apps {
 namespace {

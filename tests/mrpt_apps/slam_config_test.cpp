@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "slam_config.hpp"
+#include "slam/slam_config.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "branch_pairs.hpp"
+#include "closing/branch_pairs.hpp"
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "candidates.hpp"
+#include "association/candidates.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 
 #include "campaign.hpp"
 #include "circuits.hpp"
-#include "close_by_merge.hpp"
+#include "closing/close_by_merge.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/sim/world.hpp"

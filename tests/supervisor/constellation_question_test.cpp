@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constellation_question.hpp"
+#include "search/constellation_question.hpp"
 
 #include <algorithm>
 #include <cmath>

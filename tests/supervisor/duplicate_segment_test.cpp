@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "duplicate_segment.hpp"
+#include "closing/duplicate_segment.hpp"
 
 #include <algorithm>
 #include <utility>

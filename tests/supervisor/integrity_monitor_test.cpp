@@ -8,7 +8,7 @@
 #include "circuits.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/sim/world.hpp"
-#include "integrity_monitor.hpp"
+#include "integrity/integrity_monitor.hpp"
 
 namespace helixnav::supervisor {
 namespace {

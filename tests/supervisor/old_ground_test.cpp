@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "old_ground.hpp"
+#include "search/old_ground.hpp"
 
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "constellation_question.hpp"
 #include "helixnav/pf_relocalize/bases.hpp"
+#include "search/constellation_question.hpp"
 
 namespace helixnav::supervisor {
 namespace {

@@ -6,12 +6,12 @@
 #include <gtest/gtest.h>
 
 #include "circuits.hpp"
-#include "close_by_merge.hpp"
-#include "close_by_replay.hpp"
-#include "close_by_restart.hpp"
+#include "closing/close_by_merge.hpp"
+#include "closing/close_by_replay.hpp"
+#include "closing/close_by_restart.hpp"
+#include "closing/replay_branch.hpp"
 #include "full_ekf.hpp"
 #include "helixnav/core/random.hpp"
-#include "replay_branch.hpp"
 
 namespace helixnav::supervisor {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "revisit_ambiguity.hpp"
+#include "association/revisit_ambiguity.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 #include <Eigen/LU>
 
-#include "confirmation.hpp"
-#include "gating.hpp"
+#include "association/confirmation.hpp"
+#include "association/gating.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/random.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Solving the drive as a whole, against least squares over the same events set up from the recording itself.
-#include "smooth_drive.hpp"
+#include "smoothing/smooth_drive.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,11 +15,11 @@
 
 #include "campaign.hpp"
 #include "circuits.hpp"
-#include "drive_graph.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/landmark_graph.hpp"
 #include "helixnav/smoothing/marginals.hpp"
 #include "helixnav/smoothing/optimize.hpp"
+#include "smoothing/drive_graph.hpp"
 
 namespace helixnav::supervisor {
 namespace {

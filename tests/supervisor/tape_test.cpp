@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tape.hpp"
+#include "loop/tape.hpp"
 
 #include <algorithm>
 #include <map>
@@ -8,9 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include "belief.hpp"
 #include "circuits.hpp"
 #include "helixnav/core/odometry.hpp"
+#include "loop/belief.hpp"
 
 namespace helixnav::supervisor {
 namespace {

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <mrpt/apps/BaseAppInitializableCLI.h>
+
+#include "slam/slam_run.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace helixnav::apps {
+
+/// The program helixnav-slam, in the form of MRPT's own: initialised from the command line, then run.
+class SlamApp : public mrpt::apps::BaseAppInitializableCLI {
+ public:
+  SlamApp();
+  ~SlamApp() override;
+
+  /// CLI::ParseError when the arguments are wrong or ask for help or version.
+  void initialize(int argc, const char** argv) { impl_initialize(argc, argv); }
+
+  /// As run_slam, of what the command line named.
+  ExitCode run() const { return run_slam(job_); }
+
+  CLI::App& command_line() { return *command_line_; }
+
+ protected:
+  void impl_initialize(int argc, const char** argv) override;
+  std::string impl_get_usage() const override;
+
+ private:
+  std::unique_ptr<CLI::App> command_line_;
+  SlamJob job_;
+};
+
+}  // namespace helixnav::apps

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "phase/rigid_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "helixnav/core/angle.hpp"
+
+namespace helixnav::atlas {
+namespace {
+
+constexpr double smallest_span_m = 10.0;
+
+RigidMotion fit(const State& state, const int* variables, const Eigen::Vector3d* was, const Values& now) {
+  const std::size_t n = now.size();
+  const auto takes_part = [&](std::size_t i) { return n == 1 || variables[i] != state.world; };
+  RigidMotion motion;
+  motion.is_identity = false;
+  double count = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!takes_part(i)) continue;
+    motion.from_m += was[i].head<2>();
+    motion.to_m += now[i].head<2>();
+    count += 1.0;
+  }
+  motion.from_m /= count;
+  motion.to_m /= count;
+  double along = 0.0;
+  double across = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!takes_part(i)) continue;
+    const Eigen::Vector2d p = was[i].head<2>() - motion.from_m;
+    const Eigen::Vector2d q = now[i].head<2>() - motion.to_m;
+    along += p.dot(q);
+    across += p.x() * q.y() - p.y() * q.x();
+    if (state.variable(variables[i]).dim == 3) {
+      along += std::cos(now[i].z() - was[i].z());
+      across += std::sin(now[i].z() - was[i].z());
+    }
+  }
+  motion.turn_rad = std::atan2(across, along);
+  motion.R = core::rotation(motion.turn_rad);
+  return motion;
+}
+
+}  // namespace
+
+Eigen::Vector2d RigidMotion::point(const Eigen::Vector2d& p) const {
+  if (is_identity) return p;
+  return to_m + R * (p - from_m);
+}
+
+Eigen::Vector3d RigidMotion::operator()(const Eigen::Vector3d& value, int dim) const {
+  if (is_identity) return value;
+  Eigen::Vector3d moved;
+  moved.head<2>() = point(value.head<2>());
+  moved[2] = dim == 3 ? core::wrap_to_pi(value.z() + turn_rad) : 0.0;
+  return moved;
+}
+
+Motion motion_of(const State& state, const FrontShape& shape, int begin, const Eigen::Vector3d* was,
+                 const Values& now) {
+  Motion motion;
+  if (std::equal(now.begin(), now.end(), was)) return motion;
+  const int* variables = shape.variables.data() + begin;
+  motion.rigid = fit(state, variables, was, now);
+  double span_m = smallest_span_m;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const double arm_m = (was[i].head<2>() - motion.rigid.from_m).norm();
+    motion.reach_m = std::max(motion.reach_m, arm_m);
+    if (variables[i] != state.world) span_m = std::max(span_m, 2.0 * arm_m);
+  }
+  motion.rest.resize(begin == shape.eliminated ? shape.nb : shape.ne + shape.nb);
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const int dim = state.variable(variables[i]).dim;
+    const double own_span_m =
+        variables[i] == state.world ? std::max(span_m, (was[i].head<2>() - motion.rigid.from_m).norm()) : span_m;
+    const Eigen::Vector3d moved = now[i] - motion.rigid(was[i], dim);
+    motion.rest.segment<2>(row) = motion.rigid.R.transpose() * moved.head<2>();
+    double rest_m = moved.head<2>().norm();
+    if (dim == 3) {
+      motion.rest[row + 2] = core::wrap_to_pi(moved.z());
+      rest_m = std::max(rest_m, own_span_m * std::abs(motion.rest[row + 2]));
+    }
+    motion.rest_m = std::max(motion.rest_m, rest_m);
+    motion.bend_m = std::max(motion.bend_m, rest_m * rest_m / own_span_m);
+    row += dim;
+  }
+  return motion;
+}
+
+}  // namespace helixnav::atlas

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "tree/state.hpp"
+
+namespace helixnav::atlas {
+
+/// A rigid motion x ↦ to + R(turn)·(x − from); headings turn with it.
+struct RigidMotion {
+  double turn_rad = 0.0;
+  Eigen::Matrix2d R = Eigen::Matrix2d::Identity();
+  Eigen::Vector2d from_m = Eigen::Vector2d::Zero();
+  Eigen::Vector2d to_m = Eigen::Vector2d::Zero();
+  bool is_identity = true;
+
+  Eigen::Vector2d point(const Eigen::Vector2d& p) const;
+  Eigen::Vector3d operator()(const Eigen::Vector3d& value, int dim) const;
+};
+
+/// How far some variables have moved since they were linearised: the rigid motion that explains most of it, and the rest.
+struct Motion {
+  RigidMotion rigid;
+  Eigen::VectorXd rest;  ///< in the frame linearised in; empty when nothing moved
+  double rest_m = 0.0;   ///< largest |rest|, headings weighed by the span
+  double bend_m = 0.0;   ///< second-order error of linearising there: max |rest|² / span
+  double reach_m = 0.0;  ///< farthest variable from the centre
+};
+
+/// Motion of the variables `shape.variables[begin …)` from `was` to `now`, both from `begin` on. The fit is least squares over
+/// positions, and headings at an arm of one metre; the variable of the map frame, which may be far away, does not
+/// take part while there are others. Equal values give the identity, exactly. Cost linear.
+Motion motion_of(const State& state, const FrontShape& shape, int begin, const Eigen::Vector3d* was, const Values& now);
+
+}  // namespace helixnav::atlas

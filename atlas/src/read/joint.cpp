@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "helixnav/core/errors.hpp"
+#include "read/joint.hpp"
+#include "read/read.hpp"
+#include "solve/partial_cholesky.hpp"
+
+namespace helixnav::atlas {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// Forward solves on the union of some paths. Columns are laid out in the order in which the tree comes to their variables,
+/// so that those below a node are next to each other.
+class PathSolve {
+ public:
+  PathSolve(const State& state, const std::vector<int>& variables) : state_(state) {
+    for (const int v : variables) {
+      wanted_.push_back(v);
+      for (int node = state.variable(v).at; node >= 0; node = state.node(node).parent) marked_.push_back(node);
+    }
+    std::sort(wanted_.begin(), wanted_.end());
+    wanted_.erase(std::unique(wanted_.begin(), wanted_.end()), wanted_.end());
+    for (const int v : wanted_) columns_ += state.variable(v).dim;
+    std::sort(marked_.begin(), marked_.end());
+    marked_.erase(std::unique(marked_.begin(), marked_.end()), marked_.end());
+  }
+
+  /// Covariance with rows and columns in the order of `variables`.
+  MatrixXd covariance(const std::vector<int>& variables) {
+    P_.setZero(columns_, columns_);
+    solve(state_.root, 0.0);
+    std::vector<Index> rows;
+    for (const int v : variables) {
+      const auto found = std::lower_bound(column_of_.begin(), column_of_.end(), std::make_pair(v, Index{-1}));
+      for (int i = 0; i < state_.variable(v).dim; ++i) rows.push_back(found->second + i);
+    }
+    P_.triangularView<Eigen::StrictlyUpper>() = P_.transpose().eval();
+    return P_(rows, rows);
+  }
+
+ private:
+  struct Passed {
+    Index first = 0;  ///< column
+    MatrixXd rows;    ///< on the node's boundary, in its frame
+  };
+
+  bool is_marked(int node) const { return std::binary_search(marked_.begin(), marked_.end(), node); }
+
+  /// `turn_rad`: from the node's frame to that of the root.
+  Passed solve(int id, double turn_rad) {
+    const TreeNode& node = state_.node(id);
+    const FrontShape& shape = *node.shape;
+    std::array<Passed, 2> below;
+    const Index first = next_column_;
+    for (std::size_t c = 0; c < 2 && node.phase < 0; ++c) {
+      if (!is_marked(node.child[c])) continue;
+      below[c] = solve(node.child[c], turn_rad + node.front->child_turn_rad[c]);
+    }
+    const std::vector<int> own = wanted_of(shape);
+    MatrixXd F = MatrixXd::Zero(shape.ne + shape.nb, next_column_ - first);
+    for (std::size_t c = 0; c < 2; ++c) {
+      if (below[c].rows.cols() > 0) add_from_child(node, c, below[c], first, F);
+    }
+    place(own, shape, turn_rad, first, F);
+    auto Y = F.topRows(shape.ne);
+    const Index count = F.cols();
+    if (shape.ne > 0) {
+      solve_lower(node.front->L.topRows(shape.ne), Y);
+      add_gram(Y, P_.block(first, first, count, count));
+    }
+    Passed passed{first, F.bottomRows(shape.nb)};
+    if (shape.ne > 0 && shape.nb > 0) {
+      subtract_product(node.front->L.middleRows(shape.ne, shape.nb), Y, passed.rows);
+    }
+    return passed;
+  }
+
+  /// Wanted variables that a front eliminates, as places in it; they get the next columns.
+  std::vector<int> wanted_of(const FrontShape& shape) {
+    std::vector<int> own;
+    for (int i = 0; i < shape.eliminated; ++i) {
+      const int v = shape.variables[State::index(i)];
+      if (!std::binary_search(wanted_.begin(), wanted_.end(), v)) continue;
+      own.push_back(i);
+      const std::pair<int, Index> entry(v, next_column_);
+      column_of_.insert(std::lower_bound(column_of_.begin(), column_of_.end(), entry), entry);
+      next_column_ += state_.variable(v).dim;
+    }
+    return own;
+  }
+
+  /// Unit columns of the root's frame, in the node's.
+  void place(const std::vector<int>& own, const FrontShape& shape, double turn_rad, Index first, MatrixXd& F) const {
+    const Eigen::Matrix2d R = core::rotation(-turn_rad);
+    for (const int i : own) {
+      const int v = shape.variables[State::index(i)];
+      const Index row = shape.offsets[State::index(i)];
+      const Index column =
+          std::lower_bound(column_of_.begin(), column_of_.end(), std::make_pair(v, Index{-1}))->second - first;
+      F.block<2, 2>(row, column) = R;
+      if (state_.variable(v).dim == 3) F(row + 2, column + 2) = 1.0;
+    }
+  }
+
+  void add_from_child(const TreeNode& node, std::size_t c, const Passed& passed, Index first, MatrixXd& F) const {
+    const FrontShape& child = *state_.node(node.child[c]).shape;
+    const Eigen::Matrix2d R = core::rotation(node.front->child_turn_rad[c]);
+    const Index column = passed.first - first;
+    const Index count = passed.rows.cols();
+    for (std::size_t k = 0; k < node.shape->from_child[c].size(); ++k) {
+      const std::size_t at = k + State::index(child.eliminated);
+      const Index from = child.offsets[at] - child.ne;
+      const Index to = node.shape->from_child[c][k];
+      F.block(to, column, 2, count) += R * passed.rows.middleRows<2>(from);
+      if (state_.variable(child.variables[at]).dim == 3) {
+        F.block(to + 2, column, 1, count) += passed.rows.middleRows<1>(from + 2);
+      }
+    }
+  }
+
+  const State& state_;
+  std::vector<int> wanted_;
+  std::vector<int> marked_;
+  std::vector<std::pair<int, Index>> column_of_;  ///< increasing by variable
+  Index columns_ = 0;
+  Index next_column_ = 0;
+  MatrixXd P_;
+};
+
+/// How values given in the order of rows move with the map frame's own variable: [I, J] for positions, [0, 1] for the heading.
+Eigen::Matrix<double, Eigen::Dynamic, 3> carried(const Eigen::Vector3d& world, const Values& values) {
+  Eigen::Matrix<double, Eigen::Dynamic, 3> G(2 * static_cast<Index>(values.size()) + 1, 3);
+  Index row = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Eigen::Vector3d arm = values[i] - world;
+    G.middleRows<2>(row) << 1.0, 0.0, -arm.y(), 0.0, 1.0, arm.x();
+    row += 2;
+    if (i == 0) G.row(row++) << 0.0, 0.0, 1.0;
+  }
+  return G;
+}
+
+void turn(MatrixXd& P, const Eigen::Matrix2d& R) {
+  for (Index row = 0; row < P.rows(); row += row == 0 ? 3 : 2) P.middleRows<2>(row) = (R * P.middleRows<2>(row)).eval();
+  for (Index row = 0; row < P.rows(); row += row == 0 ? 3 : 2) {
+    P.middleCols<2>(row) = (P.middleCols<2>(row) * R.transpose()).eval();
+  }
+}
+
+/// Covariance of what is seen from the map frame: errors δ − G·δ_world, turned.
+MatrixXd seen_from_world(const MatrixXd& P, const Eigen::Vector3d& world, const Values& values, double turn_rad) {
+  const Index n = P.rows() - 3;
+  const auto G = carried(world, values);
+  MatrixXd rest = P.bottomRightCorner(n, n);
+  const MatrixXd cross = P.bottomLeftCorner(n, 3) - 0.5 * G * P.topLeftCorner<3, 3>();
+  rest.noalias() -= cross * G.transpose();
+  rest.noalias() -= G * cross.transpose();
+  turn(rest, core::rotation(turn_rad));
+  return 0.5 * (rest + rest.transpose());
+}
+
+}  // namespace
+
+MatrixXd covariance_of(const State& state, const std::vector<int>& variables) {
+  return PathSolve(state, variables).covariance(variables);
+}
+
+core::JointGaussian Atlas::joint(const std::vector<core::LandmarkId>& ids) const {
+  const State& state = *settled_;
+  std::vector<int> variables{state.variable_of_clone[State::index(phase_count())]};
+  for (const core::LandmarkId id : ids) variables.push_back(variable_of_named(state, id));
+  core::JointGaussian joint;
+  joint.ids = ids;
+  Estimates estimates(state);
+  const core::Pose2 T_map = T_map_atlas(state, estimates);
+  Values values;
+  for (const int v : variables) values.push_back(estimates.of(v));
+  joint.pose = core::compose(T_map, core::Pose2(values[0]));
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    joint.points_m.push_back(core::transform(T_map, values[i].head<2>()));
+  }
+  if (state.root < 0) {
+    joint.covariance = state.start.covariance;
+    return joint;
+  }
+  std::vector<int> distinct = variables;
+  distinct.insert(distinct.begin(), state.world);
+  const MatrixXd P = covariance_of(state, distinct);
+  joint.covariance = seen_from_world(P, estimates(state.world), values, T_map.heading_rad);
+  return joint;
+}
+
+}  // namespace helixnav::atlas

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "read/read.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "helixnav/core/errors.hpp"
+
+namespace helixnav::atlas {
+namespace {
+
+int find_named(const State& state, core::LandmarkId id) {
+  if (id < 0 || id >= static_cast<int>(state.variable_of_landmark.size())) return -1;
+  const int v = state.variable_of_landmark[State::index(id)];
+  return v >= 0 && state.variable(v).name >= 0 ? v : -1;
+}
+
+core::Pose2 pose_of(const Eigen::Vector3d& value) { return core::Pose2(value); }
+
+}  // namespace
+
+core::Pose2 T_map_atlas(const State& state, Estimates& estimates) {
+  const core::Pose2 T_world_atlas = core::inverse(pose_of(estimates.of(state.world)));
+  const bool is_first_clone = state.world == state.variable_of_clone[0];
+  return is_first_clone ? core::compose(state.start.mean, T_world_atlas) : T_world_atlas;
+}
+
+int variable_of_named(const State& state, core::LandmarkId id) {
+  const int v = find_named(state, id);
+  if (v < 0) throw core::PreconditionError("atlas: no landmark " + std::to_string(id));
+  return v;
+}
+
+int Atlas::phase_count() const { return static_cast<int>(settled_->phases.size()); }
+
+bool Atlas::knows(core::LandmarkId id) const { return find_named(*settled_, id) >= 0; }
+
+core::Pose2 Atlas::pose() const { return clone(phase_count()); }
+
+core::Pose2 Atlas::clone(int k) const {
+  const State& state = *settled_;
+  if (k < 0 || k >= static_cast<int>(state.variable_of_clone.size())) {
+    throw core::PreconditionError("atlas: no clone " + std::to_string(k));
+  }
+  Estimates estimates(state);
+  const core::Pose2 T_map = T_map_atlas(state, estimates);
+  return core::compose(T_map, pose_of(estimates.of(state.variable_of_clone[State::index(k)])));
+}
+
+Eigen::Vector2d Atlas::landmark(core::LandmarkId id) const {
+  Estimates estimates(*settled_);
+  const int v = variable_of_named(*settled_, id);
+  const core::Pose2 T_map = T_map_atlas(*settled_, estimates);
+  return core::transform(T_map, estimates.of(v).head<2>());
+}
+
+double Atlas::chi2() const { return settled_->root < 0 ? 0.0 : settled_->node(settled_->root).front->message.back(); }
+
+std::vector<Place> Atlas::landmarks() const {
+  const State& state = *settled_;
+  std::vector<Place> places;
+  if (state.root < 0) return places;
+  Estimates estimates(state);
+  estimates.update_all(state.root);
+  const core::Pose2 T_map = T_map_atlas(state, estimates);
+  for (std::size_t id = 0; id < state.variable_of_landmark.size(); ++id) {
+    const int v = find_named(state, static_cast<core::LandmarkId>(id));
+    if (v < 0 || state.variable(v).name != static_cast<int>(id)) continue;
+    places.push_back({static_cast<core::LandmarkId>(id), core::transform(T_map, estimates(v).head<2>())});
+  }
+  return places;
+}
+
+std::vector<core::Pose2> Atlas::clones() const {
+  const State& state = *settled_;
+  Estimates estimates(state);
+  if (state.root >= 0) estimates.update_all(state.root);
+  const core::Pose2 T_map = T_map_atlas(state, estimates);
+  std::vector<core::Pose2> poses;
+  for (std::size_t k = 0; k < state.variable_of_clone.size(); ++k) {
+    poses.push_back(core::compose(T_map, pose_of(estimates(state.variable_of_clone[k]))));
+  }
+  return poses;
+}
+
+std::vector<core::Pose2> Atlas::poses_of(int phase) const {
+  if (phase < 0 || phase >= phase_count()) {
+    throw core::PreconditionError("atlas: no phase " + std::to_string(phase));
+  }
+  const core::Pose2 T_map_entry = clone(phase);
+  std::vector<core::Pose2> poses;
+  for (const core::Pose2& T_entry_robot : settled_->leaf(phase).phase->shape.T_entry_robot) {
+    poses.push_back(core::compose(T_map_entry, T_entry_robot));
+  }
+  return poses;
+}
+
+namespace {
+
+void measure(const State& state, int id, int depth, Atlas::Size& size) {
+  const TreeNode& node = state.node(id);
+  const double ne = node.shape->ne;
+  const double nb = node.shape->nb;
+  size.depth = std::max(size.depth, depth);
+  size.largest_front = std::max(size.largest_front, node.shape->ne + node.shape->nb);
+  size.factor_nonzeros += 0.5 * ne * (ne + 1.0) + ne * nb;
+  size.message_nonzeros += 0.5 * nb * (nb + 1.0);
+  if (node.phase >= 0) return;
+  for (const int child : node.child) measure(state, child, depth + 1, size);
+}
+
+}  // namespace
+
+Atlas::Size Atlas::size() const {
+  Size size;
+  size.phases = phase_count();
+  if (settled_->root < 0) return size;
+  size.root_front = settled_->node(settled_->root).shape->ne;
+  measure(*settled_, settled_->root, 0, size);
+  return size;
+}
+
+int Atlas::nodes_redone() const { return nodes_redone_; }
+
+}  // namespace helixnav::atlas

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
+#include "phase/rigid_fit.hpp"
+#include "solve/eliminate.hpp"
+
+namespace helixnav::atlas {
+namespace {
+
+using Eigen::Index;
+
+/// The lower triangle of a message with its right-hand side as last row.
+class Message {
+ public:
+  Message(const std::vector<double>& data, Index rows) : data_(data.data()), rows_(rows) {}
+
+  /// Element (0, j) of a column whose elements above the diagonal are not there.
+  const double* column(Index j) const { return data_ + j * rows_ - j * (j + 1) / 2; }
+
+  Eigen::VectorXd product(const Eigen::VectorXd& e) const {
+    const Index n = rows_ - 1;
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(n);
+    for (Index j = 0; j < n; ++j) {
+      const Eigen::Map<const Eigen::VectorXd> below(column(j) + j + 1, n - j - 1);
+      sum[j] += column(j)[j] * e[j] + below.dot(e.tail(n - j - 1));
+      sum.tail(n - j - 1) += e[j] * below;
+    }
+    return sum;
+  }
+
+ private:
+  const double* data_;
+  Index rows_;
+};
+
+struct Rows {
+  std::vector<Index> from;  ///< first row of each variable in the message
+  std::vector<Index> dim;
+};
+
+void turn_pairs(Eigen::Ref<Eigen::MatrixXd> block, const Eigen::Matrix2d& R, const Rows& rows, std::size_t first) {
+  for (Index j = 0; j < block.cols(); ++j) {
+    double* column = &block(0, j);
+    for (std::size_t k = first; k < rows.from.size(); ++k) {
+      double* pair = column + (rows.from[k] - rows.from[first]);
+      const double x = pair[0];
+      const double y = pair[1];
+      pair[0] = R(0, 0) * x + R(0, 1) * y;
+      pair[1] = R(1, 0) * x + R(1, 1) * y;
+    }
+  }
+}
+
+/// Columns of one variable, from its diagonal down, diagonal block filled on both sides.
+void copy_columns(const Message& message, Index from, Index dim, Index n, Eigen::MatrixXd& block) {
+  block.resize(n - from, dim);
+  for (Index j = 0; j < dim; ++j) {
+    const double* column = message.column(from + j);
+    for (Index i = j; i < n - from; ++i) block(i, j) = column[from + i];
+  }
+  for (Index j = 1; j < dim; ++j) {
+    for (Index i = 0; i < j; ++i) block(i, j) = block(j, i);
+  }
+}
+
+}  // namespace
+
+double add_message(const State& state, int child, const std::vector<int>& offsets, Eigen::Map<Eigen::MatrixXd> F) {
+  const TreeNode& node = state.node(child);
+  const FrontShape& shape = *node.shape;
+  const Index n = shape.nb;
+  const Index last = F.rows() - 1;
+  const Message message(node.front->message, n + 1);
+  const Motion motion = motion_of(state, shape, shape.eliminated, node.front->linearised_at.data() + shape.eliminated,
+                                  values_of(state, shape, shape.eliminated, static_cast<int>(shape.variables.size())));
+  Eigen::VectorXd rhs(n);
+  for (Index j = 0; j < n; ++j) rhs[j] = message.column(j)[n];
+  double chi2 = message.column(n)[n];
+  if (motion.rest.size() > 0) {
+    const Eigen::VectorXd pull = message.product(motion.rest);
+    chi2 += motion.rest.dot(pull) - 2.0 * rhs.dot(motion.rest);
+    rhs -= pull;
+  }
+  Rows rows;
+  for (std::size_t k = State::index(shape.eliminated); k < shape.variables.size(); ++k) {
+    rows.from.push_back(shape.offsets[k] - shape.ne);
+    rows.dim.push_back(state.variable(shape.variables[k]).dim);
+  }
+  const Eigen::Matrix2d& R = motion.rigid.R;
+  Eigen::MatrixXd block;
+  for (std::size_t c = 0; c < offsets.size(); ++c) {
+    copy_columns(message, rows.from[c], rows.dim[c], n, block);
+    if (!motion.rigid.is_identity) {
+      block.leftCols<2>() *= R.transpose();
+      turn_pairs(block, R, rows, c);
+      rhs.segment<2>(rows.from[c]) = R * rhs.segment<2>(rows.from[c]).eval();
+    }
+    for (Index j = 0; j < rows.dim[c]; ++j) {
+      const Index to_column = offsets[c] + j;
+      for (Index i = j; i < rows.dim[c]; ++i) F(to_column + i - j, to_column) += block(i, j);
+      for (std::size_t r = c + 1; r < offsets.size(); ++r) {
+        const double* from = &block(rows.from[r] - rows.from[c], j);
+        if (offsets[r] > offsets[c]) {
+          for (Index i = 0; i < rows.dim[r]; ++i) F(offsets[r] + i, to_column) += from[i];
+        } else {
+          for (Index i = 0; i < rows.dim[r]; ++i) F(to_column, offsets[r] + i) += from[i];
+        }
+      }
+      F(last, to_column) += rhs[rows.from[c] + j];
+    }
+  }
+  F(last, last) += chi2;
+  return motion.rigid.turn_rad;
+}
+
+}  // namespace helixnav::atlas

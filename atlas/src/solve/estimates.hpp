@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "phase/rigid_fit.hpp"
+#include "tree/state.hpp"
+
+namespace helixnav::atlas {
+
+/// Values of the variables a node eliminates, given those of its boundary: x = g(lin + L₁₁⁻ᵀ(y − L₂₁ᵀe)).
+Values solve_down(const State& state, const FrontShape& shape, const Front& front, const Motion& boundary);
+
+/// Estimates as they follow from the top of the tree. Settling leaves parts of the map alone that have moved as a whole; their
+/// values are brought along here when they are asked for, one path at a time, and the state stays as it is.
+class Estimates {
+ public:
+  explicit Estimates(const State& state) : state_(state) {}
+
+  /// Makes sure of a node and all above it.
+  void reach(int node);
+  /// Makes sure of a node whose parent was reached.
+  void update(int node);
+  /// Makes sure of the whole tree, or a subtree whose parent was reached.
+  void update_all(int node);
+
+  /// Of a variable whose node was reached, or that no node has yet.
+  const Eigen::Vector3d& operator()(int variable) const;
+  /// After reach(at).
+  const Eigen::Vector3d& of(int variable);
+
+  Values of_boundary(int node) const;
+
+  /// Writes what was brought along.
+  void store(State& state) const;
+
+ private:
+  const State& state_;
+  std::unordered_map<int, Eigen::Vector3d> moved_;
+  std::unordered_set<int> reached_;
+  std::vector<int> changed_;  // nodes, in the order they were brought along
+};
+
+}  // namespace helixnav::atlas

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The end of a phase: what its weights say is written down, and applied to the passive covariance when nothing needs to
+// be undone any more.
+#include <memory>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/errors.hpp"
+#include "matrices/make_room.hpp"
+#include "matrices/packed_product.hpp"
+
+namespace helixnav::cekf {
+namespace {
+
+/// Columns 2s, 2s+1 of left·rightᵀ in the rows 2s, 2s+1, for all slots.
+void add_own_blocks(const Eigen::MatrixXd& left, const ReservedMatrix& right, Eigen::MatrixXd& blocks) {
+  const auto r = right.view();
+  for (Eigen::Index k = 0; k < left.cols(); ++k) {
+    for (Eigen::Index i = 0; i + 1 < left.rows(); i += 2) {
+      blocks.block<2, 2>(i, 0) += left.block<2, 1>(i, k) * r.block<2, 1>(i, k).transpose();
+    }
+  }
+}
+
+/// The weights of an anchor that the phase never saw, nor anything through it, have stayed as they began.
+std::vector<int> columns_not_zero(const Eigen::MatrixXd& M) {
+  std::vector<int> columns;
+  for (int k = 0; k < static_cast<int>(M.cols()); ++k) {
+    if (!M.col(k).isZero(0.0)) columns.push_back(k);
+  }
+  return columns;
+}
+
+/// E·M, where M is symmetric and zero outside the rows and columns named.
+Eigen::MatrixXd product_with_symmetric(const ReservedMatrix& E, const Eigen::MatrixXd& M,
+                                       const std::vector<int>& columns) {
+  const Eigen::MatrixXd M_named = M(columns, columns);
+  ReservedMatrix named(E.rows(), M_named.cols());
+  add_product(named.col(0), named.stride(), Panels(E.view(), columns, left_width), Panels(M_named, right_width));
+  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(E.rows(), M.cols());
+  product(Eigen::all, columns) = named.view();
+  return product;
+}
+
+}  // namespace
+
+void CompressedEkf::global_update() {
+  const std::vector<core::LandmarkId> same = active_.ids;
+  switch_region(same);
+}
+
+/// Gives every active landmark a slot.
+int CompressedEkf::assign_slots(Phase& phase) {
+  int slots = phase.slots;
+  for (int& slot : active_.slots) {
+    if (slot >= 0) continue;
+    if (free_slots_.empty()) {
+      slot = slots++;
+    } else {
+      slot = free_slots_.back();
+      free_slots_.pop_back();
+      phase.taken.push_back(slot);
+    }
+  }
+  return slots;
+}
+
+/// Covariance of all slots (rows) with the active part (columns), 2·slots × n.
+Eigen::MatrixXd CompressedEkf::end_columns(const Panels& basis, int slots) const {
+  const int n = active_.dimension();
+  ReservedMatrix columns(2 * slots, n);
+  const Eigen::MatrixXd weights = active_.A.view().transpose();
+  add_product(columns.col(0), columns.stride(), basis, Panels(weights, right_width));
+  const auto P = active_.P.view();
+  for (int i = 0; i < active_count(); ++i) {
+    columns.view().middleRows<2>(2 * active_.slots[static_cast<std::size_t>(i)]) =
+        P.middleRows<2>(ActivePart::column(i));
+  }
+  return columns.view();
+}
+
+/// An own variance that has become negative or is not finite: nothing of such a phase may be written down.
+void CompressedEkf::check_own_covariances(const Phase& next) const {
+  for (std::size_t id = 0; id < places_.size(); ++id) {
+    const Place& place = places_[id];
+    if (place.where == Whereabouts::nowhere) continue;
+    const bool is_active = place.where == Whereabouts::active;
+    const int slot = is_active ? active_.slots[static_cast<std::size_t>(place.index)] : place.index;
+    const auto own = next.own_covariance_m2.middleRows<2>(2 * static_cast<Eigen::Index>(slot));
+    constexpr double rounding = 1e-18;
+    if (own(0, 0) >= -rounding && own(1, 1) >= -rounding && own.allFinite()) continue;
+    std::ostringstream problem;
+    problem << "switch_region: after phase " << phases_.back().number << " landmark " << id << " would have variances "
+            << own(0, 0) << " m2 and " << own(1, 1) << " m2";
+    throw core::NumericalError(problem.str());
+  }
+}
+
+/// Fills what only a closed phase has, and what the next one freezes.
+Eigen::MatrixXd CompressedEkf::close_phase(Phase& next) {
+  Phase& phase = phases_.back();
+  make_room(phase.taken, active_.slots.size());
+  const int slots = assign_slots(phase);
+  const Panels basis(phase.basis.view(), left_width);
+  Eigen::MatrixXd columns = end_columns(basis, slots);
+
+  const Eigen::MatrixXd M = active_.M.view().selfadjointView<Eigen::Lower>();
+  phase.touched = columns_not_zero(M);
+  phase.response = product_with_symmetric(phase.basis, M, phase.touched);
+  phase.written = active_.slots;
+  phase.written_covariance = columns.rightCols(columns.cols() - 3);
+  phase.dead = active_.dead_slots;
+
+  next.number = ++last_phase_;
+  next.slots = slots;
+  next.mean_m = Eigen::VectorXd::Zero(2 * slots);
+  next.mean_m.head(2 * phase.slots) = phase.mean_m + phase.basis.view() * active_.theta;
+  next.own_covariance_m2 = Eigen::MatrixXd::Zero(2 * slots, 2);
+  next.own_covariance_m2.topRows(2 * phase.slots) = phase.own_covariance_m2;
+  add_own_blocks(phase.response, phase.basis, next.own_covariance_m2);
+  for (std::size_t i = 0; i < active_.slots.size(); ++i) {
+    const int row = 2 * active_.slots[i];
+    const int column = ActivePart::column(static_cast<int>(i));
+    next.mean_m.segment<2>(row) = active_.points_m[i];
+    next.own_covariance_m2.middleRows<2>(row) = active_.P.view().block<2, 2>(column, column);
+  }
+  check_own_covariances(next);
+  return columns;
+}
+
+/// Closed phases before `until` become part of the passive covariance. Whatever allocates comes first.
+void CompressedEkf::absorb_closed_phases(long until) {
+  std::size_t count = 0;
+  std::size_t dead = 0;
+  std::vector<std::pair<Panels, Panels>> products;
+  for (; count + 1 < phases_.size() && phases_[count].number < until; ++count) {
+    const Phase& phase = phases_[count];
+    products.emplace_back(Panels(phase.response, phase.touched, left_width),
+                          Panels(phase.basis.view(), phase.touched, right_width));
+    dead += phase.dead.size();
+  }
+  if (count == 0) return;
+  make_room(free_slots_, dead);
+  const bool is_shared = absorbed_.use_count() > 1;
+  if (is_shared) absorbed_ = std::make_shared<PassiveCovariance>(*absorbed_);
+  absorbed_->grow(static_cast<int>(phases_[count - 1].written_covariance.rows()));
+
+  // Nothing below allocates or throws.
+  for (const auto& [response, basis] : products) {
+    const Phase& phase = phases_.front();
+    absorbed_->add_symmetric_product(response, basis);
+    absorbed_->overwrite(phase.written, phase.written_covariance);
+    free_slots_.insert(free_slots_.end(), phase.dead.begin(), phase.dead.end());
+    phases_.pop_front();
+  }
+}
+
+void CompressedEkf::keep_since(long phase) {
+  absorb_closed_phases(phase);
+  keep_since_ = phase;
+}
+
+}  // namespace helixnav::cekf

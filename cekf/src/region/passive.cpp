@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reading the passive part: as it was when the phase began, and as it is now.
+#include <algorithm>
+
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "matrices/add_outer.hpp"
+
+namespace helixnav::cekf {
+namespace {
+
+/// Position of the slot among those the phase wrote when it closed, or −1.
+int written_index(const Phase& phase, int slot) {
+  const auto found = std::find(phase.written.begin(), phase.written.end(), slot);
+  return found == phase.written.end() ? -1 : static_cast<int>(found - phase.written.begin());
+}
+
+/// Carries columns 2s, 2s+1 of the map's covariance over a closed phase that did not write the slot s.
+void replay_on_columns(const Phase& phase, int slot, Eigen::Ref<Eigen::MatrixXd> columns) {
+  if (slot >= phase.slots) return;  // born later
+  const Eigen::MatrixXd c = phase.basis.view().middleRows<2>(2 * slot);
+  columns.topRows(2 * phase.slots).noalias() += phase.response * c.transpose();
+  for (std::size_t k = 0; k < phase.written.size(); ++k) {
+    columns.middleRows<2>(2 * phase.written[k]) =
+        phase.written_covariance.block<2, 2>(2 * slot, 2 * static_cast<Eigen::Index>(k)).transpose();
+  }
+}
+
+/// Rows 2s, 2s+1 of the slots, columns that the phase touched; zero for slots born later.
+Eigen::MatrixXd touched_rows(const Phase& phase, const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& from,
+                             const std::vector<int>& slots) {
+  const auto width = static_cast<Eigen::Index>(phase.touched.size());
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * static_cast<Eigen::Index>(slots.size()), width);
+  for (Eigen::Index column = 0; column < width; ++column) {
+    const auto source = from.col(phase.touched[static_cast<std::size_t>(column)]);
+    for (std::size_t k = 0; k < slots.size(); ++k) {
+      if (slots[k] >= phase.slots) continue;
+      rows.col(column).segment<2>(2 * static_cast<Eigen::Index>(k)) = source.segment<2>(2 * slots[k]);
+    }
+  }
+  return rows;
+}
+
+/// Carries the covariance of the slots, its lower triangle, over a closed phase.
+void replay_on_blocks(const Phase& phase, const std::vector<int>& slots, Eigen::MatrixXd& blocks) {
+  if (!phase.touched.empty()) {  // a product of no depth ends in a division by zero in Eigen
+    const Eigen::MatrixXd response = touched_rows(phase, phase.response, slots);
+    const Eigen::MatrixXd basis = touched_rows(phase, phase.basis.view(), slots);
+    blocks.triangularView<Eigen::Lower>() += response * basis.transpose();
+  }
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    const int w = written_index(phase, slots[k]);
+    if (w < 0) continue;
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      if (2 * slots[i] >= phase.written_covariance.rows()) continue;
+      const Eigen::Matrix2d written = phase.written_covariance.block<2, 2>(2 * slots[i], 2 * w);
+      const auto row = 2 * static_cast<Eigen::Index>(std::max(i, k));
+      const auto column = 2 * static_cast<Eigen::Index>(std::min(i, k));
+      if (i >= k) {
+        blocks.block<2, 2>(row, column) = written;
+      } else {
+        blocks.block<2, 2>(row, column) = written.transpose();
+      }
+    }
+  }
+}
+
+}  // namespace
+
+/// Covariance of all slots with the slots given, when the phase began.
+Eigen::MatrixXd CompressedEkf::start_columns(const std::vector<int>& slots, std::size_t phase) const {
+  Eigen::MatrixXd columns =
+      Eigen::MatrixXd::Zero(2 * phases_[phase].slots, 2 * static_cast<Eigen::Index>(slots.size()));
+  fill_start_columns(slots, phase, columns);
+  return columns;
+}
+
+/// The same into columns that are zero. Allocates only where closed phases are kept.
+void CompressedEkf::fill_start_columns(const std::vector<int>& slots, std::size_t phase,
+                                       Eigen::Ref<Eigen::MatrixXd> columns) const {
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    auto own = columns.middleCols<2>(2 * static_cast<Eigen::Index>(k));
+    int w = -1;
+    std::size_t p = phase;  // back to the last closed phase that wrote the slot
+    while (w < 0 && p > 0) w = written_index(phases_[--p], slots[k]);
+    if (w >= 0) {
+      const Eigen::MatrixXd& written = phases_[p++].written_covariance;
+      own.topRows(written.rows()) = written.middleCols<2>(2 * w);
+    } else if (2 * slots[k] < absorbed_->rows()) {
+      absorbed_->copy_columns(slots[k], own.topRows(absorbed_->rows()));
+    }
+    for (; p < phase; ++p) replay_on_columns(phases_[p], slots[k], own);
+  }
+}
+
+Eigen::MatrixXd CompressedEkf::phase_start_blocks(const std::vector<int>& slots) const {
+  const Eigen::Index n = 2 * static_cast<Eigen::Index>(slots.size());
+  Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      if (2 * std::max(slots[i], slots[j]) >= absorbed_->rows()) continue;
+      blocks.block<2, 2>(2 * static_cast<Eigen::Index>(i), 2 * static_cast<Eigen::Index>(j)) =
+          absorbed_->block(slots[i], slots[j]);
+    }
+  }
+  for (std::size_t p = 0; p + 1 < phases_.size(); ++p) replay_on_blocks(phases_[p], slots, blocks);
+  return blocks;
+}
+
+Eigen::MatrixXd CompressedEkf::basis_rows(const std::vector<int>& slots) const {
+  const auto basis = phases_.back().basis.view();
+  Eigen::MatrixXd rows(2 * static_cast<Eigen::Index>(slots.size()), basis.cols());
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    rows.middleRows<2>(2 * static_cast<Eigen::Index>(k)) = basis.middleRows<2>(2 * slots[k]);
+  }
+  return rows;
+}
+
+Eigen::Vector2d CompressedEkf::passive_mean(int slot) const {
+  const Phase& phase = phases_.back();
+  return phase.mean_m.segment<2>(2 * slot) + phase.basis.view().middleRows<2>(2 * slot) * active_.theta;
+}
+
+}  // namespace helixnav::cekf

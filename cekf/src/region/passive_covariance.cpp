@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/cekf/passive_covariance.hpp"
+
+#include <algorithm>
+
+#include "matrices/add_outer.hpp"
+#include "matrices/packed_product.hpp"
+
+namespace helixnav::cekf {
+
+void PassiveCovariance::grow(int rows) {
+  if (rows <= rows_) return;
+  const std::size_t side = static_cast<std::size_t>((rows + tile - 1) / tile);
+  tiles_.resize(side * (side + 1) / 2, Tile::Zero());
+  rows_ = rows;
+}
+
+double PassiveCovariance::at(int i, int j) const {
+  if (i < j) std::swap(i, j);
+  return tile_at(i / tile, j / tile)(i % tile, j % tile);
+}
+
+void PassiveCovariance::set(int i, int j, double value) {
+  if (i < j) std::swap(i, j);
+  tile_at(i / tile, j / tile)(i % tile, j % tile) = value;
+}
+
+Eigen::Matrix2d PassiveCovariance::block(int slot_i, int slot_j) const {
+  Eigen::Matrix2d result;
+  for (int c = 0; c < 2; ++c) {
+    for (int r = 0; r < 2; ++r) result(r, c) = at(2 * slot_i + r, 2 * slot_j + c);
+  }
+  return result;
+}
+
+void PassiveCovariance::copy_columns(int slot, Eigen::Ref<Eigen::MatrixXd> columns) const {
+  for (int c = 0; c < 2; ++c) {
+    const int j = 2 * slot + c;
+    const int J = j / tile;
+    for (int i = 0; i < std::min(J * tile, rows_); ++i) columns(i, c) = tile_at(J, i / tile)(j % tile, i % tile);
+    for (int i = J * tile; i < rows_; ++i) columns(i, c) = at(i, j);
+  }
+}
+
+void PassiveCovariance::add_symmetric_product(const Eigen::Ref<const Eigen::MatrixXd>& left,
+                                              const Eigen::Ref<const Eigen::MatrixXd>& right,
+                                              const std::vector<int>& columns) {
+  add_symmetric_product(Panels(left, columns, left_width), Panels(right, columns, right_width));
+}
+
+void PassiveCovariance::add_symmetric_product(const Panels& left, const Panels& right) {
+  for (int I = 0; I * tile < left.rows(); ++I) {
+    for (int J = 0; J <= I; ++J) add_to_tile(I, J, left, right);
+  }
+}
+
+/// Tile by tile, because the panels of two tiles, and the tile, stay in a second-level cache meanwhile.
+void PassiveCovariance::add_to_tile(int I, int J, const Panels& left, const Panels& right) {
+  constexpr int lefts = tile / static_cast<int>(left_width);
+  constexpr int rights = tile / static_cast<int>(right_width);
+  double* const C = tile_at(I, J).data();
+  for (int l = 0; l < lefts && I * lefts + l < left.count(); ++l) {
+    const int row = l * static_cast<int>(left_width);
+    for (int r = 0; r < rights && J * rights + r < right.count(); ++r) {
+      const int column = r * static_cast<int>(right_width);
+      if (I == J && column >= row + left_width) break;  // above the diagonal
+      add_outer(C + row + column * tile, tile, left_width, right_width, left.panel(I * lefts + l), left_width,
+                right.panel(J * rights + r), right_width, left.depth());
+    }
+  }
+}
+
+void PassiveCovariance::overwrite(const std::vector<int>& slots, const Eigen::Ref<const Eigen::MatrixXd>& columns) {
+  const int rows = static_cast<int>(columns.rows());  // those of the phase; a later one may have made room for more
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    for (int c = 0; c < 2; ++c) {
+      const int j = 2 * slots[k] + c;
+      for (int i = 0; i < rows; ++i) set(i, j, columns(i, 2 * static_cast<Eigen::Index>(k) + c));
+    }
+  }
+}
+
+}  // namespace helixnav::cekf

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "helixnav/association/landmark_life.hpp"
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/step_report.hpp"
+#include "search/search.hpp"
+
+namespace helixnav::supervisor {
+
+/// Landmarks that the scan should have seen, less those beside an observation that was not used for them: it may have been
+/// theirs.
+std::vector<core::LandmarkId> expected_unseen(const cekf::CompressedEkf& filter, const core::Scan& scan,
+                                              double margin_m,
+                                              const std::vector<core::AssociationReport>& associations);
+
+/// A scan that recognises nothing old does not know where the old landmarks are, and their absence proves nothing. Drops
+/// these from `expected`, and those that an open search excludes (null without one).
+void drop_what_may_be_elsewhere(const association::LandmarkLife& existence, const Search* open, double old_after_m,
+                                const std::vector<core::LandmarkId>& seen, std::vector<core::LandmarkId>& expected);
+
+}  // namespace helixnav::supervisor

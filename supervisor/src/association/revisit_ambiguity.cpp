@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "association/revisit_ambiguity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "helixnav/association/likelihood_ratio.hpp"
+#include "helixnav/core/chi2.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+constexpr double gate_probability = 0.95;  // of the gate whose foreign objects are counted
+
+bool is_among(const std::vector<core::LandmarkId>& sorted, core::LandmarkId id) {
+  return std::binary_search(sorted.begin(), sorted.end(), id);
+}
+
+/// Extraneous objects per unit of the observation space at ẑ: in polar coordinates there is more ground farther out.
+double density_at(const association::Prediction& prediction, const core::FieldOfView& view, double per_scan) {
+  const double width_rad = view.max_bearing_rad - view.min_bearing_rad;
+  const double area_m2 = 0.5 * width_rad * (view.max_range_m * view.max_range_m - view.min_range_m * view.min_range_m);
+  const double per_m2 = per_scan / area_m2;
+  return prediction.kind == core::ObservationKind::range_bearing ? per_m2 * prediction.z_hat.x() : per_m2;
+}
+
+/// Old landmarks that the sensor may have in view.
+std::vector<core::LandmarkId> old_in_view(const cekf::CompressedEkf& filter, const core::Scan& scan,
+                                          const std::vector<core::LandmarkId>& old) {
+  const core::PoseGaussian now = filter.pose();
+  const double sigma_m = std::sqrt(std::max(0.0, now.covariance.topLeftCorner<2, 2>().trace()));
+  const Eigen::Vector2d sensor_m = core::transform(now.mean, scan.T_robot_sensor.position_m());
+  std::vector<core::LandmarkId> near =
+      filter.landmarks_within(sensor_m, scan.field_of_view.max_range_m + 3.0 * sigma_m);
+  near.erase(std::remove_if(near.begin(), near.end(), [&](core::LandmarkId id) { return !is_among(old, id); }),
+             near.end());
+  return near;
+}
+
+bool may_be(const association::InnovationProblem& problem, int observation, core::LandmarkId id, double gate) {
+  const association::GatedObservation& here = problem.observations[static_cast<std::size_t>(observation)];
+  return std::any_of(problem.pairs.begin() + here.begin, problem.pairs.begin() + here.end,
+                     [&](const association::GatedPair& pair) {
+                       return problem.ids[static_cast<std::size_t>(pair.candidate)] == id && pair.nis < gate;
+                     });
+}
+
+/// Other landmarks in the gate of the pair's, or in whose gates its observation stands as well: two that stand on either
+/// side of it may be outside each other's gates, and yet it is a toss-up which of them it is.
+int neighbours_in_gate(const cekf::CompressedEkf& filter, const core::Scan& scan,
+                       const std::vector<core::LandmarkId>& others, core::LandmarkId self,
+                       const association::GatedPair& pair, const association::InnovationProblem& problem) {
+  static const double gate = core::chi2_quantile(gate_probability, 2);
+  const association::Prediction& prediction = problem.predictions[static_cast<std::size_t>(pair.prediction)];
+  const core::Pose2 pose = filter.pose().mean;
+  const Eigen::Vector2d sensor_m = core::transform(pose, scan.T_robot_sensor.position_m());
+  const Eigen::Matrix2d S_inverse = pair.S.inverse();
+  int neighbours = 0;
+  for (const core::LandmarkId other : others) {
+    const Eigen::Vector2d point_m = filter.landmark_mean(other);
+    constexpr double too_near_m = 1e-3;  // at the sensor itself there is no bearing
+    if (other == self || (point_m - sensor_m).norm() < too_near_m) continue;
+    const core::ObsVector z_hat = core::predict_observation(prediction.kind, pose, scan.T_robot_sensor, point_m).z_hat;
+    const Eigen::Vector2d nu = core::innovation(prediction.kind, z_hat, core::ObsVector(prediction.z_hat));
+    if (nu.dot(S_inverse * nu) < gate || may_be(problem, pair.observation, other, gate)) ++neighbours;
+  }
+  return neighbours;
+}
+
+}  // namespace
+
+std::vector<core::LandmarkId> old_landmarks(const association::LandmarkLife& life, double old_after_m) {
+  std::vector<core::LandmarkId> old;
+  for (const association::LandmarkRecord& record : life.records()) {
+    const bool unseen = life.path_m() - record.last_seen_path_m > old_after_m;
+    if (unseen && record.state == core::LandmarkState::mature) old.push_back(record.id);
+  }
+  return old;
+}
+
+std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
+                                              const association::InnovationProblem& problem, const core::Scan& scan,
+                                              const std::vector<core::LandmarkId>& old, double foreign_per_scan) {
+  std::vector<RevisitAmbiguity> returns;
+  if (old.empty() || !scan.field_of_view.reach()) return returns;  // a sensor of no known view
+  static const double gate = core::chi2_quantile(gate_probability, 2);
+  std::vector<core::LandmarkId> others;  // looked up when the first old landmark is gated
+  for (const association::GatedPair& pair : problem.pairs) {
+    const core::LandmarkId id = problem.ids[static_cast<std::size_t>(pair.candidate)];
+    if (pair.dof != 2 || !is_among(old, id)) continue;
+    if (others.empty()) others = old_in_view(filter, scan, old);
+    const association::Prediction& prediction = problem.predictions[static_cast<std::size_t>(pair.prediction)];
+    RevisitAmbiguity here;
+    here.landmark = id;
+    here.neighbours = neighbours_in_gate(filter, scan, others, id, pair, problem);
+    const Eigen::Matrix2d R = scan.observations[static_cast<std::size_t>(pair.observation)].R;
+    const double sensor_area = std::sqrt(R.determinant());
+    here.widening = std::sqrt(pair.S.determinant()) / sensor_area;
+    here.gate_area = core::pi * gate * sensor_area * (here.widening - 1.0);
+    here.expected_confusers =
+        here.neighbours + density_at(prediction, scan.field_of_view, foreign_per_scan) * here.gate_area;
+    const auto at = std::lower_bound(returns.begin(), returns.end(), id,
+                                     [](const RevisitAmbiguity& r, core::LandmarkId l) { return r.landmark < l; });
+    if (at == returns.end() || at->landmark != id) {
+      returns.insert(at, here);
+    } else if (here.expected_confusers > at->expected_confusers) {
+      *at = here;
+    }
+  }
+  return returns;
+}
+
+const RevisitAmbiguity* most_ambiguous(const std::vector<RevisitAmbiguity>& returns) {
+  const auto worst = std::max_element(
+      returns.begin(), returns.end(),
+      [](const RevisitAmbiguity& a, const RevisitAmbiguity& b) { return a.expected_confusers < b.expected_confusers; });
+  return worst == returns.end() ? nullptr : &*worst;
+}
+
+}  // namespace helixnav::supervisor

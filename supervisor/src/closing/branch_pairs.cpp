@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "closing/branch_pairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "helixnav/core/angle.hpp"
+#include "helixnav/core/chi2.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+// Of the distance of old landmarks a third says well enough who is whose copy.
+constexpr double reach_share = 0.35;
+
+Leftover compare(const cekf::CompressedEkf& filter, core::LandmarkId kept, core::LandmarkId removed, double sigma_m) {
+  const core::JointGaussian both = filter.joint({kept, removed});
+  const Eigen::MatrixXd& P = both.covariance;
+  const Eigen::Matrix2d S = P.block<2, 2>(3, 3) + P.block<2, 2>(5, 5) - P.block<2, 2>(3, 5) - P.block<2, 2>(5, 3) +
+                            sigma_m * sigma_m * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix2d information = S.inverse();
+  const Eigen::Vector2d d = both.points_m[1] - both.points_m[0];
+  return {kept, removed, d, information, d.dot(information * d)};
+}
+
+/// From an old landmark to its nearest old neighbour, as far as that matters.
+double nearest_old_m(const cekf::CompressedEkf& filter, core::LandmarkId kept, const std::vector<core::LandmarkId>& old,
+                     double matters_m) {
+  const Eigen::Vector2d at_m = filter.landmark_mean(kept);
+  double nearest_m = matters_m;
+  for (const core::LandmarkId other : filter.landmarks_within(at_m, nearest_m)) {
+    if (other == kept || !std::binary_search(old.begin(), old.end(), other)) continue;
+    nearest_m = std::min(nearest_m, (filter.landmark_mean(other) - at_m).norm());
+  }
+  return nearest_m;
+}
+
+/// At the rim of what was mapped a copy has one partner only, right or wrong. Is it a thousand times likelier to be that
+/// one's than a neighbour's which nobody has mapped, on any side as near as the nearest is? The copies of one stretch
+/// have their error in common, so that a likelier mistake would be one of whole rows in one of some hundred closings.
+bool may_be_a_neighbours(const Leftover& leftover, double neighbour_m) {
+  constexpr int sides = 16;
+  static const double least_excess = 2.0 * std::log(1000.0);
+  for (int k = 0; k < sides; ++k) {
+    const double angle_rad = 2.0 * core::pi * k / sides;
+    const Eigen::Vector2d d =
+        leftover.difference_m - neighbour_m * Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad));
+    if (d.dot(leftover.information * d) < leftover.nis + least_excess) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+/// Old landmarks that `id` may be, as far as one looks, nearest first.
+std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::LandmarkId id,
+                                 const std::vector<core::LandmarkId>& old, double gate, double look_m, double sigma_m) {
+  const Eigen::Vector2d at_m = filter.landmark_mean(id);
+  std::vector<Leftover> found;
+  for (const core::LandmarkId kept : filter.landmarks_within(at_m, look_m)) {
+    if (!std::binary_search(old.begin(), old.end(), kept)) continue;
+    const Leftover leftover = compare(filter, kept, id, sigma_m);
+    if (leftover.nis < gate) found.push_back(leftover);
+  }
+  std::sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.nis < b.nis; });
+  return found;
+}
+
+KeptRemoved kept_removed(const std::vector<pf_relocalize::ConstellationPair>& pairs) {
+  KeptRemoved result;
+  for (const pf_relocalize::ConstellationPair& pair : pairs) result.emplace_back(pair.old_landmark, pair.branch);
+  return result;
+}
+
+void note(const KeptRemoved& pairs, Closing& closing) {
+  for (const auto& [kept, removed] : pairs) closing.merged.push_back({kept, removed});
+}
+
+bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& options, KeptRemoved& pairs,
+                     Closing& closing) {
+  while (true) {
+    const cekf::CostByPart cost = filter.merge_cost(pairs, options.merge_sigma_m);
+    closing.cost = cost.cost;
+    closing.dof = cost.dof;
+    closing.limit = core::chi2_quantile(options.closing_probability, cost.dof);
+    if (cost.cost <= closing.limit) return true;
+    if (closing.dropped == options.most_dropped || pairs.size() <= least_pairs) return false;
+    const auto worst = std::max_element(cost.parts.begin(), cost.parts.end()) - cost.parts.begin();
+    pairs.erase(pairs.begin() + worst);
+    ++closing.dropped;
+  }
+}
+
+KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
+                      const std::vector<core::LandmarkId>& old, const SearchOptions& options) {
+  const double gate = options.leftover_gate;
+  std::vector<Leftover> found;
+  for (const core::LandmarkId id : confirmed) {
+    if (!filter.contains(id)) continue;
+    const double look_m = options.leftover_most_m + std::sqrt(gate) * filter.landmark_sigma_bound_m(id);
+    const std::vector<Leftover> here = compatible(filter, id, old, gate, look_m, options.duplicate_sigma_m);
+    if (here.size() != 1) continue;
+    const double neighbour_m = nearest_old_m(filter, here.front().kept, old, options.leftover_most_m / reach_share);
+    const double reach_m = std::max(options.leftover_least_m, reach_share * neighbour_m);
+    if (here.front().difference_m.norm() > reach_m || may_be_a_neighbours(here.front(), neighbour_m)) continue;
+    found.push_back(here.front());
+  }
+  std::sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.nis < b.nis; });
+  KeptRemoved pairs;
+  for (const Leftover& leftover : found) {
+    const bool taken = std::any_of(pairs.begin(), pairs.end(), [&](const auto& p) { return p.first == leftover.kept; });
+    if (!taken) pairs.emplace_back(leftover.kept, leftover.removed);
+  }
+  return pairs;
+}
+
+void forget_copies(cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& unconfirmed,
+                   const std::vector<core::LandmarkId>& old, const SearchOptions& options, Closing& closing) {
+  for (const core::LandmarkId id : unconfirmed) {
+    const std::vector<Leftover> here =
+        compatible(filter, id, old, options.leftover_gate, options.leftover_least_m, options.duplicate_sigma_m);
+    if (here.empty()) continue;
+    filter.remove(id);
+    closing.forgotten.push_back(id);
+  }
+}
+
+}  // namespace helixnav::supervisor

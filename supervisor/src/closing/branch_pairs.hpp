@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "closing/closing.hpp"
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/pf_relocalize/constellation.hpp"
+#include "helixnav/supervisor/search_options.hpp"
+
+namespace helixnav::supervisor {
+
+/// The old landmark that stays and the one of the branch that goes.
+using KeptRemoved = std::vector<cekf::CompressedEkf::LandmarkPair>;
+
+constexpr std::size_t least_pairs = 3;  ///< of a closing
+
+KeptRemoved kept_removed(const std::vector<pf_relocalize::ConstellationPair>& pairs);
+
+/// An old landmark that one of the branch may be.
+struct Leftover {
+  core::LandmarkId kept, removed;
+  Eigen::Vector2d difference_m;  ///< removed less kept
+  Eigen::Matrix2d information;   ///< of it, correlations included, on top of duplicate_sigma_m each way
+  double nis;
+};
+
+/// Old landmarks that `id` may be, as far as one looks, nearest first.
+std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::LandmarkId id,
+                                 const std::vector<core::LandmarkId>& old, double gate, double look_m, double sigma_m);
+
+/// The pairs belong to what the closing merged.
+void note(const KeptRemoved& pairs, Closing& closing);
+
+/// Drops the worst pair until the cost of merging the rest passes; false when too many would have to go. Sets the figures of
+/// `closing`.
+bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& options, KeptRemoved& pairs,
+                     Closing& closing);
+
+/// Confirmed branch landmarks that are compatible with one landmark of `old` (ascending) and with no other, by the joint
+/// covariance of the closed map, a thousand times likelier it than one that stood as near to it as its nearest old
+/// neighbour on another side, and not farther from it than a third of that distance, leftover_least_m at the least and leftover_most_m at
+/// the most; of several on the same one the nearest. Test: supervisor/branch_pairs_test.cpp.
+KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
+                      const std::vector<core::LandmarkId>& old, const SearchOptions& options);
+
+/// Removes unconfirmed landmarks of the branch that stand on an old one: they may be clutter and are never merged.
+void forget_copies(cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& unconfirmed,
+                   const std::vector<core::LandmarkId>& old, const SearchOptions& options, Closing& closing);
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "closing/closing.hpp"
+#include "closing/replay_branch.hpp"
+#include "helixnav/association/landmark_life.hpp"
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "loop/coverage_trace.hpp"
+#include "search/search.hpp"
+
+namespace helixnav::supervisor {
+
+/// What a closing looks at, beside the filter.
+struct ClosingView {
+  const Search& search;
+  const association::LandmarkLife& life;
+  const CoverageTrace& track;
+  const core::Scan& scan;
+  BranchRecord record;
+};
+
+/// Closes the map by the pairs that the search has found, as SearchOptions::closing says; leaves the filter as it is
+/// when that is not accepted. Test: supervisor/closing_test.cpp, supervisor/replay_test.cpp, supervisor/lattice_test.cpp.
+Closing close_map(cekf::CompressedEkf& filter, const ClosingView& view,
+                  const std::vector<pf_relocalize::ConstellationPair>& pairs, const SearchOptions& options);
+
+}  // namespace helixnav::supervisor

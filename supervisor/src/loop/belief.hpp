@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "association/confirmation.hpp"
+#include "helixnav/association/landmark_life.hpp"
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "loop/coverage_trace.hpp"
+#include "loop/tape.hpp"
+
+namespace helixnav::supervisor {
+
+/// All that is believed, and so all that rolls back: pose and map, which landmarks exist, what ground was looked at, which
+/// old landmark waits for its confirmation, and the number of scans so far.
+struct Belief {
+  cekf::CompressedEkf filter;
+  association::LandmarkLife existence;
+  CoverageTrace coverage;
+  Confirmation confirmation;
+  std::int64_t step = 0;
+};
+
+/// A belief to come back to, and where the tape was then. A snapshot of O(n_a²) bytes and the landmarks' existence; good as
+/// long as the filter keeps the snapshot's phase (CompressedEkf::keep_since).
+struct Checkpoint {
+  cekf::Snapshot filter;
+  association::LandmarkLife existence;
+  Confirmation confirmation;
+  std::int64_t step;
+  Tape::Position position;
+};
+
+inline Checkpoint take_checkpoint(const Belief& belief, const Tape& tape) {
+  return {belief.filter.snapshot(), belief.existence, belief.confirmation, belief.step, tape.end()};
+}
+
+/// Test: supervisor/tape_test.cpp.
+inline void roll_back(const Checkpoint& checkpoint, Belief& belief) {
+  belief.filter.restore(checkpoint.filter);
+  belief.existence = checkpoint.existence;
+  belief.coverage.back_to(checkpoint.existence.path_m());
+  belief.confirmation = checkpoint.confirmation;
+  belief.step = checkpoint.step;
+}
+
+}  // namespace helixnav::supervisor

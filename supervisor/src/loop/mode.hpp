@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "integrity/integrity_monitor.hpp"
+#include "loop/belief.hpp"
+#include "search/search.hpp"
+
+namespace helixnav::supervisor {
+
+/// Every scan is associated with the whole map. The integrity monitor watches whether the map is where it should be; the
+/// trusted checkpoint is the last one at which nothing spoke against that, and is missing only inside the step that ends a
+/// search.
+struct Mapping {
+  IntegrityMonitor monitor;
+  std::optional<Checkpoint> trusted;
+  IntegrityMonitor monitor_when_trusted;
+
+  void trust(Checkpoint checkpoint) {
+    trusted.emplace(std::move(checkpoint));
+    monitor_when_trusted = monitor;
+  }
+};
+
+/// A question is open: mapping goes on with the old landmarks excluded. The checkpoint is that of the trigger, after the
+/// prediction and before its scan was used.
+struct Searching {
+  Search search;
+  Checkpoint trigger;
+};
+
+using Mode = std::variant<Mapping, Searching>;
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "loop/navigation_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "association/association_report.hpp"
+#include "association/candidates.hpp"
+#include "association/expected_landmarks.hpp"
+#include "helixnav/core/odometry.hpp"
+#include "helixnav/supervisor/lengths.hpp"
+#include "loop/judge_fix.hpp"
+#include "loop/recover.hpp"
+
+namespace helixnav::supervisor {
+
+using core::LandmarkId;
+using core::Outcome;
+using core::Scan;
+using core::StepReport;
+
+NavigationLoop::NavigationLoop(const core::PoseGaussian& start, const NavigatorOptions& options)
+    : options_(options),
+      start_(start),
+      belief_{cekf::CompressedEkf(start, options.filter),
+              association::LandmarkLife(options.life),
+              CoverageTrace(options.search.coverage_spacing_m),
+              {},
+              0},
+      tape_(options.search.enabled ? options.search.smooth_up_to_scans : 0),
+      mode_(Mapping{{}, take_checkpoint(belief_, tape_), {}}) {}
+
+void NavigationLoop::move(const core::Odometry& odometry) {
+  pending_.motion = pending_.motion ? core::chain(*pending_.motion, odometry) : odometry;
+  pending_.driven_m += odometry.T_before_after.position_m().norm();
+}
+
+/// The lengths of the options to the first sensor that says how far it sees; what was predicted and fixed before the first
+/// scan is in the pose.
+void NavigationLoop::fit_to(const core::FieldOfView& view) {
+  if (view_.reach() || !view.reach()) return;
+  if (options_.fit_lengths) {
+    NavigatorOptions fitted = fit_lengths(options_, view);
+    const bool new_cells = fitted.filter.cell_side_m != options_.filter.cell_side_m ||
+                           fitted.filter.hysteresis_m != options_.filter.hysteresis_m;
+    if (new_cells && belief_.step == 0) {
+      belief_.filter = cekf::CompressedEkf(belief_.filter.pose(), fitted.filter);
+      std::get<Mapping>(mode_).trust(take_checkpoint(belief_, tape_));
+    }
+    options_ = std::move(fitted);
+    belief_.existence.set_lengths(options_.life.look_distance_m, options_.life.tentative_patience_m);
+    belief_.coverage.set_spacing(options_.search.coverage_spacing_m);
+  }
+  view_ = view;
+}
+
+StepReport NavigationLoop::observe(const Scan& scan) {
+  fit_to(scan.field_of_view);
+  return all_or_nothing([&] {
+    StepReport report = step(scan);
+    checkpoint_if_settled();
+    return has_lost_its_place() ? roll_back_and_relocalise(std::move(report)) : report;
+  });
+}
+
+bool NavigationLoop::fix(const core::AbsoluteFix& fix) {
+  return all_or_nothing([&] { return use_fix(fix); });
+}
+
+StepReport NavigationLoop::step(const Scan& scan) {
+  StepReport report;
+  predict();
+  GatedScan gated = gate(scan);
+  if (const auto trigger = find_trigger(gated, belief_.filter.pose(), options_.search)) {
+    report.decisions.emplace_back(*trigger);
+    begin_search();
+    gated = gate(scan);
+  }
+  report.associations = associate_scan(scan, gated, options_, belief_.existence.path_m(), belief_.confirmation);
+  update(scan, report);
+  augment(scan, report);
+  std::vector<LandmarkId> died = update_existence(scan, report);
+  tape_.append(Tape::Scan{scan, report.associations, report.joint_nis, report.joint_dof, std::move(died)});
+  if (searching() != nullptr) search(scan, report);
+  report.switched_region = belief_.filter.switch_region_if_due();
+  return finish(scan, std::move(report));
+}
+
+void NavigationLoop::predict() {
+  if (!pending_.motion) return;
+  belief_.filter.predict(*pending_.motion);
+  if (Searching* open = searching()) open->search.move(*pending_.motion);
+  belief_.existence.drive(pending_.driven_m);
+  tape_.append(Tape::Motion{*pending_.motion, pending_.driven_m});
+  pending_.driven_m = 0.0;
+  pending_.motion.reset();
+}
+
+bool NavigationLoop::use_fix(const core::AbsoluteFix& fix) {
+  predict();
+  const core::FixDecision decision = judge_fix(belief_.filter, fix, options_.fix_probability);
+  tape_.append(Tape::Fix{fix, decision.nis, decision.accepted});
+  pending_.decisions.emplace_back(decision);
+  return decision.accepted;
+}
+
+/// While a search is open the old landmarks are no candidates, and no return is looked for.
+GatedScan NavigationLoop::gate(const Scan& scan) const {
+  const Searching* open = searching();
+  std::vector<LandmarkId> ids = candidates(belief_.filter, scan, options_.candidate_sigmas);
+  if (open != nullptr) {
+    const auto excluded = [&](LandmarkId id) { return open->search.excludes(id); };
+    ids.erase(std::remove_if(ids.begin(), ids.end(), excluded), ids.end());
+  }
+  GatedScan gated{std::make_unique<Gating>(belief_.filter, ids, scan, options_.gates), {}};
+  if (options_.search.enabled && open == nullptr) {
+    const std::vector<LandmarkId> old = old_landmarks(belief_.existence, options_.search.old_after_m);
+    const SearchOptions now = with_foreign(options_.search, belief_.existence.born_per_scan(), view_);
+    gated.returns = returns_in_gate(belief_.filter, gated.gating->problem, scan, old, now.foreign_per_scan);
+  }
+  return gated;
+}
+
+void NavigationLoop::update(const Scan& scan, StepReport& report) {
+  const std::vector<cekf::Match> matched = matches(scan, report.associations);
+  if (matched.empty()) return;
+  const cekf::UpdateResult result = belief_.filter.update(matched);
+  report.joint_nis = result.nis;
+  report.joint_dof = result.dof;
+}
+
+void NavigationLoop::augment(const Scan& scan, StepReport& report) {
+  for (core::AssociationReport& association : report.associations) {
+    if (association.outcome != Outcome::augmented) continue;
+    const core::Observation& observation = scan.observations[static_cast<std::size_t>(association.observation)];
+    if (core::dimension(observation.kind) == 1) {
+      association.outcome = Outcome::ambiguous;  // without a name nobody can gather its sightings
+      continue;
+    }
+    association.landmark = belief_.filter.augment(observation, scan.T_robot_sensor);
+  }
+}
+
+/// Landmarks that died, by the evidence of what was seen and of what should have been.
+std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const StepReport& report) {
+  const std::vector<LandmarkId> seen = landmarks_with(Outcome::matched, report.associations);
+  const std::vector<LandmarkId> born = landmarks_with(Outcome::augmented, report.associations);
+  std::vector<LandmarkId> expected = expected_unseen(belief_.filter, scan, options_.view_margin_m, report.associations);
+  if (Mapping* mapping = std::get_if<Mapping>(&mode_)) {
+    mapping->monitor.observe(belief_.existence, expected, seen, options_.search.old_after_m);
+  }
+  const Searching* open = searching();
+  drop_what_may_be_elsewhere(belief_.existence, open != nullptr ? &open->search : nullptr, options_.search.old_after_m,
+                             seen, expected);
+  const core::Pose2 T_world_sensor = core::compose(belief_.filter.pose().mean, scan.T_robot_sensor);
+  const association::LifeChanges changes = belief_.existence.observe(T_world_sensor.position_m(), seen, born, expected);
+  for (const LandmarkId id : changes.died) belief_.filter.remove(id);
+  belief_.coverage.pass(belief_.existence.path_m(), T_world_sensor);
+  return changes.died;
+}
+
+StepReport NavigationLoop::finish(const Scan& scan, StepReport report) {
+  report.step = belief_.step++;
+  report.t_ns = scan.t_ns;
+  report.pose = belief_.filter.pose();
+  report.active_landmarks = belief_.filter.active_count();
+  report.mapped_landmarks = belief_.filter.mapped_count();
+  std::vector<core::Decision> decisions = std::exchange(pending_.decisions, {});
+  for (core::Decision& decision : report.decisions) decisions.push_back(std::move(decision));
+  report.decisions = std::move(decisions);
+  Mapping* mapping = std::get_if<Mapping>(&mode_);
+  if (mapping != nullptr && !mapping->trusted) mapping->trust(take_checkpoint(belief_, tape_));
+  return report;
+}
+
+bool NavigationLoop::is_monitored() const { return options_.search.enabled && options_.search.integrity.enabled; }
+
+/// The belief after this scan becomes the checkpoint to come back to when nothing speaks against it: not more often than
+/// every ten scans, but after every switch of the region, so that the phase closed by it is let go.
+void NavigationLoop::checkpoint_if_settled() {
+  Mapping* mapping = std::get_if<Mapping>(&mode_);
+  if (mapping == nullptr) return;
+  constexpr std::int64_t stride = 10;
+  const std::int64_t scans = belief_.step - mapping->trusted->step;
+  if (is_monitored() && scans > options_.search.integrity.reach) mapping->monitor = IntegrityMonitor();
+  if (is_monitored() && !mapping->monitor.is_clear()) return;
+  const bool first_scan = mapping->trusted->step == 0;
+  if (!first_scan && scans < stride && belief_.filter.phase() == mapping->trusted->filter.phase) return;
+  mapping->trust(take_checkpoint(belief_, tape_));
+}
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "association/gated_scan.hpp"
+#include "closing/closing.hpp"
+#include "helixnav/core/events.hpp"
+#include "helixnav/core/step_report.hpp"
+#include "helixnav/supervisor/navigator_options.hpp"
+#include "loop/belief.hpp"
+#include "loop/mode.hpp"
+#include "loop/tape.hpp"
+
+namespace helixnav::supervisor {
+
+/// The loop of the Navigator: a belief, the tape of what came in and what became of it, and the mode.
+/// Scans: navigation_loop.cpp. The open question: search_mode.cpp. Back to the trusted checkpoint: roll_back.cpp. The strong
+/// guarantee: recover.cpp.
+class NavigationLoop {
+ public:
+  NavigationLoop(const core::PoseGaussian& start, const NavigatorOptions& options);
+
+  void move(const core::Odometry& odometry);
+  core::StepReport observe(const core::Scan& scan);
+  bool fix(const core::AbsoluteFix& fix);
+
+  const Belief& belief() const { return belief_; }
+
+ private:
+  /// What came in since the last scan.
+  struct Pending {
+    std::optional<core::Odometry> motion;
+    double driven_m = 0.0;  ///< length along the road
+    std::vector<core::Decision> decisions;
+  };
+  /// What a call replaced, until it is known that it succeeds.
+  struct Undo {
+    Pending pending;
+    Tape::Position tape_end;
+    std::uint64_t searches;
+    std::optional<Mode> mode;
+    std::optional<cekf::CompressedEkf> filter;            ///< before the drive was solved
+    std::optional<std::vector<Tape::Entry>> rolled_back;  ///< taken off the tape
+  };
+
+  // navigation_loop.cpp
+  void fit_to(const core::FieldOfView& view);
+  core::StepReport step(const core::Scan& scan);
+  void predict();
+  bool use_fix(const core::AbsoluteFix& fix);
+  GatedScan gate(const core::Scan& scan) const;
+  void update(const core::Scan& scan, core::StepReport& report);
+  void augment(const core::Scan& scan, core::StepReport& report);
+  std::vector<core::LandmarkId> update_existence(const core::Scan& scan, const core::StepReport& report);
+  core::StepReport finish(const core::Scan& scan, core::StepReport report);
+  void checkpoint_if_settled();
+  bool is_monitored() const;
+
+  // search_mode.cpp
+  void begin_search();
+  void search(const core::Scan& scan, core::StepReport& report);
+  void close(const core::Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
+             core::StepReport& report);
+  void end_search(const Closing* closing);
+  void solve_drive(core::StepReport& report);
+
+  // roll_back.cpp
+  bool has_lost_its_place() const;
+  core::StepReport roll_back_and_relocalise(core::StepReport report);
+
+  // recover.cpp
+  template <class Call>
+  auto all_or_nothing(const Call& call);
+  void commit();
+  void recover();
+  Search search_from(const Checkpoint& trigger) const;
+
+  const Checkpoint& checkpoint() const;
+  Searching* searching() { return std::get_if<Searching>(&mode_); }
+  const Searching* searching() const { return std::get_if<Searching>(&mode_); }
+
+  NavigatorOptions options_;
+  core::FieldOfView view_;  ///< of the first scan that says one
+  core::PoseGaussian start_;
+  Belief belief_;
+  Tape tape_;
+  Mode mode_;
+  Pending pending_;
+  Undo undo_;
+  std::uint64_t searches_ = 0;
+};
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/supervisor/navigator.hpp"
+
+#include <variant>
+
+#include "helixnav/core/check_event.hpp"
+#include "loop/navigation_loop.hpp"
+
+namespace helixnav::supervisor {
+
+Navigator::Navigator(const core::PoseGaussian& start, const NavigatorOptions& options)
+    : loop_(std::make_unique<NavigationLoop>(start, options)) {}
+
+Navigator::~Navigator() = default;
+Navigator::Navigator(Navigator&&) noexcept = default;
+Navigator& Navigator::operator=(Navigator&&) noexcept = default;
+
+std::optional<core::StepReport> Navigator::take(const core::Event& event) {
+  if (const auto* scan = std::get_if<core::Scan>(&event)) return observe(*scan);
+  if (const auto* odometry = std::get_if<core::Odometry>(&event)) move(*odometry);
+  if (const auto* absolute = std::get_if<core::AbsoluteFix>(&event)) fix(*absolute);
+  return std::nullopt;
+}
+
+void Navigator::move(const core::Odometry& odometry) {
+  core::check(odometry);
+  loop_->move(odometry);
+}
+
+core::StepReport Navigator::observe(const core::Scan& scan) {
+  core::check(scan);
+  return loop_->observe(scan);
+}
+
+bool Navigator::fix(const core::AbsoluteFix& fix) {
+  core::check(fix);
+  return loop_->fix(fix);
+}
+
+core::PoseGaussian Navigator::pose() const { return filter().pose(); }
+const cekf::CompressedEkf& Navigator::filter() const { return loop_->belief().filter; }
+
+std::vector<core::MapLandmark> Navigator::map() const {
+  const Belief& belief = loop_->belief();
+  std::vector<core::MapLandmark> landmarks;
+  for (const core::LandmarkId id : belief.filter.landmarks()) {
+    core::MapLandmark landmark;
+    landmark.id = id;
+    landmark.point = belief.filter.landmark(id);
+    landmark.observations = belief.existence.record(id).observations;
+    landmark.state = belief.existence.state(id);
+    landmarks.push_back(landmark);
+  }
+  return landmarks;
+}
+
+}  // namespace helixnav::supervisor

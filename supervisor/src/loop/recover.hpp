@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <utility>
+
+#include "loop/navigation_loop.hpp"
+
+namespace helixnav::supervisor {
+
+/// The strong guarantee: the call takes effect as a whole, or not at all.
+template <class Call>
+auto NavigationLoop::all_or_nothing(const Call& call) {
+  undo_ = Undo{pending_, tape_.end(), searches_, {}, {}, {}};
+  try {
+    auto result = call();
+    commit();
+    return result;
+  } catch (...) {
+    recover();
+    throw;
+  }
+}
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "loop/tape.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "association/association_report.hpp"
+#include "helixnav/core/odometry.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+bool is_stop(const Tape::Entry& entry) {
+  const auto* fix = std::get_if<Tape::Fix>(&entry);
+  return std::holds_alternative<Tape::Scan>(entry) || (fix != nullptr && fix->accepted);
+}
+
+bool is_used(const core::AssociationReport& association) {
+  return association.outcome == core::Outcome::matched || association.outcome == core::Outcome::augmented;
+}
+
+void drop_unused(Tape::Scan& entry) {
+  std::vector<core::AssociationReport> fate;
+  std::vector<core::Observation> observations;
+  for (core::AssociationReport association : entry.fate) {
+    if (!is_used(association)) continue;
+    observations.push_back(entry.scan.observations[static_cast<std::size_t>(association.observation)]);
+    association.observation = static_cast<int>(fate.size());
+    fate.push_back(association);
+  }
+  entry.fate = std::move(fate);
+  entry.scan.observations = std::move(observations);
+}
+
+}  // namespace
+
+void Tape::append(Entry entry) {
+  stops_ += is_stop(entry);
+  entries_.push_back(std::move(entry));
+}
+
+std::vector<Tape::Entry> Tape::cut(Position position) {
+  const auto from = entries_.begin() + static_cast<std::ptrdiff_t>(position - forgotten_);
+  std::vector<Entry> taken(std::make_move_iterator(from), std::make_move_iterator(entries_.end()));
+  entries_.erase(from, entries_.end());
+  stops_ -= static_cast<int>(std::count_if(taken.begin(), taken.end(), is_stop));
+  settled_ = std::min(settled_, position);
+  return taken;
+}
+
+void Tape::settle(Position position) {
+  for (; settled_ < position; ++settled_) {
+    if (auto* scan = std::get_if<Scan>(&entries_[settled_ - forgotten_])) drop_unused(*scan);
+  }
+  if (stops_ > most_stops_) most_stops_ = 0;  // for good
+  if (most_stops_ > 0 || position == forgotten_) return;
+  entries_.erase(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(position - forgotten_));
+  forgotten_ = position;
+}
+
+std::vector<cekf::Match> used_observations(const Tape::Scan& scan) {
+  std::vector<cekf::Match> used = matches(scan.scan, scan.fate);
+  for (const core::AssociationReport& association : scan.fate) {
+    if (association.outcome != core::Outcome::augmented) continue;
+    used.push_back({association.landmark, scan.scan.observations[static_cast<std::size_t>(association.observation)],
+                    scan.scan.T_robot_sensor});
+  }
+  return used;
+}
+
+cekf::UpdateResult innovation_cost(const Tape& tape, Tape::Position position) {
+  cekf::UpdateResult cost;
+  tape.read_from(position, [&](const Tape::Entry& entry) {
+    if (const auto* scan = std::get_if<Tape::Scan>(&entry)) {
+      cost.nis += scan->nis;
+      cost.dof += scan->dof;
+    }
+  });
+  return cost;
+}
+
+double drive_cost(const Tape& tape) {
+  double cost = 0.0;
+  tape.read_from(0, [&](const Tape::Entry& entry) {
+    if (const auto* scan = std::get_if<Tape::Scan>(&entry)) cost += scan->nis;
+    if (const auto* fix = std::get_if<Tape::Fix>(&entry)) cost += fix->accepted ? fix->nis : 0.0;
+    if (const auto* merge = std::get_if<Tape::Merge>(&entry)) cost += merge->cost;
+    if (const auto* solved = std::get_if<Tape::Solved>(&entry)) cost = solved->cost;
+  });
+  return cost;
+}
+
+core::MergedIds merged_ids(const Tape& tape) {
+  core::MergedIds ids;
+  tape.read_from(0, [&](const Tape::Entry& entry) {
+    const auto* merge = std::get_if<Tape::Merge>(&entry);
+    if (merge == nullptr) return;
+    for (const core::MergedLandmarks& one : merge->merged) ids.merge(one);
+  });
+  return ids;
+}
+
+std::vector<Stop> stops_of(const Tape& tape) {
+  std::vector<Stop> stops;
+  std::optional<core::Odometry> motion;
+  tape.read_from(0, [&](const Tape::Entry& entry) {
+    if (const auto* moved = std::get_if<Tape::Motion>(&entry)) {
+      motion = motion ? core::chain(*motion, moved->odometry) : moved->odometry;
+    }
+    if (!is_stop(entry)) return;
+    Stop& stop = stops.emplace_back();
+    stop.motion = std::exchange(motion, std::nullopt);
+    if (const auto* fix = std::get_if<Tape::Fix>(&entry)) stop.fix = fix->fix;
+    if (const auto* scan = std::get_if<Tape::Scan>(&entry)) stop.seen = used_observations(*scan);
+  });
+  return stops;
+}
+
+std::optional<core::Odometry> motion_after_stops(const Tape& tape) {
+  std::optional<core::Odometry> motion;
+  tape.read_from(0, [&](const Tape::Entry& entry) {
+    if (const auto* moved = std::get_if<Tape::Motion>(&entry)) {
+      motion = motion ? core::chain(*motion, moved->odometry) : moved->odometry;
+    }
+    if (is_stop(entry)) motion.reset();
+  });
+  return motion;
+}
+
+}  // namespace helixnav::supervisor

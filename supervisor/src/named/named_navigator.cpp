@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/supervisor/named_navigator.hpp"
+
+#include <iterator>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "association/association_report.hpp"
+#include "helixnav/core/check_event.hpp"
+#include "helixnav/core/errors.hpp"
+#include "helixnav/core/odometry.hpp"
+#include "helixnav/supervisor/lengths.hpp"
+#include "loop/judge_fix.hpp"
+
+namespace helixnav::supervisor {
+
+using core::AssociationReport;
+using core::LandmarkId;
+using core::Outcome;
+using core::StepReport;
+
+NamedNavigator::NamedNavigator(const core::PoseGaussian& start, const NavigatorOptions& options)
+    : options_(options), filter_(start, options.filter), delayed_(options.delayed) {}
+
+/// The strong guarantee: the call takes effect as a whole, or what was before is made again from the checkpoint.
+template <class Call>
+auto NamedNavigator::all_or_nothing(const Call& call) {
+  if (!checkpoint_) checkpoint();
+  const std::size_t events = taken_.size();
+  Pending before = pending_;
+  try {
+    auto result = call();
+    constexpr std::int64_t stride = 10;
+    const bool due = step_ - checkpoint_->step >= stride || filter_.phase() != checkpoint_->filter.phase;
+    if (due) checkpoint_.reset();  // taken by the next call, before it changes anything
+    return result;
+  } catch (...) {
+    recover(events, std::move(before));
+    throw;
+  }
+}
+
+std::optional<StepReport> NamedNavigator::take(const core::Event& event, const std::vector<std::int64_t>& identities) {
+  if (const auto* scan = std::get_if<core::Scan>(&event)) return observe(*scan, identities);
+  if (const auto* odometry = std::get_if<core::Odometry>(&event)) move(*odometry);
+  if (const auto* absolute = std::get_if<core::AbsoluteFix>(&event)) fix(*absolute);
+  return std::nullopt;
+}
+
+void NamedNavigator::move(const core::Odometry& odometry) {
+  core::check(odometry);
+  pending_.motion = pending_.motion ? core::chain(*pending_.motion, odometry) : odometry;
+}
+
+StepReport NamedNavigator::observe(const core::Scan& scan, const std::vector<std::int64_t>& identities) {
+  core::check(scan);
+  if (identities.size() != scan.observations.size()) {
+    throw core::PreconditionError("observe: " + std::to_string(identities.size()) + " identities for " +
+                                  std::to_string(scan.observations.size()) + " observations");
+  }
+  fit_to(scan.field_of_view);
+  return all_or_nothing([&] { return step({scan, identities, {}}); });
+}
+
+/// As the Navigator's.
+void NamedNavigator::fit_to(const core::FieldOfView& view) {
+  if (fitted_ || !view.reach()) return;
+  if (options_.fit_lengths) {
+    NavigatorOptions fitted = fit_lengths(options_, view);
+    const bool new_cells = fitted.filter.cell_side_m != options_.filter.cell_side_m ||
+                           fitted.filter.hysteresis_m != options_.filter.hysteresis_m;
+    if (new_cells && step_ == 0) {
+      filter_ = cekf::CompressedEkf(filter_.pose(), fitted.filter);
+      checkpoint_.reset();
+    }
+    options_ = std::move(fitted);
+    delayed_.set_lengths(options_.delayed);
+  }
+  fitted_ = true;
+}
+
+bool NamedNavigator::fix(const core::AbsoluteFix& fix) {
+  core::check(fix);
+  return all_or_nothing([&] { return use_fix(fix); });
+}
+
+StepReport NamedNavigator::step(const NamedScan& named) {
+  StepReport report;
+  report.associations = associate(named);
+  predict();
+  update(named.scan, report);
+  augment(named, report);
+  enter_names(named, report);
+  report.switched_region = filter_.switch_region_if_due();
+  report.step = step_++;
+  report.t_ns = named.scan.t_ns;
+  report.pose = filter_.pose();
+  report.active_landmarks = filter_.active_count();
+  report.mapped_landmarks = filter_.mapped_count() - delayed_.clones();
+  report.decisions = std::exchange(pending_.decisions, {});
+  return report;
+}
+
+bool NamedNavigator::use_fix(const core::AbsoluteFix& fix) {
+  predict();
+  taken_.emplace_back(fix);
+  pending_.decisions.emplace_back(judge_fix(filter_, fix, options_.fix_probability));
+  return std::get<core::FixDecision>(pending_.decisions.back()).accepted;
+}
+
+void NamedNavigator::predict() {
+  if (!pending_.motion) return;
+  filter_.predict(*pending_.motion);
+  taken_.emplace_back(*pending_.motion);
+  pending_.motion.reset();
+}
+
+std::vector<AssociationReport> NamedNavigator::associate(const NamedScan& named) const {
+  std::vector<AssociationReport> reports(named.identities.size());
+  std::set<std::int64_t> born;
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    const std::int64_t identity = named.identities[i];
+    reports[i].observation = static_cast<int>(i);
+    const auto known = landmark_of_identity_.find(identity);
+    if (identity < 0) {
+      reports[i].outcome = Outcome::rejected;
+    } else if (known == landmark_of_identity_.end()) {
+      reports[i].outcome = born.insert(identity).second ? Outcome::augmented : Outcome::rejected;
+    } else {
+      reports[i].outcome = Outcome::matched;
+      reports[i].landmark = known->second;
+    }
+  }
+  return reports;
+}
+
+void NamedNavigator::update(const core::Scan& scan, StepReport& report) {
+  const std::vector<cekf::Match> matched = matches(scan, report.associations);
+  if (matched.empty()) return;
+  const cekf::UpdateResult result = filter_.update(matched);
+  report.joint_nis = result.nis;
+  report.joint_dof = result.dof;
+}
+
+void NamedNavigator::augment(const NamedScan& named, StepReport& report) {
+  for (AssociationReport& association : report.associations) {
+    if (association.outcome != Outcome::augmented) continue;
+    const auto index = static_cast<std::size_t>(association.observation);
+    const core::Observation& observation = named.scan.observations[index];
+    if (core::dimension(observation.kind) == 2) {
+      association.landmark = filter_.augment(observation, named.scan.T_robot_sensor);
+      continue;
+    }
+    const auto entered = delayed_.sight(filter_, named.identities[index], observation, named.scan.T_robot_sensor);
+    if (entered) {
+      association.landmark = *entered;
+    } else {
+      association.outcome = Outcome::ambiguous;
+    }
+  }
+}
+
+void NamedNavigator::enter_names(const NamedScan& named, const StepReport& report) {
+  taken_.emplace_back(named);
+  std::vector<LandmarkId>& counted = std::get<NamedScan>(taken_.back()).counted;
+  counted.reserve(report.associations.size());
+  for (const AssociationReport& association : report.associations) {
+    const std::int64_t identity = named.identities[static_cast<std::size_t>(association.observation)];
+    if (association.outcome == Outcome::augmented) landmark_of_identity_[identity] = association.landmark;
+    if (association.landmark == core::no_landmark) continue;
+    ++observations_[association.landmark];
+    counted.push_back(association.landmark);
+  }
+}
+
+void NamedNavigator::checkpoint() {
+  checkpoint_.emplace(Checkpoint{filter_.snapshot(), delayed_, step_});
+  taken_.clear();
+}
+
+/// Those learnt since the checkpoint.
+void NamedNavigator::forget_names() {
+  for (const Taken& taken : taken_) {
+    const auto* scan = std::get_if<NamedScan>(&taken);
+    if (scan == nullptr) continue;
+    for (const LandmarkId id : scan->counted) {
+      if (--observations_[id] == 0) observations_.erase(id);
+    }
+  }
+  const LandmarkId first = checkpoint_->filter.active.next_id;
+  for (auto name = landmark_of_identity_.begin(); name != landmark_of_identity_.end();) {
+    name = name->second >= first ? landmark_of_identity_.erase(name) : std::next(name);
+  }
+}
+
+void NamedNavigator::recover(std::size_t events, Pending pending) {
+  forget_names();
+  std::vector<Taken> again = std::exchange(taken_, {});
+  again.resize(events);
+  filter_.restore(checkpoint_->filter);
+  delayed_ = checkpoint_->delayed;
+  step_ = checkpoint_->step;
+  pending_ = {};
+  for (const Taken& taken : again) {
+    if (const auto* motion = std::get_if<core::Odometry>(&taken)) pending_.motion = *motion;
+    if (const auto* scan = std::get_if<NamedScan>(&taken)) step({scan->scan, scan->identities, {}});
+    if (const auto* fix = std::get_if<core::AbsoluteFix>(&taken)) use_fix(*fix);
+  }
+  pending_ = std::move(pending);
+}
+
+std::vector<core::MapLandmark> NamedNavigator::map() const {
+  std::vector<core::MapLandmark> landmarks;
+  for (const LandmarkId id : filter_.landmarks()) {
+    if (delayed_.is_clone(id)) continue;
+    core::MapLandmark landmark;
+    landmark.id = id;
+    landmark.point = filter_.landmark(id);
+    landmark.observations = observations_.at(id);
+    landmark.state = core::LandmarkState::mature;
+    landmarks.push_back(landmark);
+  }
+  return landmarks;
+}
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "helixnav/association/landmark_life.hpp"
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/events.hpp"
+#include "helixnav/core/step_report.hpp"
+#include "helixnav/pf_relocalize/relocalizer.hpp"
+#include "helixnav/supervisor/search_options.hpp"
+#include "loop/coverage_trace.hpp"
+
+namespace helixnav::supervisor {
+
+/// What a search looks at in one step.
+struct SearchView {
+  const cekf::CompressedEkf& filter;
+  const association::LandmarkLife& life;
+  const CoverageTrace& track;
+  const core::Scan& scan;
+};
+
+/// One open question: where on the old map does the vehicle drive? Mapping goes on meanwhile with the old landmarks
+/// excluded (the branch); the particle filter runs beside it, from the branch's own pose and again when an attempt leads
+/// nowhere; a constellation of branch landmarks that stands on old ones better than anywhere else answers it.
+/// Nothing here changes filter or map. Source: PROTOTYPE §3, §4. Test: supervisor/closing_test.cpp.
+class Search {
+ public:
+  /// `old` ascending: the landmarks that are not to be associated while the question is open.
+  Search(std::vector<core::LandmarkId> old, double path_m, std::uint64_t seed, const SearchOptions& options);
+
+  bool excludes(core::LandmarkId id) const;
+  const std::vector<core::LandmarkId>& old_landmarks() const { return old_; }
+
+  void move(const core::Odometry& odometry);
+
+  /// One scan after the branch has mapped it. Pairs that pass every test, when there are some; what was decided is
+  /// appended. The caller closes, or says refuse().
+  std::optional<std::vector<pf_relocalize::ConstellationPair>> look(const SearchView& view,
+                                                                    std::vector<core::Decision>& decisions);
+
+  /// The closing did not pass: this attempt is over.
+  void refuse(double path_m);
+
+  /// Driven so long without an answer that the question is left open.
+  bool is_undecided(double path_m) const;
+  double begun_path_m() const { return begun_path_m_; }
+
+  /// T_world_robot of the heaviest mode at the last look; nothing while no attempt runs.
+  std::optional<core::PoseGaussian> heaviest_mode(const cekf::CompressedEkf& filter) const;
+
+  /// T_world_robot of the particles, every n-th; empty while no attempt runs.
+  std::vector<core::Pose2> cloud(const cekf::CompressedEkf& filter) const;
+
+  /// Same, as they were drawn on helices, when the last look began an attempt; else empty.
+  std::vector<core::Pose2> drawn(const cekf::CompressedEkf& filter) const;
+
+ private:
+  struct Attempt {
+    pf_relocalize::Relocalizer relocalizer;
+    core::LandmarkId base_a, base_b;
+    double begun_path_m;
+    double next_question_path_m = 0.0;
+    std::vector<pf_relocalize::ConstellationPair> passed;  ///< pairs of the last test if it was passed
+    int passes = 0;
+  };
+
+  bool is_promising(const SearchView& view);
+  void start(const SearchView& view, std::vector<core::Decision>& decisions);
+  std::optional<std::vector<pf_relocalize::ConstellationPair>> question(const SearchView& view,
+                                                                        std::vector<core::Decision>& decisions);
+  using Reason = core::AttemptEnded::Reason;
+  void end_attempt(Reason reason, double path_m, std::vector<core::Decision>& decisions);
+
+  SearchOptions options_;
+  std::vector<core::LandmarkId> old_;
+  double begun_path_m_;
+  std::uint64_t seed_;
+  core::Odometry motion_;  ///< since the last look
+  double last_look_path_m_;
+  double last_in_gate_path_m_;  ///< something stood where an old landmark may be
+  double next_start_path_m_ = 0.0;
+  int starts_ = 0;
+  int questions_ = 0;
+  std::optional<Attempt> attempt_;
+  bool has_just_started_ = false;  ///< the attempt, in the last look
+};
+
+}  // namespace helixnav::supervisor

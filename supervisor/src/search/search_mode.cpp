@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The open question: how a search begins, goes on, and ends with a closing or without.
+#include <utility>
+#include <vector>
+
+#include "closing/close_map.hpp"
+#include "helixnav/supervisor/lengths.hpp"
+#include "loop/navigation_loop.hpp"
+#include "smoothing/smooth_drive.hpp"
+
+namespace helixnav::supervisor {
+
+using core::LandmarkId;
+using core::Scan;
+using core::StepReport;
+
+Search NavigationLoop::search_from(const Checkpoint& trigger) const {
+  const std::uint64_t seed = options_.search.seed + 1000000u * searches_;
+  return Search(old_landmarks(trigger.existence, options_.search.old_after_m), trigger.existence.path_m(), seed,
+                with_foreign(options_.search, trigger.existence.born_per_scan(), view_));
+}
+
+void NavigationLoop::begin_search() {
+  ++searches_;
+  Checkpoint trigger = take_checkpoint(belief_, tape_);
+  Search search = search_from(trigger);
+  if (!undo_.mode) undo_.mode.emplace(std::move(mode_));
+  mode_.emplace<Searching>(Searching{std::move(search), std::move(trigger)});
+}
+
+void NavigationLoop::search(const Scan& scan, StepReport& report) {
+  Search& open = searching()->search;
+  const auto pairs = open.look({belief_.filter, belief_.existence, belief_.coverage, scan}, report.decisions);
+  report.cloud = open.cloud(belief_.filter);
+  report.drawn = open.drawn(belief_.filter);
+  report.mode = core::Mode::searching;
+  if (pairs) close(scan, *pairs, report);
+  const double path_m = belief_.existence.path_m();
+  if (searching() == nullptr || !open.is_undecided(path_m)) return;
+  report.decisions.emplace_back(core::UndecidedDecision{path_m - open.begun_path_m()});
+  end_search(nullptr);
+}
+
+void NavigationLoop::close(const Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
+                           StepReport& report) {
+  const Searching& open = *searching();
+  const core::Pose2 before = belief_.filter.pose().mean;
+  const double path_m = belief_.existence.path_m();
+  const Closing closing =
+      close_map(belief_.filter, {open.search, belief_.existence, belief_.coverage, scan, {open.trigger, tape_}}, pairs,
+                options_.search);
+  for (const core::MergedLandmarks& one : closing.merged) belief_.existence.merge(one.kept, one.removed);
+  for (const LandmarkId id : closing.forgotten) belief_.existence.remove(id);
+  report.merged = closing.merged;
+  core::ClosureDecision decision;
+  decision.accepted = closing.accepted;
+  decision.pairs = static_cast<int>(pairs.size());
+  decision.dropped = closing.dropped;
+  decision.merged = static_cast<int>(closing.merged.size());
+  decision.cost = closing.cost;
+  decision.dof = closing.dof;
+  decision.limit = closing.limit;
+  decision.driven_m = path_m - open.search.begun_path_m();
+  decision.moved_m = (belief_.filter.pose().mean.position_m() - before.position_m()).norm();
+  report.decisions.emplace_back(decision);
+  if (!closing.accepted) {
+    searching()->search.refuse(path_m);
+    return;
+  }
+  tape_.append(Tape::Merge{closing.merged, closing.cost});
+  end_search(&closing);
+  solve_drive(report);
+}
+
+/// Mapping goes on with the whole map; the landmarks that a closing has recognised confirm its pose.
+void NavigationLoop::end_search(const Closing* closing) {
+  Mapping mapping;
+  if (closing != nullptr) {
+    std::vector<LandmarkId> recognised;
+    for (const core::MergedLandmarks& one : closing->merged) recognised.push_back(one.kept);
+    mapping.monitor.close(belief_.existence.path_m(), recognised);
+  }
+  if (!undo_.mode) undo_.mode.emplace(std::move(mode_));
+  mode_.emplace<Mapping>(std::move(mapping));
+}
+
+void NavigationLoop::solve_drive(StepReport& report) {
+  if (options_.search.closing == ClosingMethod::restart)
+    tape_.let_go_of_drive();  // it has no say in what was restarted
+  if (!tape_.holds_drive()) return;
+  const core::Pose2 before = belief_.filter.pose().mean;
+  Smoothing smoothing = smooth_drive(belief_.filter, start_, tape_);
+  if (smoothing.solved) {
+    std::swap(belief_.filter, *smoothing.solved);
+    if (!undo_.filter) undo_.filter.emplace(std::move(*smoothing.solved));
+    tape_.append(Tape::Solved{smoothing.chi2});
+  }
+  core::SmoothingDecision decision;
+  decision.accepted = smoothing.solved.has_value();
+  decision.chi2 = smoothing.chi2;
+  decision.limit = smoothing.limit;
+  decision.poses = smoothing.poses;
+  decision.iterations = smoothing.iterations;
+  decision.moved_m = (belief_.filter.pose().mean.position_m() - before.position_m()).norm();
+  report.decisions.emplace_back(decision);
+}
+
+}  // namespace helixnav::supervisor
