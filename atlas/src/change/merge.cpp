@@ -22,7 +22,7 @@ std::vector<int> leaves_of(const State& state, int variable) {
 }
 
 /// Values on all paths that will change.
-void bring_along(State& state, const std::vector<int>& nodes) {
+void bring_nodes_along(State& state, const std::vector<int>& nodes) {
   Estimates estimates(state);
   for (const int node : nodes) estimates.reach(node);
   estimates.store(state);
@@ -37,7 +37,7 @@ void rename(State& state, int phase, int from, int to) {
 void merge_variables(State& state, int gone, int kept) {
   std::vector<int> touched = leaves_of(state, gone);
   for (const int leaf : leaves_of(state, kept)) touched.push_back(leaf);
-  bring_along(state, touched);
+  bring_nodes_along(state, touched);
   for (const int phase : *state.phases_of[State::index(gone)]) rename(state, phase, gone, kept);
   auto phases = std::make_shared<std::vector<int>>();
   const auto& of_gone = *state.phases_of[State::index(gone)];
