@@ -92,6 +92,25 @@ TEST_P(Law, ARegionHoldsTheNeighbourhoodAndNoMoreThanAllowed) {
   EXPECT_EQ(filter.mapped_count(), 15);
 }
 
+TEST_P(Law, AScanThatSeesManyMayHaveTwiceAsManyActive) {
+  FilterOptions options;
+  options.retraction = GetParam();
+  options.max_active_landmarks = 10;
+  CompressedEkf filter({}, options);
+  const Eigen::Matrix2d R = 0.01 * Eigen::Matrix2d::Identity();
+  std::vector<Match> seen;
+  for (int i = 0; i < 15; ++i) {
+    const core::Observation observation = core::make_cartesian({1.0 * i, 1.0}, R);
+    const core::LandmarkId id = filter.augment(observation, {});
+    if (i < 8) seen.push_back({id, observation, {}});
+  }
+  const Snapshot before = filter.snapshot();
+  filter.update(seen);
+  EXPECT_FALSE(filter.switch_region_if_due()) << "15 of 16";
+  filter.restore(before);
+  EXPECT_TRUE(filter.switch_region_if_due()) << "what the last update saw goes with a restore";
+}
+
 INSTANTIATE_TEST_SUITE_P(BothRetractions, Law, testing::Values(Retraction::standard, Retraction::right_invariant),
                          [](const auto& tested) {
                            return tested.param == Retraction::standard ? "Standard" : "RightInvariant";

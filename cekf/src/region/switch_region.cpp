@@ -12,11 +12,13 @@ Eigen::Vector2i CompressedEkf::cell_of(const Eigen::Vector2d& point_m) const {
   return (point_m / options_.cell_side_m).array().floor().max(-last).min(last).cast<int>();
 }
 
+int CompressedEkf::most_active() const { return std::max(options_.max_active_landmarks, 2 * active_.last_seen); }
+
 bool CompressedEkf::switch_region_if_due() {
   const double side_m = options_.cell_side_m;
   const Eigen::Vector2d middle_m = side_m * (phases_.back().cell.cast<double>() + Eigen::Vector2d::Constant(0.5));
   const double outside_m = (active_.pose.position_m() - middle_m).cwiseAbs().maxCoeff() - 0.5 * side_m;
-  const bool crowded = active_count() > options_.max_active_landmarks;
+  const bool crowded = active_count() > most_active();
   if (outside_m <= options_.hysteresis_m && !crowded) return false;
   switch_region();
   return true;
@@ -76,7 +78,7 @@ std::vector<core::LandmarkId> CompressedEkf::region_around_vehicle() const {
     if ((cell_of(mean_m) - cell).cwiseAbs().maxCoeff() > 1) continue;
     near.emplace_back((mean_m - active_.pose.position_m()).squaredNorm(), id);
   }
-  const std::ptrdiff_t most = options_.max_active_landmarks;
+  const std::ptrdiff_t most = most_active();
   const std::ptrdiff_t kept = most - most / 4;
   if (static_cast<std::ptrdiff_t>(near.size()) > kept) {
     std::nth_element(near.begin(), near.begin() + kept, near.end());
@@ -154,6 +156,7 @@ ActivePart CompressedEkf::room_for(const Phase& phase, const std::vector<core::L
   ActivePart part;
   part.pose = active_.pose;
   part.next_id = active_.next_id;
+  part.last_seen = active_.last_seen;
   part.ids = active;
   part.slots = slots;
   for (const int slot : slots) part.points_m.push_back(phase.mean_m.segment<2>(2 * slot));

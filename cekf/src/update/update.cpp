@@ -29,6 +29,7 @@ UpdateResult CompressedEkf::update(const std::vector<Match>& matches) {
     linearise_sightings(matches, w, "update");
     const double nis = solve_innovation(w, "update");
     apply_correction(w, "update");
+    active_.last_seen = static_cast<int>(w.ids.size());
     return {nis, static_cast<int>(w.nu.rows())};
   } catch (...) {
     undo_activations(before);

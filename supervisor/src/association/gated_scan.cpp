@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "association/association_report.hpp"
-#include "helixnav/association/associate.hpp"
+#include "helixnav/association/likelihood_ratio.hpp"
 #include "helixnav/core/angle.hpp"
+#include "helixnav/supervisor/lengths.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -35,10 +36,34 @@ void defer_isolated_match(const std::vector<RevisitAmbiguity>& returns, const Se
 
 }  // namespace
 
+GatedScan gate_scan(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& candidates,
+                    const core::Scan& scan, const NavigatorOptions& options) {
+  GatedScan gated;
+  gated.gating = std::make_unique<Gating>(filter, candidates, scan, options.gates);
+  association::Options how = options.association;
+  how.extraneous = association::density_in_view(scan, options.extraneous_per_scan, how.extraneous);
+  gated.assignment = association::associate(options.method, gated.gating->problem, how);
+  return gated;
+}
+
+void look_for_returns(const cekf::CompressedEkf& filter, const association::LandmarkLife& existence,
+                      const core::Scan& scan, const NavigatorOptions& options, const core::FieldOfView& view,
+                      GatedScan& gated) {
+  const std::vector<core::LandmarkId> old = old_landmarks(existence, options.search.old_after_m);
+  const double foreign_per_scan = with_foreign(options.search, existence.born_per_scan(), view).foreign_per_scan;
+  const association::InnovationProblem& problem = gated.gating->problem;
+  gated.returns = returns_in_gate(filter, problem, scan, old, foreign_per_scan);
+  const RevisitAmbiguity* worst = most_ambiguous(gated.returns);
+  if (worst == nullptr || worst->expected_confusers <= options.search.expected_confusers) return;
+  gated.place = place_evidence(filter, problem, gated.assignment, scan, old, foreign_per_scan, options.view_margin_m,
+                               options.search);
+}
+
 std::optional<core::TriggerDecision> find_trigger(const GatedScan& scan, const core::PoseGaussian& pose,
                                                   const SearchOptions& options) {
   const RevisitAmbiguity* worst = most_ambiguous(scan.returns);
   if (worst == nullptr || worst->expected_confusers <= options.expected_confusers) return std::nullopt;
+  if (fixes_pose(scan.place, options)) return std::nullopt;
   core::TriggerDecision trigger;
   trigger.landmark = worst->landmark;
   trigger.expected_confusers = worst->expected_confusers;
@@ -50,13 +75,9 @@ std::optional<core::TriggerDecision> find_trigger(const GatedScan& scan, const c
   return trigger;
 }
 
-std::vector<core::AssociationReport> associate_scan(const core::Scan& scan, const GatedScan& gated,
-                                                    const NavigatorOptions& options, double path_m,
-                                                    Confirmation& confirmation) {
-  association::Options how = options.association;
-  how.extraneous = association::density_in_view(scan, options.extraneous_per_scan, how.extraneous);
-  std::vector<core::AssociationReport> reports =
-      association_reports(association::associate(options.method, gated.gating->problem, how));
+std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, const NavigatorOptions& options,
+                                                    double path_m, Confirmation& confirmation) {
+  std::vector<core::AssociationReport> reports = association_reports(gated.assignment);
   defer_isolated_match(gated.returns, options.search, path_m, confirmation, reports);
   return reports;
 }

@@ -6,27 +6,40 @@
 
 #include "association/confirmation.hpp"
 #include "association/gating.hpp"
+#include "association/place_evidence.hpp"
 #include "association/revisit_ambiguity.hpp"
+#include "helixnav/association/associate.hpp"
+#include "helixnav/association/landmark_life.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/supervisor/navigator_options.hpp"
 
 namespace helixnav::supervisor {
 
-/// What the map expects a scan to look like, and which old landmarks it may have returned to.
+/// What the map expects a scan to look like, the best assignment, and which old landmarks it may have returned to.
 struct GatedScan {
   std::unique_ptr<Gating> gating;
+  association::Assignment assignment;
   std::vector<RevisitAmbiguity> returns;
+  PlaceEvidence place;  ///< weighed where a return alone is too ambiguous
 };
 
-/// The scan that is too ambiguous to be associated, as a decision; nothing when it is not.
+GatedScan gate_scan(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& candidates,
+                    const core::Scan& scan, const NavigatorOptions& options);
+
+/// Fills returns and place. `view`: what the sensor is known to see.
+void look_for_returns(const cekf::CompressedEkf& filter, const association::LandmarkLife& existence,
+                      const core::Scan& scan, const NavigatorOptions& options, const core::FieldOfView& view,
+                      GatedScan& gated);
+
+/// The scan that is too ambiguous to be associated, as a decision; nothing when it is not: no old landmark is, or all of
+/// them together leave no doubt about the pose.
 std::optional<core::TriggerDecision> find_trigger(const GatedScan& scan, const core::PoseGaussian& pose,
                                                   const SearchOptions& options);
 
 /// The fate of every observation. Two old landmarks that fit together confirm each other; one alone, with room for others
 /// in its gate, is deferred, and so is one that would tell the vehicle much about where it is, until it is met again.
 /// Test: supervisor/revisit_ambiguity_test.cpp.
-std::vector<core::AssociationReport> associate_scan(const core::Scan& scan, const GatedScan& gated,
-                                                    const NavigatorOptions& options, double path_m,
-                                                    Confirmation& confirmation);
+std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, const NavigatorOptions& options,
+                                                    double path_m, Confirmation& confirmation);
 
 }  // namespace helixnav::supervisor

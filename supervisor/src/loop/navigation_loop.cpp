@@ -77,7 +77,7 @@ StepReport NavigationLoop::step(const Scan& scan) {
     begin_search();
     gated = gate(scan);
   }
-  report.associations = associate_scan(scan, gated, options_, belief_.existence.path_m(), belief_.confirmation);
+  report.associations = associate_scan(gated, options_, belief_.existence.path_m(), belief_.confirmation);
   update(scan, report);
   augment(scan, report);
   std::vector<LandmarkId> died = update_existence(scan, report);
@@ -113,12 +113,9 @@ GatedScan NavigationLoop::gate(const Scan& scan) const {
     const auto excluded = [&](LandmarkId id) { return open->search.excludes(id); };
     ids.erase(std::remove_if(ids.begin(), ids.end(), excluded), ids.end());
   }
-  GatedScan gated{std::make_unique<Gating>(belief_.filter, ids, scan, options_.gates), {}};
-  if (options_.search.enabled && open == nullptr) {
-    const std::vector<LandmarkId> old = old_landmarks(belief_.existence, options_.search.old_after_m);
-    const SearchOptions now = with_foreign(options_.search, belief_.existence.born_per_scan(), view_);
-    gated.returns = returns_in_gate(belief_.filter, gated.gating->problem, scan, old, now.foreign_per_scan);
-  }
+  GatedScan gated = gate_scan(belief_.filter, ids, scan, options_);
+  const bool looks = options_.search.enabled && open == nullptr;
+  if (looks) look_for_returns(belief_.filter, belief_.existence, scan, options_, view_, gated);
   return gated;
 }
 

@@ -36,6 +36,7 @@ struct ActivePart {
   std::vector<int> dead_slots;                 ///< slots of landmarks removed in this phase
   std::vector<int> late_anchors;  ///< slots activated in this phase, in order: anchors behind the first ones
   core::LandmarkId next_id = 0;
+  int last_seen = 0;  ///< landmarks of the last update
 
   int dimension() const { return 3 + 2 * static_cast<int>(ids.size()); }
   int weights() const { return static_cast<int>(theta.size()); }

@@ -90,7 +90,7 @@ class CompressedEkf {
   void activate(core::LandmarkId id);
 
   /// Switches to the region around the vehicle when it has left its cell by the hysteresis, or when more than
-  /// max_active_landmarks are active. True when it did.
+  /// max_active_landmarks, and twice as many as the last update saw, are active. True when it did.
   bool switch_region_if_due();
   /// Switches to the region around the vehicle.
   void switch_region();
@@ -210,6 +210,7 @@ class CompressedEkf {
                       const std::vector<int>& slots) const;
   void start_covariance(const Eigen::MatrixXd& anchors, ActivePart& part) const;
   std::vector<core::LandmarkId> region_around_vehicle() const;
+  int most_active() const;
   Eigen::Vector2i cell_of(const Eigen::Vector2d& point_m) const;
   void return_slots(Phase& phase);
   static void open_again(Phase& phase);

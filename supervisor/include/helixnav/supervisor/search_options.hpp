@@ -43,7 +43,8 @@ struct SearchOptions {
   // Trigger.
   double old_after_m = 60.0;        ///< a mature landmark unseen over so long a drive is old
   double expected_confusers = 0.1;  ///< expected objects that may be seen in an old one's stead that begin a search
-  double defer_confusers = 0.05;    ///< above it an old landmark is not matched alone, but no search begins yet
+  double wrong_place_probability = 1e-4;  ///< P(another pose | scan) below which all old landmarks together decide it
+  double defer_confusers = 0.05;          ///< above it an old landmark is not matched alone, but no search begins yet
   double confirmation_widening =
       2.0;                      ///< √(|S|/|R|) above which an old landmark is matched alone only when met again, …
   double confirmation_m = 5.0;  ///< … within so long a drive

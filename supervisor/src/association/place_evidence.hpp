@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "helixnav/association/associate.hpp"
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/events.hpp"
+#include "helixnav/supervisor/search_options.hpp"
+
+namespace helixnav::supervisor {
+
+/// What the old landmarks of a scan, taken together, say about where the vehicle is.
+struct PlaceEvidence {
+  int pairs = 0;           ///< old landmarks that the assignment matches
+  double widening = 1.0;   ///< √(|S|/|R|), median over these pairs: how much wider the pose makes their gates
+  double width_m = 0.0;    ///< |S|^¼ on the ground, likewise: where each is expected, one standard deviation
+  double spacing_m = 0.0;  ///< of old landmarks in view from the nearest other one, median; 0 of fewer than two
+  /// P(another pose | scan): (1 + Σ exp e_rival) / (1 + Σ exp e_rival + exp e), where e is the log-likelihood ratio of a
+  /// matching against "none of the old landmarks is met".
+  double wrong_probability = 1.0;
+};
+
+/// Evidence of the assignment's matches with old landmarks (ascending in `old`) together, given its matches with landmarks
+/// that are not old: those stand wherever the vehicle is. A matching's evidence is its joint likelihood against as many
+/// observations of nothing mapped, `foreign_per_scan` in the field of view, less what each old landmark costs that should
+/// be in view and is not matched. S is given these matches.
+/// Cost: O(n²) for n gated pairs with old landmarks, O(n) for each two pairs that a rival may begin with.
+/// Source: docs/adr/0014-ambiguous-pose.md. Test: supervisor/place_evidence_test.cpp.
+PlaceEvidence place_evidence(const cekf::CompressedEkf& filter, const association::InnovationProblem& problem,
+                             const association::Assignment& assignment, const core::Scan& scan,
+                             const std::vector<core::LandmarkId>& old, double foreign_per_scan, double view_margin_m,
+                             const SearchOptions& options);
+
+/// Whether no other pose is in question, so that what is ambiguous is for the assignment to decide and no search helps:
+/// either the pose adds little to where the old landmarks are expected (widening below the limit for a single match), or it
+/// leaves them no room beside one another (two standard deviations below half their spacing) and P(another pose | scan) is
+/// below `wrong_place_probability`.
+bool fixes_pose(const PlaceEvidence& place, const SearchOptions& options);
+
+}  // namespace helixnav::supervisor
