@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/core/worker_pool.hpp"
 
+#include <algorithm>
+#include <exception>
+#include <utility>
+
 namespace helixnav::core {
 
 WorkerPool::WorkerPool(unsigned threads) {
-  for (unsigned k = 1; k < threads; ++k) threads_.emplace_back([this] { wait_for_jobs(); });
+  threads_.reserve(std::max(1u, threads) - 1);
+  try {
+    for (unsigned k = 1; k < threads; ++k) threads_.emplace_back([this] { wait_for_jobs(); });
+  } catch (const std::exception&) {
+    // The system gives no more: those that there are do the work.
+  }
 }
 
 WorkerPool::~WorkerPool() {
@@ -17,13 +26,24 @@ WorkerPool::~WorkerPool() {
 }
 
 void WorkerPool::take_indices(const Job& job) {
-  for (std::size_t i = next_.fetch_add(1); i < job.count; i = next_.fetch_add(1)) job.call(job.context, i);
+  try {
+    for (std::size_t i = next_.fetch_add(1); i < job.count; i = next_.fetch_add(1)) job.call(job.context, i);
+  } catch (...) {
+    next_.store(job.count);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!failure_) failure_ = std::current_exception();
+  }
+}
+
+void WorkerPool::throw_failure() {
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void WorkerPool::run(const Job& job) {
   next_.store(0);
   if (threads_.empty() || job.count < 2) {
     take_indices(job);
+    throw_failure();
     return;
   }
   {
@@ -36,6 +56,7 @@ void WorkerPool::run(const Job& job) {
   take_indices(job);
   std::unique_lock<std::mutex> lock(mutex_);
   job_done_.wait(lock, [this] { return busy_ == 0; });
+  throw_failure();
 }
 
 void WorkerPool::wait_for_jobs() {

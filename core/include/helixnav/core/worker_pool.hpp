@@ -4,6 +4,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstddef>
+#include <exception>
 #include <mutex>
 #include <thread>
 #include <type_traits>
@@ -13,10 +14,11 @@ namespace helixnav::core {
 
 /// Threads that share the indices of a loop. Which thread takes which index is left to chance; callers write to places
 /// that belong to the index, so that results do not depend on it. One thread: no threads at all. Nothing is allocated by
-/// for_each(). The function must not throw.
+/// for_each(). A function that throws ends the loop, and for_each() throws the same, once no thread is in it any more.
+/// Test: core/worker_pool_test.cpp.
 class WorkerPool {
  public:
-  /// `threads` ≥ 1 in all, the caller's included.
+  /// `threads` ≥ 1 in all, the caller's included; fewer where the system gives no more.
   explicit WorkerPool(unsigned threads);
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
@@ -37,6 +39,7 @@ class WorkerPool {
   };
   void run(const Job& job);
   void take_indices(const Job& job);
+  void throw_failure();
   void wait_for_jobs();
 
   std::mutex mutex_;
@@ -45,6 +48,7 @@ class WorkerPool {
   unsigned generation_ = 0;
   std::size_t busy_ = 0;
   bool stop_ = false;
+  std::exception_ptr failure_;  ///< of mutex_
   std::atomic<std::size_t> next_{0};
   std::vector<std::thread> threads_;
 };
