@@ -62,5 +62,34 @@ TEST(EventLoop, OfNoEventsMakesNoStep) {
   EXPECT_FALSE(EventLoop(events, scribe).next());
 }
 
+/// Breaks down at the third scan.
+struct Fragile {
+  int scans = 0;
+  std::optional<StepReport> take(const Event& event) {
+    if (!std::holds_alternative<Scan>(event)) return std::nullopt;
+    if (++scans == 3) throw NumericalError("S is not positive definite");
+    return StepReport{};
+  }
+};
+
+TEST(EventLoop, NamesStepAndTimeOfABreakdown) {
+  std::vector<Event> events;
+  for (int k = 0; k < 5; ++k) {
+    Scan scan;
+    scan.t_ns = core::Nanoseconds{1'500'000'000} * k;
+    events.emplace_back(scan);
+  }
+  Fragile fragile;
+  EventLoop loop(events, fragile);
+  loop.next();
+  loop.next();
+  try {
+    loop.next();
+    FAIL() << "nothing thrown";
+  } catch (const NumericalError& error) {
+    EXPECT_STREQ(error.what(), "step 2, t = 3.000000 s: S is not positive definite");
+  }
+}
+
 }  // namespace
 }  // namespace helixnav::core

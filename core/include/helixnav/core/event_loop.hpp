@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "helixnav/core/errors.hpp"
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/step_report.hpp"
 
@@ -24,10 +26,10 @@ class EventLoop {
   EventLoop(const std::vector<Event>& events, Estimator& estimator) : events_(events), estimator_(estimator) {}
 
   /// Feeds the events up to and with the next one that makes a step; nothing when none is left. Steps are numbered as
-  /// they come, from 0.
+  /// they come, from 0. NumericalError and PreconditionError of the estimator pass with step and time before their words.
   std::optional<StepReport> next() {
     while (fed_ < events_.size()) {
-      std::optional<StepReport> step = estimator_.take(events_[fed_++]);
+      std::optional<StepReport> step = take(events_[fed_++]);
       if (!step) continue;
       step->step = steps_++;
       return step;
@@ -42,6 +44,21 @@ class EventLoop {
   std::int64_t steps() const { return steps_; }
 
  private:
+  std::optional<StepReport> take(const Event& event) {
+    try {
+      return estimator_.take(event);
+    } catch (const NumericalError& error) {
+      throw NumericalError(here(event) + error.what());
+    } catch (const PreconditionError& error) {
+      throw PreconditionError(here(event) + error.what());
+    }
+  }
+
+  std::string here(const Event& event) const {
+    return "step " + std::to_string(steps_) + ", t = " + std::to_string(1e-9 * static_cast<double>(time_of(event))) +
+           " s: ";
+  }
+
   const std::vector<Event>& events_;
   Estimator& estimator_;
   std::size_t fed_ = 0;
