@@ -56,12 +56,16 @@ core::FieldOfView estimate_field_of_view(const core::Recording& recording) {
   view.min_range_m = quantile(polar.ranges_m, 0.01);
   view.max_range_m = quantile(polar.ranges_m, 0.75);
   view.reach_m = quantile(polar.ranges_m, 0.95);
-  constexpr double nearly_behind_rad = 0.97 * core::pi;  // 1 % of bearings all around go beyond 0.98 π
+  if (!(view.max_range_m > view.min_range_m)) view.min_range_m = 0.0;  // all at one distance
+  constexpr double nearly_behind_rad = 0.97 * core::pi;                // 1 % of bearings all around go beyond 0.98 π
   const bool all_around =
       quantile(polar.bearings_rad, 0.01) < -nearly_behind_rad && quantile(polar.bearings_rad, 0.99) > nearly_behind_rad;
   if (all_around) return view;
-  view.min_bearing_rad = quantile(polar.bearings_rad, 0.05);
-  view.max_bearing_rad = quantile(polar.bearings_rad, 0.95);
+  const double rightmost_rad = quantile(polar.bearings_rad, 0.05);
+  const double leftmost_rad = quantile(polar.bearings_rad, 0.95);
+  if (!(leftmost_rad > rightmost_rad)) return view;  // all in one direction
+  view.min_bearing_rad = rightmost_rad;
+  view.max_bearing_rad = leftmost_rad;
   return view;
 }
 

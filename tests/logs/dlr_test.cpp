@@ -175,6 +175,17 @@ TEST(ReadDlr, CountsLinesOnBehindAContinuedOne) {
   EXPECT_NE(message.find("map.txt:10: unknown keyword 'STOP'"), std::string::npos) << message;
 }
 
+TEST(ReadDlr, JoinsAnyNumberOfLines) {
+  std::string text = "STEP s 0 -0.2 0 1e-4 0 1e-4 0 0 1e-4\n";
+  constexpr int lines_joined = 200'000;  // hours, where each costs as much as the text behind it
+  text += "LANDMARK_C";
+  for (int i = 0; i < lines_joined; ++i) text += " \\ \t\r\n";
+  text += " 1 1 1 1 0 1 5\nSTOP\n";
+  const std::string message = helixnav::testing::input_error_of([&] { read(text); });
+  EXPECT_NE(message.find("map.txt:" + std::to_string(lines_joined + 3) + ": unknown keyword 'STOP'"), std::string::npos)
+      << message;
+}
+
 void expect_same(const core::Recording& a, const core::Recording& b) {
   ASSERT_EQ(a.events.size(), b.events.size());
   EXPECT_EQ(a.labels, b.labels);

@@ -80,5 +80,18 @@ TEST(FieldOfView, ToldIsBelieved) {
   EXPECT_EQ(field_of_view_of(recording).max_range_m, 25.0);
 }
 
+TEST(EstimateFieldOfView, HasAnAreaWhereAllIsSeenAtOneDistance) {
+  core::Recording recording;
+  core::Scan scan;
+  for (int i = 0; i < 10; ++i) scan.observations.push_back(core::make_range_bearing(5.0, 0.1 * i, 0.1, 0.01));
+  recording.events.emplace_back(scan);
+  const core::FieldOfView view = estimate_field_of_view(recording);
+  EXPECT_LT(view.min_range_m, view.max_range_m);
+  EXPECT_EQ(view.max_range_m, 5.0);
+  for (core::Observation& observation : std::get<core::Scan>(recording.events[0]).observations) observation.z[1] = 0.3;
+  const core::FieldOfView narrow = estimate_field_of_view(recording);
+  EXPECT_LT(narrow.min_bearing_rad, narrow.max_bearing_rad) << "all in one direction";
+}
+
 }  // namespace
 }  // namespace helixnav::logs

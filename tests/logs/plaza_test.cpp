@@ -83,7 +83,7 @@ TEST(Plaza, NamesFileAndLineOfWhatIsWrong) {
   EXPECT_EQ(error_of("2,0,0\n1,0,0\n", ""),
             "a_odometry.csv:2: expected a time [s] that does not go backwards (2 … 4e+09), found '1'");
   EXPECT_EQ(error_of("1,0,0\n", "1,2,7\n"), "a_ranges.csv:1: expected a range [m], found the end of the line");
-  EXPECT_EQ(error_of("1,0,0\n", "1,2,7,-3\n"), "a_ranges.csv:1: expected a range [m] (0 … 1e+06), found '-3'");
+  EXPECT_EQ(error_of("1,0,0\n", "1,2,7,-3\n"), "a_ranges.csv:1: expected a range [m] (0 … 1e+05), found '-3'");
   EXPECT_EQ(error_of("1,0,0\n", "1,2,7,3,4\n"), "a_ranges.csv:1: more columns than time, antenna, beacon, range");
   EXPECT_EQ(error_of("# only words\n", ""),
             "a_odometry.csv: expected at least one row of time, distance, turn, found none");

@@ -8,6 +8,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/acfr_log.hpp"
 #include "input_files.hpp"
+#include "plausible.hpp"
 #include "reading_times.hpp"
 #include "text_cursor.hpp"
 
@@ -38,8 +39,8 @@ std::vector<GpsFix> parse_gps(TextCursor cursor) {
   while (!cursor.at_end()) {
     GpsFix fix;
     fix.t_ns = times.next(cursor);
-    fix.position_m.y() = cursor.number("a northing [m]");
-    fix.position_m.x() = cursor.number("an easting [m]");
+    fix.position_m.y() = cursor.number_between(-most_coordinate_m, most_coordinate_m, "a northing [m]");
+    fix.position_m.x() = cursor.number_between(-most_coordinate_m, most_coordinate_m, "an easting [m]");
     cursor.end_line("time, northing, easting");
     fixes.push_back(fix);
   }

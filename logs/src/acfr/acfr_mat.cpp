@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -9,6 +10,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/acfr_log.hpp"
 #include "mat_file.hpp"
+#include "plausible.hpp"
 
 namespace helixnav::logs {
 namespace {
@@ -62,6 +64,10 @@ std::vector<GpsFix> gps(const MatFile& file, const Columns& names) {
   const std::vector<double> north_m = file.vector(names.second, t_ns.size());
   std::vector<GpsFix> fixes(t_ns.size());
   for (std::size_t i = 0; i < t_ns.size(); ++i) {
+    if (std::max(std::abs(east_m[i]), std::abs(north_m[i])) > most_coordinate_m) {
+      file.fail(std::string("variables ") + names.first + ", " + names.second + ", element " + std::to_string(i + 1) +
+                ": expected coordinates of up to 1e8 m");
+    }
     fixes[i] = {t_ns[i], {east_m[i], north_m[i]}};
   }
   return fixes;

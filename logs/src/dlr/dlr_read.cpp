@@ -8,10 +8,10 @@
 
 #include "dlr_frame.hpp"
 #include "helixnav/core/errors.hpp"
-#include "helixnav/core/gaussian.hpp"
 #include "helixnav/logs/dlr.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "input_files.hpp"
+#include "plausible.hpp"
 #include "text_cursor.hpp"
 
 namespace helixnav::logs {
@@ -26,19 +26,21 @@ constexpr core::FieldOfView lines_field{0.0, std::numeric_limits<double>::infini
 /// Joins lines that end in a backslash with the next one; line ends move behind the joined line, so that the numbers of
 /// all later lines stay.
 void join_continued_lines(std::string& text) {
+  std::string joined;
+  joined.reserve(text.size());
   std::size_t owed = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '\\' && text.find_first_not_of(" \t\r", i + 1) != std::string::npos) {
-      const std::size_t end = text.find_first_not_of(" \t\r", i + 1);
-      if (text[end] != '\n') continue;
-      text[i] = text[end] = ' ';
+    const std::size_t end = text[i] == '\\' ? text.find_first_not_of(" \t\r", i + 1) : std::string::npos;
+    if (end != std::string::npos && text[end] == '\n') {
+      joined += ' ';
       ++owed;
-    } else if (text[i] == '\n' && owed > 0) {
-      text.insert(i, owed, '\n');
-      i += owed;
-      owed = 0;
+      i = end;
+      continue;
     }
+    if (text[i] == '\n') joined.append(std::exchange(owed, 0), '\n');
+    joined += text[i];
   }
+  text = std::move(joined);
 }
 
 class DlrReader {
@@ -74,9 +76,9 @@ class DlrReader {
   void read_step() {
     if (cursor_.word().empty()) cursor_.fail("expected the name of the image after STEP");
     Eigen::Vector2d motion_m;
-    motion_m.x() = cursor_.number("dX [m]");
-    motion_m.y() = cursor_.number("dY [m]");
-    const double turn_rad = cursor_.number("dPhi [rad]");
+    motion_m.x() = cursor_.number_between(-most_motion_m, most_motion_m, "dX [m]");
+    motion_m.y() = cursor_.number_between(-most_motion_m, most_motion_m, "dY [m]");
+    const double turn_rad = cursor_.number_between(-most_turn_rad, most_turn_rad, "dPhi [rad]");
     Eigen::Matrix3d C;
     C(0, 0) = cursor_.number("the covariance CXX of the step [m^2]");
     C(0, 1) = C(1, 0) = cursor_.number("the covariance CXY of the step [m^2]");
@@ -84,7 +86,7 @@ class DlrReader {
     C(0, 2) = C(2, 0) = cursor_.number("the covariance CXPhi of the step [m rad]");
     C(1, 2) = C(2, 1) = cursor_.number("the covariance CYPhi of the step [m rad]");
     C(2, 2) = cursor_.number("the covariance CPhiPhi of the step [rad^2]");
-    if (!core::is_symmetric_positive_definite(C)) cursor_.fail("the covariance of the step is not positive definite");
+    if (const auto fault = fault_of_covariance(C)) cursor_.fail("the covariance of the step " + *fault);
     cursor_.end_line("a STEP has (10 after the keyword)");
 
     const Eigen::Vector2d forward_left_m = from_dlr_axes(motion_m);
@@ -104,25 +106,29 @@ class DlrReader {
   void read_circle() {
     expect_content(Content::circles);
     Eigen::Vector2d point_m;
-    point_m.x() = cursor_.number("pX of the circle [m]");
-    point_m.y() = cursor_.number("pY of the circle [m]");
+    point_m.x() = cursor_.number_between(-most_distance_m, most_distance_m, "pX of the circle [m]");
+    point_m.y() = cursor_.number_between(-most_distance_m, most_distance_m, "pY of the circle [m]");
     cursor_.number("the quality of the circle");
     Eigen::Matrix2d C;
     C(0, 0) = cursor_.number("the covariance CXX of the circle [m^2]");
     C(0, 1) = C(1, 0) = cursor_.number("the covariance CXY of the circle [m^2]");
     C(1, 1) = cursor_.number("the covariance CYY of the circle [m^2]");
-    if (!core::is_symmetric_positive_definite(C)) cursor_.fail("the covariance of the circle is not positive definite");
+    if (const auto fault = fault_of_covariance(C)) cursor_.fail("the covariance of the circle " + *fault);
     add(core::make_cartesian(from_dlr_axes(point_m), from_dlr_axes(C)));
   }
 
   void read_line() {
     expect_content(Content::lines);
     for (const char* what : {"x bottom", "y bottom", "x top", "y top"}) cursor_.number(what);
-    const double bearing_rad = cursor_.number("the bearing alpha of the line [rad]");
+    const double bearing_rad =
+        cursor_.number_between(-2.0 * core::pi, 2.0 * core::pi, "the bearing alpha of the line [rad]");
     cursor_.number("the slant beta of the line [rad]");
     cursor_.number("the quality of the line");
     const double sigma_rad = cursor_.number("the standard deviation of the line's bearing [rad]");
     if (!(sigma_rad > 0.0)) cursor_.fail("the standard deviation of the line's bearing must be positive");
+    if (const auto fault = fault_of_covariance(Eigen::Matrix<double, 1, 1>(sigma_rad * sigma_rad))) {
+      cursor_.fail("the standard deviation of the line's bearing, squared, " + *fault);
+    }
     add(core::make_bearing(bearing_rad, sigma_rad));
   }
 
@@ -146,6 +152,7 @@ class DlrReader {
     while (!cursor_.at_line_end()) ids.push_back(read_id());
     cursor_.skip_line();
     core::Scan& scan = std::get<core::Scan>(recording_.events.back());
+    check_count(cursor_, scan.observations.size());
     if (ids.size() > 1) {
       recording_.shared_observations.push_back({recording_.labels.size() - 1, scan.observations.size(), ids});
     }
@@ -154,7 +161,7 @@ class DlrReader {
   }
 
   core::Label read_id() {
-    const core::Label id = cursor_.integer("an identifier of the landmark (-1: none)");
+    const core::Label id = read_name(cursor_, "an identifier of the landmark (-1: none)");
     if (id < core::no_label) cursor_.fail("identifiers are -1 (none) or not negative, found " + std::to_string(id));
     return id;
   }

@@ -10,6 +10,7 @@
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/logs/graph_files.hpp"
 #include "input_files.hpp"
+#include "plausible.hpp"
 #include "text_cursor.hpp"
 
 namespace helixnav::logs {
@@ -42,14 +43,15 @@ class G2oReader {
   void read_vertex(TextCursor& cursor, std::string_view tag) {
     if (tag == "VERTEX_SE2") {
       const std::int64_t name = new_name(cursor, pose_of_name_, graph_.poses.size());
-      const double x_m = cursor.number("x [m]");
-      const double y_m = cursor.number("y [m]");
-      graph_.poses.push_back({name, core::Pose2(x_m, y_m, cursor.number("heading [rad]"))});
+      const double x_m = cursor.number_between(-most_coordinate_m, most_coordinate_m, "x [m]");
+      const double y_m = cursor.number_between(-most_coordinate_m, most_coordinate_m, "y [m]");
+      graph_.poses.push_back({name, core::Pose2(x_m, y_m, heading(cursor))});
       cursor.end_line("VERTEX_SE2 has (4 after the tag)");
     } else if (tag == "VERTEX_XY") {
       const std::int64_t name = new_name(cursor, landmark_of_name_, graph_.landmarks.size());
-      const double x_m = cursor.number("x [m]");
-      graph_.landmarks.push_back({name, {x_m, cursor.number("y [m]")}});
+      const double x_m = cursor.number_between(-most_coordinate_m, most_coordinate_m, "x [m]");
+      const double y_m = cursor.number_between(-most_coordinate_m, most_coordinate_m, "y [m]");
+      graph_.landmarks.push_back({name, {x_m, y_m}});
       cursor.end_line("VERTEX_XY has (3 after the tag)");
     } else {
       cursor.skip_line();
@@ -71,10 +73,14 @@ class G2oReader {
     }
   }
 
+  static double heading(TextCursor& cursor) {
+    return cursor.number_between(-most_turn_rad, most_turn_rad, "heading [rad]");
+  }
+
   using IndexOfName = std::unordered_map<std::int64_t, int>;
 
   std::int64_t new_name(TextCursor& cursor, IndexOfName& names, std::size_t index) {
-    const std::int64_t name = cursor.integer("a vertex number");
+    const std::int64_t name = read_name(cursor, "a vertex number");
     if (pose_of_name_.count(name) + landmark_of_name_.count(name) > 0) {
       cursor.fail("vertex " + std::to_string(name) + " is given twice");
     }
@@ -98,17 +104,19 @@ class G2oReader {
     }
     if (!core::is_symmetric_positive_definite(information))
       cursor.fail("the information matrix is not positive definite");
-    const Eigen::Matrix<double, N, N> C = information.inverse();
-    return 0.5 * (C + C.transpose());
+    const Eigen::Matrix<double, N, N> inverse = information.inverse();
+    const Eigen::Matrix<double, N, N> C = 0.5 * (inverse + inverse.transpose());
+    if (const auto fault = fault_of_covariance(C)) cursor.fail("the inverse of the information matrix " + *fault);
+    return C;
   }
 
   void read_pose_edge(TextCursor& cursor) {
     core::LandmarkGraph::PoseEdge edge;
     edge.from = known(cursor, pose_of_name_, "VERTEX_SE2");
     edge.to = known(cursor, pose_of_name_, "VERTEX_SE2");
-    const double x_m = cursor.number("x [m]");
-    const double y_m = cursor.number("y [m]");
-    edge.T_from_to = core::Pose2(x_m, y_m, cursor.number("heading [rad]"));
+    const double x_m = cursor.number_between(-most_motion_m, most_motion_m, "x [m]");
+    const double y_m = cursor.number_between(-most_motion_m, most_motion_m, "y [m]");
+    edge.T_from_to = core::Pose2(x_m, y_m, heading(cursor));
     edge.covariance = covariance<3>(cursor);
     cursor.end_line("EDGE_SE2 has (11 after the tag)");
     graph_.pose_edges.push_back(edge);
@@ -118,8 +126,9 @@ class G2oReader {
     core::LandmarkGraph::LandmarkEdge edge;
     edge.pose = known(cursor, pose_of_name_, "VERTEX_SE2");
     edge.landmark = known(cursor, landmark_of_name_, "VERTEX_XY");
-    const double x_m = cursor.number("x [m]");
-    const double y_m = cursor.number("y [m]");
+    check_count(cursor, seen_from_[edge.pose]++);
+    const double x_m = cursor.number_between(-most_distance_m, most_distance_m, "x [m]");
+    const double y_m = cursor.number_between(-most_distance_m, most_distance_m, "y [m]");
     edge.observation = core::make_cartesian({x_m, y_m}, covariance<2>(cursor));
     cursor.end_line("EDGE_SE2_XY has (7 after the tag)");
     graph_.landmark_edges.push_back(edge);
@@ -129,7 +138,8 @@ class G2oReader {
     core::LandmarkGraph::LandmarkEdge edge;
     edge.pose = known(cursor, pose_of_name_, "VERTEX_SE2");
     edge.landmark = known(cursor, landmark_of_name_, "VERTEX_XY");
-    const double bearing_rad = cursor.number("a bearing [rad]");
+    check_count(cursor, seen_from_[edge.pose]++);
+    const double bearing_rad = cursor.number_between(-2.0 * core::pi, 2.0 * core::pi, "a bearing [rad]");
     edge.observation = core::make_bearing(bearing_rad, std::sqrt(covariance<1>(cursor)(0, 0)));
     cursor.end_line("EDGE_BEARING_SE2_XY has (4 after the tag)");
     graph_.landmark_edges.push_back(edge);
@@ -140,6 +150,7 @@ class G2oReader {
   core::LandmarkGraph graph_;
   IndexOfName pose_of_name_;
   IndexOfName landmark_of_name_;
+  std::unordered_map<int, std::size_t> seen_from_;  ///< landmarks, by the index of the pose
 };
 
 }  // namespace

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "helixnav/core/errors.hpp"
-#include "helixnav/core/gaussian.hpp"
 #include "helixnav/logs/graph_files.hpp"
 #include "mat_file.hpp"
+#include "plausible.hpp"
 
 namespace helixnav::logs {
 namespace {
@@ -60,18 +60,27 @@ class VicParkReader {
     return static_cast<std::int64_t>(value);
   }
 
+  double within(std::size_t row, std::size_t column, double most) const {
+    const double value = rows_(row, column);
+    if (std::abs(value) > most) {
+      fail(row, "expected at most " + std::to_string(most) + " in column " + std::to_string(column + 1) + ", found " +
+                    std::to_string(value));
+    }
+    return value;
+  }
+
   void read_motion(std::size_t row) {
     const std::int64_t to = whole(row, 2, "the number of a pose");
     if (to != whole(row, 1, "the number of a pose") + 1) fail(row, "expected a motion from one pose to the next");
     core::Odometry odometry;
     odometry.t_ns = core::nanoseconds_from_seconds(static_cast<double>(to));
-    odometry.T_before_after = core::Pose2(rows_(row, 3), rows_(row, 4), rows_(row, 5));
+    odometry.T_before_after =
+        core::Pose2(within(row, 3, most_motion_m), within(row, 4, most_motion_m), within(row, 5, most_turn_rad));
     std::size_t column = 6;
     for (int r = 0; r < 3; ++r) {
       for (int c = r; c < 3; ++c) odometry.covariance(r, c) = odometry.covariance(c, r) = rows_(row, column++);
     }
-    if (!core::is_symmetric_positive_definite(odometry.covariance))
-      fail(row, "the covariance is not positive definite");
+    if (const auto fault = fault_of_covariance(odometry.covariance)) fail(row, "the covariance " + *fault);
     if (!motions_.emplace(to, odometry).second) fail(row, "a second motion to pose " + std::to_string(to));
   }
 
@@ -80,8 +89,13 @@ class VicParkReader {
     const core::Label label = whole(row, 2, "the number of a landmark");
     Eigen::Matrix2d C;
     C << rows_(row, 5), rows_(row, 6), rows_(row, 6), rows_(row, 7);
-    if (!core::is_symmetric_positive_definite(C)) fail(row, "the covariance is not positive definite");
-    seen_[pose].push_back({core::make_cartesian({rows_(row, 3), rows_(row, 4)}, C), label});
+    if (const auto fault = fault_of_covariance(C)) fail(row, "the covariance " + *fault);
+    std::vector<Seen>& seen = seen_[pose];
+    if (seen.size() >= most_observations) {
+      fail(row, "more than " + std::to_string(most_observations) + " observations in one scan");
+    }
+    const Eigen::Vector2d point_m(within(row, 3, most_distance_m), within(row, 4, most_distance_m));
+    seen.push_back({core::make_cartesian(point_m, C), label});
   }
 
   void assemble() {

@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 
 #include "input_files.hpp"
+#include "plausible.hpp"
 #include "text_cursor.hpp"
 
 namespace helixnav::logs {
@@ -47,8 +48,8 @@ class Reader {
 
  private:
   void read_odometry() {
-    const std::int64_t from = cursor_.integer("the number of a pose");
-    const std::int64_t to = cursor_.integer("the number of the next pose");
+    const std::int64_t from = read_name(cursor_, "the number of a pose");
+    const std::int64_t to = read_name(cursor_, "the number of the next pose");
     if (scans_.empty()) {
       open_pose(from);
     }
@@ -61,16 +62,17 @@ class Reader {
     open_pose(to);
     core::Odometry& odometry = odometry_.emplace_back();
     odometry.t_ns = scans_.back().t_ns;
-    const double dx_m = cursor_.number("dx [m]");
-    const double dy_m = cursor_.number("dy [m]");
-    odometry.T_before_after = core::Pose2(dx_m, dy_m, cursor_.number("dheading [rad]"));
+    const double dx_m = cursor_.number_between(-most_motion_m, most_motion_m, "dx [m]");
+    const double dy_m = cursor_.number_between(-most_motion_m, most_motion_m, "dy [m]");
+    const double turn_rad = cursor_.number_between(-most_turn_rad, most_turn_rad, "dheading [rad]");
+    odometry.T_before_after = core::Pose2(dx_m, dy_m, turn_rad);
     odometry.covariance = read_noise<3>();
     cursor_.end_line("from, to, dx, dy, dheading and 6 of noise");
   }
 
   void read_landmark() {
-    const std::int64_t pose = cursor_.integer("the number of a pose");
-    const std::int64_t landmark = cursor_.integer("the number of a landmark, 0 or more");
+    const std::int64_t pose = read_name(cursor_, "the number of a pose");
+    const std::int64_t landmark = read_name(cursor_, "the number of a landmark, 0 or more");
     if (landmark < 0) {
       cursor_.fail("expected a landmark number of 0 or more, found " + std::to_string(landmark));
     }
@@ -81,8 +83,9 @@ class Reader {
     if (found == pose_of_number_.end()) {
       cursor_.fail("expected the number of a pose that odometry reached before, found " + std::to_string(pose));
     }
-    const double x_m = cursor_.number("x [m]");
-    const double y_m = cursor_.number("y [m]");
+    check_count(cursor_, labels_[found->second].size());
+    const double x_m = cursor_.number_between(-most_distance_m, most_distance_m, "x [m]");
+    const double y_m = cursor_.number_between(-most_distance_m, most_distance_m, "y [m]");
     scans_[found->second].observations.push_back(core::make_cartesian({x_m, y_m}, read_noise<2>()));
     labels_[found->second].push_back(landmark);
     cursor_.end_line("pose, landmark, x, y and 3 of noise");
@@ -114,6 +117,7 @@ class Reader {
     if (!covariance.allFinite() || covariance.llt().info() != Eigen::Success) {
       cursor_.fail("expected noise that is positive definite");
     }
+    if (const auto fault = fault_of_covariance(covariance)) cursor_.fail("the covariance of this noise " + *fault);
     return covariance;
   }
 

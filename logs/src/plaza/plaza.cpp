@@ -10,6 +10,7 @@
 
 #include "helixnav/core/errors.hpp"
 #include "input_files.hpp"
+#include "plausible.hpp"
 #include "reading_times.hpp"
 #include "text_cursor.hpp"
 
@@ -72,8 +73,8 @@ std::vector<Increment> read_increments(const std::string& path) {
   for_each_row(path, "time, distance, turn", [&](TextCursor& cursor) {
     Increment& increment = increments.emplace_back();
     increment.t_ns = times.next(cursor);
-    increment.distance_m = cursor.number("a distance [m]");
-    increment.turn_rad = cursor.number("a turn [rad]");
+    increment.distance_m = cursor.number_between(-most_motion_m, most_motion_m, "a distance [m]");
+    increment.turn_rad = cursor.number_between(-most_turn_rad, most_turn_rad, "a turn [rad]");
   });
   if (increments.empty()) {
     throw core::InputError(path + ": expected at least one row of time, distance, turn, found none");
@@ -82,14 +83,13 @@ std::vector<Increment> read_increments(const std::string& path) {
 }
 
 std::vector<Range> read_ranges(const std::string& path) {
-  constexpr double farthest_m = 1e6;
   std::vector<Range> ranges;
   for_each_row(path, "time, antenna, beacon, range", [&](TextCursor& cursor) {
     Range& range = ranges.emplace_back();
     range.t_ns = ReadingTimes().next(cursor);
     cursor.integer("the number of an antenna");
     range.beacon = static_cast<core::Label>(cursor.number_between(0, 1e9, "the number of a beacon"));
-    range.range_m = cursor.number_between(0.0, farthest_m, "a range [m]");
+    range.range_m = cursor.number_between(0.0, most_distance_m, "a range [m]");
   });
   std::stable_sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) { return a.t_ns < b.t_ns; });
   return ranges;
@@ -101,8 +101,8 @@ std::vector<core::TruePosition> read_true_positions(const std::string& path) {
   for_each_row(path, "time, x, y, heading", [&](TextCursor& cursor) {
     core::TruePosition& position = positions.emplace_back();
     position.t_ns = times.next(cursor);
-    position.position_m.x() = cursor.number("x [m]");
-    position.position_m.y() = cursor.number("y [m]");
+    position.position_m.x() = cursor.number_between(-most_coordinate_m, most_coordinate_m, "x [m]");
+    position.position_m.y() = cursor.number_between(-most_coordinate_m, most_coordinate_m, "y [m]");
     cursor.number("a heading [rad]");
   });
   return positions;
@@ -112,9 +112,9 @@ std::vector<core::TrueLandmark> read_true_beacons(const std::string& path) {
   std::vector<core::TrueLandmark> beacons;
   for_each_row(path, "beacon, x, y", [&](TextCursor& cursor) {
     core::TrueLandmark& beacon = beacons.emplace_back();
-    beacon.label = cursor.integer("the number of a beacon");
-    beacon.point_m.x() = cursor.number("x [m]");
-    beacon.point_m.y() = cursor.number("y [m]");
+    beacon.label = read_name(cursor, "the number of a beacon");
+    beacon.point_m.x() = cursor.number_between(-most_coordinate_m, most_coordinate_m, "x [m]");
+    beacon.point_m.y() = cursor.number_between(-most_coordinate_m, most_coordinate_m, "y [m]");
   });
   return beacons;
 }
