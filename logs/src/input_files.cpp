@@ -43,10 +43,13 @@ std::string name_of(archive_entry* entry) {
   return path == nullptr ? std::string() : std::filesystem::path(path).filename().string();
 }
 
+/// A few megabytes of zip may hold terabytes of the same byte. The longest log known has 60 MB.
+constexpr std::size_t most_text_bytes = 512u << 20;
+
 std::string content(const std::filesystem::path& path, archive* reader, archive_entry* entry) {
   std::string text;
   if (archive_entry_size_is_set(entry) != 0) {
-    constexpr std::int64_t reserved_at_most_bytes = 256 << 20;  // a size that lies does not take the memory
+    constexpr std::int64_t reserved_at_most_bytes = 64 << 20;  // a size that lies does not take the memory
     text.reserve(
         static_cast<std::size_t>(std::clamp<std::int64_t>(archive_entry_size(entry), 0, reserved_at_most_bytes)));
   }
@@ -58,6 +61,9 @@ std::string content(const std::filesystem::path& path, archive* reader, archive_
     }
     if (got == 0) {
       return text;
+    }
+    if (text.size() + static_cast<std::size_t>(got) > most_text_bytes) {
+      throw core::InputError(path.string() + ": expected at most 512 MiB in " + name_of(entry) + ", found more");
     }
     text.append(block.data(), static_cast<std::size_t>(got));
   }

@@ -9,6 +9,7 @@
 
 #include "helixnav/core/errors.hpp"
 #include "input_files.hpp"
+#include "mat_nesting.hpp"
 
 namespace helixnav::logs {
 namespace {
@@ -51,14 +52,6 @@ std::vector<double> numbers(const matvar_t& variable, std::size_t count) {
   }
 }
 
-std::size_t unsigned32(const std::string& content, std::size_t at, bool little_endian) {
-  std::size_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    value = (value << 8) | static_cast<unsigned char>(content[at + (little_endian ? 3 - i : i)]);
-  }
-  return value;
-}
-
 }  // namespace
 
 MatFile::MatFile(const std::filesystem::path& path) : path_(path) {
@@ -73,7 +66,8 @@ MatFile::MatFile(const std::filesystem::path& path) : path_(path) {
   }
 }
 
-/// matio takes a file that is cut off for one full of zeros; the lengths that stand before each variable tell.
+/// matio takes a file that is cut off for one full of zeros; the lengths that stand before each variable tell. It also goes
+/// into cells by recursion, however deep.
 void MatFile::check_extent() const {
   constexpr std::size_t header_bytes = 128;
   constexpr std::size_t tag_bytes = 8;
@@ -88,12 +82,30 @@ void MatFile::check_extent() const {
     if (left < tag_bytes || length > left - tag_bytes) {
       fail("byte " + std::to_string(at) + ": expected a variable that ends before the end of the file");
     }
+    if (nests_too_deep(std::string_view(content).substr(at, tag_bytes + length), mark == "IM")) {
+      fail("byte " + std::to_string(at) + ": expected cells and structures at most 8 deep and not longer than 64 MiB");
+    }
     at += tag_bytes + length;
   }
 }
 
 bool MatFile::has(const std::string& variable) const {
   return std::find(variables_.begin(), variables_.end(), variable) != variables_.end();
+}
+
+/// What is compressed may be a thousand times as long as the file.
+void MatFile::check_size(const std::string& name) const {
+  constexpr std::size_t most_elements = 20'000'000;
+  const Variable info(Mat_VarReadInfo(static_cast<mat_t*>(file_.get()), name.c_str()));
+  if (info == nullptr || info->rank != 2 || info->dims == nullptr) {
+    fail("variable " + name + ": expected a matrix that can be read to its end");
+  }
+  const std::size_t rows = info->dims[0];
+  const std::size_t columns = info->dims[1];
+  if (columns > 0 && rows > most_elements / columns) {
+    fail("variable " + name + ": expected at most 20 million elements, found " + std::to_string(rows) + " by " +
+         std::to_string(columns));
+  }
 }
 
 MatMatrix MatFile::matrix(const std::string& name) const {
@@ -104,6 +116,7 @@ MatMatrix MatFile::matrix(const std::string& name) const {
     }
     fail("expected a variable " + name + ", found " + (found.empty() ? "none" : found));
   }
+  check_size(name);
   const Variable variable(Mat_VarRead(static_cast<mat_t*>(file_.get()), name.c_str()));
   if (variable == nullptr || variable->rank != 2 || variable->data == nullptr) {
     fail("variable " + name + ": expected a matrix that can be read to its end");

@@ -37,6 +37,7 @@ class MatFile {
 
  private:
   void check_extent() const;
+  void check_size(const std::string& name) const;
 
   std::filesystem::path path_;
   std::shared_ptr<void> file_;
