@@ -23,6 +23,18 @@ double furthest_m(const core::Scan& scan) {
   return reach_m;
 }
 
+double area_of_m2(const core::FieldOfView& view) {
+  const double width_rad = view.max_bearing_rad - view.min_bearing_rad;
+  return 0.5 * width_rad * (view.max_range_m - view.min_range_m) * (view.max_range_m + view.min_range_m);
+}
+
+/// A view from which a density can be had: neither a line nor a point, nor beyond all measure.
+bool has_area(const core::FieldOfView& view) {
+  constexpr double least_m2 = 1e-12;
+  constexpr double most_m2 = 1e18;
+  return area_of_m2(view) >= least_m2 && area_of_m2(view) <= most_m2;
+}
+
 }  // namespace
 
 double ExtraneousDensity::of(core::ObservationKind kind) const {
@@ -41,7 +53,7 @@ double ExtraneousDensity::of(core::ObservationKind kind) const {
 ExtraneousDensity uniform_density(const core::FieldOfView& field_of_view, double expected_per_scan) {
   const double depth_m = field_of_view.max_range_m - field_of_view.min_range_m;
   const double width_rad = field_of_view.max_bearing_rad - field_of_view.min_bearing_rad;
-  const double area_m2 = 0.5 * width_rad * depth_m * (field_of_view.max_range_m + field_of_view.min_range_m);
+  const double area_m2 = area_of_m2(field_of_view);
   if (!(area_m2 > 0.0) || !std::isfinite(area_m2) || !(expected_per_scan > 0.0)) {
     throw core::PreconditionError(
         "uniform_density: a bounded field of view with an area and a positive number per scan "
@@ -59,7 +71,7 @@ ExtraneousDensity density_in_view(const core::Scan& scan, double expected_per_sc
     view.min_range_m = 0.0;
     view.max_range_m = furthest_m(scan);
   }
-  return view.max_range_m > 0.0 ? uniform_density(view, expected_per_scan) : unbounded;
+  return has_area(view) ? uniform_density(view, expected_per_scan) : unbounded;
 }
 
 AssignmentProblem likelihood_ratio_costs(const InnovationProblem& problem, double detection_probability,

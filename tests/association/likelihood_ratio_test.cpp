@@ -146,6 +146,11 @@ TEST(DensityInView, IsTheCallersWhereNothingBoundsIt) {
   core::Scan blind = scan_of({0.0, 0.0, -core::pi, core::pi});
   blind.observations = {core::make_bearing(1.0, 0.01)};
   EXPECT_EQ(density_in_view(blind, 1.0, given).cartesian_per_m2, 0.123);
+  for (const core::FieldOfView& degenerate :
+       {core::FieldOfView{5.0, 5.0, -1.0, 1.0}, core::FieldOfView{0.0, 5.0, 1.0, 1.0},
+        core::FieldOfView{0.0, 1e200, -1.0, 1.0}, core::FieldOfView{0.0, 1e-200, -1.0, 1.0}}) {
+    EXPECT_EQ(density_in_view(scan_of(degenerate), 1.0, given).cartesian_per_m2, 0.123) << degenerate.max_range_m;
+  }
 }
 
 }  // namespace
