@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace helixnav::supervisor {
 namespace {
@@ -39,7 +40,11 @@ std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, cons
   if (scan.observations.empty()) return {};
   const core::PoseGaussian pose = filter.pose();
   const Eigen::Vector2d sensor_m = core::transform(pose.mean, scan.T_robot_sensor.position_m());
-  if (!fixes_points(scan)) return filter.landmarks_within(sensor_m, scan.field_of_view.max_range_m);
+  if (!fixes_points(scan)) {
+    const double reach_m = scan.field_of_view.max_range_m;
+    const bool is_known = reach_m > 0.0;
+    return filter.landmarks_within(sensor_m, is_known ? reach_m : std::numeric_limits<double>::infinity());
+  }
 
   const std::vector<SeenPoint> seen = seen_points(pose, scan);
   double reach_m = 0.0;
@@ -63,7 +68,7 @@ std::vector<core::LandmarkId> expected_in_view(const cekf::CompressedEkf& filter
   const core::Pose2 T_world_sensor = core::compose(filter.pose().mean, scan.T_robot_sensor);
   const core::Pose2 T_sensor_world = core::inverse(T_world_sensor);
   std::vector<core::LandmarkId> expected;
-  if (!std::isfinite(view.max_range_m)) return expected;
+  if (!std::isfinite(view.max_range_m) || view.max_range_m <= margin_m) return expected;
   for (const core::LandmarkId id : filter.landmarks_within(T_world_sensor.position_m(), view.max_range_m - margin_m)) {
     const Eigen::Vector2d point_m = core::transform(T_sensor_world, filter.landmark_mean(id));
     const double range_m = point_m.norm();
