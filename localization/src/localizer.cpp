@@ -9,6 +9,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "helixnav/core/pose_on_map.hpp"
+#include "helixnav/core/thin_scan.hpp"
 #include "nearby.hpp"
 #include "update_pose.hpp"
 
@@ -54,7 +55,10 @@ void Localizer::move(const core::Odometry& odometry) {
 core::StepReport Localizer::observe(const core::Scan& scan) {
   check_event(scan);
   const core::PoseGaussian pose = predicted();
-  return update(pose, scan, associate(pose, scan));
+  if (scan.observations.size() <= core::most_observations_used) return update(pose, scan, associate(pose, scan));
+  const std::vector<std::size_t> used = core::observations_to_use(scan);
+  const core::Scan thin = core::thinned(scan, used);
+  return update_thinned(pose, thin, associate(pose, thin), used, scan.observations.size());
 }
 
 core::StepReport Localizer::observe(const core::Scan& scan, const std::vector<core::LandmarkId>& landmarks) {
@@ -73,7 +77,28 @@ core::StepReport Localizer::observe(const core::Scan& scan, const std::vector<co
     association.outcome = id == core::no_landmark ? core::Outcome::rejected : core::Outcome::matched;
     association.landmark = id;
   }
-  return update(predicted(), scan, std::move(associations));
+  if (scan.observations.size() <= core::most_observations_used) {
+    return update(predicted(), scan, std::move(associations));
+  }
+  const std::vector<std::size_t> used = core::observations_to_use(scan);
+  std::vector<core::AssociationReport> those;
+  for (const std::size_t i : used) {
+    those.push_back(associations[i]);
+    those.back().observation = static_cast<int>(those.size()) - 1;
+  }
+  return update_thinned(predicted(), core::thinned(scan, used), std::move(those), used, associations.size());
+}
+
+/// The report names the observations as they stand in the whole scan.
+core::StepReport Localizer::update_thinned(const core::PoseGaussian& pose, const core::Scan& thin,
+                                           std::vector<core::AssociationReport> associations,
+                                           const std::vector<std::size_t>& used, std::size_t observations) {
+  std::vector<core::AssociationReport> all = core::reports_of_none(observations);
+  std::vector<core::Decision> decisions{core::thinning_decision(observations, used.size())};
+  core::StepReport report = update(pose, thin, std::move(associations));
+  core::name_in_whole_scan(used, all, report.associations);
+  report.decisions.swap(decisions);
+  return report;
 }
 
 void Localizer::check_event(const core::Scan& scan) const {

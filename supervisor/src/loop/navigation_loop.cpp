@@ -9,6 +9,7 @@
 #include "association/candidates.hpp"
 #include "association/expected_landmarks.hpp"
 #include "helixnav/core/odometry.hpp"
+#include "helixnav/core/thin_scan.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 #include "loop/judge_fix.hpp"
 #include "loop/recover.hpp"
@@ -57,7 +58,16 @@ void NavigationLoop::fit_to(const core::FieldOfView& view) {
 
 StepReport NavigationLoop::observe(const Scan& scan) {
   fit_to(scan.field_of_view);
+  const bool is_thinned = scan.observations.size() > core::most_observations_used;
+  StepReport report = is_thinned ? observe_thinned(scan) : take_step(scan, nullptr);
+  name_revised(report);
+  return report;
+}
+
+/// `note` goes into the report.
+StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* note) {
   return all_or_nothing([&] {
+    if (note != nullptr) pending_.decisions.push_back(*note);
     StepReport report = step(scan);
     checkpoint_if_settled();
     return has_lost_its_place() ? roll_back_and_relocalise(std::move(report)) : report;

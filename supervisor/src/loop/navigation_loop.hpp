@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -48,6 +50,7 @@ class NavigationLoop {
 
   // navigation_loop.cpp
   void fit_to(const core::FieldOfView& view);
+  core::StepReport take_step(const core::Scan& scan, const core::Decision* note);
   core::StepReport step(const core::Scan& scan);
   void predict();
   bool use_fix(const core::AbsoluteFix& fix);
@@ -58,6 +61,10 @@ class NavigationLoop {
   core::StepReport finish(const core::Scan& scan, core::StepReport report);
   void checkpoint_if_settled();
   bool is_monitored() const;
+
+  // observe_thinned.cpp
+  core::StepReport observe_thinned(const core::Scan& scan);
+  void name_revised(core::StepReport& report) const;
 
   // search_mode.cpp
   void begin_search();
@@ -91,6 +98,7 @@ class NavigationLoop {
   Pending pending_;
   Undo undo_;
   std::uint64_t searches_ = 0;
+  std::map<std::int64_t, std::vector<std::size_t>> used_;  ///< [step] observations of the scans that were thinned
 };
 
 }  // namespace helixnav::supervisor

@@ -10,6 +10,7 @@
 #include "helixnav/core/check_event.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/odometry.hpp"
+#include "helixnav/core/thin_scan.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 #include "loop/judge_fix.hpp"
 
@@ -60,7 +61,22 @@ StepReport NamedNavigator::observe(const core::Scan& scan, const std::vector<std
                                   std::to_string(scan.observations.size()) + " observations");
   }
   fit_to(scan.field_of_view);
+  if (scan.observations.size() > core::most_observations_used) return observe_thinned(scan, identities);
   return all_or_nothing([&] { return step({scan, identities, {}}); });
+}
+
+/// As the Navigator's.
+StepReport NamedNavigator::observe_thinned(const core::Scan& scan, const std::vector<std::int64_t>& identities) {
+  const std::vector<std::size_t> used = core::observations_to_use(scan);
+  std::vector<AssociationReport> all = core::reports_of_none(identities.size());
+  NamedScan thin{core::thinned(scan, used), {}, {}};
+  for (const std::size_t i : used) thin.identities.push_back(identities[i]);
+  StepReport report = all_or_nothing([&] {
+    pending_.decisions.push_back(core::thinning_decision(identities.size(), used.size()));
+    return step(thin);
+  });
+  core::name_in_whole_scan(used, all, report.associations);
+  return report;
 }
 
 /// As the Navigator's.

@@ -58,6 +58,9 @@ class Localizer {
   std::vector<core::AssociationReport> associate(const core::PoseGaussian& pose, const core::Scan& scan) const;
   core::StepReport update(const core::PoseGaussian& pose, const core::Scan& scan,
                           std::vector<core::AssociationReport> associations);
+  core::StepReport update_thinned(const core::PoseGaussian& pose, const core::Scan& thin,
+                                  std::vector<core::AssociationReport> associations,
+                                  const std::vector<std::size_t>& used, std::size_t observations);
 
   LocalizerOptions options_;
   core::PoseGaussian pose_;

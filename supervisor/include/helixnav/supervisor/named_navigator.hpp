@@ -65,6 +65,7 @@ class NamedNavigator {
   };
 
   void fit_to(const core::FieldOfView& view);
+  core::StepReport observe_thinned(const core::Scan& scan, const std::vector<std::int64_t>& identities);
   core::StepReport step(const NamedScan& scan);
   bool use_fix(const core::AbsoluteFix& fix);
   void predict();

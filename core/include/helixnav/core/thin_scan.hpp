@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "helixnav/core/events.hpp"
+#include "helixnav/core/step_report.hpp"
+
+namespace helixnav::core {
+
+/// So many observations of a scan an estimator works with; the work of a scan goes by their third power. The fullest scan of
+/// the logs in the data folder has 37.
+inline constexpr std::size_t most_observations_used = 128;
+
+/// Places in the scan of the observations to work with, ascending: all, where there are no more than most_observations_used.
+/// Of more, those that no other one kept may be, as far as the sensor can tell (their difference is within its 99 % gate),
+/// spread evenly over the scan's order. Cost: observations × most_observations_used. Test: core/thin_scan_test.cpp.
+std::vector<std::size_t> observations_to_use(const Scan& scan);
+
+/// The scan with these observations alone.
+Scan thinned(const Scan& scan, const std::vector<std::size_t>& used);
+
+/// Reports of a thinned scan as reports of the whole one: places are those in `used`, and what is not among them is
+/// ambiguous. `all` has a report for every observation of the whole scan (reports_of_none). Allocates nothing.
+void name_in_whole_scan(const std::vector<std::size_t>& used, std::vector<AssociationReport>& all,
+                        std::vector<AssociationReport>& reports) noexcept;
+
+/// An ambiguous observation each.
+std::vector<AssociationReport> reports_of_none(std::size_t observations);
+
+/// Says in the report of a step that a scan was thinned.
+Decision thinning_decision(std::size_t observations, std::size_t used);
+
+}  // namespace helixnav::core
