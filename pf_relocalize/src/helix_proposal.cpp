@@ -122,9 +122,9 @@ void HelixProposal::sample(Particles& particles, std::size_t begin, std::size_t 
         heading_min_rad_ + (static_cast<double>(cell.heading) + random.uniform()) * heading_step_rad_;
     const Eigen::Matrix2d& R = point.covariance_m2;
     const Eigen::Vector2d map_noise(random.normal(), random.normal()), noise(random.normal(), random.normal());
-    const Eigen::Vector2d landmark = Eigen::Vector2d(table.x[m], table.y[m]) +
-                                     map_.latent.middleRows<2>(2 * static_cast<Eigen::Index>(m)) * xi +
-                                     lower_root(table.sxx[m], table.sxy[m], table.syy[m]) * map_noise;
+    Eigen::Vector2d landmark(table.x[m], table.y[m]);
+    if (table.modes > 0) landmark += map_.latent.middleRows<2>(2 * static_cast<Eigen::Index>(m)) * xi;
+    landmark += lower_root(table.sxx[m], table.sxy[m], table.syy[m]) * map_noise;
     const Eigen::Vector2d seen = point.mean_m + lower_root(R(0, 0), R(0, 1), R(1, 1)) * noise;
     const Eigen::Vector2d position = landmark - core::rotation(heading) * seen;
     particles.set_pose(i, {position.x(), position.y(), heading});
