@@ -23,7 +23,8 @@ namespace {
 }  // namespace
 
 AppendFile::AppendFile(const std::string& path)
-    : path_(path), descriptor_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644)) {
+    : path_(path),
+      descriptor_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0644)) {
   if (descriptor_ < 0) refuse(path_, "create");
 }
 
@@ -40,8 +41,14 @@ void AppendFile::append(std::string_view bytes) {
 
 void write_whole_file(const std::string& path, std::string_view bytes) {
   const std::string temporary = path + ".part";
-  AppendFile(temporary).append(bytes);
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) refuse(path, "write");
+  ::unlink(temporary.c_str());  // left by a process that was killed, or a link planted to be written through
+  try {
+    AppendFile(temporary).append(bytes);
+    if (std::rename(temporary.c_str(), path.c_str()) != 0) refuse(path, "write");
+  } catch (...) {
+    ::unlink(temporary.c_str());
+    throw;
+  }
 }
 
 std::string read_whole_file(const std::string& path) {

@@ -125,5 +125,33 @@ TEST(RunWriter, LeavesNoTemporaryFileBehind) {
   }
 }
 
+TEST(RunWriter, WritesThroughNoLinkThatSomebodyPlanted) {
+  const TemporaryFolder folder;
+  const fs::path victim = folder.write("victim", "precious");
+  const fs::path run = folder.path() / "run";
+  fs::create_directory(run);
+  for (const char* name : {"trajectory.tum", "health.csv", "manifest.json", "manifest.json.part", "map.csv.part",
+                           "summary.json.part", "report.html.part", "truth_labels.csv.part"}) {
+    fs::create_symlink(victim, run / name);
+  }
+  {
+    core::Recording recording;
+    recording.labels = {{1}};
+    RunWriter writer(run.string(), example_manifest(), recording, RunWriter::IfNotEmpty::overwrite);
+    writer.write(example_step(0), 1.0);
+    writer.finish({}, "page", "{}");
+  }
+  EXPECT_EQ(files::read_whole_file(victim.string()), "precious");
+  EXPECT_EQ(read_run(run.string()).steps.size(), 1u);
+}
+
+TEST(WriteWholeFile, LeavesNothingBehindWhereItFails) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "file";
+  fs::create_directory(file);  // cannot be replaced by a file
+  EXPECT_NE(input_error_of([&] { files::write_whole_file(file.string(), "text"); }), "nothing thrown");
+  EXPECT_FALSE(fs::exists(folder.path() / "file.part"));
+}
+
 }  // namespace
 }  // namespace helixnav::runs

@@ -7,7 +7,7 @@
 namespace helixnav::files {
 
 /// A file that grows. What `append` was given is with the operating system when it returns, so that it survives the
-/// death of the process (not of the machine). InputError when the system refuses.
+/// death of the process (not of the machine). InputError when the system refuses, and where `path` is a symbolic link.
 class AppendFile {
  public:
   explicit AppendFile(const std::string& path);
@@ -22,7 +22,8 @@ class AppendFile {
   int descriptor_ = -1;
 };
 
-/// Writes `bytes` under a temporary name and renames: the file is there whole or not at all. InputError.
+/// Writes `bytes` under a temporary name and renames: the file is there whole or not at all, and a symbolic link of its
+/// name is replaced, not followed. InputError, after which the temporary name is gone. Test: runs/run_writer_test.cpp.
 void write_whole_file(const std::string& path, std::string_view bytes);
 
 /// The file's bytes. InputError when it cannot be read.
