@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "helixnav/core/errors.hpp"
+#include "helixnav/files/json_nesting.hpp"
 
 namespace helixnav::runs {
 namespace {
@@ -35,6 +36,7 @@ std::string manifest_json(const RunManifest& manifest) {
 }
 
 RunManifest manifest_from_text(const std::string& path, const std::string& text) {
+  files::check_json_nesting(path, text);
   try {
     const Json json = Json::parse(text);
     if (json.at("format") != format_name) {

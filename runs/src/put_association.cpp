@@ -11,13 +11,13 @@ void put_association(std::int64_t step, const core::AssociationReport& associati
                                    [](const core::StepReport& s, std::int64_t number) { return s.step < number; });
   if (at == steps.end() || at->step != step) return;
   auto& associations = at->associations;
-  const auto known = std::find_if(associations.begin(), associations.end(), [&](const core::AssociationReport& a) {
-    return a.observation == association.observation;
-  });
-  if (known != associations.end()) {
+  const auto known =
+      std::lower_bound(associations.begin(), associations.end(), association.observation,
+                       [](const core::AssociationReport& a, int observation) { return a.observation < observation; });
+  if (known != associations.end() && known->observation == association.observation) {
     *known = association;
   } else {
-    associations.push_back(association);
+    associations.insert(known, association);
   }
 }
 

@@ -64,16 +64,24 @@ struct RunTables {
   std::vector<HealthRow> health;
 };
 
+/// From the columns of its upper triangle, row by row. Element by element: a comma initialiser of Eigen must not be left by
+/// an exception.
+template <int n>
+Eigen::Matrix<double, n, n> symmetric(const RunRow& row, std::size_t column) {
+  Eigen::Matrix<double, n, n> matrix;
+  for (int r = 0; r < n; ++r) {
+    for (int c = r; c < n; ++c) matrix(r, c) = matrix(c, r) = row.number(column++);
+  }
+  return matrix;
+}
+
 HealthRow read_health_row(const RunRow& row) {
   HealthRow health{};
   core::StepReport& report = health.report;
   report.step = row.integer(0);
   report.t_ns = row.seconds(1);
   report.mode = enumerator<core::Mode>(row, 2, mode_words);
-  Eigen::Matrix3d& P = report.pose.covariance;
-  P << row.number(3), row.number(4), row.number(5),  //
-      row.number(4), row.number(6), row.number(7),   //
-      row.number(5), row.number(7), row.number(8);
+  report.pose.covariance = symmetric<3>(row, 3);
   report.joint_nis = row.number(9);
   report.joint_dof = small_integer(row, 10);
   report.active_landmarks = small_integer(row, 11);
@@ -188,8 +196,9 @@ std::vector<core::MapLandmark> read_map(const std::string& path) {
   for_each_row(path, map_table, [&](const RunRow& row) {
     core::MapLandmark& landmark = map.emplace_back();
     landmark.id = small_integer(row, 0);
-    landmark.point.mean_m = {row.number(1), row.number(2)};
-    landmark.point.covariance_m2 << row.number(3), row.number(4), row.number(4), row.number(5);
+    landmark.point.mean_m = {row.finite(1), row.finite(2)};
+    landmark.point.covariance_m2 = symmetric<2>(row, 3);
+    if (!landmark.point.covariance_m2.allFinite()) row.refuse(3, "finite numbers in it and the next two columns");
     landmark.observations = small_integer(row, 6);
     landmark.state = enumerator<core::LandmarkState>(row, 7, state_words);
   });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "write_truth.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "helixnav/core/errors.hpp"
@@ -68,10 +69,16 @@ void read_landmarks(const std::string& path, RunTruth& truth) {
 }
 
 void read_labels(const std::string& path, RunTruth& truth) {
-  constexpr std::int64_t most = 100'000'000;
+  // What a row makes room for is bounded, whatever it says. The writer leaves out no observation; somebody else may.
+  constexpr std::int64_t most_steps = 10'000'000;
+  constexpr std::int64_t most_unseen_steps = 100'000;
+  constexpr std::int64_t most_unseen_observations = 100;
   for_each_row(path, truth_labels_table, [&](const RunRow& row) {
-    const auto step = static_cast<std::size_t>(row.integer_in(0, 0, most));
-    const auto observation = static_cast<std::size_t>(row.integer_in(1, 0, most));
+    const auto known = static_cast<std::int64_t>(truth.labels.size());
+    const auto step = static_cast<std::size_t>(row.integer_in(0, 0, std::min(most_steps, known + most_unseen_steps)));
+    const std::size_t seen = step < truth.labels.size() ? truth.labels[step].size() : 0;
+    const auto observation =
+        static_cast<std::size_t>(row.integer_in(1, 0, static_cast<std::int64_t>(seen) + most_unseen_observations));
     if (truth.labels.size() <= step) truth.labels.resize(step + 1);
     auto& labels = truth.labels[step];
     if (labels.size() <= observation) labels.resize(observation + 1, core::no_label);

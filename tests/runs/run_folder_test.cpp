@@ -13,6 +13,7 @@
 #include "helixnav/core/random.hpp"
 #include "helixnav/files/file.hpp"
 #include "input_error.hpp"
+#include "put_association.hpp"
 #include "run_example.hpp"
 #include "temporary_folder.hpp"
 
@@ -203,6 +204,62 @@ TEST(RunTruth, IsReadFromOneFileOfAnyKind) {
   const auto other = folder.write("other.csv", "a,b\n1,2\n");
   EXPECT_NE(input_error_of([&] { read_truth(other.string()); }).find("t_s,x,y,heading"), std::string::npos);
   EXPECT_NE(input_error_of([&] { read_truth(folder.path().string()); }).find("no truth"), std::string::npos);
+}
+
+TEST(HostileRunFolder, LabelsMakeRoomForWhatIsThereOnly) {
+  const TemporaryFolder folder;
+  const std::string header = "step,observation,label\n";
+  const auto error = [&](const std::string& rows) {
+    const auto file = folder.write("truth_labels.csv", header + rows);
+    return input_error_of([&] { read_truth(file.string()); });
+  };
+  EXPECT_NE(error("99999999,0,1\n").find("truth_labels.csv:2: step is \"99999999\""), std::string::npos);
+  EXPECT_NE(error("0,0,1\n0,99999999,1\n").find("truth_labels.csv:3: observation is \"99999999\""), std::string::npos);
+  EXPECT_EQ(error("5,3,7\n100,0,1\n2,0,1\n"), "nothing thrown") << "steps and observations may be left out";
+}
+
+TEST(HostileRunFolder, ManifestsThatNestDeeperThanOursAreRefused) {
+  const TemporaryFolder folder;
+  const std::string run = (folder.path() / "run").string();
+  write_example(run, 3);
+  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
+  for (const std::string& text : {deep, "{\"a\": \"]\",\n\"config\": " + deep + "}", std::string(100'000, '{')}) {
+    folder.write("run/manifest.json", text);
+    const std::string message = input_error_of([&] { read_run(run); });
+    EXPECT_NE(message.find("JSON nested deeper than 64 levels"), std::string::npos) << message;
+  }
+  folder.write("run/manifest.json", "{\"config\": \"" + std::string(1000, '[') + "\\\"\"}");
+  EXPECT_NE(input_error_of([&] { read_run(run); }).find("not a manifest"), std::string::npos) << "brackets in a string";
+}
+
+/// An Eigen comma initialiser that an exception leaves half full aborts in builds with assertions.
+TEST(HostileRunFolder, NumbersThatAreNoneInACovarianceAreNamedByLine) {
+  const TemporaryFolder folder;
+  const std::string run = (folder.path() / "run").string();
+  write_example(run, 3);
+  std::string health = files::read_whole_file(run + "/health.csv");
+  const std::size_t third_column = health.find("mapping,") + 8;
+  health.replace(third_column, health.find(',', third_column) - third_column, "one");
+  folder.write("run/health.csv", health);
+  EXPECT_NE(input_error_of([&] { read_run(run); }).find("health.csv:2: sxx is \"one\""), std::string::npos);
+  const auto map = folder.write("map.csv", "id,x,y,sxx,sxy,syy,observations,state\n1,0,0,1,x,1,5,mature\n");
+  EXPECT_NE(input_error_of([&] { read_map(map.string()); }).find("map.csv:2: sxy is \"x\""), std::string::npos);
+}
+
+TEST(PutAssociation, KeepsTheObservationsOfAStepInOrder) {
+  std::vector<core::StepReport> steps(1);
+  for (const int observation : {3, 1, 2, 1, 0, 3}) {
+    core::AssociationReport report;
+    report.observation = observation;
+    report.dof = static_cast<int>(steps[0].associations.size());
+    put_association(0, report, steps);
+  }
+  ASSERT_EQ(steps[0].associations.size(), 4u);
+  const int last_row_of[] = {3, 3, 2, 4};  // how many there were when the last row of each came
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(steps[0].associations[static_cast<std::size_t>(i)].observation, i);
+    EXPECT_EQ(steps[0].associations[static_cast<std::size_t>(i)].dof, last_row_of[i]) << i;
+  }
 }
 
 }  // namespace
