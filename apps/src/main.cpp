@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <iostream>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -20,6 +23,16 @@ ExitCode fail(ExitCode code, const char* what) {
   return code;
 }
 
+/// What was printed and cannot be written is lost without a word, unless somebody asks.
+ExitCode check_output(ExitCode code) {
+  std::cout.flush();
+  errno = 0;
+  const bool lost = std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout;
+  if (!lost || code != ExitCode::ok) return code;
+  const std::string why = errno != 0 ? std::string(": ") + std::strerror(errno) : std::string();
+  return fail(ExitCode::data, ("the standard output cannot be written, and what was printed is lost" + why).c_str());
+}
+
 ExitCode run(int argc, char** argv) {
   CLI::App app{"Landmark navigation with an exact compressed EKF.", "helixnav"};
   const std::string version = "helixnav " + std::string(core::version()) + " (" + std::string(core::commit()) + ")";
@@ -31,7 +44,7 @@ ExitCode run(int argc, char** argv) {
       "Exit codes:\n"
       "  0    done\n"
       "  2    usage: the command line or the configuration file is wrong\n"
-      "  3    data: a log, run folder or truth cannot be used, or --out is not empty\n"
+      "  3    data: a log, run folder or truth cannot be used, --out is not empty, or output cannot be written\n"
       "  4    numerical: the mathematics broke down\n"
       "  130  interrupted: the run folder is complete up to the last step\n");
 
@@ -52,11 +65,11 @@ ExitCode run(int argc, char** argv) {
   if (argc < 2) return fail(ExitCode::usage, ("a command is missing\n\n" + app.help()).c_str());
   try {
     app.parse(argc, argv);
-    return code;
+    return check_output(code);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {  // --help, --version
       app.exit(error);
-      return ExitCode::ok;
+      return check_output(ExitCode::ok);
     }
     return fail(ExitCode::usage, explain_usage_error(app, error).c_str());
   } catch (const core::InputError& error) {

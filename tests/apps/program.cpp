@@ -22,7 +22,7 @@ void redirect(int stream, const std::string& file) {
 
 }  // namespace
 
-Program::Program(const std::vector<std::string>& arguments) {
+Program::Program(const std::vector<std::string>& arguments, const std::function<void()>& prepare) {
   std::vector<std::string> words{HELIXNAV_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
@@ -36,6 +36,7 @@ Program::Program(const std::vector<std::string>& arguments) {
   if (process_ == 0) {
     redirect(STDOUT_FILENO, out);
     redirect(STDERR_FILENO, err);
+    if (prepare) prepare();
     ::execv(argv[0], argv.data());
     ::_exit(127);
   }

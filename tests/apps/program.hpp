@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -23,7 +24,8 @@ struct Outcome {
 /// The program under way, without a terminal. Killed when it is still running at the end of this object's life.
 class Program {
  public:
-  explicit Program(const std::vector<std::string>& arguments);
+  /// `prepare` is called in the new process, its outputs redirected, before the program is there.
+  explicit Program(const std::vector<std::string>& arguments, const std::function<void()>& prepare = {});
   ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
@@ -37,7 +39,9 @@ class Program {
   pid_t process_ = -1;
 };
 
-inline Outcome run(const std::vector<std::string>& arguments) { return Program(arguments).wait(); }
+inline Outcome run(const std::vector<std::string>& arguments, const std::function<void()>& prepare = {}) {
+  return Program(arguments, prepare).wait();
+}
 
 std::string text_of(const std::filesystem::path& file);
 std::set<std::string> names_in(const std::filesystem::path& folder);

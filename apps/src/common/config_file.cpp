@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include <CLI/CLI.hpp>
@@ -36,8 +37,16 @@ CLI::ValidationError config_error(const std::string& path, int line, const std::
   return CLI::ValidationError(path + ":" + std::to_string(line), what);
 }
 
-void apply_item(const std::vector<CLI::Option*>& options, const CLI::ConfigItem& item, const std::string& path) {
-  const std::string key = item.fullname();
+/// As it may stand in a message.
+std::string shortened(const std::string& key) {
+  constexpr std::size_t longest = 60;
+  return key.size() <= longest ? key : key.substr(0, longest) + "...";
+}
+
+/// `given`: by the command line, which wins, or by the file so far, which may say a thing once.
+void apply_item(const std::vector<CLI::Option*>& options, const CLI::ConfigItem& item, const std::string& path,
+                std::map<const CLI::Option*, bool>& given) {
+  const std::string key = shortened(item.fullname());
   const std::string section = item.parents.empty() ? "" : item.parents.front();
   const auto is_called = [&](const CLI::Option* option) {  // now or in an earlier version
     const std::vector<std::string>& names = option->get_lnames();
@@ -52,7 +61,11 @@ void apply_item(const std::vector<CLI::Option*>& options, const CLI::ConfigItem&
                        "unknown key '" + key + "'; the nearest is '" + core::nearest_name(key, keys) + "'");
   }
   CLI::Option& option = **found;
-  if (option.count() > 0) return;  // the command line wins
+  const auto [known, fresh] = given.emplace(&option, true);
+  if (!fresh && known->second) {
+    throw config_error(path, line_of(path, section, item.name), "'" + key + "' is given a second time");
+  }
+  if (!fresh) return;
   try {
     option.add_result(item.inputs);
     option.run_callback();
@@ -82,9 +95,13 @@ void apply_config_file(CLI::App& app, const std::string& path) {
   } catch (const CLI::ParseError& error) {
     throw CLI::ValidationError(path, error.what());
   }
+  std::map<const CLI::Option*, bool> given;  // true: by the file
+  for (const CLI::Option* option : options) {
+    if (option->count() > 0) given[option] = false;
+  }
   for (const CLI::ConfigItem& item : items) {
     if (item.name == "++" || item.name == "--") continue;  // CLI11's marks of section begin and end
-    apply_item(options, item, path);
+    apply_item(options, item, path, given);
   }
 }
 

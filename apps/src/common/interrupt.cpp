@@ -1,25 +1,64 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "interrupt.hpp"
 
+#include <unistd.h>
+
 #include <csignal>
+#include <ctime>
+
+#include "exit_code.hpp"
 
 namespace helixnav::apps {
 namespace {
 
 volatile std::sig_atomic_t interrupt_count = 0;
+volatile std::sig_atomic_t noticed = 0;
+volatile std::sig_atomic_t has_timer = 0;
+timer_t timer;
 
+constexpr long patience_ns = 700'000'000;
+
+/// Only what POSIX allows in a handler: of timers, timer_settime.
 void on_signal(int signal) {
   interrupt_count = interrupt_count + 1;
   std::signal(signal, SIG_DFL);
+  itimerspec once{};
+  once.it_value.tv_nsec = patience_ns;
+  if (has_timer != 0) timer_settime(timer, 0, &once, nullptr);
+}
+
+/// A step, a solution or an evaluation under way may take minutes. A run folder is whole up to its last step at any time.
+void on_end_of_patience(int) {
+  if (noticed != 0) return;
+  constexpr char words[] =
+      "helixnav: interrupted in the middle of a step; what is in the folder is whole up to there\n";
+  const ssize_t ignored = ::write(STDERR_FILENO, words, sizeof words - 1);
+  static_cast<void>(ignored);
+  ::_exit(static_cast<int>(ExitCode::interrupted));
+}
+
+void make_timer() {
+  sigevent event{};
+  event.sigev_notify = SIGEV_SIGNAL;
+  event.sigev_signo = SIGALRM;
+  std::signal(SIGALRM, on_end_of_patience);
+  has_timer = timer_create(CLOCK_MONOTONIC, &event, &timer) == 0 ? 1 : 0;
 }
 
 }  // namespace
 
 void catch_interrupts() {
+  make_timer();
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
 }
 
-bool interrupted() { return interrupt_count > 0; }
+bool interrupt_pending() { return interrupt_count > 0; }
+
+bool interrupted() {
+  if (!interrupt_pending()) return false;
+  noticed = 1;
+  return true;
+}
 
 }  // namespace helixnav::apps

@@ -35,7 +35,13 @@ class Workers {
   void run() {
     std::vector<std::thread> threads;
     const std::size_t wanted = std::min<std::size_t>(campaign_.jobs, seeds_.size());
-    for (std::size_t i = 0; i < wanted; ++i) threads.emplace_back([this] { work(); });
+    threads.reserve(wanted);
+    try {
+      for (std::size_t i = 1; i < wanted; ++i) threads.emplace_back([this] { work(); });
+    } catch (const std::exception&) {
+      // The system gives no more threads: those that there are do the work.
+    }
+    work();
     for (std::thread& thread : threads) thread.join();
     if (failure_) std::rethrow_exception(failure_);
   }
@@ -43,8 +49,9 @@ class Workers {
  private:
   void work() {
     try {
-      for (std::size_t i = next_++; i < seeds_.size() && !interrupted() && !stop_; i = next_++) {
+      for (std::size_t i = next_++; i < seeds_.size() && !interrupt_pending() && !stop_; i = next_++) {
         const std::string row = run_and_judge(campaign_, seeds_[i]);
+        if (row.empty()) break;
         const std::lock_guard<std::mutex> lock(mutex_);
         folder_.append(row);
         progress_.advance_to(++done_);
@@ -74,11 +81,12 @@ ExitCode run_campaign(const Campaign& campaign) {
   const std::vector<std::uint64_t> seeds = missing_seeds(campaign, folder.seeds());
   catch_interrupts();
   Workers(campaign, seeds, folder).run();
+  const bool stopped = interrupted();
   const Json summary = summary_of(campaign.scenario.name, folder.sort());
   folder.write_summary(summary);
   std::fputs(summary_text(summary).c_str(), stdout);
   std::printf("runs: %s/runs.jsonl   summary: %s/summary.json\n", campaign.out.c_str(), campaign.out.c_str());
-  if (!interrupted()) return ExitCode::ok;
+  if (!stopped && !interrupted()) return ExitCode::ok;
   std::fprintf(stderr, "helixnav: interrupted; the same command goes on from here\n");
   return ExitCode::interrupted;
 }

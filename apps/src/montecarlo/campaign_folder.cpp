@@ -9,6 +9,8 @@
 #include "campaign.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
+#include "helixnav/files/file.hpp"
+#include "helixnav/files/json_nesting.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -26,15 +28,24 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// Under a temporary name first: the file is there whole or not at all.
-void write_whole(const fs::path& file, const std::string& text) {
-  const fs::path part = file.string() + ".part";
-  std::ofstream stream(part, std::ios::binary);
-  stream << text;
-  stream.close();
-  std::error_code error;
-  if (stream) fs::rename(part, file, error);
-  if (!stream || error) throw core::InputError(file.string() + ": cannot be written");
+/// Of what the summary asks a row for; numbers of any other type count as none.
+void check_row(const std::string& file, std::size_t line, const Json& row) {
+  const std::string here = file + ':' + std::to_string(line) + ": expected the JSON object of a run";
+  if (!row.is_object() || !row.contains("seed") || !row.contains("verdict")) throw core::InputError(here);
+  const auto require = [&](const char* key, bool right) {
+    if (!right) throw core::InputError(here + ", found \"" + key + "\": " + row.at(key).dump().substr(0, 60));
+  };
+  require("seed", row.at("seed").is_number_unsigned());
+  require("verdict", row.at("verdict").is_string());
+  for (const char* key : {"diverged_after_closure", "late", "closed_by_association"}) {
+    if (row.contains(key)) require(key, row.at(key).is_boolean());
+  }
+  for (const char* key : {"returns", "closures"}) {
+    if (row.contains(key)) require(key, row.at(key).is_array());
+  }
+  for (const char* key : {"end", "wall"}) {
+    if (row.contains(key)) require(key, row.at(key).is_object());
+  }
 }
 
 /// The settings in force, one a line with its section; what only helps to read is left out.
@@ -94,14 +105,16 @@ CampaignFolder::CampaignFolder(const Campaign& campaign) : path_(campaign.out) {
   } else if (!fs::is_empty(folder) && !campaign.overwrite) {
     throw core::InputError(path_ + ": the folder is not empty and holds no campaign; choose another --out");
   } else {
-    write_whole(folder / manifest_name, manifest.dump(2) + '\n');
+    files::write_whole_file((folder / manifest_name).string(), manifest.dump(2) + '\n');
   }
   write_rows(fs::exists(folder / rows_name) ? read_rows() : std::vector<Json>{});
 }
 
 void CampaignFolder::take_up(const Json& manifest) const {
   const std::string file = path_ + '/' + manifest_name;
-  const Json held = Json::parse(text_of(file), nullptr, false);
+  const std::string text = text_of(file);
+  files::check_json_nesting(file, text);
+  const Json held = Json::parse(text, nullptr, false);
   if (!held.is_object() || held.value("format", Json()) != format_name) {
     throw core::InputError(file + ": not the manifest of a campaign; choose another --out");
   }
@@ -114,14 +127,13 @@ void CampaignFolder::take_up(const Json& manifest) const {
 std::vector<Json> CampaignFolder::read_rows() const {
   const std::string file = path_ + '/' + rows_name;
   const std::string text = text_of(file);
+  files::check_json_nesting(file, text);
   std::vector<Json> rows;
   std::size_t begin = 0;
   for (std::size_t end = text.find('\n'); end != std::string::npos; begin = end + 1, end = text.find('\n', begin)) {
     const auto first = text.begin() + static_cast<std::ptrdiff_t>(begin);
     Json row = Json::parse(first, text.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
-    if (!row.is_object() || !row.contains("seed") || !row.contains("verdict")) {
-      throw core::InputError(file + ':' + std::to_string(rows.size() + 1) + ": expected the JSON object of a run");
-    }
+    check_row(file, rows.size() + 1, row);
     rows.push_back(std::move(row));
   }
   return rows;
@@ -132,7 +144,7 @@ void CampaignFolder::write_rows(const std::vector<Json>& rows) {
   for (const Json& row : rows) text += row.dump() + '\n';
   const std::string file = path_ + '/' + rows_name;
   rows_.close();
-  write_whole(file, text);
+  files::write_whole_file(file, text);
   rows_.open(file, std::ios::binary | std::ios::app);
 }
 
@@ -157,7 +169,7 @@ std::vector<Json> CampaignFolder::sort() {
 }
 
 void CampaignFolder::write_summary(const Json& summary) const {
-  write_whole(path_ + '/' + summary_name, summary.dump(2) + '\n');
+  files::write_whole_file(path_ + '/' + summary_name, summary.dump(2) + '\n');
 }
 
 }  // namespace helixnav::apps

@@ -108,7 +108,9 @@ evaluation::RunScore drive_and_judge(const Campaign& campaign, std::uint64_t see
   evaluation::Referee referee(recording, world.returns_at_m);
   Timed timed(navigator);
   core::EventLoop loop(recording.events, timed);
-  while (const std::optional<core::StepReport> report = loop.next()) {
+  while (!interrupt_pending()) {
+    const std::optional<core::StepReport> report = loop.next();
+    if (!report) break;
     const double seconds = timed.last_s();
     wall.run_s += seconds;
     if (report->mode == core::Mode::searching) wall.search_s += seconds;
@@ -129,6 +131,7 @@ std::string run_and_judge(const Campaign& campaign, std::uint64_t seed) {
     row["verdict"] = "failed";
     row["error"] = error.what();
   }
+  if (interrupt_pending()) return {};
   row["wall"] = {{"run_s", wall.run_s}, {"search_s", wall.search_s}, {"closing_s", wall.closing_s}};
   return row.dump();
 }
