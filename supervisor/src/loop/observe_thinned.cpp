@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "helixnav/core/thin_scan.hpp"
-#include "navigation_loop.hpp"
+#include "loop/navigation_loop.hpp"
 
 namespace helixnav::supervisor {
 
