@@ -24,15 +24,15 @@ bool Grove::plant(const Eigen::Vector2d& point_m, const Stretch& present) {
   return true;
 }
 
-void Grove::plant_along(const Stretch& stretch, const WorldOptions& options, double probability, const Stretch& present,
-                        core::RandomStream& random) {
+void Grove::plant_along(const Route& road, const Stretch& stretch, const WorldOptions& options, double probability,
+                        const Stretch& present, core::RandomStream& random) {
   const Interval& spacing = options.tree_spacing_m;
   for (const double side : {-1.0, 1.0}) {
     double along_m = stretch.from_m + random.uniform(0.0, spacing.min);
     while (along_m < stretch.to_m) {
       const double offset_m = side * random.uniform(options.tree_offset_m.min, options.tree_offset_m.max);
       const double scatter_m = random.normal(0.0, along_scatter_m);
-      if (random.bernoulli(probability)) plant(beside(route_, along_m, offset_m, scatter_m), present);
+      if (random.bernoulli(probability)) plant(beside(road, along_m, offset_m, scatter_m), present);
       along_m += random.uniform(spacing.min, spacing.max);
     }
   }

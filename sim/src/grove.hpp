@@ -16,9 +16,14 @@ class Grove {
   /// False when there was no room.
   bool plant(const Eigen::Vector2d& point_m, const Stretch& present);
 
-  /// Plants on both sides of a stretch, each place with a probability.
+  /// Plants on both sides of a stretch of the route, each place with a probability.
   void plant_along(const Stretch& stretch, const WorldOptions& options, double probability, const Stretch& present,
-                   core::RandomStream& random);
+                   core::RandomStream& random) {
+    plant_along(route_, stretch, options, probability, present, random);
+  }
+  /// The same along another road, with the same clearance from the route.
+  void plant_along(const Route& road, const Stretch& stretch, const WorldOptions& options, double probability,
+                   const Stretch& present, core::RandomStream& random);
 
   /// Ends the presence of each tree with a probability.
   void fell(double share, double at_m, core::RandomStream& random);

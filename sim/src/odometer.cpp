@@ -2,18 +2,30 @@
 #include "odometer.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace helixnav::sim {
+namespace {
+
+double draw_metres_to_slip(const SlipOptions& slip, core::RandomStream& random) {
+  if (slip.every_m <= 0.0) return std::numeric_limits<double>::infinity();
+  return -slip.every_m * std::log1p(-random.uniform(0.0, 1.0));
+}
+
+}  // namespace
 
 Odometer::Odometer(const Scenario& scenario, std::uint64_t seed)
     : geometry_(scenario.vehicle.geometry),
       true_noise_(scenario.true_noise.odometry),
       assumed_noise_(scenario.assumed_noise.odometry),
       bias_(scenario.bias),
+      slip_(scenario.slip),
       noise_(seed, "sim.odometry"),
       slow_(seed, "sim.odometry.bias"),
+      slip_random_(seed, "sim.odometry.slip"),
       steering_error_sigmas_(slow_.normal()),
-      speed_error_sigmas_(slow_.normal()) {}
+      speed_error_sigmas_(slow_.normal()),
+      metres_to_slip_(draw_metres_to_slip(slip_, slip_random_)) {}
 
 core::Odometry Odometer::measure(const core::AckermannSample& truth, core::Nanoseconds t_ns) {
   core::AckermannSample measured = truth;
@@ -24,7 +36,22 @@ core::Odometry Odometer::measure(const core::AckermannSample& truth, core::Nanos
   drift(truth.duration_s);
   core::Odometry odometry = core::ackermann_increment(geometry_, assumed_noise_, measured);
   odometry.t_ns = t_ns;
+  metres_to_slip_ -= truth.wheel_speed_mps * truth.duration_s;
+  if (metres_to_slip_ <= 0.0) {
+    odometry.T_before_after = core::compose(odometry.T_before_after, core::inverse(draw_slip()));
+    metres_to_slip_ = draw_metres_to_slip(slip_, slip_random_);
+    slips_.push_back(t_ns);
+  }
   return odometry;
+}
+
+/// T_before_after of a slip, in the frame of the vehicle before it.
+core::Pose2 Odometer::draw_slip() {
+  const double distance_m = slip_random_.uniform(slip_.distance_m.min, slip_.distance_m.max);
+  const double direction_rad = slip_random_.uniform(-core::pi, core::pi);
+  const double turn_rad = slip_random_.uniform(slip_.turn_rad.min, slip_.turn_rad.max);
+  const double side = slip_random_.bernoulli(0.5) ? 1.0 : -1.0;
+  return {distance_m * std::cos(direction_rad), distance_m * std::sin(direction_rad), side * turn_rad};
 }
 
 void Odometer::drift(double duration_s) {

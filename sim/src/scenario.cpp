@@ -13,14 +13,6 @@ namespace {
 
 constexpr double degrees = core::pi / 180.0;
 
-NoiseLevels scaled(NoiseLevels noise, double factor) {
-  noise.odometry.sigma_speed_mps *= factor;
-  noise.odometry.sigma_steering_rad *= factor;
-  noise.sigma_range_m *= factor;
-  noise.sigma_bearing_rad *= factor;
-  return noise;
-}
-
 /// The other loops: back where the error is often still below the spacing of the trees.
 Scenario changed_loop() {
   Scenario s;
@@ -98,7 +90,7 @@ Scenario odometry_bias() {
 
 Scenario assumed_noise(double factor) {
   Scenario s;
-  s.assumed_noise = scaled(s.true_noise, factor);
+  s.assumed_noise = scaled(s.true_noise, factor, factor);
   return s;
 }
 
@@ -149,6 +141,29 @@ Scenario circuit(double sigma_turn_rad, double sigma_range_m, double sigma_beari
 Scenario circuit_moderate() { return circuit(1.0 * degrees, 0.1, 2.0 * degrees); }
 Scenario circuit_large() { return circuit(2.0 * degrees, 0.3, 5.0 * degrees); }
 
+Scenario town() {
+  Scenario s;
+  s.world.kind = WorldKind::town;
+  s.world.tree_spacing_m = {8.0, 10.0};
+  s.world.tree_offset_m = {4.0, 7.0};
+  return s;
+}
+
+Scenario slip() {
+  Scenario s = town();
+  s.slip.every_m = 200.0;
+  return s;
+}
+
+Scenario kidnapped_slip() {
+  Scenario s = town();
+  s.world.tour_m = 2800.0;
+  s.slip.every_m = 700.0;
+  s.slip.distance_m = {1.5, 1.5};
+  s.slip.turn_rad = {5.0 * degrees, 5.0 * degrees};
+  return s;
+}
+
 Scenario noise_free() {
   Scenario s;
   s.true_noise = {{0.0, 0.0}, 0.0, 0.0};
@@ -163,7 +178,7 @@ struct Entry {
   Scenario (*make)();
 };
 
-constexpr std::array<Entry, 17> entries{{
+constexpr std::array<Entry, 20> entries{{
     {"large-loop", "closed road of 430-820 m, trees 8 m apart, the last 210-270 m bare; drives on for 180 m",
      large_loop},
     {"large-loop-changed", "large-loop with 30 % of the trees felled and as many planted between the laps",
@@ -186,6 +201,10 @@ constexpr std::array<Entry, 17> entries{{
     {"blackout", "loop of two-laps, closed once, whose scanner sees nothing for 50 m of the first lap", blackout},
     {"circuit", "circle of 50 m driven four times (800 scans) among 20 landmarks, moderate noise", circuit_moderate},
     {"circuit-large-noise", "circuit with 2 deg/step odometry, 0.3 m and 5 deg scanner noise", circuit_large},
+    {"town",
+     "tour of 4.8 km on a grid of streets 120 m apart, a tree every 9 m on both sides, 15 % of the streets bare", town},
+    {"slip", "town whose vehicle slips by 0.3-0.8 m and 3 deg every 200 m, which its odometry does not know", slip},
+    {"kidnapped-slip", "town of 2.8 km whose vehicle is displaced by 1.5 m and 5 deg every 700 m", kidnapped_slip},
     {"noise-free", "loop of two-laps, closed once, with exact sensors that miss nothing; usual noise is told",
      noise_free},
 }};
@@ -223,6 +242,10 @@ void check_world(const WorldOptions& world) {
   require("world.lattice_pitch_m", world.lattice_pitch_m, nearest_trees_m, unlimited);
   require("world.circuit_landmarks", world.circuit_landmarks, 0.0, 1e6);
   require("world.blackout_length_m", world.blackout_length_m, 0.0, unlimited);
+  require("world.tour_m", world.tour_m, 10.0, 1e5);
+  require("world.block_side_m", world.block_side_m, 40.0, 1e4);
+  require("world.blocks_a_side", world.blocks_a_side, 1.0, 100.0);
+  require("world.bare_share", world.bare_share, 0.0, 1.0);
 }
 
 void check_vehicle(const VehicleOptions& vehicle) {
@@ -251,7 +274,22 @@ void check_noise(const NoiseLevels& noise, const std::string& whose, double leas
   require((whose + ".sigma_bearing_rad").c_str(), noise.sigma_bearing_rad, least_sigma, unlimited);
 }
 
+void check_slip(const SlipOptions& slip) {
+  require("slip.every_m", slip.every_m, 0.0, unlimited);
+  require("slip.distance_m", slip.distance_m, 0.0, unlimited);
+  require("slip.turn_rad", slip.turn_rad, 0.0, core::pi);
+}
+
 }  // namespace
+
+NoiseLevels scaled(const NoiseLevels& noise, double odometry_factor, double detector_factor) {
+  NoiseLevels result = noise;
+  result.odometry.sigma_speed_mps *= odometry_factor;
+  result.odometry.sigma_steering_rad *= odometry_factor;
+  result.sigma_range_m *= detector_factor;
+  result.sigma_bearing_rad *= detector_factor;
+  return result;
+}
 
 std::vector<std::string> scenario_names() {
   std::vector<std::string> names;
@@ -284,6 +322,7 @@ void check_scenario(const Scenario& scenario) {
   require("bias.sigma_steering_rad", scenario.bias.sigma_steering_rad, 0.0, unlimited);
   require("bias.sigma_speed_scale", scenario.bias.sigma_speed_scale, 0.0, unlimited);
   require("bias.time_constant_s", scenario.bias.time_constant_s, 1e-3, unlimited);
+  check_slip(scenario.slip);
 }
 
 }  // namespace helixnav::sim

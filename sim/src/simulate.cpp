@@ -50,6 +50,7 @@ core::Recording simulate_in(const World& world, const Scenario& scenario, std::u
       record(scanner.look(step.T_world_robot, step.along_m, t_ns), step.T_world_robot, recording);
     }
   }
+  recording.true_slips_ns = odometer.slips();
   return recording;
 }
 

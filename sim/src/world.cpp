@@ -9,6 +9,7 @@
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/errors.hpp"
 #include "roads.hpp"
+#include "town.hpp"
 
 namespace helixnav::sim {
 namespace {
@@ -157,6 +158,20 @@ World circuit_world(const WorldOptions& options, Dice& dice) {
   return world;
 }
 
+World town_world(const WorldOptions& options, Dice& dice) {
+  const Town town(options, dice.road);
+  const TownTour tour = town.tour(options.tour_m, options.drive_on_m, dice.road);
+  World world{Route(tour.road), tour.drive_m, {}, tour.returns_at_m, {}};
+  constexpr double crossing_m = 10.0;  // no trees so near to the middle of a crossing
+  Grove grove(world.route, options.road_clearance_m);
+  for (const Polyline& street : town.streets_with_trees()) {
+    const Stretch stretch{crossing_m, options.block_side_m - crossing_m};
+    grove.plant_along(Route(street), stretch, options, 1.0, always, dice.trees);
+  }
+  world.trees = grove.trees();
+  return world;
+}
+
 World build(const WorldOptions& options, Dice& dice) {
   switch (options.kind) {
     case WorldKind::loop:
@@ -169,6 +184,8 @@ World build(const WorldOptions& options, Dice& dice) {
       return figure_of_eight_world(options, dice);
     case WorldKind::circuit:
       return circuit_world(options, dice);
+    case WorldKind::town:
+      return town_world(options, dice);
   }
   throw core::PreconditionError("sim: unknown kind of world");
 }

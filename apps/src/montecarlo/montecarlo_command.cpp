@@ -12,6 +12,7 @@
 #include "common/commands.hpp"
 #include "common/config_file.hpp"
 #include "common/fit_to_recording.hpp"
+#include "common/scenario_settings.hpp"
 #include "common/settings.hpp"
 #include "common/validators.hpp"
 #include "helixnav/sim/scenario.hpp"
@@ -23,13 +24,14 @@ struct MonteCarloJob {
   std::string scenario;
   std::string config;
   Campaign campaign;
+  ScenarioSettings scenario_settings;
   Settings settings;
 };
 
 ExitCode run(CLI::App& command, MonteCarloJob& job) {
   if (!job.config.empty()) apply_config_file(command, job.config);
   Campaign& campaign = job.campaign;
-  campaign.scenario = sim::named_scenario(job.scenario);
+  campaign.scenario = scenario_of(job.scenario, job.scenario_settings);
   const core::FieldOfView& view = campaign.scenario.scanner.field_of_view;
   campaign.navigator = fit_to_sensor(job.settings, view);
   campaign.navigator.search.relocalizer.threads = 1;  // the runs themselves fill the cores
@@ -67,6 +69,7 @@ void add_montecarlo_command(CLI::App& app, ExitCode& code) {
       app.add_subcommand("montecarlo", "Drive a scenario with many seeds and judge every run by the truth");
   const auto job = std::make_shared<MonteCarloJob>();
   add_options(*command, *job);
+  add_scenario_settings(*command, job->scenario_settings);
   add_settings(*command, job->settings);
   command->footer(
       "Writes runs.jsonl, a line a run as it ends, and summary.json (docs/campaign.md); prints the summary. A "

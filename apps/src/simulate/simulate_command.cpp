@@ -10,6 +10,7 @@
 #include "common/config_file.hpp"
 #include "common/fit_to_recording.hpp"
 #include "common/run_options.hpp"
+#include "common/scenario_settings.hpp"
 #include "common/settings.hpp"
 #include "common/validators.hpp"
 #include "drive/drive.hpp"
@@ -23,6 +24,7 @@ struct SimulateJob {
   std::string scenario = "large-loop";
   std::uint64_t seed = 1;
   RunOptions run;
+  ScenarioSettings scenario_settings;
   Settings settings;
 };
 
@@ -38,7 +40,7 @@ std::string scenario_list() {
 ExitCode simulate(CLI::App& command, SimulateJob& job) {
   prepare_run(command, job.run);
   Drive task;
-  task.recording = sim::simulate(sim::named_scenario(job.scenario), job.seed);
+  task.recording = sim::simulate(scenario_of(job.scenario, job.scenario_settings), job.seed);
   task.navigator = fit_to_recording(job.settings, task.recording);
   const std::string sensor_text = lengths_text(task.navigator, logs::field_of_view_of(task.recording));
   fill_drive(task, job.run, dump_config(command) + sensor_text);
@@ -59,6 +61,7 @@ void add_simulate_command(CLI::App& app, ExitCode& code) {
       ->capture_default_str()
       ->check(number_between(std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max()));
   add_run_options(*command, job->run);
+  add_scenario_settings(*command, job->scenario_settings);
   add_settings(*command, job->settings);
   command->footer(scenario_list() + "\nExample:\n  helixnav simulate large-loop --seed 1 --out runs/loop\n");
   command->callback([command, job, &code] { code = simulate(*command, *job); });

@@ -54,6 +54,7 @@ struct Recording {
   std::vector<SharedObservation> shared_observations;  ///< `labels` holds the first label of each
   std::vector<TruePose> true_poses;
   std::vector<TrueLandmark> true_landmarks;
+  std::vector<Nanoseconds> true_slips_ns;  ///< ends of the increments that a slip made wrong, ascending (simulator)
   std::vector<TruePosition> true_positions;
   /// Observations of no mapped landmark in a scan, clutter and new ones together, as known of the sensor; 0: nobody knows,
   /// and they are to be learnt from the drive. Nothing: as the navigator takes it.

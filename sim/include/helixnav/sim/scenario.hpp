@@ -44,6 +44,13 @@ struct OdometryBias {
   double time_constant_s = 60.0;
 };
 
+/// What no odometry tells: the vehicle is displaced between two samples, in any direction, and turned to either side.
+struct SlipOptions {
+  double every_m = 0.0;  ///< mean distance driven between two slips, exponentially distributed; 0: never
+  Interval distance_m{0.3, 0.8};
+  Interval turn_rad{3.0 * core::pi / 180.0, 3.0 * core::pi / 180.0};  ///< absolute value
+};
+
 /// Everything that a simulated run depends on, beside its seed. True noise is what happens, told noise is what the
 /// events claim (covariance of Odometry, R of Observation).
 struct Scenario {
@@ -55,6 +62,7 @@ struct Scenario {
   NoiseLevels true_noise;
   NoiseLevels assumed_noise;
   OdometryBias bias;
+  SlipOptions slip;
 };
 
 /// Names that named_scenario knows, in the order in which to show them.
@@ -63,6 +71,9 @@ std::vector<std::string> scenario_names();
 /// One of the scenarios by name, to use or to change. InputError for an unknown name, with the nearest known one.
 /// Test: sim/scenario_test.cpp.
 Scenario named_scenario(std::string_view name);
+
+/// Noise with its standard deviations multiplied: those of odometry by one factor, those of the detector by another.
+NoiseLevels scaled(const NoiseLevels& noise, double odometry_factor, double detector_factor);
 
 /// Throws InputError that names the first key out of its range, with value and range.
 /// Test: sim/scenario_test.cpp.

@@ -23,6 +23,7 @@ enum class WorldKind {
   orchard,          ///< racetrack whose home straight runs through a lattice of trees larger than what was mapped of it
   figure_of_eight,  ///< two lobes with trees, bare around the crossing: both are come back to, the first one twice
   circuit,          ///< small circle among scattered landmarks, driven again and again
+  town,             ///< random tour on a grid of streets with trees on both sides, some of them bare
 };
 
 /// What a world is drawn from. Not every quantity matters to every kind; the comment names those it matters to.
@@ -39,6 +40,10 @@ struct WorldOptions {
   Interval lattice_pitch_m{4.0, 7.0};    ///< orchard
   int circuit_landmarks = 20;            ///< circuit: at 0.5 to 1.5 times its radius from its centre
   double blackout_length_m = 0.0;        ///< loop: stretch of the first lap where the scanner sees nothing
+  double tour_m = 4800.0;                ///< town: length of the tour
+  double block_side_m = 120.0;           ///< town: from crossing to crossing
+  int blocks_a_side = 4;                 ///< town: the grid has so many blocks in each direction
+  double bare_share = 0.15;              ///< town: of the streets, never the first one
 };
 
 /// A tree, seen as a point. It exists while the vehicle is in `present` of its route.
@@ -53,7 +58,8 @@ struct World {
   Route route;
   double drive_m = 0.0;  ///< how much of the route is driven
   std::vector<Tree> trees;
-  std::vector<double> returns_at_m;  ///< distances along the route where old ground begins again; empty: never
+  std::vector<double> returns_at_m;  ///< distances along the route where old ground begins again; empty: never. In a
+                                     ///< town: where a street with trees is entered again from one that is no such
   std::optional<Stretch> blackout;
 };
 
