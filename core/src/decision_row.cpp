@@ -31,6 +31,18 @@ void numbers(RollbackDecision& d, Visit&& visit) {
 }
 
 template <class Visit>
+void numbers(SlipDecision& d, Visit&& visit) {
+  visit("pairs", d.pairs);
+  visit("nats", d.nats);
+  visit("same_pairs_nats", d.same_pairs_nats);
+  visit("rival_nats", d.rival_nats);
+  visit("moved_m", d.moved_m);
+  visit("turned_deg", d.turned_deg);
+  visit("sigma_m", d.sigma_m);
+  visit("displaced", d.displaced);
+}
+
+template <class Visit>
 void numbers(AttemptStarted& d, Visit&& visit) {
   visit("attempt", d.attempt);
   visit("reference_landmarks", d.reference_landmarks);
@@ -127,6 +139,7 @@ struct KindAndVerdict {
 
 KindAndVerdict words_of(const TriggerDecision&) { return {"trigger", "started"}; }
 KindAndVerdict words_of(const RollbackDecision&) { return {"trigger", "rewound"}; }
+KindAndVerdict words_of(const SlipDecision&) { return {"slip", "accepted"}; }
 KindAndVerdict words_of(const AttemptStarted&) { return {"search", "started"}; }
 KindAndVerdict words_of(const AttemptEnded& d) { return {"search", reason_words[static_cast<int>(d.reason)]}; }
 KindAndVerdict words_of(const ReferenceUnusable&) { return {"search", "reference-unusable"}; }
@@ -199,6 +212,7 @@ Decision decision_of(const DecisionRow& row) {
   const bool judged = accepted || row.verdict == "refused";
   if (row.kind == "trigger" && row.verdict == "started") return fill(TriggerDecision{}, row);
   if (row.kind == "trigger" && row.verdict == "rewound") return fill(RollbackDecision{}, row);
+  if (row.kind == "slip" && accepted) return fill(SlipDecision{}, row);
   if (row.kind == "search") return search_decision(row);
   if (row.kind == "closure" && row.verdict == "undecided") return fill(UndecidedDecision{}, row);
   if (row.kind == "closure" && judged) return fill(ClosureDecision{}, accepted, row);

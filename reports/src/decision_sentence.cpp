@@ -28,6 +28,14 @@ std::string sentence(const core::TriggerDecision& d) {
          short_number(d.heading_sigma_deg) + "°. The old landmarks are set aside until it is known which is which.";
 }
 
+std::string sentence(const core::SlipDecision& d) {
+  return "The vehicle slipped: it is " + short_number(d.moved_m) + " m and " + short_number(d.turned_deg) +
+         "° from where its odometry puts it. " + counted(d.pairs, "landmark") +
+         " stand as they should from there, which explains the scan " + short_number(d.nats) +
+         " nats better than no slip and " + short_number(d.rival_nats) +
+         " better than a slip to anywhere else. The pose was widened by " + short_number(d.sigma_m) + " m.";
+}
+
 std::string attempt_number(int attempt) { return "Attempt " + std::to_string(attempt); }
 
 std::string sentence(const core::AttemptStarted& d) {

@@ -10,7 +10,7 @@ namespace {
 std::vector<DecisionRow> all_rows() {
   std::vector<DecisionRow> rows;
   for (const Decision& decision :
-       {Decision(TriggerDecision{}), Decision(RollbackDecision{}), Decision(AttemptStarted{}),
+       {Decision(TriggerDecision{}), Decision(RollbackDecision{}), Decision(SlipDecision{}), Decision(AttemptStarted{}),
         Decision(ReferenceUnusable{}), Decision(UndecidedDecision{})}) {
     rows.push_back(row_of(decision));
   }

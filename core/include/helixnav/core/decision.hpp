@@ -33,6 +33,19 @@ struct RollbackDecision {
   int scans = 0;      ///< gone through again
 };
 
+/// The vehicle slipped: it is not where its odometry says. Figures in nats: by how much the slip explains the scan better
+/// than what stands beside it (supervisor/slip_decision).
+struct SlipDecision {
+  int pairs = 0;                 ///< of observation and landmark that say so
+  double nats = 0.0;             ///< than no slip
+  double same_pairs_nats = 0.0;  ///< than the same pairs without a slip
+  double rival_nats = 0.0;       ///< than a slip to the best other place; than chance where there is none
+  double moved_m = 0.0;
+  double turned_deg = 0.0;
+  double sigma_m = 0.0;    ///< by which the pose was widened
+  double displaced = 0.0;  ///< median displacement of the pairs by the spacing of the landmarks
+};
+
 /// An attempt of a search began: particles drawn on helices around old landmarks.
 struct AttemptStarted {
   int attempt = 0;
@@ -126,9 +139,9 @@ struct OtherDecision {
 };
 
 /// A decision of the navigator that is worth a sentence, with the numbers that decided it.
-using Decision = std::variant<TriggerDecision, RollbackDecision, AttemptStarted, AttemptEnded, ReferenceUnusable,
-                              VerificationDecision, ClosureDecision, UndecidedDecision, SmoothingDecision, FixDecision,
-                              OtherDecision>;
+using Decision = std::variant<TriggerDecision, RollbackDecision, SlipDecision, AttemptStarted, AttemptEnded,
+                              ReferenceUnusable, VerificationDecision, ClosureDecision, UndecidedDecision,
+                              SmoothingDecision, FixDecision, OtherDecision>;
 
 /// True for what ends a question: a closing accepted or refused, or a search given up.
 inline bool is_closure(const Decision& decision) {
