@@ -71,6 +71,7 @@ void Referee::watch(const StepReport& report, const Map& map_now) {
   book.pose = report.pose;
   if (book.on_old_ground) book.last_on_old_ground = {report.pose, book.truth()};
   book.note_triggers(report);
+  book.note_slips(report);
   book.count_matches(report, labels);
   book.score.refused += count_closings(report, false);
   book.score.undecided += count<core::UndecidedDecision>(report);
@@ -87,6 +88,7 @@ RunScore Referee::score(const std::vector<MapLandmark>& map) const {
     result.end_on_old_ground = book_->judge(book_->last_on_old_ground.value_or(end), map);
   }
   if (!result.returns.empty()) result.returns.back().duplicate_segment = result.end_on_old_ground;
+  if (book_->last_associated) result.returns.back().associated = book_->judge(*book_->last_associated, map);
   result.wrong_without_trigger += book_->wrong_so_far;
   result.spacing_m = book_->spacing_m();
   result.trees_seen = static_cast<int>(book_->seen.size());
@@ -103,12 +105,14 @@ void Referee::Book::drive_on(const StepReport& report, const Map& map_now) {
   const std::size_t next = score.returns.size();
   if (next < returns_at_m.size() && driven_m >= returns_at_m[next] - in_sight_m) {
     if (next > 0 && last_on_old_ground) score.returns.back().duplicate_segment = judge(*last_on_old_ground, map_now());
+    if (next > 0 && last_associated) score.returns.back().associated = judge(*last_associated, map_now());
     begin_return(report.mode == core::Mode::searching && count<core::TriggerDecision>(report) == 0);
   }
 }
 
 void Referee::Book::begin_return(bool searching) {
   score.returns.emplace_back();
+  last_associated.reset();
   identities.fix_unseen(driven_m - options.left_behind_m);
   old_trees = identities.old_trees();
   seen_until_return.push_back(seen);
@@ -126,6 +130,17 @@ void Referee::Book::note_triggers(const StepReport& report) {
   if (rewound == 0 && started == 0) return;
   triggered = true;
   score.wrong_before_trigger += std::exchange(wrong_so_far, 0);
+}
+
+void Referee::Book::note_slips(const StepReport& report) {
+  const std::vector<core::Nanoseconds>& slips_ns = recording.true_slips_ns;
+  const auto until = std::upper_bound(slips_ns.begin(), slips_ns.end(), report.t_ns);
+  const auto happened = static_cast<int>(until - slips_ns.begin());
+  if (happened > score.slips) last_slip_m = driven_m;
+  score.slips = happened;
+  const int decided = count<core::SlipDecision>(report);
+  score.slips_decided += decided;
+  if (driven_m - last_slip_m > options.slip_known_m) score.slips_unfounded += decided;
 }
 
 /// Notes which trees come into view, and when they are old ones. `pose` still is that of the scan before.
@@ -148,6 +163,7 @@ void Referee::Book::look_out(const std::vector<Label>& labels) {
 }
 
 void Referee::Book::count_matches(const StepReport& report, const std::vector<Label>& labels) {
+  const int before = score.old_matches;
   for (const core::AssociationReport& a : report.associations) {
     const bool matched = a.outcome == core::Outcome::matched;
     if (!matched && a.outcome != core::Outcome::augmented) continue;
@@ -163,6 +179,9 @@ void Referee::Book::count_matches(const StepReport& report, const std::vector<La
     }
     identities.add_sighting(a.landmark, label, driven_m);
   }
+  if (!score.returns.empty() && score.old_matches - before >= options.reentry_observations) {
+    last_associated = {pose, truth()};
+  }
 }
 
 /// Landmarks that earlier scans began when they were gone through again; and poses believed in between are no more.
@@ -175,6 +194,7 @@ void Referee::Book::revise(const StepReport& report) {
     }
   }
   last_on_old_ground = {report.pose, truth()};
+  last_associated.reset();
 }
 
 }  // namespace helixnav::evaluation

@@ -37,8 +37,10 @@ struct Referee::Book {
   int wrong_so_far = 0;        ///< wrong old matches since the present return, while nothing triggered
   bool on_old_ground = false;  ///< in the present scan
   std::size_t steps = 0;
+  double last_slip_m = -std::numeric_limits<double>::infinity();  ///< driven until then
   core::PoseGaussian pose;
   std::optional<Judgeable> last_on_old_ground;  ///< or at a closing behind it
+  std::optional<Judgeable> last_associated;     ///< with old ground, since the present return
   RunScore score;
 
   Book(const core::Recording& run, std::vector<double> returns_m, const RefereeOptions& how, double sight_m)
@@ -60,6 +62,7 @@ struct Referee::Book {
   void begin_return(bool searching);
   void note_triggers(const core::StepReport& report);
   void look_out(const std::vector<core::Label>& labels);
+  void note_slips(const core::StepReport& report);
   void count_matches(const core::StepReport& report, const std::vector<core::Label>& labels);
   void revise(const core::StepReport& report);
   void judge_closure(const core::StepReport& report, const std::vector<core::MapLandmark>& map);

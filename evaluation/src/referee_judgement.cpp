@@ -59,6 +59,7 @@ void Referee::Book::judge_closure(const StepReport& report, const std::vector<Ma
   if (!score.returns.empty() && !score.returns.back().closed) closure.after_reentry_m = driven_m - reentered_at_m;
   closure.pairs = static_cast<int>(report.merged.size());
   for (const core::MergedLandmarks& pair : report.merged) {
+    identities.fix_if_unseen(pair.kept, driven_m - options.old_after_m);
     const Label kept = identities.identity(pair.kept);
     if (kept == core::no_label || kept != identities.identity(pair.removed)) ++closure.wrong_pairs;
   }
@@ -140,7 +141,7 @@ void Referee::Book::pass_verdict(RunScore& result) const {
   for (ReturnScore& one : result.returns) {
     if (one.closed || one.old_matches < options.association_matches) continue;
     one.closed = result.closed_by_association = true;
-    wrong = wrong || is_wrong(one.duplicate_segment.relative) || too_many_wrong(one.wrong_old_matches, one.old_matches);
+    wrong = wrong || is_wrong(one.associated.relative) || too_many_wrong(one.wrong_old_matches, one.old_matches);
   }
   const bool all_closed =
       !returns_at_m.empty() && result.returns.size() == returns_at_m.size() &&

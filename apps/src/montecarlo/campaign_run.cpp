@@ -64,6 +64,7 @@ Json json_of(const evaluation::ReturnScore& one) {
                {"old_matches", one.old_matches},
                {"wrong_old_matches", one.wrong_old_matches}};
   json.update(json_of(one.duplicate_segment));
+  json["associated_position_error_m"] = one.associated.relative.position_m;
   return json;
 }
 
@@ -88,6 +89,9 @@ Json json_of(const evaluation::RunScore& score) {
           {"wrong_old_matches", score.wrong_old_matches},
           {"wrong_before_trigger", score.wrong_before_trigger},
           {"wrong_without_trigger", score.wrong_without_trigger},
+          {"slips", score.slips},
+          {"slips_decided", score.slips_decided},
+          {"slips_unfounded", score.slips_unfounded},
           {"spacing_m", score.spacing_m},
           {"end", json_of(score.end)},
           {"end_on_old_ground", json_of(score.end_on_old_ground)},

@@ -160,6 +160,16 @@ void put_closures(Json& summary, const std::vector<Json>& rows, const std::vecto
   summary["nees_at_end"] = nees(of_parts(closed, "end", "nees"));
 }
 
+void put_slips(Json& summary, const std::vector<Json>& rows) {
+  Json slips;
+  for (const auto& [name, key] : {std::pair("happened", "slips"), std::pair("decided", "slips_decided"),
+                                  std::pair("unfounded", "slips_unfounded")}) {
+    const char* const wanted = key;
+    slips[name] = sum(of_rows(chosen(rows, [wanted](const Json& r) { return r.contains(wanted); }), key));
+  }
+  summary["slips"] = slips;
+}
+
 void put_map(Json& summary, const std::vector<Json>& closed) {
   const double duplicates = sum(of_rows(closed, "duplicates"));
   const double trees = sum(of_rows(closed, "trees_seen"));
@@ -207,6 +217,7 @@ Json summary_of(const std::string& scenario, const std::vector<Json>& rows) {
   put_shares(summary, rows);
   put_closures(summary, rows, closed);
   put_map(summary, closed);
+  put_slips(summary, rows);
   summary["wall"] = {{"run_s", quantiles(of_parts(rows, "wall", "run_s"))},
                      {"search_s", quantiles(of_parts(rows, "wall", "search_s"))},
                      {"closing_s", quantiles(of_parts(rows, "wall", "closing_s"))}};
@@ -247,6 +258,10 @@ std::string summary_text(const Json& summary) {
   text += line;
   std::snprintf(line, sizeof(line), "  %-34s %.0f, %.2f %% of the trees\n", "duplicates",
                 number(summary.at("duplicates"), "count"), number(summary.at("duplicates"), "percent_of_trees"));
+  text += line;
+  const Json& slips = summary.at("slips");
+  std::snprintf(line, sizeof(line), "  %-34s %.0f decided, %.0f of them unfounded, %.0f happened\n", "slips",
+                number(slips, "decided"), number(slips, "unfounded"), number(slips, "happened"));
   text += line;
   for (const char* key : {"run_s", "search_s", "closing_s"}) {
     text += text_of_quantiles((std::string("wall clock, ") + key).c_str(), summary.at("wall").at(key));

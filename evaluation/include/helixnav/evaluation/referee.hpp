@@ -24,6 +24,7 @@ struct RefereeOptions {
   int old_sightings = 3;           ///< with fewer it is no mapped landmark, and matches with it do not count
   int reentry_observations = 3;    ///< of trees mapped before, in one scan: old ground is re-entered
   int association_matches = 10;    ///< with old landmarks after a return: closed without any closure
+  double slip_known_m = 150.0;     ///< a slip may be decided so long after it happened
   int relative_landmarks = 8;      ///< nearest old ones that the relative error refers to
 };
 
@@ -61,6 +62,7 @@ struct ReturnScore {
   int wrong_old_matches = 0;
   bool closed = false;           ///< by a closure, or by association
   JudgedPose duplicate_segment;  ///< as RunScore::end_on_old_ground, before the next return or the end
+  JudgedPose associated;         ///< at the last scan before that with reentry_observations matches with old landmarks
 };
 
 enum class RunVerdict {
@@ -84,6 +86,9 @@ struct RunScore {
   int wrong_old_matches = 0;
   int wrong_before_trigger = 0;   ///< wrong old matches before the first trigger of a return, begun from before or not
   int wrong_without_trigger = 0;  ///< those of returns without any trigger
+  int slips = 0;                  ///< that happened (Recording::true_slips_ns)
+  int slips_decided = 0;          ///< by the navigator, and …
+  int slips_unfounded = 0;        ///< … those of them without a true one in the last slip_known_m
   double spacing_m = 0.0;         ///< median distance from a tree seen before the first return to the nearest other
   JudgedPose end;
   JudgedPose end_on_old_ground;  ///< at the last scan with old trees in view, or that closed: behind them, all drift
@@ -97,8 +102,8 @@ struct RunScore {
 /// that most of its observations came from. Who an old landmark is stands fixed where the return begins, if it was left
 /// behind by then, or since it was unseen for old_after_m, so that wrong matches cannot make it another. A return begins 1.5 times the sensor's range before
 /// `returns_at_m`, when no old tree is in view yet. A closing is wrong by its pose or by its pairs; a return that is
-/// closed by association alone (association_matches with old landmarks and no closure) is judged by the pose where its old
-/// ground is left behind and by its matches. Poses are judged by the relative error; the absolute one stands beside it.
+/// closed by association alone (association_matches with old landmarks and no closure) is judged by the pose where it was
+/// last associated with old landmarks and by its matches. Poses are judged by the relative error; the absolute one stands beside it.
 /// Test: evaluation/referee_test.cpp (a report made by hand for every verdict).
 class Referee {
  public:
