@@ -79,6 +79,13 @@ constexpr std::array rows{
     Row{"search.stretch_rim_m", 1, 10, [](Options& o) -> double& { return o.search.stretch_rim_m; }},
     Row{"search.stretch_rigid_m", 7, 300, [](Options& o) -> double& { return o.search.stretch_rigid_m; }},
 
+    // Slips.
+    Row{"slip.small_m", 1, 120, [](Options& o) -> double& { return o.slip.small_m; }},
+    Row{"slip.middle_m", 7, 300, [](Options& o) -> double& { return o.slip.middle_m; }},
+    Row{"slip.large_m", 1, 15, [](Options& o) -> double& { return o.slip.large_m; }},
+    Row{"slip.contradiction_m", 1, 20, [](Options& o) -> double& { return o.slip.contradiction_m; }},
+    Row{"slip.distinct_m", 1, 60, [](Options& o) -> double& { return o.slip.distinct_m; }},
+
     // Landmarks seen as a range or a bearing only.
     Row{"delayed.spacing_m", 1, 30, [](Options& o) -> double& { return o.delayed.spacing_m; }},
     Row{"delayed.same_m", 1, 300, [](Options& o) -> double& { return o.delayed.same_m; }},

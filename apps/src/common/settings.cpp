@@ -219,6 +219,30 @@ void add_search(CLI::App& command, Settings& settings) {
   add_acceptance(command, search);
 }
 
+void add_slip(CLI::App& command, supervisor::SlipOptions& slip) {
+  command
+      .add_option_function<std::string>(
+          "--slip.enabled", [&slip](const std::string& word) { slip.enabled = word == "true"; },
+          "Landmarks beside where they are expected may say that the vehicle slipped; false: odometry is believed")
+      ->check(one_of({"true", "false"}))
+      ->default_str("true")
+      ->group(group);
+  add_number(command, "--slip.nats", slip.nats, 0.0, 1e6,
+             "By so much a slip must explain a scan better than no slip does");
+}
+
+void add_noise(CLI::App& command, supervisor::NoiseOptions& noise) {
+  command
+      .add_option_function<std::string>(
+          "--noise.adapt", [&noise](const std::string& word) { noise.adapt = word == "true"; },
+          "Factors on the covariances of odometry and observations are learnt while driving, 1 at least; false: they "
+          "are "
+          "believed as they are claimed")
+      ->check(one_of({"true", "false"}))
+      ->default_str("false")
+      ->group(group);
+}
+
 void add_truck(CLI::App& command, const std::string& section, logs::AcfrSettings& truck) {
   const auto name = [&section](const char* key) { return "--" + section + "." + key; };
   add_number(command, name("sigma_speed_mps").c_str(), truck.noise.sigma_speed_mps, 1e-3, 10.0,
@@ -294,6 +318,8 @@ void add_settings(CLI::App& command, Settings& settings) {
   add_association(command, settings);
   add_landmarks(command, settings);
   add_search(command, settings);
+  add_slip(command, settings.navigator.slip);
+  add_noise(command, settings.navigator.noise);
   add_truck(command, "victoria_park", settings.logs.victoria_park);
   add_truck(command, "car_park", settings.logs.car_park);
   add_plaza(command, settings);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "helixnav/core/errors.hpp"
+#include "slip/update_after_slip.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -32,7 +33,8 @@ cekf::UpdateResult update_again(cekf::CompressedEkf& filter, const Tape::Scan& s
     }
     seen.push_back(match);
   }
-  return sees_old ? filter.update_iterated(seen) : filter.update(seen);
+  if (sees_old) return filter.update_iterated(seen);
+  return scan.slipped ? update_after_slip(filter, seen) : filter.update(seen);
 }
 
 void augment_again(cekf::CompressedEkf& filter, const Tape::Scan& scan, const OldOf& old_of) {
@@ -62,6 +64,8 @@ cekf::UpdateResult replay_branch(cekf::CompressedEkf& filter, const BranchRecord
     if (const auto* motion = std::get_if<Tape::Motion>(&entry)) {
       filter.switch_region_if_due();
       filter.predict(motion->odometry);
+    } else if (const auto* slip = std::get_if<Tape::Slip>(&entry)) {
+      filter.predict(slip->motion);
     } else if (const auto* fix = std::get_if<Tape::Fix>(&entry)) {
       if (fix->accepted) filter.update_position(fix->fix);
     } else if (const auto* scan = std::get_if<Tape::Scan>(&entry)) {

@@ -2,23 +2,36 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "association/confirmation.hpp"
 #include "helixnav/association/landmark_life.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "loop/coverage_trace.hpp"
 #include "loop/tape.hpp"
+#include "slip/noise_scale.hpp"
+#include "slip/slip_record.hpp"
 
 namespace helixnav::supervisor {
 
+/// A part of the drive in which a question was open that was never decided, by lengths of the drive.
+struct LeftOpen {
+  double begun_path_m = 0.0;
+  double ended_path_m = 0.0;
+};
+
 /// All that is believed, and so all that rolls back: pose and map, which landmarks exist, what ground was looked at, which
-/// old landmark waits for its confirmation, and the number of scans so far.
+/// old landmark waits for its confirmation, how the vehicle slipped, what the noise came to, and the number of scans so far.
 struct Belief {
   cekf::CompressedEkf filter;
   association::LandmarkLife existence;
   CoverageTrace coverage;
   Confirmation confirmation;
   std::int64_t step = 0;
+  SlipRecord slips = {};
+  NoiseScale noise = {};
+  std::vector<LeftOpen> left_open = {};
+  Eigen::Matrix3d moved = Eigen::Matrix3d::Zero();  ///< covariance of the last motion, as the filter was told
 };
 
 /// A belief to come back to, and where the tape was then. A snapshot of O(n_a²) bytes and the landmarks' existence; good as
@@ -29,10 +42,20 @@ struct Checkpoint {
   Confirmation confirmation;
   std::int64_t step;
   Tape::Position position;
+  SlipRecord slips = {};
+  NoiseScale noise = {};
+  std::vector<LeftOpen> left_open = {};
 };
 
 inline Checkpoint take_checkpoint(const Belief& belief, const Tape& tape) {
-  return {belief.filter.snapshot(), belief.existence, belief.confirmation, belief.step, tape.end()};
+  return {belief.filter.snapshot(),
+          belief.existence,
+          belief.confirmation,
+          belief.step,
+          tape.end(),
+          belief.slips,
+          belief.noise,
+          belief.left_open};
 }
 
 /// Test: supervisor/tape_test.cpp.
@@ -42,6 +65,9 @@ inline void roll_back(const Checkpoint& checkpoint, Belief& belief) {
   belief.coverage.back_to(checkpoint.existence.path_m());
   belief.confirmation = checkpoint.confirmation;
   belief.step = checkpoint.step;
+  belief.slips = checkpoint.slips;
+  belief.noise = checkpoint.noise;
+  belief.left_open = checkpoint.left_open;
 }
 
 }  // namespace helixnav::supervisor

@@ -13,6 +13,7 @@
 #include "helixnav/supervisor/lengths.hpp"
 #include "loop/judge_fix.hpp"
 #include "loop/recover.hpp"
+#include "slip/update_after_slip.hpp"
 
 namespace helixnav::supervisor {
 
@@ -28,11 +29,14 @@ NavigationLoop::NavigationLoop(const core::PoseGaussian& start, const NavigatorO
               association::LandmarkLife(options.life),
               CoverageTrace(options.search.coverage_spacing_m),
               {},
-              0},
+              0,
+              {}},
       tape_(options.search.enabled ? options.search.smooth_up_to_scans : 0),
       mode_(Mapping{{}, take_checkpoint(belief_, tape_), {}}) {}
 
-void NavigationLoop::move(const core::Odometry& odometry) {
+void NavigationLoop::move(const core::Odometry& measured) {
+  core::Odometry odometry = measured;
+  odometry.covariance *= belief_.noise.odometry();
   pending_.motion = pending_.motion ? core::chain(*pending_.motion, odometry) : odometry;
   pending_.driven_m += odometry.T_before_after.position_m().norm();
 }
@@ -64,13 +68,22 @@ StepReport NavigationLoop::observe(const Scan& scan) {
   return report;
 }
 
-/// `note` goes into the report.
+/// `note` goes into the report. The scan is told with the noise that was learnt.
 StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* note) {
+  if (belief_.noise.observations() == 1.0) return take_told(scan, note);
+  Scan told = scan;
+  for (core::Observation& observation : told.observations) observation.R *= belief_.noise.observations();
+  return take_told(told, note);
+}
+
+StepReport NavigationLoop::take_told(const Scan& scan, const core::Decision* note) {
   return all_or_nothing([&] {
     if (note != nullptr) pending_.decisions.push_back(*note);
     StepReport report = step(scan);
     checkpoint_if_settled();
-    return has_lost_its_place() ? roll_back_and_relocalise(std::move(report)) : report;
+    if (has_lost_its_place()) return roll_back_and_relocalise(std::move(report));
+    tell_again();
+    return report;
   });
 }
 
@@ -88,10 +101,13 @@ StepReport NavigationLoop::step(const Scan& scan) {
     gated = gate(scan);
   }
   report.associations = associate_scan(gated, options_, belief_.existence.path_m(), belief_.confirmation);
-  update(scan, report);
+  const bool slipped = allow_for_slip(scan, report);
+  if (!slipped) learn_noise(scan, gated.gating->joint, report.associations);
+  belief_.slips.see(landmarks_with(Outcome::matched, report.associations).size());
+  update(scan, slipped, report);
   augment(scan, report);
   std::vector<LandmarkId> died = update_existence(scan, report);
-  tape_.append(Tape::Scan{scan, report.associations, report.joint_nis, report.joint_dof, std::move(died)});
+  tape_.append(Tape::Scan{scan, report.associations, report.joint_nis, report.joint_dof, std::move(died), slipped});
   if (searching() != nullptr) search(scan, report);
   report.switched_region = belief_.filter.switch_region_if_due();
   return finish(scan, std::move(report));
@@ -100,9 +116,12 @@ StepReport NavigationLoop::step(const Scan& scan) {
 void NavigationLoop::predict() {
   if (!pending_.motion) return;
   belief_.filter.predict(*pending_.motion);
+  belief_.moved = pending_.motion->covariance;
   if (Searching* open = searching()) open->search.move(*pending_.motion);
   belief_.existence.drive(pending_.driven_m);
   tape_.append(Tape::Motion{*pending_.motion, pending_.driven_m});
+  const Eigen::Matrix3d unseen_slips = belief_.slips.drive(pending_.driven_m, options_.search.old_after_m);
+  if (!unseen_slips.isZero(0.0)) move_unmeasured(unseen_slips, pending_.motion->t_ns);
   pending_.driven_m = 0.0;
   pending_.motion.reset();
 }
@@ -129,10 +148,11 @@ GatedScan NavigationLoop::gate(const Scan& scan) const {
   return gated;
 }
 
-void NavigationLoop::update(const Scan& scan, StepReport& report) {
+void NavigationLoop::update(const Scan& scan, bool slipped, StepReport& report) {
   const std::vector<cekf::Match> matched = matches(scan, report.associations);
   if (matched.empty()) return;
-  const cekf::UpdateResult result = belief_.filter.update(matched);
+  const cekf::UpdateResult result =
+      slipped ? update_after_slip(belief_.filter, matched) : belief_.filter.update(matched);
   report.joint_nis = result.nis;
   report.joint_dof = result.dof;
 }

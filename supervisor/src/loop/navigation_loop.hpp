@@ -15,11 +15,12 @@
 #include "loop/belief.hpp"
 #include "loop/mode.hpp"
 #include "loop/tape.hpp"
+#include "slip/slip_decision.hpp"
 
 namespace helixnav::supervisor {
 
 /// The loop of the Navigator: a belief, the tape of what came in and what became of it, and the mode.
-/// Scans: navigation_loop.cpp. The open question: search_mode.cpp. Back to the trusted checkpoint: roll_back.cpp. The strong
+/// Scans: navigation_loop.cpp. The open question: search_mode.cpp. Slips: slip_in_scan.cpp. Noise: learn_noise.cpp. Back to the trusted checkpoint: roll_back.cpp. The strong
 /// guarantee: recover.cpp.
 class NavigationLoop {
  public:
@@ -51,11 +52,12 @@ class NavigationLoop {
   // navigation_loop.cpp
   void fit_to(const core::FieldOfView& view);
   core::StepReport take_step(const core::Scan& scan, const core::Decision* note);
+  core::StepReport take_told(const core::Scan& scan, const core::Decision* note);
   core::StepReport step(const core::Scan& scan);
   void predict();
   bool use_fix(const core::AbsoluteFix& fix);
   GatedScan gate(const core::Scan& scan) const;
-  void update(const core::Scan& scan, core::StepReport& report);
+  void update(const core::Scan& scan, bool slipped, core::StepReport& report);
   void augment(const core::Scan& scan, core::StepReport& report);
   std::vector<core::LandmarkId> update_existence(const core::Scan& scan, const core::StepReport& report);
   core::StepReport finish(const core::Scan& scan, core::StepReport report);
@@ -66,12 +68,24 @@ class NavigationLoop {
   core::StepReport observe_thinned(const core::Scan& scan);
   void name_revised(core::StepReport& report) const;
 
+  // slip/slip_in_scan.cpp
+  bool allow_for_slip(const core::Scan& scan, core::StepReport& report);
+  std::optional<Slip> find_slip(const core::Scan& scan, const std::vector<core::AssociationReport>& fate) const;
+  std::vector<core::LandmarkId> landmarks_near(const core::Scan& scan) const;
+  void move_unmeasured(const Eigen::Matrix3d& covariance, core::Nanoseconds t_ns);
+
+  // slip/learn_noise.cpp
+  void learn_noise(const core::Scan& scan, const core::JointGaussian& joint,
+                   const std::vector<core::AssociationReport>& fate);
+  void tell_again();
+
   // search_mode.cpp
   void begin_search();
   void search(const core::Scan& scan, core::StepReport& report);
   void close(const core::Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
              core::StepReport& report);
   void end_search(const Closing* closing);
+  void merge_left_open(const core::FieldOfView& view, core::StepReport& report);  // merge_left_open.cpp
   void solve_drive(core::StepReport& report);
 
   // roll_back.cpp

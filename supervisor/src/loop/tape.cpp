@@ -16,6 +16,13 @@ bool is_stop(const Tape::Entry& entry) {
   return std::holds_alternative<Tape::Scan>(entry) || (fix != nullptr && fix->accepted);
 }
 
+/// Measured or not; null for what is no motion.
+const core::Odometry* motion_of(const Tape::Entry& entry) {
+  if (const auto* measured = std::get_if<Tape::Motion>(&entry)) return &measured->odometry;
+  if (const auto* slip = std::get_if<Tape::Slip>(&entry)) return &slip->motion;
+  return nullptr;
+}
+
 bool is_used(const core::AssociationReport& association) {
   return association.outcome == core::Outcome::matched || association.outcome == core::Outcome::augmented;
 }
@@ -38,6 +45,21 @@ void drop_unused(Tape::Scan& entry) {
 void Tape::append(Entry entry) {
   stops_ += is_stop(entry);
   entries_.push_back(std::move(entry));
+}
+
+Tape Tape::rescaled(double observations, double odometry) const {
+  Tape tape = *this;
+  const double least = std::min(observations, odometry);
+  for (Entry& entry : tape.entries_) {
+    if (auto* motion = std::get_if<Motion>(&entry)) motion->odometry.covariance *= odometry;
+    if (auto* solved = std::get_if<Solved>(&entry)) solved->cost /= least;
+    if (auto* merge = std::get_if<Merge>(&entry)) merge->cost /= least;
+    auto* scan = std::get_if<Scan>(&entry);
+    if (scan == nullptr) continue;
+    scan->nis /= least;
+    for (core::Observation& observation : scan->scan.observations) observation.R *= observations;
+  }
+  return tape;
 }
 
 std::vector<Tape::Entry> Tape::cut(Position position) {
@@ -105,9 +127,7 @@ std::vector<Stop> stops_of(const Tape& tape) {
   std::vector<Stop> stops;
   std::optional<core::Odometry> motion;
   tape.read_from(0, [&](const Tape::Entry& entry) {
-    if (const auto* moved = std::get_if<Tape::Motion>(&entry)) {
-      motion = motion ? core::chain(*motion, moved->odometry) : moved->odometry;
-    }
+    if (const core::Odometry* moved = motion_of(entry)) motion = motion ? core::chain(*motion, *moved) : *moved;
     if (!is_stop(entry)) return;
     Stop& stop = stops.emplace_back();
     stop.motion = std::exchange(motion, std::nullopt);
@@ -120,9 +140,7 @@ std::vector<Stop> stops_of(const Tape& tape) {
 std::optional<core::Odometry> motion_after_stops(const Tape& tape) {
   std::optional<core::Odometry> motion;
   tape.read_from(0, [&](const Tape::Entry& entry) {
-    if (const auto* moved = std::get_if<Tape::Motion>(&entry)) {
-      motion = motion ? core::chain(*motion, moved->odometry) : moved->odometry;
-    }
+    if (const core::Odometry* moved = motion_of(entry)) motion = motion ? core::chain(*motion, *moved) : *moved;
     if (is_stop(entry)) motion.reset();
   });
   return motion;

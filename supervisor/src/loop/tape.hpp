@@ -24,6 +24,10 @@ class Tape {
     core::Odometry odometry;
     double driven_m = 0.0;
   };
+  /// Motion that odometry did not tell of: none in the mean. Whoever goes through the scans again decides it again.
+  struct Slip {
+    core::Odometry motion;
+  };
   struct Fix {
     core::AbsoluteFix fix;
     double nis = 0.0;
@@ -35,6 +39,7 @@ class Tape {
     double nis = 0.0;                           ///< νᵀS⁻¹ν of the joint update
     int dof = 0;
     std::vector<core::LandmarkId> died;  ///< removed after it
+    bool slipped = false;                ///< updated by update_after_slip
   };
   /// A closing made landmarks one; what that cost (J).
   struct Merge {
@@ -45,7 +50,7 @@ class Tape {
   struct Solved {
     double cost = 0.0;
   };
-  using Entry = std::variant<Motion, Fix, Scan, Merge, Solved>;
+  using Entry = std::variant<Motion, Slip, Fix, Scan, Merge, Solved>;
 
   /// Counts entries from the begin of the drive.
   using Position = std::size_t;
@@ -54,6 +59,10 @@ class Tape {
 
   void append(Entry entry);
   Position end() const { return forgotten_ + entries_.size(); }
+
+  /// The tape of the same drive, had the covariances of all observations and of all measured motion been told this many
+  /// times as large. What that would have cost is not known: costs are what it was at least.
+  Tape rescaled(double observations, double odometry) const;
 
   /// Takes off everything from `position` on and returns it.
   std::vector<Entry> cut(Position position);

@@ -38,6 +38,7 @@ void NavigationLoop::search(const Scan& scan, StepReport& report) {
   const double path_m = belief_.existence.path_m();
   if (searching() == nullptr || !open.is_undecided(path_m)) return;
   report.decisions.emplace_back(core::UndecidedDecision{path_m - open.begun_path_m()});
+  belief_.left_open.push_back({open.begun_path_m(), path_m});
   end_search(nullptr);
 }
 
@@ -69,6 +70,7 @@ void NavigationLoop::close(const Scan& scan, const std::vector<pf_relocalize::Co
   }
   tape_.append(Tape::Merge{closing.merged, closing.cost});
   end_search(&closing);
+  merge_left_open(scan.field_of_view, report);
   solve_drive(report);
 }
 

@@ -5,7 +5,9 @@
 #include "helixnav/association/landmark_life.hpp"
 #include "helixnav/cekf/filter_options.hpp"
 #include "helixnav/supervisor/delayed_landmarks.hpp"
+#include "helixnav/supervisor/noise_options.hpp"
 #include "helixnav/supervisor/search_options.hpp"
+#include "helixnav/supervisor/slip_options.hpp"
 
 namespace helixnav::supervisor {
 
@@ -20,6 +22,8 @@ struct NavigatorOptions {
   association::Gates gates;
   association::LifeOptions life;
   SearchOptions search;
+  SlipOptions slip;
+  NoiseOptions noise;
   DelayedOptions delayed;            ///< of landmarks known by name and seen as a range or a bearing only
   double fix_probability = 0.999;    ///< χ² gate of an absolute fix
   double extraneous_per_scan = 1.0;  ///< observations of no mapped landmark: clutter and new ones together

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace helixnav::supervisor {
+
+/// Whether the covariances that odometry and detector claim are believed, or multiplied by factors learnt while driving.
+/// Figures: docs/slips.md.
+struct NoiseOptions {
+  bool adapt = false;
+};
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "slip/slip_evidence.hpp"
+
+namespace helixnav::supervisor {
+
+/// A place where the vehicle may be instead of where it is predicted, with the pairs that say so.
+struct SlipPlace {
+  std::vector<PointPair> pairs;
+  SlipExplanation explanation;
+};
+
+/// Two displacements that are one, as far as anybody can tell.
+bool is_same_place(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double distinct_m);
+
+/// The distinct places that explain most, best first: proposed by two observations on two landmarks equally far apart,
+/// then paired and weighed anew until it settles. O(k²·c² + 8 m³) with k observations and c landmarks in reach of each.
+/// Test: supervisor/slip_places_test.cpp.
+std::vector<SlipPlace> slip_places(const RelativeGeometry& geometry, const std::vector<SeenPoint>& seen,
+                                   double nats_a_pair, const std::vector<SlipComponent>& components, double distinct_m);
+
+}  // namespace helixnav::supervisor

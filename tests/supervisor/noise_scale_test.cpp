@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slip/noise_scale.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "helixnav/core/random.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+/// Six landmarks known exactly, a vehicle whose motion has covariance Q, and a detector of 10 cm.
+struct Drive {
+  explicit Drive(double odometry_factor, double detector_factor, const Eigen::Vector3d& bias = Eigen::Vector3d::Zero())
+      : odometry_factor_(odometry_factor), detector_factor_(detector_factor), bias_(bias) {
+    geometry_.points_m = {{5, 3}, {12, -4}, {20, 6}, {25, -7}, {9, 8}, {16, -9}};
+    geometry_.ids = {0, 1, 2, 3, 4, 5};
+  }
+
+  /// Scans told with noise as it is believed to be; odometry and detector are so many times (variance) worse.
+  NoiseScale learn(int scans) {
+    NoiseScale scale;
+    for (int k = 0; k < scans; ++k) {
+      const Eigen::Matrix3d Q = scale.odometry() * claimed_Q();
+      const Eigen::Matrix3d true_Q = odometry_factor_ * claimed_Q();
+      const core::Pose2 T_displaced_predicted =
+          core::inverse(core::Pose2(Eigen::Vector3d(random_.normal3(true_Q) + bias_)));
+      std::vector<SeenPoint> seen;
+      std::vector<PointPair> pairs;
+      for (std::size_t i = 0; i < geometry_.points_m.size(); ++i) {
+        const double sigma_m = 0.1 * std::sqrt(detector_factor_);
+        const Eigen::Vector2d noise(random_.normal(0.0, sigma_m), random_.normal(0.0, sigma_m));
+        seen.push_back({static_cast<int>(i), core::transform(T_displaced_predicted, geometry_.points_m[i]) + noise,
+                        0.01 * scale.observations() * Eigen::Matrix2d::Identity()});
+        pairs.push_back({i, i});
+      }
+      geometry_.covariance_m2 = by_pose() * Q * by_pose().transpose();
+      scale.observe(PairEquations(geometry_, seen, pairs, Eigen::Vector3d::Zero()), Q);
+    }
+    return scale;
+  }
+
+ private:
+  static Eigen::Matrix3d claimed_Q() { return Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal(); }
+
+  Eigen::MatrixXd by_pose() const {
+    Eigen::MatrixXd J(2 * static_cast<Eigen::Index>(geometry_.points_m.size()), 3);
+    for (std::size_t i = 0; i < geometry_.points_m.size(); ++i) {
+      const Eigen::Vector2d& p = geometry_.points_m[i];
+      J.middleRows<2>(2 * static_cast<Eigen::Index>(i)) << -1.0, 0.0, p.y(), 0.0, -1.0, -p.x();
+    }
+    return J;
+  }
+
+  double odometry_factor_;
+  double detector_factor_;
+  Eigen::Vector3d bias_;
+  core::RandomStream random_{1, "noise scale test"};
+  RelativeGeometry geometry_{core::JointGaussian{{}, {}, {}, Eigen::MatrixXd::Identity(3, 3)}};
+};
+
+TEST(NoiseScale, StaysAtOneWhereTheNoiseIsAsClaimed) {
+  const NoiseScale scale = Drive(1.0, 1.0).learn(2000);
+  EXPECT_EQ(scale.odometry(), 1.0);
+  EXPECT_EQ(scale.observations(), 1.0);
+}
+
+TEST(NoiseScale, TellsOdometryFromDetector) {
+  const NoiseScale odometry = Drive(4.0, 1.0).learn(1500);
+  EXPECT_NEAR(odometry.odometry(), 4.0, 0.8);
+  EXPECT_EQ(odometry.observations(), 1.0);
+  const NoiseScale detector = Drive(1.0, 4.0).learn(1500);
+  EXPECT_NEAR(detector.observations(), 4.0, 0.5);
+  EXPECT_LT(detector.odometry(), 1.6);
+  const NoiseScale both = Drive(4.0, 4.0).learn(1500);
+  EXPECT_NEAR(both.observations(), 4.0, 0.5);
+  EXPECT_NEAR(both.odometry(), 4.0, 1.0);
+}
+
+TEST(NoiseScale, RisesWithinAMinuteOfScans) {
+  const NoiseScale scale = Drive(4.0, 4.0).learn(60);
+  EXPECT_GT(scale.observations(), 2.5);
+  EXPECT_GT(scale.odometry(), 1.35);
+}
+
+TEST(NoiseScale, TakesABiasForNoNoise) {
+  const NoiseScale scale = Drive(1.0, 1.0, {0.2, 0.0, 0.0}).learn(1500);
+  EXPECT_LT(scale.odometry(), 1.6) << "two deviations of forward motion too much in every scan";
+  EXPECT_EQ(scale.observations(), 1.0);
+}
+
+TEST(NoiseScale, IsBounded) {
+  const NoiseScale scale = Drive(1.0, 400.0).learn(1000);
+  EXPECT_EQ(scale.observations(), 25.0);
+}
+
+}  // namespace
+}  // namespace helixnav::supervisor

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Evidence of slips, the places found for them, and what is believed.
+#include "slip/slip_decision.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <Eigen/LU>
+
+#include "helixnav/core/random.hpp"
+#include "slip/slip_record.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+constexpr double degree = core::pi / 180.0;
+constexpr double a_pair_nats = 8.0;  // about one extraneous observation a scan of 1400 m²
+
+/// Landmarks known to 5 cm, and what a vehicle displaced by `truth` sees of them, noise of 10 cm.
+struct Scene {
+  Scene(std::vector<Eigen::Vector2d> points_m, const Eigen::Vector3d& truth, std::uint64_t seed)
+      : geometry(joint_of(points_m)) {
+    core::RandomStream random(seed, "slip decision test");
+    const core::Pose2 T_displaced_predicted = core::inverse(core::Pose2(truth));
+    for (std::size_t i = 0; i < points_m.size(); ++i) {
+      Eigen::Vector2d seen_m = core::transform(T_displaced_predicted, points_m[i]);
+      seen_m += Eigen::Vector2d(random.normal(0.0, 0.1), random.normal(0.0, 0.1));
+      seen.push_back({static_cast<int>(i), seen_m, 0.01 * Eigen::Matrix2d::Identity()});
+    }
+  }
+
+  static core::JointGaussian joint_of(const std::vector<Eigen::Vector2d>& points_m) {
+    core::JointGaussian joint;
+    joint.points_m = points_m;
+    for (std::size_t i = 0; i < points_m.size(); ++i) joint.ids.push_back(static_cast<core::LandmarkId>(100 + i));
+    const auto size = 3 + 2 * static_cast<Eigen::Index>(points_m.size());
+    joint.covariance = 0.0025 * Eigen::MatrixXd::Identity(size, size);
+    joint.covariance.topLeftCorner<3, 3>() = Eigen::Vector3d(1e-4, 1e-4, 1e-6).asDiagonal();
+    return joint;
+  }
+
+  std::optional<Slip> decide(std::vector<PointPair> associated = {}) const {
+    return decide_slip({geometry, seen, std::move(associated), a_pair_nats, false}, SlipOptions{});
+  }
+
+  RelativeGeometry geometry;
+  std::vector<SeenPoint> seen;
+};
+
+std::vector<Eigen::Vector2d> scattered(std::uint64_t seed, int count = 8) {
+  core::RandomStream random(seed, "slip landmarks");
+  std::vector<Eigen::Vector2d> points_m;
+  while (static_cast<int>(points_m.size()) < count) {
+    const Eigen::Vector2d point_m(random.uniform(2.0, 28.0), random.uniform(-18.0, 18.0));
+    const bool crowded = std::any_of(points_m.begin(), points_m.end(),
+                                     [&](const Eigen::Vector2d& other) { return (other - point_m).norm() < 6.0; });
+    if (!crowded) points_m.push_back(point_m);
+  }
+  return points_m;
+}
+
+std::vector<PointPair> all_pairs(std::size_t count) {
+  std::vector<PointPair> pairs;
+  for (std::size_t i = 0; i < count; ++i) pairs.push_back({i, i});
+  return pairs;
+}
+
+double log_normal(const Eigen::VectorXd& nu, const Eigen::MatrixXd& S) {
+  return -0.5 * (nu.dot(S.inverse() * nu) + std::log((2.0 * core::pi * S).determinant()));
+}
+
+/// ∫ N(δ; 0, Q) N(residual(δ); 0, S(δ)) dδ over a grid around the best δ.
+double integrate(const Scene& scene, const std::vector<PointPair>& pairs, const SlipComponent& component,
+                 const SlipExplanation& around) {
+  const Eigen::Vector3d sigma = around.displacement_covariance.diagonal().cwiseSqrt();
+  constexpr int half = 14;
+  constexpr double step = 5.0 / half;
+  double sum = 0.0;
+  const double offset = around.nats;
+  for (int i = -half; i <= half; ++i) {
+    for (int j = -half; j <= half; ++j) {
+      for (int k = -half; k <= half; ++k) {
+        const Eigen::Vector3d at = around.displacement + step * sigma.cwiseProduct(Eigen::Vector3d(i, j, k));
+        const PairEquations e(scene.geometry, scene.seen, pairs, at);
+        sum += std::exp(log_normal(at, component.covariance()) + log_normal(e.nu - e.A * at, e.S) - offset);
+      }
+    }
+  }
+  return offset + std::log(sum * step * step * step * sigma.prod());
+}
+
+TEST(SlipEvidence, IsTheIntegralOverAllSlips) {
+  const SlipComponent component{0.5, 4.0 * degree, 0.01};
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Scene scene(scattered(seed, 4), {0.4, -0.3, 3.0 * degree}, seed);
+    const std::vector<PointPair> pairs = all_pairs(4);
+    const SlipExplanation found =
+        explain_by_slip(scene.geometry, scene.seen, pairs, 0.0, {component}, Eigen::Vector3d::Zero());
+    SlipExplanation around = found;
+    around.nats -= std::log(component.probability);
+    EXPECT_NEAR(around.nats, integrate(scene, pairs, component, around), 0.05) << seed;
+  }
+}
+
+TEST(SlipEvidence, ChargesAWidePriorForWhatItMightHaveExplained) {
+  const Scene scene(scattered(4), {0.1, 0.05, 0.5 * degree}, 4);
+  const auto nats = [&](double factor) {
+    const std::vector<SlipComponent> one{{0.1 * factor, degree * factor, 1.0}};
+    return explain_by_slip(scene.geometry, scene.seen, all_pairs(8), 0.0, one, Eigen::Vector3d::Zero()).nats;
+  };
+  EXPECT_NEAR(nats(10.0) - nats(100.0), 3.0 * std::log(10.0), 0.3) << "three dimensions, each ten times as wide";
+}
+
+TEST(SlipEvidence, WithoutASlipIsThatOfTheInnovation) {
+  const Scene scene(scattered(5), Eigen::Vector3d::Zero(), 5);
+  const PairEquations e(scene.geometry, scene.seen, all_pairs(8), Eigen::Vector3d::Zero());
+  EXPECT_NEAR(explain_without_slip(scene.geometry, scene.seen, all_pairs(8), 2.0), 16.0 + log_normal(e.nu, e.S), 1e-9);
+  EXPECT_EQ(explain_without_slip(scene.geometry, scene.seen, {}, 2.0), 0.0);
+}
+
+TEST(SlipDecision, FindsWhereTheVehicleSlippedTo) {
+  core::RandomStream random(1, "slips");
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Eigen::Vector3d truth(random.uniform(-0.7, 0.7), random.uniform(0.3, 0.7), random.uniform(-0.08, 0.08));
+    const Scene scene(scattered(seed), truth, seed);
+    const std::optional<Slip> slip = scene.decide();
+    ASSERT_TRUE(slip) << seed;
+    EXPECT_EQ(slip->figures.pairs, 8) << seed;
+    for (const SlipPair& pair : slip->pairs) EXPECT_EQ(pair.landmark, 100 + pair.observation) << seed;
+    EXPECT_LT((slip->displacement - truth).head<2>().norm(), 0.25) << seed;
+    EXPECT_NEAR(slip->displacement.z(), truth.z(), 1.5 * degree) << seed;
+    EXPECT_GT(slip->figures.nats, 8.0);
+  }
+}
+
+TEST(SlipDecision, BelievesNoneWhereTheVehicleIsAsPredicted) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const Scene scene(scattered(seed), Eigen::Vector3d::Zero(), seed);
+    EXPECT_FALSE(scene.decide(all_pairs(8))) << seed;
+    EXPECT_FALSE(scene.decide({{0, 0}, {1, 1}, {2, 2}})) << seed << ": pairs dropped by a joint test are no slip";
+  }
+}
+
+TEST(SlipDecision, BelievesNoneInALatticeMovedByMoreThanHalfItsPitch) {
+  std::vector<Eigen::Vector2d> lattice_m;
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 4; ++k) lattice_m.emplace_back(3.0 + 4.0 * i, -6.0 + 4.0 * k);
+  }
+  EXPECT_TRUE(Scene(lattice_m, {0.8, 0.0, 0.0}, 1).decide());
+  EXPECT_FALSE(Scene(lattice_m, {4.0, 0.0, 0.0}, 2).decide());
+  EXPECT_FALSE(Scene(lattice_m, {2.4, 0.0, 0.0}, 3).decide());
+}
+
+TEST(SlipDecision, NeedsMoreEvidenceFromFewOrTentativeLandmarks) {
+  const Scene three(scattered(3, 3), {0.5, 0.3, 2.0 * degree}, 3);
+  const std::optional<Slip> slip = three.decide();
+  EXPECT_TRUE(!slip || slip->figures.nats > 15.0);
+  SlipQuestion question{three.geometry, three.seen, {}, a_pair_nats, true};
+  EXPECT_FALSE(decide_slip(question, SlipOptions{}));
+}
+
+TEST(SlipRecord, ExpectsSlipsWhereNoneCanBeSeenOnceThereWereTwo) {
+  SlipRecord record;
+  record.see(5);
+  EXPECT_TRUE(record.drive(300.0, 60.0).isZero());
+  record.add({0.6, 0.0, 0.05});
+  record.see(0);
+  EXPECT_TRUE(record.drive(10.0, 60.0).isZero()) << "one slip is no habit";
+  record.add({0.0, 0.6, 0.05});
+  const Eigen::Matrix3d expected = record.drive(150.0, 60.0);
+  EXPECT_NEAR(expected(0, 0), 0.5 * 0.5 * 2.0 * 0.36, 1e-12) << "one more slip half the time";
+  EXPECT_NEAR(expected(2, 2), 0.5 * 2.0 * 0.0025, 1e-12);
+  record.see(3);
+  EXPECT_TRUE(record.drive(10.0, 60.0).isZero()) << "they would be seen";
+}
+
+}  // namespace
+}  // namespace helixnav::supervisor
