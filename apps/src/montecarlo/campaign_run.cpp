@@ -8,6 +8,7 @@
 
 #include "campaign.hpp"
 #include "common/chosen_navigator.hpp"
+#include "common/interrupt.hpp"
 #include "common/timed.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/event_loop.hpp"

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <type_traits>
@@ -28,7 +29,8 @@ class WorkerPool {
   template <typename Function>
   void for_each(std::size_t count, Function&& f) {
     using Plain = std::remove_reference_t<Function>;
-    run({[](void* context, std::size_t i) { (*static_cast<Plain*>(context))(i); }, &f, count});
+    run({[](void* context, std::size_t i) { (*static_cast<Plain*>(context))(i); },
+         const_cast<void*>(static_cast<const void*>(std::addressof(f))), count});
   }
 
  private:
