@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <exception>
 #include <iostream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "common/commands.hpp"
 #include "common/exit_code.hpp"
+#include "common/help_pages.hpp"
 #include "common/run_options.hpp"
 #include "common/usage_error.hpp"
 #include "helixnav/core/errors.hpp"
@@ -39,8 +43,9 @@ ExitCode run(int argc, char** argv) {
   app.set_version_flag("--version", version, "Print the version and exit");
   app.require_subcommand(1);
   app.fallthrough(false);
+  use_short_help(app);
   app.footer(
-      "helixnav COMMAND --help says more.\n\n"
+      "helixnav COMMAND --help (or helixnav help COMMAND) says more.\n\n"
       "Exit codes:\n"
       "  0    done\n"
       "  2    usage: the command line or the configuration file is wrong\n"
@@ -58,13 +63,18 @@ ExitCode run(int argc, char** argv) {
   add_evaluate_command(app, code);
   add_explain_command(app, code);
   add_associate_command(app, code);
+  add_check_command(app, code);
+  add_new_vehicle_command(app, code);
   add_config_command(app, code);
   for (CLI::App* command : app.get_subcommands({})) {
     command->set_version_flag("--version", version, "Print the version and exit");
   }
   if (argc < 2) return fail(ExitCode::usage, ("a command is missing\n\n" + app.help()).c_str());
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> words = without_help_word({argv, argv + argc});
+    words.erase(words.begin());
+    std::reverse(words.begin(), words.end());  // as parse wants them
+    app.parse(std::move(words));
     return check_output(code);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {  // --help, --version

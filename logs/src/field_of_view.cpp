@@ -92,6 +92,17 @@ void tell_field_of_view(core::Recording& recording, const ToldFieldOfView& told)
   });
 }
 
+void tell_view(const SensorModel& sensor, core::FieldOfView& view) {
+  if (sensor.reach_m || sensor.reliable_range_m) {
+    view.max_range_m = sensor.reliable_range_m.value_or(sensor.reach_m.value_or(0.0));
+    view.reach_m = sensor.reach_m.value_or(0.0);
+    view.min_range_m = sensor.min_range_m;
+  }
+  if (sensor.min_range_m > 0.0) view.min_range_m = sensor.min_range_m;
+  if (sensor.min_bearing_rad) view.min_bearing_rad = *sensor.min_bearing_rad;
+  if (sensor.max_bearing_rad) view.max_bearing_rad = *sensor.max_bearing_rad;
+}
+
 core::FieldOfView field_of_view_of(const core::Recording& recording) {
   const core::FieldOfView* first = nullptr;
   for (const core::Event& event : recording.events) {

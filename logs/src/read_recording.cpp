@@ -9,6 +9,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/acfr_log.hpp"
 #include "helixnav/logs/graph_files.hpp"
+#include "helixnav/logs/own_log.hpp"
 #include "input_files.hpp"
 #include "mat_file.hpp"
 #include "text_cursor.hpp"
@@ -22,7 +23,8 @@ constexpr const char* looked_for =
     "a folder or zip with DRS.txt, LASER.txt, GPS.txt and Sensors_manager.txt (ACFR); a folder with aa3_dr.mat and "
     "aa3_gpsx.mat (Victoria Park); data_set.mat (car park); VicPark_clean_data.mat (2D-I-SLSJF); text of ODOMETRY and "
     "LANDMARK lines (iSAM, GTSAM); text of VERTEX_SE2, EDGE_SE2 … lines (g2o); text of STEP, LANDMARK_C, LANDMARK_L "
-    "lines (DLR); a folder with …_odometry.csv and …_ranges.csv (Plaza)";
+    "lines (DLR); a folder with …_odometry.csv and …_ranges.csv (Plaza); your own: a folder with odometry.csv, "
+    "detections.csv and vehicle.toml, or JSON Lines (docs/your_own_log.md)";
 
 bool starts_with(std::string_view text, std::string_view beginning) {
   return text.substr(0, beginning.size()) == beginning;
@@ -103,6 +105,11 @@ core::Recording read_car_park(const fs::path& path, const RecordingSettings& set
   return make_recording(read_car_park_mat(fs::is_directory(path) ? path / "data_set.mat" : path), settings.car_park);
 }
 
+Vehicle vehicle_of(const fs::path& log) {
+  const fs::path file = vehicle_beside(log);
+  return file.empty() ? Vehicle() : read_vehicle(file);
+}
+
 }  // namespace
 
 std::string_view name_of(LogFormat format) {
@@ -123,6 +130,8 @@ std::string_view name_of(LogFormat format) {
       return "dlr";
     case LogFormat::plaza:
       return "plaza";
+    case LogFormat::own:
+      return "own";
   }
   return "unknown";
 }
@@ -131,6 +140,7 @@ LogFormat recognise(const fs::path& path) {
   if (!fs::exists(path)) {
     throw core::InputError(path.string() + ": expected a file or folder, found nothing there");
   }
+  if (is_own_log(path)) return LogFormat::own;
   const std::optional<LogFormat> format = fs::is_directory(path) ? of_folder(path) : of_file(path);
   if (!format) {
     throw core::InputError(path.string() + ": no known log. Looked for " + looked_for);
@@ -156,6 +166,8 @@ core::Recording read_recording(const fs::path& path, const RecordingSettings& se
       return read_dlr(path, settings.dlr);
     case LogFormat::plaza:
       return read_plaza(path, settings.plaza);
+    case LogFormat::own:
+      return make_recording(read_own_log(path), settings.vehicle ? *settings.vehicle : vehicle_of(path));
   }
   throw core::InputError(path.string() + ": no known log");
 }

@@ -10,13 +10,14 @@
 
 #include <CLI/CLI.hpp>
 
+#include "help_pages.hpp"
 #include "validators.hpp"
 
 namespace helixnav::apps {
 namespace {
 
 const char* const by_reach = "auto";
-const char* const group = "Settings (keys of --config)";
+const char* const group = settings_group;
 
 template <typename T>
 CLI::Option* add_number(CLI::App& command, const char* name, T& value, T low, T high, const char* help) {

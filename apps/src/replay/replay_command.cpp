@@ -13,6 +13,7 @@
 #include "common/fit_to_recording.hpp"
 #include "common/run_options.hpp"
 #include "common/settings.hpp"
+#include "common/vehicle_option.hpp"
 #include "drive/drive.hpp"
 #include "estimate_range_scale.hpp"
 #include "fuse_gps.hpp"
@@ -24,6 +25,7 @@ namespace {
 
 struct ReplayJob {
   std::string path;
+  std::string vehicle;
   bool smooth = false;
   bool localize = false;
   std::string map;
@@ -48,9 +50,14 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   if (job.localize && job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "excludes --localize");
   const auto begin = std::chrono::steady_clock::now();
   Drive task;
+  apply_vehicle(command, job.vehicle, job.path, job.settings);
   job.settings.logs.plaza.range_scale = 1.0;  // see scale_ranges
   task.recording = logs::read_recording(job.path, job.settings.logs);
-  if (logs::recognise(job.path) == logs::LogFormat::plaza) scale_ranges(task.recording, job.settings);
+  print_remarks(task.recording);
+  const logs::LogFormat format = logs::recognise(job.path);
+  if (job.settings.logs.vehicle && format != logs::LogFormat::own)
+    tell_vehicle(task.recording, *job.settings.logs.vehicle);
+  if (format == logs::LogFormat::plaza) scale_ranges(task.recording, job.settings);
   if (job.settings.gps.fuse) fuse_gps(task.recording, job.settings.gps);
   if (!job.blackouts.empty()) task.withheld = withhold(task.recording, job.blackouts);
   tell_recording(task.recording, job.settings);
@@ -61,6 +68,7 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   if (job.localize) task.given_map = read_given_map(job.map);
   task.known_association = job.settings.known_association;
   task.manifest.inputs = input_files(job.path);
+  if (!job.vehicle.empty()) task.manifest.inputs.push_back(input_files(job.vehicle).front());
   if (job.localize) {
     const std::vector<runs::InputFile> of_map = input_files(map_file(job.map));
     task.manifest.inputs.insert(task.manifest.inputs.end(), of_map.begin(), of_map.end());
@@ -94,6 +102,7 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
   CLI::App* command = app.add_subcommand("replay", "Navigate along a recorded log");
   const auto job = std::make_shared<ReplayJob>();
   command->add_option("PATH", job->path, "Log: file, folder or zip; the format is recognised")->required();
+  add_vehicle_option(*command, job->vehicle);
   CLI::Option* smooth = command->add_flag(
       "--smooth", job->smooth,
       "Then smooth with the filter's associations: trajectory_final.tum, chi2 and dof (GPS fixes left out)");
@@ -109,8 +118,10 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
   add_settings(*command, job->settings);
   command->footer(
       "Formats: ACFR text release (folder, zip) and .mat, iSAM/GTSAM and g2o landmark graphs, 2D-I-SLSJF .mat,\n"
-      "DLR text, Plaza.\n\n"
+      "DLR text, Plaza; your own as CSV or JSON Lines with a vehicle.toml (helixnav new-vehicle DIR writes an "
+      "example).\n\n"
       "Examples:\n"
+      "  helixnav replay my_drive --out runs/mine\n"
       "  helixnav replay victoria_park_ascii.zip --out runs/vp\n"
       "  helixnav replay isam_victoriaPark.txt --association known --out runs/graph\n"
       "  helixnav replay data_set.mat --out runs/carpark --config mine.toml\n"

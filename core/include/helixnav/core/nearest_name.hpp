@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,5 +12,8 @@ namespace helixnav::core {
 /// an error about an unknown name proposes. Empty without candidates. Cost: letters × letters per candidate.
 /// Test: core/nearest_name_test.cpp.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
+
+/// Letters to insert, delete or replace to make one of the other (Levenshtein distance).
+std::size_t edit_distance(std::string_view a, std::string_view b);
 
 }  // namespace helixnav::core

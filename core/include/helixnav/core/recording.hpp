@@ -34,6 +34,7 @@ struct TrueLandmark {
 struct TruePosition {
   Nanoseconds t_ns = 0;
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
+  double sigma_m = 0.0;  ///< of x and of y; 0: the log does not say
 };
 
 /// An observation that shows several objects at once, as a detector joins lines that it cannot part: all their labels.
@@ -60,6 +61,7 @@ struct Recording {
   /// and they are to be learnt from the drive. Nothing: as the navigator takes it.
   std::optional<double> foreign_per_scan;
   Eigen::Vector2d antenna_robot_m = Eigen::Vector2d::Zero();  ///< lever arm that true_positions refer to
+  std::vector<std::string> remarks;  ///< what the reader mended, left out or doubts, a sentence each
 };
 
 }  // namespace helixnav::core

@@ -3,6 +3,7 @@
 
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/recording.hpp"
+#include "helixnav/logs/vehicle.hpp"
 
 namespace helixnav::logs {
 
@@ -23,6 +24,9 @@ void estimate_missing_field_of_view(core::Recording& recording);
 
 /// Overwrites what is told in every scan. A range told is the reach as well.
 void tell_field_of_view(core::Recording& recording, const ToldFieldOfView& told);
+
+/// Overwrites what a sensor tells of its view.
+void tell_view(const SensorModel& sensor, core::FieldOfView& view);
 
 /// That of the first scan whose reach is known, else of the first scan, else the default.
 core::FieldOfView field_of_view_of(const core::Recording& recording);

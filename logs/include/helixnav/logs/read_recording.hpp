@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 #include "helixnav/core/recording.hpp"
@@ -9,6 +10,7 @@
 #include "helixnav/logs/dlr.hpp"
 #include "helixnav/logs/plaza.hpp"
 #include "helixnav/logs/pose_landmark_text.hpp"
+#include "helixnav/logs/vehicle.hpp"
 
 namespace helixnav::logs {
 
@@ -22,6 +24,7 @@ enum class LogFormat {
   slsjf_mat,           ///< MATLAB file with VicPark_clean_data
   dlr,                 ///< text whose first keyword is STEP, LANDMARK_C or LANDMARK_L
   plaza,               ///< folder with one …_odometry.csv and …_ranges.csv, or that odometry file
+  own,                 ///< the user's own: a folder with odometry.csv and detections.csv, or JSON Lines
 };
 std::string_view name_of(LogFormat format);
 
@@ -36,6 +39,7 @@ struct RecordingSettings {
   PlazaSettings plaza;
   NoiseColumns noise_columns = NoiseColumns::recognise;
   DlrOptions dlr;
+  std::optional<Vehicle> vehicle;  ///< of a log of the user's own; nothing: the vehicle.toml beside it
 };
 
 /// Recognises and reads. Errors are core::InputError, and nothing else.

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "helixnav/core/recording.hpp"
+#include "helixnav/logs/own_log.hpp"
+
+namespace helixnav::apps {
+
+/// The tables of a log of the user's own in words: rows, times, rates, what they say.
+std::string tables_text(const logs::OwnLog& log);
+
+/// The events of any log in words: way and speed, scans, kinds of observations, reach and field of view seen and told,
+/// gaps, truth.
+std::string events_text(const core::Recording& recording);
+
+}  // namespace helixnav::apps

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vehicle_option.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <variant>
+
+#include <CLI/CLI.hpp>
+
+#include "helixnav/core/errors.hpp"
+#include "helixnav/logs/field_of_view.hpp"
+#include "helixnav/logs/own_log.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+void set_unless_given(CLI::App& command, const std::string& option_name, double value) {
+  CLI::Option* option = command.get_option_no_throw(option_name);
+  if (option == nullptr || option->count() > 0) return;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.10g", value);
+  option->add_result(text);
+  option->run_callback();
+}
+
+/// The least of what the sensors say: a landmark missed by the weakest is no evidence.
+void set_detection(CLI::App& command, const logs::Vehicle& vehicle) {
+  std::optional<double> probability, clutter;
+  for (const logs::SensorModel& sensor : vehicle.sensors) {
+    if (sensor.detection_probability) probability = std::min(probability.value_or(1.0), *sensor.detection_probability);
+    if (sensor.clutter_per_scan) clutter = std::max(clutter.value_or(0.0), *sensor.clutter_per_scan);
+  }
+  if (probability) {
+    set_unless_given(command, "--association.detection_probability", *probability);
+    set_unless_given(command, "--landmarks.detection_probability", *probability);
+  }
+  constexpr double new_per_scan = 0.5;
+  if (clutter) set_unless_given(command, "--association.extraneous_per_scan", *clutter + new_per_scan);
+}
+
+void refuse_untold(const logs::Vehicle& vehicle) {
+  const logs::SensorModel& sensor = vehicle.sensors.front();
+  const logs::OdometryModel& odometry = vehicle.odometry;
+  const bool moves = odometry.tells_noise() || odometry.scale != 1.0 || odometry.turn_scale != 1.0 ||
+                     odometry.turn_bias_radps != 0.0 || !odometry.T_vehicle_odometry.vector().isZero(0.0);
+  const bool mounts =
+      !sensor.T_vehicle_sensor.vector().isZero(0.0) || sensor.delay_s != 0.0 || sensor.range_scale != 1.0;
+  if (!moves && !mounts) return;
+  throw core::InputError(vehicle.path + ": a log of this format brings its own " +
+                         (moves ? "odometry and its noise" : "mounting and times") +
+                         "; only the view, the noise and the probabilities of the [[sensor]] can be told");
+}
+
+void tell_noise(const logs::SensorModel& sensor, core::Observation& observation) {
+  using core::ObservationKind;
+  const auto tell = [&](int row, const std::optional<double>& sigma) {
+    if (!sigma) return;
+    observation.R.row(row).setZero();
+    observation.R.col(row).setZero();
+    observation.R(row, row) = *sigma * *sigma;
+  };
+  switch (observation.kind) {
+    case ObservationKind::range_bearing:
+      tell(0, sensor.sigma_range_m);
+      return tell(1, sensor.sigma_bearing_rad);
+    case ObservationKind::range:
+      return tell(0, sensor.sigma_range_m);
+    case ObservationKind::bearing:
+      return tell(0, sensor.sigma_bearing_rad);
+    case ObservationKind::cartesian:
+      tell(0, sensor.sigma_point_m);
+      return tell(1, sensor.sigma_point_m);
+  }
+}
+
+}  // namespace
+
+void add_vehicle_option(CLI::App& command, std::string& file) {
+  command
+      .add_option("--vehicle", file, "The vehicle: its sensors and their noise; default: vehicle.toml beside the log")
+      ->type_name("FILE");
+}
+
+void apply_vehicle(CLI::App& command, const std::string& file, const std::string& log, Settings& settings) {
+  std::string path = file;
+  if (path.empty() && logs::is_own_log(log)) path = logs::vehicle_beside(log).string();
+  if (path.empty()) return;
+  settings.logs.vehicle = logs::read_vehicle(path);
+  set_detection(command, *settings.logs.vehicle);
+  if (settings.logs.vehicle->sigma_fix_m)
+    set_unless_given(command, "--gps.sigma_m", *settings.logs.vehicle->sigma_fix_m);
+}
+
+void tell_vehicle(core::Recording& recording, const logs::Vehicle& vehicle) {
+  if (vehicle.sensors.size() != 1) {
+    throw core::InputError(vehicle.path + ": a log of this format has one sensor; expected one [[sensor]], found " +
+                           std::to_string(vehicle.sensors.size()));
+  }
+  refuse_untold(vehicle);
+  const logs::SensorModel& sensor = vehicle.sensors.front();
+  for (core::Event& event : recording.events) {
+    auto* scan = std::get_if<core::Scan>(&event);
+    if (scan == nullptr) continue;
+    logs::tell_view(sensor, scan->field_of_view);
+    for (core::Observation& observation : scan->observations) tell_noise(sensor, observation);
+  }
+}
+
+void print_remarks(const core::Recording& recording) {
+  for (const std::string& remark : recording.remarks) std::fprintf(stderr, "helixnav: note: %s\n", remark.c_str());
+}
+
+}  // namespace helixnav::apps

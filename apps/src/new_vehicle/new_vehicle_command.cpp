@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "common/commands.hpp"
+#include "example_log.hpp"
+#include "helixnav/core/errors.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+void write_file(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) throw core::InputError(path.string() + ": cannot be written");
+}
+
+void write_folder(const std::filesystem::path& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (fs::exists(folder) && (!fs::is_directory(folder) || !fs::is_empty(folder))) {
+    throw core::InputError(folder.string() + ": expected a folder that is empty or not there");
+  }
+  fs::create_directories(folder, error);
+  if (error) throw core::InputError(folder.string() + ": " + error.message());
+  const ExampleLog example = make_example_log();
+  write_file(folder / "vehicle.toml", example.vehicle);
+  write_file(folder / "odometry.csv", example.odometry);
+  write_file(folder / "detections.csv", example.detections);
+  write_file(folder / "truth_poses.csv", example.truth_poses);
+  write_file(folder / "truth_landmarks.csv", example.truth_landmarks);
+}
+
+}  // namespace
+
+void add_new_vehicle_command(CLI::App& app, ExitCode&) {
+  CLI::App* command =
+      app.add_subcommand("new-vehicle", "Write an example log with its vehicle.toml, to be made your own");
+  const auto folder = std::make_shared<std::string>();
+  command->add_option("DIR", *folder, "Folder to write; must be empty or new")->required();
+  command->footer(
+      "vehicle.toml is commented, and the log runs as it is.\n\n"
+      "Example:\n"
+      "  helixnav new-vehicle my_robot\n"
+      "  helixnav check my_robot\n"
+      "  helixnav replay my_robot --out runs/first\n");
+  command->callback([folder] {
+    write_folder(*folder);
+    std::printf(
+        "%s: vehicle.toml, odometry.csv, detections.csv and truth_*.csv of an example\n"
+        "next:   helixnav check %s\n"
+        "        helixnav replay %s --out runs/first\n"
+        "then put your own odometry.csv and detections.csv in their place and edit vehicle.toml\n",
+        folder->c_str(), folder->c_str(), folder->c_str());
+  });
+}
+
+}  // namespace helixnav::apps

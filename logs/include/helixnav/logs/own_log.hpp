@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/core/recording.hpp"
+#include "helixnav/logs/vehicle.hpp"
+
+namespace helixnav::logs {
+
+/// What the columns of odometry.csv say of the motion.
+enum class OdometryKind {
+  increments,  ///< dx [m], dy [m], dheading [rad] since the row before
+  velocities,  ///< v [m/s] ahead, vy [m/s] to the left, omega [rad/s], held until the next row
+  steering,    ///< v [m/s] of a rear wheel, steering [rad], held until the next row
+  wheels,      ///< v_left, v_right [m/s], held until the next row
+  poses,       ///< x [m], y [m], heading [rad], of dead reckoning
+};
+std::string_view name_of(OdometryKind kind);
+
+struct OwnOdometry {
+  core::Nanoseconds t_ns = 0;
+  Eigen::Vector3d value = Eigen::Vector3d::Zero();  ///< as the kind says
+};
+
+/// One row of detections.csv. Without any value it says that a scan was taken.
+struct OwnDetection {
+  core::Nanoseconds t_ns = 0;
+  enum class Kind : std::uint8_t { nothing, range_bearing, cartesian, bearing, range } kind = Kind::nothing;
+  std::uint8_t sensor = 0;       ///< index into OwnLog::sensor_names
+  std::int32_t class_name = -1;  ///< index into OwnLog::class_names; −1: none
+  core::Label label = core::no_label;
+  std::array<double, 2> z{};
+  std::array<double, 3> R{};  ///< (0,0), (0,1), (1,1); R(0,0) = 0: not told, the vehicle's
+  double size_m = 0.0;        ///< 0: not told
+  double sigma_size_m = 0.0;
+};
+
+struct OwnFix {
+  core::Nanoseconds t_ns = 0;
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
+  double sigma_m = 0.0;  ///< 0: not told
+};
+
+/// A log of the user's own, as it stands in its files: SI units, each list in order of time.
+struct OwnLog {
+  std::string name;
+  OdometryKind odometry_kind = OdometryKind::increments;
+  std::vector<OwnOdometry> odometry;
+  std::vector<Eigen::Matrix3d> odometry_covariances;  ///< of the values; empty, or one a row
+  std::vector<OwnDetection> detections;
+  std::vector<std::string> sensor_names;  ///< as in the files; a log without a column for it has one, ""
+  std::vector<std::string> class_names;
+  std::vector<std::string> id_names;  ///< [label] where identities are names; empty where they are numbers
+  bool has_labels = false;
+  std::vector<OwnFix> fixes;
+  std::vector<core::TruePose> true_poses;
+  std::vector<core::TruePosition> true_positions;
+  std::vector<core::TrueLandmark> true_landmarks;
+  std::vector<std::string> remarks;  ///< what was sorted, left out or not used, a sentence each
+};
+
+/// Whether `path` looks like one: a folder with odometry.csv, detections.csv or vehicle.toml, or a file of JSON Lines.
+bool is_own_log(const std::filesystem::path& path);
+
+/// The vehicle.toml of a log: in the folder, or beside the file of JSON Lines. Empty when there is none.
+std::filesystem::path vehicle_beside(const std::filesystem::path& log);
+
+/// Reads a folder with odometry.csv and detections.csv, and fixes.csv, truth_poses.csv, truth_landmarks.csv where they are
+/// there, or a file of JSON Lines. Columns are known by their names, with units at their ends (docs/your_own_log.md). Rows
+/// out of order by less than a second are sorted. Throws core::InputError naming file:line:column for anything else that
+/// cannot be used. Test: logs/own_log_test.cpp, logs/own_log_refusals_test.cpp.
+OwnLog read_own_log(const std::filesystem::path& path);
+
+/// The events of the log as this vehicle makes them: odometry between two scans or fixes as one increment, split at them
+/// in proportion to time, and all in the frame of the vehicle. Throws core::InputError for noise that neither the log nor
+/// the vehicle tells, a sensor that the vehicle does not have, clocks that do not overlap. Remarks go to
+/// Recording::remarks. Test: logs/own_recording_test.cpp.
+core::Recording make_recording(const OwnLog& log, const Vehicle& vehicle);
+
+}  // namespace helixnav::logs

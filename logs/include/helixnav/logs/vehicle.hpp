@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/core/angle.hpp"
+#include "helixnav/core/se2.hpp"
+
+namespace helixnav::logs {
+
+/// How odometry becomes motion, and how well it is known. What is not told is nothing.
+struct OdometryModel {
+  core::Pose2 T_vehicle_odometry;     ///< where it is measured, in the frame of the vehicle
+  double scale = 1.0;                 ///< times every distance and speed
+  double turn_scale = 1.0;            ///< times every turn
+  double turn_bias_radps = 0.0;       ///< taken off every turn rate, after that
+  double steering_scale = 1.0;        ///< times every steering angle, and …
+  double steering_offset_rad = 0.0;   ///< … added to it then
+  std::optional<double> wheelbase_m;  ///< rear axle to front axle; of steering
+  double encoder_offset_m = 0.0;      ///< from the middle of the rear axle to the wheel measured, left positive
+  std::optional<double> track_m;      ///< between the left and the right wheel; of wheels
+
+  // Noise that grows with the way or the time.
+  std::optional<double> sigma_along_m_per_sqrt_m;
+  std::optional<double> sigma_sideways_m_per_sqrt_m;
+  std::optional<double> sigma_heading_rad_per_sqrt_m;
+  std::optional<double> sigma_heading_rad_per_sqrt_s;
+  // Noise of a sample.
+  std::optional<double> sigma_v_mps;  ///< of v, v_left and v_right
+  std::optional<double> sigma_omega_radps;
+  std::optional<double> sigma_steering_rad;
+
+  bool tells_noise() const {
+    return sigma_along_m_per_sqrt_m || sigma_sideways_m_per_sqrt_m || sigma_heading_rad_per_sqrt_m ||
+           sigma_heading_rad_per_sqrt_s || sigma_v_mps || sigma_omega_radps || sigma_steering_rad;
+  }
+};
+
+/// A detector of landmarks.
+struct SensorModel {
+  std::string name;
+  core::Pose2 T_vehicle_sensor;
+  std::optional<double> reach_m;           ///< landmarks are seen up to here
+  std::optional<double> reliable_range_m;  ///< and surely up to here: one that is missed nearer is doubted
+  double min_range_m = 0.0;
+  std::optional<double> min_bearing_rad, max_bearing_rad;  ///< both or neither
+  std::optional<double> sigma_range_m;
+  std::optional<double> sigma_bearing_rad;
+  std::optional<double> sigma_point_m;  ///< of x and of y, for detections as points
+  double range_scale = 1.0;             ///< recorded range over true one
+  double delay_s = 0.0;                 ///< a scan was taken so long before its stamp
+  std::optional<double> detection_probability;
+  std::optional<double> clutter_per_scan;
+};
+
+/// A vehicle as its vehicle.toml tells it. Its frame: x ahead, y left; its origin is the point whose path is written.
+struct Vehicle {
+  std::string name;
+  std::string path;  ///< of the file, for messages
+  OdometryModel odometry;
+  std::vector<SensorModel> sensors;
+  Eigen::Vector2d antenna_m = Eigen::Vector2d::Zero();
+  std::optional<double> sigma_fix_m;
+};
+
+/// Reads a vehicle.toml (docs/your_own_log.md). Throws core::InputError naming file:line:column for what is no TOML, a key
+/// that is unknown (with the nearest one of its section), of the wrong type, out of its range, or told in two units.
+/// Test: logs/vehicle_test.cpp.
+Vehicle read_vehicle(const std::filesystem::path& path);
+
+}  // namespace helixnav::logs

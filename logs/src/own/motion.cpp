@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "helixnav/core/ackermann.hpp"
+#include "helixnav/core/angle.hpp"
+#include "helixnav/core/errors.hpp"
+
+namespace helixnav::logs {
+namespace {
+
+double square(double value) { return value * value; }
+
+[[noreturn]] void fail_vehicle(const Vehicle& vehicle, const std::string& message) {
+  throw core::InputError((vehicle.path.empty() ? std::string("no vehicle.toml") : vehicle.path) + ": " + message);
+}
+
+void check_geometry(const OwnLog& log, const Vehicle& vehicle) {
+  if (log.odometry_kind == OdometryKind::steering && !vehicle.odometry.wheelbase_m) {
+    fail_vehicle(vehicle, "odometry by steering angle needs wheelbase_m in section [odometry]");
+  }
+  if (log.odometry_kind == OdometryKind::wheels && !vehicle.odometry.track_m) {
+    fail_vehicle(vehicle, "odometry by two wheels needs track_m, the distance between them, in section [odometry]");
+  }
+  if (!log.odometry_covariances.empty() || vehicle.odometry.tells_noise()) return;
+  fail_vehicle(
+      vehicle,
+      "nobody tells the noise of the odometry: neither a column of odometry.csv nor a key of section [odometry], "
+      "as sigma_along_m_per_sqrt_m and sigma_heading_deg_per_sqrt_m; 'helixnav new-vehicle' writes an example");
+}
+
+/// How far a twist's chord is turned against its ends.
+Eigen::Matrix3d half_turned(double turn_rad) {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  R.topLeftCorner<2, 2>() = core::rotation(0.5 * turn_rad);
+  return R;
+}
+
+}  // namespace
+
+core::Pose2 exponential(const Eigen::Vector3d& twist) {
+  const double a = twist.z();
+  const bool small = std::abs(a) < 1e-4;
+  const double sinc = small ? 1.0 - a * a / 6.0 : std::sin(a) / a;
+  const double cosc = small ? a * (0.5 - a * a / 24.0) : (1.0 - std::cos(a)) / a;
+  return {sinc * twist.x() - cosc * twist.y(), cosc * twist.x() + sinc * twist.y(), a};
+}
+
+Eigen::Vector3d logarithm(const Eigen::Vector3d& increment) {
+  const double half = 0.5 * increment.z();
+  const double cot = std::abs(half) < 1e-4 ? 1.0 - half * half / 3.0 : half / std::tan(half);
+  return {cot * increment.x() + half * increment.y(), cot * increment.y() - half * increment.x(), increment.z()};
+}
+
+Motions::Motions(const OwnLog& log, const Vehicle& vehicle) : log_(log), model_(vehicle.odometry) {
+  check_geometry(log, vehicle);
+}
+
+bool Motions::holds() const {
+  return log_.odometry_kind != OdometryKind::increments && log_.odometry_kind != OdometryKind::poses;
+}
+
+Motion Motions::stretch(std::size_t row, core::Nanoseconds last_ns) const {
+  Motion motion;
+  const core::Nanoseconds t_ns = log_.odometry[row].t_ns;
+  if (holds()) {
+    motion.begin_ns = t_ns;
+    motion.end_ns = row + 1 < log_.odometry.size() ? log_.odometry[row + 1].t_ns : std::max(t_ns, last_ns);
+  } else {
+    motion.begin_ns = row > 0 ? log_.odometry[row - 1].t_ns : t_ns;
+    motion.end_ns = t_ns;
+  }
+  return motion;
+}
+
+/// Twist of a held sample of speed and steering; its covariance by the way.
+Eigen::Vector3d Motions::steered(Motion& motion, const Eigen::Vector3d& value) const {
+  core::AckermannSample sample;
+  sample.wheel_speed_mps = model_.scale * value[0];
+  sample.steering_rad = model_.steering_scale * value[1] + model_.steering_offset_rad;
+  sample.duration_s = core::seconds(motion.end_ns - motion.begin_ns);
+  const core::AckermannNoise noise{model_.sigma_v_mps.value_or(0.0), model_.sigma_steering_rad.value_or(0.0)};
+  const core::Odometry moved = core::ackermann_increment({*model_.wheelbase_m, model_.encoder_offset_m}, noise, sample);
+  motion.covariance = moved.covariance;
+  return logarithm(moved.T_before_after.vector());
+}
+
+void Motions::move(Motion& motion, std::size_t row) const {
+  const Eigen::Vector3d& value = log_.odometry[row].value;
+  const double duration_s = core::seconds(motion.end_ns - motion.begin_ns);
+  const double bias_rad = model_.turn_bias_radps * duration_s;
+  switch (log_.odometry_kind) {
+    case OdometryKind::increments:
+      motion.twist =
+          logarithm({model_.scale * value.x(), model_.scale * value.y(), model_.turn_scale * value.z() - bias_rad});
+      return;
+    case OdometryKind::poses: {
+      const Eigen::Vector3d moved =
+          core::between(core::Pose2(log_.odometry[row - 1].value), core::Pose2(value)).vector();
+      motion.twist = logarithm(moved);
+      motion.twist.head<2>() *= model_.scale;
+      motion.twist.z() = model_.turn_scale * motion.twist.z() - bias_rad;
+      return;
+    }
+    case OdometryKind::velocities:
+      motion.twist = duration_s *
+                     Eigen::Vector3d(model_.scale * value.x(), model_.scale * value.y(), model_.turn_scale * value.z());
+      motion.twist.z() -= bias_rad;
+      return;
+    case OdometryKind::steering:
+      motion.twist = steered(motion, value);
+      return;
+    case OdometryKind::wheels:
+      motion.twist = duration_s * Eigen::Vector3d(0.5 * model_.scale * (value[0] + value[1]), 0.0,
+                                                  model_.turn_scale * (value[1] - value[0]) / *model_.track_m);
+      motion.twist.z() -= bias_rad;
+      return;
+  }
+}
+
+void Motions::add_model_noise(Motion& motion, std::size_t) const {
+  const double way_m = motion.twist.head<2>().norm();
+  const double duration_s = core::seconds(motion.end_ns - motion.begin_ns);
+  const Eigen::Vector3d variances(square(model_.sigma_along_m_per_sqrt_m.value_or(0.0)) * way_m,
+                                  square(model_.sigma_sideways_m_per_sqrt_m.value_or(0.0)) * way_m,
+                                  square(model_.sigma_heading_rad_per_sqrt_m.value_or(0.0)) * way_m +
+                                      square(model_.sigma_heading_rad_per_sqrt_s.value_or(0.0)) * duration_s);
+  const Eigen::Matrix3d R = half_turned(motion.twist.z());
+  motion.covariance += R * variances.asDiagonal() * R.transpose();
+}
+
+/// Of speed and turn rate, constant over the sample.
+void Motions::add_sample_noise(Motion& motion, std::size_t row) const {
+  const double duration_s = core::seconds(motion.end_ns - motion.begin_ns);
+  Eigen::Matrix3d rates = Eigen::Matrix3d::Zero();
+  if (!log_.odometry_covariances.empty()) rates = log_.odometry_covariances[row];
+  const bool told = !rates.isZero(0.0);
+  const double v = square(model_.sigma_v_mps.value_or(0.0));
+  if (log_.odometry_kind == OdometryKind::wheels) {
+    rates(0, 0) = 0.5 * v;
+    rates(2, 2) = 2.0 * v / square(*model_.track_m);
+  } else if (!told) {
+    rates(0, 0) = v;
+    rates(2, 2) = square(model_.sigma_omega_radps.value_or(0.0));
+  }
+  Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
+  J(0, 2) = -0.5 * motion.twist.y();
+  J(1, 2) = 0.5 * motion.twist.x();
+  J = square(duration_s) > 0.0 ? Eigen::Matrix3d(duration_s * half_turned(motion.twist.z()) * J)
+                               : Eigen::Matrix3d::Zero();
+  motion.covariance += J * rates * J.transpose();
+}
+
+std::optional<Motion> Motions::of_row(std::size_t row, core::Nanoseconds last_ns) const {
+  if (row == 0 && log_.odometry_kind == OdometryKind::poses) return std::nullopt;
+  Motion motion = stretch(row, last_ns);
+  move(motion, row);
+  const bool own = log_.odometry_kind == OdometryKind::increments && !log_.odometry_covariances.empty() &&
+                   !log_.odometry_covariances[row].isZero(0.0);
+  if (own) {
+    motion.covariance = log_.odometry_covariances[row];
+    return motion;
+  }
+  add_model_noise(motion, row);
+  if (log_.odometry_kind == OdometryKind::velocities || log_.odometry_kind == OdometryKind::wheels) {
+    add_sample_noise(motion, row);
+  }
+  motion.covariance = 0.5 * (motion.covariance + motion.covariance.transpose()).eval();
+  return motion;
+}
+
+core::Odometry part_of(const Motion& motion, double share, core::Nanoseconds t_ns,
+                       const core::Pose2& T_vehicle_odometry) {
+  core::Odometry part;
+  part.t_ns = t_ns;
+  const core::Pose2 moved = exponential(share * motion.twist);
+  const bool in_place = T_vehicle_odometry.vector().isZero(0.0);
+  if (in_place) {
+    part.T_before_after = moved;
+    part.covariance = share * motion.covariance;
+    return part;
+  }
+  const core::Pose2 T_odometry_vehicle = core::inverse(T_vehicle_odometry);
+  const core::Pose2 T_vehicle_moved = core::compose(T_vehicle_odometry, moved);
+  const Eigen::Matrix3d J = core::compose_jacobians(T_vehicle_moved, T_odometry_vehicle).J_first *
+                            core::compose_jacobians(T_vehicle_odometry, moved).J_second;
+  part.T_before_after = core::compose(T_vehicle_moved, T_odometry_vehicle);
+  const Eigen::Matrix3d Q = share * (J * motion.covariance * J.transpose());
+  part.covariance = 0.5 * (Q + Q.transpose());
+  return part;
+}
+
+}  // namespace helixnav::logs

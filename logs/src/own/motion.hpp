@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "helixnav/core/events.hpp"
+#include "helixnav/logs/own_log.hpp"
+
+namespace helixnav::logs {
+
+/// Motion at a constant twist over a stretch of time, in the frame that odometry is measured in.
+struct Motion {
+  core::Nanoseconds begin_ns = 0, end_ns = 0;
+  Eigen::Vector3d twist = Eigen::Vector3d::Zero();  ///< (x, y, heading) whose exponential is the increment
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+/// The increment of a twist: an arc. Test: logs/own_recording_test.cpp (against fine integration).
+core::Pose2 exponential(const Eigen::Vector3d& twist);
+/// Its inverse for turns within ±2π.
+Eigen::Vector3d logarithm(const Eigen::Vector3d& increment);
+
+/// The motions that the rows of a log speak of, by a vehicle. Throws core::InputError when the vehicle lacks what the kind
+/// of odometry needs, or the noise.
+class Motions {
+ public:
+  Motions(const OwnLog& log, const Vehicle& vehicle);
+
+  /// That of a row: until it (increments, poses) or from it to the next (the others; the last until `last_ns`). Nothing for
+  /// the first pose.
+  std::optional<Motion> of_row(std::size_t row, core::Nanoseconds last_ns) const;
+
+  /// Whether a row says what comes after it.
+  bool holds() const;
+
+ private:
+  Motion stretch(std::size_t row, core::Nanoseconds last_ns) const;
+  void move(Motion& motion, std::size_t row) const;
+  void add_model_noise(Motion& motion, std::size_t row) const;
+  void add_sample_noise(Motion& motion, std::size_t row) const;
+  Eigen::Vector3d steered(Motion& motion, const Eigen::Vector3d& value) const;
+
+  const OwnLog& log_;
+  const OdometryModel& model_;
+};
+
+/// A part of a motion, in (0, 1], as an increment of the vehicle that ends at t_ns.
+core::Odometry part_of(const Motion& motion, double share, core::Nanoseconds t_ns,
+                       const core::Pose2& T_vehicle_odometry);
+
+}  // namespace helixnav::logs

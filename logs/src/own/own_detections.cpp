@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <string>
+
+#include "own_columns.hpp"
+#include "own_tables.hpp"
+
+namespace helixnav::logs {
+namespace {
+
+using namespace detection_columns;
+using Kind = OwnDetection::Kind;
+
+constexpr double farthest_m = 1e6;
+
+Kind kind_of(const Row& row) {
+  const bool polar = row.has(range) || row.has(bearing);
+  const bool point = row.has(x) || row.has(y);
+  if (polar && point) {
+    row.fail(x, "a point and a range or bearing in one row; expected one of the two, and empty cells for the other");
+  }
+  if (point && !row.has(x)) row.fail(x, "expected x and y, found only y");
+  if (point && !row.has(y)) row.fail(y, "expected x and y, found only x");
+  if (point) return Kind::cartesian;
+  if (row.has(range) && row.has(bearing)) return Kind::range_bearing;
+  if (row.has(range)) return Kind::range;
+  return row.has(bearing) ? Kind::bearing : Kind::nothing;
+}
+
+double variance(const Row& row, std::size_t column) {
+  if (!row.has(column)) return 0.0;
+  const double sigma = row.positive(column);
+  return sigma * sigma;
+}
+
+/// Both or neither.
+void read_two_variances(const Row& row, std::size_t first, std::size_t second, OwnDetection& detection) {
+  if (row.has(first) != row.has(second)) {
+    row.fail(row.has(first) ? second : first,
+             "expected both " + row.columns().name_of(first) + " and " + row.columns().name_of(second) + ", found one");
+  }
+  detection.R = {variance(row, first), 0.0, variance(row, second)};
+}
+
+void read_covariance(const Row& row, OwnDetection& detection) {
+  detection.R = {row.positive(cov_xx), row.number(cov_xy), row.positive(cov_yy)};
+  if (detection.R[0] * detection.R[2] <= detection.R[1] * detection.R[1]) {
+    row.fail(cov_xx, "this covariance is not positive definite");
+  }
+}
+
+void read_value(const Row& row, OwnDetection& detection) {
+  switch (detection.kind) {
+    case Kind::range_bearing:
+      row.positive(range);
+      detection.z = {row.number_between(range, 0.0, farthest_m), row.angle(bearing)};
+      return read_two_variances(row, sigma_range, sigma_bearing, detection);
+    case Kind::range:
+      row.positive(range);
+      detection.z = {row.number_between(range, 0.0, farthest_m), 0.0};
+      detection.R = {variance(row, sigma_range), 0.0, 0.0};
+      return;
+    case Kind::bearing:
+      detection.z = {row.angle(bearing), 0.0};
+      detection.R = {variance(row, sigma_bearing), 0.0, 0.0};
+      return;
+    case Kind::cartesian:
+      detection.z = {row.number_between(x, -farthest_m, farthest_m), row.number_between(y, -farthest_m, farthest_m)};
+      if (row.has(cov_xx)) return read_covariance(row, detection);
+      return read_two_variances(row, sigma_x, sigma_y, detection);
+    case Kind::nothing:
+      return;
+  }
+}
+
+}  // namespace
+
+void OwnTables::begin_detections(const Columns& columns) {
+  columns.require(t);
+  if (columns.has(x) != columns.has(y)) columns.require(columns.has(x) ? y : x);
+  if (columns.has(cov_xx)) {
+    columns.require(cov_xy);
+    columns.require(cov_yy);
+  }
+  const bool says_anything = columns.has(range) || columns.has(bearing) || columns.has(x);
+  if (says_anything || rows_alone_) return;
+  columns.fail_header(
+      "no detections in these columns: expected range_m and bearing_rad (or bearing_deg), one of the two, "
+      "or x_m and y_m");
+}
+
+void OwnTables::add_detection(const Row& row) {
+  OwnDetection detection;
+  detection.t_ns = times_[1].take(row, t);
+  detection.kind = kind_of(row);
+  read_value(row, detection);
+  constexpr std::int64_t most_sensors = 255;
+  const std::int64_t of_sensor = sensors_.of(row.has(sensor) ? row.text(sensor) : std::string_view());
+  if (of_sensor >= most_sensors) row.fail(sensor, "more than 255 sensors");
+  detection.sensor = static_cast<std::uint8_t>(of_sensor);
+  if (row.has(id) && row.text(id) != "-1") detection.label = ids_.of(row.text(id));
+  if (row.has(class_name)) detection.class_name = static_cast<std::int32_t>(classes_.of(row.text(class_name)));
+  if (row.has(size)) {
+    detection.size_m = row.positive(size);
+    has_sizes_ = true;
+  }
+  if (row.has(sigma_size)) detection.sigma_size_m = row.positive(sigma_size);
+  log_.detections.push_back(detection);
+}
+
+}  // namespace helixnav::logs

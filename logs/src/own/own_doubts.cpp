@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "own_doubts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <variant>
+
+#include "helixnav/core/angle.hpp"
+
+namespace helixnav::logs {
+namespace {
+
+using Kind = OwnDetection::Kind;
+using Doubts = std::vector<std::string>;
+
+constexpr double degree = core::pi / 180.0;
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  std::array<char, 320> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, values...);
+  return buffer.data();
+}
+
+double quantile(std::vector<double>& values, double share) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+std::vector<double> intervals_s(const OwnLog& log) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < log.odometry.size(); ++i) {
+    intervals.push_back(core::seconds(log.odometry[i].t_ns - log.odometry[i - 1].t_ns));
+  }
+  return intervals;
+}
+
+void doubt_times(const OwnLog& log, Doubts& doubts) {
+  std::vector<double> intervals = intervals_s(log);
+  if (intervals.empty()) return;
+  const double median_s = quantile(intervals, 0.5);
+  if (median_s > 5.0) {
+    doubts.push_back(
+        text("odometry: a row every %.4g s; if its times are in milliseconds, call the column t_ms", median_s));
+  } else if (median_s < 1e-4) {
+    doubts.push_back(text("odometry: a row every %.4g s; are its times in seconds?", median_s));
+  }
+  const double long_s = std::max(1.0, 10.0 * median_s);
+  std::size_t count = 0, longest = 0;
+  intervals = intervals_s(log);
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    count += intervals[i] > long_s ? 1 : 0;
+    if (intervals[i] > intervals[longest]) longest = i;
+  }
+  if (count == 0) return;
+  const bool held = log.odometry_kind != OdometryKind::increments && log.odometry_kind != OdometryKind::poses;
+  doubts.push_back(text("odometry: %zu gaps longer than %.3g s, the longest %.4g s from %.9g s on; %s", count, long_s,
+                        intervals[longest], core::seconds(log.odometry[longest].t_ns),
+                        held ? "the row before a gap is held through it" : "motion in it is spread evenly"));
+}
+
+/// Of the motion that was made.
+void doubt_speeds(const core::Recording& recording, Doubts& doubts) {
+  std::vector<double> speeds_mps;
+  core::Nanoseconds last_ns = recording.events.empty() ? 0 : core::time_of(recording.events.front());
+  for (const core::Event& event : recording.events) {
+    const auto* odometry = std::get_if<core::Odometry>(&event);
+    if (odometry != nullptr && odometry->t_ns > last_ns) {
+      const double duration_s = core::seconds(odometry->t_ns - last_ns);
+      speeds_mps.push_back(odometry->T_before_after.position_m().norm() / duration_s);
+    }
+    last_ns = std::max(last_ns, core::time_of(event));
+  }
+  if (speeds_mps.empty()) return;
+  const double speed_mps = quantile(speeds_mps, 0.95);
+  if (speed_mps > 70.0) doubts.push_back(text("odometry: speeds of %.4g m/s; what unit is it in?", speed_mps));
+  if (*std::max_element(speeds_mps.begin(), speeds_mps.end()) == 0.0) {
+    doubts.emplace_back("odometry: the vehicle never moves");
+  }
+}
+
+/// The turn that a row speaks of, against the one before it: an angle, or a rate.
+double turn_of(const OwnLog& log, std::size_t row) {
+  const Eigen::Vector3d& value = log.odometry[row].value;
+  if (log.odometry_kind == OdometryKind::increments || log.odometry_kind == OdometryKind::velocities) return value.z();
+  if (log.odometry_kind != OdometryKind::poses || row == 0) return 0.0;
+  return core::wrap_to_pi(value.z() - log.odometry[row - 1].value.z());
+}
+
+void doubt_turns(const OwnLog& log, Doubts& doubts) {
+  const bool rate = log.odometry_kind == OdometryKind::velocities;
+  const double most = rate ? 6.0 : 1.0;
+  std::size_t large = 0;
+  for (std::size_t i = 0; i < log.odometry.size(); ++i) large += std::abs(turn_of(log, i)) > most ? 1 : 0;
+  if (large * 50 <= log.odometry.size()) return;
+  doubts.push_back(
+      text("odometry: %zu of %zu rows turn by more than %g %s; are the headings in degrees? Then end the name "
+           "of the column in %s",
+           large, log.odometry.size(), most, rate ? "rad/s" : "rad", rate ? "_degps" : "_deg"));
+}
+
+void doubt_bearings(const OwnLog& log, Doubts& doubts) {
+  double most_rad = 0.0;
+  std::size_t count = 0;
+  for (const OwnDetection& row : log.detections) {
+    if (row.kind != Kind::range_bearing && row.kind != Kind::bearing) continue;
+    most_rad = std::max(most_rad, std::abs(row.z[row.kind == Kind::bearing ? 0 : 1]));
+    ++count;
+  }
+  if (count > 100 && most_rad < 2.0 * core::pi * degree) {
+    doubts.push_back(
+        text("detections: all %zu bearings lie within ±%.3g degrees; are they in radians?", count, most_rad / degree));
+  }
+}
+
+void doubt_overlap(const OwnLog& log, const core::Recording& recording, Doubts& doubts) {
+  std::size_t scans = 0, outside = 0;
+  for (const core::Event& event : recording.events) {
+    if (!std::holds_alternative<core::Scan>(event)) continue;
+    ++scans;
+    const core::Nanoseconds t_ns = core::time_of(event);
+    outside += t_ns < log.odometry.front().t_ns || t_ns > log.odometry.back().t_ns ? 1 : 0;
+  }
+  if (outside * 50 > scans) {
+    doubts.push_back(text("%zu of %zu scans were taken before the odometry begins or after it ends", outside, scans));
+  }
+}
+
+bool is_outside(const core::Observation& z, const core::FieldOfView& view) {
+  const bool polar = z.kind == core::ObservationKind::range_bearing, point = z.kind == core::ObservationKind::cartesian;
+  constexpr double slack = 1.05, slack_rad = 0.05;
+  const double range_m = polar || z.kind == core::ObservationKind::range ? z.z[0] : point ? z.z.norm() : 0.0;
+  if (view.reach() && range_m > slack * *view.reach()) return true;
+  if (z.kind == core::ObservationKind::range) return false;
+  const double bearing_rad = point ? std::atan2(z.z[1], z.z[0]) : core::wrap_to_pi(z.z[polar ? 1 : 0]);
+  return bearing_rad < view.min_bearing_rad - slack_rad || bearing_rad > view.max_bearing_rad + slack_rad;
+}
+
+void doubt_vehicle(const Vehicle& vehicle, const core::Recording& recording, Doubts& doubts) {
+  std::size_t seen = 0, outside = 0;
+  for (const core::Event& event : recording.events) {
+    const auto* scan = std::get_if<core::Scan>(&event);
+    if (scan == nullptr) continue;
+    for (const core::Observation& observation : scan->observations) {
+      ++seen;
+      outside += is_outside(observation, scan->field_of_view) ? 1 : 0;
+    }
+  }
+  const bool told = std::any_of(vehicle.sensors.begin(), vehicle.sensors.end(), [](const SensorModel& sensor) {
+    return sensor.reach_m || sensor.reliable_range_m || sensor.min_bearing_rad;
+  });
+  if (told && outside * 20 > seen) {
+    doubts.push_back(
+        text("%zu of %zu detections (%.0f %%) lie outside the reach and view that %s tells; is it the vehicle "
+             "of this log?",
+             outside, seen, 100.0 * static_cast<double>(outside) / static_cast<double>(seen), vehicle.path.c_str()));
+  }
+}
+
+}  // namespace
+
+Doubts doubts_of(const OwnLog& log, const Vehicle& vehicle, const core::Recording& recording) {
+  Doubts doubts;
+  doubt_times(log, doubts);
+  doubt_speeds(recording, doubts);
+  doubt_turns(log, doubts);
+  doubt_bearings(log, doubts);
+  doubt_overlap(log, recording, doubts);
+  doubt_vehicle(vehicle, recording, doubts);
+  return doubts;
+}
+
+}  // namespace helixnav::logs

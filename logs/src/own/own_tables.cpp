@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "own_tables.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <tuple>
+
+#include "helixnav/core/errors.hpp"
+#include "own_columns.hpp"
+
+namespace helixnav::logs {
+namespace {
+
+std::string counted(std::size_t count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+template <class Entry>
+void sort_by_time(std::vector<Entry>& entries) {
+  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.t_ns < b.t_ns; });
+}
+
+/// Covariances go with their rows.
+void sort_odometry(OwnLog& log) {
+  std::vector<std::size_t> order(log.odometry.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return log.odometry[a].t_ns < log.odometry[b].t_ns; });
+  std::vector<OwnOdometry> rows;
+  std::vector<Eigen::Matrix3d> covariances;
+  for (const std::size_t i : order) {
+    rows.push_back(log.odometry[i]);
+    if (!log.odometry_covariances.empty()) covariances.push_back(log.odometry_covariances[i]);
+  }
+  log.odometry = std::move(rows);
+  log.odometry_covariances = std::move(covariances);
+}
+
+bool is_whole_number(const std::string& word, std::int64_t& value) {
+  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  constexpr std::int64_t most = std::int64_t{1} << 53;
+  return error == std::errc{} && stop == word.data() + word.size() && value >= 0 && value < most;
+}
+
+}  // namespace
+
+core::Nanoseconds RowTimes::take(const Row& row, std::size_t column) {
+  constexpr core::Nanoseconds tolerated_ns = 1'000'000'000;
+  const core::Nanoseconds t_ns = row.time(column);
+  if (latest_ns_ != std::numeric_limits<core::Nanoseconds>::min() && t_ns < latest_ns_) {
+    if (latest_ns_ - t_ns > tolerated_ns) {
+      char text[160];
+      std::snprintf(text, sizeof text, "the time goes back by %.6g s, to %.9g s; rows are sorted within 1 s only",
+                    core::seconds(latest_ns_ - t_ns), core::seconds(t_ns));
+      row.fail(column, text);
+    }
+    ++out_of_order_;
+  }
+  latest_ns_ = std::max(latest_ns_, t_ns);
+  return t_ns;
+}
+
+std::int64_t WordNumbers::of(std::string_view word) {
+  const auto known = numbers_.find(word);
+  if (known != numbers_.end()) return known->second;
+  const auto number = static_cast<std::int64_t>(words_.size());
+  words_.emplace_back(word);
+  numbers_.emplace(words_.back(), number);
+  return number;
+}
+
+void OwnTables::begin(Table table, const Columns& columns) {
+  for (const std::string& name : columns.unused()) remark(columns.path() + ": column " + name + " is not used");
+  switch (table) {
+    case Table::odometry:
+      return begin_odometry(columns);
+    case Table::detections:
+      return begin_detections(columns);
+    case Table::fixes:
+    case Table::truth_poses:
+      for (const std::size_t column : {fix_columns::t, fix_columns::x, fix_columns::y}) columns.require(column);
+      return;
+    case Table::truth_landmarks:
+      for (const std::size_t column : {true_landmark_columns::x, true_landmark_columns::y}) columns.require(column);
+  }
+}
+
+void OwnTables::remark(const std::string& text) {
+  if (std::find(log_.remarks.begin(), log_.remarks.end(), text) == log_.remarks.end()) log_.remarks.push_back(text);
+}
+
+void OwnTables::add(Table table, const Row& row) {
+  switch (table) {
+    case Table::odometry:
+      return add_odometry(row);
+    case Table::detections:
+      return add_detection(row);
+    case Table::fixes:
+      return add_fix(row);
+    case Table::truth_poses:
+      return add_true_pose(row);
+    case Table::truth_landmarks:
+      return add_true_landmark(row);
+  }
+}
+
+constexpr double farthest_m = 1e8;
+
+void OwnTables::add_fix(const Row& row) {
+  using namespace fix_columns;
+  OwnFix fix;
+  fix.t_ns = times_[2].take(row, t);
+  fix.position_m = {row.number_between(x, -farthest_m, farthest_m), row.number_between(y, -farthest_m, farthest_m)};
+  if (row.has(sigma)) fix.sigma_m = row.positive(sigma);
+  log_.fixes.push_back(fix);
+}
+
+void OwnTables::add_true_pose(const Row& row) {
+  using namespace true_pose_columns;
+  const core::Nanoseconds t_ns = times_[3].take(row, t);
+  const Eigen::Vector2d position_m(row.number_between(x, -farthest_m, farthest_m),
+                                   row.number_between(y, -farthest_m, farthest_m));
+  if (row.columns().has(heading)) {
+    log_.true_poses.push_back(
+        {t_ns, core::Pose2(position_m.x(), position_m.y(), row.number_between(heading, -1e6, 1e6))});
+  } else {
+    log_.true_positions.push_back({t_ns, position_m});
+  }
+}
+
+void OwnTables::add_true_landmark(const Row& row) {
+  using namespace true_landmark_columns;
+  core::TrueLandmark landmark;
+  if (row.has(id)) landmark.label = ids_.of(row.text(id));
+  landmark.point_m = {row.number_between(x, -farthest_m, farthest_m), row.number_between(y, -farthest_m, farthest_m)};
+  log_.true_landmarks.push_back(landmark);
+}
+
+void OwnTables::sort_all() {
+  for (std::size_t table = 0; table < table_count; ++table) {
+    const std::size_t count = times_[table].out_of_order();
+    if (count == 0) continue;
+    log_.remarks.push_back(std::string(name_of(static_cast<Table>(table))) + ": " + counted(count, "row") +
+                           " out of order by less than a second, sorted");
+  }
+  if (times_[0].out_of_order() > 0) sort_odometry(log_);
+  const auto earlier = [](const OwnDetection& a, const OwnDetection& b) {
+    return std::tie(a.t_ns, a.sensor) < std::tie(b.t_ns, b.sensor);
+  };
+  if (!std::is_sorted(log_.detections.begin(), log_.detections.end(), earlier)) {
+    std::stable_sort(log_.detections.begin(), log_.detections.end(), earlier);
+  }
+  sort_by_time(log_.fixes);
+  sort_by_time(log_.true_poses);
+  sort_by_time(log_.true_positions);
+}
+
+void OwnTables::drop_repeated_detections() {
+  const auto same = [](const OwnDetection& a, const OwnDetection& b) {
+    return a.t_ns == b.t_ns && a.sensor == b.sensor && a.kind == b.kind && a.z == b.z && a.label == b.label;
+  };
+  std::vector<OwnDetection>& all = log_.detections;
+  std::size_t kept = 0, begin = 0;  // of those kept of this scan
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (begin < kept && (all[begin].t_ns != all[i].t_ns || all[begin].sensor != all[i].sensor)) begin = kept;
+    const bool repeated =
+        std::any_of(all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(kept),
+                    [&](const OwnDetection& other) { return same(other, all[i]); });
+    if (!repeated) all[kept++] = all[i];
+  }
+  if (kept == all.size()) return;
+  log_.remarks.push_back("detections: " + counted(all.size() - kept, "row") + " that repeat another, left out");
+  all.resize(kept);
+}
+
+void OwnTables::number_identities() {
+  std::vector<core::Label> label_of;
+  std::int64_t number = 0;
+  for (const std::string& word : ids_.words()) {
+    if (!is_whole_number(word, number)) break;
+    label_of.push_back(number);
+  }
+  log_.has_labels = !ids_.words().empty();
+  if (label_of.size() != ids_.words().size()) {
+    log_.id_names = ids_.words();
+    return;
+  }
+  const auto renumber = [&](core::Label& label) {
+    if (label >= 0) label = label_of[static_cast<std::size_t>(label)];
+  };
+  for (OwnDetection& detection : log_.detections) renumber(detection.label);
+  for (core::TrueLandmark& landmark : log_.true_landmarks) renumber(landmark.label);
+}
+
+OwnLog OwnTables::finish(std::string name) {
+  if (!log_.odometry_covariances.empty())
+    log_.odometry_covariances.resize(log_.odometry.size(), Eigen::Matrix3d::Zero());
+  sort_all();
+  number_identities();
+  drop_repeated_detections();
+  log_.name = std::move(name);
+  log_.sensor_names = sensors_.words();
+  if (log_.sensor_names.empty()) log_.sensor_names.emplace_back();
+  log_.class_names = classes_.words();
+  if (!log_.class_names.empty() || has_sizes_) {
+    log_.remarks.emplace_back("detections: class and size are read, but the navigator does not use them yet");
+  }
+  return std::move(log_);
+}
+
+}  // namespace helixnav::logs

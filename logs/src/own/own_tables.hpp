@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "columns.hpp"
+#include "helixnav/logs/own_log.hpp"
+
+namespace helixnav::logs {
+
+/// Times of one table: rows out of order by at most a second are counted, others refused.
+class RowTimes {
+ public:
+  core::Nanoseconds take(const Row& row, std::size_t column);
+  std::size_t out_of_order() const { return out_of_order_; }
+  double latest_s() const { return core::seconds(latest_ns_); }
+
+ private:
+  core::Nanoseconds latest_ns_ = std::numeric_limits<core::Nanoseconds>::min();
+  std::size_t out_of_order_ = 0;
+};
+
+/// Words by number in the order in which they come.
+class WordNumbers {
+ public:
+  std::int64_t of(std::string_view word);
+  const std::vector<std::string>& words() const { return words_; }
+
+ private:
+  std::map<std::string, std::int64_t, std::less<>> numbers_;
+  std::vector<std::string> words_;
+};
+
+/// The tables of a log as they fill it. Each reads the rows of one kind: begin() once its columns are known (again, where
+/// they change, as in JSON Lines), add() for each row. finish() sorts, numbers identities and tells what was done.
+class OwnTables {
+ public:
+  enum class Table { odometry, detections, fixes, truth_poses, truth_landmarks };
+  static constexpr std::size_t table_count = 5;
+  static std::string_view name_of(Table table);
+  static const std::vector<ColumnKind>& columns_of(Table table);
+
+  /// `rows_alone`: each row names its own columns, and one may hold a time and nothing else.
+  explicit OwnTables(bool rows_alone) : rows_alone_(rows_alone) {}
+
+  /// Throws core::InputError for columns that do not make such a table.
+  void begin(Table table, const Columns& columns);
+  void add(Table table, const Row& row);
+  OwnLog finish(std::string name);
+
+ private:
+  void begin_odometry(const Columns& columns);
+  void begin_detections(const Columns& columns);
+  void add_odometry(const Row& row);
+  void add_detection(const Row& row);
+  void add_fix(const Row& row);
+  void add_true_pose(const Row& row);
+  void add_true_landmark(const Row& row);
+  void remark(const std::string& text);
+  void sort_all();
+  void drop_repeated_detections();
+  void number_identities();
+
+  bool rows_alone_;
+  OwnLog log_;
+  bool odometry_known_ = false;
+  RowTimes times_[table_count];
+  WordNumbers ids_, sensors_, classes_;
+  bool has_sizes_ = false;
+};
+
+}  // namespace helixnav::logs

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "own_truth.hpp"
+
+#include <algorithm>
+#include <optional>
+
+namespace helixnav::logs {
+namespace {
+
+/// Between the two poses around it, at most a second away.
+std::optional<core::Pose2> pose_at(const std::vector<core::TruePose>& poses, core::Nanoseconds t_ns) {
+  constexpr core::Nanoseconds near_ns = 1'000'000'000;
+  const auto after = std::lower_bound(poses.begin(), poses.end(), t_ns,
+                                      [](const core::TruePose& pose, core::Nanoseconds t) { return pose.t_ns < t; });
+  if (after != poses.end() && after->t_ns == t_ns) return after->T_world_robot;
+  if (after == poses.begin() || after == poses.end()) {
+    const core::TruePose& end = after == poses.end() ? poses.back() : poses.front();
+    if (std::abs(end.t_ns - t_ns) > near_ns) return std::nullopt;
+    return end.T_world_robot;
+  }
+  const core::TruePose& before = *std::prev(after);
+  const double share = core::seconds(t_ns - before.t_ns) / core::seconds(after->t_ns - before.t_ns);
+  const Eigen::Vector3d way = core::between(before.T_world_robot, after->T_world_robot).vector();
+  return core::compose(before.T_world_robot, core::Pose2(Eigen::Vector3d(share * way)));
+}
+
+}  // namespace
+
+void add_truth(const OwnLog& log, core::Nanoseconds start_ns, core::Recording& recording) {
+  recording.true_landmarks = log.true_landmarks;
+  recording.true_positions = log.true_positions;
+  for (const OwnFix& fix : log.fixes) recording.true_positions.push_back({fix.t_ns, fix.position_m, fix.sigma_m});
+  if (!log.fixes.empty() && !log.true_positions.empty()) {
+    recording.true_positions.erase(
+        recording.true_positions.begin(),
+        recording.true_positions.begin() + static_cast<std::ptrdiff_t>(log.true_positions.size()));
+    recording.remarks.emplace_back("truth_poses: without headings, and there are fixes: the fixes are compared with");
+  }
+  if (log.true_poses.empty()) return;
+  const std::optional<core::Pose2> start = pose_at(log.true_poses, start_ns);
+  if (!start) {
+    recording.remarks.emplace_back(
+        "truth_poses: none within a second of the first event, so that the frames are aligned by positions");
+    for (const core::TruePose& pose : log.true_poses) {
+      recording.true_positions.push_back({pose.t_ns, pose.T_world_robot.position_m()});
+    }
+    recording.antenna_robot_m.setZero();
+    return;
+  }
+  const core::Pose2 T_map_truth = core::inverse(*start);
+  for (const core::TruePose& pose : log.true_poses) {
+    recording.true_poses.push_back({pose.t_ns, core::compose(T_map_truth, pose.T_world_robot)});
+  }
+  for (core::TrueLandmark& landmark : recording.true_landmarks) {
+    landmark.point_m = core::transform(T_map_truth, landmark.point_m);
+  }
+}
+
+}  // namespace helixnav::logs

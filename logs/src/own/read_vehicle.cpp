@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "helixnav/core/errors.hpp"
+#include "helixnav/logs/vehicle.hpp"
+#include "input_files.hpp"
+#include "table_reader.hpp"
+#include "toml_section.hpp"
+
+namespace helixnav::logs {
+namespace {
+
+constexpr double farthest_m = 1e5;
+constexpr double least = 1e-9;  // of a standard deviation
+constexpr double most = 1e4;
+constexpr double turn_rad = 2.0 * core::pi;
+
+core::Pose2 pose_of(TomlSection& section) {
+  const double x_m = section.number("x_m", -farthest_m, farthest_m).value_or(0.0);
+  const double y_m = section.number("y_m", -farthest_m, farthest_m).value_or(0.0);
+  return {x_m, y_m, section.angle("heading", -turn_rad, turn_rad).value_or(0.0)};
+}
+
+OdometryModel odometry_of(TomlSection section) {
+  OdometryModel model;
+  model.T_vehicle_odometry = pose_of(section);
+  model.scale = section.number("scale", 0.01, 100.0).value_or(1.0);
+  model.turn_scale = section.number("turn_scale", 0.01, 100.0).value_or(1.0);
+  model.turn_bias_radps = section.angle("turn_bias", -10.0, 10.0, "_per_s").value_or(0.0);
+  model.steering_scale = section.number("steering_scale", 0.01, 100.0).value_or(1.0);
+  model.steering_offset_rad = section.angle("steering_offset", -1.0, 1.0).value_or(0.0);
+  model.wheelbase_m = section.number("wheelbase_m", 1e-3, 1e3);
+  model.encoder_offset_m = section.number("encoder_offset_m", -1e3, 1e3).value_or(0.0);
+  model.track_m = section.number("track_m", 1e-3, 1e3);
+  model.sigma_along_m_per_sqrt_m = section.number("sigma_along_m_per_sqrt_m", least, most);
+  model.sigma_sideways_m_per_sqrt_m = section.number("sigma_sideways_m_per_sqrt_m", least, most);
+  model.sigma_heading_rad_per_sqrt_m = section.angle("sigma_heading", least, most, "_per_sqrt_m");
+  model.sigma_heading_rad_per_sqrt_s = section.angle("sigma_heading", least, most, "_per_sqrt_s");
+  model.sigma_v_mps = section.number("sigma_v_mps", least, most);
+  model.sigma_omega_radps = section.angle("sigma_omega", least, most, "_per_s");
+  model.sigma_steering_rad = section.angle("sigma_steering", least, 1.0);
+  section.refuse_rest();
+  return model;
+}
+
+void read_view(TomlSection& section, SensorModel& sensor) {
+  sensor.reach_m = section.number("reach_m", 1e-3, farthest_m);
+  sensor.reliable_range_m = section.number("reliable_range_m", 1e-3, farthest_m);
+  sensor.min_range_m = section.number("min_range_m", 0.0, farthest_m).value_or(0.0);
+  if (const auto view = section.angles("view", -core::pi - 1e-6, core::pi + 1e-6)) {
+    sensor.min_bearing_rad = std::max(view->first, -core::pi);
+    sensor.max_bearing_rad = std::min(view->second, core::pi);
+  }
+  if (sensor.reach_m && sensor.reliable_range_m && *sensor.reliable_range_m > *sensor.reach_m) {
+    section.fail("reliable_range_m", "sensor.reliable_range_m: expected no more than reach_m");
+  }
+  const double limit_m = sensor.reliable_range_m.value_or(sensor.reach_m.value_or(farthest_m));
+  if (sensor.min_range_m >= limit_m) section.fail("min_range_m", "sensor.min_range_m: expected less than the reach");
+}
+
+SensorModel sensor_of(TomlSection section) {
+  SensorModel sensor;
+  sensor.name = section.text("name").value_or("");
+  sensor.T_vehicle_sensor = pose_of(section);
+  read_view(section, sensor);
+  sensor.sigma_range_m = section.number("sigma_range_m", least, most);
+  sensor.sigma_bearing_rad = section.angle("sigma_bearing", least, core::pi);
+  sensor.sigma_point_m = section.number("sigma_point_m", least, most);
+  sensor.range_scale = section.number("range_scale", 0.01, 100.0).value_or(1.0);
+  sensor.delay_s = section.number("delay_s", -100.0, 100.0).value_or(0.0);
+  sensor.detection_probability = section.number("detection_probability", 0.15, 0.999);
+  sensor.clutter_per_scan = section.number("clutter_per_scan", 0.0, 1000.0);
+  section.refuse_rest();
+  return sensor;
+}
+
+void check_names(TomlSection& root, const Vehicle& vehicle) {
+  std::set<std::string> names;
+  for (const SensorModel& sensor : vehicle.sensors) {
+    if (names.insert(sensor.name).second) continue;
+    root.fail("sensor", sensor.name.empty() ? "several sensors: each needs a name of its own, as in the column sensor"
+                                            : "two sensors are called '" + sensor.name + "'");
+  }
+}
+
+toml::table parse(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  try {
+    return toml::parse(std::string_view(text), path.string());
+  } catch (const toml::parse_error& error) {
+    const toml::source_position at = error.source().begin;
+    fail_at(path.string(), at.line, at.column, "no TOML: " + std::string(error.description()));
+  }
+}
+
+}  // namespace
+
+Vehicle read_vehicle(const std::filesystem::path& path) {
+  const toml::table table = parse(path);
+  TomlSection root(table, path.string(), "");
+  Vehicle vehicle;
+  vehicle.path = path.string();
+  vehicle.name = root.text("name").value_or("");
+  if (auto section = root.section("odometry")) vehicle.odometry = odometry_of(*section);
+  for (const TomlSection& section : root.sections("sensor")) vehicle.sensors.push_back(sensor_of(section));
+  check_names(root, vehicle);
+  if (auto section = root.section("antenna")) {
+    vehicle.antenna_m.x() = section->number("x_m", -farthest_m, farthest_m).value_or(0.0);
+    vehicle.antenna_m.y() = section->number("y_m", -farthest_m, farthest_m).value_or(0.0);
+    vehicle.sigma_fix_m = section->number("sigma_m", least, most);
+    section->refuse_rest();
+  }
+  root.refuse_rest();
+  return vehicle;
+}
+
+}  // namespace helixnav::logs

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace helixnav::logs {
+
+/// One cell of a table, with the character of its line that it begins at, from 1.
+struct Cell {
+  std::string_view text;
+  std::size_t column = 1;
+};
+
+/// Lines of a file of any length, read in blocks: "\n" or "\r\n" ends one, a UTF-8 byte order mark before the first is
+/// passed over.
+class LineReader {
+ public:
+  /// Throws core::InputError when the file cannot be read.
+  explicit LineReader(const std::filesystem::path& path);
+
+  /// False at the end. `line` lives until the next call.
+  bool next(std::string_view& line);
+
+  std::size_t line_number() const { return number_; }  ///< of the last line, from 1
+
+ private:
+  bool fill();
+
+  std::ifstream file_;
+  std::string buffer_;
+  std::size_t begin_ = 0;
+  std::size_t number_ = 0;
+  bool at_end_ = false;
+};
+
+/// A table with a header, row by row: cells parted by commas, semicolons or tabs, whichever the header has most of, and
+/// quoted where they hold one. Empty lines and lines that begin with # are passed over. A row has as many cells as the
+/// header, else core::InputError. Memory does not grow with the file. Test: logs/table_reader_test.cpp.
+class TableReader {
+ public:
+  /// Reads the header. Throws core::InputError for a file that cannot be read, is empty or begins with numbers.
+  explicit TableReader(const std::filesystem::path& path);
+
+  const std::vector<std::string>& header() const { return header_; }
+  const std::vector<std::size_t>& header_columns() const { return header_columns_; }
+  std::size_t header_line() const { return header_line_; }
+
+  /// False at the end. `cells` live until the next call.
+  bool next(std::vector<Cell>& cells);
+
+  std::size_t line_number() const { return lines_.line_number(); }
+
+ private:
+  bool next_line(std::string_view& line);
+  void split(std::string_view line, std::vector<Cell>& cells);
+  std::string_view quoted_cell(std::string_view line, std::size_t& at);
+
+  std::string path_;
+  LineReader lines_;
+  char separator_ = ',';
+  std::vector<std::string> header_;
+  std::vector<std::size_t> header_columns_;
+  std::size_t header_line_ = 0;
+  std::vector<std::string> unquoted_;  ///< cells whose text is not as in the file
+};
+
+/// "path:line:column: message" as a core::InputError.
+[[noreturn]] void fail_at(const std::string& path, std::size_t line, std::size_t column, const std::string& message);
+
+}  // namespace helixnav::logs

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "own_log_folder.hpp"
+
+namespace helixnav::logs {
+namespace {
+
+/// The remarks on the log with this file, one a line.
+std::string remarks(const std::string& file, const std::string& text) {
+  const OwnLogFolder log;
+  log.write(file, text);
+  std::string all;
+  for (const std::string& remark : log.recording().remarks) all += remark + '\n';
+  return all;
+}
+
+bool says(const std::string& all, const std::string& words) { return all.find(words) != std::string::npos; }
+
+TEST(OwnDoubts, AreNoneAboutALogThatIsRight) { EXPECT_EQ(remarks("note.txt", ""), ""); }
+
+TEST(OwnDoubts, TellMillisecondsTakenForSeconds) {
+  EXPECT_TRUE(says(remarks("odometry.csv", "t,v,omega\n0,1,0\n50,1,0\n100,1,0\n"), "a row every 50 s"));
+}
+
+TEST(OwnDoubts, TellDegreesTakenForRadians) {
+  EXPECT_TRUE(says(remarks("odometry.csv", "t,v,omega\n0,1,30\n1,1,30\n2,1,30\n"),
+                   "3 of 3 rows turn by more than 6 rad/s; are the headings in degrees?"));
+  EXPECT_TRUE(
+      says(remarks("odometry.csv", "t,x,y,heading\n0,0,0,90\n1,0,0,92\n2,0,0,94\n"), "are the headings in degrees?"));
+  std::string detections = "t,range_m,bearing_deg\n";
+  for (int i = 0; i < 101; ++i) detections += "1,10," + std::to_string(0.01 * i) + "\n";
+  EXPECT_TRUE(says(remarks("detections.csv", detections), "all 101 bearings lie within ±1 degrees"));
+}
+
+TEST(OwnDoubts, TellGapsWithTheirLengthAndPlace) {
+  const std::string all = remarks("odometry.csv", "t,v,omega\n0,1,0\n0.1,1,0\n0.2,1,0\n5.2,1,0\n5.3,1,0\n");
+  EXPECT_TRUE(
+      says(all, "1 gaps longer than 1 s, the longest 5 s from 0.2 s on; the row before a gap is held through it"))
+      << all;
+}
+
+TEST(OwnDoubts, TellTheVehicleOfAnotherRobot) {
+  const std::string all = remarks("vehicle.toml",
+                                  "[odometry]\nsigma_along_m_per_sqrt_m = 0.02\n"
+                                  "[[sensor]]\nreach_m = 3\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n");
+  EXPECT_TRUE(says(all, "3 of 3 detections (100 %) lie outside the reach and view that")) << all;
+}
+
+TEST(OwnDoubts, TellScansOutsideTheTimeOfTheOdometry) {
+  EXPECT_TRUE(
+      says(remarks("detections.csv", "t,range_m,bearing_deg\n1,10,90\n7,20,-45\n"), "1 of 2 scans were taken before"));
+}
+
+}  // namespace
+}  // namespace helixnav::logs

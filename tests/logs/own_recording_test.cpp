@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <string>
+#include <variant>
+
+#include <gtest/gtest.h>
+
+#include "helixnav/core/odometry.hpp"
+#include "own/motion.hpp"
+#include "own_log_folder.hpp"
+
+namespace helixnav::logs {
+namespace {
+
+/// The whole way of a recording.
+core::Odometry way_of(const core::Recording& recording) {
+  core::Odometry way = core::no_motion(0);
+  for (const core::Event& event : recording.events) {
+    if (const auto* odometry = std::get_if<core::Odometry>(&event)) way = core::chain(way, *odometry);
+  }
+  return way;
+}
+
+void expect_near(const core::Pose2& a, const core::Pose2& b, double tolerance) {
+  EXPECT_NEAR(a.x_m, b.x_m, tolerance);
+  EXPECT_NEAR(a.y_m, b.y_m, tolerance);
+  EXPECT_NEAR(core::wrap_to_pi(a.heading_rad - b.heading_rad), 0.0, tolerance);
+}
+
+TEST(Motion, OfATwistIsTheArcOfFineIntegration) {
+  const Eigen::Vector3d twist(2.0, 0.5, 1.5);
+  core::Pose2 pose;
+  constexpr int steps = 100'000;
+  for (int i = 0; i < steps; ++i) pose = core::compose(pose, core::Pose2(Eigen::Vector3d(twist / steps)));
+  expect_near(exponential(twist), pose, 1e-4);
+  EXPECT_TRUE(logarithm(exponential(twist).vector()).isApprox(twist, 1e-12));
+  const Eigen::Vector3d tiny(1.0, 0.1, 1e-6);
+  EXPECT_TRUE(logarithm(exponential(tiny).vector()).isApprox(tiny, 1e-12));
+}
+
+/// Ten seconds at 2 m/s and 0.1 rad/s, told in each way.
+TEST(OwnRecording, OfEveryKindOfOdometryIsTheSameWay) {
+  constexpr double v_mps = 2.0, omega_radps = 0.1, wheelbase_m = 1.5, track_m = 0.8;
+  const core::Pose2 whole = exponential({v_mps * 10.0, 0.0, omega_radps * 10.0});
+  const OwnLogFolder log;
+  log.write("vehicle.toml",
+            "[odometry]\nwheelbase_m = 1.5\ntrack_m = 0.8\nsigma_along_m_per_sqrt_m = 0.02\n"
+            "[[sensor]]\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n");
+  log.write("detections.csv", "t,range_m,bearing_deg\n0,10,1\n3.3,10,1\n10,10,1\n");
+  std::string velocities = "t,v,omega\n", steering = "t,v,steering_rad\n", wheels = "t,v_left,v_right\n";
+  std::string increments = "t,dx,dy,dheading\n0,0,0,0\n", poses = "t,x,y,heading\n";
+  const core::Pose2 step = exponential({v_mps, 0.0, omega_radps});
+  core::Pose2 pose(5.0, -3.0, 2.9);
+  for (int t = 0; t <= 10; ++t) {
+    const auto row = [&](std::initializer_list<double> values) {
+      std::string text = std::to_string(t);
+      for (const double value : values) text += "," + std::to_string(value * 1e6) + "e-6";
+      return text + "\n";
+    };
+    velocities += row({v_mps, omega_radps});
+    steering += row({v_mps, std::atan(omega_radps * wheelbase_m / v_mps)});
+    wheels += row({v_mps - 0.5 * omega_radps * track_m, v_mps + 0.5 * omega_radps * track_m});
+    if (t > 0) increments += row({step.x_m, step.y_m, step.heading_rad});
+    poses += row({pose.x_m, pose.y_m, pose.heading_rad});
+    pose = core::compose(pose, step);
+  }
+  for (const std::string& table : {velocities, steering, wheels, increments, poses}) {
+    log.write("odometry.csv", table);
+    const core::Recording recording = log.recording();
+    SCOPED_TRACE(table.substr(0, table.find('\n')));
+    expect_near(way_of(recording).T_before_after, whole, 1e-8);
+    EXPECT_NEAR(way_of(recording).covariance(0, 0) + way_of(recording).covariance(1, 1), 20.0 * 0.02 * 0.02,
+                0.1 * 20 * 0.0004);
+    EXPECT_EQ(recording.events.size(), 5u);  // three scans, two increments between them
+  }
+}
+
+TEST(OwnRecording, SplitsMotionAtScansInProportionToTime) {
+  const OwnLogFolder log;
+  log.write("odometry.csv", "t,dx,dheading\n0,0,0\n1,1,0\n");
+  log.write("detections.csv", "t,range_m,bearing_deg\n0.25,10,1\n1,10,1\n");
+  const core::Recording recording = log.recording();
+  ASSERT_EQ(recording.events.size(), 4u);
+  EXPECT_NEAR(std::get<core::Odometry>(recording.events[0]).T_before_after.x_m, 0.25, 1e-12);
+  EXPECT_NEAR(std::get<core::Odometry>(recording.events[2]).T_before_after.x_m, 0.75, 1e-12);
+}
+
+TEST(OwnRecording, CorrectsOdometryByScaleBiasAndPlace) {
+  const OwnLogFolder log;
+  log.write("odometry.csv", "t,v,omega\n0,1,0.5\n1,0,0\n");
+  log.write("detections.csv", "t,range_m,bearing_deg\n0,10,1\n1,10,1\n");
+  log.write("vehicle.toml",
+            "[odometry]\nscale = 2\nturn_scale = 4\nturn_bias_rad_per_s = 0.5\nsigma_along_m_per_sqrt_m = 0.02\n"
+            "[[sensor]]\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n");
+  expect_near(way_of(log.recording()).T_before_after, exponential({2.0, 0.0, 1.5}), 1e-12);
+  // Odometry 1 m ahead of the vehicle's origin that turns on the spot: the origin moves to the side.
+  log.write("odometry.csv", "t,v,omega\n0,0,0.5\n1,0,0\n");
+  log.write("vehicle.toml",
+            "[odometry]\nx_m = 1\nsigma_heading_deg_per_sqrt_s = 1\n"
+            "[[sensor]]\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n");
+  const core::Odometry way = way_of(log.recording());
+  expect_near(way.T_before_after, {1.0 - std::cos(0.5), -std::sin(0.5), 0.5}, 1e-12);
+  EXPECT_GT(way.covariance(1, 1), 0.5 * way.covariance(2, 2));
+}
+
+TEST(OwnRecording, TakesNoiseFromTheLogBeforeTheVehicle) {
+  const OwnLogFolder log;
+  log.write("odometry.csv", "t,dx,dheading,sigma_x,sigma_y,sigma_heading\n0,0,0,0,0,0\n1,1,0,0.1,0.2,0.3\n");
+  log.write("detections.csv", "t,range_m,bearing_deg,sigma_range_m,sigma_bearing_deg\n1,10,1,,\n1,10,5,0.5,2\n");
+  const core::Recording recording = log.recording();
+  const Eigen::Matrix3d Q = std::get<core::Odometry>(recording.events[0]).covariance;
+  EXPECT_NEAR(Q(0, 0), 0.01, 1e-12);
+  EXPECT_NEAR(Q(2, 2), 0.09, 1e-12);
+  const auto& seen = std::get<core::Scan>(recording.events[1]).observations;
+  EXPECT_NEAR(std::sqrt(seen[0].R(0, 0)), 0.05, 1e-12);
+  EXPECT_NEAR(std::sqrt(seen[1].R(0, 0)), 0.5, 1e-12);
+  EXPECT_NEAR(std::sqrt(seen[1].R(1, 1)) * 180.0 / core::pi, 2.0, 1e-12);
+}
+
+TEST(OwnRecording, GivesEachSensorItsMountingViewAndDelay) {
+  const OwnLogFolder log;
+  log.write("vehicle.toml",
+            "[odometry]\nsigma_along_m_per_sqrt_m = 0.02\n"
+            "[[sensor]]\nname = \"front\"\nx_m = 1\nreach_m = 40\nview_deg = [-90, 90]\nsigma_range_m = "
+            "0.05\nsigma_bearing_deg = 1\n"
+            "[[sensor]]\nname = \"rear\"\nx_m = -1\nheading_deg = 180\nreach_m = 10\nreliable_range_m = "
+            "8\nsigma_range_m = 0.1\n"
+            "sigma_bearing_deg = 1\ndelay_s = 0.5\n");
+  log.write("detections.csv", "t,sensor,range_m,bearing_deg\n1,front,10,0\n1,rear,5,0\n");
+  const core::Recording recording = log.recording();
+  std::vector<core::Scan> scans;
+  for (const core::Event& event : recording.events) {
+    if (const auto* scan = std::get_if<core::Scan>(&event)) scans.push_back(*scan);
+  }
+  ASSERT_EQ(scans.size(), 2u);
+  EXPECT_EQ(scans[0].t_ns, 500'000'000);
+  EXPECT_DOUBLE_EQ(scans[0].T_robot_sensor.x_m, -1.0);
+  EXPECT_DOUBLE_EQ(scans[0].field_of_view.max_range_m, 8.0);
+  EXPECT_DOUBLE_EQ(*scans[0].field_of_view.reach(), 10.0);
+  EXPECT_DOUBLE_EQ(scans[1].field_of_view.max_bearing_rad, core::pi / 2);
+  EXPECT_DOUBLE_EQ(*scans[1].field_of_view.reach(), 40.0);
+}
+
+TEST(OwnRecording, PutsTruthIntoTheFrameOfTheStart) {
+  const OwnLogFolder log;
+  log.write("truth_poses.csv", "t,x,y,heading_deg\n0,100,50,90\n2,100,60,90\n");
+  log.write("truth_landmarks.csv", "x,y\n100,70\n");
+  const core::Recording recording = log.recording();
+  ASSERT_EQ(recording.true_poses.size(), 2u);
+  expect_near(recording.true_poses[1].T_world_robot, {10.0, 0.0, 0.0}, 1e-9);
+  EXPECT_NEAR(recording.true_landmarks.at(0).point_m.x(), 20.0, 1e-9);
+}
+
+TEST(OwnRecording, HandsOutFixesForComparison) {
+  const OwnLogFolder log;
+  log.write("fixes.csv", "t,x,y,sigma\n0,100,50,0.5\n2,100,60,\n");
+  const core::Recording recording = log.recording();
+  ASSERT_EQ(recording.true_positions.size(), 2u);
+  EXPECT_DOUBLE_EQ(recording.true_positions[0].sigma_m, 0.5);
+  EXPECT_DOUBLE_EQ(recording.true_positions[1].sigma_m, 0.0);
+}
+
+}  // namespace
+}  // namespace helixnav::logs
