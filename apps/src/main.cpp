@@ -65,6 +65,7 @@ ExitCode run(int argc, char** argv) {
   add_associate_command(app, code);
   add_check_command(app, code);
   add_new_vehicle_command(app, code);
+  add_calibrate_command(app, code);
   add_config_command(app, code);
   for (CLI::App* command : app.get_subcommands({})) {
     command->set_version_flag("--version", version, "Print the version and exit");

@@ -21,6 +21,10 @@ std::string format(const char* pattern, Values... values) {
 
 std::string position_text(const evaluation::PositionEvaluation& position) {
   const evaluation::ErrorStatistics& e = position.error_m;
+  if (e.count == 0) {
+    return format("position error       unknown: none of %zu positions of truth lies within the time of the run\n",
+                  position.fixes_outside + position.fixes_left_out);
+  }
   std::string text = format("position error       RMSE %.3f m, median %.3f m, 95 %% %.3f m, maximum %.3f m\n", e.rmse,
                             e.median, e.p95, e.max);
   text += position.aligned ? "  against            position fixes, after rigid alignment\n"
@@ -37,6 +41,7 @@ std::string position_text(const evaluation::PositionEvaluation& position) {
 
 std::string pose_text(const evaluation::PoseEvaluation& pose) {
   const evaluation::ErrorStatistics& e = pose.heading_error_rad;
+  if (e.count == 0) return {};
   std::string text = format("heading error        RMSE %.3f deg, median %.3f deg, 95 %% %.3f deg, maximum %.3f deg\n",
                             in_degrees(e.rmse), in_degrees(e.median), in_degrees(e.p95), in_degrees(e.max));
   if (pose.nees_count > 0) {
@@ -48,8 +53,10 @@ std::string pose_text(const evaluation::PoseEvaluation& pose) {
 
 std::string map_text(const evaluation::MapEvaluation& map) {
   const evaluation::ErrorStatistics& e = map.error_m;
-  std::string text = format("landmark error       RMSE %.3f m, median %.3f m, 95 %% %.3f m, maximum %.3f m\n", e.rmse,
-                            e.median, e.p95, e.max);
+  std::string text = e.count == 0
+                         ? "landmark error       unknown: no mature landmark has a true one beside it\n"
+                         : format("landmark error       RMSE %.3f m, median %.3f m, 95 %% %.3f m, maximum %.3f m\n",
+                                  e.rmse, e.median, e.p95, e.max);
   text += format("  pairs              %zu ", e.count);
   text += map.by_label ? std::string("(by label)\n") : format("(nearest first, within %g m)\n", map.limit_m);
   text += format("  missing            %zu\n  duplicates         %zu\n  spurious           %zu\n", map.missing,

@@ -19,6 +19,7 @@ void add_montecarlo_command(CLI::App& app, ExitCode& code);
 void add_evaluate_command(CLI::App& app, ExitCode& code);
 void add_explain_command(CLI::App& app, ExitCode& code);
 void add_associate_command(CLI::App& app, ExitCode& code);
+void add_calibrate_command(CLI::App& app, ExitCode& code);
 void add_check_command(CLI::App& app, ExitCode& code);
 void add_new_vehicle_command(CLI::App& app, ExitCode& code);
 void add_config_command(CLI::App& app, ExitCode& code);

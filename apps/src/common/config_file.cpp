@@ -56,7 +56,12 @@ void apply_item(const std::vector<CLI::Option*>& options, const CLI::ConfigItem&
   if (found == options.end()) {
     std::vector<std::string> keys;
     keys.reserve(options.size());
-    for (const CLI::Option* option : options) keys.push_back(key_of(*option));
+    const bool known_section = std::any_of(options.begin(), options.end(), [&](const CLI::Option* option) {
+      return section_of(key_of(*option)) == section;
+    });
+    for (const CLI::Option* option : options) {
+      if (!known_section || section_of(key_of(*option)) == section) keys.push_back(key_of(*option));
+    }
     throw config_error(path, line_of(path, section, item.name),
                        "unknown key '" + key + "'; the nearest is '" + core::nearest_name(key, keys) + "'");
   }

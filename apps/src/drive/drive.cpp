@@ -21,6 +21,7 @@
 #include "helixnav/reports/summary.hpp"
 #include "helixnav/runs/run_recorder.hpp"
 #include "helixnav/runs/run_writer.hpp"
+#include "run_warnings.hpp"
 #include "smooth/smooth_drive.hpp"
 #include "withholding.hpp"
 
@@ -55,11 +56,25 @@ struct Driven {
   std::size_t steps = 0;
   std::vector<double> step_us;          ///< of each scan that was fed
   std::map<std::string, int> closings;  ///< how many of each verdict
+  ObservationCounts observations;
+  std::string broken;  ///< what of the mathematics broke, and where; the run ended there
 };
 
 void count_closings(const core::StepReport& report, Driven& driven) {
   for (const core::Decision& decision : report.decisions) {
     if (core::is_closure(decision)) ++driven.closings[core::row_of(decision).verdict];
+  }
+}
+
+/// What comes next, or nothing at the end and where the mathematics broke.
+template <class Loop>
+std::optional<core::StepReport> next_step(Loop& loop, const Drive& job, Driven& driven) {
+  try {
+    return loop.next();
+  } catch (const core::NumericalError& error) {
+    const double time_s = core::seconds(core::time_of(job.recording.events[loop.fed() - 1]));
+    driven.broken = "at step " + std::to_string(loop.steps()) + ", " + std::to_string(time_s) + " s: " + error.what();
+    return std::nullopt;
   }
 }
 
@@ -71,12 +86,13 @@ Driven navigate(const Drive& job, Estimator& estimator, runs::RunWriter& writer,
   core::EventLoop loop(job.recording.events, seen);
   ProgressBar progress(job.given_map ? "localising" : "navigating", job.recording.events.size(), job.quiet);
   while (!interrupted()) {
-    const std::optional<core::StepReport> step = loop.next();
+    const std::optional<core::StepReport> step = next_step(loop, job, driven);
     progress.advance_to(loop.fed() - 1);
     if (!step) break;
     const double microseconds = seen.last_scan_was_withheld() ? 0.0 : 1e6 * timed.last_s();
     if (!seen.last_scan_was_withheld()) driven.step_us.push_back(microseconds);
     count_closings(*step, driven);
+    driven.observations.add(*step);
     writer.write(*step, microseconds);
     recorder.add(*step, microseconds);
   }
@@ -84,10 +100,30 @@ Driven navigate(const Drive& job, Estimator& estimator, runs::RunWriter& writer,
   return driven;
 }
 
+/// Says on stderr what is not well.
+ExitCode verdict(const Drive& job, const Driven& driven, const runs::Run& run, const evaluation::Evaluation& evaluation,
+                 ExitCode smoothed) {
+  if (!driven.broken.empty()) {
+    std::fprintf(stderr, "helixnav: %s\nhelixnav: map and report of what was navigated until then are written\n",
+                 driven.broken.c_str());
+    return ExitCode::numerical;
+  }
+  if (interrupted()) {
+    std::fprintf(stderr, "helixnav: interrupted after %zu steps; the run folder is complete up to there\n",
+                 driven.steps);
+    return ExitCode::interrupted;
+  }
+  for (const std::string& warning : warnings_of(job, driven.observations, run.map, evaluation)) {
+    std::fprintf(stderr, "helixnav: warning: %s\n", warning.c_str());
+  }
+  return smoothed;
+}
+
 }  // namespace
 
 ExitCode drive(const Drive& job) {
   check_labels(job);
+  check_observable(job);
   catch_interrupts();
   const Clock::time_point begin = Clock::now();
   using IfNotEmpty = runs::RunWriter::IfNotEmpty;
@@ -96,7 +132,8 @@ ExitCode drive(const Drive& job) {
   runs::RunRecorder recorder(job.out, job.manifest, job.recording);
   LabelAgreement agreement;
   Estimator estimator = job.given_map ? localizer_of(job, agreement) : navigator_of(job);
-  auto [steps, step_us, closings] = navigate(job, estimator, writer, recorder);
+  Driven driven = navigate(job, estimator, writer, recorder);
+  const std::vector<double>& step_us = driven.step_us;
 
   runs::Run run = recorder.finish(estimator.map());
   run.timing = {{"median_us", quantile(step_us, 0.5)},
@@ -109,17 +146,17 @@ ExitCode drive(const Drive& job) {
     const auto withheld = std::count(job.withheld.begin(), job.withheld.end(), true);
     run.numbers.emplace_back("blackout.scans", static_cast<double>(withheld));
   }
-  const ExitCode smoothed = job.smooth && !interrupted() ? smooth_drive(job, run) : ExitCode::ok;
-  std::fputs(reports::evaluation_text(reports::finish_run(run, writer)).c_str(), stdout);
+  const bool whole = !interrupted() && driven.broken.empty();
+  const ExitCode smoothed = job.smooth && whole ? smooth_drive(job, run) : ExitCode::ok;
+  const evaluation::Evaluation evaluation = reports::finish_run(run, writer);
+  std::fputs(reports::evaluation_text(evaluation).c_str(), stdout);
   std::fputs(text_of(agreement).c_str(), stdout);
   if (!job.given_map) {
-    std::printf("closings             %d accepted, %d refused, %d left undecided\n", closings["accepted"],
-                closings["refused"], closings["undecided"]);
+    std::printf("closings             %d accepted, %d refused, %d left undecided\n", driven.closings["accepted"],
+                driven.closings["refused"], driven.closings["undecided"]);
   }
   std::printf("run folder: %s   report: %s/report.html\n", job.out.c_str(), job.out.c_str());
-  if (!interrupted()) return smoothed;
-  std::fprintf(stderr, "helixnav: interrupted after %zu steps; the run folder is complete up to there\n", steps);
-  return ExitCode::interrupted;
+  return verdict(job, driven, run, evaluation, smoothed);
 }
 
 }  // namespace helixnav::apps

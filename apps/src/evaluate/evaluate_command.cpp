@@ -7,6 +7,7 @@
 
 #include "common/commands.hpp"
 #include "common/validators.hpp"
+#include "helixnav/core/errors.hpp"
 #include "helixnav/evaluation/evaluation.hpp"
 #include "helixnav/reports/summary.hpp"
 #include "helixnav/runs/run_folder.hpp"
@@ -27,6 +28,10 @@ void evaluate(const EvaluateJob& job) {
   runs::Run run = runs::read_run(job.folder);
   if (!job.truth.empty()) run.truth = read_truth_file(job.truth, job.truth_offset_s, run.truth);
   const evaluation::Evaluation evaluation = evaluation::evaluate(run, job.options);
+  if (!job.truth.empty() && evaluation.position && evaluation.position->error_m.count == 0) {
+    throw core::InputError(job.truth + ": none of its " + std::to_string(evaluation.position->fixes_outside) +
+                           " positions lies within the time of the run; --truth-offset-s shifts its clock");
+  }
   const std::string text = job.json ? reports::evaluation_json(evaluation) : reports::evaluation_text(evaluation);
   std::fputs(text.c_str(), stdout);
 }

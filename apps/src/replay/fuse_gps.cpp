@@ -71,7 +71,9 @@ void fuse_gps(core::Recording& recording, const GpsSettings& settings) {
     core::AbsoluteFix fix;
     fix.t_ns = recording.true_positions[i].t_ns;
     fix.position_world_m = recording.true_positions[i].position_m;
-    fix.covariance_m2 = settings.sigma_m * settings.sigma_m * Eigen::Matrix2d::Identity();
+    const double sigma_m =
+        recording.true_positions[i].sigma_m > 0.0 ? recording.true_positions[i].sigma_m : settings.sigma_m;
+    fix.covariance_m2 = sigma_m * sigma_m * Eigen::Matrix2d::Identity();
     fix.antenna_robot_m = recording.antenna_robot_m;
     for (; event < recording.events.size() && core::time_of(recording.events[event]) <= fix.t_ns; ++event) {
       events.push_back(std::move(recording.events[event]));
@@ -80,6 +82,13 @@ void fuse_gps(core::Recording& recording, const GpsSettings& settings) {
   }
   for (; event < recording.events.size(); ++event) events.push_back(std::move(recording.events[event]));
   recording.events = std::move(events);
+  if (recording.true_poses.empty()) return;
+  recording.true_positions.clear();  // the map frame is that of the GPS now, and the truth is aligned by its positions
+  for (const core::TruePose& pose : recording.true_poses) {
+    recording.true_positions.push_back({pose.t_ns, pose.T_world_robot.position_m()});
+  }
+  recording.true_poses.clear();
+  recording.antenna_robot_m.setZero();
 }
 
 }  // namespace helixnav::apps

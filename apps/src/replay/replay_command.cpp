@@ -59,6 +59,7 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
     tell_vehicle(task.recording, *job.settings.logs.vehicle);
   if (format == logs::LogFormat::plaza) scale_ranges(task.recording, job.settings);
   if (job.settings.gps.fuse) fuse_gps(task.recording, job.settings.gps);
+  if (!task.recording.true_poses.empty()) task.recording.true_positions.clear();  // the better truth
   if (!job.blackouts.empty()) task.withheld = withhold(task.recording, job.blackouts);
   tell_recording(task.recording, job.settings);
   task.navigator = fit_to_recording(job.settings, task.recording);

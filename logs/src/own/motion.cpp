@@ -120,7 +120,7 @@ void Motions::move(Motion& motion, std::size_t row) const {
   }
 }
 
-void Motions::add_model_noise(Motion& motion, std::size_t) const {
+void Motions::add_model_noise(Motion& motion) const {
   const double way_m = motion.twist.head<2>().norm();
   const double duration_s = core::seconds(motion.end_ns - motion.begin_ns);
   const Eigen::Vector3d variances(square(model_.sigma_along_m_per_sqrt_m.value_or(0.0)) * way_m,
@@ -161,13 +161,13 @@ std::optional<Motion> Motions::of_row(std::size_t row, core::Nanoseconds last_ns
                    !log_.odometry_covariances[row].isZero(0.0);
   if (own) {
     motion.covariance = log_.odometry_covariances[row];
-    return motion;
+  } else {
+    add_model_noise(motion);
   }
-  add_model_noise(motion, row);
   if (log_.odometry_kind == OdometryKind::velocities || log_.odometry_kind == OdometryKind::wheels) {
     add_sample_noise(motion, row);
   }
-  motion.covariance = 0.5 * (motion.covariance + motion.covariance.transpose()).eval();
+  motion.covariance = 0.5 * square(model_.noise_scale) * (motion.covariance + motion.covariance.transpose()).eval();
   return motion;
 }
 

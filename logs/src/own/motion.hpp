@@ -39,7 +39,7 @@ class Motions {
  private:
   Motion stretch(std::size_t row, core::Nanoseconds last_ns) const;
   void move(Motion& motion, std::size_t row) const;
-  void add_model_noise(Motion& motion, std::size_t row) const;
+  void add_model_noise(Motion& motion) const;
   void add_sample_noise(Motion& motion, std::size_t row) const;
   Eigen::Vector3d steered(Motion& motion, const Eigen::Vector3d& value) const;
 

@@ -75,6 +75,7 @@ core::Observation observation_of(const OwnDetection& row, const SensorModel& sen
     if (!own) R = told(sensor.sigma_point_m, sensor, vehicle, "sigma_point_m") * Eigen::Matrix2d::Identity();
     observation = core::make_cartesian(Eigen::Vector2d(row.z[0], row.z[1]) / sensor.range_scale, R);
   }
+  observation.R *= sensor.noise_scale * sensor.noise_scale;
   return observation;
 }
 

@@ -41,6 +41,7 @@ OdometryModel odometry_of(TomlSection section) {
   model.sigma_v_mps = section.number("sigma_v_mps", least, most);
   model.sigma_omega_radps = section.angle("sigma_omega", least, most, "_per_s");
   model.sigma_steering_rad = section.angle("sigma_steering", least, 1.0);
+  model.noise_scale = section.number("noise_scale", 1e-3, 1e3).value_or(1.0);
   section.refuse_rest();
   return model;
 }
@@ -72,6 +73,7 @@ SensorModel sensor_of(TomlSection section) {
   sensor.delay_s = section.number("delay_s", -100.0, 100.0).value_or(0.0);
   sensor.detection_probability = section.number("detection_probability", 0.15, 0.999);
   sensor.clutter_per_scan = section.number("clutter_per_scan", 0.0, 1000.0);
+  sensor.noise_scale = section.number("noise_scale", 1e-3, 1e3).value_or(1.0);
   section.refuse_rest();
   return sensor;
 }

@@ -35,6 +35,8 @@ struct OdometryModel {
   std::optional<double> sigma_omega_radps;
   std::optional<double> sigma_steering_rad;
 
+  double noise_scale = 1.0;  ///< times every standard deviation, of the log or of these keys
+
   bool tells_noise() const {
     return sigma_along_m_per_sqrt_m || sigma_sideways_m_per_sqrt_m || sigma_heading_rad_per_sqrt_m ||
            sigma_heading_rad_per_sqrt_s || sigma_v_mps || sigma_omega_radps || sigma_steering_rad;
@@ -54,6 +56,7 @@ struct SensorModel {
   std::optional<double> sigma_point_m;  ///< of x and of y, for detections as points
   double range_scale = 1.0;             ///< recorded range over true one
   double delay_s = 0.0;                 ///< a scan was taken so long before its stamp
+  double noise_scale = 1.0;             ///< times every standard deviation, of the log or of these keys
   std::optional<double> detection_probability;
   std::optional<double> clutter_per_scan;
 };

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "common/commands.hpp"
+#include "common/config_file.hpp"
+#include "common/fit_to_recording.hpp"
+#include "common/settings.hpp"
+#include "common/vehicle_option.hpp"
+#include "helixnav/core/errors.hpp"
+#include "helixnav/logs/own_log.hpp"
+#include "helixnav/smoothing/noise_scales.hpp"
+#include "settled_drive.hpp"
+#include "vehicle_text.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+struct CalibrateJob {
+  std::string path;
+  std::string vehicle;
+  std::string config;
+  std::string out;
+  Settings settings;
+};
+
+struct Calibration {
+  smoothing::NoiseScales scales;  ///< on what the vehicle file tells
+  SettledDrive drive;             ///< with them
+  int rounds = 0;
+  bool settled = false;
+};
+
+void check_vehicle(const CalibrateJob& job) {
+  if (!logs::is_own_log(job.path)) {
+    throw core::InputError(job.path + ": calibrate reads a log of your own (docs/your_own_log.md)");
+  }
+  if (!job.settings.logs.vehicle) {
+    throw core::InputError(job.path +
+                           ": calibrate begins with a vehicle.toml; 'helixnav new-vehicle' writes an example");
+  }
+}
+
+void multiply(smoothing::NoiseScale& scale, const smoothing::NoiseScale& more) {
+  scale.low_95 = scale.factor * more.low_95;
+  scale.high_95 = scale.factor * more.high_95;
+  scale.factor *= more.factor;
+  scale.redundancy = more.redundancy;
+}
+
+/// Navigates with the noise as known, corrects it by the residuals, and again until nothing changes.
+Calibration calibrate_noise(const CalibrateJob& job) {
+  constexpr int most_rounds = 8;
+  constexpr double settled = 0.01;
+  const logs::OwnLog log = logs::read_own_log(job.path);
+  Calibration result;
+  while (result.rounds < most_rounds && !result.settled) {
+    logs::Vehicle vehicle = *job.settings.logs.vehicle;
+    vehicle.odometry.noise_scale *= result.scales.odometry.factor;
+    for (logs::SensorModel& sensor : vehicle.sensors) sensor.noise_scale *= result.scales.landmarks.factor;
+    const core::Recording recording = logs::make_recording(log, vehicle);
+    supervisor::NavigatorOptions options = fit_to_recording(job.settings, recording);
+    options.gates.match_probability = 0.9999;  // a gate cuts the tails that noise is judged by
+    options.gates.new_probability = 0.999999;
+    result.drive = settle(recording, options, job.settings.known_association);
+    const smoothing::NoiseScales step = smoothing::estimate_noise_scales(result.drive.problem, 1);
+    multiply(result.scales.odometry, step.odometry);
+    multiply(result.scales.landmarks, step.landmarks);
+    ++result.rounds;
+    result.settled =
+        std::abs(std::log(step.odometry.factor)) < settled && std::abs(std::log(step.landmarks.factor)) < settled;
+    std::printf("round %d: odometry x %.3f, detections x %.3f, NIS %.3f, %zu closings, %zu of %zu detections used\n",
+                result.rounds, result.scales.odometry.factor, result.scales.landmarks.factor, result.drive.nis_per_dof,
+                result.drive.closings, result.drive.used, result.drive.observations);
+    std::fflush(stdout);
+  }
+  return result;
+}
+
+void print(const char* what, const smoothing::NoiseScale& scale) {
+  const double factor = scale.factor;
+  std::printf("%-11s noise x %.3f (95 %%: %.3f to %.3f; judged by %.0f residuals): %s than told\n", what, factor,
+              scale.low_95, scale.high_95, scale.redundancy,
+              scale.low_95 <= 1.0 && scale.high_95 >= 1.0 ? "not different"
+              : factor > 1.0                              ? "worse"
+                                                          : "better");
+}
+
+ExitCode calibrate(CLI::App& command, CalibrateJob& job) {
+  if (!job.config.empty()) apply_config_file(command, job.config);
+  apply_vehicle(command, job.vehicle, job.path, job.settings);
+  check_vehicle(job);
+  if (!job.out.empty() && std::filesystem::exists(job.out)) {
+    throw core::InputError(job.out + ": is there already; choose another --out");
+  }
+  const Calibration result = calibrate_noise(job);
+  print("odometry", result.scales.odometry);
+  print("detections", result.scales.landmarks);
+  std::printf("not estimated: scale and bias of the odometry, heading and place of the sensors, delay\n");
+  if (!result.settled) std::printf("not settled after %d rounds: the intervals are not to be trusted\n", result.rounds);
+  if (job.out.empty()) return ExitCode::ok;
+  std::ofstream file(job.out);
+  file << with_noise_scales(*job.settings.logs.vehicle, result.scales);
+  file.close();
+  if (!file) throw core::InputError(job.out + ": cannot be written");
+  std::printf("written: %s\n", job.out.c_str());
+  return ExitCode::ok;
+}
+
+}  // namespace
+
+void add_calibrate_command(CLI::App& app, ExitCode& code) {
+  CLI::App* command =
+      app.add_subcommand("calibrate", "Estimate the noise of odometry and detections from a log, without truth");
+  const auto job = std::make_shared<CalibrateJob>();
+  command->add_option("PATH", job->path, "Log of your own: folder or JSON Lines")->required();
+  add_vehicle_option(*command, job->vehicle);
+  command->add_option("--out", job->out, "Write the vehicle with the noise found")->type_name("FILE");
+  command->add_option("--config", job->config, "INI or TOML file of the settings (helixnav config --dump)")
+      ->type_name("FILE");
+  add_settings(*command, job->settings);
+  command->footer(
+      "Navigates the log and judges both noises by what is left when the drive is solved as a whole; then again with "
+      "the\n"
+      "noise found, until it stays. The factors go into vehicle.toml as noise_scale.\n\n"
+      "Example:\n"
+      "  helixnav calibrate my_drive --out calibrated.toml\n"
+      "  helixnav replay my_drive --vehicle calibrated.toml --out runs/calibrated\n");
+  command->callback([command, job, &code] { code = calibrate(*command, *job); });
+}
+
+}  // namespace helixnav::apps
