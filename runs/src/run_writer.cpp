@@ -70,6 +70,17 @@ void append_association(std::string& text, std::int64_t step, const core::Associ
   text += revised ? ",1\n" : ",0\n";
 }
 
+/// Revisions first; the number of rows.
+std::int64_t append_associations(std::string& block, const core::StepReport& report) {
+  auto rows = static_cast<std::int64_t>(report.associations.size());
+  for (const core::RevisedScan& scan : report.revised) {
+    for (const core::AssociationReport& a : scan.associations) append_association(block, scan.step, a, true);
+    rows += static_cast<std::int64_t>(scan.associations.size());
+  }
+  for (const core::AssociationReport& a : report.associations) append_association(block, report.step, a, false);
+  return rows;
+}
+
 void append_decision(std::string& text, const core::StepReport& report, const core::Decision& decision) {
   append_step_and_time(text, report);
   const core::DecisionRow row = core::row_of(decision);
@@ -147,7 +158,7 @@ std::string final_trajectory_text(const std::vector<core::StepReport>& steps, co
   return text;
 }
 
-// One growing table with the block of the step at hand.
+// One growing table with the block of the present step.
 struct Table {
   files::AppendFile file;
   std::string block;
@@ -196,16 +207,7 @@ RunWriter::~RunWriter() = default;
 
 void RunWriter::write(const core::StepReport& report, double microseconds) {
   Files& f = *files_;
-  auto rows = static_cast<std::int64_t>(report.associations.size());
-  for (const core::RevisedScan& scan : report.revised) {
-    for (const core::AssociationReport& a : scan.associations) {
-      append_association(f.associations.block, scan.step, a, true);
-    }
-    rows += static_cast<std::int64_t>(scan.associations.size());
-  }
-  for (const core::AssociationReport& a : report.associations) {
-    append_association(f.associations.block, report.step, a, false);
-  }
+  const std::int64_t rows = append_associations(f.associations.block, report);
   for (const core::Decision& decision : report.decisions) append_decision(f.decisions.block, report, decision);
   for (const core::MergedLandmarks& merge : report.merged) append_merge(f.merges.block, report.step, merge);
   const bool keeps_cloud = f.cloud_choice.keeps(report);

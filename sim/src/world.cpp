@@ -123,7 +123,7 @@ World figure_of_eight_world(const WorldOptions& options, Dice& dice) {
   const Stretch first{0.07 * lap_m, 0.36 * lap_m};
   const Stretch second{0.57 * lap_m, 0.86 * lap_m};
   const std::vector<double> returns_at_m = {lap_m + first.from_m, lap_m + second.from_m, 2.0 * lap_m + first.from_m};
-  // Not so far that a region comes into view again which nobody would judge.
+  // Not so far that a region comes into view again that would not be judged.
   const double drive_m = returns_at_m.back() + std::min(options.drive_on_m, first.to_m - first.from_m);
   World world{route_from_origin(figure_of_eight(lap_m, laps_for(drive_m, lap_m), dice.road)), drive_m, {}, {}, {}};
   world.returns_at_m = returns_at_m;

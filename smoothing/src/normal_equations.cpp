@@ -40,60 +40,6 @@ NormalEquations::NormalEquations(const Problem& problem, const Layout& layout, c
   analyse();
 }
 
-void NormalEquations::analyse() {
-  const core::LandmarkGraph& graph = problem_.graph;
-  // Off-diagonal blocks as (first column of the later variable, first column of the earlier one).
-  std::vector<std::pair<int, int>> blocks;
-  const auto add_block = [&blocks](int a, int b) {
-    if (a >= 0 && b >= 0) blocks.emplace_back(std::max(a, b), std::min(a, b));
-  };
-  for (const auto& edge : graph.pose_edges) {
-    add_block(layout_.pose_column[index(edge.from)], layout_.pose_column[index(edge.to)]);
-  }
-  for (const auto& edge : graph.landmark_edges) {
-    add_block(layout_.pose_column[index(edge.pose)], layout_.landmark_column[index(edge.landmark)]);
-  }
-  std::sort(blocks.begin(), blocks.end());
-  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
-
-  const int first_landmark = layout_.landmark_column.empty() ? layout_.columns : layout_.landmark_column.front();
-  const auto width = [first_landmark](int column) { return column < first_landmark ? 3 : 2; };
-  column_start.push_back(0);
-  auto block = blocks.cbegin();
-  for (int variable = 0; variable < layout_.columns; variable += width(variable)) {
-    const auto begin = block;
-    while (block != blocks.cend() && block->first == variable) ++block;
-    for (int c = 0; c < width(variable); ++c) {
-      for (auto it = begin; it != block; ++it) {
-        for (int r = 0; r < width(it->second); ++r) row_index.push_back(it->second + r);
-      }
-      diagonal_offset_.push_back(static_cast<int>(row_index.size()) - column_start.back());
-      for (int r = 0; r <= c; ++r) row_index.push_back(variable + r);
-      column_start.push_back(static_cast<int>(row_index.size()));
-    }
-  }
-  values.assign(row_index.size(), 0.0);
-  gradient = Eigen::VectorXd::Zero(layout_.columns);
-  for (const auto& edge : graph.pose_edges) {
-    odometry_slot_.push_back(slot(layout_.pose_column[index(edge.from)], layout_.pose_column[index(edge.to)]));
-  }
-  for (const auto& edge : graph.landmark_edges) {
-    landmark_slot_.push_back(
-        slot(layout_.pose_column[index(edge.pose)], layout_.landmark_column[index(edge.landmark)]));
-  }
-}
-
-NormalEquations::Slot NormalEquations::slot(int column_a, int column_b) const {
-  if (column_a < 0 || column_b < 0) return {};
-  Slot slot;
-  slot.row_column = std::min(column_a, column_b);
-  slot.column = std::max(column_a, column_b);
-  const auto begin = row_index.begin() + column_start[index(slot.column)];
-  const auto end = row_index.begin() + column_start[index(slot.column) + 1];
-  slot.offset = static_cast<int>(std::lower_bound(begin, end, slot.row_column) - begin);
-  return slot;
-}
-
 template <int D, typename Visitor>
 void NormalEquations::visit_observation(std::size_t i, const State& state, Chi2& chi2, Visitor&& visitor) const {
   const auto& edge = problem_.graph.landmark_edges[i];
@@ -109,6 +55,21 @@ void NormalEquations::visit_observation(std::size_t i, const State& state, Chi2&
 }
 
 template <typename Visitor>
+void NormalEquations::visit_landmark_edge(std::size_t i, const State& state, Chi2& chi2, Visitor&& visitor) const {
+  const auto& edge = problem_.graph.landmark_edges[i];
+  try {
+    if (core::dimension(edge.observation.kind) == 2) {
+      visit_observation<2>(i, state, chi2, visitor);
+    } else {
+      visit_observation<1>(i, state, chi2, visitor);
+    }
+  } catch (const core::NumericalError& error) {
+    throw core::NumericalError("smoothing: " + pose_name(problem_, edge.pose) + " sees " +
+                               landmark_name(problem_, edge.landmark) + ": " + error.what());
+  }
+}
+
+template <typename Visitor>
 Chi2 NormalEquations::visit(const State& state, Visitor&& visitor) const {
   const core::LandmarkGraph& graph = problem_.graph;
   Chi2 chi2;
@@ -121,18 +82,16 @@ Chi2 NormalEquations::visit(const State& state, Visitor&& visitor) const {
                    layout_.pose_column[index(edge.to)], odometry_slot_[i]);
   }
   for (std::size_t i = 0; i < graph.landmark_edges.size(); ++i) {
-    const auto& edge = graph.landmark_edges[i];
-    try {
-      if (core::dimension(edge.observation.kind) == 2) {
-        visit_observation<2>(i, state, chi2, visitor);
-      } else {
-        visit_observation<1>(i, state, chi2, visitor);
-      }
-    } catch (const core::NumericalError& error) {
-      throw core::NumericalError("smoothing: " + pose_name(problem_, edge.pose) + " sees " +
-                                 landmark_name(problem_, edge.landmark) + ": " + error.what());
-    }
+    visit_landmark_edge(i, state, chi2, visitor);
   }
+  visit_priors(state, chi2, visitor);
+  chi2.cost += chi2.odometry + chi2.priors;
+  return chi2;
+}
+
+template <typename Visitor>
+void NormalEquations::visit_priors(const State& state, Chi2& chi2, Visitor&& visitor) const {
+  const core::LandmarkGraph& graph = problem_.graph;
   const auto unary = [&](auto factor, const auto& W, int column) {
     factor.e = W * factor.e;
     chi2.priors += factor.e.squaredNorm();
@@ -152,8 +111,6 @@ Chi2 NormalEquations::visit(const State& state, Visitor&& visitor) const {
     unary(prior_factor(prior, state.landmarks[index(prior.landmark)]), W_landmark_prior_[i],
           layout_.landmark_column[index(prior.landmark)]);
   }
-  chi2.cost += chi2.odometry + chi2.priors;
-  return chi2;
 }
 
 /// Adds factors, e already whitened, to H and g.

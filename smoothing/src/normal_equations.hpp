@@ -46,6 +46,10 @@ class NormalEquations {
 
   template <typename Visitor>
   Chi2 visit(const State& state, Visitor&& visitor) const;
+  template <typename Visitor>
+  void visit_priors(const State& state, Chi2& chi2, Visitor&& visitor) const;
+  template <typename Visitor>
+  void visit_landmark_edge(std::size_t edge, const State& state, Chi2& chi2, Visitor&& visitor) const;
   template <int D, typename Visitor>
   void visit_observation(std::size_t edge, const State& state, Chi2& chi2, Visitor&& visitor) const;
 

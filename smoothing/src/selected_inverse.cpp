@@ -41,7 +41,7 @@ void SelectedInverse::compute_column(const FactorView& L, int j) {
     sums_[static_cast<std::size_t>(L.row_index[p])] = 0.0;
   }
   // Rows of column j beyond its first are rows of its later columns too, so every Z_ki needed lies in L's pattern. Rows
-  // that are not in column j meet l_ = 0 or a sum that nobody reads.
+  // that are not in column j meet l_ = 0 or a sum that is never read.
   for (int p = begin + 1; p < end; ++p) {
     const int i = L.row_index[p];
     const double l_i = L.values[p];

@@ -14,7 +14,6 @@
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/obs/CSensoryFrame.h>
-#include <mrpt/opengl/COpenGLScene.h>
 
 #include "common/interrupt.hpp"
 #include "common/progress_bar.hpp"
@@ -28,12 +27,11 @@
 #include "helixnav/runs/run_writer.hpp"
 #include "reading/read_rawlog.hpp"
 #include "slam/ground_truth.hpp"
-#include "slam/live_window.hpp"
+#include "slam/live_view.hpp"
 #include "slam/rawlog_source.hpp"
 #include "slam/slam_config.hpp"
 #include "slam/slam_feed.hpp"
 #include "slam/slam_files.hpp"
-#include "slam/slam_scene.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -76,33 +74,6 @@ runs::RunManifest manifest_of(const SlamJob& job, const std::string& rawlog, con
   for (const std::string& name : names) manifest.inputs.push_back({name, runs::sha256_of_file(name)});
   return manifest;
 }
-
-class LiveView {
- public:
-  explicit LiveView(const SlamConfig& config) : follows_robot_(config.CAMERA_3DSCENE_FOLLOWS_ROBOT) {
-    if (!config.SHOW_3D_LIVE) return;
-    std::string why_not;
-    window_ = open_live_window(why_not);
-    if (!window_) std::fprintf(stderr, "helixnav-slam: no live view: %s\n", why_not.c_str());
-  }
-
-  /// At most 20 times a second and a tenth of the time, or when it must.
-  void show(const mrpt_adapter::MapBuilder& builder, std::size_t step, bool must) {
-    if (!window_ || !window_->is_open() || (!must && shown_ && seconds_since(*shown_) < pause_s_)) return;
-    const Clock::time_point begin = Clock::now();
-    window_->show(scene_of(builder, {}), "Step " + std::to_string(step));
-    const core::Pose2 pose = RunAccess::pose(builder).mean;
-    if (follows_robot_) window_->look_at(pose.x_m, pose.y_m);
-    pause_s_ = std::max(0.05, 9.0 * seconds_since(begin));
-    shown_ = Clock::now();
-  }
-
- private:
-  bool follows_robot_;
-  std::unique_ptr<LiveWindow> window_;
-  std::optional<Clock::time_point> shown_;
-  double pause_s_ = 0.0;
-};
 
 /// One run from its first step to its last file.
 class Run {

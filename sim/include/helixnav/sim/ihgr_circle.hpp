@@ -30,7 +30,7 @@ struct IhgrCircle {
   double sigma_turn_rad = 0.3 * core::pi / 180.0;  ///< odometry, of one sample of 1°
 };
 
-/// Drives it once: a scan at the start and after each sample, told noise = true noise. The map frame is that of the start,
+/// Drives it once: a scan at the start and after each sample, assumed noise = true noise. The map frame is that of the start,
 /// heading along the circle counter-clockwise; labels are indices of true_landmarks. Features, odometry and scanner draw
 /// from streams of their own, so that another noise leaves the layout as it was. Same arguments, same bytes.
 /// InputError for a quantity out of its range. Cost: 2 ms. Test: sim/ihgr_circle_test.cpp.

@@ -51,7 +51,7 @@ struct SlipOptions {
   Interval turn_rad{3.0 * core::pi / 180.0, 3.0 * core::pi / 180.0};  ///< absolute value
 };
 
-/// Everything that a simulated run depends on, beside its seed. True noise is what happens, told noise is what the
+/// Everything that a simulated run depends on, beside its seed. True noise is what happens, assumed noise is what the
 /// events claim (covariance of Odometry, R of Observation).
 struct Scenario {
   std::string name;
