@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What each decorrelation rule costs the search: the share of starts that meet the gate within 20 scans at the right and
-// at a wrong pose. Truth is drawn from the joint estimate itself, so that every rule is told the truth about its errors.
+// at a wrong pose. Truth is drawn from the joint estimate itself, so that every rule is given its true errors.
 //   helixnav_decorrelation_study [runs = 60] [spacing factor = 1]
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 //
 // The compressed EKF (both retractions) beside MRPT's CRangeBearingKFSLAM2D (kfEKFNaive, kfEKFAlaDavison), which is
 // measured as Debian ships it. One world for all: a circle with a landmark every 2 m, seen up to 8 m away, association
-// known (landmarkID), told noise = true noise. One lap in steps of 7 m maps all N landmarks; then steps of 1 m over old
+// known (landmarkID), assumed noise = true noise. One lap in steps of 7 m maps all N landmarks; then steps of 1 m over old
 // ground are the updates that are timed, by the processor time of the thread. The filters take turns, so that noise hits
 // all alike: in blocks of 5 timed steps, and beside it ("cold") step by step, where each finds caches that the others have
 // filled: at N = 800 MRPT walks through 20 to 60 MB in every step.
@@ -75,7 +75,7 @@ struct Sighting {
   double bearing_rad;
 };
 
-/// What all filters are told of one step.
+/// What all filters are given in one step.
 struct Step {
   Noise noise;
   core::Odometry odometry;

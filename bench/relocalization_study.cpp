@@ -77,7 +77,7 @@ class Driver {
   int long_unseen = 0;  ///< landmarks matched that were unseen for unseen_m
 
  private:
-  /// Overhears what the navigator is told.
+  /// Listens to the events that the navigator takes.
   struct Ear {
     supervisor::Navigator& navigator;
     const core::Scan* scan = nullptr;

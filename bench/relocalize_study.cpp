@@ -5,7 +5,7 @@
 //   helixnav_relocalize_study orchards SEED [questions = 2000]         the same in orchards of several pitches and jitters
 //   helixnav_relocalize_study present SEED [questions a cell = 600]    places that it has, some of them changed
 //   helixnav_relocalize_study size SEED [questions a cell = 50]        maps of 10⁴, 10⁵ and 10⁶ landmarks
-//   helixnav_relocalize_study told SEED [questions a cell = 300]       no prior, a true one, a wrong one; two kinds, four; absent
+//   helixnav_relocalize_study priors SEED [questions a cell = 300]       no prior, a true one, a wrong one; two kinds, four; absent
 //   helixnav_relocalize_study one SEED WORLD N n CHANGE NOISE CLUTTER JITTER GAPS QUESTIONS present|absent
 // Times are processor time of the one thread that asks.
 #include <algorithm>
@@ -173,8 +173,8 @@ std::vector<Cell> size_cells(int questions) {
   return cells;
 }
 
-/// What priors (true, and wrong by 40 m where 2 m are told) and kinds add where geometry alone is not enough.
-std::vector<Cell> told_cells(int questions) {
+/// What priors (true, and wrong by 40 m where 2 m are assumed) and kinds add where geometry alone is not enough.
+std::vector<Cell> prior_cells(int questions) {
   std::vector<Cell> cells(5, {{"uniform"}, {10, 0.3}, false, questions, 1, {}});
   cells[1].prior_off_m = 0.0;
   cells[2].prior_off_m = 40.0;
@@ -208,10 +208,10 @@ std::vector<Cell> cells_of(int count, char** arguments) {
   if (what == "absent") return absent_cells(questions(2000));
   if (what == "orchards") return orchard_cells(questions(2000));
   if (what == "present") return present_cells(questions(600));
-  if (what == "told") return told_cells(questions(300));
+  if (what == "priors") return prior_cells(questions(300));
   if (what == "size") return size_cells(questions(50));
   if (what == "one" && count == 13) return {one_cell(arguments + 3)};
-  throw std::runtime_error("usage: absent|orchards|present|told|size SEED [QUESTIONS], or one SEED with ten values");
+  throw std::runtime_error("usage: absent|orchards|present|priors|size SEED [QUESTIONS], or one SEED with ten values");
 }
 
 }  // namespace

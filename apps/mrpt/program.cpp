@@ -17,7 +17,7 @@
 namespace helixnav::apps {
 namespace {
 
-/// What a damaged file says of itself may hold anything: nothing of it shall move a terminal's cursor.
+/// Text from a damaged file may contain anything: none of it may move a terminal's cursor.
 int fail(const CLI::App& app, ExitCode code, std::string what) {
   const auto commands_terminal = [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7f; };
   std::replace_if(what.begin(), what.end(), commands_terminal, '?');

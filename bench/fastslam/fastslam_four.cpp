@@ -3,7 +3,7 @@
 // Figure 13 of fastslam_nieto2003: four beacons 1 … 1.5 m apart. The paper's log is not published, so: the drive of the car
 // park as recorded (its dead reckoning taken as the truth, its noise added anew), its fifteen poles and the four where
 // there is room, observations simulated: detection 0.6 within 8 m and 0.2 within 15 m, 0.15 m and 0.01 rad. The filter is
-// told 0.5 and 8 m, wrong on purpose.
+// assumed 0.5 and 8 m, wrong on purpose.
 #include <array>
 
 #include "fastslam_study.hpp"

@@ -138,7 +138,7 @@ struct KindAndVerdict {
 };
 
 KindAndVerdict words_of(const TriggerDecision&) { return {"trigger", "started"}; }
-KindAndVerdict words_of(const RollbackDecision&) { return {"trigger", "rewound"}; }
+KindAndVerdict words_of(const RollbackDecision&) { return {"trigger", "rolled-back"}; }
 KindAndVerdict words_of(const SlipDecision&) { return {"slip", "accepted"}; }
 KindAndVerdict words_of(const AttemptStarted&) { return {"search", "started"}; }
 KindAndVerdict words_of(const AttemptEnded& d) { return {"search", reason_words[static_cast<int>(d.reason)]}; }
@@ -211,7 +211,8 @@ Decision decision_of(const DecisionRow& row) {
   const bool accepted = row.verdict == "accepted";
   const bool judged = accepted || row.verdict == "refused";
   if (row.kind == "trigger" && row.verdict == "started") return fill(TriggerDecision{}, row);
-  if (row.kind == "trigger" && row.verdict == "rewound") return fill(RollbackDecision{}, row);
+  const bool rolled_back = row.verdict == "rolled-back" || row.verdict == "rewound";  // the latter in earlier versions
+  if (row.kind == "trigger" && rolled_back) return fill(RollbackDecision{}, row);
   if (row.kind == "slip" && accepted) return fill(SlipDecision{}, row);
   if (row.kind == "search") return search_decision(row);
   if (row.kind == "closure" && row.verdict == "undecided") return fill(UndecidedDecision{}, row);

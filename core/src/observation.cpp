@@ -63,7 +63,7 @@ bool has_range(ObservationKind kind) {
   return kind == ObservationKind::range_bearing || kind == ObservationKind::range;
 }
 
-/// Beyond ±2π: whoever writes such a bearing does not mean radians.
+/// Beyond ±2π: such a bearing is not in radians.
 bool has_impossible_bearing(const Observation& observation) {
   constexpr double most_rad = 2.0 * pi;
   if (observation.kind == ObservationKind::range_bearing) return std::abs(observation.z[1]) > most_rad;

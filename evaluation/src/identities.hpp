@@ -11,7 +11,7 @@
 namespace helixnav::evaluation {
 
 /// Which tree each landmark is, by the labels of the observations that it was given: the majority, until the landmark is
-/// old. Then it stands fixed: wrong matches afterwards must not make it another tree.
+/// old. Then it is fixed: wrong matches afterwards must not make it another tree.
 class Identities {
  public:
   explicit Identities(int old_sightings) : old_sightings_(old_sightings) {}

@@ -87,7 +87,7 @@ RunScore Referee::score(const std::vector<MapLandmark>& map) const {
     result.end = book_->judge(end, map);
     result.end_on_old_ground = book_->judge(book_->last_on_old_ground.value_or(end), map);
   }
-  if (!result.returns.empty()) result.returns.back().duplicate_segment = result.end_on_old_ground;
+  if (!result.returns.empty()) result.returns.back().end_on_old_ground = result.end_on_old_ground;
   if (book_->last_associated) result.returns.back().associated = book_->judge(*book_->last_associated, map);
   result.wrong_without_trigger += book_->wrong_so_far;
   result.spacing_m = book_->spacing_m();
@@ -104,7 +104,7 @@ void Referee::Book::drive_on(const StepReport& report, const Map& map_now) {
   }
   const std::size_t next = score.returns.size();
   if (next < returns_at_m.size() && driven_m >= returns_at_m[next] - in_sight_m) {
-    if (next > 0 && last_on_old_ground) score.returns.back().duplicate_segment = judge(*last_on_old_ground, map_now());
+    if (next > 0 && last_on_old_ground) score.returns.back().end_on_old_ground = judge(*last_on_old_ground, map_now());
     if (next > 0 && last_associated) score.returns.back().associated = judge(*last_associated, map_now());
     begin_return(report.mode == core::Mode::searching && count<core::TriggerDecision>(report) == 0);
   }
@@ -113,7 +113,7 @@ void Referee::Book::drive_on(const StepReport& report, const Map& map_now) {
 void Referee::Book::begin_return(bool searching) {
   score.returns.emplace_back();
   last_associated.reset();
-  identities.fix_unseen(driven_m - options.left_behind_m);
+  identities.fix_unseen(driven_m - options.old_ground_left_m);
   old_trees = identities.old_trees();
   seen_until_return.push_back(seen);
   reentered_at_m = std::numeric_limits<double>::quiet_NaN();
@@ -122,12 +122,12 @@ void Referee::Book::begin_return(bool searching) {
 }
 
 void Referee::Book::note_triggers(const StepReport& report) {
-  const int rewound = count<core::RollbackDecision>(report);
+  const int rolled_back = count<core::RollbackDecision>(report);
   const int started = count<core::TriggerDecision>(report);
-  score.rewound += rewound;
+  score.rolled_back += rolled_back;
   score.triggers += started;
-  if (rewound > 0) revise(report);
-  if (rewound == 0 && started == 0) return;
+  if (rolled_back > 0) revise(report);
+  if (rolled_back == 0 && started == 0) return;
   triggered = true;
   score.wrong_before_trigger += std::exchange(wrong_so_far, 0);
 }

@@ -62,7 +62,7 @@ struct FastSlam::Impl {
   std::int64_t step = 0;
   std::uint16_t looks = 0;  ///< of all robots, modulo 2^16
   int scans_since_resampling = 0;
-  std::size_t swept_at = 0;  ///< lineages given when those that nobody holds were looked for
+  std::size_t swept_at = 0;  ///< lineages given when unused ones were last looked for
 
   // Working memory of a scan.
   HypothesisSet set;

@@ -14,7 +14,7 @@ namespace helixnav::fastslam {
 
 /// All lineages of landmarks with the grid that finds those near a place, shared by all particles. A lineage stands in
 /// the cell of its anchor, with a reach within which all that particles hold of it lies: estimates, and what their own
-/// uncertainty may add to a search. 16 bytes a lineage. Reading from several threads is safe while nobody writes.
+/// uncertainty may add to a search. 16 bytes a lineage. Reading from several threads is safe while nothing writes.
 /// Test: fastslam/lineages_test.cpp (against brute force).
 class Lineages {
  public:

@@ -19,8 +19,9 @@ namespace {
 /// What is new to association is not on the map, and the map is given.
 core::Outcome outcome_of(const association::ObservationOutcome& observation) {
   if (observation.outcome == association::Outcome::matched) return core::Outcome::matched;
-  const bool foreign = observation.outcome == association::Outcome::new_landmark || observation.dropped_by_joint_test;
-  return foreign ? core::Outcome::rejected : core::Outcome::ambiguous;
+  const bool extraneous =
+      observation.outcome == association::Outcome::new_landmark || observation.dropped_by_joint_test;
+  return extraneous ? core::Outcome::rejected : core::Outcome::ambiguous;
 }
 
 }  // namespace

@@ -77,17 +77,17 @@ void estimate_missing_field_of_view(core::Recording& recording) {
   });
 }
 
-void tell_field_of_view(core::Recording& recording, const ToldFieldOfView& told) {
+void set_field_of_view(core::Recording& recording, const GivenFieldOfView& given) {
   for_each_scan(recording, [&](core::Scan& scan) {
     core::FieldOfView& view = scan.field_of_view;
-    if (told.max_range_m > 0.0) {
-      view.min_range_m = std::min(view.min_range_m, 0.5 * told.max_range_m);
-      view.max_range_m = told.max_range_m;
+    if (given.max_range_m > 0.0) {
+      view.min_range_m = std::min(view.min_range_m, 0.5 * given.max_range_m);
+      view.max_range_m = given.max_range_m;
       view.reach_m = 0.0;
     }
-    if (told.width_rad > 0.0) {
-      view.min_bearing_rad = -0.5 * told.width_rad;
-      view.max_bearing_rad = 0.5 * told.width_rad;
+    if (given.width_rad > 0.0) {
+      view.min_bearing_rad = -0.5 * given.width_rad;
+      view.max_bearing_rad = 0.5 * given.width_rad;
     }
   });
 }

@@ -20,7 +20,7 @@
 
 namespace helixnav::mrpt_adapter {
 
-/// The state of a builder. Whoever calls in holds the lock.
+/// The state of a builder. Callers hold the lock.
 class MapBuilder::Impl {
  public:
   using Lock = std::lock_guard<std::mutex>;

@@ -58,7 +58,8 @@ const std::vector<NumberKey>& number_keys() {
       {"hysteresis", &O::hysteresis, 0.0, huge},
       {"search_old_after", &O::search_old_after, 1.0, huge},
       {"search_scale", &O::search_scale, 1e-3, 1e3},
-      {"search_foreign_per_scan", &O::search_foreign_per_scan, 0.0, 100.0},
+      {"search_foreign_per_scan", &O::search_extraneous_per_scan, 0.0, 100.0},  // the name of version 0.1
+      {"search_extraneous_per_scan", &O::search_extraneous_per_scan, 0.0, 100.0},
       {"search_view_area", &O::search_view_area, 0.0, huge},
   };
   return keys;

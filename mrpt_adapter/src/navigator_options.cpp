@@ -22,13 +22,13 @@ void set_search(const MapBuilderOptions& options, supervisor::SearchOptions& sea
   search.seed = options.search_seed;
   search.relocalizer.threads = static_cast<unsigned>(options.search_threads);
   constexpr double among_reflectors = 0.5;  // hardly anything else shines
-  if (options.detector == "reflectors") search.foreign_per_scan = among_reflectors;
-  if (options.search_foreign_per_scan > 0.0) {
-    search.foreign_per_scan = options.search_foreign_per_scan;
-    search.relocalizer.sensor.extraneous_per_scan = options.search_foreign_per_scan;
+  if (options.detector == "reflectors") search.extraneous_per_scan = among_reflectors;
+  if (options.search_extraneous_per_scan > 0.0) {
+    search.extraneous_per_scan = options.search_extraneous_per_scan;
+    search.relocalizer.sensor.extraneous_per_scan = options.search_extraneous_per_scan;
   }
   if (options.search_view_area > 0.0) {
-    search.rivals.extraneous_per_m2 = search.foreign_per_scan / options.search_view_area;
+    search.rivals.extraneous_per_m2 = search.extraneous_per_scan / options.search_view_area;
   }
 }
 

@@ -14,18 +14,18 @@ std::string degrees(double angle_rad) { return short_number(angle_rad * 180.0 / 
 
 std::string sentence(const core::RollbackDecision& d) {
   return "The pose is not to be trusted: " + counted(d.missing, "landmark") +
-         " of earlier drives that should be in view are missing, " + short_number(d.seen) + " are there, and " +
+         " mapped earlier that should be in view are missing, " + short_number(d.seen) + " were seen, and " +
          counted(d.spawned, "new one") + " matured meanwhile (" + short_number(d.nats) +
-         " nats against the pose). A search begins from " + counted(d.scans, "scan") +
-         " ago, when the pose was last beyond doubt.";
+         " nats against the pose). The navigator rolls back by " + counted(d.scans, "scan") +
+         " to its last trusted checkpoint and searches from there.";
 }
 
 std::string sentence(const core::TriggerDecision& d) {
   return "A search began: an observation was about to be matched with the old landmark " + std::to_string(d.landmark) +
-         ", and it may as well have been one of " + short_number(d.expected_confusers) +
-         " other objects to be expected; " + counted(d.neighbours, "old landmark") +
-         " of the map among them. The pose was uncertain by " + short_number(d.pose_sigma_m) + " m and " +
-         short_number(d.heading_sigma_deg) + "°. The old landmarks are set aside until it is known which is which.";
+         ", but it may also have come from one of " + short_number(d.expected_confusers) + " other expected objects, " +
+         counted(d.neighbours, "old landmark") + " among them. The pose was uncertain by " +
+         short_number(d.pose_sigma_m) + " m and " + short_number(d.heading_sigma_deg) +
+         "°. The old landmarks are excluded until the search ends.";
 }
 
 std::string sentence(const core::SlipDecision& d) {
@@ -46,23 +46,23 @@ std::string sentence(const core::AttemptStarted& d) {
 std::string sentence(const core::AttemptEnded& d) {
   const std::string attempt = attempt_number(d.attempt);
   const std::string after = " after " + counted(d.scans, "scan");
-  const std::string evidence = "log-evidence " + short_number(d.log_evidence) + " against nothing here being old";
+  const std::string evidence = "log-evidence " + short_number(d.log_evidence) + " for old ground against new";
   switch (d.reason) {
     case core::AttemptEnded::Reason::timed_out:
       return attempt + " ended" + after + " without a single mode (" + evidence + ").";
     case core::AttemptEnded::Reason::nothing_here:
-      return attempt + " ended" + after + ": this is no old ground (" + evidence + ").";
+      return attempt + " ended" + after + ": this is not old ground (" + evidence + ").";
     case core::AttemptEnded::Reason::abandoned:
       return attempt + " was given up" + after + ": it held one mode, whose constellation was never accepted.";
     case core::AttemptEnded::Reason::outdone:
-      return attempt + " ended" + after + ": its own rival explains the constellation better.";
+      return attempt + " ended" + after + ": a rival pose explains the constellation better.";
   }
   return {};
 }
 
 std::string sentence(const core::ReferenceUnusable& d) {
-  return attempt_number(d.attempt) + " could not begin: where the " + counted(d.reference_landmarks, "old landmark") +
-         " in reach stand to one another is not known well enough.";
+  return attempt_number(d.attempt) + " could not begin: the relative positions of the " +
+         counted(d.reference_landmarks, "old landmark") + " in reach are not known well enough.";
 }
 
 std::string rival_sentence(const core::VerificationDecision& d) {
@@ -80,11 +80,11 @@ std::string verdict_of(core::VerificationDecision::Verdict verdict) {
     case core::VerificationDecision::Verdict::accepted:
       return "The constellation test was passed";
     case core::VerificationDecision::Verdict::too_few_matches:
-      return "The constellation test was not passed, too few landmarks matched";
+      return "The constellation test failed, too few landmarks matched";
     case core::VerificationDecision::Verdict::ratio_too_low:
-      return "The constellation test was not passed, too many landmarks contradict";
+      return "The constellation test failed, too many landmarks contradict it";
     case core::VerificationDecision::Verdict::rival_too_good:
-      return "The constellation test was not passed, another pose explains as much";
+      return "The constellation test failed, a rival pose explains nearly as much";
   }
   return {};
 }
@@ -93,21 +93,21 @@ std::string sentence(const core::VerificationDecision& d) {
   return verdict_of(d.verdict) + ": at (" + short_number(d.T_world_winner.x_m) + ", " +
          short_number(d.T_world_winner.y_m) + ") m, heading " + degrees(d.T_world_winner.heading_rad) + ", " +
          counted(d.matched, "new landmark") +
-         " on old ones; unmatched on ground that both drives looked at: " + short_number(d.unmatched_branch) +
+         " matched to old ones; unmatched in the area covered by both drives: " + short_number(d.unmatched_branch) +
          " new and " + short_number(d.unmatched_old) + " old; ratio " + short_number(d.ratio) + ". " +
          rival_sentence(d);
 }
 
 std::string sentence(const core::UndecidedDecision& d) {
   return "Left undecided: no closing was accepted in " + short_number(d.driven_m) +
-         " m. The map goes on as on new ground; the next ambiguous return asks again.";
+         " m. Mapping goes on as on new ground; the next ambiguous return begins a new search.";
 }
 
 std::string refusal(const core::ClosureDecision& d, const std::string& cost, const std::string& limit,
                     const std::string& dropped) {
-  const bool too_dear = d.cost > d.limit;
-  return "Refused: " + cost + (too_dear ? " exceeds " : " stands against ") + limit + " (" + dropped +
-         (too_dear ? "): they cannot all be right. The map stays as it was." : "). The map stays as it was.");
+  const bool too_costly = d.cost > d.limit;
+  return "Refused: " + cost + (too_costly ? " exceeds " : " stands against ") + limit + " (" + dropped +
+         (too_costly ? "): they cannot all be right. The map stays as it was." : "). The map stays as it was.");
 }
 
 std::string sentence(const core::ClosureDecision& d) {
@@ -118,8 +118,8 @@ std::string sentence(const core::ClosureDecision& d) {
   const std::string moved =
       "The pose moved by " + short_number(d.moved_m) + " m, " + short_number(d.driven_m) + " m after the trigger.";
   if (d.dof == 0) {
-    return "Accepted: the pose is that of the particles, and what was mapped since the trigger is forgotten; nothing "
-           "speaks for it but " +
+    return "Accepted: the pose is that of the particles, and what was mapped since the trigger is forgotten; the only "
+           "evidence is " +
            counted(d.pairs, "pair") + ". " + moved;
   }
   return "Accepted: " + cost + " is within " + limit + " (" + dropped + "). " + moved;
@@ -128,10 +128,11 @@ std::string sentence(const core::ClosureDecision& d) {
 std::string sentence(const core::SmoothingDecision& d) {
   const std::string cost = short_number(std::round(d.chi2));
   const std::string work = counted(d.poses, "pose") + ", " + counted(d.iterations, "iteration");
-  const std::string limit = short_number(std::round(d.limit)) + " (what the filter had come to, and some slack)";
+  const std::string limit =
+      short_number(std::round(d.limit)) + " (the cost of the filter's own solution, with some slack)";
   if (!d.accepted) {
     return "The drive was not solved as a whole: least squares ended at " + cost + " (" + work +
-           ") and had to settle within " + limit + ". The map stays as the closing left it.";
+           ") and had to end within " + limit + ". The map stays as the closing left it.";
   }
   return "Then the drive was solved as a whole: least squares ended at " + cost + " (" + work + "), within " + limit +
          ". The pose moved by another " + short_number(d.moved_m) + " m.";

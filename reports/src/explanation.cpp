@@ -46,9 +46,9 @@ std::ptrdiff_t count_of(const std::vector<Decided>& closures, const char* verdic
 
 std::string merges_of(const core::StepReport& step) {
   if (step.merged.empty()) return {};
-  std::string text = "  Found to be one:";
+  std::string text = "  Merged:";
   for (const core::MergedLandmarks& merge : step.merged) {
-    text += ' ' + std::to_string(merge.removed) + " is " + std::to_string(merge.kept) + ',';
+    text += ' ' + std::to_string(merge.removed) + " into " + std::to_string(merge.kept) + ',';
   }
   text.back() = '.';
   return text + '\n';
@@ -70,15 +70,16 @@ std::string fate_of(const core::AssociationReport& a) {
     case core::Outcome::matched:
       return "updated " + landmark + ": " + (has_pair ? nis_of(a) + "; " + margin_of(a) : "known by name") + '.';
     case core::Outcome::augmented:
-      return "began " + landmark + ": it is far from every landmark that it could be.";
+      return "began " + landmark + ": it is outside the gates of all landmarks.";
     case core::Outcome::rejected:
-      if (!has_pair) return "was dropped: it is known to be no landmark, or one that this scan has seen already.";
+      if (!has_pair) return "was dropped: it is labelled as no landmark, or as one that this scan has already seen.";
       return "was dropped from " + landmark + " (" + nis_of(a) +
-             "): together with the other pairs of the scan it did not pass the joint test.";
+             "): it failed the joint test with the other pairs of the scan.";
     case core::Outcome::ambiguous:
-      if (!has_pair) return "was dropped: it is neither near enough to a landmark to be it nor far enough to be new.";
+      if (!has_pair) return "was dropped: too far from every landmark to be matched, too near one to be new.";
       return "was dropped: " + landmark + " is the nearest (" + nis_of(a) +
-             "), not near enough to be it or not clearly enough (" + margin_of(a) + "), and too near for a new one.";
+             "), but too far to be matched or not clearly enough (" + margin_of(a) +
+             "), and too near to begin a new one.";
   }
   return {};
 }
@@ -104,7 +105,7 @@ std::string explain_run(const runs::Run& run) {
                      std::to_string(count_of(closures, "refused")) + " refused, " +
                      std::to_string(count_of(closures, "undecided")) + " left undecided.\n";
   if (decided.empty())
-    return text + "Nothing was ever ambiguous enough for a search: every scan was associated at once.\n";
+    return text + "No return was ambiguous enough for a search: every scan was associated at once.\n";
   for (std::size_t i = 0; i < closures.size(); ++i) {
     text += "\nClosure " + std::to_string(i + 1) + ", " + when(*closures[i].step) + ". " +
             sentence_of(*closures[i].decision) + '\n';
@@ -112,7 +113,7 @@ std::string explain_run(const runs::Run& run) {
   if (!run.steps.empty() && run.steps.back().mode == core::Mode::searching) {
     text += "\nAt the end of the run a search was still open.\n";
   }
-  if (!closures.empty()) text += "\nHow one came about: helixnav explain " + run.path + " --closure 1\n";
+  if (!closures.empty()) text += "\nDetails of one: helixnav explain " + run.path + " --closure 1\n";
   return text;
 }
 
@@ -146,7 +147,7 @@ std::string explain_step(const runs::Run& run, std::int64_t step) {
                      short_number(report.pose.mean.y_m) + ") m, uncertain by " +
                      short_number(std::sqrt(P(0, 0) + P(1, 1))) + " m.\n";
   text.front() = 'S';
-  if (report.mode == core::Mode::searching) text += "  Old landmarks are set aside while the search lasts.\n";
+  if (report.mode == core::Mode::searching) text += "  Old landmarks are excluded while the search lasts.\n";
   if (report.associations.empty()) text += "  Nothing was observed.\n";
   for (const core::AssociationReport& a : report.associations) {
     text += "  Observation " + std::to_string(a.observation) + ' ' + fate_of(a) + '\n';

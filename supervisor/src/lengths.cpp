@@ -131,13 +131,13 @@ void set_length(NavigatorOptions& options, std::string_view name, double value) 
   row->of(options) = value;
 }
 
-SearchOptions with_foreign(SearchOptions search, double born_per_scan, const core::FieldOfView& view) {
-  if (!search.learn_foreign) return search;
-  constexpr double least_per_scan = 0.01;  // nobody has counted to zero
-  search.foreign_per_scan = std::max(least_per_scan, born_per_scan);
-  search.relocalizer.sensor.extraneous_per_scan = search.foreign_per_scan;
+SearchOptions with_extraneous_density(SearchOptions search, double born_per_scan, const core::FieldOfView& view) {
+  if (!search.learn_extraneous) return search;
+  constexpr double least_per_scan = 0.01;  // a count of zero is no estimate
+  search.extraneous_per_scan = std::max(least_per_scan, born_per_scan);
+  search.relocalizer.sensor.extraneous_per_scan = search.extraneous_per_scan;
   const double area = area_m2(view);
-  if (area > 0.0 && std::isfinite(area)) search.rivals.extraneous_per_m2 = search.foreign_per_scan / area;
+  if (area > 0.0 && std::isfinite(area)) search.rivals.extraneous_per_m2 = search.extraneous_per_scan / area;
   return search;
 }
 

@@ -51,7 +51,7 @@ class Explain : public ::testing::Test {
     }
     if (step.step == 0) {
       step.decisions.push_back(core::decision_of(
-          {"trigger", "rewound", {{"missing", 5}, {"seen", 0}, {"spawned", 2}, {"nats", 5.5}, {"scans", 31}}}));
+          {"trigger", "rolled-back", {{"missing", 5}, {"seen", 0}, {"spawned", 2}, {"nats", 5.5}, {"scans", 31}}}));
     }
     if (step.step == 2)
       step.decisions.push_back(core::decision_of({"search", "started", {{"attempt", 1}, {"helix_pairs", 15}}}));
@@ -142,16 +142,16 @@ TEST_F(Explain, TellsOfAClosureAllSinceItsTrigger) {
   expect_said({"--closure", "2"}, {"Closure 2 of this run: accepted",
                                    "step 1 (0.5 s)  A search began",
                                    "landmark 7",
-                                   "2.35 other objects",
-                                   "1 old landmark of the map among",
+                                   "2.35 other expected objects",
+                                   "1 old landmark among",
                                    "9.5 m and 3.25°",
-                                   "old landmarks are set aside",
+                                   "old landmarks are excluded",
                                    "step 2",
                                    "Attempt 1",
                                    "15 pairs",
                                    "step 3",
-                                   "was not passed, another pose explains as much",
-                                   "8 new landmarks on old ones",
+                                   "test failed, a rival pose explains nearly as much",
+                                   "8 new landmarks matched to old ones",
                                    "2 new and 1 old",
                                    "ratio 0.84",
                                    "best rival is 5 m and 0° away",
@@ -159,7 +159,7 @@ TEST_F(Explain, TellsOfAClosureAllSinceItsTrigger) {
                                    "Refused",
                                    "test was passed",
                                    "Accepted",
-                                   "12 is 7, 13 is 8.",
+                                   "12 into 7, 13 into 8.",
                                    "step 5 (2.5 s)  Then the drive was solved as a whole",
                                    "ended at 3146 (350 poses, 4 iterations), within 3170",
                                    "another 0.25 m"});
@@ -170,11 +170,11 @@ TEST_F(Explain, TellsTheFateOfEveryObservationOfAStep) {
                                 "Observation 0 updated landmark 3: NIS 1.5 with 2", "costs 4.25 nats more",
                                 "Observation 1 began landmark 12", "Observation 2 was dropped from landmark 5 (NIS 8",
                                 "joint test", "Observation 3 was dropped: landmark 6 is the nearest (NIS 30",
-                                "Observation 4 was dropped: it is neither near enough", "A search began"});
+                                "Observation 4 was dropped: too far from every landmark", "A search began"});
   expect_said({"--step", "4"}, {"drive was not solved as a whole", "ended at 4000 (1 pose, 200 iterations)",
                                 "within 3170", "stays as the closing left it"});
-  expect_said({"--step", "0"}, {"Step 0 (0 s), mapping", "Nothing was observed.", "5 landmarks of earlier drives",
-                                "0 are there, and 2 new ones", "5.5 nats", "from 31 scans ago"});
+  expect_said({"--step", "0"}, {"Step 0 (0 s), mapping", "Nothing was observed.", "5 landmarks mapped earlier",
+                                "0 were seen, and 2 new ones", "5.5 nats", "rolls back by 31 scans"});
 }
 
 TEST_F(Explain, RefusesWhatTheRunDoesNotHave) {

@@ -45,7 +45,7 @@ TEST_F(Lengths, FollowTheReachThatIsToldAndNotWhatIsGiven) {
   ASSERT_EQ(replay({"--log.max_range_m", "30", "--log.view_deg", "180", "--search.old_after_m", "70"}).exit_code, 0);
   EXPECT_NE(file("decisions.csv").find(",closure,accepted,"), std::string::npos);
   for (const char* line : {"-90 to 90 deg; reach 30 m", "search.old_after_m = 70", "filter.cell_side_m = 20",
-                           "search.foreign_per_scan = learnt"}) {
+                           "search.extraneous_per_scan = learnt"}) {
     EXPECT_NE(file("manifest.json").find(line), std::string::npos) << line << " not in " << file("manifest.json");
   }
 }

@@ -29,7 +29,7 @@ struct SmallDriveOptions {
   double rounds = 2.0;
   double radius_m = 25.0;
   double reach_m = 12.0;
-  double noise = 1.0;  ///< times the sigmas that are told
+  double noise = 1.0;  ///< times the assumed sigmas
 };
 
 inline core::Observation noisy_view(const core::Pose2& T_world_robot, const Eigen::Vector2d& point_m, double noise,

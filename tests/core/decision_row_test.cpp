@@ -41,9 +41,16 @@ TEST(DecisionRow, GoesThereAndBackForEveryKindAndVerdict) {
   }
 }
 
-TEST(DecisionRow, UnderstandsTheNameOfEarlierVersions) {
+TEST(DecisionRow, UnderstandsTheNumberOfEarlierVersions) {
   const Decision decision = decision_of({"trigger", "started", {{"foreign_objects", 0.25}}});
   EXPECT_EQ(std::get<TriggerDecision>(decision).expected_confusers, 0.25);
+}
+
+TEST(DecisionRow, UnderstandsTheVerdictOfEarlierVersions) {
+  const Decision decision = decision_of({"trigger", "rewound", {{"missing", 5}}});
+  ASSERT_TRUE(std::holds_alternative<RollbackDecision>(decision));
+  EXPECT_EQ(std::get<RollbackDecision>(decision).missing, 5);
+  EXPECT_EQ(row_of(decision).verdict, "rolled-back");
 }
 
 TEST(DecisionRow, KeepsWhatItDoesNotKnowAsItStands) {

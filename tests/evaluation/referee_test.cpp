@@ -57,7 +57,7 @@ struct Script {
   std::vector<double> returns_at_m{lap_m};
   double length_m = 490.0;          ///< trees are in view to the end
   double trigger_at_m = 390.0;      ///< beyond the end: never
-  const char* trigger = "started";  ///< or "rewound"
+  const char* trigger = "started";  ///< or "rolled-back"
   double close_at_m = 430.0;        ///< beyond the end: never
   bool new_after_return = true;     ///< false: old landmarks are matched at once
   int swapped_pairs = 0;            ///< of the closing
@@ -308,8 +308,8 @@ TEST(Referee, JudgesWhatAssociationClosedWhereThatGroundIsLeft) {
   script.drift = {2.1, 0.0, 0.0};
   const RunScore score = judged(script);
   EXPECT_EQ(score.verdict, RunVerdict::false_closure) << "that the second return is right does not help the first";
-  EXPECT_NEAR(score.returns.at(0).duplicate_segment.relative.position_m, 2.1, 1e-9);
-  EXPECT_NEAR(score.returns.at(1).duplicate_segment.relative.position_m, 0.0, 1e-9);
+  EXPECT_NEAR(score.returns.at(0).end_on_old_ground.relative.position_m, 2.1, 1e-9);
+  EXPECT_NEAR(score.returns.at(1).end_on_old_ground.relative.position_m, 0.0, 1e-9);
 }
 
 TEST(Referee, JudgesWhatAssociationClosedByTheEndAndByItsMatches) {
@@ -343,7 +343,7 @@ TEST(Referee, CountsWrongMatchesBeforeTheTriggerOnly) {
   EXPECT_GT(tardy.wrong_before_trigger, 0);
   EXPECT_LT(tardy.wrong_before_trigger, 10);
   EXPECT_EQ(tardy.wrong_without_trigger, 0);
-  script.trigger = "rewound";
+  script.trigger = "rolled-back";
   EXPECT_EQ(judged(script).wrong_before_trigger, tardy.wrong_before_trigger) << "what it undoes had been believed";
 }
 

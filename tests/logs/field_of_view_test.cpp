@@ -69,13 +69,13 @@ TEST(FieldOfView, IsUnknownWhereNoObservationFixesAPoint) {
 TEST(FieldOfView, ToldIsBelieved) {
   core::Recording recording = detections({0.5, 20.0, -1.0, 1.0}, false);
   estimate_missing_field_of_view(recording);
-  ToldFieldOfView told;
-  told.max_range_m = 25.0;
-  tell_field_of_view(recording, told);
+  GivenFieldOfView given;
+  given.max_range_m = 25.0;
+  set_field_of_view(recording, given);
   EXPECT_EQ(field_of_view_of(recording).reach(), 25.0);
   EXPECT_LT(field_of_view_of(recording).max_bearing_rad, 1.0);
-  told.width_rad = core::pi;
-  tell_field_of_view(recording, told);
+  given.width_rad = core::pi;
+  set_field_of_view(recording, given);
   EXPECT_EQ(field_of_view_of(recording).max_bearing_rad, core::pi / 2);
   EXPECT_EQ(field_of_view_of(recording).max_range_m, 25.0);
 }

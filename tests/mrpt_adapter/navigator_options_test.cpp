@@ -24,7 +24,7 @@ TEST(SearchKeys, LeaveTheSearchAsItIsWhenTheyAreNotThere) {
   const supervisor::SearchOptions search = search_of("");
   const supervisor::SearchOptions defaults;
   EXPECT_EQ(search.reach_m, defaults.reach_m);
-  EXPECT_EQ(search.foreign_per_scan, defaults.foreign_per_scan);
+  EXPECT_EQ(search.extraneous_per_scan, defaults.extraneous_per_scan);
   EXPECT_EQ(search.relocalizer.sensor.extraneous_per_scan, defaults.relocalizer.sensor.extraneous_per_scan);
   EXPECT_EQ(search.rivals.extraneous_per_m2, defaults.rivals.extraneous_per_m2);
 }
@@ -35,36 +35,41 @@ TEST(SearchKeys, ScaleMultipliesLengthsAndDividesDensities) {
   EXPECT_DOUBLE_EQ(search.reach_m, 0.1 * defaults.reach_m);
   EXPECT_DOUBLE_EQ(search.rivals.distinct_m, 0.1 * defaults.rivals.distinct_m);
   EXPECT_DOUBLE_EQ(search.rivals.extraneous_per_m2, 100.0 * defaults.rivals.extraneous_per_m2);
-  EXPECT_EQ(search.foreign_per_scan, defaults.foreign_per_scan);
+  EXPECT_EQ(search.extraneous_per_scan, defaults.extraneous_per_scan);
   EXPECT_DOUBLE_EQ(search.old_after_m, 0.1 * defaults.old_after_m);
   EXPECT_EQ(search_of("search_scale = 0.1\nsearch_old_after = 80\n").old_after_m, 80.0);
 }
 
-TEST(SearchKeys, ForeignObservationsReachTheDecisionsAndTheParticles) {
-  const supervisor::SearchOptions search = search_of("search_foreign_per_scan = 0.75\n");
-  EXPECT_EQ(search.foreign_per_scan, 0.75);
+TEST(SearchKeys, ExtraneousObservationsReachTheDecisionsAndTheParticles) {
+  const supervisor::SearchOptions search = search_of("search_extraneous_per_scan = 0.75\n");
+  EXPECT_EQ(search.extraneous_per_scan, 0.75);
   EXPECT_EQ(search.relocalizer.sensor.extraneous_per_scan, 0.75);
   EXPECT_EQ(search.rivals.extraneous_per_m2, supervisor::SearchOptions{}.rivals.extraneous_per_m2);
 }
 
-TEST(SearchKeys, ForeignObservationsAreFewerAmongReflectorsUnlessTheFileSaysIt) {
-  EXPECT_EQ(search_of("detector = reflectors\n").foreign_per_scan, 0.5);
-  EXPECT_EQ(search_of("detector = reflectors\nsearch_foreign_per_scan = 2\n").foreign_per_scan, 2.0);
+TEST(SearchKeys, TheNameOfEarlierVersionsCountsUnlessTheNewOneIsThere) {
+  EXPECT_EQ(search_of("search_foreign_per_scan = 0.75\n").extraneous_per_scan, 0.75);
+  EXPECT_EQ(search_of("search_foreign_per_scan = 0.75\nsearch_extraneous_per_scan = 2\n").extraneous_per_scan, 2.0);
 }
 
-TEST(SearchKeys, ViewAreaSpreadsTheForeignObservationsWhateverTheScale) {
+TEST(SearchKeys, ExtraneousObservationsAreFewerAmongReflectorsUnlessTheFileSaysIt) {
+  EXPECT_EQ(search_of("detector = reflectors\n").extraneous_per_scan, 0.5);
+  EXPECT_EQ(search_of("detector = reflectors\nsearch_extraneous_per_scan = 2\n").extraneous_per_scan, 2.0);
+}
+
+TEST(SearchKeys, ViewAreaSpreadsTheExtraneousObservationsWhateverTheScale) {
   EXPECT_DOUBLE_EQ(search_of("search_view_area = 50\n").rivals.extraneous_per_m2,
-                   supervisor::SearchOptions{}.foreign_per_scan / 50.0);
+                   supervisor::SearchOptions{}.extraneous_per_scan / 50.0);
   const supervisor::SearchOptions search =
-      search_of("search_scale = 0.1\nsearch_foreign_per_scan = 0.5\nsearch_view_area = 5.6\n");
+      search_of("search_scale = 0.1\nsearch_extraneous_per_scan = 0.5\nsearch_view_area = 5.6\n");
   EXPECT_DOUBLE_EQ(search.rivals.extraneous_per_m2, 0.5 / 5.6);
 }
 
 TEST(SearchKeys, AreRefusedWithSectionKeyAndValueOutOfTheirRange) {
   const std::vector<std::pair<std::string, std::string>> bad{
       {"search_scale", "0"},       {"search_scale", "1001"},
-      {"search_scale", "far"},     {"search_foreign_per_scan", "-0.1"},
-      {"search_view_area", "-1"},  {"search_foreign_per_scan", "101"},
+      {"search_scale", "far"},     {"search_extraneous_per_scan", "-0.1"},
+      {"search_view_area", "-1"},  {"search_extraneous_per_scan", "101"},
       {"search_view_area", "inf"}, {"search_view_area", "5.6 m2"}};
   for (const auto& [key, value] : bad) {
     try {

@@ -183,7 +183,7 @@ TEST_F(Rawlogs, OfTheCarParkNavigateAsTheLogItself) {
   const std::vector<core::Pose2> got = built(file("park.rawlog"), options);
   EXPECT_EQ(got.size(), 586U);
   supervisor::NavigatorOptions as_replayed;
-  as_replayed.search.foreign_per_scan = 0.5;
+  as_replayed.search.extraneous_per_scan = 0.5;
   expect_same_drive(got, navigated(log, logs::car_park_settings(), as_replayed));
 }
 

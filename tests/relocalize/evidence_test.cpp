@@ -16,7 +16,7 @@ namespace {
 
 constexpr IndexOptions evidence_index = {30.0, 0.1};
 
-/// Seven landmarks of a map and a branch that sees five of them and a foreign one, with noise that is not round.
+/// Seven landmarks of a map and a branch that sees five of them and a spurious one, with noise that is not round.
 struct SmallCase {
   SmallCase() {
     const test::Points points = {{52.0, 41.0}, {60.5, 44.0}, {57.0, 52.5}, {48.0, 50.0},

@@ -69,20 +69,20 @@ inline MapIndex index_of(const Points& points, const IndexOptions& options, int 
   return index;
 }
 
-/// A question whose truth is known: the n landmarks of `world` nearest to one of them, some replaced by foreign ones.
+/// A question whose truth is known: the n landmarks of `world` nearest to one of them, some replaced by spurious ones.
 struct Asked {
   Question question;
   core::Pose2 T_map_branch;
-  std::vector<int> truth;  ///< [landmark of the question] its index in the world, −1: foreign
+  std::vector<int> truth;  ///< [landmark of the question] its index in the world, −1: spurious
   double radius_m = 0.0;
 };
 
 struct Asking {
   std::size_t landmarks = 20;
   double change = 0.0;   ///< share replaced; their old selves stay in the map
-  double clutter = 0.0;  ///< foreign ones added, as a share of `landmarks`
+  double clutter = 0.0;  ///< spurious ones added, as a share of `landmarks`
   double noise_m = 0.1;  ///< of the difference of a pair; all of it is put on the question
-  int kinds = 0;         ///< told of each landmark, wrongly for one in twenty
+  int kinds = 0;         ///< labels of the landmarks, wrong for one in twenty
 };
 
 inline Asked ask_somewhere(const Points& world, const Asking& asking, core::RandomStream& random) {
@@ -103,25 +103,25 @@ inline Asked ask_somewhere(const Points& world, const Asking& asking, core::Rand
         landmark(id, core::transform(T_branch_map, point_m), std::sqrt(0.5) * asking.noise_m));
     asked.truth.push_back(index);
     if (asking.kinds == 0) return;
-    const bool told_wrongly = index < 0 || random.bernoulli(0.05);
+    const bool mislabelled = index < 0 || random.bernoulli(0.05);
     asked.question.landmarks.back().kind =
-        told_wrongly ? static_cast<int>(random.below(static_cast<std::uint64_t>(asking.kinds)))
-                     : *kind_of(static_cast<std::size_t>(index), asking.kinds);
+        mislabelled ? static_cast<int>(random.below(static_cast<std::uint64_t>(asking.kinds)))
+                    : *kind_of(static_cast<std::size_t>(index), asking.kinds);
   };
-  const auto foreign = [&] {
+  const auto add_spurious = [&] {
     const double r_m = asked.radius_m * std::sqrt(random.uniform());
     const double angle = random.uniform(-core::pi, core::pi);
     put(centre_m + r_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)), -1);
   };
   for (std::size_t k = 0; k < n; ++k) {
     if (random.bernoulli(asking.change)) {
-      foreign();
+      add_spurious();
       continue;
     }
     const Eigen::Vector2d noise(random.normal(0.0, asking.noise_m), random.normal(0.0, asking.noise_m));
     put(world[static_cast<std::size_t>(order[k].second)] + noise, order[k].second);
   }
-  for (std::size_t k = 0; k < static_cast<std::size_t>(asking.clutter * static_cast<double>(n)); ++k) foreign();
+  for (std::size_t k = 0; k < static_cast<std::size_t>(asking.clutter * static_cast<double>(n)); ++k) add_spurious();
   asked.question.looked.push_back({core::transform(T_branch_map, centre_m), asked.radius_m});
   return asked;
 }

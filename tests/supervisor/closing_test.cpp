@@ -59,7 +59,7 @@ std::size_t distinct(const std::vector<core::Pose2>& poses) {
 }
 
 struct Drive {
-  int triggers = 0, rewound = 0, closures = 0, smoothed = 0, not_smoothed = 0;
+  int triggers = 0, rolled_back = 0, closures = 0, smoothed = 0, not_smoothed = 0;
   int searching_scans = 0, clouds = 0, pairs = 0, wrong_pairs = 0;
   double error_after_closing_m = 0.0;
   core::PoseGaussian end;
@@ -75,7 +75,7 @@ Drive drive_scenario(const std::string& name, std::uint64_t seed, const Navigato
   drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
     const core::StepReport report = navigator.observe(scan);
     result.triggers += count(report, "trigger", "started");
-    result.rewound += count(report, "trigger", "rewound");
+    result.rolled_back += count(report, "trigger", "rolled-back");
     result.smoothed += count(report, "smoothing", "accepted");
     result.not_smoothed += count(report, "smoothing", "refused");
     result.searching_scans += report.mode == core::Mode::searching ? 1 : 0;
@@ -154,7 +154,7 @@ TEST(Closing, SearchesWhereAnObservationMayBeEitherOfTwoOldLandmarks) {
     const evaluation::RunScore score = navigate_and_judge(sim::named_scenario("figure-of-eight"), seed);
     EXPECT_EQ(score.verdict, evaluation::RunVerdict::closed) << seed;
     EXPECT_EQ(score.wrong_before_trigger + score.wrong_without_trigger, 0) << seed;
-    EXPECT_EQ(score.rewound, 0) << seed;
+    EXPECT_EQ(score.rolled_back, 0) << seed;
   }
 }
 
@@ -177,7 +177,7 @@ TEST(ClosingCampaign, SolvesTheDriveAndIsConsistentAfterwards) {
 // A closing, scans gone through again in a search from before, another closing: the log holds what the filter holds.
 TEST(Closing, SolvesADriveOfWhichPartWasGoneThroughTwice) {
   const Drive drive = drive_scenario("sparse", 1867, one_thread());
-  EXPECT_EQ(drive.rewound, 1);
+  EXPECT_EQ(drive.rolled_back, 1);
   EXPECT_EQ(drive.closures, 2);
   EXPECT_EQ(drive.smoothed, 2);
 }
@@ -188,7 +188,7 @@ TEST(Closing, IsNotDoubtedForWhatItDidNotFind) {
   EXPECT_EQ(drive.closures, 1);
   EXPECT_EQ(drive.wrong_pairs, 0);
   EXPECT_LT(drive.error_after_closing_m, 2.0);
-  EXPECT_EQ(drive.rewound, 0);
+  EXPECT_EQ(drive.rolled_back, 0);
 }
 
 TEST(Closing, LeavesDrivesUnsolvedThatAreLongerThanAllowed) {

@@ -18,7 +18,7 @@ using Ids = std::vector<core::LandmarkId>;
 constexpr double old_after_m = 60.0;
 
 /// A book of mature landmarks 0 to n−1, last seen at the begin of a drive of `driven_m`.
-association::LandmarkLife book_of(int n, double driven_m) {
+association::LandmarkLife existence_of(int n, double driven_m) {
   association::LandmarkLife life;
   Ids all;
   for (int i = 0; i < n; ++i) all.push_back(i);
@@ -29,10 +29,10 @@ association::LandmarkLife book_of(int n, double driven_m) {
 }
 
 /// Looks for them in so many scans, a metre apart.
-void look(IntegrityMonitor& doubts, association::LandmarkLife& life, int scans, const Ids& expected,
+void look(IntegrityMonitor& monitor, association::LandmarkLife& life, int scans, const Ids& expected,
           const Ids& matched) {
   for (int i = 0; i < scans; ++i) {
-    doubts.observe(life, expected, matched, old_after_m);
+    monitor.observe(life, expected, matched, old_after_m);
     life.drive(1.0);
   }
 }
@@ -47,11 +47,11 @@ void spawn(association::LandmarkLife& life, core::LandmarkId first, int n) {
 
 TEST(IntegrityMonitor, CountsEachLandmarkOnceHoweverOftenItIsLookedFor) {
   association::LandmarkLife life = book_of(5, 100.0);
-  IntegrityMonitor doubts;
-  look(doubts, life, 2, {0, 1}, {});
-  EXPECT_EQ(doubts.evidence(life, {}).missing, 0);
-  look(doubts, life, 50, {0, 1, 2}, {2});
-  const IntegrityMonitor::Evidence evidence = doubts.evidence(life, {});
+  IntegrityMonitor monitor;
+  look(monitor, life, 2, {0, 1}, {});
+  EXPECT_EQ(monitor.evidence(life, {}).missing, 0);
+  look(monitor, life, 50, {0, 1, 2}, {2});
+  const IntegrityMonitor::Evidence evidence = monitor.evidence(life, {});
   EXPECT_EQ(evidence.missing, 2);
   EXPECT_EQ(evidence.seen, 1);
   EXPECT_DOUBLE_EQ(evidence.nats, 2 * 1.1 - 1.95);
@@ -59,48 +59,48 @@ TEST(IntegrityMonitor, CountsEachLandmarkOnceHoweverOftenItIsLookedFor) {
 
 TEST(IntegrityMonitor, IsLostWhereFourAreMissingAndTwoSpawn) {
   association::LandmarkLife life = book_of(5, 100.0);
-  IntegrityMonitor doubts;
-  look(doubts, life, 3, {0, 1, 2, 3}, {});
-  EXPECT_FALSE(doubts.is_lost(life, {})) << "nothing is seen: the sensor may be covered";
+  IntegrityMonitor monitor;
+  look(monitor, life, 3, {0, 1, 2, 3}, {});
+  EXPECT_FALSE(monitor.is_lost(life, {})) << "nothing is seen: the sensor may be covered";
   spawn(life, 10, 2);
-  EXPECT_TRUE(doubts.is_lost(life, {}));
+  EXPECT_TRUE(monitor.is_lost(life, {}));
 }
 
-TEST(IntegrityMonitor, AFelledThirdIsNoReasonToDoubt) {
+TEST(IntegrityMonitor, AFelledThirdDoesNotAccuseThePose) {
   association::LandmarkLife life = book_of(9, 100.0);
-  IntegrityMonitor doubts;
-  for (const core::LandmarkId standing : {0, 1, 2, 3, 4, 5}) look(doubts, life, 4, {standing, 6, 7, 8}, {standing});
+  IntegrityMonitor monitor;
+  for (const core::LandmarkId standing : {0, 1, 2, 3, 4, 5}) look(monitor, life, 4, {standing, 6, 7, 8}, {standing});
   spawn(life, 10, 3);
-  EXPECT_EQ(doubts.evidence(life, {}).missing, 3);
-  EXPECT_FALSE(doubts.is_lost(life, {}));
+  EXPECT_EQ(monitor.evidence(life, {}).missing, 3);
+  EXPECT_FALSE(monitor.is_lost(life, {}));
 }
 
-TEST(IntegrityMonitor, TwoAtOnceTwiceVouchForThePose) {
+TEST(IntegrityMonitor, TwoMatchesInEachOfTwoScansInARowConfirmThePose) {
   association::LandmarkLife life = book_of(6, 100.0);
-  IntegrityMonitor doubts;
-  EXPECT_TRUE(doubts.is_clear());
-  look(doubts, life, 3, {0, 1, 2, 3}, {});
-  EXPECT_FALSE(doubts.is_clear());
-  look(doubts, life, 1, {0, 1, 2, 3, 4, 5}, {4, 5});
-  EXPECT_FALSE(doubts.is_clear()) << "clutter may do that";
-  look(doubts, life, 1, {0, 1, 2, 3, 4, 5}, {3, 5});
-  EXPECT_TRUE(doubts.is_clear());
+  IntegrityMonitor monitor;
+  EXPECT_TRUE(monitor.is_clear());
+  look(monitor, life, 3, {0, 1, 2, 3}, {});
+  EXPECT_FALSE(monitor.is_clear());
+  look(monitor, life, 1, {0, 1, 2, 3, 4, 5}, {4, 5});
+  EXPECT_FALSE(monitor.is_clear()) << "clutter may do that";
+  look(monitor, life, 1, {0, 1, 2, 3, 4, 5}, {3, 5});
+  EXPECT_TRUE(monitor.is_clear());
   spawn(life, 10, 2);
-  EXPECT_EQ(doubts.evidence(life, {}).missing, 0);
-  look(doubts, life, 1, {4}, {4});
-  EXPECT_FALSE(doubts.is_clear()) << "one alone vouches for nothing";
+  EXPECT_EQ(monitor.evidence(life, {}).missing, 0);
+  look(monitor, life, 1, {4}, {4});
+  EXPECT_FALSE(monitor.is_clear()) << "one match confirms nothing";
 }
 
-TEST(IntegrityMonitor, AClosingVouchesWithTheLandmarksThatItRecognised) {
+TEST(IntegrityMonitor, AClosingConfirmsThePoseByTheLandmarksThatItRecognised) {
   association::LandmarkLife life = book_of(9, 100.0);
   const Ids recognised{0, 1, 2, 3, 4};
   spawn(life, 10, 2);
   life.observe({110.0, 0.0}, recognised, {}, {});  // as merging enters them
-  const auto drive_on = [&](IntegrityMonitor doubts) {
-    association::LandmarkLife book = life;
-    EXPECT_TRUE(doubts.is_clear());
-    look(doubts, book, 3, {0, 1, 5, 6, 7, 8}, {0, 1});
-    return doubts;
+  const auto drive_on = [&](IntegrityMonitor monitor) {
+    association::LandmarkLife existence = life;
+    EXPECT_TRUE(monitor.is_clear());
+    look(monitor, existence, 3, {0, 1, 5, 6, 7, 8}, {0, 1});
+    return monitor;
   };
   EXPECT_TRUE(drive_on(IntegrityMonitor()).is_lost(life, {})) << "those that were felled are all that it knows of";
   IntegrityMonitor closed;
@@ -108,18 +108,18 @@ TEST(IntegrityMonitor, AClosingVouchesWithTheLandmarksThatItRecognised) {
   EXPECT_FALSE(drive_on(closed).is_lost(life, {}));
   EXPECT_TRUE(drive_on(closed).is_clear());
   EXPECT_EQ(closed.evidence(life, {}).spawned, 0) << "what was born in the search is not held against the closing";
-  association::LandmarkLife book = life;
-  look(closed, book, 3, {0, 1, 2, 5, 6}, {});
-  spawn(book, 20, 2);
-  EXPECT_TRUE(closed.is_lost(book, {})) << "and it may be wrong";
+  association::LandmarkLife existence = life;
+  look(closed, existence, 3, {0, 1, 2, 5, 6}, {});
+  spawn(existence, 20, 2);
+  EXPECT_TRUE(closed.is_lost(existence, {})) << "and it may be wrong";
 }
 
 TEST(IntegrityMonitor, WhatWasSeenLatelyTellsNothingOfAReturn) {
   association::LandmarkLife life = book_of(4, 30.0);
-  IntegrityMonitor doubts;
-  look(doubts, life, 10, {0, 1, 2, 3}, {});
-  EXPECT_EQ(doubts.evidence(life, {}).missing, 0);
-  EXPECT_TRUE(doubts.is_clear());
+  IntegrityMonitor monitor;
+  look(monitor, life, 10, {0, 1, 2, 3}, {});
+  EXPECT_EQ(monitor.evidence(life, {}).missing, 0);
+  EXPECT_TRUE(monitor.is_clear());
 }
 
 /// Sparse worlds of seeds on which a wrong match, long after a right closing, turned the pose for good.
@@ -127,7 +127,7 @@ class WrongMatch : public testing::TestWithParam<std::uint64_t> {};
 
 struct End {
   double nees = 0.0;
-  int rewound = 0;
+  int rolled_back = 0;
   std::vector<core::LandmarkId> born;
 };
 
@@ -142,7 +142,8 @@ End end_of(std::uint64_t seed, bool missing_spawn) {
   drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
     const core::StepReport report = navigator.observe(scan);
     EXPECT_EQ(report.step, static_cast<std::int64_t>(i));
-    for (const core::Decision& d : report.decisions) end.rewound += std::holds_alternative<core::RollbackDecision>(d);
+    for (const core::Decision& d : report.decisions)
+      end.rolled_back += std::holds_alternative<core::RollbackDecision>(d);
     const auto note = [&](const std::vector<core::AssociationReport>& associations) {
       for (const auto& a : associations) {
         if (a.outcome == core::Outcome::augmented) end.born.push_back(a.landmark);
@@ -157,11 +158,11 @@ End end_of(std::uint64_t seed, bool missing_spawn) {
 
 TEST_P(WrongMatch, IsUndoneByASearchFromBefore) {
   const End lost = end_of(GetParam(), false);
-  EXPECT_EQ(lost.rewound, 0);
+  EXPECT_EQ(lost.rolled_back, 0);
   const double band = core::chi2_quantile(0.999, 3);
   EXPECT_GT(lost.nees, band);
   End found = end_of(GetParam(), true);
-  EXPECT_GE(found.rewound, 1);
+  EXPECT_GE(found.rolled_back, 1);
   EXPECT_LT(found.nees, band);
   std::sort(found.born.begin(), found.born.end());
   EXPECT_EQ(std::adjacent_find(found.born.begin(), found.born.end()), found.born.end()) << "an id was given twice";

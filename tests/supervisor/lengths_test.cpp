@@ -141,13 +141,13 @@ TEST(Lengths, OfANarrowViewLetLandmarksGetOldLater) {
 TEST(Lengths, ObjectsInNoMapAreCountedWhereNobodyTellsThem) {
   const core::FieldOfView view{1.0, 3.0, -0.7, 0.7};
   SearchOptions search;
-  EXPECT_EQ(with_foreign(search, 0.25, view).foreign_per_scan, search.foreign_per_scan);
-  search.learn_foreign = true;
-  const SearchOptions learnt = with_foreign(search, 0.25, view);
-  EXPECT_EQ(learnt.foreign_per_scan, 0.25);
+  EXPECT_EQ(with_extraneous_density(search, 0.25, view).extraneous_per_scan, search.extraneous_per_scan);
+  search.learn_extraneous = true;
+  const SearchOptions learnt = with_extraneous_density(search, 0.25, view);
+  EXPECT_EQ(learnt.extraneous_per_scan, 0.25);
   EXPECT_EQ(learnt.relocalizer.sensor.extraneous_per_scan, 0.25);
   EXPECT_DOUBLE_EQ(learnt.rivals.extraneous_per_m2, 0.25 / 5.6);
-  EXPECT_GT(with_foreign(search, 0.0, view).foreign_per_scan, 0.0);
+  EXPECT_GT(with_extraneous_density(search, 0.0, view).extraneous_per_scan, 0.0);
 }
 
 /// Two metres ahead of a camera that sees three, and gone a few looks later.

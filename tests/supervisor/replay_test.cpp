@@ -49,7 +49,7 @@ class TwoLaps {
     for (int k = 0; k < scans; ++k) step(branch_, &tape);
   }
 
-  /// The same events through a full EKF told that a tree of the branch is the tree of the first lap.
+  /// The same events through a full EKF given that a tree of the branch is the tree of the first lap.
   support::FullEkf told(const std::vector<int>& known_again) const;
 
   std::vector<pf_relocalize::ConstellationPair> pairs(std::size_t most = 100) const {

@@ -65,7 +65,7 @@ core::Recording recording_of(const AssociateJob& job, std::uint64_t seed) {
                            core::nearest_name(job.input, known_scenarios()) + "'");
   }
   core::Recording recording = logs::read_recording(job.input, job.settings.logs);
-  tell_recording(recording, job.settings);
+  apply_log_settings(recording, job.settings);
   return recording;
 }
 

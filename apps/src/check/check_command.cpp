@@ -61,7 +61,7 @@ ExitCode check(CLI::App& command, CheckJob& job) {
   }
   core::Recording recording = logs::read_recording(job.path, job.settings.logs);
   if (job.settings.logs.vehicle && format != logs::LogFormat::own) tell_vehicle(recording, *job.settings.logs.vehicle);
-  tell_recording(recording, job.settings);
+  apply_log_settings(recording, job.settings);
   std::fputs(events_text(recording).c_str(), stdout);
   print_settings(job, recording);
   std::fputs(missing_text(recording).c_str(), stdout);

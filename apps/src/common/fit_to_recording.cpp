@@ -23,8 +23,8 @@ double in_degrees(double angle_rad) { return angle_rad * 180.0 / core::pi; }
 
 }  // namespace
 
-void tell_recording(core::Recording& recording, const Settings& settings) {
-  logs::tell_field_of_view(recording, settings.field_of_view);
+void apply_log_settings(core::Recording& recording, const Settings& settings) {
+  logs::set_field_of_view(recording, settings.field_of_view);
   scale_covariances(recording, settings.covariance_scale);
 }
 
@@ -37,10 +37,10 @@ supervisor::NavigatorOptions fit_to_sensor(const Settings& settings, const core:
 
 supervisor::NavigatorOptions fit_to_recording(const Settings& settings, const core::Recording& recording) {
   supervisor::NavigatorOptions options = fit_to_sensor(settings, logs::field_of_view_of(recording));
-  if (recording.foreign_per_scan && *recording.foreign_per_scan > 0.0) {
-    options.search.foreign_per_scan = *recording.foreign_per_scan;
-  } else if (recording.foreign_per_scan) {
-    options.search.learn_foreign = true;
+  if (recording.extraneous_per_scan && *recording.extraneous_per_scan > 0.0) {
+    options.search.extraneous_per_scan = *recording.extraneous_per_scan;
+  } else if (recording.extraneous_per_scan) {
+    options.search.learn_extraneous = true;
   }
   return options;
 }
@@ -59,11 +59,11 @@ std::string lengths_text(const supervisor::NavigatorOptions& options, const core
   for (const supervisor::LengthInForce& length : supervisor::lengths_in_force(options)) {
     text << "# " << length.name << " = " << length.value << '\n';
   }
-  text << "# search.foreign_per_scan = ";
-  if (options.search.learn_foreign) {
+  text << "# search.extraneous_per_scan = ";
+  if (options.search.learn_extraneous) {
     text << "learnt: landmarks begun in a scan\n";
   } else {
-    text << options.search.foreign_per_scan << '\n';
+    text << options.search.extraneous_per_scan << '\n';
   }
   return text.str();
 }

@@ -8,13 +8,13 @@
 
 namespace helixnav::apps {
 
-/// What the settings tell of the sensor and its covariances, into the recording.
-void tell_recording(core::Recording& recording, const Settings& settings);
+/// Applies the settings of sensor and covariances to the recording.
+void apply_log_settings(core::Recording& recording, const Settings& settings);
 
 /// The navigator's options for a sensor: lengths by its reach except those given.
 supervisor::NavigatorOptions fit_to_sensor(const Settings& settings, const core::FieldOfView& view);
 
-/// Those for the sensor that the recording speaks of, and objects that are in no map as the log states them, or to be learnt from it.
+/// Those for the recording's sensor, and the density of objects in no map as the log states it, or to be learnt from it.
 /// Test: apps/lengths_test.cpp.
 supervisor::NavigatorOptions fit_to_recording(const Settings& settings, const core::Recording& recording);
 

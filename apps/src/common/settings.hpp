@@ -23,7 +23,7 @@ struct Settings {
   bool known_association = false;  ///< association.method is "known": the log's labels are the identities
   logs::RecordingSettings logs;
   std::map<std::string, double> given_lengths_m;  ///< by their names in supervisor/lengths.cpp; all others by the reach
-  logs::ToldFieldOfView field_of_view;
+  logs::GivenFieldOfView field_of_view;
   double covariance_scale = 1.0;   ///< on the covariances that the log itself states or its sensor settings give
   double plaza_range_scale = 0.0;  ///< 0: estimate it from the log
   GpsSettings gps;

@@ -50,7 +50,7 @@ std::string explain_usage_error(const CLI::App& app, const CLI::ParseError& erro
   const CLI::App& parsed = parsed_app(app);
   std::vector<std::string> unknown = parsed.remaining();
   if (unknown.empty()) unknown = app.remaining();
-  // A misspelt option also leaves its value or a required one missing: the word nobody knows is the cause.
+  // A misspelt option also leaves its value or a required one missing: the unknown word is the cause.
   const std::string what = unknown.empty() ? error.what() : unknown_word(parsed, unknown.front());
   const std::string command = &parsed == &app ? app.get_name() : app.get_name() + " " + parsed.get_name();
   return what + "\nTry '" + command + " --help'.";

@@ -64,7 +64,7 @@ Json json_of(const evaluation::ReturnScore& one) {
                {"error_before_m", one.error_before_m},
                {"old_matches", one.old_matches},
                {"wrong_old_matches", one.wrong_old_matches}};
-  json.update(json_of(one.duplicate_segment));
+  json.update(json_of(one.end_on_old_ground));
   json["associated_position_error_m"] = one.associated.relative.position_m;
   return json;
 }
@@ -83,7 +83,7 @@ Json json_of(const evaluation::RunScore& score) {
           {"returns", list_of(score.returns)},
           {"closures", list_of(score.closures)},
           {"triggers", score.triggers},
-          {"rewound", score.rewound},
+          {"rolled_back", score.rolled_back},
           {"refused", score.refused},
           {"left_open", score.undecided},
           {"old_matches", score.old_matches},

@@ -74,7 +74,7 @@ void add_montecarlo_command(CLI::App& app, ExitCode& code) {
   command->footer(
       "Writes runs.jsonl, a line a run as it ends, and summary.json (docs/campaign.md); prints the summary. A "
       "campaign\n"
-      "that was cut off goes on with the same command.\n\n"
+      "that was interrupted continues with the same command.\n\n"
       "Examples:\n"
       "  helixnav montecarlo large-loop-changed --runs 1000 --out campaigns/changed\n"
       "  helixnav montecarlo sparse --association nearest-neighbour --out campaigns/sparse-nn\n");

@@ -61,7 +61,7 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   if (job.settings.gps.fuse) fuse_gps(task.recording, job.settings.gps);
   if (!task.recording.true_poses.empty()) task.recording.true_positions.clear();  // the better truth
   if (!job.blackouts.empty()) task.withheld = withhold(task.recording, job.blackouts);
-  tell_recording(task.recording, job.settings);
+  apply_log_settings(task.recording, job.settings);
   task.navigator = fit_to_recording(job.settings, task.recording);
   const std::string sensor_text = lengths_text(task.navigator, logs::field_of_view_of(task.recording));
   fill_drive(task, job.run, dump_config(command) + sensor_text);

@@ -28,7 +28,7 @@ struct Variable {
   bool held = false;  ///< kept for the root
 };
 
-/// A factor with the variables it speaks of: the reference pose, the pose, the points.
+/// A factor with its variables: the reference pose, the pose, the points.
 struct Part {
   std::vector<int> variables;
   std::shared_ptr<const RelativeGaussian> gaussian;

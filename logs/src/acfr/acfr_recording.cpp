@@ -106,7 +106,7 @@ AcfrSettings car_park_settings() {
   settings.sigma_range_m = 0.05;
   settings.sigma_bearing_rad = 0.01;
   settings.view_range_m = 5.0;
-  settings.foreign_per_scan = 0.5;  // hardly anything else shines: 22 landmarks begun in 586 scans
+  settings.extraneous_per_scan = 0.5;  // hardly anything else shines: 22 landmarks begun in 586 scans
   return settings;
 }
 
@@ -115,7 +115,7 @@ core::Recording make_recording(const AcfrLog& as_recorded, const AcfrSettings& s
   core::Recording recording;
   recording.name = log.name;
   recording.true_landmarks = log.beacons;
-  recording.foreign_per_scan = settings.foreign_per_scan;
+  recording.extraneous_per_scan = settings.extraneous_per_scan;
   recording.antenna_robot_m = settings.T_robot_laser.position_m();
   recording.events.reserve(log.dead_reckoning.size() + 2 * log.scans.size());
   HeldSteering steering(log, settings);

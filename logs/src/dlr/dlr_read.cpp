@@ -178,7 +178,7 @@ std::optional<DlrCamera> camera_beside(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
     if (entry.path().extension() != ".cam") continue;
-    if (found) return std::nullopt;  // several runs in one folder: nobody says whose
+    if (found) return std::nullopt;  // several runs in one folder: it is unknown whose
     found = entry.path();
   }
   if (!found) return std::nullopt;
@@ -222,7 +222,7 @@ core::Recording read_dlr(const std::filesystem::path& path, const DlrOptions& op
   core::Recording recording = DlrReader(text, path, camera_pose(path, options)).read();
   count_bearings_from_ahead(recording, options.bearing_zero);
   estimate_missing_field_of_view(recording);
-  recording.foreign_per_scan = 0.0;
+  recording.extraneous_per_scan = 0.0;
   return recording;
 }
 

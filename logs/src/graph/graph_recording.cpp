@@ -45,7 +45,7 @@ void add_scan(const Graph& graph, const std::vector<std::size_t>& edges_here, co
               core::Recording& recording) {
   core::Scan scan;
   scan.t_ns = t_ns;
-  scan.field_of_view.max_range_m = 0.0;  // what was not seen from here, nobody knows
+  scan.field_of_view.max_range_m = 0.0;  // what was not seen from here is unknown
   std::vector<core::Label> labels;
   for (const std::size_t i : edges_here) {
     const Graph::LandmarkEdge& edge = graph.landmark_edges[i];

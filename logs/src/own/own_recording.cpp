@@ -210,7 +210,7 @@ core::Recording make_recording(const OwnLog& log, const Vehicle& vehicle) {
   add_views(scans, sensors);
   core::Recording recording;
   recording.name = log.name;
-  recording.foreign_per_scan = 0.0;
+  recording.extraneous_per_scan = 0.0;
   recording.antenna_robot_m = vehicle.antenna_m;
   recording.remarks = log.remarks;
   const core::Nanoseconds first_scan_ns = scans.front().scan.t_ns;

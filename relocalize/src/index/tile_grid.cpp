@@ -46,7 +46,7 @@ void TileGrid::erase(Nodes& nodes, Slot slot) {
   while (*link != slot) link = &nodes[*link].next;
   *link = nodes[slot].next;
   --landmarks_;
-  // Bits are shared: clear them, then set again those of whoever stands near enough to have set one.
+  // Bits are shared: clear them, then set again those of every landmark near enough to have set one.
   write_bits(bits_near(nodes[slot]), false);
   const float far_m = 1.5F * (2.0F * near_m_ + 2.0F * side_m_ / bits);
   within(nodes, nodes[slot].x_m, nodes[slot].y_m, far_m,

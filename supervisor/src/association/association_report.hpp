@@ -10,7 +10,7 @@
 
 namespace helixnav::supervisor {
 
-/// The fate of every observation as association decided it. Observations to augment carry no landmark yet.
+/// The outcome of every observation. Observations to augment carry no landmark yet.
 std::vector<core::AssociationReport> association_reports(const association::Assignment& assignment);
 
 /// The matched observations, as the filter wants them.

@@ -5,11 +5,12 @@
 
 namespace helixnav::supervisor {
 
-/// Two-hit confirmation: an old landmark that is met alone is matched when it is met a second time, because clutter does not
-/// stand twice in the same place. Test: supervisor/revisit_ambiguity_test.cpp, campaigns in docs/adr/0009-doubt.md.
+/// Two-hit confirmation: an isolated match with an old landmark is accepted at the second hit, because clutter does not
+/// appear twice in the same place. Test: supervisor/revisit_ambiguity_test.cpp, campaigns in
+/// docs/adr/0009-integrity.md.
 class Confirmation {
  public:
-  /// Meets the landmark, `path_m` along the drive. True when it was the last one met, at most `reach_m` before.
+  /// A hit on the landmark, `path_m` along the drive. True when it was also the last one hit, at most `reach_m` before.
   bool confirms(core::LandmarkId landmark, double path_m, double reach_m) {
     const bool again = landmark == landmark_ && path_m - path_m_ <= reach_m;
     landmark_ = landmark;

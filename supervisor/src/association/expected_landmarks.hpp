@@ -10,14 +10,13 @@
 
 namespace helixnav::supervisor {
 
-/// Landmarks that the scan should have seen, less those beside an observation that was not used for them: it may have been
-/// theirs.
+/// Landmarks that the scan should have seen, less those next to an unused observation, which may have been theirs.
 std::vector<core::LandmarkId> expected_unseen(const cekf::CompressedEkf& filter, const core::Scan& scan,
                                               double margin_m,
                                               const std::vector<core::AssociationReport>& associations);
 
-/// A scan that recognises nothing old does not know where the old landmarks are, and their absence proves nothing. Drops
-/// these from `expected`, and those that an open search excludes (null without one).
+/// A scan that recognises nothing old says nothing about where the old landmarks are, and their absence is no evidence.
+/// Drops these from `expected`, and those that an open search excludes (null without one).
 void drop_what_may_be_elsewhere(const association::LandmarkLife& existence, const Search* open, double old_after_m,
                                 const std::vector<core::LandmarkId>& seen, std::vector<core::LandmarkId>& expected);
 

@@ -31,13 +31,8 @@ void look_for_returns(const cekf::CompressedEkf& filter, const association::Land
                       const core::Scan& scan, const NavigatorOptions& options, const core::FieldOfView& view,
                       GatedScan& gated);
 
-/// The scan that is too ambiguous to be associated, as a decision; nothing when it is not: no old landmark is, or all of
-/// them together leave no doubt about the pose.
-std::optional<core::TriggerDecision> find_trigger(const GatedScan& scan, const core::PoseGaussian& pose,
-                                                  const SearchOptions& options);
-
-/// The fate of every observation. Two old landmarks that fit together confirm each other; one alone, with room for others
-/// in its gate, is deferred, and so is one that would tell the vehicle much about where it is, until it is met again.
+/// The outcome of every observation. Two matched old landmarks confirm each other; an isolated match is deferred when other
+/// objects may be in its gate, and, until its second hit, when it would correct the pose by much.
 /// Test: supervisor/revisit_ambiguity_test.cpp.
 std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, const NavigatorOptions& options,
                                                     double path_m, Confirmation& confirmation);

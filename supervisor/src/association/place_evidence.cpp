@@ -72,7 +72,7 @@ class Question {
     return place;
   }
 
-  double wrong_probability(double foreign_per_scan, double view_margin_m, const SearchOptions& options) const {
+  double wrong_probability(double extraneous_per_scan, double view_margin_m, const SearchOptions& options) const {
     const OldPairs pairs = old_pairs_given(problem_, gated_with_old(), given_);
     Matching best;
     for (int k = 0; k < pairs.size(); ++k) {
@@ -82,13 +82,13 @@ class Question {
     const auto rivals = rival_matchings(pairs, best);
     if (!rivals) return 1.0;
     const double missing_nats = options.integrity.missing_nats * missing(view_margin_m);
-    const association::ExtraneousDensity foreign = association::density_in_view(scan_, foreign_per_scan, {});
+    const association::ExtraneousDensity extraneous = association::density_in_view(scan_, extraneous_per_scan, {});
     const auto evidence = [&](const Matching& matching) {
       double nats = joint_log_likelihood(pairs, matching) - missing_nats;
       const double detected = 1.0 - std::exp(-options.integrity.missing_nats);
       for (const int k : matching) {
         nats += std::log(detected /
-                         foreign.of(problem_.observations[static_cast<std::size_t>(pairs.at(k).observation)].kind));
+                         extraneous.of(problem_.observations[static_cast<std::size_t>(pairs.at(k).observation)].kind));
       }
       return nats;
     };
@@ -161,12 +161,12 @@ bool leaves_no_room(const PlaceEvidence& place) { return 2.0 * place.width_m < 0
 
 PlaceEvidence place_evidence(const cekf::CompressedEkf& filter, const InnovationProblem& problem,
                              const Assignment& assignment, const core::Scan& scan, const std::vector<LandmarkId>& old,
-                             double foreign_per_scan, double view_margin_m, const SearchOptions& options) {
+                             double extraneous_per_scan, double view_margin_m, const SearchOptions& options) {
   const Question question(filter, problem, assignment, scan, old);
   if (question.matched() == 0) return {};
   PlaceEvidence place = question.widths();
   if (adds_little(place, options) || !leaves_no_room(place)) return place;  // the rest decides nothing
-  place.wrong_probability = question.wrong_probability(foreign_per_scan, view_margin_m, options);
+  place.wrong_probability = question.wrong_probability(extraneous_per_scan, view_margin_m, options);
   return place;
 }
 

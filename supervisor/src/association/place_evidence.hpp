@@ -23,13 +23,13 @@ struct PlaceEvidence {
 
 /// Evidence of the assignment's matches with old landmarks (ascending in `old`) together, given its matches with landmarks
 /// that are not old: those stand wherever the vehicle is. A matching's evidence is its joint likelihood against as many
-/// observations of nothing mapped, `foreign_per_scan` in the field of view, less what each old landmark costs that should
+/// observations of nothing mapped, `extraneous_per_scan` in the field of view, less what each old landmark costs that should
 /// be in view and is not matched. S is given these matches.
 /// Cost: O(n²) for n gated pairs with old landmarks, O(n) for each two pairs that a rival may begin with.
 /// Source: docs/adr/0014-ambiguous-pose.md. Test: supervisor/place_evidence_test.cpp.
 PlaceEvidence place_evidence(const cekf::CompressedEkf& filter, const association::InnovationProblem& problem,
                              const association::Assignment& assignment, const core::Scan& scan,
-                             const std::vector<core::LandmarkId>& old, double foreign_per_scan, double view_margin_m,
+                             const std::vector<core::LandmarkId>& old, double extraneous_per_scan, double view_margin_m,
                              const SearchOptions& options);
 
 /// Whether no other pose is in question, so that what is ambiguous is for the assignment to decide and no search helps:

@@ -12,7 +12,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-constexpr double gate_probability = 0.95;  // of the gate whose foreign objects are counted
+constexpr double gate_probability = 0.95;  // of the gate in which confusers are counted
 
 bool is_among(const std::vector<core::LandmarkId>& sorted, core::LandmarkId id) {
   return std::binary_search(sorted.begin(), sorted.end(), id);
@@ -47,8 +47,8 @@ bool may_be(const association::InnovationProblem& problem, int observation, core
                      });
 }
 
-/// Other landmarks in the gate of the pair's, or in whose gates its observation stands as well: two that stand on either
-/// side of it may be outside each other's gates, and yet it is a toss-up which of them it is.
+/// Other landmarks in the gate of the pair's landmark, or in whose gates its observation is as well: two on either
+/// side of it may be outside each other's gates and yet be about equally likely.
 int neighbours_in_gate(const cekf::CompressedEkf& filter, const core::Scan& scan,
                        const std::vector<core::LandmarkId>& others, core::LandmarkId self,
                        const association::GatedPair& pair, const association::InnovationProblem& problem) {
@@ -69,6 +69,17 @@ int neighbours_in_gate(const cekf::CompressedEkf& filter, const core::Scan& scan
   return neighbours;
 }
 
+/// One entry a landmark, ascending: the most ambiguous one.
+void keep_worst(const RevisitAmbiguity& here, std::vector<RevisitAmbiguity>& returns) {
+  const auto at = std::lower_bound(returns.begin(), returns.end(), here.landmark,
+                                   [](const RevisitAmbiguity& r, core::LandmarkId l) { return r.landmark < l; });
+  if (at == returns.end() || at->landmark != here.landmark) {
+    returns.insert(at, here);
+  } else if (here.expected_confusers > at->expected_confusers) {
+    *at = here;
+  }
+}
+
 }  // namespace
 
 std::vector<core::LandmarkId> old_landmarks(const association::LandmarkLife& life, double old_after_m) {
@@ -82,7 +93,7 @@ std::vector<core::LandmarkId> old_landmarks(const association::LandmarkLife& lif
 
 std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
                                               const association::InnovationProblem& problem, const core::Scan& scan,
-                                              const std::vector<core::LandmarkId>& old, double foreign_per_scan) {
+                                              const std::vector<core::LandmarkId>& old, double extraneous_per_scan) {
   std::vector<RevisitAmbiguity> returns;
   if (old.empty() || !scan.field_of_view.reach()) return returns;  // a sensor of no known view
   static const double gate = core::chi2_quantile(gate_probability, 2);
@@ -100,14 +111,8 @@ std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
     here.widening = std::sqrt(pair.S.determinant()) / sensor_area;
     here.gate_area = core::pi * gate * sensor_area * (here.widening - 1.0);
     here.expected_confusers =
-        here.neighbours + density_at(prediction, scan.field_of_view, foreign_per_scan) * here.gate_area;
-    const auto at = std::lower_bound(returns.begin(), returns.end(), id,
-                                     [](const RevisitAmbiguity& r, core::LandmarkId l) { return r.landmark < l; });
-    if (at == returns.end() || at->landmark != id) {
-      returns.insert(at, here);
-    } else if (here.expected_confusers > at->expected_confusers) {
-      *at = here;
-    }
+        here.neighbours + density_at(prediction, scan.field_of_view, extraneous_per_scan) * here.gate_area;
+    keep_worst(here, returns);
   }
   return returns;
 }

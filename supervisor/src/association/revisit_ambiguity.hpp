@@ -13,24 +13,24 @@ namespace helixnav::supervisor {
 /// Mature landmarks unseen over a drive of `old_after_m`, ascending.
 std::vector<core::LandmarkId> old_landmarks(const association::LandmarkLife& life, double old_after_m);
 
-/// An old landmark that an observation would be matched to, and what else may stand in its gate.
+/// An old landmark that an observation would be matched to, and what else may be in its gate.
 struct RevisitAmbiguity {
   core::LandmarkId landmark = core::no_landmark;
   double expected_confusers = 0.0;  ///< η = neighbours + extraneous density × area of the gate
   int neighbours = 0;               ///< other old landmarks in its 95 % gate, or that the observation may be as well
   /// π·5.99·(√|S| − √|R|) in the units of the observation: what the pose's uncertainty adds to the gate. Clutter in the
-  /// part that the sensor's noise makes is no question of where one is.
+  /// part due to the sensor's noise does not depend on the pose.
   double gate_area = 0.0;
   double widening = 1.0;  ///< √(|S|/|R|): how much wider the gate is than the sensor's noise makes it
 };
 
-/// Every old landmark that has an observation in its gate, ascending. P(wrong | matched) is about η/(P_D + η), so that η
-/// is what one risks by associating scan by scan. `old` ascending.
+/// Every old landmark that has an observation in its gate, ascending. P(wrong | matched) is about η/(P_D + η): η
+/// is the risk of associating scan by scan. `old` ascending.
 /// Cost: gated pairs × old landmarks in view, and nothing as long as no old landmark is gated.
 /// Source: PROTOTYPE §2. Test: supervisor/revisit_ambiguity_test.cpp.
 std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
                                               const association::InnovationProblem& problem, const core::Scan& scan,
-                                              const std::vector<core::LandmarkId>& old, double foreign_per_scan);
+                                              const std::vector<core::LandmarkId>& old, double extraneous_per_scan);
 
 /// The one with the largest η; null when there is none.
 const RevisitAmbiguity* most_ambiguous(const std::vector<RevisitAmbiguity>& returns);

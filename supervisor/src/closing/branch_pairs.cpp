@@ -38,7 +38,7 @@ double nearest_old_m(const cekf::CompressedEkf& filter, core::LandmarkId kept, c
 }
 
 /// At the rim of what was mapped a copy has one partner only, right or wrong. Is it a thousand times likelier to be that
-/// one's than a neighbour's which nobody has mapped, on any side as near as the nearest is? The copies of one stretch
+/// one's than an unmapped neighbour's, on any side as near as the nearest is? The copies of one segment
 /// have their error in common, so that a likelier mistake would be one of whole rows in one of some hundred closings.
 bool may_be_a_neighbours(const Leftover& leftover, double neighbour_m) {
   constexpr int sides = 16;

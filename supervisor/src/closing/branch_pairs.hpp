@@ -18,7 +18,7 @@ constexpr std::size_t least_pairs = 3;  ///< of a closing
 
 KeptRemoved kept_removed(const std::vector<pf_relocalize::ConstellationPair>& pairs);
 
-/// An old landmark that one of the branch may be.
+/// An old landmark that a landmark of the branch may be a duplicate of.
 struct Leftover {
   core::LandmarkId kept, removed;
   Eigen::Vector2d difference_m;  ///< removed less kept
@@ -26,22 +26,22 @@ struct Leftover {
   double nis;
 };
 
-/// Old landmarks that `id` may be, as far as one looks, nearest first.
+/// Old landmarks within look_m that `id` may be a duplicate of, nearest first.
 std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::LandmarkId id,
                                  const std::vector<core::LandmarkId>& old, double gate, double look_m, double sigma_m);
 
-/// The pairs belong to what the closing merged.
+/// Adds the pairs to what the closing merged.
 void note(const KeptRemoved& pairs, Closing& closing);
 
-/// Drops the worst pair until the cost of merging the rest passes; false when too many would have to go. Sets the figures of
-/// `closing`.
+/// Drops the worst pair until the cost of merging the rest passes; false when too many would have to go. Sets the
+/// figures of `closing`.
 bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& options, KeptRemoved& pairs,
                      Closing& closing);
 
-/// Confirmed branch landmarks that are compatible with one landmark of `old` (ascending) and with no other, by the joint
-/// covariance of the closed map, a thousand times likelier it than one that stood as near to it as its nearest old
-/// neighbour on another side, and not farther from it than a third of that distance, leftover_least_m at the least and leftover_most_m at
-/// the most; of several on the same one the nearest. Test: supervisor/branch_pairs_test.cpp.
+/// Confirmed branch landmarks that are compatible with one landmark of `old` (ascending) and with no other, by the
+/// joint covariance of the closed map, a thousand times likelier it than an unmapped one as near to it as its nearest
+/// old neighbour on another side, and not farther from it than a third of that distance, leftover_least_m at the least
+/// and leftover_most_m at the most; of several on the same one the nearest. Test: supervisor/branch_pairs_test.cpp.
 KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
                       const std::vector<core::LandmarkId>& old, const SearchOptions& options);
 

@@ -18,9 +18,9 @@ Branch branch_of(const ClosingView& view, const SearchOptions& options) {
     const bool confirmed = record.hits >= options.constellation.least_hits;
     (confirmed ? branch.confirmed : branch.unconfirmed).push_back(record.id);
   }
-  branch.old_drive.T_frame_sensor = view.track.between(0.0, left_old_ground_m);
+  branch.old_drive.T_frame_sensor = view.coverage.between(0.0, left_old_ground_m);
   branch.old_drive.field_of_view = view.scan.field_of_view;
-  branch.new_drive.T_frame_sensor = view.track.between(left_old_ground_m, std::numeric_limits<double>::infinity());
+  branch.new_drive.T_frame_sensor = view.coverage.between(left_old_ground_m, std::numeric_limits<double>::infinity());
   branch.new_drive.field_of_view = view.scan.field_of_view;
   branch.new_drive.least_views = 2;
   return branch;

@@ -12,17 +12,18 @@
 
 namespace helixnav::supervisor {
 
-/// What a closing looks at, beside the filter.
+/// The input of a closing, beside the filter.
 struct ClosingView {
   const Search& search;
   const association::LandmarkLife& life;
-  const CoverageTrace& track;
+  const CoverageTrace& coverage;
   const core::Scan& scan;
   BranchRecord record;
 };
 
-/// Closes the map by the pairs that the search has found, as SearchOptions::closing says; leaves the filter as it is
-/// when that is not accepted. Test: supervisor/closing_test.cpp, supervisor/replay_test.cpp, supervisor/lattice_test.cpp.
+/// Closes the map by the pairs that the search has found, by the method of SearchOptions::closing. A closing whose cost
+/// exceeds its χ² limit is refused (make_compatible in branch_pairs.cpp), and leaves the filter as it was.
+/// Test: supervisor/closing_test.cpp, supervisor/replay_test.cpp, supervisor/lattice_test.cpp.
 Closing close_map(cekf::CompressedEkf& filter, const ClosingView& view,
                   const std::vector<pf_relocalize::ConstellationPair>& pairs, const SearchOptions& options);
 

@@ -14,14 +14,14 @@ struct Closing {
   double cost = 0.0;  ///< J of the pairs kept, χ² with dof
   int dof = 0;
   double limit = 0.0;
-  int dropped = 0;                            ///< pairs that the cost did not let pass
+  int dropped = 0;                            ///< pairs dropped because of their cost
   std::vector<core::MergedLandmarks> merged;  ///< empty unless accepted
-  std::vector<core::LandmarkId> forgotten;    ///< unconfirmed ones that stood on an old landmark
+  std::vector<core::LandmarkId> forgotten;    ///< unconfirmed ones that coincided with an old landmark
 };
 
-/// Landmarks mapped since the old ones came to be excluded, ascending.
+/// Landmarks mapped since the old ones were excluded, ascending.
 struct Branch {
-  std::vector<core::LandmarkId> confirmed;    ///< seen often enough to be one with an old landmark
+  std::vector<core::LandmarkId> confirmed;    ///< seen often enough to be merged with an old landmark
   std::vector<core::LandmarkId> unconfirmed;  ///< may be clutter: never merged
   pf_relocalize::Coverage old_drive;          ///< map frame
   pf_relocalize::Coverage new_drive;          ///< map frame as it was before the closing

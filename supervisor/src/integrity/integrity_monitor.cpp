@@ -31,13 +31,13 @@ void IntegrityMonitor::observe(const association::LandmarkLife& life, const std:
     ++looks;
     hits += hit;
   }
-  constexpr int witnesses = 2;
-  const bool vouched = hits >= witnesses && hits_before_ >= witnesses;
+  constexpr int enough = 2;
+  const bool confirmed = hits >= enough && hits_before_ >= enough;
   hits_before_ = hits;
-  clear_ = vouched || (clear_ && looks == 0);
+  clear_ = confirmed || (clear_ && looks == 0);
   if (clear_) clear_path_m_ = path_m;
   for (auto it = returned_.begin(); it != returned_.end();) {
-    if (vouched) it->second.looks = it->second.hits = 0;
+    if (confirmed) it->second.looks = it->second.hits = 0;
     const bool forgotten = clear_ && path_m - it->second.last_look_path_m > old_after_m;
     it = forgotten ? returned_.erase(it) : std::next(it);
   }

@@ -11,39 +11,39 @@
 namespace helixnav::supervisor {
 
 /// Whether what the map predicts is still there. A wrong match turns the pose while its covariance shrinks: afterwards no
-/// old landmark falls into its gate, everything in view is mapped anew, and no innovation ever tells. What does tell is that
-/// the old ones are missing where new ones spawn. Each landmark counts once, however often it is looked for.
-/// The pose is vouched for where two scans in a row match two returned landmarks each (clutter may do it once), and all
-/// counts begin anew there.
+/// old landmark falls into its gate, everything in view is mapped anew, and every innovation looks right. The evidence is
+/// that old landmarks are missing while new ones spawn. Each landmark counts once, however often it is looked for.
+/// The pose is confirmed when two scans in a row match two revisited landmarks each (clutter may do it once); all counts
+/// restart there.
 /// Cost of a scan: O(expected + landmarks returned to lately). Source: PROTOTYPE §7.
 /// Test: supervisor/integrity_monitor_test.cpp.
 class IntegrityMonitor {
  public:
-  /// What speaks for a wrong pose since it was last vouched for.
+  /// Evidence for a wrong pose since the pose was last confirmed.
   struct Evidence {
-    int missing = 0;    ///< returned to, looked for, not seen
-    int seen = 0;       ///< returned to and mostly seen
+    int missing = 0;    ///< revisited, looked for, not seen
+    int seen = 0;       ///< revisited and mostly seen
     int spawned = 0;    ///< matured since
     double nats = 0.0;  ///< log-likelihood ratio of "wrong" against "right" of missing and seen
   };
 
-  /// One scan of which nothing has entered the book `life` yet. `expected`: landmarks that should be in view; `matched`:
+  /// One scan, before `life` is updated with it. `expected`: landmarks that should be in view; `matched`:
   /// those that were seen.
   void observe(const association::LandmarkLife& life, const std::vector<core::LandmarkId>& expected,
                const std::vector<core::LandmarkId>& matched, double old_after_m);
 
-  /// A closing recognised these landmarks at `path_m` of the drive. They have been returned to as others are by a match, and
-  /// vouch for the pose from here on; without them only what the closing did not find would be looked for.
+  /// A closing recognised these landmarks at `path_m` of the drive. They count as revisited, as others do by a
+  /// match, and confirm the pose from here on; without them only landmarks that the closing missed would be looked for.
   void close(double path_m, const std::vector<core::LandmarkId>& recognised);
 
-  /// No landmark that was returned to was looked for since the pose was vouched for.
+  /// No revisited landmark was looked for since the pose was confirmed.
   bool is_clear() const { return clear_; }
   Evidence evidence(const association::LandmarkLife& life, const IntegrityLimits& limits) const;
   bool is_lost(const association::LandmarkLife& life, const IntegrityLimits& limits) const;
 
  private:
   struct Returned {
-    int looks = 0;  ///< since the pose was vouched for
+    int looks = 0;  ///< since the pose was confirmed
     int hits = 0;
     double last_look_path_m = 0.0;
   };
@@ -51,9 +51,9 @@ class IntegrityMonitor {
   Returned* find_returned(const association::LandmarkLife& life, core::LandmarkId id, double old_after_m);
 
   std::map<core::LandmarkId, Returned> returned_;
-  int hits_before_ = 0;  ///< returned landmarks matched in the scan before
+  int hits_before_ = 0;  ///< revisited landmarks matched in the scan before
   bool clear_ = true;
-  double clear_path_m_ = 0.0;  ///< when it was so last
+  double clear_path_m_ = 0.0;  ///< when clear_ was true last
 };
 
 }  // namespace helixnav::supervisor

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Back to the trusted checkpoint, and through what came since in a search that should have begun there.
+// Back to the trusted checkpoint; what came since is processed again in a search that begins there.
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "loop/navigation_loop.hpp"
+#include "loop/process_again.hpp"
 
 namespace helixnav::supervisor {
 
@@ -29,20 +30,15 @@ StepReport NavigationLoop::roll_back_and_relocalise(StepReport report) {
       core::RollbackDecision{evidence.missing, evidence.seen, evidence.spawned, evidence.nats, scans});
   begin_search();
   StepReport through;
-  for (const Tape::Entry& entry : since) {
-    if (const auto* motion = std::get_if<Tape::Motion>(&entry)) {
-      pending_.motion = motion->odometry;
-      pending_.driven_m = motion->driven_m;
-    } else if (const auto* fix = std::get_if<Tape::Fix>(&entry)) {
-      const bool judged_alike = use_fix(fix->fix) == fix->accepted;
-      if (judged_alike) pending_.decisions.pop_back();  // it was reported when it came in
-    } else if (const auto* scan = std::get_if<Tape::Scan>(&entry)) {
-      report = step(scan->scan);
-      for (const core::Decision& decision : report.decisions) through.decisions.emplace_back(decision);
-      through.merged.insert(through.merged.end(), report.merged.begin(), report.merged.end());
-      through.revised.push_back({report.step, report.associations});
-    }
-  }
+  const auto after_fix = [&](const Tape::Fix& fix, bool accepted) {
+    if (accepted == fix.accepted) pending_.decisions.pop_back();  // it was reported when it came in
+  };
+  process_again(since, after_fix, [&](StepReport again) {
+    report = std::move(again);
+    for (const core::Decision& decision : report.decisions) through.decisions.emplace_back(decision);
+    through.merged.insert(through.merged.end(), report.merged.begin(), report.merged.end());
+    through.revised.push_back({report.step, report.associations});
+  });
   through.revised.pop_back();  // the last one is this scan
   report.decisions = std::move(through.decisions);
   report.merged = std::move(through.merged);

@@ -20,8 +20,8 @@ struct LeftOpen {
   double ended_path_m = 0.0;
 };
 
-/// All that is believed, and so all that rolls back: pose and map, which landmarks exist, what ground was looked at, which
-/// old landmark waits for its confirmation, how the vehicle slipped, what the noise came to, and the number of scans so far.
+/// Everything that rolls back: pose and map, which landmarks exist, what ground was covered, which old landmark awaits its
+/// confirmation, how the vehicle slipped, what the noise came to, and the number of scans so far.
 struct Belief {
   cekf::CompressedEkf filter;
   association::LandmarkLife existence;

@@ -7,14 +7,14 @@
 
 namespace helixnav::supervisor {
 
-/// Where the sensor has been, at places so near that their views overlap, in the map frame as estimated then: what ground
-/// the drive has looked at.
+/// Poses of the sensor along the drive, close enough for their views to overlap, in the map frame as estimated at the time:
+/// the ground that the drive has covered.
 class CoverageTrace {
  public:
   explicit CoverageTrace(double spacing_m) : spacing_m_(spacing_m) {}
   void set_spacing(double spacing_m) { spacing_m_ = spacing_m; }
 
-  /// Adds the sensor's pose when it is the spacing beyond the last one.
+  /// Adds the sensor's pose when it is at least the spacing away from the last one.
   void pass(double path_m, const core::Pose2& T_world_sensor);
 
   /// Forgets what was passed after `path_m`.

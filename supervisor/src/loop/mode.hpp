@@ -11,8 +11,8 @@
 
 namespace helixnav::supervisor {
 
-/// Every scan is associated with the whole map. The integrity monitor watches whether the map is where it should be; the
-/// trusted checkpoint is the last one at which nothing spoke against that, and is missing only inside the step that ends a
+/// Every scan is associated with the whole map. The integrity monitor checks that the map is where it should be; the
+/// trusted checkpoint is the last one without evidence against that, and is missing only inside the step that ends a
 /// search.
 struct Mapping {
   IntegrityMonitor monitor;
@@ -25,7 +25,7 @@ struct Mapping {
   }
 };
 
-/// A question is open: mapping goes on with the old landmarks excluded. The checkpoint is that of the trigger, after the
+/// A search is open: mapping goes on with the old landmarks excluded. The checkpoint is that of the trigger, after the
 /// prediction and before its scan was used.
 struct Searching {
   Search search;

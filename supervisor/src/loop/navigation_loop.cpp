@@ -11,8 +11,10 @@
 #include "helixnav/core/odometry.hpp"
 #include "helixnav/core/thin_scan.hpp"
 #include "helixnav/supervisor/lengths.hpp"
+#include "loop/fit_to_sensor.hpp"
 #include "loop/judge_fix.hpp"
 #include "loop/recover.hpp"
+#include "search/trigger.hpp"
 #include "slip/update_after_slip.hpp"
 
 namespace helixnav::supervisor {
@@ -41,22 +43,14 @@ void NavigationLoop::move(const core::Odometry& measured) {
   pending_.driven_m += odometry.T_before_after.position_m().norm();
 }
 
-/// The lengths of the options to the first sensor that says how far it sees; what was predicted and fixed before the first
-/// scan is in the pose.
+/// To the first sensor that says how far it sees.
 void NavigationLoop::fit_to(const core::FieldOfView& view) {
   if (view_.reach() || !view.reach()) return;
-  if (options_.fit_lengths) {
-    NavigatorOptions fitted = fit_lengths(options_, view);
-    const bool new_cells = fitted.filter.cell_side_m != options_.filter.cell_side_m ||
-                           fitted.filter.hysteresis_m != options_.filter.hysteresis_m;
-    if (new_cells && belief_.step == 0) {
-      belief_.filter = cekf::CompressedEkf(belief_.filter.pose(), fitted.filter);
-      std::get<Mapping>(mode_).trust(take_checkpoint(belief_, tape_));
-    }
-    options_ = std::move(fitted);
-    belief_.existence.set_lengths(options_.life.look_distance_m, options_.life.tentative_patience_m);
-    belief_.coverage.set_spacing(options_.search.coverage_spacing_m);
+  if (fit_to_sensor(view, belief_.step == 0, options_, belief_.filter)) {
+    std::get<Mapping>(mode_).trust(take_checkpoint(belief_, tape_));
   }
+  belief_.existence.set_lengths(options_.life.look_distance_m, options_.life.tentative_patience_m);
+  belief_.coverage.set_spacing(options_.search.coverage_spacing_m);
   view_ = view;
 }
 
@@ -162,14 +156,14 @@ void NavigationLoop::augment(const Scan& scan, StepReport& report) {
     if (association.outcome != Outcome::augmented) continue;
     const core::Observation& observation = scan.observations[static_cast<std::size_t>(association.observation)];
     if (core::dimension(observation.kind) == 1) {
-      association.outcome = Outcome::ambiguous;  // without a name nobody can gather its sightings
+      association.outcome = Outcome::ambiguous;  // its sightings cannot be collected without a name
       continue;
     }
     association.landmark = belief_.filter.augment(observation, scan.T_robot_sensor);
   }
 }
 
-/// Landmarks that died, by the evidence of what was seen and of what should have been.
+/// Removes the landmarks whose existence is refuted by what was seen and what should have been seen, and returns them.
 std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const StepReport& report) {
   const std::vector<LandmarkId> seen = landmarks_with(Outcome::matched, report.associations);
   const std::vector<LandmarkId> born = landmarks_with(Outcome::augmented, report.associations);
@@ -203,8 +197,8 @@ StepReport NavigationLoop::finish(const Scan& scan, StepReport report) {
 
 bool NavigationLoop::is_monitored() const { return options_.search.enabled && options_.search.integrity.enabled; }
 
-/// The belief after this scan becomes the checkpoint to come back to when nothing speaks against it: not more often than
-/// every ten scans, but after every switch of the region, so that the phase closed by it is let go.
+/// The belief after this scan becomes the trusted checkpoint when the monitor is clear: at most every ten scans, but after
+/// every region switch, so that the phase closed by it can be freed.
 void NavigationLoop::checkpoint_if_settled() {
   Mapping* mapping = std::get_if<Mapping>(&mode_);
   if (mapping == nullptr) return;

@@ -20,8 +20,9 @@
 namespace helixnav::supervisor {
 
 /// The loop of the Navigator: a belief, the tape of what came in and what became of it, and the mode.
-/// Scans: navigation_loop.cpp. The open question: search_mode.cpp. Slips: slip_in_scan.cpp. Noise: learn_noise.cpp. Back to the trusted checkpoint: roll_back.cpp. The strong
-/// guarantee: recover.cpp.
+/// Where things are decided: a trigger in search/trigger.cpp, the death of a landmark in update_existence() by
+/// association::LandmarkLife, a closing in closing/close_map.cpp. Scans are here, searches in
+/// search/search_mode.cpp, rollback in integrity/roll_back.cpp, the strong guarantee in loop/recover.cpp.
 class NavigationLoop {
  public:
   NavigationLoop(const core::PoseGaussian& start, const NavigatorOptions& options);
@@ -39,7 +40,7 @@ class NavigationLoop {
     double driven_m = 0.0;  ///< length along the road
     std::vector<core::Decision> decisions;
   };
-  /// What a call replaced, until it is known that it succeeds.
+  /// What a call has replaced so far, for recover().
   struct Undo {
     Pending pending;
     Tape::Position tape_end;
@@ -49,7 +50,7 @@ class NavigationLoop {
     std::optional<std::vector<Tape::Entry>> rolled_back;  ///< taken off the tape
   };
 
-  // navigation_loop.cpp
+  // loop/navigation_loop.cpp
   void fit_to(const core::FieldOfView& view);
   core::StepReport take_step(const core::Scan& scan, const core::Decision* note);
   core::StepReport take_told(const core::Scan& scan, const core::Decision* note);
@@ -64,7 +65,7 @@ class NavigationLoop {
   void checkpoint_if_settled();
   bool is_monitored() const;
 
-  // observe_thinned.cpp
+  // loop/observe_thinned.cpp
   core::StepReport observe_thinned(const core::Scan& scan);
   void name_revised(core::StepReport& report) const;
 
@@ -79,7 +80,7 @@ class NavigationLoop {
                    const std::vector<core::AssociationReport>& fate);
   void tell_again();
 
-  // search_mode.cpp
+  // search/search_mode.cpp
   void begin_search();
   void search(const core::Scan& scan, core::StepReport& report);
   void close(const core::Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
@@ -88,11 +89,15 @@ class NavigationLoop {
   void merge_left_open(const core::FieldOfView& view, core::StepReport& report);  // merge_left_open.cpp
   void solve_drive(core::StepReport& report);
 
-  // roll_back.cpp
+  // integrity/roll_back.cpp
   bool has_lost_its_place() const;
   core::StepReport roll_back_and_relocalise(core::StepReport report);
 
-  // recover.cpp
+  // loop/process_again.hpp
+  template <class AfterFix, class AfterScan>
+  void process_again(const std::vector<Tape::Entry>& since, const AfterFix& after_fix, const AfterScan& after_scan);
+
+  // loop/recover.cpp
   template <class Call>
   auto all_or_nothing(const Call& call);
   void commit();
@@ -104,7 +109,7 @@ class NavigationLoop {
   const Searching* searching() const { return std::get_if<Searching>(&mode_); }
 
   NavigatorOptions options_;
-  core::FieldOfView view_;  ///< of the first scan that says one
+  core::FieldOfView view_;  ///< of the first scan that states one
   core::PoseGaussian start_;
   Belief belief_;
   Tape tape_;

@@ -4,6 +4,9 @@
 #include <new>
 #include <utility>
 #include <variant>
+#include <vector>
+
+#include "loop/process_again.hpp"
 
 namespace helixnav::supervisor {
 
@@ -12,7 +15,7 @@ const Checkpoint& NavigationLoop::checkpoint() const {
   return open != nullptr ? open->trigger : *std::get<Mapping>(mode_).trusted;
 }
 
-/// What only an undone call would have needed is let go.
+/// Frees what only an undone call would have needed.
 void NavigationLoop::commit() {
   undo_ = Undo{};
   try {
@@ -23,7 +26,7 @@ void NavigationLoop::commit() {
   tape_.settle(checkpoint().position);
 }
 
-/// Back to the checkpoint, and what came since once more: everything is as before the call, whose motion is pending again.
+/// Back to the checkpoint, and through what came since again: everything is as before the call, its motion pending again.
 void NavigationLoop::recover() {
   Undo undo = std::exchange(undo_, Undo{});
   if (undo.filter) belief_.filter = std::move(*undo.filter);
@@ -41,16 +44,8 @@ void NavigationLoop::recover() {
     mapping.monitor = mapping.monitor_when_trusted;
   }
   pending_ = {};
-  for (const Tape::Entry& entry : since) {
-    if (const auto* motion = std::get_if<Tape::Motion>(&entry)) {
-      pending_.motion = motion->odometry;
-      pending_.driven_m = motion->driven_m;
-    } else if (const auto* fix = std::get_if<Tape::Fix>(&entry)) {
-      use_fix(fix->fix);
-    } else if (const auto* scan = std::get_if<Tape::Scan>(&entry)) {
-      step(scan->scan);
-    }
-  }
+  process_again(
+      since, [](const Tape::Fix&, bool) {}, [](const core::StepReport&) {});
   pending_ = std::move(undo.pending);
 }
 

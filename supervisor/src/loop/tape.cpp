@@ -75,7 +75,7 @@ void Tape::settle(Position position) {
   for (; settled_ < position; ++settled_) {
     if (auto* scan = std::get_if<Scan>(&entries_[settled_ - forgotten_])) drop_unused(*scan);
   }
-  if (stops_ > most_stops_) most_stops_ = 0;  // for good
+  if (stops_ > most_stops_) most_stops_ = 0;  // from now on
   if (most_stops_ > 0 || position == forgotten_) return;
   entries_.erase(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(position - forgotten_));
   forgotten_ = position;

@@ -15,7 +15,7 @@ namespace helixnav::supervisor {
 
 /// What came in and what became of it, in order. Replaying a search, rolling back and solving the drive all read this.
 /// Memory: about 200 bytes a scan and 200 an observation used, over the whole drive while its scans and fixes are at most
-/// `most_stops`; beyond, or when that is let go, only what a checkpoint may still ask for. Scans are kept with all their
+/// `most_stops`; beyond, or after drop_drive(), only what a checkpoint may still need. Scans are kept with all their
 /// observations since the last checkpoint and with those that were used before it. Test: supervisor/tape_test.cpp.
 class Tape {
  public:
@@ -35,18 +35,18 @@ class Tape {
   };
   struct Scan {
     core::Scan scan;
-    std::vector<core::AssociationReport> fate;  ///< of its observations
+    std::vector<core::AssociationReport> fate;  ///< outcome of its observations
     double nis = 0.0;                           ///< νᵀS⁻¹ν of the joint update
     int dof = 0;
     std::vector<core::LandmarkId> died;  ///< removed after it
     bool slipped = false;                ///< updated by update_after_slip
   };
-  /// A closing made landmarks one; what that cost (J).
+  /// Landmarks merged by a closing, at cost J.
   struct Merge {
     std::vector<core::MergedLandmarks> merged;
     double cost = 0.0;
   };
-  /// The drive was solved as a whole: this is what all measurements before cost now.
+  /// The drive was solved as a whole: cost of all measurements before.
   struct Solved {
     double cost = 0.0;
   };
@@ -67,12 +67,12 @@ class Tape {
   /// Takes off everything from `position` on and returns it.
   std::vector<Entry> cut(Position position);
 
-  /// Nobody will go back behind `position` any more: unused observations before it are dropped, and all entries when the
+  /// Nothing rolls back behind `position` any more: unused observations before it are dropped, and all entries when the
   /// drive is not kept. Amortised O(1) an entry.
   void settle(Position position);
 
-  /// From now on only what is needed since the last checkpoint is kept; no solving of the drive any more.
-  void let_go_of_drive() { most_stops_ = 0; }
+  /// Keeps only what is needed since the last checkpoint from now on; the drive can no longer be solved as a whole.
+  void drop_drive() { most_stops_ = 0; }
   bool holds_drive() const { return stops_ <= most_stops_ && stops_ > 0; }
 
   /// Calls read(entry) for every entry from `position` on.
@@ -96,10 +96,10 @@ std::vector<cekf::Match> used_observations(const Tape::Scan& scan);
 /// νᵀS⁻¹ν of all scans from `position` on.
 cekf::UpdateResult innovation_cost(const Tape& tape, Tape::Position position);
 
-/// What all measurements and closings of the drive cost: for a linear filter the least that any drive and map can have.
+/// Cost of all measurements and closings of the drive: for a linear filter the minimum over all drives and maps.
 double drive_cost(const Tape& tape);
 
-/// Which landmark every landmark merged by a closing is now.
+/// The present id of every landmark merged by a closing.
 core::MergedIds merged_ids(const Tape& tape);
 
 /// A place where something may have been observed, and how the vehicle came there from the one before.

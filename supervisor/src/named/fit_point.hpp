@@ -11,7 +11,7 @@
 
 namespace helixnav::supervisor {
 
-/// One row of a fit: where the sensor stood, and how its pose depends on the coordinates that `P` speaks of.
+/// One row of a fit: where the sensor stood, and how its pose depends on the coordinates of `P`.
 struct FitRow {
   core::ObservationKind kind = core::ObservationKind::range;
   double z = 0.0;

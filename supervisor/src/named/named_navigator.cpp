@@ -11,7 +11,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "helixnav/core/thin_scan.hpp"
-#include "helixnav/supervisor/lengths.hpp"
+#include "loop/fit_to_sensor.hpp"
 #include "loop/judge_fix.hpp"
 
 namespace helixnav::supervisor {
@@ -82,17 +82,8 @@ StepReport NamedNavigator::observe_thinned(const core::Scan& scan, const std::ve
 /// As the Navigator's.
 void NamedNavigator::fit_to(const core::FieldOfView& view) {
   if (fitted_ || !view.reach()) return;
-  if (options_.fit_lengths) {
-    NavigatorOptions fitted = fit_lengths(options_, view);
-    const bool new_cells = fitted.filter.cell_side_m != options_.filter.cell_side_m ||
-                           fitted.filter.hysteresis_m != options_.filter.hysteresis_m;
-    if (new_cells && step_ == 0) {
-      filter_ = cekf::CompressedEkf(filter_.pose(), fitted.filter);
-      checkpoint_.reset();
-    }
-    options_ = std::move(fitted);
-    delayed_.set_lengths(options_.delayed);
-  }
+  if (fit_to_sensor(view, step_ == 0, options_, filter_)) checkpoint_.reset();
+  delayed_.set_lengths(options_.delayed);
   fitted_ = true;
 }
 

@@ -30,10 +30,10 @@ void add_coverage(const SearchView& view, const core::Pose2& T_world_base, doubl
                   const SearchOptions& options, pf_relocalize::Constellation& constellation) {
   const double now_m = view.life.path_m();
   const double old_until_m = search_begun_path_m - options.old_after_m;
-  constellation.old_drive.T_frame_sensor = in_frame(T_world_base, view.track.between(0.0, old_until_m));
+  constellation.old_drive.T_frame_sensor = in_frame(T_world_base, view.coverage.between(0.0, old_until_m));
   constellation.old_drive.field_of_view = view.scan.field_of_view;
   constellation.new_drive.T_frame_sensor =
-      in_frame(view.filter.pose().mean, view.track.between(now_m - options.old_after_m, until_now));
+      in_frame(view.filter.pose().mean, view.coverage.between(now_m - options.old_after_m, until_now));
   constellation.new_drive.field_of_view = view.scan.field_of_view;
   constellation.new_drive.least_views = 2;
 }
@@ -72,6 +72,13 @@ pf_relocalize::ConstellationVerdict judge_rival(const pf_relocalize::Constellati
     if (apart) others.push_back(pose);
   }
   return judge_constellation(constellation, candidate, others, options.constellation);
+}
+
+std::vector<pf_relocalize::BranchLandmark> seen_often_enough(std::vector<pf_relocalize::BranchLandmark> branch,
+                                                             int least_hits) {
+  const auto rare = [&](const pf_relocalize::BranchLandmark& b) { return b.hits < least_hits; };
+  branch.erase(std::remove_if(branch.begin(), branch.end(), rare), branch.end());
+  return branch;
 }
 
 core::VerificationDecision::Verdict verdict_of(pf_relocalize::ConstellationReason reason) {
@@ -119,6 +126,22 @@ std::vector<pf_relocalize::BranchLandmark> branch_landmarks(const SearchView& vi
   return branch;
 }
 
+namespace {
+
+pf_relocalize::Constellation constellation_on(const pf_relocalize::ReferenceMap& map, const SearchView& view,
+                                              const std::vector<core::LandmarkId>& old, double search_begun_path_m,
+                                              const SearchOptions& options) {
+  pf_relocalize::Constellation constellation;
+  constellation.branch = branch_landmarks(view, old, options);
+  for (std::size_t i = 0; i < map.ids.size(); ++i) {
+    constellation.old_landmarks.push_back({map.ids[i], map.landmarks[i]});
+  }
+  add_coverage(view, map.T_world_base, search_begun_path_m, options, constellation);
+  return constellation;
+}
+
+}  // namespace
+
 ConstellationAnswer ask_constellation(const SearchView& view, const std::vector<core::LandmarkId>& old,
                                       double search_begun_path_m, const core::Pose2& T_world_robot,
                                       const SearchOptions& options, std::uint64_t seed) {
@@ -127,20 +150,12 @@ ConstellationAnswer ask_constellation(const SearchView& view, const std::vector<
   const core::JointGaussian ground = reference_ground(view, old, options.reach_m);
   if (ground.ids.size() < 3) return answer;
   const pf_relocalize::ReferenceMapResult reference = pf_relocalize::try_reference_map(ground, options.reference);
-  if (!reference.map) return answer;  // nothing to stand on matches nothing
+  if (!reference.map) return answer;  // without a reference map nothing matches
   const pf_relocalize::ReferenceMap& map = *reference.map;
 
-  pf_relocalize::Constellation constellation;
-  constellation.branch = branch_landmarks(view, old, options);
-  for (std::size_t i = 0; i < map.ids.size(); ++i) {
-    constellation.old_landmarks.push_back({map.ids[i], map.landmarks[i]});
-  }
-  add_coverage(view, map.T_world_base, search_begun_path_m, options, constellation);
-
-  std::vector<pf_relocalize::BranchLandmark> confirmed = constellation.branch;
-  confirmed.erase(std::remove_if(confirmed.begin(), confirmed.end(),
-                                 [&](const auto& b) { return b.hits < options.constellation.least_hits; }),
-                  confirmed.end());
+  const pf_relocalize::Constellation constellation = constellation_on(map, view, old, search_begun_path_m, options);
+  const std::vector<pf_relocalize::BranchLandmark> confirmed =
+      seen_often_enough(constellation.branch, options.constellation.least_hits);
   const pf_relocalize::RivalPoses poses =
       pf_relocalize::find_rivals(map, confirmed, core::between(map.T_world_base, T_world_robot), options.rivals, seed);
   answer.verdict = judge_constellation(constellation, poses.winner, poses.rivals, options.constellation);

@@ -14,17 +14,17 @@ namespace helixnav::supervisor {
 std::vector<core::LandmarkId> reference_landmarks(const SearchView& view, const std::vector<core::LandmarkId>& old,
                                                   double reach_m);
 
-/// The joint estimate of those among them that tell where the vehicle is (old_ground).
+/// The joint estimate of those among them that locate the vehicle (old_ground).
 core::JointGaussian reference_ground(const SearchView& view, const std::vector<core::LandmarkId>& old, double reach_m);
 
-/// Landmarks of the branch in the frame of the vehicle, all that were seen lately and from which the vehicle has not
-/// drifted off since by more than any pair is granted: the constellation is compared as a rigid one.
+/// Landmarks of the branch in the frame of the vehicle: all that were seen recently and from which the vehicle has since
+/// drifted by less than the tolerance of a pair, because the constellation is compared as a rigid one.
 std::vector<pf_relocalize::BranchLandmark> branch_landmarks(const SearchView& view,
                                                             const std::vector<core::LandmarkId>& old,
                                                             const SearchOptions& options);
 
-/// Does the constellation that the branch mapped stand on old landmarks, and nowhere else nearly as well? The hypothesis
-/// is T_world_robot, the particle filter's, unless another pose inside the prior explains more by so much that it, not the
+/// Whether the constellation mapped by the branch matches old landmarks, and nowhere else nearly as well. The hypothesis is
+/// T_world_robot, the particle filter's, unless another pose inside the prior explains so much more that it, not the
 /// filter's, would pass the test: scans weigh an unmapped tree again every time, the constellation counts it once.
 struct ConstellationAnswer {
   pf_relocalize::ConstellationVerdict verdict;

@@ -5,7 +5,7 @@
 
 namespace helixnav::supervisor {
 
-/// The landmarks of `joint` that tell where the vehicle is: those that it may see, within range_m and two standard
+/// The landmarks of `joint` that locate the vehicle: those that it may see, within range_m and two standard
 /// deviations of their distance, and those better known from one of these than from the vehicle, by the trace of the
 /// relative covariance; all when it may see none. Where a drive comes back among trees, others that it has just passed
 /// are old as well; these move with the vehicle, and a frame with one base among them, or a prior in it, says nothing

@@ -24,7 +24,7 @@ core::Pose2 base_frame_now(const cekf::CompressedEkf& filter, core::LandmarkId a
   return {a_m.x(), a_m.y(), std::atan2(axis.y(), axis.x())};
 }
 
-/// Two passed tests speak for one another when no landmark has changed its partner.
+/// Two passed tests agree when no landmark has changed its partner.
 bool agree(const std::vector<ConstellationPair>& before, const std::vector<ConstellationPair>& now) {
   return std::none_of(now.begin(), now.end(), [&](const ConstellationPair& n) {
     return std::any_of(before.begin(), before.end(), [&](const ConstellationPair& b) {

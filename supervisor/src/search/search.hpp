@@ -15,21 +15,21 @@
 
 namespace helixnav::supervisor {
 
-/// What a search looks at in one step.
+/// The input of one step of a search.
 struct SearchView {
   const cekf::CompressedEkf& filter;
   const association::LandmarkLife& life;
-  const CoverageTrace& track;
+  const CoverageTrace& coverage;
   const core::Scan& scan;
 };
 
-/// One open question: where on the old map does the vehicle drive? Mapping goes on meanwhile with the old landmarks
-/// excluded (the branch); the particle filter runs beside it, from the branch's own pose and again when an attempt leads
-/// nowhere; a constellation of branch landmarks that stands on old ones better than anywhere else answers it.
+/// The search for where on the old map the vehicle is. Mapping goes on meanwhile with the old landmarks excluded (the
+/// branch); the particle filter runs beside it, started from the branch's pose and restarted when an attempt fails; the
+/// answer is a constellation of branch landmarks that matches old ones better than anywhere else.
 /// Nothing here changes filter or map. Source: PROTOTYPE §3, §4. Test: supervisor/closing_test.cpp.
 class Search {
  public:
-  /// `old` ascending: the landmarks that are not to be associated while the question is open.
+  /// `old` ascending: the landmarks that are not to be associated during the search.
   Search(std::vector<core::LandmarkId> old, double path_m, std::uint64_t seed, const SearchOptions& options);
 
   bool excludes(core::LandmarkId id) const;
@@ -38,14 +38,14 @@ class Search {
   void move(const core::Odometry& odometry);
 
   /// One scan after the branch has mapped it. Pairs that pass every test, when there are some; what was decided is
-  /// appended. The caller closes, or says refuse().
+  /// appended. The caller closes, or calls refuse().
   std::optional<std::vector<pf_relocalize::ConstellationPair>> look(const SearchView& view,
                                                                     std::vector<core::Decision>& decisions);
 
-  /// The closing did not pass: this attempt is over.
+  /// The closing was refused: this attempt is over.
   void refuse(double path_m);
 
-  /// Driven so long without an answer that the question is left open.
+  /// Whether the search should be given up.
   bool is_undecided(double path_m) const;
   double begun_path_m() const { return begun_path_m_; }
 
@@ -81,7 +81,7 @@ class Search {
   std::uint64_t seed_;
   core::Odometry motion_;  ///< since the last look
   double last_look_path_m_;
-  double last_in_gate_path_m_;  ///< something stood where an old landmark may be
+  double last_in_gate_path_m_;  ///< when an observation was last in an old landmark's gate
   double next_start_path_m_ = 0.0;
   int starts_ = 0;
   int questions_ = 0;

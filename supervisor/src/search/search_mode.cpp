@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The open question: how a search begins, goes on, and ends with a closing or without.
+// How a search begins, goes on, and ends with a closing or without one.
 #include <utility>
 #include <vector>
 
@@ -17,7 +17,7 @@ using core::StepReport;
 Search NavigationLoop::search_from(const Checkpoint& trigger) const {
   const std::uint64_t seed = options_.search.seed + 1000000u * searches_;
   return Search(old_landmarks(trigger.existence, options_.search.old_after_m), trigger.existence.path_m(), seed,
-                with_foreign(options_.search, trigger.existence.born_per_scan(), view_));
+                with_extraneous_density(options_.search, trigger.existence.born_per_scan(), view_));
 }
 
 void NavigationLoop::begin_search() {
@@ -74,7 +74,7 @@ void NavigationLoop::close(const Scan& scan, const std::vector<pf_relocalize::Co
   solve_drive(report);
 }
 
-/// Mapping goes on with the whole map; the landmarks that a closing has recognised confirm its pose.
+/// Mapping goes on with the whole map; the landmarks that a closing has recognised confirm the pose.
 void NavigationLoop::end_search(const Closing* closing) {
   Mapping mapping;
   if (closing != nullptr) {
@@ -88,7 +88,7 @@ void NavigationLoop::end_search(const Closing* closing) {
 
 void NavigationLoop::solve_drive(StepReport& report) {
   if (options_.search.closing == ClosingMethod::restart)
-    tape_.let_go_of_drive();  // it has no say in what was restarted
+    tape_.drop_drive();  // what came before the restart no longer constrains the map
   if (!tape_.holds_drive()) return;
   const core::Pose2 before = belief_.filter.pose().mean;
   Smoothing smoothing = smooth_drive(belief_.filter, start_, tape_);

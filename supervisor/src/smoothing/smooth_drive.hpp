@@ -9,7 +9,7 @@
 
 namespace helixnav::supervisor {
 
-/// What solving the drive as a whole came to.
+/// The result of solving the drive as a whole.
 struct Smoothing {
   std::optional<cekf::CompressedEkf> solved;  ///< nothing when not accepted
   double chi2 = 0.0;                          ///< least squares' cost at its solution
@@ -18,14 +18,13 @@ struct Smoothing {
   int iterations = 0;
 };
 
-/// The filter put where least squares over the whole drive, every observation attributed as it is known now, has its
-/// minimum, with the covariance of all measurements linearised there: the drive is filtered once more along the solution.
-/// After a closing that turned a part of the map by many degrees the filter is linearised where that part was drawn, and
-/// no retraction of its own undoes that (docs/adr/0010-solving-the-drive.md).
-/// Not accepted: no convergence, or a minimum that costs more than what the filter has found, which is
-/// another one. Landmarks keep their ids.
-/// Cost: a few sparse factorisations and the filter's updates of the whole drive; ADR 10 has milliseconds.
-/// Test: supervisor/smooth_drive_test.cpp.
+/// The filter at the least-squares solution of the whole drive with the associations known now, and with the covariance
+/// of all measurements linearised there: the drive is filtered once more along the solution. After a closing that
+/// turned a part of the map by many degrees the filter is linearised where that part was drawn, and no retraction of
+/// its own undoes that (docs/adr/0010-solving-the-drive.md). Not accepted: no convergence, or a minimum that costs more
+/// than the filter's own solution, which is then another one. Landmarks keep their ids. Cost: a few sparse
+/// factorisations and the filter's updates of the whole drive; ADR 10 has milliseconds. Test:
+/// supervisor/smooth_drive_test.cpp.
 Smoothing smooth_drive(const cekf::CompressedEkf& filter, const core::PoseGaussian& start, const Tape& tape);
 
 }  // namespace helixnav::supervisor

@@ -12,22 +12,22 @@
 namespace helixnav::association {
 
 /// Evidence for a landmark's existence, in nats. A look is a scan taken at least `look_distance_m` from where the last
-/// look of the same kind at this landmark was taken: standing still, a sensor says the same thing again and again.
+/// look of the same kind at this landmark was taken: a sensor at rest repeats the same evidence.
 struct LifeOptions {
   double detection_probability = 0.7;  ///< that an expected landmark is seen in one look, occlusion included
   double false_hit_probability = 0.1;  ///< that clutter stands in for one that does not exist
   double look_distance_m = 0.25;
   double birth_log_odds = 0.0;
-  double max_log_odds = 8.0;     ///< no history makes a landmark immortal
+  double max_log_odds = 8.0;     ///< bound, so that every landmark can die
   int mature_looks = 3;          ///< hits, birth included, and
   double mature_log_odds = 3.0;  ///< log-odds that make a tentative landmark mature
   double tentative_death_log_odds = -2.0;
-  double tentative_patience_m = 30.0;  ///< a tentative landmark unseen over so long a drive dies
+  double tentative_patience_m = 30.0;  ///< a tentative landmark unseen over this distance dies
   bool mature_may_die = true;
   double mature_death_log_odds = -6.0;
 };
 
-/// What is known of one landmark's life.
+/// The record of one landmark's existence.
 struct LandmarkRecord {
   core::LandmarkId id = core::no_landmark;
   core::LandmarkState state = core::LandmarkState::tentative;
@@ -41,14 +41,14 @@ struct LandmarkRecord {
   double last_seen_path_m = 0.0;
 };
 
-/// What one scan changed. Whoever owns the filter removes the dead ones from it.
+/// What one scan changed. The owner of the filter removes the dead ones from it.
 struct LifeChanges {
   std::vector<core::LandmarkId> matured;
   std::vector<core::LandmarkId> died;
 };
 
-/// Who of the map is tentative, mature or dead: bookkeeping only, a value without a filter, copied with a snapshot.
-/// log-odds += ln(P_D/P_F) for a hit and ln((1−P_D)/(1−P_F)) for a miss. Dead landmarks leave the book.
+/// Which landmarks are tentative, mature or dead: bookkeeping only, a value without a filter, copied with a snapshot.
+/// log-odds += ln(P_D/P_F) for a hit and ln((1−P_D)/(1−P_F)) for a miss. Dead landmarks are no longer recorded.
 /// Cost of a scan O((seen + expected) log n + n + seen · expected). Test: association/landmark_life_test.cpp.
 class LandmarkLife {
  public:
@@ -59,21 +59,21 @@ class LandmarkLife {
   void drive(double length_m) { path_m_ += length_m; }
 
   /// One scan taken with the sensor at `sensor_m`, world frame. `seen`: matched landmarks. `born`: those that it began.
-  /// `expected`: those it should have seen, with a margin inside the field of view; who was seen may be among them. A
-  /// landmark beside an ambiguous observation belongs in neither list. PreconditionError, with the book as it was, for a
-  /// seen or expected id that is not in the book or a born one that is.
+  /// `expected`: those it should have seen, with a margin inside the field of view; seen ones may be among them. A
+  /// landmark beside an ambiguous observation belongs in neither list. PreconditionError, with nothing changed, for a
+  /// seen or expected id that is not recorded or a born one that is.
   LifeChanges observe(const Eigen::Vector2d& sensor_m, const std::vector<core::LandmarkId>& seen,
                       const std::vector<core::LandmarkId>& born, const std::vector<core::LandmarkId>& expected);
 
   /// A landmark that the filter lost for another reason.
   void remove(core::LandmarkId id);
 
-  /// Two landmarks were one: what was seen of `removed` counts for `kept`. PreconditionError unless both are in the book.
+  /// Two landmarks were one: what was seen of `removed` counts for `kept`. PreconditionError unless both are recorded.
   void merge(core::LandmarkId kept, core::LandmarkId removed);
 
   bool contains(core::LandmarkId id) const;
-  const LandmarkRecord& record(core::LandmarkId id) const;  ///< PreconditionError when it is not in the book
-  core::LandmarkState state(core::LandmarkId id) const;     ///< dead when it is not in the book
+  const LandmarkRecord& record(core::LandmarkId id) const;  ///< PreconditionError when it is not recorded
+  core::LandmarkState state(core::LandmarkId id) const;     ///< dead when it is not recorded
   const std::vector<LandmarkRecord>& records() const { return records_; }  ///< ascending by id
 
   /// Landmarks begun in one scan, on average: clutter and new ones together. 0 before the first scan.

@@ -23,7 +23,7 @@ struct ExtraneousDensity {
 ExtraneousDensity uniform_density(const core::FieldOfView& field_of_view, double expected_per_scan);
 
 /// The same for one scan of whatever view: even over the view where it is bounded and has an area; over the disc out to
-/// the furthest point seen where nobody knows the view (its greatest range is zero, as in graph files); `unbounded` where
+/// the furthest point seen where the view is unknown (its greatest range is zero, as in graph files); `unbounded` where
 /// the view has no bound or the scan holds no range. PreconditionError unless the number is positive.
 /// Test: association/likelihood_ratio_test.cpp.
 ExtraneousDensity density_in_view(const core::Scan& scan, double expected_per_scan, const ExtraneousDensity& unbounded);

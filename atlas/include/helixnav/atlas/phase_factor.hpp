@@ -27,7 +27,7 @@ struct PointPrior {
   Eigen::MatrixXd covariance;
 };
 
-/// A phase with its interior poses eliminated: what it says of its exit and of the landmarks it saw, relative to its entry.
+/// A phase with its interior poses eliminated: its information on its exit and on the landmarks it saw, relative to its entry.
 struct PhaseFactor {
   RelativeGaussian gaussian;  ///< of (exit; points in the order of shape.ids), about shape
   PhaseShape shape;           ///< where it was linearised

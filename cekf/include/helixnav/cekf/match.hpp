@@ -27,7 +27,7 @@ struct DerivedPoint {
   Eigen::Matrix2d noise_m2 = Eigen::Matrix2d::Zero();  ///< symmetric positive semidefinite
 };
 
-/// What an update says of itself: nis is νᵀS⁻¹ν, or, of an iterated update, the cost J at its minimum; either is
+/// The statistics of an update: nis is νᵀS⁻¹ν, or, of an iterated update, the cost J at its minimum; either is
 /// χ²-distributed with dof degrees of freedom when the model holds.
 struct UpdateResult {
   double nis = 0.0;

@@ -5,13 +5,13 @@
 
 namespace helixnav::core {
 
-/// What every estimator demands of an event at its door, before anything changes; PreconditionError names the time and
+/// The precondition of every estimator on an event, checked before anything changes; PreconditionError names the time and
 /// the value. No allocation unless it throws. Test: core/check_event_test.cpp.
 ///
 /// Odometry: finite increment, covariance finite, symmetric and positive semidefinite to 1e-9 of its largest element.
 void check(const Odometry& odometry);
-/// Scan: finite mounting, a field of view whose bounds are in order (its range may be infinite, or zero where nobody knows
-/// it), every observation as check_observation wants it. O(observations).
+/// Scan: finite mounting, a field of view whose bounds are in order (its range may be infinite, or zero where it is
+/// unknown), every observation as check_observation wants it. O(observations).
 void check(const Scan& scan);
 /// Fix: finite position and antenna, covariance symmetric positive definite.
 void check(const AbsoluteFix& fix);

@@ -11,8 +11,8 @@
 
 namespace helixnav::core {
 
-/// A search begins: an old landmark came into view that cannot be told apart from others scan by scan. The figures are those
-/// of the return with the most expected confusers (supervisor/revisit_ambiguity).
+/// A search begins: a revisited landmark is too ambiguous to be associated scan by scan. The figures are those of the
+/// return with the most expected confusers (supervisor/revisit_ambiguity).
 struct TriggerDecision {
   LandmarkId landmark = no_landmark;
   double expected_confusers = 0.0;
@@ -23,14 +23,14 @@ struct TriggerDecision {
   int old_in_gate = 0;
 };
 
-/// A search begins from before: old landmarks were missing where new ones spawned, and the drive is gone through again
-/// from the trusted checkpoint.
+/// The integrity monitor found the pose wrong: old landmarks were missing while new ones spawned. The navigator rolls
+/// back to the trusted checkpoint, begins a search there and processes the drive since then again.
 struct RollbackDecision {
-  int missing = 0;    ///< landmarks returned to, looked for and not seen
-  int seen = 0;       ///< landmarks returned to and mostly seen
+  int missing = 0;    ///< landmarks revisited, looked for and not seen
+  int seen = 0;       ///< landmarks revisited and mostly seen
   int spawned = 0;    ///< landmarks matured since the checkpoint
   double nats = 0.0;  ///< log-likelihood ratio of "pose wrong" against "pose right"
-  int scans = 0;      ///< gone through again
+  int scans = 0;      ///< processed again
 };
 
 /// The vehicle slipped: it is not where its odometry says. Figures in nats: by how much the slip explains the scan better
@@ -98,7 +98,7 @@ struct VerificationDecision {
 struct ClosureDecision {
   bool accepted = false;
   int pairs = 0;
-  int dropped = 0;  ///< pairs that the cost did not let pass
+  int dropped = 0;  ///< pairs dropped because of their cost
   int merged = 0;
   double cost = 0.0;  ///< J, χ² with dof
   int dof = 0;
@@ -107,7 +107,7 @@ struct ClosureDecision {
   double moved_m = 0.0;   ///< by how much the closing moved the pose
 };
 
-/// A search was given up: mapping goes on, the question stays open.
+/// A search was given up: mapping goes on, the loop stays open.
 struct UndecidedDecision {
   double driven_m = 0.0;  ///< since the search began
 };
@@ -143,7 +143,7 @@ using Decision = std::variant<TriggerDecision, RollbackDecision, SlipDecision, A
                               ReferenceUnusable, VerificationDecision, ClosureDecision, UndecidedDecision,
                               SmoothingDecision, FixDecision, OtherDecision>;
 
-/// True for what ends a question: a closing accepted or refused, or a search given up.
+/// True for what ends a search: a closing accepted or refused, or a search given up.
 inline bool is_closure(const Decision& decision) {
   return std::holds_alternative<ClosureDecision>(decision) || std::holds_alternative<UndecidedDecision>(decision);
 }

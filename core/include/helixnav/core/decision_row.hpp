@@ -19,7 +19,7 @@ struct DecisionRow {
 /// The one place that knows what a decision's row looks like. Test: core/decision_row_test.cpp (there and back).
 DecisionRow row_of(const Decision& decision);
 
-/// The decision that a row tells of; numbers that the row lacks keep their defaults, names of earlier versions are
+/// The decision of a row; numbers that the row lacks keep their defaults, names of earlier versions are
 /// understood. A kind or verdict that is not known comes back as OtherDecision.
 Decision decision_of(const DecisionRow& row);
 

@@ -15,7 +15,7 @@ namespace helixnav::core {
 
 /// The loop over the events of a drive. The estimator is anything with
 ///   std::optional<StepReport> take(const Event&)
-/// that answers a scan with its step. Whoever asks for the steps decides when to stop, and sees the estimator as it was
+/// that answers a scan with its step. The caller decides when to stop, and sees the estimator as it was
 /// after each:
 ///   EventLoop loop(recording.events, estimator);
 ///   while (const auto step = loop.next()) …
@@ -37,7 +37,7 @@ class EventLoop {
     return std::nullopt;
   }
 
-  /// How many events were fed; with a step at hand, the event before this number made it.
+  /// How many events were fed; after a step, the event before this number made it.
   std::size_t fed() const { return fed_; }
 
   /// How many steps were made.

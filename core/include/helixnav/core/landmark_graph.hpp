@@ -56,7 +56,7 @@ struct GraphFromEvents {
 };
 
 /// Pose 0 stands at `start`; every scan or fix that follows motion opens the next pose (increments are chained), named by
-/// its index. ids[scan][observation] names the landmark observed, below zero: nobody knows. Poses are dead reckoned,
+/// its index. ids[scan][observation] names the landmark observed, below zero: unknown. Poses are dead reckoned,
 /// landmarks placed by locate_landmarks; those whose observations have fewer than two rows are left out and counted.
 /// Motion after the last scan or fix is dropped. PreconditionError when the shape of ids does not fit the events.
 /// Test: core/landmark_graph_test.cpp.

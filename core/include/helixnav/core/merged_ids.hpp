@@ -9,7 +9,7 @@
 
 namespace helixnav::core {
 
-/// Which landmark each one is by now, after merges. What a merge keeps is alive, whatever was said of it before: a merge
+/// Which landmark each one is by now, after merges. What a merge keeps exists, whatever happened to it before: a merge
 /// that a rollback has undone may be followed by one the other way round, and no chain of merges runs in a circle.
 /// Test: core/merged_ids_test.cpp.
 class MergedIds {

@@ -7,7 +7,7 @@
 
 namespace helixnav::core {
 
-/// What a sensor says of one landmark, in the frame of the sensor.
+/// What a sensor measures of one landmark, in the frame of the sensor.
 enum class ObservationKind {
   range_bearing,  ///< z = (range [m], bearing [rad]), bearing counter-clockwise from the sensor's x axis
   cartesian,      ///< z = (x, y) [m]
@@ -55,7 +55,7 @@ PredictedObservation predict_observation(ObservationKind kind, const Pose2& T_wo
 /// ν = z − ẑ with its bearing in (-π, π]. Test: core/observation_test.cpp.
 ObsVector innovation(ObservationKind kind, const ObsVector& z, const ObsVector& z_hat);
 
-/// The landmark m = g(T_world_robot, z) that an observation speaks of, with derivatives G_pose (2×3) and G_z (2×2).
+/// The landmark m = g(T_world_robot, z) of an observation, with derivatives G_pose (2×3) and G_z (2×2).
 struct LocatedLandmark {
   Eigen::Vector2d point_world_m;
   Eigen::Matrix<double, 2, 3> G_pose;

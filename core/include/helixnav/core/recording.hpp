@@ -13,7 +13,7 @@
 
 namespace helixnav::core {
 
-/// True identity of an observed object, where somebody knows it; no_label: false detection or unknown.
+/// True identity of an observed object, where known; no_label: false detection or unknown.
 using Label = std::int64_t;
 inline constexpr Label no_label = -1;
 
@@ -51,15 +51,15 @@ struct Recording {
   PoseGaussian start;         ///< of the robot in the map frame; DESIGN: identity with zero covariance
   std::vector<Event> events;  ///< in time order; an increment comes before the scan that ends it
 
-  std::vector<std::vector<Label>> labels;              ///< [scan][observation]; empty when nobody labelled the log
+  std::vector<std::vector<Label>> labels;              ///< [scan][observation]; empty when the log has no labels
   std::vector<SharedObservation> shared_observations;  ///< `labels` holds the first label of each
   std::vector<TruePose> true_poses;
   std::vector<TrueLandmark> true_landmarks;
   std::vector<Nanoseconds> true_slips_ns;  ///< ends of the increments that a slip made wrong, ascending (simulator)
   std::vector<TruePosition> true_positions;
-  /// Observations of no mapped landmark in a scan, clutter and new ones together, as known of the sensor; 0: nobody knows,
-  /// and they are to be learnt from the drive. Nothing: as the navigator takes it.
-  std::optional<double> foreign_per_scan;
+  /// Observations of no mapped landmark in a scan, clutter and new ones together, as known of the sensor; 0:
+  /// unknown, to be learnt from the drive. Nothing: the navigator's default.
+  std::optional<double> extraneous_per_scan;
   Eigen::Vector2d antenna_robot_m = Eigen::Vector2d::Zero();  ///< lever arm that true_positions refer to
   std::vector<std::string> remarks;  ///< what the reader mended, left out or doubts, a sentence each
 };

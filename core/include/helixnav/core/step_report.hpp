@@ -61,7 +61,7 @@ struct StepReport {
   bool switched_region = false;
   std::vector<Decision> decisions;
   std::vector<MergedLandmarks> merged;  ///< by a closure in this step
-  std::vector<RevisedScan> revised;     ///< where a search began from before
+  std::vector<RevisedScan> revised;     ///< by a rollback
   std::vector<Pose2> cloud;  ///< T_world_robot of particles of a search, thinned out for pictures; empty without
   std::vector<Pose2> drawn;  ///< same, where an attempt starts: as drawn on helices, before the scan weighed them
 };

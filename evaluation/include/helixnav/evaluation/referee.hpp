@@ -17,15 +17,15 @@ namespace helixnav::evaluation {
 struct RefereeOptions {
   double wrong_position_m = 2.0;  ///< a pose farther from the truth is wrong …
   double wrong_heading_rad = 8.0 * core::pi / 180.0;
-  double most_wrong_share = 0.05;  ///< … and so is a closing with a larger share of wrong pairs, if there are …
-  int least_wrong_pairs = 2;       ///< … so many of them
-  double old_after_m = 60.0;       ///< a landmark unseen for so long is old: who it is stands fixed
-  double left_behind_m = 30.0;     ///< where a return begins, so long is enough
-  int old_sightings = 3;           ///< with fewer it is no mapped landmark, and matches with it do not count
-  int reentry_observations = 3;    ///< of trees mapped before, in one scan: old ground is re-entered
-  int association_matches = 10;    ///< with old landmarks after a return: closed without any closure
-  double slip_known_m = 150.0;     ///< a slip may be decided so long after it happened
-  int relative_landmarks = 8;      ///< nearest old ones that the relative error refers to
+  double most_wrong_share = 0.05;   ///< … and so is a closing with a larger share of wrong pairs, if there are …
+  int least_wrong_pairs = 2;        ///< … so many of them
+  double old_after_m = 60.0;        ///< a landmark unseen for so long is old: its identity is fixed
+  double old_ground_left_m = 30.0;  ///< at the begin of a return, a landmark unseen for so long is old, too
+  int old_sightings = 3;            ///< with fewer it does not count as mapped, nor do matches with it
+  int reentry_observations = 3;     ///< of trees mapped before, in one scan: old ground is re-entered
+  int association_matches = 10;     ///< with old landmarks after a return: closed without any closure
+  double slip_known_m = 150.0;      ///< a slip may be decided up to this distance after it happened
+  int relative_landmarks = 8;       ///< nearest old ones that the relative error refers to
 };
 
 /// Estimate against truth, absolute values; NaN when unknown.
@@ -35,8 +35,8 @@ struct PoseError {
 };
 
 /// A pose in the map, judged. Absolute: in the map frame, which is that of the truth. Relative: after the rigid motion
-/// that lays the nearest old landmarks on the trees that they are; what the old map itself was wrong drops out. Absolute
-/// where fewer than three are within 80 m. NEES = eᵀP⁻¹e of the absolute error in (x, y, heading).
+/// that aligns the nearest old landmarks with their trees, so that errors of the old map itself cancel. Absolute where
+/// fewer than three are within 80 m. NEES = eᵀP⁻¹e of the absolute error in (x, y, heading).
 struct JudgedPose {
   PoseError absolute;
   PoseError relative;
@@ -61,14 +61,14 @@ struct ReturnScore {
   int old_matches = 0;                                               ///< by association, until the next return
   int wrong_old_matches = 0;
   bool closed = false;           ///< by a closure, or by association
-  JudgedPose duplicate_segment;  ///< as RunScore::end_on_old_ground, before the next return or the end
+  JudgedPose end_on_old_ground;  ///< as RunScore's, before the next return or the end
   JudgedPose associated;         ///< at the last scan before that with reentry_observations matches with old landmarks
 };
 
 enum class RunVerdict {
   closed,         ///< every return was closed, none wrongly
   false_closure,  ///< at least one closing is wrong; where nothing returns, any closing is
-  undecided,      ///< nothing wrong, but a return (or, where nothing returns, the road) was left open
+  undecided,      ///< nothing wrong, but a return was left open, or the road never returns
 };
 
 /// One run, judged. Where nothing returns, `undecided` is the right verdict.
@@ -79,12 +79,12 @@ struct RunScore {
   std::vector<ReturnScore> returns;
   std::vector<ClosureScore> closures;
   int triggers = 0;
-  int rewound = 0;    ///< searches begun from before
-  int refused = 0;    ///< closures
-  int undecided = 0;  ///< closures
+  int rolled_back = 0;  ///< searches begun after a rollback
+  int refused = 0;      ///< closures
+  int undecided = 0;    ///< closures
   int old_matches = 0;
   int wrong_old_matches = 0;
-  int wrong_before_trigger = 0;   ///< wrong old matches before the first trigger of a return, begun from before or not
+  int wrong_before_trigger = 0;   ///< wrong old matches before the first trigger of a return, rollbacks included
   int wrong_without_trigger = 0;  ///< those of returns without any trigger
   int slips = 0;                  ///< that happened (Recording::true_slips_ns)
   int slips_decided = 0;          ///< by the navigator, and …
@@ -98,13 +98,14 @@ struct RunScore {
   double map_rms_m = 0.0;  ///< of the mature landmarks after a rigid alignment; NaN with fewer than two
 };
 
-/// Scores a navigator's run in a world whose truth is known; nothing of it reaches the navigator. A landmark is the tree
-/// that most of its observations came from. Who an old landmark is stands fixed where the return begins, if it was left
-/// behind by then, or since it was unseen for old_after_m, so that wrong matches cannot make it another. A return begins 1.5 times the sensor's range before
-/// `returns_at_m`, when no old tree is in view yet. A closing is wrong by its pose or by its pairs; a return that is
-/// closed by association alone (association_matches with old landmarks and no closure) is judged by the pose where it was
-/// last associated with old landmarks and by its matches. Poses are judged by the relative error; the absolute one stands beside it.
-/// Test: evaluation/referee_test.cpp (a report made by hand for every verdict).
+/// Scores a navigator's run in a world whose truth is known; nothing of it reaches the navigator. A landmark is the
+/// tree that most of its observations came from. The identity of an old landmark is fixed once it has been unseen for
+/// old_after_m, or at the begin of a return if it has been unseen for old_ground_left_m, so that wrong matches cannot
+/// change it. A return begins 1.5 times the sensor's range before `returns_at_m`, when no old tree is in view yet. A
+/// closing is wrong by its pose or by its pairs; a return that is closed by association alone (association_matches with
+/// old landmarks and no closure) is judged by the pose where it was last associated with old landmarks and by its matches.
+/// Poses are judged by the relative error; the absolute one stands beside it. Test: evaluation/referee_test.cpp (a
+/// report made by hand for every verdict).
 class Referee {
  public:
   using Map = std::function<std::vector<core::MapLandmark>()>;

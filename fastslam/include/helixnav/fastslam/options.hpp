@@ -13,7 +13,7 @@ enum class Proposal {
 
 /// How a particle decides which of its landmarks an observation is of.
 enum class Association {
-  known,               ///< told by the caller
+  known,               ///< given by the caller
   nearest_neighbour,   ///< least normalised distance within the gate
   likelihood_ratio,    ///< best ratio of likelihoods first, while it speaks for a match
   sampled,             ///< drawn with the probabilities of the alternatives

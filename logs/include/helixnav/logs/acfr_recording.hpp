@@ -33,7 +33,7 @@ struct AcfrSettings {
   /// negative information kills the map: of the mapped trees in front, 67 % are seen at 5 … 20 m, 40 % at 25 … 30 m,
   /// 14 % at 35 … 40 m, 1 % beyond 50 m.
   double view_range_m = 22.0;
-  std::optional<double> foreign_per_scan;  ///< Recording::foreign_per_scan
+  std::optional<double> extraneous_per_scan;  ///< Recording::extraneous_per_scan
   double reach_m = 30.0;  ///< two of five trees in front are still seen there; the limit of the rules for reflectors
 };
 

@@ -7,8 +7,8 @@
 
 namespace helixnav::logs {
 
-/// What a user says of the sensor; 0: what the log says, or what is estimated from it.
-struct ToldFieldOfView {
+/// The user's own field of view; 0: what the log says, or what is estimated from it.
+struct GivenFieldOfView {
   double max_range_m = 0.0;
   double width_rad = 0.0;  ///< all of it, as much on either side of straight ahead; 2π: all around
 };
@@ -22,8 +22,8 @@ core::FieldOfView estimate_field_of_view(const core::Recording& recording);
 /// Gives every scan of a log that says nothing of its sensor (unlimited in range) that estimate.
 void estimate_missing_field_of_view(core::Recording& recording);
 
-/// Overwrites what is told in every scan. A range told is the reach as well.
-void tell_field_of_view(core::Recording& recording, const ToldFieldOfView& told);
+/// Overwrites what is given in every scan. A range given is the reach as well.
+void set_field_of_view(core::Recording& recording, const GivenFieldOfView& given);
 
 /// Overwrites what a sensor tells of its view.
 void tell_view(const SensorModel& sensor, core::FieldOfView& view);

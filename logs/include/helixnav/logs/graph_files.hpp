@@ -27,7 +27,7 @@ void write_isam(const core::LandmarkGraph& graph, const std::filesystem::path& p
 /// The same lines as GTSAM's example of Victoria Park has them: with the covariance.
 void write_gtsam(const core::LandmarkGraph& graph, const std::filesystem::path& path);
 
-/// The drive that a graph tells of, for programs that work step by step: the poses in the order of their odometry chain, one
+/// The drive that a graph describes, for programs that work step by step: the poses in the order of their odometry chain, one
 /// Odometry and one Scan per pose (t = index in seconds), labels = names of the landmarks. The field of view is empty
 /// (maximum range 0): a pose without observation says nothing about what stands there. Throws core::InputError when
 /// pose-to-pose edges are not one chain.

@@ -12,7 +12,7 @@ namespace helixnav::mrpt_adapter {
 
 /// Everything that a configuration file may set for MapBuilder. Members are in metres and radians; keys that end in
 /// `_deg` are in degrees in files. Keys of MRPT's kf-slam keep their name and meaning ([RangeBearingKFSLAM] may be
-/// loaded as it is), the others are ours; keys that are not listed here are left to whoever else reads the section.
+/// loaded as it is), the others are ours; keys that are not listed here are left to other readers of the section.
 /// Loading throws core::InputError, naming section, key, value and range, with the options as they were.
 /// Test: mrpt_adapter/options_test.cpp.
 class MapBuilderOptions : public mrpt::config::CLoadableOptions {
@@ -67,10 +67,10 @@ class MapBuilderOptions : public mrpt::config::CLoadableOptions {
   bool search_enabled = true;
   std::uint64_t search_seed = 1;
   double search_old_after = 60.0;
-  std::uint64_t search_threads = 2;      ///< results do not depend on it
-  double search_scale = 1.0;             ///< obsolete: reach over 30 m, in place of what observations state
-  double search_foreign_per_scan = 0.0;  ///< observations of no old landmark in a scan; 0: 2.5, of reflectors 0.5
-  double search_view_area = 0.0;         ///< [m²] where these are seen; 0: by the reach
+  std::uint64_t search_threads = 2;         ///< results do not depend on it
+  double search_scale = 1.0;                ///< obsolete: reach over 30 m, in place of what observations state
+  double search_extraneous_per_scan = 0.0;  ///< observations of no old landmark in a scan; 0: 2.5, of reflectors 0.5
+  double search_view_area = 0.0;            ///< [m²] where these are seen; 0: by the reach
 
   bool enable_profiler = false;  ///< of MapBuilder::getProfiler
 };

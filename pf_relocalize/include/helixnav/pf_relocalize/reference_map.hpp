@@ -37,7 +37,7 @@ struct ReferenceMapOptions {
   int sweeps = 5;
 };
 
-/// What the particle filter is told of the old map: landmarks with independent errors in the frame of two of them, and
+/// What the particle filter knows of the old map: landmarks with independent errors in the frame of two of them, and
 /// the vehicle's prior in that frame, transformed jointly (it is correlated with the bases).
 struct ReferenceMap {
   core::Pose2 T_world_base;

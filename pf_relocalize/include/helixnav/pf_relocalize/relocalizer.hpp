@@ -31,7 +31,7 @@ struct RelocalizerOptions {
   unsigned threads = 2;             ///< results do not depend on it
 };
 
-/// What one scan left behind.
+/// The state after one scan.
 struct CloudState {
   core::Nanoseconds t_ns = 0;
   int scans = 0;                ///< used so far, the first included

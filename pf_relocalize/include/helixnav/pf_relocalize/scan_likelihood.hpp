@@ -42,7 +42,7 @@ class ScanLikelihood {
   ScanLikelihood(ScanLikelihood&&) noexcept;
   ScanLikelihood& operator=(ScanLikelihood&&) noexcept;
 
-  /// Sets the scan that evaluate() speaks of. The field of view must be bounded in range, else PreconditionError.
+  /// Sets the scan for evaluate(). The field of view must be bounded in range, else PreconditionError.
   void set_scan(const core::Scan& scan);
 
   /// Sets points alone, against `extraneous_per_m2`, and no visibility term: for constellations of landmarks.

@@ -43,13 +43,13 @@ class MapIndex {
   /// PreconditionError for an id that the map does not have.
   void erase(core::LandmarkId id);
 
-  /// The landmark of the same id now is as told; erase and insert in one. PreconditionError as for these.
+  /// Replaces the landmark of the same id: erase and insert in one. PreconditionError as for these.
   void move(const Landmark& landmark);
 
   /// Marks ground where the map's sensor would have found landmarks. What is marked stays so.
   void look_at(const Disc& ground);
 
-  /// For a map whose ground nobody recorded: a disc about each landmark, 0.6 of the way to its eighth neighbour.
+  /// For a map whose covered ground was not recorded: a disc about each landmark, 0.6 of the way to its eighth neighbour.
   void look_around_landmarks();
 
   const IndexOptions& options() const;

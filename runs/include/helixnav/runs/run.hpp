@@ -32,11 +32,11 @@ struct Run {
   RunManifest manifest;
   std::vector<core::StepReport> steps;  ///< in order of time; revisions applied; only the clouds that were kept
   std::vector<double> microseconds;     ///< [step] wall clock
-  std::vector<core::MapLandmark> map;   ///< empty unless the run came to its end
+  std::vector<core::MapLandmark> map;   ///< empty unless the run finished
   RunTruth truth;
-  bool finished = false;  ///< the run came to its end
+  bool finished = false;  ///< the run finished
 
-  // Known to whoever drove; read_run leaves them empty.
+  // Known in memory only; read_run leaves them empty.
   /// Into summary.json, such as chi2 and dof of a smoother. Keys with dots nest: ("closures.pending", 2) becomes
   /// {"closures": {"pending": 2}}.
   std::vector<std::pair<std::string, double>> numbers;

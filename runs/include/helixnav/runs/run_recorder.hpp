@@ -10,7 +10,7 @@
 namespace helixnav::runs {
 
 /// Makes a run of the reports of a drive. The run is, number by number, the one that read_run finds in a folder whose
-/// RunWriter was told the same, so that a run is judged alike at its end and ever after: rows that a later step revises
+/// RunWriter was given the same, so that a run is judged alike at its end and later: rows that a later step revises
 /// are replaced, covariances are symmetric by their upper triangle, headings go through a quaternion.
 /// Cost of a step: a copy of its report. Test: runs/run_recorder_test.cpp.
 class RunRecorder {

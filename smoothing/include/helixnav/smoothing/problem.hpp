@@ -50,7 +50,7 @@ Problem build_problem(const std::vector<core::Event>& events, const std::vector<
                       const core::Pose2& start = core::Pose2());
 
 /// Adds sigma² (x, y, heading; metres, metres, radians) to every odometry covariance. With sigma well above the drift of
-/// one step, observations outvote odometry and a bad start is left behind: solve softened first, then the given problem
+/// one step, observations outvote odometry and a bad start is corrected: solve softened first, then the given problem
 /// from there (THEORY §5). With a small sigma it makes covariances of rank two invertible.
 void soften_odometry(Problem& problem, const Eigen::Vector3d& sigma);
 

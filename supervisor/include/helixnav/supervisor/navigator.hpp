@@ -15,21 +15,21 @@ namespace helixnav::supervisor {
 class NavigationLoop;
 
 /// Navigates: keeps the pose and the landmark map up to date as events come in, with unknown data association
-/// (NamedNavigator is for observations known by name). Every scan runs once through the loop: predict, associate, and, unless
-/// the return to old ground is ambiguous, update, augment, judge existence, switch region. When old ground comes into view
-/// that cannot be told apart scan by scan, a search begins: mapping goes on with the old landmarks excluded, a particle filter
-/// finds where on the old map the vehicle is, and when a constellation of new landmarks stands on old ones, and nowhere else
-/// as well, the map is closed there. Where old landmarks are missing and new ones spawn, the navigator rolls back and goes
-/// through the last scans again in a search (docs/adr/0009-doubt.md); that scan costs as much as they did. After a closing the
-/// drive so far is solved as a whole, and the scan that closes costs time proportional to it
+/// (NamedNavigator is for observations known by name). Every scan runs once through the loop: predict, associate,
+/// update, augment, update existence, switch region. When a return to old ground is too ambiguous to be associated scan
+/// by scan, a search begins: mapping goes on with the old landmarks excluded, a particle filter finds where on the old
+/// map the vehicle is, and when a constellation of new landmarks matches old ones, and nowhere else as well, the map is
+/// closed there. Where old landmarks are missing and new ones spawn, the navigator rolls back and processes the last
+/// scans again in a search (docs/adr/0009-integrity.md); that scan costs as much as they did. After a closing the drive
+/// so far is solved as a whole, and the scan that closes costs time proportional to it
 /// (docs/adr/0010-solving-the-drive.md, SearchOptions::smooth_up_to_scans). Source: hybrid_masson2003 §3, PROTOTYPE.
 /// The map frame is that of the start pose; nothing here knows of truth, files or screens.
 ///
-/// Strong guarantee: a call that throws (PreconditionError for events that core::check refuses, NumericalError for broken mathematics,
-/// std::bad_alloc) leaves everything as before it. It rolls back to its last checkpoint and goes through what came since
-/// again, so that a failure costs as much as these scans did, and nothing is copied as long as none occurs; covariances
-/// between landmarks outside the active region come back to round-off, everything else bit for bit.
-/// Test: supervisor/navigator_test.cpp, supervisor/closing_test.cpp, supervisor/guarantee_test.cpp.
+/// Strong guarantee: a call that throws (PreconditionError for events that core::check refuses, NumericalError for
+/// broken mathematics, std::bad_alloc) leaves everything as before it. It rolls back to its last checkpoint and
+/// processes what came since again, so that a failure costs as much as these scans did, and nothing is copied as long
+/// as none occurs; covariances between landmarks outside the active region come back to round-off, everything else bit
+/// for bit. Test: supervisor/navigator_test.cpp, supervisor/closing_test.cpp, supervisor/guarantee_test.cpp.
 class Navigator {
  public:
   explicit Navigator(const core::PoseGaussian& start, const NavigatorOptions& options = {});

@@ -11,9 +11,8 @@
 
 namespace helixnav::supervisor {
 
-/// What a Navigator and a NamedNavigator may be asked to do otherwise; the latter reads filter, delayed and
-/// fix_probability only. Every length stands here for a sensor that sees reference_reach_m far; the navigator fits it to
-/// the sensor that the first scan speaks of (lengths.hpp).
+/// Options of Navigator and NamedNavigator; the latter reads filter, delayed and fix_probability only. Every length here is
+/// for a sensor with a reach of reference_reach_m; the navigator scales it to the sensor of the first scan (lengths.hpp).
 struct NavigatorOptions {
   bool fit_lengths = true;  ///< false: they are used as they stand
   cekf::FilterOptions filter;
@@ -28,7 +27,7 @@ struct NavigatorOptions {
   double fix_probability = 0.999;    ///< χ² gate of an absolute fix
   double extraneous_per_scan = 1.0;  ///< observations of no mapped landmark: clutter and new ones together
   double candidate_sigmas = 4.0;     ///< how far the search for candidates reaches
-  double view_margin_m = 2.0;        ///< so far inside the field of view a landmark is expected to be seen
+  double view_margin_m = 2.0;        ///< margin inside the field of view within which a landmark is expected to be seen
 };
 
 }  // namespace helixnav::supervisor

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "setting_options.hpp"
+#include "validators.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+void add_truck(CLI::App& command, const std::string& section, logs::AcfrSettings& truck) {
+  const auto name = [&section](const char* key) { return "--" + section + "." + key; };
+  add_number(command, name("sigma_speed_mps").c_str(), truck.noise.sigma_speed_mps, 1e-3, 10.0,
+             "Noise of one sample of the wheel's speed");
+  add_number(command, name("sigma_steering_rad").c_str(), truck.noise.sigma_steering_rad, 1e-4, 1.0,
+             "Noise of one sample of the steering angle");
+  add_number(command, name("steering_offset_rad").c_str(), truck.steering_offset_rad, -0.5, 0.5,
+             "Added to every recorded steering angle");
+  add_number(command, name("steering_scale").c_str(), truck.steering_scale, 0.5, 2.0,
+             "Every recorded steering angle is multiplied by this first");
+  add_number(command, name("laser_heading_rad").c_str(), truck.T_robot_laser.heading_rad, -core::pi, core::pi,
+             "Where the laser looks, from straight ahead to the left");
+  add_number(command, name("laser_delay_s").c_str(), truck.laser_delay_s, 0.0, 1.0,
+             "Time by which a scan was taken before its stamp");
+  add_number(command, name("sigma_range_m").c_str(), truck.sigma_range_m, 1e-3, 100.0, "Noise of a detection's range");
+  add_number(command, name("sigma_bearing_rad").c_str(), truck.sigma_bearing_rad, 1e-4, 1.0,
+             "Noise of a detection's bearing");
+}
+
+void add_plaza(CLI::App& command, Settings& settings) {
+  add_number(command, "--plaza.range_scale", settings.plaza_range_scale, 0.0, 2.0,
+             "Recorded range over true one; 0: estimated from the log by the least innovations (known association)");
+  add_number(command, "--plaza.sigma_range_m", settings.logs.plaza.sigma_range_m, 1e-3, 100.0, "Noise of a range");
+}
+
+void add_gps(CLI::App& command, Settings& settings) {
+  GpsSettings& gps = settings.gps;
+  command
+      .add_option_function<std::string>(
+          "--gps.use,--gps", [&gps](const std::string& word) { gps.fuse = word == "fuse"; },
+          "truth: GPS is only compared with; fuse: it updates the pose, and the map frame is that of the GPS, the "
+          "start "
+          "pose being aligned with the fixes of the first gps.start_m metres. Errors against GPS are then no truth")
+      ->check(one_of({"truth", "fuse"}))
+      ->default_str("truth")
+      ->group(settings_group);
+  add_number(command, "--gps.sigma_m", gps.sigma_m, 1e-3, 1000.0, "Noise of a fix in x and in y (fuse)");
+  add_number(command, "--gps.start_m", gps.start_m, 1.0, 1e5, "Drive that aligns the start with the GPS frame (fuse)");
+  add_number(command, "--gps.gate_probability", settings.navigator.fix_probability, 0.5, 0.999999,
+             "Gate of a fix, as the probability that a right one is inside (fuse)");
+}
+
+}  // namespace
+
+void add_sensor_settings(CLI::App& command, Settings& settings) {
+  add_number(command, "--log.covariance_scale", settings.covariance_scale, 1e-6, 1e6,
+             "Factor on every covariance of odometry and observations; DLR run e is right with 2.07");
+  logs::GivenFieldOfView& view = settings.field_of_view;
+  add_number(command, "--log.max_range_m", view.max_range_m, 0.0, 1e5,
+             "Range of the sensor; 0: as the log says, or estimated from its observations (DLR)");
+  const auto set_width = [&view](double width_deg) { view.width_rad = width_deg * core::pi / 180.0; };
+  command
+      .add_option_function<double>("--log.view_deg", set_width,
+                                   "Width of the field of view about straight ahead; 0: likewise")
+      ->check(number_between(0.0, 360.0))
+      ->default_str("0")
+      ->group(settings_group);
+}
+
+void add_log_settings(CLI::App& command, Settings& settings) {
+  add_truck(command, "victoria_park", settings.logs.victoria_park);
+  add_truck(command, "car_park", settings.logs.car_park);
+  add_plaza(command, settings);
+  add_gps(command, settings);
+}
+
+}  // namespace helixnav::apps
