@@ -17,7 +17,7 @@ using Ids = std::vector<core::LandmarkId>;
 
 constexpr double old_after_m = 60.0;
 
-/// A book of mature landmarks 0 to n−1, last seen at the begin of a drive of `driven_m`.
+/// Mature landmarks 0 to n−1, last seen at the begin of a drive of `driven_m`.
 association::LandmarkLife existence_of(int n, double driven_m) {
   association::LandmarkLife life;
   Ids all;
@@ -46,7 +46,7 @@ void spawn(association::LandmarkLife& life, core::LandmarkId first, int n) {
 }
 
 TEST(IntegrityMonitor, CountsEachLandmarkOnceHoweverOftenItIsLookedFor) {
-  association::LandmarkLife life = book_of(5, 100.0);
+  association::LandmarkLife life = existence_of(5, 100.0);
   IntegrityMonitor monitor;
   look(monitor, life, 2, {0, 1}, {});
   EXPECT_EQ(monitor.evidence(life, {}).missing, 0);
@@ -58,7 +58,7 @@ TEST(IntegrityMonitor, CountsEachLandmarkOnceHoweverOftenItIsLookedFor) {
 }
 
 TEST(IntegrityMonitor, IsLostWhereFourAreMissingAndTwoSpawn) {
-  association::LandmarkLife life = book_of(5, 100.0);
+  association::LandmarkLife life = existence_of(5, 100.0);
   IntegrityMonitor monitor;
   look(monitor, life, 3, {0, 1, 2, 3}, {});
   EXPECT_FALSE(monitor.is_lost(life, {})) << "nothing is seen: the sensor may be covered";
@@ -67,7 +67,7 @@ TEST(IntegrityMonitor, IsLostWhereFourAreMissingAndTwoSpawn) {
 }
 
 TEST(IntegrityMonitor, AFelledThirdDoesNotAccuseThePose) {
-  association::LandmarkLife life = book_of(9, 100.0);
+  association::LandmarkLife life = existence_of(9, 100.0);
   IntegrityMonitor monitor;
   for (const core::LandmarkId standing : {0, 1, 2, 3, 4, 5}) look(monitor, life, 4, {standing, 6, 7, 8}, {standing});
   spawn(life, 10, 3);
@@ -76,7 +76,7 @@ TEST(IntegrityMonitor, AFelledThirdDoesNotAccuseThePose) {
 }
 
 TEST(IntegrityMonitor, TwoMatchesInEachOfTwoScansInARowConfirmThePose) {
-  association::LandmarkLife life = book_of(6, 100.0);
+  association::LandmarkLife life = existence_of(6, 100.0);
   IntegrityMonitor monitor;
   EXPECT_TRUE(monitor.is_clear());
   look(monitor, life, 3, {0, 1, 2, 3}, {});
@@ -92,7 +92,7 @@ TEST(IntegrityMonitor, TwoMatchesInEachOfTwoScansInARowConfirmThePose) {
 }
 
 TEST(IntegrityMonitor, AClosingConfirmsThePoseByTheLandmarksThatItRecognised) {
-  association::LandmarkLife life = book_of(9, 100.0);
+  association::LandmarkLife life = existence_of(9, 100.0);
   const Ids recognised{0, 1, 2, 3, 4};
   spawn(life, 10, 2);
   life.observe({110.0, 0.0}, recognised, {}, {});  // as merging enters them
@@ -115,7 +115,7 @@ TEST(IntegrityMonitor, AClosingConfirmsThePoseByTheLandmarksThatItRecognised) {
 }
 
 TEST(IntegrityMonitor, WhatWasSeenLatelyTellsNothingOfAReturn) {
-  association::LandmarkLife life = book_of(4, 30.0);
+  association::LandmarkLife life = existence_of(4, 30.0);
   IntegrityMonitor monitor;
   look(monitor, life, 10, {0, 1, 2, 3}, {});
   EXPECT_EQ(monitor.evidence(life, {}).missing, 0);
