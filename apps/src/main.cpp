@@ -29,8 +29,8 @@ ExitCode fail(ExitCode code, const char* what) {
 
 /// What was printed and cannot be written is lost without a word, unless somebody asks.
 ExitCode check_output(ExitCode code) {
-  std::cout.flush();
   errno = 0;
+  std::cout.flush();
   const bool lost = std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout;
   if (!lost || code != ExitCode::ok) return code;
   const std::string why = errno != 0 ? std::string(": ") + std::strerror(errno) : std::string();

@@ -148,11 +148,11 @@ class DlrReader {
   }
 
   void add(const core::Observation& observation) {
+    core::Scan& scan = std::get<core::Scan>(recording_.events.back());
+    check_count(cursor_, scan.observations.size());
     std::vector<core::Label> ids{read_id()};
     while (!cursor_.at_line_end()) ids.push_back(read_id());
     cursor_.skip_line();
-    core::Scan& scan = std::get<core::Scan>(recording_.events.back());
-    check_count(cursor_, scan.observations.size());
     if (ids.size() > 1) {
       recording_.shared_observations.push_back({recording_.labels.size() - 1, scan.observations.size(), ids});
     }
