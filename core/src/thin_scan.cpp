@@ -22,12 +22,17 @@ bool may_be_one(const Observation& a, const Observation& b, double gate) {
   return llt.info() == Eigen::Success && difference.dot(llt.solve(difference)) < gate;
 }
 
-/// Every step-th place, then those between, so that whatever comes first is spread evenly.
-std::vector<std::size_t> spread_order(std::size_t count, std::size_t step) {
+/// All places, cut into as many stretches as observations are used: the first of every stretch, then the second of each, so
+/// that whatever comes first is spread evenly.
+std::vector<std::size_t> spread_order(std::size_t count) {
+  constexpr std::size_t stretches = most_observations_used;
   std::vector<std::size_t> order;
   order.reserve(count);
-  for (std::size_t first = 0; first < step; ++first) {
-    for (std::size_t i = first; i < count; i += step) order.push_back(i);
+  for (std::size_t offset = 0; order.size() < count; ++offset) {
+    for (std::size_t k = 0; k < stretches; ++k) {
+      const std::size_t i = k * count / stretches + offset;
+      if (i < (k + 1) * count / stretches) order.push_back(i);
+    }
   }
   return order;
 }
@@ -43,8 +48,7 @@ std::vector<std::size_t> observations_to_use(const Scan& scan) {
     return used;
   }
   static const double gates[] = {chi2_quantile(0.99, 1), chi2_quantile(0.99, 2)};
-  const std::size_t step = (count + most_observations_used - 1) / most_observations_used;
-  for (const std::size_t i : spread_order(count, step)) {
+  for (const std::size_t i : spread_order(count)) {
     if (used.size() == most_observations_used) break;
     const Observation& candidate = scan.observations[i];
     const double gate = gates[dimension(candidate.kind) - 1];

@@ -48,9 +48,15 @@ TEST(ThinScan, SpreadsWhatItKeepsOverTheScan) {
   ASSERT_EQ(used.size(), most_observations_used);
   EXPECT_TRUE(std::is_sorted(used.begin(), used.end()));
   for (std::size_t k = 1; k < used.size(); ++k) {
-    EXPECT_GE(used[k] - used[k - 1], 39u);
-    EXPECT_LE(used[k] - used[k - 1], 200u);
+    EXPECT_GE(used[k] - used[k - 1], 78u);
+    EXPECT_LE(used[k] - used[k - 1], 79u);
   }
+}
+
+TEST(ThinScan, SpreadsAlsoWhatIsLittleMoreThanEnough) {
+  const std::vector<std::size_t> used = observations_to_use(circle_of(most_observations_used + 9, 100.0, 1e-3));
+  ASSERT_EQ(used.size(), most_observations_used);
+  for (std::size_t k = 1; k < used.size(); ++k) EXPECT_LE(used[k] - used[k - 1], 2u);
 }
 
 TEST(ThinScan, KeepsBearingsAcrossTheSeamForOneObject) {

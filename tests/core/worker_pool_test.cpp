@@ -35,7 +35,7 @@ TEST(WorkerPool, ThrowsWhatTheFunctionThrowsAndGoesOnWorking) {
     const std::vector<int> expected = squares(pool, 100);
     for (int again = 0; again < 50; ++again) {
       std::atomic<int> under_way{0};
-      const auto fail_at_seven = [&](std::size_t i) {
+      auto fail_at_seven = [&](std::size_t i) {
         ++under_way;
         const bool fails = i % 10 == 7;
         --under_way;

@@ -10,7 +10,7 @@
 namespace helixnav::core {
 
 /// So many observations of a scan an estimator works with; the work of a scan goes by their third power. The fullest scan of
-/// the logs in the data folder has 37.
+/// DLR has 13.
 inline constexpr std::size_t most_observations_used = 512;
 
 /// Places in the scan of the observations to work with, ascending: all, where there are no more than most_observations_used.
