@@ -108,13 +108,13 @@ TEST_P(CrowdedScan, IsThinnedAndTheReportSaysSo) {
   ASSERT_EQ(run.steps.size(), 3u);
   for (const core::StepReport& step : run.steps) {
     EXPECT_EQ(step.associations.size(), 10'000u);
-    EXPECT_LE(step.mapped_landmarks, 3 * 128);
+    EXPECT_LE(step.mapped_landmarks, 3 * 256);
     ASSERT_EQ(step.decisions.size(), 1u);
     const auto* thinned = std::get_if<core::OtherDecision>(&step.decisions.front());
     ASSERT_NE(thinned, nullptr);
     EXPECT_EQ(thinned->kind + ' ' + thinned->verdict, "scan thinned");
   }
-  EXPECT_LE(run.steps[2].mapped_landmarks, GetParam() < 0.01 ? 3 : 3 * 128);
+  EXPECT_LE(run.steps[2].mapped_landmarks, GetParam() < 0.01 ? 3 : 3 * 256);
 }
 
 INSTANTIATE_TEST_SUITE_P(Spacings, CrowdedScan, ::testing::Values(0.0, 1e-8, 1.0));

@@ -83,7 +83,7 @@ Calibration calibrate_noise(const CalibrateJob& job) {
   return result;
 }
 
-void print(const char* what, const smoothing::NoiseScale& scale) {
+void print_scale(const char* what, const smoothing::NoiseScale& scale) {
   const double factor = scale.factor;
   std::printf("%-11s noise x %.3f (95 %%: %.3f to %.3f; judged by %.0f residuals): %s than told\n", what, factor,
               scale.low_95, scale.high_95, scale.redundancy,
@@ -100,8 +100,8 @@ ExitCode calibrate(CLI::App& command, CalibrateJob& job) {
     throw core::InputError(job.out + ": is there already; choose another --out");
   }
   const Calibration result = calibrate_noise(job);
-  print("odometry", result.scales.odometry);
-  print("detections", result.scales.landmarks);
+  print_scale("odometry", result.scales.odometry);
+  print_scale("detections", result.scales.landmarks);
   std::printf("not estimated: scale and bias of the odometry, heading and place of the sensors, delay\n");
   if (!result.settled) std::printf("not settled after %d rounds: the intervals are not to be trusted\n", result.rounds);
   if (job.out.empty()) return ExitCode::ok;

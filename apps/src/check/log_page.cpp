@@ -15,14 +15,14 @@
 namespace helixnav::apps {
 namespace {
 
+constexpr double deg_per_rad = 180.0 / core::pi;
+
 template <class... Values>
 std::string line(const char* format, Values... values) {
   std::array<char, 320> buffer{};
   std::snprintf(buffer.data(), buffer.size(), format, values...);
   return std::string(buffer.data()) + '\n';
 }
-
-double in_degrees(double angle_rad) { return angle_rad * 180.0 / core::pi; }
 
 double rate(std::size_t count, double duration_s) {
   return duration_s > 0.0 ? static_cast<double>(count - 1) / duration_s : 0.0;
@@ -64,8 +64,8 @@ std::string motion_text(const core::Recording& recording) {
     turned_rad += std::abs(odometry->T_before_after.heading_rad);
     left_rad += odometry->T_before_after.heading_rad;
   }
-  return line("motion      %.4g m driven, %.4g deg turned, in sum %.4g deg to the left", way_m, in_degrees(turned_rad),
-              in_degrees(left_rad));
+  return line("motion      %.4g m driven, %.4g deg turned, in sum %.4g deg to the left", way_m,
+              deg_per_rad * (turned_rad), deg_per_rad * (left_rad));
 }
 
 std::string kinds_text(const ScanCounts& counts) {
@@ -83,7 +83,7 @@ std::string view_text(const char* what, const core::FieldOfView& view) {
   std::snprintf(reach.data(), reach.size(), view.reach() ? "reach %.4g m" : "reach unknown",
                 view.reach().value_or(0.0));
   return line("%s %s, surely from %.3g to %.4g m, bearings from %.4g to %.4g deg", what, reach.data(), view.min_range_m,
-              view.max_range_m, in_degrees(view.min_bearing_rad), in_degrees(view.max_bearing_rad));
+              view.max_range_m, deg_per_rad * (view.min_bearing_rad), deg_per_rad * (view.max_bearing_rad));
 }
 
 std::string truth_text(const core::Recording& recording) {

@@ -13,7 +13,7 @@ namespace helixnav::apps {
 namespace {
 
 template <class... Values>
-std::string text(const char* format, Values... values) {
+std::string warning(const char* format, Values... values) {
   std::array<char, 400> buffer{};
   std::snprintf(buffer.data(), buffer.size(), format, values...);
   return buffer.data();
@@ -25,14 +25,14 @@ double share(std::size_t part, std::size_t whole) {
 
 std::string no_landmark_text(const ObservationCounts& counts) {
   if (counts.seen == 0) return "the log holds no detections: nothing was mapped, and the path is that of the odometry";
-  return text(
+  return warning(
       "the map has no landmark: of %zu detections %zu were matched and %zu began landmarks that were not seen "
       "again; are reach, mounting and noise those of this sensor? 'helixnav check' shows what was understood",
       counts.seen, counts.matched, counts.began);
 }
 
 std::string collapse_text(const ObservationCounts& counts) {
-  return text(
+  return warning(
       "matching collapsed: of %zu detections %.0f %% were matched, %.0f %% began landmarks; odometry or detections "
       "are worse than told, or mounting, units or times are wrong. 'helixnav check' shows what was understood, "
       "'helixnav calibrate' estimates the noise from the log",
@@ -42,12 +42,12 @@ std::string collapse_text(const ObservationCounts& counts) {
 std::string nis_text(double mean_per_dof) {
   const double factor = std::sqrt(mean_per_dof);
   if (mean_per_dof > 1.0) {
-    return text(
+    return warning(
         "innovations are %.2g times larger than the noise told allows (NIS %.3g per degree of freedom): "
         "covariances are too small; 'helixnav calibrate' estimates the noise from the log",
         factor, mean_per_dof);
   }
-  return text(
+  return warning(
       "innovations are %.2g times smaller than the noise told (NIS %.3g per degree of freedom): the log is better "
       "than assumed, and returns will be harder to tell apart than they need be; 'helixnav calibrate' estimates "
       "the noise from the log",
@@ -100,9 +100,9 @@ std::vector<std::string> warnings_of(const Drive& job, const ObservationCounts& 
   if (evaluation.nis.updates >= 50 && (nis < least_nis || nis > most_nis)) warnings.push_back(nis_text(nis));
   if (evaluation.position && evaluation.position->error_m.count == 0) {
     warnings.push_back(
-        text("none of the %zu positions of truth lies within the time of the run; is it of the same clock? "
-             "'helixnav evaluate' takes --truth-offset-s",
-             evaluation.position->fixes_outside));
+        warning("none of the %zu positions of truth lies within the time of the run; is it of the same clock? "
+                "'helixnav evaluate' takes --truth-offset-s",
+                evaluation.position->fixes_outside));
   }
   if (job.known_association && mature && counts.matched == 0) {
     warnings.emplace_back("no identity was seen twice: --association known needs identities that last");

@@ -26,9 +26,9 @@ name = "example cart"
 # y_m = 0.0
 # Noise that grows with the way or with the time: after 100 m of straight driving, sigma_along_m_per_sqrt_m = 0.05 means
 # a standard deviation of 0.05 * sqrt(100) = 0.5 m. What a column of odometry.csv tells comes first.
-sigma_along_m_per_sqrt_m = 0.08
-sigma_sideways_m_per_sqrt_m = 0.02
-sigma_heading_deg_per_sqrt_m = 0.5
+sigma_along_m_per_sqrt_m = 0.027
+sigma_sideways_m_per_sqrt_m = 0.005
+sigma_heading_deg_per_sqrt_m = 0.16
 # sigma_heading_deg_per_sqrt_s = 0.1     # of a gyro
 # Noise of each sample of speed and turn rate, instead or as well:
 # sigma_v_mps = 0.1
@@ -67,6 +67,8 @@ clutter_per_scan = 0.5                   # detections of nothing
 # sigma_m = 1.0
 )";
 
+constexpr double deg_in_rad = 180.0 / core::pi;
+
 template <class... Values>
 void append(std::string& text, const char* format, Values... values) {
   std::array<char, 160> buffer{};
@@ -74,11 +76,10 @@ void append(std::string& text, const char* format, Values... values) {
   text += buffer.data();
 }
 
-double in_degrees(double angle_rad) { return angle_rad * 180.0 / core::pi; }
-
-core::Recording drive() {
+core::Recording example_drive() {
   sim::Scenario scenario = sim::named_scenario("figure-of-eight");
   scenario.scanner.T_robot_sensor = {0.5, 0.0, 0.0};
+  scenario.true_noise.odometry = {0.15, 0.0147};
   return sim::simulate(scenario, 1);
 }
 
@@ -86,13 +87,13 @@ void append_scan(const core::Scan& scan, ExampleLog& log) {
   const double t_s = core::seconds(scan.t_ns);
   if (scan.observations.empty()) append(log.detections, "%.3f,,\n", t_s);  // seen nothing: that is information, too
   for (const core::Observation& z : scan.observations)
-    append(log.detections, "%.3f,%.3f,%.2f\n", t_s, z.z[0], in_degrees(z.z[1]));
+    append(log.detections, "%.3f,%.3f,%.2f\n", t_s, z.z[0], deg_in_rad * (z.z[1]));
 }
 
 }  // namespace
 
 ExampleLog make_example_log() {
-  const core::Recording recording = drive();
+  const core::Recording recording = example_drive();
   ExampleLog log;
   log.vehicle = vehicle_text;
   log.odometry = "t_s,dx_m,dy_m,dheading_deg\n";
@@ -104,13 +105,13 @@ ExampleLog make_example_log() {
     if (const auto* odometry = std::get_if<core::Odometry>(&event)) {
       const core::Pose2& moved = odometry->T_before_after;
       append(log.odometry, "%.3f,%.4f,%.4f,%.4f\n", core::seconds(odometry->t_ns), moved.x_m, moved.y_m,
-             in_degrees(moved.heading_rad));
+             deg_in_rad * (moved.heading_rad));
     }
     if (const auto* scan = std::get_if<core::Scan>(&event)) append_scan(*scan, log);
   }
   for (const core::TruePose& pose : recording.true_poses) {
     append(log.truth_poses, "%.3f,%.4f,%.4f,%.4f\n", core::seconds(pose.t_ns), pose.T_world_robot.x_m,
-           pose.T_world_robot.y_m, in_degrees(pose.T_world_robot.heading_rad));
+           pose.T_world_robot.y_m, deg_in_rad * (pose.T_world_robot.heading_rad));
   }
   for (const core::TrueLandmark& tree : recording.true_landmarks) {
     append(log.truth_landmarks, "%.3f,%.3f\n", tree.point_m.x(), tree.point_m.y());

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <string>
 
 #include "own_columns.hpp"
 #include "own_tables.hpp"
+#include "plausible.hpp"
 
 namespace helixnav::logs {
 namespace {
 
-using namespace detection_columns;
-using Kind = OwnDetection::Kind;
+constexpr double most_detection_m = 1e6;
 
-constexpr double farthest_m = 1e6;
-
-Kind kind_of(const Row& row) {
+OwnDetection::Kind kind_of(const Row& row) {
+  using namespace detection_columns;
   const bool polar = row.has(range) || row.has(bearing);
   const bool point = row.has(x) || row.has(y);
   if (polar && point) {
@@ -20,15 +20,16 @@ Kind kind_of(const Row& row) {
   }
   if (point && !row.has(x)) row.fail(x, "expected x and y, found only y");
   if (point && !row.has(y)) row.fail(y, "expected x and y, found only x");
-  if (point) return Kind::cartesian;
-  if (row.has(range) && row.has(bearing)) return Kind::range_bearing;
-  if (row.has(range)) return Kind::range;
-  return row.has(bearing) ? Kind::bearing : Kind::nothing;
+  if (point) return OwnDetection::Kind::cartesian;
+  if (row.has(range) && row.has(bearing)) return OwnDetection::Kind::range_bearing;
+  if (row.has(range)) return OwnDetection::Kind::range;
+  return row.has(bearing) ? OwnDetection::Kind::bearing : OwnDetection::Kind::nothing;
 }
 
 double variance(const Row& row, std::size_t column) {
   if (!row.has(column)) return 0.0;
-  const double sigma = row.positive(column);
+  row.positive(column);
+  const double sigma = row.number_between(column, std::sqrt(least_variance), std::sqrt(most_variance));
   return sigma * sigma;
 }
 
@@ -42,6 +43,7 @@ void read_two_variances(const Row& row, std::size_t first, std::size_t second, O
 }
 
 void read_covariance(const Row& row, OwnDetection& detection) {
+  using namespace detection_columns;
   detection.R = {row.positive(cov_xx), row.number(cov_xy), row.positive(cov_yy)};
   if (detection.R[0] * detection.R[2] <= detection.R[1] * detection.R[1]) {
     row.fail(cov_xx, "this covariance is not positive definite");
@@ -49,25 +51,27 @@ void read_covariance(const Row& row, OwnDetection& detection) {
 }
 
 void read_value(const Row& row, OwnDetection& detection) {
+  using namespace detection_columns;
   switch (detection.kind) {
-    case Kind::range_bearing:
+    case OwnDetection::Kind::range_bearing:
       row.positive(range);
-      detection.z = {row.number_between(range, 0.0, farthest_m), row.angle(bearing)};
+      detection.z = {row.number_between(range, 0.0, most_detection_m), row.angle(bearing)};
       return read_two_variances(row, sigma_range, sigma_bearing, detection);
-    case Kind::range:
+    case OwnDetection::Kind::range:
       row.positive(range);
-      detection.z = {row.number_between(range, 0.0, farthest_m), 0.0};
+      detection.z = {row.number_between(range, 0.0, most_detection_m), 0.0};
       detection.R = {variance(row, sigma_range), 0.0, 0.0};
       return;
-    case Kind::bearing:
+    case OwnDetection::Kind::bearing:
       detection.z = {row.angle(bearing), 0.0};
       detection.R = {variance(row, sigma_bearing), 0.0, 0.0};
       return;
-    case Kind::cartesian:
-      detection.z = {row.number_between(x, -farthest_m, farthest_m), row.number_between(y, -farthest_m, farthest_m)};
+    case OwnDetection::Kind::cartesian:
+      detection.z = {row.number_between(x, -most_detection_m, most_detection_m),
+                     row.number_between(y, -most_detection_m, most_detection_m)};
       if (row.has(cov_xx)) return read_covariance(row, detection);
       return read_two_variances(row, sigma_x, sigma_y, detection);
-    case Kind::nothing:
+    case OwnDetection::Kind::nothing:
       return;
   }
 }
@@ -75,6 +79,7 @@ void read_value(const Row& row, OwnDetection& detection) {
 }  // namespace
 
 void OwnTables::begin_detections(const Columns& columns) {
+  using namespace detection_columns;
   columns.require(t);
   if (columns.has(x) != columns.has(y)) columns.require(columns.has(x) ? y : x);
   if (columns.has(cov_xx)) {
@@ -89,6 +94,7 @@ void OwnTables::begin_detections(const Columns& columns) {
 }
 
 void OwnTables::add_detection(const Row& row) {
+  using namespace detection_columns;
   OwnDetection detection;
   detection.t_ns = times_[1].take(row, t);
   detection.kind = kind_of(row);

@@ -8,23 +8,21 @@
 #include <variant>
 
 #include "helixnav/core/angle.hpp"
+#include "units.hpp"
 
 namespace helixnav::logs {
 namespace {
 
-using Kind = OwnDetection::Kind;
 using Doubts = std::vector<std::string>;
 
-constexpr double degree = core::pi / 180.0;
-
 template <class... Values>
-std::string text(const char* format, Values... values) {
+std::string sentence(const char* format, Values... values) {
   std::array<char, 320> buffer{};
   std::snprintf(buffer.data(), buffer.size(), format, values...);
   return buffer.data();
 }
 
-double quantile(std::vector<double>& values, double share) {
+double value_at(std::vector<double>& values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
   std::nth_element(values.begin(), at, values.end());
   return *at;
@@ -41,12 +39,12 @@ std::vector<double> intervals_s(const OwnLog& log) {
 void doubt_times(const OwnLog& log, Doubts& doubts) {
   std::vector<double> intervals = intervals_s(log);
   if (intervals.empty()) return;
-  const double median_s = quantile(intervals, 0.5);
+  const double median_s = value_at(intervals, 0.5);
   if (median_s > 5.0) {
     doubts.push_back(
-        text("odometry: a row every %.4g s; if its times are in milliseconds, call the column t_ms", median_s));
+        sentence("odometry: a row every %.4g s; if its times are in milliseconds, call the column t_ms", median_s));
   } else if (median_s < 1e-4) {
-    doubts.push_back(text("odometry: a row every %.4g s; are its times in seconds?", median_s));
+    doubts.push_back(sentence("odometry: a row every %.4g s; are its times in seconds?", median_s));
   }
   const double long_s = std::max(1.0, 10.0 * median_s);
   std::size_t count = 0, longest = 0;
@@ -57,9 +55,9 @@ void doubt_times(const OwnLog& log, Doubts& doubts) {
   }
   if (count == 0) return;
   const bool held = log.odometry_kind != OdometryKind::increments && log.odometry_kind != OdometryKind::poses;
-  doubts.push_back(text("odometry: %zu gaps longer than %.3g s, the longest %.4g s from %.9g s on; %s", count, long_s,
-                        intervals[longest], core::seconds(log.odometry[longest].t_ns),
-                        held ? "the row before a gap is held through it" : "motion in it is spread evenly"));
+  doubts.push_back(sentence("odometry: %zu gaps longer than %.3g s, the longest %.4g s from %.9g s on; %s", count,
+                            long_s, intervals[longest], core::seconds(log.odometry[longest].t_ns),
+                            held ? "the row before a gap is held through it" : "motion in it is spread evenly"));
 }
 
 /// Of the motion that was made.
@@ -75,8 +73,8 @@ void doubt_speeds(const core::Recording& recording, Doubts& doubts) {
     last_ns = std::max(last_ns, core::time_of(event));
   }
   if (speeds_mps.empty()) return;
-  const double speed_mps = quantile(speeds_mps, 0.95);
-  if (speed_mps > 70.0) doubts.push_back(text("odometry: speeds of %.4g m/s; what unit is it in?", speed_mps));
+  const double speed_mps = value_at(speeds_mps, 0.95);
+  if (speed_mps > 70.0) doubts.push_back(sentence("odometry: speeds of %.4g m/s; what unit is it in?", speed_mps));
   if (*std::max_element(speeds_mps.begin(), speeds_mps.end()) == 0.0) {
     doubts.emplace_back("odometry: the vehicle never moves");
   }
@@ -97,22 +95,22 @@ void doubt_turns(const OwnLog& log, Doubts& doubts) {
   for (std::size_t i = 0; i < log.odometry.size(); ++i) large += std::abs(turn_of(log, i)) > most ? 1 : 0;
   if (large * 50 <= log.odometry.size()) return;
   doubts.push_back(
-      text("odometry: %zu of %zu rows turn by more than %g %s; are the headings in degrees? Then end the name "
-           "of the column in %s",
-           large, log.odometry.size(), most, rate ? "rad/s" : "rad", rate ? "_degps" : "_deg"));
+      sentence("odometry: %zu of %zu rows turn by more than %g %s; are the headings in degrees? Then end the name "
+               "of the column in %s",
+               large, log.odometry.size(), most, rate ? "rad/s" : "rad", rate ? "_degps" : "_deg"));
 }
 
 void doubt_bearings(const OwnLog& log, Doubts& doubts) {
   double most_rad = 0.0;
   std::size_t count = 0;
   for (const OwnDetection& row : log.detections) {
-    if (row.kind != Kind::range_bearing && row.kind != Kind::bearing) continue;
-    most_rad = std::max(most_rad, std::abs(row.z[row.kind == Kind::bearing ? 0 : 1]));
+    if (row.kind != OwnDetection::Kind::range_bearing && row.kind != OwnDetection::Kind::bearing) continue;
+    most_rad = std::max(most_rad, std::abs(row.z[row.kind == OwnDetection::Kind::bearing ? 0 : 1]));
     ++count;
   }
-  if (count > 100 && most_rad < 2.0 * core::pi * degree) {
-    doubts.push_back(
-        text("detections: all %zu bearings lie within ±%.3g degrees; are they in radians?", count, most_rad / degree));
+  if (count > 100 && most_rad < 2.0 * core::pi * rad_per_deg) {
+    doubts.push_back(sentence("detections: all %zu bearings lie within ±%.3g degrees; are they in radians?", count,
+                              most_rad / rad_per_deg));
   }
 }
 
@@ -125,7 +123,8 @@ void doubt_overlap(const OwnLog& log, const core::Recording& recording, Doubts& 
     outside += t_ns < log.odometry.front().t_ns || t_ns > log.odometry.back().t_ns ? 1 : 0;
   }
   if (outside * 50 > scans) {
-    doubts.push_back(text("%zu of %zu scans were taken before the odometry begins or after it ends", outside, scans));
+    doubts.push_back(
+        sentence("%zu of %zu scans were taken before the odometry begins or after it ends", outside, scans));
   }
 }
 
@@ -153,10 +152,10 @@ void doubt_vehicle(const Vehicle& vehicle, const core::Recording& recording, Dou
     return sensor.reach_m || sensor.reliable_range_m || sensor.min_bearing_rad;
   });
   if (told && outside * 20 > seen) {
-    doubts.push_back(
-        text("%zu of %zu detections (%.0f %%) lie outside the reach and view that %s tells; is it the vehicle "
-             "of this log?",
-             outside, seen, 100.0 * static_cast<double>(outside) / static_cast<double>(seen), vehicle.path.c_str()));
+    doubts.push_back(sentence(
+        "%zu of %zu detections (%.0f %%) lie outside the reach and view that %s tells; is it the vehicle "
+        "of this log?",
+        outside, seen, 100.0 * static_cast<double>(outside) / static_cast<double>(seen), vehicle.path.c_str()));
   }
 }
 

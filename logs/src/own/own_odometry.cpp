@@ -7,11 +7,10 @@
 
 #include "own_columns.hpp"
 #include "own_tables.hpp"
+#include "plausible.hpp"
 
 namespace helixnav::logs {
 namespace {
-
-using namespace odometry_columns;
 
 struct KindColumns {
   OdometryKind kind;
@@ -20,6 +19,7 @@ struct KindColumns {
 };
 
 const std::vector<KindColumns>& kinds() {
+  using namespace odometry_columns;
   static const std::vector<KindColumns> all{
       {OdometryKind::increments, {dx, dheading}, {dy}}, {OdometryKind::steering, {v, steering}, {}},
       {OdometryKind::velocities, {v, omega}, {vy}},     {OdometryKind::wheels, {v_left, v_right}, {}},
@@ -63,14 +63,16 @@ const KindColumns& kind_of(const Columns& columns) {
 }
 
 bool has_sigmas(const Columns& columns, OdometryKind kind) {
+  using namespace odometry_columns;
   const bool increments = columns.has(sigma_x) && columns.has(sigma_heading);
   const bool velocities = columns.has(sigma_v) && columns.has(sigma_omega);
   return (kind == OdometryKind::increments && increments) || (kind == OdometryKind::velocities && velocities);
 }
 
-bool has_covariance(const Columns& columns) { return columns.has(cov_xx); }
+bool has_covariance(const Columns& columns) { return columns.has(odometry_columns::cov_xx); }
 
 void refuse_stray_noise(const Columns& columns, OdometryKind kind) {
+  using namespace odometry_columns;
   for (const std::size_t column : {cov_xy, cov_xh, cov_yy, cov_yh, cov_hh}) {
     if (has_covariance(columns)) columns.require(column);
   }
@@ -89,6 +91,7 @@ void refuse_stray_noise(const Columns& columns, OdometryKind kind) {
 }
 
 Eigen::Matrix3d covariance_of(const Row& row) {
+  using namespace odometry_columns;
   Eigen::Matrix3d Q;
   const double xy = row.number(cov_xy), xh = row.number(cov_xh), yh = row.number(cov_yh);
   Q << row.number(cov_xx), xy, xh, xy, row.number(cov_yy), yh, xh, yh, row.number(cov_hh);
@@ -98,6 +101,7 @@ Eigen::Matrix3d covariance_of(const Row& row) {
 }
 
 Eigen::Matrix3d variances_of(const Row& row, OdometryKind kind) {
+  using namespace odometry_columns;
   const bool increments = kind == OdometryKind::increments;
   const auto sigma = [&](std::size_t column) {
     return row.columns().has(column) ? row.number_between(column, 0.0, 1e6) : 0.0;
@@ -110,12 +114,13 @@ Eigen::Matrix3d variances_of(const Row& row, OdometryKind kind) {
 constexpr double most_m = 1e7, most_mps = 1e4, most_radps = 1e3;
 
 Eigen::Vector3d value_of(const Row& row, OdometryKind kind) {
+  using namespace odometry_columns;
   const auto if_there = [&](std::size_t column, double most) {
     return row.columns().has(column) ? row.number_between(column, -most, most) : 0.0;
   };
   switch (kind) {
     case OdometryKind::increments:
-      return {row.number_between(dx, -most_m, most_m), if_there(dy, most_m), row.angle(dheading)};
+      return {row.number_between(dx, -most_motion_m, most_motion_m), if_there(dy, most_motion_m), row.angle(dheading)};
     case OdometryKind::velocities:
       return {row.number_between(v, -most_mps, most_mps), if_there(vy, most_mps),
               row.number_between(omega, -most_radps, most_radps)};
@@ -149,7 +154,7 @@ std::string_view name_of(OdometryKind kind) {
 }
 
 void OwnTables::begin_odometry(const Columns& columns) {
-  columns.require(t);
+  columns.require(odometry_columns::t);
   const KindColumns& kind = kind_of(columns);
   for (const KindColumns& other : kinds()) {
     for (const std::size_t column : other.needed) {
@@ -171,7 +176,7 @@ void OwnTables::begin_odometry(const Columns& columns) {
 
 void OwnTables::add_odometry(const Row& row) {
   OwnOdometry odometry;
-  odometry.t_ns = times_[0].take(row, t);
+  odometry.t_ns = times_[0].take(row, odometry_columns::t);
   odometry.value = value_of(row, log_.odometry_kind);
   const bool covariance = has_covariance(row.columns());
   if (covariance || has_sigmas(row.columns(), log_.odometry_kind)) {

@@ -13,11 +13,10 @@
 #include "motion.hpp"
 #include "own_doubts.hpp"
 #include "own_truth.hpp"
+#include "plausible.hpp"
 
 namespace helixnav::logs {
 namespace {
-
-using Kind = OwnDetection::Kind;
 
 [[noreturn]] void fail(const OwnLog& log, const std::string& message) {
   throw core::InputError(log.name + ": " + message);
@@ -62,12 +61,12 @@ core::Observation observation_of(const OwnDetection& row, const SensorModel& sen
     return own ? own_variance : told(sensor.sigma_bearing_rad, sensor, vehicle, "sigma_bearing_deg");
   };
   core::Observation observation;
-  if (row.kind == Kind::range_bearing) {
+  if (row.kind == OwnDetection::Kind::range_bearing) {
     observation = core::make_range_bearing(row.z[0] / sensor.range_scale, row.z[1], std::sqrt(range_variance()),
                                            std::sqrt(bearing_variance(row.R[2])));
-  } else if (row.kind == Kind::range) {
+  } else if (row.kind == OwnDetection::Kind::range) {
     observation = core::make_range(row.z[0] / sensor.range_scale, std::sqrt(range_variance()));
-  } else if (row.kind == Kind::bearing) {
+  } else if (row.kind == OwnDetection::Kind::bearing) {
     observation = core::make_bearing(row.z[0], std::sqrt(bearing_variance(row.R[0])));
   } else {
     Eigen::Matrix2d R;
@@ -97,7 +96,11 @@ std::vector<LabelledScan> scans_of(const OwnLog& log, const std::vector<SensorMo
       begun.scan.T_robot_sensor = sensor.T_vehicle_sensor;
       begun.sensor = row.sensor;
     }
-    if (row.kind == Kind::nothing) continue;
+    if (row.kind == OwnDetection::Kind::nothing) continue;
+    if (scans.back().labels.size() == most_observations) {
+      fail(log, "more than " + std::to_string(most_observations) + " detections in one scan, at " +
+                    std::to_string(core::seconds(row.t_ns)) + " s; do the rows have times of their own?");
+    }
     scans.back().scan.observations.push_back(observation_of(row, sensor, vehicle));
     scans.back().labels.push_back(row.label);
   }

@@ -105,13 +105,14 @@ void OwnTables::add(Table table, const Row& row) {
   }
 }
 
-constexpr double farthest_m = 1e8;
+constexpr double most_place_m = 1e8;
 
 void OwnTables::add_fix(const Row& row) {
   using namespace fix_columns;
   OwnFix fix;
   fix.t_ns = times_[2].take(row, t);
-  fix.position_m = {row.number_between(x, -farthest_m, farthest_m), row.number_between(y, -farthest_m, farthest_m)};
+  fix.position_m = {row.number_between(x, -most_place_m, most_place_m),
+                    row.number_between(y, -most_place_m, most_place_m)};
   if (row.has(sigma)) fix.sigma_m = row.positive(sigma);
   log_.fixes.push_back(fix);
 }
@@ -119,8 +120,8 @@ void OwnTables::add_fix(const Row& row) {
 void OwnTables::add_true_pose(const Row& row) {
   using namespace true_pose_columns;
   const core::Nanoseconds t_ns = times_[3].take(row, t);
-  const Eigen::Vector2d position_m(row.number_between(x, -farthest_m, farthest_m),
-                                   row.number_between(y, -farthest_m, farthest_m));
+  const Eigen::Vector2d position_m(row.number_between(x, -most_place_m, most_place_m),
+                                   row.number_between(y, -most_place_m, most_place_m));
   if (row.columns().has(heading)) {
     log_.true_poses.push_back(
         {t_ns, core::Pose2(position_m.x(), position_m.y(), row.number_between(heading, -1e6, 1e6))});
@@ -133,7 +134,8 @@ void OwnTables::add_true_landmark(const Row& row) {
   using namespace true_landmark_columns;
   core::TrueLandmark landmark;
   if (row.has(id)) landmark.label = ids_.of(row.text(id));
-  landmark.point_m = {row.number_between(x, -farthest_m, farthest_m), row.number_between(y, -farthest_m, farthest_m)};
+  landmark.point_m = {row.number_between(x, -most_place_m, most_place_m),
+                      row.number_between(y, -most_place_m, most_place_m)};
   log_.true_landmarks.push_back(landmark);
 }
 

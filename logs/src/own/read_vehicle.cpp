@@ -12,15 +12,15 @@
 namespace helixnav::logs {
 namespace {
 
-constexpr double farthest_m = 1e5;
-constexpr double least = 1e-9;  // of a standard deviation
-constexpr double most = 1e4;
-constexpr double turn_rad = 2.0 * core::pi;
+constexpr double most_mounting_m = 1e5;
+constexpr double least_sigma = 1e-9;  // of a standard deviation
+constexpr double most_sigma = 1e4;
+constexpr double whole_turn_rad = 2.0 * core::pi;
 
 core::Pose2 pose_of(TomlSection& section) {
-  const double x_m = section.number("x_m", -farthest_m, farthest_m).value_or(0.0);
-  const double y_m = section.number("y_m", -farthest_m, farthest_m).value_or(0.0);
-  return {x_m, y_m, section.angle("heading", -turn_rad, turn_rad).value_or(0.0)};
+  const double x_m = section.number("x_m", -most_mounting_m, most_mounting_m).value_or(0.0);
+  const double y_m = section.number("y_m", -most_mounting_m, most_mounting_m).value_or(0.0);
+  return {x_m, y_m, section.angle("heading", -whole_turn_rad, whole_turn_rad).value_or(0.0)};
 }
 
 OdometryModel odometry_of(TomlSection section) {
@@ -34,22 +34,22 @@ OdometryModel odometry_of(TomlSection section) {
   model.wheelbase_m = section.number("wheelbase_m", 1e-3, 1e3);
   model.encoder_offset_m = section.number("encoder_offset_m", -1e3, 1e3).value_or(0.0);
   model.track_m = section.number("track_m", 1e-3, 1e3);
-  model.sigma_along_m_per_sqrt_m = section.number("sigma_along_m_per_sqrt_m", least, most);
-  model.sigma_sideways_m_per_sqrt_m = section.number("sigma_sideways_m_per_sqrt_m", least, most);
-  model.sigma_heading_rad_per_sqrt_m = section.angle("sigma_heading", least, most, "_per_sqrt_m");
-  model.sigma_heading_rad_per_sqrt_s = section.angle("sigma_heading", least, most, "_per_sqrt_s");
-  model.sigma_v_mps = section.number("sigma_v_mps", least, most);
-  model.sigma_omega_radps = section.angle("sigma_omega", least, most, "_per_s");
-  model.sigma_steering_rad = section.angle("sigma_steering", least, 1.0);
+  model.sigma_along_m_per_sqrt_m = section.number("sigma_along_m_per_sqrt_m", least_sigma, most_sigma);
+  model.sigma_sideways_m_per_sqrt_m = section.number("sigma_sideways_m_per_sqrt_m", least_sigma, most_sigma);
+  model.sigma_heading_rad_per_sqrt_m = section.angle("sigma_heading", least_sigma, most_sigma, "_per_sqrt_m");
+  model.sigma_heading_rad_per_sqrt_s = section.angle("sigma_heading", least_sigma, most_sigma, "_per_sqrt_s");
+  model.sigma_v_mps = section.number("sigma_v_mps", least_sigma, most_sigma);
+  model.sigma_omega_radps = section.angle("sigma_omega", least_sigma, most_sigma, "_per_s");
+  model.sigma_steering_rad = section.angle("sigma_steering", least_sigma, 1.0);
   model.noise_scale = section.number("noise_scale", 1e-3, 1e3).value_or(1.0);
   section.refuse_rest();
   return model;
 }
 
 void read_view(TomlSection& section, SensorModel& sensor) {
-  sensor.reach_m = section.number("reach_m", 1e-3, farthest_m);
-  sensor.reliable_range_m = section.number("reliable_range_m", 1e-3, farthest_m);
-  sensor.min_range_m = section.number("min_range_m", 0.0, farthest_m).value_or(0.0);
+  sensor.reach_m = section.number("reach_m", 1e-3, most_mounting_m);
+  sensor.reliable_range_m = section.number("reliable_range_m", 1e-3, most_mounting_m);
+  sensor.min_range_m = section.number("min_range_m", 0.0, most_mounting_m).value_or(0.0);
   if (const auto view = section.angles("view", -core::pi - 1e-6, core::pi + 1e-6)) {
     sensor.min_bearing_rad = std::max(view->first, -core::pi);
     sensor.max_bearing_rad = std::min(view->second, core::pi);
@@ -57,7 +57,7 @@ void read_view(TomlSection& section, SensorModel& sensor) {
   if (sensor.reach_m && sensor.reliable_range_m && *sensor.reliable_range_m > *sensor.reach_m) {
     section.fail("reliable_range_m", "sensor.reliable_range_m: expected no more than reach_m");
   }
-  const double limit_m = sensor.reliable_range_m.value_or(sensor.reach_m.value_or(farthest_m));
+  const double limit_m = sensor.reliable_range_m.value_or(sensor.reach_m.value_or(most_mounting_m));
   if (sensor.min_range_m >= limit_m) section.fail("min_range_m", "sensor.min_range_m: expected less than the reach");
 }
 
@@ -66,9 +66,9 @@ SensorModel sensor_of(TomlSection section) {
   sensor.name = section.text("name").value_or("");
   sensor.T_vehicle_sensor = pose_of(section);
   read_view(section, sensor);
-  sensor.sigma_range_m = section.number("sigma_range_m", least, most);
-  sensor.sigma_bearing_rad = section.angle("sigma_bearing", least, core::pi);
-  sensor.sigma_point_m = section.number("sigma_point_m", least, most);
+  sensor.sigma_range_m = section.number("sigma_range_m", least_sigma, most_sigma);
+  sensor.sigma_bearing_rad = section.angle("sigma_bearing", least_sigma, core::pi);
+  sensor.sigma_point_m = section.number("sigma_point_m", least_sigma, most_sigma);
   sensor.range_scale = section.number("range_scale", 0.01, 100.0).value_or(1.0);
   sensor.delay_s = section.number("delay_s", -100.0, 100.0).value_or(0.0);
   sensor.detection_probability = section.number("detection_probability", 0.15, 0.999);
@@ -109,9 +109,9 @@ Vehicle read_vehicle(const std::filesystem::path& path) {
   for (const TomlSection& section : root.sections("sensor")) vehicle.sensors.push_back(sensor_of(section));
   check_names(root, vehicle);
   if (auto section = root.section("antenna")) {
-    vehicle.antenna_m.x() = section->number("x_m", -farthest_m, farthest_m).value_or(0.0);
-    vehicle.antenna_m.y() = section->number("y_m", -farthest_m, farthest_m).value_or(0.0);
-    vehicle.sigma_fix_m = section->number("sigma_m", least, most);
+    vehicle.antenna_m.x() = section->number("x_m", -most_mounting_m, most_mounting_m).value_or(0.0);
+    vehicle.antenna_m.y() = section->number("y_m", -most_mounting_m, most_mounting_m).value_or(0.0);
+    vehicle.sigma_fix_m = section->number("sigma_m", least_sigma, most_sigma);
     section->refuse_rest();
   }
   root.refuse_rest();

@@ -69,8 +69,7 @@ bool LineReader::fill() {
   buffer_.resize(kept + block_bytes);
   file_.read(buffer_.data() + kept, static_cast<std::streamsize>(block_bytes));
   buffer_.resize(kept + static_cast<std::size_t>(std::max<std::streamsize>(0, file_.gcount())));
-  at_end_ = buffer_.size() == kept;
-  return !at_end_;
+  return buffer_.size() != kept;
 }
 
 bool LineReader::next(std::string_view& line) {

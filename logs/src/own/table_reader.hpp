@@ -35,7 +35,6 @@ class LineReader {
   std::string buffer_;
   std::size_t begin_ = 0;
   std::size_t number_ = 0;
-  bool at_end_ = false;
 };
 
 /// A table with a header, row by row: cells parted by commas, semicolons or tabs, whichever the header has most of, and

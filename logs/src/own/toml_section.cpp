@@ -10,11 +10,10 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/nearest_name.hpp"
 #include "table_reader.hpp"
+#include "units.hpp"
 
 namespace helixnav::logs {
 namespace {
-
-constexpr double degree = core::pi / 180.0;
 
 std::string in_words(const toml::node& node) {
   switch (node.type()) {
@@ -77,7 +76,7 @@ std::pair<const toml::node*, double> TomlSection::angle_node(const std::string& 
   if (radians != nullptr && degrees != nullptr) {
     fail_at_node(*degrees, full(in_degrees) + ": " + in_radians + " is told, too; keep one");
   }
-  return radians != nullptr ? std::pair(radians, 1.0) : std::pair(degrees, degree);
+  return radians != nullptr ? std::pair(radians, 1.0) : std::pair(degrees, rad_per_deg);
 }
 
 std::optional<double> TomlSection::angle(const std::string& key, double low_rad, double high_rad,

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "program.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+const char* const vehicle =
+    "[odometry]\nsigma_along_m_per_sqrt_m = 0.05\nsigma_sideways_m_per_sqrt_m = 0.02\nsigma_heading_deg_per_sqrt_m = "
+    "0.3\n"
+    "[[sensor]]\nreach_m = 30\nsigma_range_m = 0.1\nsigma_bearing_deg = 0.5\n";
+
+class Warnings : public ::testing::Test {
+ protected:
+  /// A drive straight on past 200 poles on either side, odometry and detections without error.
+  void SetUp() override {
+    std::string odometry = "t,v,omega\n", detections = "t,x_m,y_m,sigma_x,sigma_y\n";
+    for (int t = 0; t <= 100; ++t) {
+      odometry += std::to_string(t) + ",2,0\n";
+      for (int pole = 0; pole < 40; ++pole) {
+        const double x_m = 6.0 * pole - 2.0 * t, y_m = (pole % 2 == 0 ? 1.0 : -1.0) * (4.0 + pole % 5);
+        if (std::abs(x_m) > 25.0) continue;
+        detections += std::to_string(t) + "," + std::to_string(x_m) + "," + std::to_string(y_m) + ",0.1,0.1\n";
+      }
+    }
+    folder_.write("log/vehicle.toml", vehicle);
+    folder_.write("log/odometry.csv", odometry);
+    folder_.write("log/detections.csv", detections);
+  }
+  Outcome replay(const Words& more = {}) const {
+    Words words{"replay", log_, "--out", folder_.path() / "run", "--overwrite", "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  }
+  void expect(const Outcome& outcome, int exit_code, const std::string& said) const {
+    EXPECT_EQ(outcome.exit_code, exit_code);
+    EXPECT_NE(outcome.err.find(said), std::string::npos) << "no \"" << said << "\" in: " << outcome.err;
+    EXPECT_EQ(outcome.out.find("nan"), std::string::npos) << outcome.out;
+  }
+
+  testing::TemporaryFolder folder_;
+  const fs::path log_ = folder_.path() / "log";
+};
+
+TEST_F(Warnings, TellThatTheLogIsBetterThanAssumed) {
+  expect(replay(), 0, "times smaller than the noise told");  // it has no error at all
+}
+
+TEST_F(Warnings, TellOfAMapWithoutALandmark) {
+  std::string detections = "t,range_m,bearing_deg\n";
+  for (int t = 0; t < 100; ++t)
+    detections +=
+        std::to_string(t) + "," + std::to_string(3 + 7 * t % 23) + "," + std::to_string((47 * t) % 360) + "\n";
+  folder_.write("log/detections.csv", detections);
+  expect(replay(), 0, "the map has no landmark: of 100 detections");
+}
+
+TEST_F(Warnings, TellOfTruthOfAnotherClock) {
+  folder_.write("log/truth_poses.csv", "t,x,y\n5000,0,0\n5001,1,0\n");
+  const Outcome outcome = replay();
+  expect(outcome, 0, "none of the 2 positions of truth lies within the time of the run");
+  EXPECT_NE(outcome.out.find("position error       unknown"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Warnings, RefuseRangesWithoutIdentitiesAndSayWhatToDo) {
+  folder_.write("log/detections.csv", "t,range_m\n1,10\n2,10\n");
+  expect(replay(), 3, "the log has none (a column id)");
+  folder_.write("log/detections.csv", "t,range_m,id\n1,10,a\n2,10,a\n");
+  expect(replay(), 3, "add --association known");
+}
+
+TEST_F(Warnings, RefuseToSmoothOrKnowWhatHasNoLabels) {
+  const Outcome smooth = run({"smooth", log_, "--out", folder_.path() / "smooth"});
+  expect(smooth, 3, "smooth needs a labelled log or a graph");
+  expect(replay({"--association", "known"}), 3, "--association known needs a labelled log");
+}
+
+TEST_F(Warnings, ProposeKeysOfTheSectionThatWasMeant) {
+  const fs::path config = folder_.write("mine.toml", "[landmarks]\ncell_side_m = 4\n");
+  const Outcome outcome = replay({"--config", config});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("the nearest is 'landmarks."), std::string::npos) << outcome.err;
+}
+
+TEST_F(Warnings, TellWhereTheMathematicsBrokeAndWriteWhatWasNavigated) {
+  std::string detections = "t,range_m,bearing_deg\n";
+  for (int t = 0; t < 50; ++t) detections += std::to_string(t) + ",1e-9,0\n" + std::to_string(t) + ",10,90\n";
+  folder_.write("log/detections.csv", detections);
+  folder_.write("log/odometry.csv", "t,v,omega\n0,0,0\n50,0,0\n");
+  const Outcome outcome = replay();
+  if (outcome.exit_code != 4) GTEST_SKIP() << "no such break: " << outcome.err;
+  expect(outcome, 4, "at step ");
+  EXPECT_TRUE(fs::exists(folder_.path() / "run/report.html"));
+  EXPECT_TRUE(fs::exists(folder_.path() / "run/map.csv"));
+}
+
+}  // namespace
+}  // namespace helixnav::apps
