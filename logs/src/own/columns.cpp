@@ -111,14 +111,15 @@ std::string in_quotes(std::string_view text) {
 
 }  // namespace
 
-Columns::Columns(std::string path, const std::vector<ColumnKind>& kinds, const std::vector<std::string>& header,
-                 const std::vector<std::size_t>& header_columns, std::size_t header_line)
+TableColumns::TableColumns(std::string path, const std::vector<ColumnKind>& kinds,
+                           const std::vector<std::string>& header, const std::vector<std::size_t>& header_columns,
+                           std::size_t header_line)
     : path_(std::move(path)), kinds_(&kinds), header_(header), header_line_(header_line), found_(kinds.size()) {
   for (std::size_t cell = 0; cell < header_.size(); ++cell) add(cell, header_columns[cell]);
   judge_unknown();
 }
 
-void Columns::add(std::size_t cell, std::size_t column) {
+void TableColumns::add(std::size_t cell, std::size_t column) {
   const std::string name = plain(header_[cell]);
   for (std::size_t kind = 0; kind < kinds_->size(); ++kind) {
     const std::optional<double> factor = factor_of(name, (*kinds_)[kind]);
@@ -131,7 +132,7 @@ void Columns::add(std::size_t cell, std::size_t column) {
   unknown_.push_back({name, column});
 }
 
-void Columns::fail_twice(std::size_t kind, std::size_t cell, std::size_t column) const {
+void TableColumns::fail_twice(std::size_t kind, std::size_t cell, std::size_t column) const {
   const std::string& first = header_[found_[kind].cell];
   const std::string what = first == header_[cell]
                                ? in_quotes(first) + " is there twice"
@@ -139,7 +140,7 @@ void Columns::fail_twice(std::size_t kind, std::size_t cell, std::size_t column)
   fail_at(path_, header_line_, column, "column " + what + "; keep one");
 }
 
-void Columns::judge_unknown() {
+void TableColumns::judge_unknown() {
   std::vector<std::string> missing;
   for (std::size_t kind = 0; kind < kinds_->size(); ++kind) {
     if (has(kind)) continue;
@@ -155,11 +156,11 @@ void Columns::judge_unknown() {
   }
 }
 
-std::string Columns::name_of(std::size_t kind) const {
+std::string TableColumns::name_of(std::size_t kind) const {
   return has(kind) ? header_[found_[kind].cell] : with_unit((*kinds_)[kind]);
 }
 
-void Columns::require(std::size_t kind) const {
+void TableColumns::require(std::size_t kind) const {
   if (has(kind)) return;
   std::string there;
   for (const std::string& name : header_) there += (there.empty() ? "" : ", ") + name;

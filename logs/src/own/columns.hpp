@@ -22,12 +22,12 @@ struct ColumnKind {
 };
 
 /// Which columns of a table are which.
-class Columns {
+class TableColumns {
  public:
   /// Throws core::InputError, with the place, for a column that is there twice, and for one that nobody knows and that is
   /// spelt nearly like a known one that is not there. Others that nobody knows are `unused()`.
-  Columns(std::string path, const std::vector<ColumnKind>& kinds, const std::vector<std::string>& header,
-          const std::vector<std::size_t>& header_columns, std::size_t header_line);
+  TableColumns(std::string path, const std::vector<ColumnKind>& kinds, const std::vector<std::string>& header,
+               const std::vector<std::size_t>& header_columns, std::size_t header_line);
 
   bool has(std::size_t kind) const { return found_[kind].cell != nowhere; }
   const std::vector<std::string>& unused() const { return unused_; }
@@ -68,10 +68,10 @@ class Columns {
   std::vector<std::string> unused_;
 };
 
-/// One row read by Columns. All lives with the table it is of.
+/// One row read by TableColumns. All lives with the table it is of.
 class Row {
  public:
-  Row(const Columns& columns, const std::vector<Cell>& cells, std::size_t line)
+  Row(const TableColumns& columns, const std::vector<Cell>& cells, std::size_t line)
       : columns_(columns), cells_(cells), line_(line) {}
 
   /// The column is there and its cell is not empty.
@@ -89,12 +89,12 @@ class Row {
   [[noreturn]] void fail(std::size_t kind, const std::string& message) const;
 
   std::size_t line() const { return line_; }
-  const Columns& columns() const { return columns_; }
+  const TableColumns& columns() const { return columns_; }
 
  private:
   const Cell& cell(std::size_t kind) const { return cells_[columns_.found(kind).cell]; }
 
-  const Columns& columns_;
+  const TableColumns& columns_;
   const std::vector<Cell>& cells_;
   std::size_t line_;
 };

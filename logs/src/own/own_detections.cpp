@@ -78,7 +78,7 @@ void read_value(const Row& row, OwnDetection& detection) {
 
 }  // namespace
 
-void OwnTables::begin_detections(const Columns& columns) {
+void OwnTables::begin_detections(const TableColumns& columns) {
   using namespace detection_columns;
   columns.require(t);
   if (columns.has(x) != columns.has(y)) columns.require(columns.has(x) ? y : x);

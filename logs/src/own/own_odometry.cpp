@@ -28,20 +28,20 @@ const std::vector<KindColumns>& kinds() {
   return all;
 }
 
-std::size_t present(const Columns& columns, const KindColumns& kind) {
+std::size_t present(const TableColumns& columns, const KindColumns& kind) {
   std::size_t count = 0;
   for (const std::size_t column : kind.needed) count += columns.has(column) ? 1 : 0;
   return count;
 }
 
-std::string names(const Columns& columns, const std::vector<std::size_t>& list) {
+std::string names(const TableColumns& columns, const std::vector<std::size_t>& list) {
   std::string text;
   for (const std::size_t column : list) text += (text.empty() ? "" : ", ") + columns.name_of(column);
   return text;
 }
 
 /// The one kind of odometry that the columns make.
-const KindColumns& kind_of(const Columns& columns) {
+const KindColumns& kind_of(const TableColumns& columns) {
   const KindColumns* found = nullptr;
   const KindColumns* nearly = nullptr;
   for (const KindColumns& kind : kinds()) {
@@ -62,16 +62,16 @@ const KindColumns& kind_of(const Columns& columns) {
       "v_mps, steering_rad (a car), v_left_mps, v_right_mps (two wheels) or x_m, y_m, heading_rad (dead reckoning)");
 }
 
-bool has_sigmas(const Columns& columns, OdometryKind kind) {
+bool has_sigmas(const TableColumns& columns, OdometryKind kind) {
   using namespace odometry_columns;
   const bool increments = columns.has(sigma_x) && columns.has(sigma_heading);
   const bool velocities = columns.has(sigma_v) && columns.has(sigma_omega);
   return (kind == OdometryKind::increments && increments) || (kind == OdometryKind::velocities && velocities);
 }
 
-bool has_covariance(const Columns& columns) { return columns.has(odometry_columns::cov_xx); }
+bool has_covariance(const TableColumns& columns) { return columns.has(odometry_columns::cov_xx); }
 
-void refuse_stray_noise(const Columns& columns, OdometryKind kind) {
+void refuse_stray_noise(const TableColumns& columns, OdometryKind kind) {
   using namespace odometry_columns;
   for (const std::size_t column : {cov_xy, cov_xh, cov_yy, cov_yh, cov_hh}) {
     if (has_covariance(columns)) columns.require(column);
@@ -153,7 +153,7 @@ std::string_view name_of(OdometryKind kind) {
   return "unknown";
 }
 
-void OwnTables::begin_odometry(const Columns& columns) {
+void OwnTables::begin_odometry(const TableColumns& columns) {
   columns.require(odometry_columns::t);
   const KindColumns& kind = kind_of(columns);
   for (const KindColumns& other : kinds()) {

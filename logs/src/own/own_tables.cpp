@@ -70,7 +70,7 @@ std::int64_t WordNumbers::of(std::string_view word) {
   return number;
 }
 
-void OwnTables::begin(Table table, const Columns& columns) {
+void OwnTables::begin(Table table, const TableColumns& columns) {
   for (const std::string& name : columns.unused()) remark(columns.path() + ": column " + name + " is not used");
   switch (table) {
     case Table::odometry:

@@ -50,13 +50,13 @@ class OwnTables {
   explicit OwnTables(bool rows_alone) : rows_alone_(rows_alone) {}
 
   /// Throws core::InputError for columns that do not make such a table.
-  void begin(Table table, const Columns& columns);
+  void begin(Table table, const TableColumns& columns);
   void add(Table table, const Row& row);
   OwnLog finish(std::string name);
 
  private:
-  void begin_odometry(const Columns& columns);
-  void begin_detections(const Columns& columns);
+  void begin_odometry(const TableColumns& columns);
+  void begin_detections(const TableColumns& columns);
   void add_odometry(const Row& row);
   void add_detection(const Row& row);
   void add_fix(const Row& row);

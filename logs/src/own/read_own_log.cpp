@@ -32,8 +32,8 @@ std::optional<Table> table_called(std::string_view name) {
 
 void read_table(const fs::path& path, Table table, OwnTables& tables) {
   TableReader reader(path);
-  const Columns columns(path.string(), OwnTables::columns_of(table), reader.header(), reader.header_columns(),
-                        reader.header_line());
+  const TableColumns columns(path.string(), OwnTables::columns_of(table), reader.header(), reader.header_columns(),
+                             reader.header_line());
   tables.begin(table, columns);
   std::vector<Cell> cells;
   std::size_t rows = 0;
@@ -88,7 +88,7 @@ class JsonLines {
  private:
   struct State {
     std::vector<std::string> header;
-    std::unique_ptr<Columns> columns;
+    std::unique_ptr<TableColumns> columns;
   };
   State& state_of(Table table) { return states_[static_cast<std::size_t>(table)]; }
 
@@ -145,12 +145,12 @@ class JsonLines {
     tables.add(table, Row(columns_of(table, tables), cells_, lines_.line_number()));
   }
 
-  const Columns& columns_of(Table table, OwnTables& tables) {
+  const TableColumns& columns_of(Table table, OwnTables& tables) {
     State& state = state_of(table);
     if (state.columns == nullptr || state.header != header_) {
       state.header = header_;
       state.columns =
-          std::make_unique<Columns>(path_, OwnTables::columns_of(table), header_, places_, lines_.line_number());
+          std::make_unique<TableColumns>(path_, OwnTables::columns_of(table), header_, places_, lines_.line_number());
       tables.begin(table, *state.columns);
     }
     return *state.columns;
