@@ -48,8 +48,8 @@ TEST(ThinScan, SpreadsWhatItKeepsOverTheScan) {
   ASSERT_EQ(used.size(), most_observations_used);
   EXPECT_TRUE(std::is_sorted(used.begin(), used.end()));
   for (std::size_t k = 1; k < used.size(); ++k) {
-    EXPECT_GE(used[k] - used[k - 1], 78u);
-    EXPECT_LE(used[k] - used[k - 1], 79u);
+    EXPECT_GE(used[k] - used[k - 1], 39u);
+    EXPECT_LE(used[k] - used[k - 1], 40u);
   }
 }
 
