@@ -61,7 +61,7 @@ TEST(ThinScan, SpreadsAlsoWhatIsLittleMoreThanEnough) {
 
 TEST(ThinScan, KeepsBearingsAcrossTheSeamForOneObject) {
   Scan scan;
-  for (int i = 0; i < 200; ++i) scan.observations.push_back(make_bearing(i % 2 == 0 ? pi - 1e-4 : -pi + 1e-4, 0.01));
+  for (int i = 0; i < 400; ++i) scan.observations.push_back(make_bearing(i % 2 == 0 ? pi - 1e-4 : -pi + 1e-4, 0.01));
   EXPECT_EQ(observations_to_use(scan).size(), 1u);
 }
 
