@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -88,18 +89,6 @@ TEST_F(Warnings, ProposeKeysOfTheSectionThatWasMeant) {
   const Outcome outcome = replay({"--config", config});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find("the nearest is 'landmarks."), std::string::npos) << outcome.err;
-}
-
-TEST_F(Warnings, TellWhereTheMathematicsBrokeAndWriteWhatWasNavigated) {
-  std::string detections = "t,range_m,bearing_deg\n";
-  for (int t = 0; t < 50; ++t) detections += std::to_string(t) + ",1e-9,0\n" + std::to_string(t) + ",10,90\n";
-  folder_.write("log/detections.csv", detections);
-  folder_.write("log/odometry.csv", "t,v,omega\n0,0,0\n50,0,0\n");
-  const Outcome outcome = replay();
-  if (outcome.exit_code != 4) GTEST_SKIP() << "no such break: " << outcome.err;
-  expect(outcome, 4, "at step ");
-  EXPECT_TRUE(fs::exists(folder_.path() / "run/report.html"));
-  EXPECT_TRUE(fs::exists(folder_.path() / "run/map.csv"));
 }
 
 }  // namespace

@@ -31,8 +31,9 @@ struct CalibrateJob {
 };
 
 struct Calibration {
-  smoothing::NoiseScales scales;  ///< on what the vehicle file tells
-  SettledDrive drive;             ///< with them
+  smoothing::NoiseScales scales;   ///< on what the vehicle file tells
+  SettledDrive drive;              ///< with them
+  std::size_t first_closings = 0;  ///< of the run with the noise as told
   int rounds = 0;
   bool settled = false;
 };
@@ -72,6 +73,7 @@ Calibration calibrate_noise(const CalibrateJob& job) {
     const smoothing::NoiseScales step = smoothing::estimate_noise_scales(result.drive.problem, 1);
     multiply(result.scales.odometry, step.odometry);
     multiply(result.scales.landmarks, step.landmarks);
+    if (result.rounds == 0) result.first_closings = result.drive.closings;
     ++result.rounds;
     result.settled =
         std::abs(std::log(step.odometry.factor)) < settled && std::abs(std::log(step.landmarks.factor)) < settled;
@@ -104,6 +106,12 @@ ExitCode calibrate(CLI::App& command, CalibrateJob& job) {
   print_scale("detections", result.scales.landmarks);
   std::printf("not estimated: scale and bias of the odometry, heading and place of the sensors, delay\n");
   if (!result.settled) std::printf("not settled after %d rounds: the intervals are not to be trusted\n", result.rounds);
+  if (result.drive.closings < result.first_closings) {
+    std::printf(
+        "warning: with this noise %zu loops are closed, with the noise told %zu: the odometry is off by something\n"
+        "that is no white noise, as a scale or a bias of its turns; mend that first, and keep the noise told\n",
+        result.drive.closings, result.first_closings);
+  }
   if (job.out.empty()) return ExitCode::ok;
   std::ofstream file(job.out);
   file << with_noise_scales(*job.settings.logs.vehicle, result.scales);

@@ -40,7 +40,7 @@ std::string collapse_text(const ObservationCounts& counts) {
 }
 
 std::string nis_text(double mean_per_dof) {
-  const double factor = std::sqrt(mean_per_dof);
+  const double factor = std::sqrt(std::max(mean_per_dof, 1e-6));
   if (mean_per_dof > 1.0) {
     return warning(
         "innovations are %.2g times larger than the noise told allows (NIS %.3g per degree of freedom): "

@@ -27,7 +27,7 @@ void check_geometry(const OwnLog& log, const Vehicle& vehicle) {
   if (!log.odometry_covariances.empty() || vehicle.odometry.tells_noise()) return;
   fail_vehicle(
       vehicle,
-      "nobody tells the noise of the odometry: neither a column of odometry.csv nor a key of section [odometry], "
+      "no noise of the odometry is given: neither a column of odometry.csv nor a key of section [odometry], "
       "as sigma_along_m_per_sqrt_m and sigma_heading_deg_per_sqrt_m; 'helixnav new-vehicle' writes an example");
 }
 

@@ -44,10 +44,11 @@ std::vector<SensorModel> sensors_of(const OwnLog& log, const Vehicle& vehicle) {
   return sensors;
 }
 
-double told(const std::optional<double>& sigma, const SensorModel& sensor, const Vehicle& vehicle, const char* key) {
+double given_variance(const std::optional<double>& sigma, const SensorModel& sensor, const Vehicle& vehicle,
+                      const char* key) {
   if (sigma) return *sigma * *sigma;
   throw core::InputError(where(vehicle) +
-                         ": nobody tells the noise of a detection: neither a column of detections.csv nor " + key +
+                         ": no noise of a detection is given: neither a column of detections.csv nor " + key +
                          " in section [[sensor]]" + (sensor.name.empty() ? "" : " of '" + sensor.name + "'"));
 }
 
@@ -55,10 +56,10 @@ double told(const std::optional<double>& sigma, const SensorModel& sensor, const
 core::Observation observation_of(const OwnDetection& row, const SensorModel& sensor, const Vehicle& vehicle) {
   const bool own = row.R[0] > 0.0;
   const auto range_variance = [&] {
-    return own ? row.R[0] : told(sensor.sigma_range_m, sensor, vehicle, "sigma_range_m");
+    return own ? row.R[0] : given_variance(sensor.sigma_range_m, sensor, vehicle, "sigma_range_m");
   };
   const auto bearing_variance = [&](double own_variance) {
-    return own ? own_variance : told(sensor.sigma_bearing_rad, sensor, vehicle, "sigma_bearing_deg");
+    return own ? own_variance : given_variance(sensor.sigma_bearing_rad, sensor, vehicle, "sigma_bearing_deg");
   };
   core::Observation observation;
   if (row.kind == OwnDetection::Kind::range_bearing) {
@@ -71,7 +72,7 @@ core::Observation observation_of(const OwnDetection& row, const SensorModel& sen
   } else {
     Eigen::Matrix2d R;
     R << row.R[0], row.R[1], row.R[1], row.R[2];
-    if (!own) R = told(sensor.sigma_point_m, sensor, vehicle, "sigma_point_m") * Eigen::Matrix2d::Identity();
+    if (!own) R = given_variance(sensor.sigma_point_m, sensor, vehicle, "sigma_point_m") * Eigen::Matrix2d::Identity();
     observation = core::make_cartesian(Eigen::Vector2d(row.z[0], row.z[1]) / sensor.range_scale, R);
   }
   observation.R *= sensor.noise_scale * sensor.noise_scale;
