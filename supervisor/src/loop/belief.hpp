@@ -31,7 +31,7 @@ struct Belief {
   SlipRecord slips = {};
   NoiseScale noise = {};
   std::vector<LeftOpen> left_open = {};
-  Eigen::Matrix3d moved = Eigen::Matrix3d::Zero();  ///< covariance of the last motion, as the filter was told
+  Eigen::Matrix3d moved = Eigen::Matrix3d::Zero();  ///< covariance of the motion since the last scan, as told
 };
 
 /// A belief to come back to, and where the tape was then. A snapshot of O(n_a²) bytes and the landmarks' existence; good as

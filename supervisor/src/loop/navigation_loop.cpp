@@ -97,6 +97,7 @@ StepReport NavigationLoop::step(const Scan& scan) {
   report.associations = associate_scan(gated, options_, belief_.existence.path_m(), belief_.confirmation);
   const bool slipped = allow_for_slip(scan, report);
   if (!slipped) learn_noise(scan, gated.gating->joint, report.associations);
+  belief_.moved.setZero();
   belief_.slips.see(landmarks_with(Outcome::matched, report.associations).size());
   update(scan, slipped, report);
   augment(scan, report);
