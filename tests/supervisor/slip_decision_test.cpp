@@ -74,7 +74,7 @@ double log_normal(const Eigen::VectorXd& nu, const Eigen::MatrixXd& S) {
 double integrate(const Scene& scene, const std::vector<PointPair>& pairs, const SlipComponent& component,
                  const SlipExplanation& around) {
   const Eigen::Vector3d sigma = around.displacement_covariance.diagonal().cwiseSqrt();
-  constexpr int half = 14;
+  constexpr int half = 9;
   constexpr double step = 5.0 / half;
   double sum = 0.0;
   const double offset = around.nats;
