@@ -15,10 +15,16 @@ bool is_symmetric_and_finite(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
   return (matrix - matrix.transpose()).cwiseAbs().maxCoeff() <= relative_tolerance * scale;
 }
 
+/// Eigen takes a pivot that is NaN, as one of inf − inf is, for a positive one.
+bool has_root(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  const Eigen::LLT<Eigen::MatrixXd> llt(matrix);
+  return llt.info() == Eigen::Success && llt.matrixLLT().allFinite();
+}
+
 }  // namespace
 
 bool is_symmetric_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
-  return is_symmetric_and_finite(matrix) && matrix.llt().info() == Eigen::Success;
+  return is_symmetric_and_finite(matrix) && (matrix.rows() == 0 || has_root(matrix));
 }
 
 bool is_symmetric_positive_semidefinite(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
@@ -28,7 +34,7 @@ bool is_symmetric_positive_semidefinite(const Eigen::Ref<const Eigen::MatrixXd>&
   if (shift == 0.0) return true;  // the zero matrix
   Eigen::MatrixXd shifted = matrix;
   shifted.diagonal().array() += shift;
-  return shifted.llt().info() == Eigen::Success;
+  return has_root(shifted);
 }
 
 }  // namespace helixnav::core

@@ -71,5 +71,12 @@ TEST(PositiveDefinite, RefusesWhatIsNotSymmetricNotSquareOrNotFinite) {
   }
 }
 
+TEST(PositiveDefinite, IsNothingWhoseRootOverflows) {
+  Eigen::Matrix3d C = Eigen::Vector3d(9e-5, 4e-5, 2e-4).asDiagonal();
+  C(1, 2) = C(2, 1) = 1e308;
+  EXPECT_FALSE(is_symmetric_positive_definite(C));
+  EXPECT_FALSE(is_symmetric_positive_semidefinite(C));
+}
+
 }  // namespace
 }  // namespace helixnav::core
