@@ -11,8 +11,9 @@ namespace helixnav::supervisor {
 namespace {
 
 /// Six landmarks known exactly, a vehicle whose motion has covariance Q, and a detector of 10 cm.
-struct Drive {
-  explicit Drive(double odometry_factor, double detector_factor, const Eigen::Vector3d& bias = Eigen::Vector3d::Zero())
+struct NoisyDrive {
+  explicit NoisyDrive(double odometry_factor, double detector_factor,
+                      const Eigen::Vector3d& bias = Eigen::Vector3d::Zero())
       : odometry_factor_(odometry_factor), detector_factor_(detector_factor), bias_(bias) {
     geometry_.points_m = {{5, 3}, {12, -4}, {20, 6}, {25, -7}, {9, 8}, {16, -9}};
     geometry_.ids = {0, 1, 2, 3, 4, 5};
@@ -61,37 +62,37 @@ struct Drive {
 };
 
 TEST(NoiseScale, StaysAtOneWhereTheNoiseIsAsClaimed) {
-  const NoiseScale scale = Drive(1.0, 1.0).learn(2000);
+  const NoiseScale scale = NoisyDrive(1.0, 1.0).learn(2000);
   EXPECT_EQ(scale.odometry(), 1.0);
   EXPECT_EQ(scale.observations(), 1.0);
 }
 
 TEST(NoiseScale, TellsOdometryFromDetector) {
-  const NoiseScale odometry = Drive(4.0, 1.0).learn(1500);
+  const NoiseScale odometry = NoisyDrive(4.0, 1.0).learn(1500);
   EXPECT_NEAR(odometry.odometry(), 4.0, 0.8);
   EXPECT_EQ(odometry.observations(), 1.0);
-  const NoiseScale detector = Drive(1.0, 4.0).learn(1500);
+  const NoiseScale detector = NoisyDrive(1.0, 4.0).learn(1500);
   EXPECT_NEAR(detector.observations(), 4.0, 0.5);
   EXPECT_LT(detector.odometry(), 1.6);
-  const NoiseScale both = Drive(4.0, 4.0).learn(1500);
+  const NoiseScale both = NoisyDrive(4.0, 4.0).learn(1500);
   EXPECT_NEAR(both.observations(), 4.0, 0.5);
   EXPECT_NEAR(both.odometry(), 4.0, 1.0);
 }
 
 TEST(NoiseScale, RisesWithinAMinuteOfScans) {
-  const NoiseScale scale = Drive(4.0, 4.0).learn(60);
+  const NoiseScale scale = NoisyDrive(4.0, 4.0).learn(60);
   EXPECT_GT(scale.observations(), 2.5);
   EXPECT_GT(scale.odometry(), 1.35);
 }
 
 TEST(NoiseScale, TakesABiasForNoNoise) {
-  const NoiseScale scale = Drive(1.0, 1.0, {0.2, 0.0, 0.0}).learn(1500);
+  const NoiseScale scale = NoisyDrive(1.0, 1.0, {0.2, 0.0, 0.0}).learn(1500);
   EXPECT_LT(scale.odometry(), 1.6) << "two deviations of forward motion too much in every scan";
   EXPECT_EQ(scale.observations(), 1.0);
 }
 
 TEST(NoiseScale, IsBounded) {
-  const NoiseScale scale = Drive(1.0, 400.0).learn(1000);
+  const NoiseScale scale = NoisyDrive(1.0, 400.0).learn(1000);
   EXPECT_EQ(scale.observations(), 25.0);
 }
 

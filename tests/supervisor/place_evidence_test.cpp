@@ -62,7 +62,7 @@ struct Ground {
   }
 };
 
-std::vector<Eigen::Vector2d> scattered(core::RandomStream& random, int count, double half_side_m) {
+std::vector<Eigen::Vector2d> scattered_points(core::RandomStream& random, int count, double half_side_m) {
   std::vector<Eigen::Vector2d> points_m;
   for (int i = 0; i < count; ++i) {
     const double x_m = half_side_m * (2.0 * random.uniform() - 1.0);
@@ -80,21 +80,21 @@ std::vector<Eigen::Vector2d> lattice(int half, double pitch_m) {
   return points_m;
 }
 
-core::RandomStream stream(std::uint64_t seed) { return core::RandomStream(seed, "place"); }
+core::RandomStream place_stream(std::uint64_t seed) { return core::RandomStream(seed, "place"); }
 
-std::vector<int> all_pairs(const association::InnovationProblem& problem) {
+std::vector<int> all_gated_pairs(const association::InnovationProblem& problem) {
   std::vector<int> pairs(problem.pairs.size());
   std::iota(pairs.begin(), pairs.end(), 0);
   return pairs;
 }
 
 TEST(PlaceEvidence, ConditionsOnGivenPairsAsTheDenseCovarianceDoes) {
-  core::RandomStream random = stream(1);
-  Ground ground(scattered(random, 12, 15.0), 1.0, 0.05);
+  core::RandomStream random = place_stream(1);
+  Ground ground(scattered_points(random, 12, 15.0), 1.0, 0.05);
   ground.see({0.4, -0.3, 0.02}, {0, 1, 2, 3, 4}, random);
   const Gating gating(ground.filter, ground.ids, ground.scan, {});
   std::vector<int> all;  // the true ones: all pairs of two observations with two landmarks would depend on each other
-  for (const int p : all_pairs(gating.problem)) {
+  for (const int p : all_gated_pairs(gating.problem)) {
     const association::GatedPair& pair = gating.problem.pairs[static_cast<std::size_t>(p)];
     if (pair.observation == pair.candidate) all.push_back(p);
   }
@@ -119,8 +119,8 @@ TEST(PlaceEvidence, ConditionsOnGivenPairsAsTheDenseCovarianceDoes) {
 TEST(PlaceEvidence, FixesThePoseOnScatteredGround) {
   int fixed = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    core::RandomStream random = stream(seed);
-    Ground ground(scattered(random, 40, 25.0), 0.35, 0.01);
+    core::RandomStream random = place_stream(seed);
+    Ground ground(scattered_points(random, 40, 25.0), 0.35, 0.01);
     std::vector<std::size_t> which(12);
     std::iota(which.begin(), which.end(), 0);
     const double x_m = 0.35 * random.normal();
@@ -134,7 +134,7 @@ TEST(PlaceEvidence, FixesThePoseOnScatteredGround) {
 
 TEST(PlaceEvidence, LeavesALatticeToTheSearchWhereThePriorHoldsMoreThanOnePitch) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-    core::RandomStream random = stream(seed);
+    core::RandomStream random = place_stream(seed);
     Ground ground(lattice(4, 4.0), 2.0, 0.01);
     ground.see({}, {30, 31, 39, 40, 41, 48, 49}, random);
     EXPECT_FALSE(fixes_pose(ground.weigh({}), {})) << "seed " << seed;
@@ -142,11 +142,11 @@ TEST(PlaceEvidence, LeavesALatticeToTheSearchWhereThePriorHoldsMoreThanOnePitch)
 }
 
 TEST(PlaceEvidence, FindsTheFourNeighboursOfALatticeAsRivals) {
-  core::RandomStream random = stream(3);
+  core::RandomStream random = place_stream(3);
   Ground ground(lattice(4, 4.0), 1.3, 0.002);
   ground.see({}, {30, 31, 39, 40, 41, 48, 49}, random);
   const Gating gating(ground.filter, ground.ids, ground.scan, {});
-  const OldPairs pairs = old_pairs_given(gating.problem, all_pairs(gating.problem), {});
+  const OldPairs pairs = old_pairs_given(gating.problem, all_gated_pairs(gating.problem), {});
   Matching best;
   for (int k = 0; k < pairs.size(); ++k) {
     const std::vector<std::size_t> truth{30, 31, 39, 40, 41, 48, 49};
@@ -200,8 +200,8 @@ void enumerate(const OldPairs& pairs, const Matching& best, double foreign_per_m
 TEST(PlaceEvidence, WhereItFixesThePoseAllMatchingsTogetherAgree) {
   int fixed = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    core::RandomStream random = stream(seed);
-    Ground ground(scattered(random, 14, 12.0), 0.4, 0.01);
+    core::RandomStream random = place_stream(seed);
+    Ground ground(scattered_points(random, 14, 12.0), 0.4, 0.01);
     const double x_m = 0.4 * random.normal();
     const double y_m = 0.4 * random.normal();
     ground.see({x_m, y_m, 0.0}, {0, 1, 2, 3, 4}, random);
@@ -211,7 +211,7 @@ TEST(PlaceEvidence, WhereItFixesThePoseAllMatchingsTogetherAgree) {
     ++fixed;
     const Gating gating(ground.filter, ground.ids, ground.scan, {});
     const auto assignment = association::associate(association::Method::likelihood_ratio, gating.problem, {});
-    const OldPairs pairs = old_pairs_given(gating.problem, all_pairs(gating.problem), {});
+    const OldPairs pairs = old_pairs_given(gating.problem, all_gated_pairs(gating.problem), {});
     const Matching best(assignment.pairs.begin(), assignment.pairs.end());
     Enumerated sum;
     Matching none;
@@ -223,8 +223,8 @@ TEST(PlaceEvidence, WhereItFixesThePoseAllMatchingsTogetherAgree) {
 }
 
 TEST(PlaceEvidence, TwinsAreNoQuestionOfThePose) {
-  core::RandomStream random = stream(5);
-  std::vector<Eigen::Vector2d> points_m = scattered(random, 30, 20.0);
+  core::RandomStream random = place_stream(5);
+  std::vector<Eigen::Vector2d> points_m = scattered_points(random, 30, 20.0);
   points_m.emplace_back(points_m[0] + Eigen::Vector2d(0.25, 0.0));
   Ground ground(std::move(points_m), 0.1, 0.002);
   std::vector<std::size_t> which(15);
@@ -235,9 +235,9 @@ TEST(PlaceEvidence, TwinsAreNoQuestionOfThePose) {
 
 TEST(PlaceEvidence, AWorldThatIsNotThereDoesNotFixThePose) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    core::RandomStream random = stream(seed);
-    Ground ground(scattered(random, 40, 25.0), 0.5, 0.01);
-    const Ground other(scattered(random, 12, 20.0), 0.5, 0.01);
+    core::RandomStream random = place_stream(seed);
+    Ground ground(scattered_points(random, 40, 25.0), 0.5, 0.01);
+    const Ground other(scattered_points(random, 12, 20.0), 0.5, 0.01);
     Ground elsewhere = ground;
     elsewhere.points_m = other.points_m;
     std::vector<std::size_t> which(12);

@@ -18,8 +18,8 @@ constexpr double degree = core::pi / 180.0;
 constexpr double a_pair_nats = 8.0;  // about one extraneous observation a scan of 1400 m²
 
 /// Landmarks known to 5 cm, and what a vehicle displaced by `truth` sees of them, noise of 10 cm.
-struct Scene {
-  Scene(std::vector<Eigen::Vector2d> points_m, const Eigen::Vector3d& truth, std::uint64_t seed)
+struct SlipScene {
+  SlipScene(std::vector<Eigen::Vector2d> points_m, const Eigen::Vector3d& truth, std::uint64_t seed)
       : geometry(joint_of(points_m)) {
     core::RandomStream random(seed, "slip decision test");
     const core::Pose2 T_displaced_predicted = core::inverse(core::Pose2(truth));
@@ -71,7 +71,7 @@ double log_normal(const Eigen::VectorXd& nu, const Eigen::MatrixXd& S) {
 }
 
 /// ∫ N(δ; 0, Q) N(residual(δ); 0, S(δ)) dδ over a grid around the best δ.
-double integrate(const Scene& scene, const std::vector<PointPair>& pairs, const SlipComponent& component,
+double integrate(const SlipScene& scene, const std::vector<PointPair>& pairs, const SlipComponent& component,
                  const SlipExplanation& around) {
   const Eigen::Vector3d sigma = around.displacement_covariance.diagonal().cwiseSqrt();
   constexpr int half = 9;
@@ -93,7 +93,7 @@ double integrate(const Scene& scene, const std::vector<PointPair>& pairs, const 
 TEST(SlipEvidence, IsTheIntegralOverAllSlips) {
   const SlipComponent component{0.5, 4.0 * degree, 0.01};
   for (const std::uint64_t seed : {1, 2, 3}) {
-    const Scene scene(scattered(seed, 4), {0.4, -0.3, 3.0 * degree}, seed);
+    const SlipScene scene(scattered(seed, 4), {0.4, -0.3, 3.0 * degree}, seed);
     const std::vector<PointPair> pairs = all_pairs(4);
     const SlipExplanation found =
         explain_by_slip(scene.geometry, scene.seen, pairs, 0.0, {component}, Eigen::Vector3d::Zero());
@@ -104,7 +104,7 @@ TEST(SlipEvidence, IsTheIntegralOverAllSlips) {
 }
 
 TEST(SlipEvidence, ChargesAWidePriorForWhatItMightHaveExplained) {
-  const Scene scene(scattered(4), {0.1, 0.05, 0.5 * degree}, 4);
+  const SlipScene scene(scattered(4), {0.1, 0.05, 0.5 * degree}, 4);
   const auto nats = [&](double factor) {
     const std::vector<SlipComponent> one{{0.1 * factor, degree * factor, 1.0}};
     return explain_by_slip(scene.geometry, scene.seen, all_pairs(8), 0.0, one, Eigen::Vector3d::Zero()).nats;
@@ -113,7 +113,7 @@ TEST(SlipEvidence, ChargesAWidePriorForWhatItMightHaveExplained) {
 }
 
 TEST(SlipEvidence, WithoutASlipIsThatOfTheInnovation) {
-  const Scene scene(scattered(5), Eigen::Vector3d::Zero(), 5);
+  const SlipScene scene(scattered(5), Eigen::Vector3d::Zero(), 5);
   const PairEquations e(scene.geometry, scene.seen, all_pairs(8), Eigen::Vector3d::Zero());
   EXPECT_NEAR(explain_without_slip(scene.geometry, scene.seen, all_pairs(8), 2.0), 16.0 + log_normal(e.nu, e.S), 1e-9);
   EXPECT_EQ(explain_without_slip(scene.geometry, scene.seen, {}, 2.0), 0.0);
@@ -123,7 +123,7 @@ TEST(SlipDecision, FindsWhereTheVehicleSlippedTo) {
   core::RandomStream random(1, "slips");
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Eigen::Vector3d truth(random.uniform(-0.7, 0.7), random.uniform(0.3, 0.7), random.uniform(-0.08, 0.08));
-    const Scene scene(scattered(seed), truth, seed);
+    const SlipScene scene(scattered(seed), truth, seed);
     const std::optional<Slip> slip = scene.decide();
     ASSERT_TRUE(slip) << seed;
     EXPECT_EQ(slip->figures.pairs, 8) << seed;
@@ -136,7 +136,7 @@ TEST(SlipDecision, FindsWhereTheVehicleSlippedTo) {
 
 TEST(SlipDecision, BelievesNoneWhereTheVehicleIsAsPredicted) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    const Scene scene(scattered(seed), Eigen::Vector3d::Zero(), seed);
+    const SlipScene scene(scattered(seed), Eigen::Vector3d::Zero(), seed);
     EXPECT_FALSE(scene.decide(all_pairs(8))) << seed;
     EXPECT_FALSE(scene.decide({{0, 0}, {1, 1}, {2, 2}})) << seed << ": pairs dropped by a joint test are no slip";
   }
@@ -147,13 +147,13 @@ TEST(SlipDecision, BelievesNoneInALatticeMovedByMoreThanHalfItsPitch) {
   for (int i = 0; i < 4; ++i) {
     for (int k = 0; k < 4; ++k) lattice_m.emplace_back(3.0 + 4.0 * i, -6.0 + 4.0 * k);
   }
-  EXPECT_TRUE(Scene(lattice_m, {0.8, 0.0, 0.0}, 1).decide());
-  EXPECT_FALSE(Scene(lattice_m, {4.0, 0.0, 0.0}, 2).decide());
-  EXPECT_FALSE(Scene(lattice_m, {2.4, 0.0, 0.0}, 3).decide());
+  EXPECT_TRUE(SlipScene(lattice_m, {0.8, 0.0, 0.0}, 1).decide());
+  EXPECT_FALSE(SlipScene(lattice_m, {4.0, 0.0, 0.0}, 2).decide());
+  EXPECT_FALSE(SlipScene(lattice_m, {2.4, 0.0, 0.0}, 3).decide());
 }
 
 TEST(SlipDecision, NeedsMoreEvidenceFromFewOrTentativeLandmarks) {
-  const Scene three(scattered(3, 3), {0.5, 0.3, 2.0 * degree}, 3);
+  const SlipScene three(scattered(3, 3), {0.5, 0.3, 2.0 * degree}, 3);
   const std::optional<Slip> slip = three.decide();
   EXPECT_TRUE(!slip || slip->figures.nats > 15.0);
   SlipQuestion question{three.geometry, three.seen, {}, a_pair_nats, true};
