@@ -96,9 +96,9 @@ TEST_F(OwnLogRefusal, OfClocksThatDoNotOverlapSaysWhatToDo) {
 }
 
 TEST_F(OwnLogRefusal, OfAVehicleThatDoesNotTellWhatIsNeeded) {
-  expect("vehicle.toml", "", "vehicle.toml: nobody tells the noise of a detection");
+  expect("vehicle.toml", "", "vehicle.toml: no noise of a detection is given");
   expect("vehicle.toml", "[[sensor]]\nsigma_range_m=1\nsigma_bearing_deg=1\n",
-         "vehicle.toml: nobody tells the noise of the odometry");
+         "vehicle.toml: no noise of the odometry is given");
   expect("vehicle.toml", "[[sensor]]\nsigma_range_m = 0.1\n", "sigma_bearing_deg in section [[sensor]]");
   expect("odometry.csv", "t,v,steering_deg\n0,1,0\n2,1,0\n", "needs wheelbase_m");
   expect("odometry.csv", "t,v_left,v_right\n0,1,0\n2,1,0\n", "needs track_m");

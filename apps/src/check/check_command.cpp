@@ -40,7 +40,8 @@ std::string missing_text(const core::Recording& recording) {
 void print_settings(const CheckJob& job, const core::Recording& recording) {
   const supervisor::NavigatorOptions options = fit_to_recording(job.settings, recording);
   std::printf(
-      "settings    association %s, detection probability %.3g (existence %.3g), %.3g foreign detections a scan\n",
+      "settings    association %s, detection probability %.3g (existence %.3g), %.3g detections of nothing mapped a "
+      "scan\n",
       job.settings.known_association ? "known" : std::string(association::name(options.method)).c_str(),
       options.association.detection_probability, options.life.detection_probability, options.extraneous_per_scan);
   std::printf("            old after %.3g m, search up to %.3g m, cells of %.3g m; all: helixnav replay --help-all\n",

@@ -31,10 +31,11 @@ RelativeGeometry::RelativeGeometry(const core::JointGaussian& joint) : ids(joint
         by_pose(R_robot_world, points_m[static_cast<std::size_t>(i)]) * joint.covariance.topRows<3>() +
         R_robot_world * joint.covariance.middleRows<2>(3 + 2 * i);
     for (Index k = 0; k <= i; ++k) {
-      covariance_m2.block<2, 2>(2 * i, 2 * k) =
+      const Eigen::Matrix2d block =
           by_all.leftCols<3>() * by_pose(R_robot_world, points_m[static_cast<std::size_t>(k)]).transpose() +
           by_all.middleCols<2>(3 + 2 * k) * R_robot_world.transpose();
-      covariance_m2.block<2, 2>(2 * k, 2 * i) = covariance_m2.block<2, 2>(2 * i, 2 * k).transpose();
+      covariance_m2.block<2, 2>(2 * i, 2 * k) = block;
+      covariance_m2.block<2, 2>(2 * k, 2 * i) = block.transpose();
     }
   }
 }
