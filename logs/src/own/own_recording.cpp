@@ -49,7 +49,8 @@ double given_variance(const std::optional<double>& sigma, const SensorModel& sen
   if (sigma) return *sigma * *sigma;
   throw core::InputError(where(vehicle) +
                          ": no noise of a detection is given: neither a column of detections.csv nor " + key +
-                         " in section [[sensor]]" + (sensor.name.empty() ? "" : " of '" + sensor.name + "'"));
+                         " in section [[sensor]]" + (sensor.name.empty() ? "" : " of '" + sensor.name + "'") +
+                         "; 'helixnav new-vehicle' writes an example");
 }
 
 /// As the sensor measures it, with the noise of the row, else of the sensor.
