@@ -94,8 +94,9 @@ StepReport NavigationLoop::step(const Scan& scan) {
     begin_search();
     gated = gate(scan);
   }
+  const Confirmation before = belief_.confirmation;
   report.associations = associate_scan(gated, options_, belief_.existence.path_m(), belief_.confirmation);
-  const bool slipped = allow_for_slip(scan, report);
+  const bool slipped = allow_for_slip(scan, before, report);
   if (!slipped) learn_noise(scan, gated.gating->joint, report.associations);
   belief_.moved.setZero();
   belief_.slips.see(landmarks_with(Outcome::matched, report.associations).size());

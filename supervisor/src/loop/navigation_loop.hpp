@@ -70,7 +70,7 @@ class NavigationLoop {
   void name_revised(core::StepReport& report) const;
 
   // slip/slip_in_scan.cpp
-  bool allow_for_slip(const core::Scan& scan, core::StepReport& report);
+  bool allow_for_slip(const core::Scan& scan, const Confirmation& before, core::StepReport& report);
   std::optional<Slip> find_slip(const core::Scan& scan, const std::vector<core::AssociationReport>& fate) const;
   std::vector<core::LandmarkId> landmarks_near(const core::Scan& scan) const;
   void move_unmeasured(const Eigen::Matrix3d& covariance, core::Nanoseconds t_ns);

@@ -24,7 +24,7 @@ struct Slip {
   core::SlipDecision figures;
 };
 
-/// What a slip is weighed against: the landmarks that may vouch for it, whether they were seen more than once, and the
+/// What a slip is weighed against: the landmarks that may be evidence for it, whether they were seen more than once, and the
 /// pairs among them that were associated without a slip.
 struct SlipQuestion {
   const RelativeGeometry& geometry;

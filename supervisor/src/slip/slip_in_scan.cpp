@@ -22,7 +22,7 @@ using core::Outcome;
 
 constexpr std::size_t most_observations = 24;  // nearest first: what is weighed, and so what the question costs
 constexpr std::size_t least_observations = 3;
-constexpr int least_hits = 2;  // clutter that happened to begin a landmark does not vouch
+constexpr int least_hits = 2;  // a landmark that one false alarm began is no evidence
 
 bool contains(const std::vector<LandmarkId>& ids, LandmarkId id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
@@ -133,8 +133,9 @@ void NavigationLoop::move_unmeasured(const Eigen::Matrix3d& covariance, core::Na
 }
 
 /// True when the vehicle slipped: the motion is wider by then, and the scan is associated as it looks from where the
-/// slip's pairs put the vehicle. Else nothing changes.
-bool NavigationLoop::allow_for_slip(const core::Scan& scan, core::StepReport& report) {
+/// slip's pairs put the vehicle; `before`: the confirmation as it was before the scan, so that one scan is no second hit.
+/// Else nothing changes.
+bool NavigationLoop::allow_for_slip(const core::Scan& scan, const Confirmation& before, core::StepReport& report) {
   const std::optional<Slip> slip = find_slip(scan, report.associations);
   if (!slip) return false;
   report.decisions.emplace_back(slip->figures);
@@ -153,6 +154,7 @@ bool NavigationLoop::allow_for_slip(const core::Scan& scan, core::StepReport& re
   const auto excluded = [&](LandmarkId id) { return open != nullptr && open->search.excludes(id); };
   ids.erase(std::remove_if(ids.begin(), ids.end(), excluded), ids.end());
   const GatedScan gated = gate_scan(moved, ids, scan, options_);
+  belief_.confirmation = before;
   report.associations = associate_scan(gated, options_, belief_.existence.path_m(), belief_.confirmation);
   match_pairs(slip->pairs, report.associations);
   return true;
