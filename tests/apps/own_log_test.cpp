@@ -78,7 +78,8 @@ TEST_F(OwnLogProgram, ExitsWithThreeAndThePlaceForBadInput) {
 
 TEST_F(OwnLogProgram, SaysWhatIsMissingWithoutAVehicle) {
   fs::remove(log_ / "vehicle.toml");
-  expect({"check", log_}, 3, {"no vehicle.toml beside the log", "noise of a detection is given", "helixnav new-vehicle"});
+  expect({"check", log_}, 3,
+         {"no vehicle.toml beside the log", "noise of a detection is given", "helixnav new-vehicle"});
 }
 
 TEST_F(OwnLogProgram, NavigatesTheSameAsJsonLines) {
