@@ -15,6 +15,7 @@
 #include "loop/belief.hpp"
 #include "loop/mode.hpp"
 #include "loop/tape.hpp"
+#include "noise/noise_learner.hpp"
 #include "slip/slip_decision.hpp"
 
 namespace helixnav::supervisor {
@@ -46,6 +47,7 @@ class NavigationLoop {
     Tape::Position tape_end;
     std::uint64_t searches;
     std::optional<Mode> mode;
+    std::optional<NoiseLearner> noise;
     std::optional<cekf::CompressedEkf> filter;            ///< before the drive was solved
     std::optional<std::vector<Tape::Entry>> rolled_back;  ///< taken off the tape
   };
@@ -53,7 +55,7 @@ class NavigationLoop {
   // loop/navigation_loop.cpp
   void fit_to(const core::FieldOfView& view);
   core::StepReport take_step(const core::Scan& scan, const core::Decision* note);
-  core::StepReport take_told(const core::Scan& scan, const core::Decision* note);
+  core::StepReport take_as_assumed(const core::Scan& scan);
   core::StepReport step(const core::Scan& scan);
   void predict();
   bool use_fix(const core::AbsoluteFix& fix);
@@ -75,10 +77,9 @@ class NavigationLoop {
   std::vector<core::LandmarkId> landmarks_near(const core::Scan& scan) const;
   void move_unmeasured(const Eigen::Matrix3d& covariance, core::Nanoseconds t_ns);
 
-  // slip/learn_noise.cpp
-  void learn_noise(const core::Scan& scan, const core::JointGaussian& joint,
-                   const std::vector<core::AssociationReport>& fate);
-  void tell_again();
+  // noise/learn_noise.cpp
+  void learn_noise(const core::Scan& scan);
+  void solve_with_learnt_noise();
 
   // search/search_mode.cpp
   void begin_search();
@@ -113,6 +114,7 @@ class NavigationLoop {
   core::PoseGaussian start_;
   Belief belief_;
   Tape tape_;
+  NoiseLearner noise_;
   Mode mode_;
   Pending pending_;
   Undo undo_;

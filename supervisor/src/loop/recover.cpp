@@ -46,6 +46,7 @@ void NavigationLoop::recover() {
   pending_ = {};
   process_again(
       since, [](const Tape::Fix&, bool) {}, [](const core::StepReport&) {});
+  if (undo.noise) noise_ = std::move(*undo.noise);
   pending_ = std::move(undo.pending);
 }
 
