@@ -15,6 +15,19 @@ void PassiveCovariance::grow(int rows) {
   rows_ = rows;
 }
 
+void PassiveCovariance::assign(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& symmetric) {
+  tiles_.clear();
+  rows_ = 0;
+  grow(static_cast<int>(symmetric.rows()));
+  for (int i = 0; i < rows_; i += tile) {
+    for (int j = 0; j <= i; j += tile) {
+      const int rows = std::min(tile, rows_ - i);
+      const int columns = std::min(tile, rows_ - j);
+      tile_at(i / tile, j / tile).topLeftCorner(rows, columns) = symmetric.block(i, j, rows, columns);
+    }
+  }
+}
+
 double PassiveCovariance::at(int i, int j) const {
   if (i < j) std::swap(i, j);
   return tile_at(i / tile, j / tile)(i % tile, j % tile);

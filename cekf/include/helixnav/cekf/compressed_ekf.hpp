@@ -40,6 +40,12 @@ class CompressedEkf {
   /// Start covariance symmetric positive semidefinite; all zero is allowed (map frame = pose at start).
   explicit CompressedEkf(const core::PoseGaussian& start, const FilterOptions& options = {});
 
+  /// From the joint estimate of the pose and of all landmarks of the map, which keep their ids; the region around the
+  /// vehicle is active. PreconditionError for ids that are negative or twice, sizes that do not fit, values that are not
+  /// finite or variances below zero; that the covariance is positive semidefinite is the caller's word. O(N²).
+  /// Test: cekf/joint_start_test.cpp.
+  explicit CompressedEkf(const core::JointGaussian& start, const FilterOptions& options = {});
+
   const FilterOptions& options() const { return options_; }
 
   /// Moves the vehicle: F and the noise from core::compose_jacobians. O(n + q).
@@ -149,6 +155,11 @@ class CompressedEkf {
 
   const Place& place_of(core::LandmarkId id, const char* verb) const;
   int weights_per_anchor() const { return options_.retraction == Retraction::right_invariant ? 2 : 1; }
+
+  // start.cpp
+  void check_options() const;
+  void begin_at(const core::PoseGaussian& pose);
+  void take_in_passive(const core::JointGaussian& start, Phase& first);
 
   // augment.cpp
   void name_newest(const Eigen::Vector2d& point_m, core::LandmarkId id);

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A filter that begins with a joint estimate goes on as the one that made it.
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "helixnav/core/errors.hpp"
+#include "random_program.hpp"
+
+namespace helixnav::cekf {
+namespace {
+
+class JointStart : public testing::TestWithParam<Retraction> {};
+
+/// The program's filter by its estimate alone. `backwards` names the landmarks in the other order.
+CompressedEkf begun_again(const RandomProgram& program, bool backwards) {
+  std::vector<core::LandmarkId> ids = program.filter.landmarks();
+  if (backwards) std::reverse(ids.begin(), ids.end());
+  CompressedEkf filter(program.filter.joint(ids), program.filter.options());
+  filter.name_from(program.filter.next_name());
+  return filter;
+}
+
+TEST_P(JointStart, KeepsTheWholeEstimate) {
+  RandomProgram program(21, {GetParam(), 220, 40, false});
+  for (int k = 0; k < 300; ++k) program.step();
+  const CompressedEkf filter = begun_again(program, true);
+  EXPECT_EQ(filter.landmarks(), program.filter.landmarks());
+  EXPECT_EQ(filter.mapped_count(), program.filter.mapped_count());
+  const Differences d = compare(filter, program.oracle);
+  EXPECT_LE(d.mean, 1e-9);
+  EXPECT_LE(d.covariance, 1e-8);
+  EXPECT_GT(filter.active_count(), 0);
+  EXPECT_LT(filter.active_count(), filter.mapped_count());
+}
+
+TEST_P(JointStart, GoesOnAsTheFullFilter) {
+  RandomProgram program(22, {GetParam(), 220, 40, false});
+  for (int k = 0; k < 200; ++k) program.step();
+  program.filter = begun_again(program, false);
+  for (int k = 0; k < 300; ++k) program.step();
+  const Differences d = compare(program.filter, program.oracle);
+  EXPECT_LE(d.mean, 1e-7);
+  EXPECT_LE(d.covariance, 1e-7);
+  EXPECT_GT(program.switches, 3);
+}
+
+TEST_P(JointStart, CanBeRolledBackToItsBegin) {
+  RandomProgram program(23, {GetParam(), 220, 0, false});
+  for (int k = 0; k < 200; ++k) program.step();
+  CompressedEkf filter = begun_again(program, false);
+  filter.keep_since(filter.phase());
+  const Snapshot begin = filter.snapshot();
+  const std::vector<core::LandmarkId> ids = filter.landmarks();
+  const core::JointGaussian before = filter.joint(ids);
+  filter.merge({{ids.front(), ids.back()}}, 1.0);
+  filter.switch_region();
+  filter.restore(begin);
+  const core::JointGaussian after = filter.joint(ids);
+  EXPECT_LE((after.covariance - before.covariance).cwiseAbs().maxCoeff(), 1e-12 * before.covariance.norm());
+}
+
+INSTANTIATE_TEST_SUITE_P(Retractions, JointStart, testing::Values(Retraction::standard, Retraction::right_invariant));
+
+core::JointGaussian two_landmarks() {
+  core::JointGaussian joint;
+  joint.ids = {4, 2};
+  joint.points_m = {{1.0, 2.0}, {3.0, 4.0}};
+  joint.covariance = Eigen::MatrixXd::Identity(7, 7);
+  return joint;
+}
+
+TEST(JointStart, NamesNewLandmarksAboveThoseItHas) {
+  CompressedEkf filter(two_landmarks());
+  EXPECT_EQ(filter.next_name(), 5);
+  EXPECT_EQ(filter.landmark_mean(2), Eigen::Vector2d(3.0, 4.0));
+  EXPECT_FALSE(filter.contains(3));
+}
+
+TEST(JointStart, HasNoLandmarksWhereNoneAreGiven) {
+  core::JointGaussian joint;
+  joint.covariance = Eigen::Matrix3d::Identity();
+  EXPECT_EQ(CompressedEkf(joint).mapped_count(), 0);
+}
+
+TEST(JointStart, RefusesWhatIsNoJointEstimate) {
+  const auto expect_refused = [](void (*spoil)(core::JointGaussian&)) {
+    core::JointGaussian joint = two_landmarks();
+    spoil(joint);
+    EXPECT_THROW(CompressedEkf{joint}, core::PreconditionError);
+  };
+  using Joint = core::JointGaussian;
+  expect_refused([](Joint& joint) { joint.ids[1] = 4; });
+  expect_refused([](Joint& joint) { joint.ids[1] = -1; });
+  expect_refused([](Joint& joint) { joint.ids[1] = std::numeric_limits<core::LandmarkId>::max(); });
+  expect_refused([](Joint& joint) { joint.points_m.pop_back(); });
+  expect_refused([](Joint& joint) { joint.covariance.resize(5, 5); });
+  expect_refused([](Joint& joint) { joint.covariance(4, 4) = -1.0; });
+  expect_refused([](Joint& joint) { joint.covariance(5, 3) = std::numeric_limits<double>::quiet_NaN(); });
+  expect_refused([](Joint& joint) { joint.points_m[0].x() = std::numeric_limits<double>::infinity(); });
+}
+
+}  // namespace
+}  // namespace helixnav::cekf
