@@ -96,6 +96,10 @@ TEST(NoiseScale, TakesErrorsThatAreTheSameFromOnePlaceForNoLessNoise) {
   EXPECT_EQ(NoisyDrive(1.0, 0.25).learn(9).observations(), 1.0) << "no landmark was seen from another side yet";
 }
 
+TEST(NoiseScale, TakesDisplacementsThatOdometryDoesNotExplainForErrorsOfTheDetectorThatAreNotWhite) {
+  EXPECT_EQ(NoisyDrive(4.0, 0.25).learn(1500).observations(), 1.0);
+}
+
 TEST(NoiseScale, RisesWithinAMinuteOfScans) {
   const NoiseScale scale = NoisyDrive(4.0, 4.0).learn(60);
   EXPECT_GT(scale.observations(), 2.5);

@@ -12,9 +12,10 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double prior_errors = 20.0;   // of the belief that the detector is as assumed
-constexpr double most_pose_nis = 16.3;  // χ²₃ of 99.9 %: a slip is no noise
-constexpr double least_weight = 2.0;    // scans in which odometry's share is all that there is
+constexpr double prior_errors = 20.0;       // of the belief that the detector is as assumed
+constexpr double most_pose_nis = 16.3;      // χ²₃ of 99.9 %: a slip is no noise
+constexpr double least_weight = 2.0;        // scans in which odometry's share is all that there is
+constexpr double least_independent = 20.0;  // pairs from new sides, before less noise is believed
 constexpr double dead_band = 1.35;
 constexpr double most = 25.0;
 constexpr double sure_sigmas = 3.0;
@@ -82,7 +83,6 @@ void NoiseScale::add_displacement(const Eigen::Vector3d& w, double share) {
   slow_motion_.add(std::min(most_pose_nis, about_mean), share, std::max(1.0, detector), odometry_);
   quick_motion_.add(std::min(most_pose_nis, about_mean), share, std::max(1.0, detector), odometry_);
   biased_motion_.add(std::min(most_pose_nis, w.squaredNorm()), share, detector, odometry_);
-  common_.add(std::min(most_pose_nis, w.squaredNorm()), 1.0 - share, 1.0 / std::max(1.0, odometry_), observations_);
 }
 
 /// Up by all errors, a rise that the quick window is sure of at once. Down only where independent errors say so as well.
@@ -95,10 +95,14 @@ double NoiseScale::detector_factor() const {
   const double independent = std::log(new_sides_.scale());
   const double sigma = new_sides_.log_sigma();
   if (!(independent < -std::max(std::log(dead_band), sigmas * sigma))) return 1.0;
-  const double not_white = observations_ < 1.0 ? sure_sigmas : 1.0;  // so many sigmas: no to and fro
-  if (common_.scale() - not_white * common_.sigma() > 2.0 * std::exp(slow)) return 1.0;
-  const double independent_or_slow = std::max({std::exp(slow), slow_.mean_scale(), std::exp(independent - sigma)});
-  return bounded(std::min(1.0, std::max(independent_or_slow, common_.scale())));
+  if (new_sides_.weight() < least_independent || !motion_is_as_assumed_at_most()) return 1.0;
+  return bounded(std::min(1.0, std::max({std::exp(slow), slow_.mean_scale(), std::exp(independent - sigma)})));
+}
+
+/// Where displacements are larger than odometry and such a detector explain, the detector errs for all landmarks alike, and
+/// its errors are not white.
+bool NoiseScale::motion_is_as_assumed_at_most() const {
+  return biased_motion_.weight > least_weight && biased_motion_.scale() - biased_motion_.sigma() < dead_band;
 }
 
 /// Likewise; down by what is left with the mean in it.

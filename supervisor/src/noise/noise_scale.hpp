@@ -48,6 +48,7 @@ class NoiseScale {
   void add_rest(const PairEquations& pairs, const Eigen::Vector3d& displacement, const Eigen::Matrix3d& information,
                 const std::vector<bool>& new_sides);
   void add_displacement(const Eigen::Vector3d& w, double share);
+  bool motion_is_as_assumed_at_most() const;
   double detector_factor() const;
   double odometry_factor() const;
 
@@ -57,7 +58,6 @@ class NoiseScale {
   Displacements slow_motion_{1.0 - 1.0 / 1000.0};
   Displacements quick_motion_{1.0 - 1.0 / 60.0};
   Displacements biased_motion_{1.0 - 1.0 / 1000.0};
-  Displacements common_{1.0 - 1.0 / 1000.0};  ///< the detector's share instead, of an odometry no worse than claimed
   Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();  ///< of w
   double mean_weight_ = 20.0;                       ///< so many scans of the belief that there is no bias
   double odometry_ = 1.0;
