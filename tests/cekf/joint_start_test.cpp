@@ -55,7 +55,12 @@ TEST_P(JointStart, CanBeRolledBackToItsBegin) {
   const Snapshot begin = filter.snapshot();
   const std::vector<core::LandmarkId> ids = filter.landmarks();
   const core::JointGaussian before = filter.joint(ids);
-  filter.merge({{ids.front(), ids.back()}}, 1.0);
+  core::Odometry motion;
+  motion.T_before_after = core::Pose2(30.0, 0.0, 0.3);
+  motion.covariance = Eigen::Vector3d(0.1, 0.1, 0.01).asDiagonal();
+  filter.predict(motion);
+  filter.remove(ids.front());
+  filter.activate(ids.back());
   filter.switch_region();
   filter.restore(begin);
   const core::JointGaussian after = filter.joint(ids);

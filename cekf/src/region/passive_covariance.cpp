@@ -39,10 +39,11 @@ void PassiveCovariance::set(int i, int j, double value) {
 }
 
 Eigen::Matrix2d PassiveCovariance::block(int slot_i, int slot_j) const {
-  Eigen::Matrix2d result;
-  for (int c = 0; c < 2; ++c) {
-    for (int r = 0; r < 2; ++r) result(r, c) = at(2 * slot_i + r, 2 * slot_j + c);
-  }
+  const int i = 2 * std::max(slot_i, slot_j);
+  const int j = 2 * std::min(slot_i, slot_j);
+  Eigen::Matrix2d result = tile_at(i / tile, j / tile).block<2, 2>(i % tile, j % tile);
+  if (i == j) result(0, 1) = result(1, 0);  // above the diagonal
+  if (slot_i < slot_j) result.transposeInPlace();
   return result;
 }
 
