@@ -18,9 +18,7 @@ class JointStart : public testing::TestWithParam<Retraction> {};
 CompressedEkf begun_again(const RandomProgram& program, bool backwards) {
   std::vector<core::LandmarkId> ids = program.filter.landmarks();
   if (backwards) std::reverse(ids.begin(), ids.end());
-  CompressedEkf filter(program.filter.joint(ids), program.filter.options());
-  filter.name_from(program.filter.next_name());
-  return filter;
+  return {program.filter.joint(ids), program.filter.next_name(), program.filter.options()};
 }
 
 TEST_P(JointStart, KeepsTheWholeEstimate) {
@@ -77,9 +75,9 @@ core::JointGaussian two_landmarks() {
   return joint;
 }
 
-TEST(JointStart, NamesNewLandmarksAboveThoseItHas) {
-  CompressedEkf filter(two_landmarks());
-  EXPECT_EQ(filter.next_name(), 5);
+TEST(JointStart, NamesNewLandmarksFromTheNameGiven) {
+  CompressedEkf filter(two_landmarks(), 7);
+  EXPECT_EQ(filter.next_name(), 7);
   EXPECT_EQ(filter.landmark_mean(2), Eigen::Vector2d(3.0, 4.0));
   EXPECT_FALSE(filter.contains(3));
 }
@@ -87,19 +85,19 @@ TEST(JointStart, NamesNewLandmarksAboveThoseItHas) {
 TEST(JointStart, HasNoLandmarksWhereNoneAreGiven) {
   core::JointGaussian joint;
   joint.covariance = Eigen::Matrix3d::Identity();
-  EXPECT_EQ(CompressedEkf(joint).mapped_count(), 0);
+  EXPECT_EQ(CompressedEkf(joint, 0).mapped_count(), 0);
 }
 
 TEST(JointStart, RefusesWhatIsNoJointEstimate) {
   const auto expect_refused = [](void (*spoil)(core::JointGaussian&)) {
     core::JointGaussian joint = two_landmarks();
     spoil(joint);
-    EXPECT_THROW(CompressedEkf{joint}, core::PreconditionError);
+    EXPECT_THROW(CompressedEkf(joint, 5), core::PreconditionError);
   };
   using Joint = core::JointGaussian;
   expect_refused([](Joint& joint) { joint.ids[1] = 4; });
   expect_refused([](Joint& joint) { joint.ids[1] = -1; });
-  expect_refused([](Joint& joint) { joint.ids[1] = std::numeric_limits<core::LandmarkId>::max(); });
+  expect_refused([](Joint& joint) { joint.ids[1] = 5; });
   expect_refused([](Joint& joint) { joint.points_m.pop_back(); });
   expect_refused([](Joint& joint) { joint.covariance.resize(5, 5); });
   expect_refused([](Joint& joint) { joint.covariance(4, 4) = -1.0; });

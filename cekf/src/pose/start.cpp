@@ -15,7 +15,7 @@ void check_pose(const core::PoseGaussian& start) {
   throw core::PreconditionError("CompressedEkf: the start must be finite with a positive semidefinite covariance");
 }
 
-void check_landmarks(const core::JointGaussian& start) {
+void check_landmarks(const core::JointGaussian& start, core::LandmarkId next_name) {
   const auto n = static_cast<Eigen::Index>(start.ids.size());
   const Eigen::MatrixXd& P = start.covariance;
   if (start.points_m.size() != start.ids.size() || P.rows() != 3 + 2 * n || P.cols() != P.rows()) {
@@ -29,9 +29,9 @@ void check_landmarks(const core::JointGaussian& start) {
   std::vector<core::LandmarkId> ids = start.ids;
   std::sort(ids.begin(), ids.end());
   const bool twice = std::adjacent_find(ids.begin(), ids.end()) != ids.end();
-  if (twice || (n > 0 && (ids.front() < 0 || ids.back() == std::numeric_limits<core::LandmarkId>::max()))) {
+  if (twice || next_name < 0 || (n > 0 && (ids.front() < 0 || ids.back() >= next_name))) {
     throw core::PreconditionError(
-        "CompressedEkf: a landmark of a joint start has a name that is negative, last or taken");
+        "CompressedEkf: landmarks of a joint start need different names from 0 on and below the next one");
   }
 }
 
@@ -47,14 +47,15 @@ CompressedEkf::CompressedEkf(const core::PoseGaussian& start, const FilterOption
   open_phase(std::move(first), Eigen::MatrixXd(0, 3), {});
 }
 
-CompressedEkf::CompressedEkf(const core::JointGaussian& start, const FilterOptions& options)
+CompressedEkf::CompressedEkf(const core::JointGaussian& start, core::LandmarkId next_name, const FilterOptions& options)
     : options_(options), keep_since_(std::numeric_limits<long>::max()) {
   check_options();
-  check_landmarks(start);
+  check_landmarks(start, next_name);
   begin_at({start.pose, start.covariance.topLeftCorner<3, 3>()});
   Phase first;
   first.start_m = start.pose.position_m();
   first.cell = cell_of(first.start_m);
+  name_from(next_name);
   take_in_passive(start, first);
   open_phase(std::move(first), start.covariance.bottomLeftCorner(start.covariance.rows() - 3, 3), {});
   switch_region();
@@ -81,7 +82,6 @@ void CompressedEkf::take_in_passive(const core::JointGaussian& start, Phase& fir
   first.own_covariance_m2.resize(2 * first.slots, 2);
   for (int slot = 0; slot < first.slots; ++slot) {
     const core::LandmarkId id = start.ids[static_cast<std::size_t>(slot)];
-    name_from(id + 1);
     places_[static_cast<std::size_t>(id)] = {Whereabouts::passive, slot};
     first.mean_m.segment<2>(2 * slot) = start.points_m[static_cast<std::size_t>(slot)];
     first.own_covariance_m2.middleRows<2>(2 * slot) = start.covariance.block<2, 2>(3 + 2 * slot, 3 + 2 * slot);

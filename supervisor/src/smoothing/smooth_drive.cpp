@@ -27,9 +27,7 @@ cekf::CompressedEkf filter_at(const smoothing::Minimum& minimum, const core::Lan
   }
   joint.pose = graph.poses.back().T_world_robot;
   joint.covariance = minimum.joint_covariance({static_cast<int>(graph.poses.size()) - 1}, landmarks);
-  cekf::CompressedEkf filter(joint, before.options());
-  filter.name_from(before.next_name());
-  return filter;
+  return {joint, before.next_name(), before.options()};
 }
 
 /// χ² of three more degrees of freedom, exceeded once in a million times: by less the two costs differ that would be one

@@ -40,11 +40,11 @@ class CompressedEkf {
   /// Start covariance symmetric positive semidefinite; all zero is allowed (map frame = pose at start).
   explicit CompressedEkf(const core::PoseGaussian& start, const FilterOptions& options = {});
 
-  /// From the joint estimate of the pose and of all landmarks of the map, which keep their ids; the region around the
-  /// vehicle is active. PreconditionError for ids that are negative or twice, sizes that do not fit, values that are not
-  /// finite or variances below zero; that the covariance is positive semidefinite is the caller's word. O(N²).
-  /// Test: cekf/joint_start_test.cpp.
-  explicit CompressedEkf(const core::JointGaussian& start, const FilterOptions& options = {});
+  /// From the joint estimate of the pose and of all landmarks of the map, which keep their ids; those named later are
+  /// `next_name` and above. The region around the vehicle is active. PreconditionError for ids that are twice, negative or
+  /// not below `next_name`, sizes that do not fit, values that are not finite or variances below zero; that the covariance
+  /// is positive semidefinite is the caller's word. O(N²). Test: cekf/joint_start_test.cpp.
+  CompressedEkf(const core::JointGaussian& start, core::LandmarkId next_name, const FilterOptions& options = {});
 
   const FilterOptions& options() const { return options_; }
 
