@@ -44,12 +44,7 @@ struct Checkpoint {
 };
 
 inline Checkpoint take_checkpoint(const Belief& belief, const Tape& tape) {
-  return {belief.filter.snapshot(),
-          belief.existence,
-          belief.confirmation,
-          belief.step,
-          tape.end(),
-          belief.slips,
+  return {belief.filter.snapshot(), belief.existence, belief.confirmation, belief.step, tape.end(), belief.slips,
           belief.left_open};
 }
 
