@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using Words = std::vector<std::string>;
 
-Words cells_of(const std::string& row) {
+Words columns_of(const std::string& row) {
   Words cells;
   std::istringstream stream(row);
   for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
@@ -39,9 +39,9 @@ void add_table(const fs::path& path, std::map<double, Words>& rows) {
   std::ifstream table(path);
   std::string line;
   std::getline(table, line);
-  const Words names = cells_of(line);
+  const Words names = columns_of(line);
   while (std::getline(table, line)) {
-    const Words cells = cells_of(line);
+    const Words cells = columns_of(line);
     std::string object = "{";
     for (std::size_t i = 0; i < cells.size(); ++i) {
       if (!cells[i].empty()) object += (i == 0 ? "\"" : ", \"") + names[i] + "\": " + cells[i];
@@ -218,7 +218,7 @@ TEST_F(StreamProgram, NavigatesAsReplayOfTheSameLogToTheLastDigit) {
   EXPECT_EQ(last["associations"][0]["outcome"], "matched");
   // The last row of the health table holds the covariance, number by number.
   const std::string health = text_of(out_ / "health.csv");
-  const Words cells = cells_of(health.substr(health.rfind('\n', health.size() - 2) + 1));
+  const Words cells = columns_of(health.substr(health.rfind('\n', health.size() - 2) + 1));
   EXPECT_EQ(last["covariance"][1][1].get<double>(), std::stod(cells.at(6))) << "syy of its row";
 }
 
