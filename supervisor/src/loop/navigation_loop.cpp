@@ -72,6 +72,7 @@ StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* not
     checkpoint_if_settled();
     if (has_lost_its_place()) return roll_back_and_relocalise(std::move(report));
     solve_with_learnt_noise();
+    report.pose = belief_.filter.pose();
     return report;
   });
 }
