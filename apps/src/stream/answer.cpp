@@ -58,7 +58,7 @@ std::string scan_answer(const core::StepReport& report, std::size_t line) {
   const Eigen::Matrix3d& P = report.pose.covariance;
   Json json{{"line", line},
             {"step", report.step},
-            {"t", core::seconds(report.t_ns)},
+            {"t", static_cast<double>(report.t_ns) / 1e9},  // the nearest double to the decimal
             {"t_ns", report.t_ns},
             {"x", report.pose.mean.x_m},
             {"y", report.pose.mean.y_m},
