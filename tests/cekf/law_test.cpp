@@ -68,27 +68,6 @@ TEST_P(Law, TheCheapMeanIsTheMarginalsAndTheSigmaBoundHolds) {
   EXPECT_GT(passive, 1000);
 }
 
-/// Of δm − δp − J(m − p)δφ, by the joint covariance.
-double sigma_from_vehicle_m(const CompressedEkf& filter, core::LandmarkId id) {
-  const core::JointGaussian joint = filter.joint({id});
-  const Eigen::Vector2d lever_m = joint.points_m.front() - joint.pose.position_m();
-  Eigen::Matrix<double, 2, 5> J;
-  J << -1.0, 0.0, lever_m.y(), 1.0, 0.0, 0.0, -1.0, -lever_m.x(), 0.0, 1.0;
-  return std::sqrt((J * joint.covariance * J.transpose()).trace());
-}
-
-TEST_P(Law, TheSigmaAsSeenFromTheVehicleIsExactWhereActiveAndABoundElsewhere) {
-  RandomProgram program(44, {GetParam(), 220, 30, false});
-  for (int k = 0; k < 120; ++k) program.step();
-  const CompressedEkf& filter = program.filter;
-  ASSERT_LT(filter.active_count(), filter.mapped_count());
-  for (const core::LandmarkId id : filter.landmarks()) {
-    const double exact_m = sigma_from_vehicle_m(filter, id);
-    EXPECT_GE(filter.sigma_from_vehicle_bound_m(id), exact_m * (1.0 - 1e-9)) << id;
-    if (filter.is_active(id)) EXPECT_NEAR(filter.sigma_from_vehicle_bound_m(id), exact_m, 1e-9) << id;
-  }
-}
-
 TEST_P(Law, ARegionHoldsTheNeighbourhoodAndNoMoreThanAllowed) {
   FilterOptions options;
   options.retraction = GetParam();

@@ -61,24 +61,6 @@ double CompressedEkf::landmark_sigma_bound_m(core::LandmarkId id) const {
   return margin * std::sqrt(std::max(0.0, own(0, 0) + own(1, 1)));
 }
 
-/// Of δm − δp − J(m − p)δφ; a passive landmark's covariance with the vehicle is not at hand, and the three add up at most.
-double CompressedEkf::sigma_from_vehicle_bound_m(core::LandmarkId id) const {
-  const Place& place = place_of(id, "sigma_from_vehicle_bound_m");
-  const auto P = active_.P.view();
-  if (place.where != Whereabouts::active) {
-    const double lever_m = (passive_mean(place.index) - active_.pose.position_m()).norm();
-    const double position_m = std::sqrt(std::max(0.0, P(0, 0) + P(1, 1)));
-    return landmark_sigma_bound_m(id) + position_m + lever_m * std::sqrt(std::max(0.0, P(2, 2)));
-  }
-  const int column = ActivePart::column(place.index);
-  const Eigen::Vector2d lever_m = active_.points_m[static_cast<std::size_t>(place.index)] - active_.pose.position_m();
-  const Eigen::Vector2d turned_m(-lever_m.y(), lever_m.x());
-  const double landmark_m2 = P(column, column) + P(column + 1, column + 1);
-  const double pose_m2 = P(0, 0) + P(1, 1) + turned_m.squaredNorm() * P(2, 2) + 2.0 * turned_m.dot(P.block<2, 1>(0, 2));
-  const double shared_m2 = P(column, 0) + P(column + 1, 1) + turned_m.dot(P.block<2, 1>(column, 2));
-  return std::sqrt(std::max(0.0, landmark_m2 + pose_m2 - 2.0 * shared_m2));
-}
-
 core::JointGaussian CompressedEkf::joint(const std::vector<core::LandmarkId>& ids) const {
   core::JointGaussian result;
   result.pose = active_.pose;

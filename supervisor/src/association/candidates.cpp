@@ -8,7 +8,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// Where an observation sees its landmark, and how uncertain that is by the noise alone.
+/// Where an observation sees its landmark, and how uncertain that is by pose and noise together.
 struct SeenPoint {
   Eigen::Vector2d point_m;
   double sigma_m;
@@ -17,13 +17,14 @@ struct SeenPoint {
 /// Largest standard deviation of any direction, bounded by the trace.
 double sigma_bound(const Eigen::Matrix2d& covariance) { return std::sqrt(std::max(0.0, covariance.trace())); }
 
-std::vector<SeenPoint> seen_points(const core::Pose2& T_world_robot, const core::Scan& scan) {
+std::vector<SeenPoint> seen_points(const core::PoseGaussian& pose, const core::Scan& scan) {
   std::vector<SeenPoint> points;
   points.reserve(scan.observations.size());
   for (const core::Observation& observation : scan.observations) {
-    const core::LocatedLandmark located = core::locate_landmark(observation, T_world_robot, scan.T_robot_sensor);
-    points.push_back(
-        {located.point_world_m, sigma_bound(located.G_z * Eigen::Matrix2d(observation.R) * located.G_z.transpose())});
+    const core::LocatedLandmark located = core::locate_landmark(observation, pose.mean, scan.T_robot_sensor);
+    const Eigen::Matrix2d covariance = located.G_pose * pose.covariance * located.G_pose.transpose() +
+                                       located.G_z * Eigen::Matrix2d(observation.R) * located.G_z.transpose();
+    points.push_back({located.point_world_m, sigma_bound(covariance)});
   }
   return points;
 }
@@ -45,19 +46,14 @@ std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, cons
     return filter.landmarks_within(sensor_m, is_known ? reach_m : std::numeric_limits<double>::infinity());
   }
 
-  const std::vector<SeenPoint> seen = seen_points(pose.mean, scan);
-  const double pose_m = sigma_bound(pose.covariance.topLeftCorner<2, 2>());
-  const double turn_rad = std::sqrt(std::max(0.0, pose.covariance(2, 2)));
+  const std::vector<SeenPoint> seen = seen_points(pose, scan);
   double reach_m = 0.0;
-  for (const SeenPoint& s : seen) {
-    const double range_m = (s.point_m - sensor_m).norm();
-    reach_m = std::max(reach_m, range_m + 2.0 * sigmas * (s.sigma_m + pose_m + range_m * turn_rad));
-  }
+  for (const SeenPoint& s : seen) reach_m = std::max(reach_m, (s.point_m - sensor_m).norm() + 2.0 * sigmas * s.sigma_m);
 
   std::vector<core::LandmarkId> chosen;
   for (const core::LandmarkId id : filter.landmarks_within(sensor_m, reach_m)) {
     const Eigen::Vector2d mean_m = filter.landmark_mean(id);
-    const double sigma_m = filter.sigma_from_vehicle_bound_m(id);
+    const double sigma_m = filter.landmark_sigma_bound_m(id);
     const bool near = std::any_of(seen.begin(), seen.end(), [&](const SeenPoint& s) {
       return (s.point_m - mean_m).norm() < sigmas * (s.sigma_m + sigma_m);
     });

@@ -10,9 +10,9 @@
 namespace helixnav::supervisor {
 
 /// Landmarks that any observation of the scan may belong to: those whose distance from where the observation puts them
-/// is less than `sigmas` times the noise's standard deviation and that of the landmark as seen from the vehicle. Their sum
-/// bounds the innovation's, so that nothing inside the exact gate is lost; the drift that vehicle and landmarks share is not
-/// in it. Observations that fix no point (one row) take every landmark within the range of the field of view.
+/// is less than `sigmas` standard deviations of pose and landmark together. The sum of deviations bounds the relative
+/// one whatever their correlation, so that nothing inside the exact gate is lost. Observations that fix no point (one
+/// row) take every landmark within the range of the field of view.
 std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, const core::Scan& scan, double sigmas);
 
 /// Landmarks whose estimated position lies inside the field of view, at least `margin_m` from its edge: those that

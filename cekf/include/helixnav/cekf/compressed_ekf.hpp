@@ -114,9 +114,6 @@ class CompressedEkf {
   /// A passive landmark's is that of the phase's begin times 1.5: it shrinks with every update of the phase, and only the
   /// right-invariant transport may turn it. O(1). Test: cekf/law_test.cpp.
   double landmark_sigma_bound_m(core::LandmarkId id) const;
-  /// Likewise of where the landmark is seen from the vehicle: what both have drifted together is not in it where the
-  /// landmark is active. O(1). Test: cekf/law_test.cpp.
-  double sigma_from_vehicle_bound_m(core::LandmarkId id) const;
   /// Pose and the landmarks in the order given, active or passive, read-only.
   core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;
 
