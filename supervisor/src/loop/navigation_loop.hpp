@@ -47,7 +47,6 @@ class NavigationLoop {
     Tape::Position tape_end;
     std::uint64_t searches;
     std::optional<Mode> mode;
-    std::optional<NoiseLearner> noise;
     std::optional<cekf::CompressedEkf> filter;            ///< before the drive was solved
     std::optional<std::vector<Tape::Entry>> rolled_back;  ///< taken off the tape
   };
@@ -115,6 +114,7 @@ class NavigationLoop {
   Belief belief_;
   Tape tape_;
   NoiseLearner noise_;
+  NoiseLearner noise_before_;  ///< this call, for recover(); kept so that its memory is used again
   Mode mode_;
   Pending pending_;
   Undo undo_;

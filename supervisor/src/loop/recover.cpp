@@ -46,7 +46,7 @@ void NavigationLoop::recover() {
   pending_ = {};
   process_again(
       since, [](const Tape::Fix&, bool) {}, [](const core::StepReport&) {});
-  if (undo.noise) noise_ = std::move(*undo.noise);
+  std::swap(noise_, noise_before_);
   pending_ = std::move(undo.pending);
 }
 

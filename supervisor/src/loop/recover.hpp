@@ -10,8 +10,8 @@ namespace helixnav::supervisor {
 /// The strong guarantee: the call takes effect as a whole, or not at all.
 template <class Call>
 auto NavigationLoop::all_or_nothing(const Call& call) {
-  undo_ = Undo{pending_, tape_.end(), searches_, {}, {}, {}, {}};
-  if (options_.noise.adapt) undo_.noise = noise_;
+  undo_ = Undo{pending_, tape_.end(), searches_, {}, {}, {}};
+  noise_before_ = noise_;
   try {
     auto result = call();
     commit();

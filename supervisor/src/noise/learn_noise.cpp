@@ -13,8 +13,8 @@ namespace helixnav::supervisor {
 /// Before the scan is associated, with the covariances that it claims. What is learnt holds for this scan already: the
 /// second scan of a drive would else begin a second copy of every landmark where the noise is assumed far too small.
 void NavigationLoop::learn_noise(const core::Scan& scan) {
-  if (!options_.noise.adapt || searching() != nullptr) return;
   const Eigen::Matrix3d Q = std::exchange(noise_.moved, Eigen::Matrix3d::Zero());
+  if (!options_.noise.adapt || searching() != nullptr) return;
   noise_.sides.next_scan();
   const std::vector<NoisePair> found = noise_pairs(belief_.filter, scan);
   constexpr std::size_t least_pairs = 3;

@@ -15,11 +15,11 @@ namespace helixnav::supervisor {
 /// and the rest, which odometry has no part in: the rest says the detector's factor, and what of w is odometry's share
 /// says odometry's.
 ///
-/// Upwards every scan counts, and of w only what is not a constant: a mean over many scans is a bias (a wheel's radius, a
-/// wrong scale of ranges) and no noise, or DLR's forward motion, 8 % too long against its detector, would pass for four
-/// times the variance. Downwards only errors that are independent count: landmarks seen from another side than when they
-/// last counted, since a detector errs in the same way from one place; and all of w. Each factor is the larger of both.
-/// Test: supervisor/noise_scale_test.cpp.
+/// Up: every scan counts, and of w only what is not a constant. A mean over many scans is a bias (a wheel's radius, a wrong
+/// scale of ranges) and no noise, or DLR's forward motion, 8 % too long against its detector, would pass for four times the
+/// variance. Down: the detector's factor needs errors that are independent as well, of landmarks seen from another side than
+/// when they last counted, and displacements that odometry explains; odometry's needs all of w. Rules and figures:
+/// docs/slips.md. Test: supervisor/noise_scale_test.cpp.
 class NoiseScale {
  public:
   /// One scan while nothing is in question; Q: the covariance of the motion before it (x, y, heading; robot frame);
