@@ -342,10 +342,10 @@ void ask_at(const Study& study, std::size_t s, const MapState& state, const relo
   double off_m = 999.0;
   double off_deg = 999.0;
   if (!answer.places.empty()) {
-    const core::Pose2 told = core::compose(answer.places.front().T_map_branch, branch.T_branch_vehicle);
+    const core::Pose2 answered = core::compose(answer.places.front().T_map_branch, branch.T_branch_vehicle);
     const core::Pose2 right = core::compose(T_map_reference(state, study.trees_m, scan.truth), scan.truth);
-    off_m = (told.position_m() - right.position_m()).norm();
-    off_deg = std::abs(core::wrap_to_pi(told.heading_rad - right.heading_rad)) * 180.0 / core::pi;
+    off_m = (answered.position_m() - right.position_m()).norm();
+    off_deg = std::abs(core::wrap_to_pi(answered.heading_rad - right.heading_rad)) * 180.0 / core::pi;
   }
   const bool closed = answer.verdict == relocalize::Verdict::closed;
   const bool right = off_m < 1.0 && off_deg < 3.0;

@@ -38,7 +38,7 @@ TEST(Motion, OfATwistIsTheArcOfFineIntegration) {
   EXPECT_TRUE(logarithm(exponential(tiny).vector()).isApprox(tiny, 1e-12));
 }
 
-/// Ten seconds at 2 m/s and 0.1 rad/s, told in each way.
+/// Ten seconds at 2 m/s and 0.1 rad/s, given in each way.
 TEST(OwnRecording, OfEveryKindOfOdometryIsTheSameWay) {
   constexpr double v_mps = 2.0, omega_radps = 0.1, wheelbase_m = 1.5, track_m = 0.8;
   const core::Pose2 whole = exponential({v_mps * 10.0, 0.0, omega_radps * 10.0});

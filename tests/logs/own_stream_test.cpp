@@ -23,7 +23,7 @@ constexpr const char* vehicle_text =
     "[[sensor]]\nname = \"far\"\nx_m = 0.3\nreach_m = 40\nview_deg = [-90, 90]\nsigma_range_m = 0.1\n"
     "sigma_bearing_deg = 0.3\ndelay_s = 0.125\n";
 
-/// A drive of random steps as lines in order of time, odometry told in one of its ways.
+/// A drive of random steps as lines in order of time, odometry given in one of its ways.
 Lines lines_of_drive(const std::string& kind, unsigned seed) {
   std::mt19937 random(seed);
   const auto uniform = [&](double low, double high) {

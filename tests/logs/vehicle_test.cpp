@@ -59,7 +59,7 @@ TEST_F(VehicleFile, RefusesValuesOfTheWrongKindRangeOrTwice) {
   EXPECT_EQ(error("[[sensor]]\nsigma_range_m = nan\n"),
             "vehicle.toml:2:17: sensor.sigma_range_m: expected a number from 1e-09 to 10000, found nan");
   EXPECT_EQ(error("[[sensor]]\nheading_deg = 1\nheading_rad = 1\n"),
-            "vehicle.toml:2:15: sensor.heading_deg: heading_rad is told, too; keep one");
+            "vehicle.toml:2:15: sensor.heading_deg: heading_rad is given, too; keep one");
   EXPECT_EQ(error("[[sensor]]\nview_deg = [90, -90]\n"),
             "vehicle.toml:2:12: sensor.view_deg: expected the smaller angle first");
   EXPECT_EQ(

@@ -112,14 +112,14 @@ TEST(Feed, WithoutAnyWordOnMotionItIsUnknownButNotBeforeTheFirstScan) {
 TEST(Feed, ActionsAreNotBelievedWhenOdometryIsToBeIgnored) {
   MapBuilderOptions options;
   options.force_ignore_odometry = true;
-  QuietBuilder told(options), untold(options);
+  QuietBuilder given(options), not_given(options);
   for (int k = 0; k < 3; ++k) {
     CSensoryFrame frame = frame_of(scan_at(k * 1000, {0.02 * k, 0.0, 0.0}));
-    process(untold, {}, frame);
+    process(not_given, {}, frame);
     frame.insert(reading(k * 1000, k));
-    process(told, action_of(forward(5.0)), frame);
+    process(given, action_of(forward(5.0)), frame);
   }
-  expect_same(told, untold);
+  expect_same(given, not_given);
 }
 
 TEST(Feed, AReadingThatComesTooLateIsPassedOver) {

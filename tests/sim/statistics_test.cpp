@@ -138,10 +138,10 @@ struct OdometryNees {
   double x_heading = 0.0;
   int scans = 0;
 
-  void add(const core::Odometry& told, const core::Pose2& truth) {
-    Eigen::Vector3d e = truth.vector() - told.T_before_after.vector();
+  void add(const core::Odometry& measured, const core::Pose2& truth) {
+    Eigen::Vector3d e = truth.vector() - measured.T_before_after.vector();
     e[2] = core::wrap_to_pi(e[2]);
-    const Eigen::Matrix3d& C = told.covariance;
+    const Eigen::Matrix3d& C = measured.covariance;
     pose += e.dot(C.ldlt().solve(e));
     Eigen::Matrix2d C_x_heading;
     C_x_heading << C(0, 0), C(0, 2), C(2, 0), C(2, 2);

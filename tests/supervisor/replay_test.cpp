@@ -50,7 +50,7 @@ class TwoLaps {
   }
 
   /// The same events through a full EKF given that a tree of the branch is the tree of the first lap.
-  support::FullEkf told(const std::vector<int>& known_again) const;
+  support::FullEkf named_filter(const std::vector<int>& known_again) const;
 
   std::vector<pf_relocalize::ConstellationPair> pairs(std::size_t most = 100) const {
     std::vector<pf_relocalize::ConstellationPair> result;
@@ -157,7 +157,7 @@ class TwoLaps {
   BranchRecord record() const { return {*trigger, tape}; }
 };
 
-support::FullEkf TwoLaps::told(const std::vector<int>& known_again) const {
+support::FullEkf TwoLaps::named_filter(const std::vector<int>& known_again) const {
   support::FullEkf ekf(core::PoseGaussian{}, right_invariant_);
   std::set<LandmarkId> mapped;
   for (const Event& event : twin_) {
@@ -205,7 +205,7 @@ TEST_P(Replay, EqualsAFullFilterToldTheSameAssociationsAcrossRegionSwitches) {
   ASSERT_TRUE(closing.accepted);
   EXPECT_EQ(closing.merged.size(), drive.pairs().size());
   EXPECT_EQ(closing.dof, 2 * static_cast<int>(drive.pairs().size()));
-  const support::FullEkf twin = drive.told(drive.known());
+  const support::FullEkf twin = drive.named_filter(drive.known());
   ASSERT_EQ(static_cast<std::size_t>(drive.filter.mapped_count()), twin.ids.size());
   EXPECT_LE(drive.difference_from(twin), 1e-7);
 }
@@ -218,7 +218,7 @@ TEST_P(Replay, FindsTheCopiesThatNobodyNamed) {
       close_by_replay(drive.filter, drive.record(), drive.pairs(5), drive.branch(), drive.old(), {});
   ASSERT_TRUE(closing.accepted);
   EXPECT_EQ(closing.merged.size(), drive.pairs().size());
-  EXPECT_LE(drive.difference_from(drive.told(drive.known())), 1e-7) << "as if all had been named at once";
+  EXPECT_LE(drive.difference_from(drive.named_filter(drive.known())), 1e-7) << "as if all had been named at once";
 }
 
 TEST_P(Replay, WithoutAPairIsWhatWasDriven) {
@@ -227,7 +227,7 @@ TEST_P(Replay, WithoutAPairIsWhatWasDriven) {
   const cekf::UpdateResult again = replay_branch(drive.filter, drive.record(), {});
   EXPECT_NEAR(again.nis, innovation_cost(drive.tape, 0).nis, 1e-9 * again.nis);
   EXPECT_EQ(again.dof, innovation_cost(drive.tape, 0).dof);
-  EXPECT_LE(drive.difference_from(drive.told({})), 1e-7);
+  EXPECT_LE(drive.difference_from(drive.named_filter({})), 1e-7);
 }
 
 TEST_P(Replay, CostsWhatMergingCostsAndEndsWhereItDoesWhereErrorsAreSmall) {

@@ -103,7 +103,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Write a log as an MRPT rawlog, or a rawlog as something else.", "helixnav-rawlog"};
   RawlogJob job;
   app.add_option("IN", job.in, "Rawlog, or any log that helixnav replay knows")->required();
-  app.add_option("OUT", job.out, "File to write; the extension tells the format")->required();
+  app.add_option("OUT", job.out, "File to write; its extension is the format")->required();
   app.add_option("--to", job.to, "Format of OUT, whatever its name")->check(one_of(format_names()));
   app.add_flag("--no-ids", job.no_ids, "Leave the labels of IN out: no landmarkID in the rawlog");
   app.add_flag("--observations-only", job.observations_only,

@@ -31,9 +31,9 @@ struct CalibrateJob {
 };
 
 struct Calibration {
-  smoothing::NoiseScales scales;   ///< on what the vehicle file tells
+  smoothing::NoiseScales scales;   ///< on what the vehicle file assumes
   SettledDrive drive;              ///< with them
-  std::size_t first_closings = 0;  ///< of the run with the noise as told
+  std::size_t first_closings = 0;  ///< of the run with the assumed noise
   int rounds = 0;
   bool settled = false;
 };
@@ -87,7 +87,7 @@ Calibration calibrate_noise(const CalibrateJob& job) {
 
 void print_scale(const char* what, const smoothing::NoiseScale& scale) {
   const double factor = scale.factor;
-  std::printf("%-11s noise x %.3f (95 %%: %.3f to %.3f; judged by %.0f residuals): %s than told\n", what, factor,
+  std::printf("%-11s noise x %.3f (95 %%: %.3f to %.3f; judged by %.0f residuals): %s than assumed\n", what, factor,
               scale.low_95, scale.high_95, scale.redundancy,
               scale.low_95 <= 1.0 && scale.high_95 >= 1.0 ? "not different"
               : factor > 1.0                              ? "worse"
@@ -108,8 +108,8 @@ ExitCode calibrate(CLI::App& command, CalibrateJob& job) {
   if (!result.settled) std::printf("not settled after %d rounds: the intervals are not to be trusted\n", result.rounds);
   if (result.drive.closings < result.first_closings) {
     std::printf(
-        "warning: with this noise %zu loops are closed, with the noise told %zu: the odometry is off by something\n"
-        "that is no white noise, as a scale or a bias of its turns; mend that first, and keep the noise told\n",
+        "warning: with this noise %zu loops are closed, with the assumed noise %zu: the odometry is off by something\n"
+        "that is no white noise, as a scale or a bias of its turns; mend that first, and keep the assumed noise\n",
         result.drive.closings, result.first_closings);
   }
   if (job.out.empty()) return ExitCode::ok;

@@ -16,10 +16,10 @@ std::string trimmed(const std::string& line) {
   return line.substr(begin, end - begin + 1);
 }
 
-std::string scale_line(double told, const smoothing::NoiseScale& scale) {
+std::string scale_line(double assumed, const smoothing::NoiseScale& scale) {
   std::array<char, 160> text{};
   std::snprintf(text.data(), text.size(), "noise_scale = %.4g  # calibrated; 95 %%: %.4g to %.4g\n",
-                told * scale.factor, told * scale.low_95, told * scale.high_95);
+                assumed * scale.factor, assumed * scale.low_95, assumed * scale.high_95);
   return text.data();
 }
 

@@ -11,7 +11,7 @@ namespace helixnav::apps {
 /// The tables of a log of the user's own in words: rows, times, rates, what they say.
 std::string tables_text(const logs::OwnLog& log);
 
-/// The events of any log in words: way and speed, scans, kinds of observations, reach and field of view seen and told,
+/// The events of any log in words: way and speed, scans, kinds of observations, reach and field of view seen and stated,
 /// gaps, truth.
 std::string events_text(const core::Recording& recording);
 

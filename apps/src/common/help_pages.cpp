@@ -22,7 +22,7 @@ class ShortHelp : public CLI::Formatter {
   }
 
  private:
-  mutable bool all_ = false;  // make_group is not told
+  mutable bool all_ = false;  // make_group does not learn it otherwise
 };
 
 }  // namespace

@@ -38,7 +38,7 @@ void set_detection(CLI::App& command, const logs::Vehicle& vehicle) {
   if (clutter) set_unless_given(command, "--association.extraneous_per_scan", *clutter + new_per_scan);
 }
 
-void refuse_untold(const logs::Vehicle& vehicle) {
+void refuse_what_goes_nowhere(const logs::Vehicle& vehicle) {
   const logs::SensorModel& sensor = vehicle.sensors.front();
   const logs::OdometryModel& odometry = vehicle.odometry;
   const bool moves = odometry.tells_noise() || odometry.noise_scale != 1.0 || odometry.scale != 1.0 ||
@@ -49,7 +49,7 @@ void refuse_untold(const logs::Vehicle& vehicle) {
   if (!moves && !mounts) return;
   throw core::InputError(vehicle.path + ": a log of this format brings its own " +
                          (moves ? "odometry and its noise" : "mounting and times") +
-                         "; only the view, the noise and the probabilities of the [[sensor]] can be told");
+                         "; only the view, the noise and the probabilities of the [[sensor]] can be given");
 }
 
 void tell_noise(const logs::SensorModel& sensor, core::Observation& observation) {
@@ -97,7 +97,7 @@ void tell_vehicle(core::Recording& recording, const logs::Vehicle& vehicle) {
     throw core::InputError(vehicle.path + ": a log of this format has one sensor; expected one [[sensor]], found " +
                            std::to_string(vehicle.sensors.size()));
   }
-  refuse_untold(vehicle);
+  refuse_what_goes_nowhere(vehicle);
   const logs::SensorModel& sensor = vehicle.sensors.front();
   for (core::Event& event : recording.events) {
     auto* scan = std::get_if<core::Scan>(&event);

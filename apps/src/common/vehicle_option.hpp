@@ -16,12 +16,12 @@ namespace helixnav::apps {
 void add_vehicle_option(CLI::App& command, std::string& file);
 
 /// Reads the vehicle of a log, `file` or else the vehicle.toml beside a log of the user's own, into the settings: what it
-/// tells of detection and fixes goes where neither the command line nor --config said otherwise. Nothing without one.
+/// says of detection and fixes goes where neither the command line nor --config said otherwise. Nothing without one.
 /// Throws core::InputError for a file that cannot be used. Test: apps/own_log_test.cpp.
 void apply_vehicle(CLI::App& command, const std::string& file, const std::string& log, Settings& settings);
 
 /// What a vehicle says of the sensor, into a recording of another format, which knows its own odometry. Throws
-/// core::InputError for what cannot be told to such a log.
+/// core::InputError for what cannot be given for such a log.
 void tell_vehicle(core::Recording& recording, const logs::Vehicle& vehicle);
 
 /// The recording's remarks on stderr, one a line.

@@ -92,7 +92,7 @@ void add_convert_command(CLI::App& app, ExitCode& code) {
   CLI::App* command = app.add_subcommand("convert", "Write a labelled log or graph in another format, or with noise");
   const auto job = std::make_shared<ConvertJob>();
   command->add_option("IN", job->in, "Labelled log or graph; the format is recognised")->required();
-  command->add_option("OUT", job->out, "File to write; the extension tells the format")->required();
+  command->add_option("OUT", job->out, "File to write; its extension is the format")->required();
   command->add_option("--to", job->to, "Format of OUT, whatever its name")->check(one_of(format_names()));
   command
       ->add_option("--noise", job->noise,

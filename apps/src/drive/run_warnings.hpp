@@ -22,7 +22,7 @@ struct ObservationCounts {
 void check_observable(const Drive& job);
 
 /// What a user should know of a run that came to its end and is not to be trusted, with what to do: a map without
-/// landmarks, matching that collapsed, innovations that contradict the noise told, truth of another clock. A sentence
+/// landmarks, matching that collapsed, innovations that contradict the assumed noise, truth of another clock. A sentence
 /// each; none of a run that is well. Test: apps/warnings_test.cpp.
 std::vector<std::string> warnings_of(const Drive& job, const ObservationCounts& counts,
                                      const std::vector<core::MapLandmark>& map,

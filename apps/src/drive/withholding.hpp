@@ -18,7 +18,7 @@ namespace helixnav::apps {
 template <typename Estimator>
 class Withholding {
  public:
-  /// `withheld` is [scan], empty: none is. `pose` tells the estimator's, at its last scan or fix.
+  /// `withheld` is [scan], empty: none is. `pose` gives the estimator's, at its last scan or fix.
   Withholding(Estimator& estimator, const std::vector<bool>& withheld, std::function<core::PoseGaussian()> pose)
       : estimator_(estimator), withheld_(withheld), pose_(std::move(pose)) {}
 

@@ -15,8 +15,8 @@ namespace helixnav::apps {
 namespace {
 
 constexpr const char* vehicle_text =
-    R"(# A vehicle. Lengths are in metres; an angle ends in _deg or in _rad, as you like. Only what stands here without # is
-# told; everything else is a default or is taken from the log. Positions are in the frame of the vehicle: x ahead, y to the
+    R"(# A vehicle. Lengths are in metres; an angle ends in _deg or in _rad, as you like. Only lines without # are
+# settings; everything else is a default or is taken from the log. Positions are in the frame of the vehicle: x ahead, y to the
 # left, and its origin is the point whose path you want to know.
 name = "example cart"
 
@@ -25,7 +25,7 @@ name = "example cart"
 # x_m = 0.0
 # y_m = 0.0
 # Noise that grows with the way or with the time: after 100 m of straight driving, sigma_along_m_per_sqrt_m = 0.05 means
-# a standard deviation of 0.05 * sqrt(100) = 0.5 m. What a column of odometry.csv tells comes first.
+# a standard deviation of 0.05 * sqrt(100) = 0.5 m. What a column of odometry.csv says comes first.
 sigma_along_m_per_sqrt_m = 0.027
 sigma_sideways_m_per_sqrt_m = 0.005
 sigma_heading_deg_per_sqrt_m = 0.16
@@ -54,7 +54,7 @@ reach_m = 30.0                           # it sees landmarks up to here; all len
 # reliable_range_m = 25.0                # and surely up to here: a landmark that is missed nearer is doubted
 min_range_m = 1.0
 view_deg = [-90, 90]                     # from the right to the left; all around: [-180, 180]
-sigma_range_m = 0.1                      # noise of a detection; what a column of detections.csv tells comes first
+sigma_range_m = 0.1                      # noise of a detection; what a column of detections.csv says comes first
 sigma_bearing_deg = 0.7
 # sigma_point_m = 0.1                    # for detections as x_m, y_m
 detection_probability = 0.9              # that a landmark in view is detected in one scan

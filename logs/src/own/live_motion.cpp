@@ -26,11 +26,11 @@ void LiveMotion::check(const OwnLog& log) const {
     throw StreamRefusal("odometry", "odometry as " + std::string(name_of(log.odometry_kind)) + " after " +
                                         std::string(name_of(rows_.odometry_kind)) + "; a stream has one kind");
   }
-  const Motions told(log, vehicle_);
+  const Motions motions(log, vehicle_);
   if (rows_.odometry.empty()) return;
   core::Nanoseconds last_ns = rows_.odometry.back().t_ns;
   for (const OwnOdometry& row : log.odometry) {
-    const bool answered = row.t_ns == woven_ns_ && !told.holds();
+    const bool answered = row.t_ns == woven_ns_ && !motions.holds();
     if (row.t_ns < last_ns || answered) {
       char text[160];
       std::snprintf(text, sizeof text, "odometry at %.9g s comes after odometry at %.9g s%s", core::seconds(row.t_ns),

@@ -30,7 +30,7 @@ class LiveMotion {
   LiveMotion(const Vehicle& vehicle, double late_s);
 
   /// Throws StreamRefusal for rows that go back in time or are of another kind, core::InputError for noise or geometry that
-  /// nobody tells. Changes nothing.
+  /// nobody gives. Changes nothing.
   void check(const OwnLog& log) const;
   void add(const OwnLog& log);
 

@@ -136,12 +136,12 @@ void Motions::add_sample_noise(Motion& motion, std::size_t row) const {
   const double duration_s = core::seconds(motion.end_ns - motion.begin_ns);
   Eigen::Matrix3d rates = Eigen::Matrix3d::Zero();
   if (!log_.odometry_covariances.empty()) rates = log_.odometry_covariances[row];
-  const bool told = !rates.isZero(0.0);
+  const bool given = !rates.isZero(0.0);
   const double v = square(model_.sigma_v_mps.value_or(0.0));
   if (log_.odometry_kind == OdometryKind::wheels) {
     rates(0, 0) = 0.5 * v;
     rates(2, 2) = 2.0 * v / square(*model_.track_m);
-  } else if (!told) {
+  } else if (!given) {
     rates(0, 0) = v;
     rates(2, 2) = square(model_.sigma_omega_radps.value_or(0.0));
   }

@@ -148,12 +148,12 @@ void doubt_vehicle(const Vehicle& vehicle, const core::Recording& recording, Dou
       outside += is_outside(observation, scan->field_of_view) ? 1 : 0;
     }
   }
-  const bool told = std::any_of(vehicle.sensors.begin(), vehicle.sensors.end(), [](const SensorModel& sensor) {
+  const bool stated = std::any_of(vehicle.sensors.begin(), vehicle.sensors.end(), [](const SensorModel& sensor) {
     return sensor.reach_m || sensor.reliable_range_m || sensor.min_bearing_rad;
   });
-  if (told && outside * 20 > seen) {
+  if (stated && outside * 20 > seen) {
     doubts.push_back(sentence(
-        "%zu of %zu detections (%.0f %%) lie outside the reach and view that %s tells; is it the vehicle "
+        "%zu of %zu detections (%.0f %%) lie outside the reach and view that %s states; is it the vehicle "
         "of this log?",
         outside, seen, 100.0 * static_cast<double>(outside) / static_cast<double>(seen), vehicle.path.c_str()));
   }

@@ -38,8 +38,8 @@ std::string key_at(std::string_view line, std::size_t column) {
 }  // namespace
 
 struct OwnStream::State {
-  State(const Vehicle& told, bool by_identity)
-      : vehicle(told),
+  State(const Vehicle& given, bool by_identity)
+      : vehicle(given),
         motion(vehicle, late_s),
         scans(vehicle, by_identity),
         rows(std::make_unique<JsonRows>("stream")) {}

@@ -43,7 +43,7 @@ class WordNumbers {
 std::optional<std::int64_t> whole_number(const std::string& word);
 
 /// The tables of a log as they fill it. Each reads the rows of one kind: begin() once its columns are known (again, where
-/// they change, as in JSON Lines), add() for each row. finish() sorts, numbers identities and tells what was done.
+/// they change, as in JSON Lines), add() for each row. finish() sorts, numbers identities and says what was done.
 class OwnTables {
  public:
   enum class Table { odometry, detections, fixes, truth_poses, truth_landmarks };

@@ -13,7 +13,7 @@ namespace helixnav::logs {
 /// where the vehicle has none at all; core::InputError where it has others only.
 SensorModel sensor_called(const std::string& name, const std::string& log, const Vehicle& vehicle);
 
-/// As the sensor measures it, with the noise of the row, else of the sensor; core::InputError where neither tells it.
+/// As the sensor measures it, with the noise of the row, else of the sensor; core::InputError where neither gives it.
 core::Observation observation_of(const OwnDetection& row, const SensorModel& sensor, const Vehicle& vehicle);
 
 }  // namespace helixnav::logs

@@ -74,7 +74,7 @@ std::pair<const toml::node*, double> TomlSection::angle_node(const std::string& 
   const toml::node* radians = take(in_radians);
   const toml::node* degrees = take(in_degrees);
   if (radians != nullptr && degrees != nullptr) {
-    fail_at_node(*degrees, full(in_degrees) + ": " + in_radians + " is told, too; keep one");
+    fail_at_node(*degrees, full(in_degrees) + ": " + in_radians + " is given, too; keep one");
   }
   return radians != nullptr ? std::pair(radians, 1.0) : std::pair(degrees, rad_per_deg);
 }

@@ -25,7 +25,7 @@ void estimate_missing_field_of_view(core::Recording& recording);
 /// Overwrites what is given in every scan. A range given is the reach as well.
 void set_field_of_view(core::Recording& recording, const GivenFieldOfView& given);
 
-/// Overwrites what a sensor tells of its view.
+/// Overwrites what a sensor states of its view.
 void tell_view(const SensorModel& sensor, core::FieldOfView& view);
 
 /// That of the first scan whose reach is known, else of the first scan, else the default.

@@ -37,15 +37,15 @@ struct OwnDetection {
   std::int32_t class_name = -1;  ///< index into OwnLog::class_names; −1: none
   core::Label label = core::no_label;
   std::array<double, 2> z{};
-  std::array<double, 3> R{};  ///< (0,0), (0,1), (1,1); R(0,0) = 0: not told, the vehicle's
-  double size_m = 0.0;        ///< 0: not told
+  std::array<double, 3> R{};  ///< (0,0), (0,1), (1,1); R(0,0) = 0: not given, the vehicle's
+  double size_m = 0.0;        ///< 0: not given
   double sigma_size_m = 0.0;
 };
 
 struct OwnFix {
   core::Nanoseconds t_ns = 0;
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
-  double sigma_m = 0.0;  ///< 0: not told
+  double sigma_m = 0.0;  ///< 0: not given
 };
 
 /// A log of the user's own, as it stands in its files: SI units, each list in order of time.
@@ -80,7 +80,7 @@ OwnLog read_own_log(const std::filesystem::path& path);
 
 /// The events of the log as this vehicle makes them: odometry between two scans or fixes as one increment, split at them
 /// in proportion to time, and all in the frame of the vehicle. Throws core::InputError for noise that neither the log nor
-/// the vehicle tells, a sensor that the vehicle does not have, clocks that do not overlap. Remarks go to
+/// the vehicle states, a sensor that the vehicle does not have, clocks that do not overlap. Remarks go to
 /// Recording::remarks. Test: logs/own_recording_test.cpp.
 core::Recording make_recording(const OwnLog& log, const Vehicle& vehicle);
 

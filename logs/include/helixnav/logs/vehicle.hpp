@@ -13,7 +13,7 @@
 
 namespace helixnav::logs {
 
-/// How odometry becomes motion, and how well it is known. What is not told is nothing.
+/// How odometry becomes motion, and how well it is known. What is not given is empty.
 struct OdometryModel {
   core::Pose2 T_vehicle_odometry;     ///< where it is measured, in the frame of the vehicle
   double scale = 1.0;                 ///< times every distance and speed
@@ -61,7 +61,7 @@ struct SensorModel {
   std::optional<double> clutter_per_scan;
 };
 
-/// A vehicle as its vehicle.toml tells it. Its frame: x ahead, y left; its origin is the point whose path is written.
+/// A vehicle as its vehicle.toml describes it. Its frame: x ahead, y left; its origin is the point whose path is written.
 struct Vehicle {
   std::string name;
   std::string path;  ///< of the file, for messages
@@ -72,7 +72,7 @@ struct Vehicle {
 };
 
 /// Reads a vehicle.toml (docs/your_own_log.md). Throws core::InputError naming file:line:column for what is no TOML, a key
-/// that is unknown (with the nearest one of its section), of the wrong type, out of its range, or told in two units.
+/// that is unknown (with the nearest one of its section), of the wrong type, out of its range, or given in two units.
 /// Test: logs/vehicle_test.cpp.
 Vehicle read_vehicle(const std::filesystem::path& path);
 
