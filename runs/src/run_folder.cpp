@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "bring_into_map.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/files/file.hpp"
@@ -215,6 +216,7 @@ Run read_run(const std::string& path) {
   run.manifest = manifest_from_text(manifest, files::read_whole_file(manifest));
   RunTables tables = read_tables(path);
   assemble(tables, run);
+  bring_into_map(run);
   if (fs::exists(path + "/map.csv")) run.map = read_map(path + "/map.csv");
   if (has_truth(path)) run.truth = read_truth(path);
   run.finished = fs::exists(path + '/' + summary_file);

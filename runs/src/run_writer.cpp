@@ -6,11 +6,13 @@
 #include <filesystem>
 #include <initializer_list>
 
+#include "bring_into_map.hpp"
 #include "cloud_choice.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/files/file.hpp"
 #include "helixnav/files/number_text.hpp"
+#include "helixnav/runs/joint_map_file.hpp"
 #include "helixnav/runs/words.hpp"
 #include "run_tables.hpp"
 #include "write_truth.hpp"
@@ -158,6 +160,12 @@ std::string final_trajectory_text(const std::vector<core::StepReport>& steps, co
   return text;
 }
 
+std::vector<core::Pose2> poses_of(const std::vector<core::StepReport>& steps) {
+  std::vector<core::Pose2> poses;
+  for (const core::StepReport& step : steps) poses.push_back(step.pose.mean);
+  return poses;
+}
+
 // One growing table with the block of the present step.
 struct Table {
   files::AppendFile file;
@@ -232,6 +240,11 @@ void RunWriter::finish(const Run& run, const std::string& report_page, const std
   files::write_whole_file(folder_ + "/map.csv", map_text(run.map));
   if (run.smoothed) {
     files::write_whole_file(folder_ + "/trajectory_final.tum", final_trajectory_text(run.steps, run.smoothed->poses));
+  } else if (step_of_placing(run)) {
+    files::write_whole_file(folder_ + "/trajectory_final.tum", final_trajectory_text(run.steps, poses_of(run.steps)));
+  }
+  if (run.joint_map && run.joint_map->joint.ids.size() <= most_joint_landmarks) {
+    files::write_whole_file(folder_ + '/' + joint_map_file, joint_map_bytes(*run.joint_map));
   }
   files::write_whole_file(folder_ + '/' + report_file, report_page);
   files::write_whole_file(folder_ + '/' + summary_file, summary);

@@ -77,6 +77,7 @@ StepReport NavigationLoop::take_told(const Scan& scan, const core::Decision* not
     checkpoint_if_settled();
     if (has_lost_its_place()) return roll_back_and_relocalise(std::move(report));
     tell_again();
+    if (sought_in_) find_place(scan.field_of_view, report);
     return report;
   });
 }

@@ -11,6 +11,9 @@ namespace helixnav::supervisor {
 Navigator::Navigator(const core::PoseGaussian& start, const NavigatorOptions& options)
     : loop_(std::make_unique<NavigationLoop>(start, options)) {}
 
+Navigator::Navigator(const core::JointMap& earlier, const NavigatorOptions& options)
+    : loop_(std::make_unique<NavigationLoop>(earlier, options)) {}
+
 Navigator::~Navigator() = default;
 Navigator::Navigator(Navigator&&) noexcept = default;
 Navigator& Navigator::operator=(Navigator&&) noexcept = default;
@@ -36,6 +39,8 @@ bool Navigator::fix(const core::AbsoluteFix& fix) {
   core::check(fix);
   return loop_->fix(fix);
 }
+
+void Navigator::look_for_place_in(const core::JointMap& earlier) { loop_->look_for_place_in(earlier); }
 
 core::PoseGaussian Navigator::pose() const { return filter().pose(); }
 const cekf::CompressedEkf& Navigator::filter() const { return loop_->belief().filter; }

@@ -40,6 +40,13 @@ class CompressedEkf {
   /// Start covariance symmetric positive semidefinite; all zero is allowed (map frame = pose at start).
   explicit CompressedEkf(const core::PoseGaussian& start, const FilterOptions& options = {});
 
+  /// Begins with a pose and landmarks that are known jointly, as joint() of another filter gives them. Landmarks named later
+  /// are `next_name` and above. PreconditionError unless ids are different and below `next_name`, and the covariance is
+  /// finite, symmetric, of the right size and without negative variances or correlations above 1 (that it is positive
+  /// semidefinite is the caller's word: checking it costs O(N³)). O(N²). Test: cekf/joint_start_test.cpp (equal to a full EKF
+  /// begun so; a filter that goes on from its own joint()).
+  CompressedEkf(const core::JointGaussian& start, core::LandmarkId next_name, const FilterOptions& options = {});
+
   const FilterOptions& options() const { return options_; }
 
   /// Moves the vehicle: F and the noise from core::compose_jacobians. O(n + q).
