@@ -148,7 +148,7 @@ TEST(GoOn, ByNameIsAsIfThereHadBeenNoInterruption) {
 TEST(GoOn, FromAKnownPlaceTheMapIsRecognisedAtOnce) {
   const core::Recording run = sim::simulate(wide_circuit(), 6);
   const core::JointMap map = map_of(run);
-  Navigator navigator(map, NavigatorOptions{});
+  Navigator navigator = Navigator::go_on_in(map);
   std::size_t matched = 0, augmented = 0;
   const core::Recording again = another_day(6, 74, 0);  // the drive ends where it began
   core::Recording first = again;

@@ -38,7 +38,7 @@ ChosenNavigator begun(const Drive& job, const std::vector<std::vector<core::Labe
   const bool at_end = earlier.start.kind == SessionStart::Kind::end;
   const core::JointMap map = at_end ? earlier.map : seen_from(earlier.map, earlier.start.T_map_robot, reach_m);
   if (job.known_association) return {supervisor::NamedNavigator(map, earlier.landmark_of, job.navigator), labels};
-  return {supervisor::Navigator(map, job.navigator), labels};
+  return {supervisor::Navigator::go_on_in(map, job.navigator), labels};
 }
 
 struct NavigatorDrive {

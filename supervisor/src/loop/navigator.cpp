@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/supervisor/navigator.hpp"
 
+#include <utility>
 #include <variant>
 
 #include "helixnav/core/check_event.hpp"
@@ -11,8 +12,11 @@ namespace helixnav::supervisor {
 Navigator::Navigator(const core::PoseGaussian& start, const NavigatorOptions& options)
     : loop_(std::make_unique<NavigationLoop>(start, options)) {}
 
-Navigator::Navigator(const core::JointMap& earlier, const NavigatorOptions& options)
-    : loop_(std::make_unique<NavigationLoop>(earlier, options)) {}
+Navigator::Navigator(std::unique_ptr<NavigationLoop> loop) : loop_(std::move(loop)) {}
+
+Navigator Navigator::go_on_in(const core::JointMap& earlier, const NavigatorOptions& options) {
+  return Navigator(std::make_unique<NavigationLoop>(earlier, options));
+}
 
 Navigator::~Navigator() = default;
 Navigator::Navigator(Navigator&&) noexcept = default;

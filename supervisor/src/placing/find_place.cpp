@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The loop of a session that does not know where on an earlier map it is.
 #include <algorithm>
-#include <limits>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -54,13 +52,6 @@ association::LandmarkLife existence_of_both(const association::LandmarkLife& ses
   return both;
 }
 
-std::vector<LandmarkId> ids_of(const relocalize::Question& question) {
-  std::vector<LandmarkId> ids;
-  for (const relocalize::Landmark& landmark : question.landmarks) ids.push_back(landmark.id);
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
-
 }  // namespace
 
 void NavigationLoop::look_for_place_in(const core::JointMap& earlier) {
@@ -95,15 +86,17 @@ void NavigationLoop::find_place(const core::FieldOfView& view, core::StepReport&
     decision.earlier_landmarks = static_cast<int>(search.earlier().landmarks().ids.size());
     report.decisions.emplace_back(decision);
   }
-  const relocalize::Question question =
-      session_question(belief_, view, search.reach_m(), search.pair_noise_m(), options_.search);
-  if (!search.is_due(question)) return;
+  const double seen_within_m = options_.search.branch_seen_within_m;
+  LandmarksAbout about = landmarks_about(belief_, seen_within_m);
+  if (!search.is_due(about.ids)) return;
+  const relocalize::Question question = session_question(belief_, about, view, search.lengths(), seen_within_m);
+  if (question.looked.empty()) return;
   const relocalize::Answer answer = search.ask(question, decision);
   decision.driven_m = belief_.existence.path_m();
-  std::vector<LandmarkId> asked_with = ids_of(question);
+  std::sort(about.ids.begin(), about.ids.end());
   report.decisions.reserve(report.decisions.size() + 1);
   if (answer.verdict == relocalize::Verdict::closed && join(answer.places.front(), decision, report)) return;
-  if (search.asked(asked_with, decision.verdict)) report.decisions.emplace_back(decision);
+  if (search.asked(about.ids, decision.verdict)) report.decisions.emplace_back(decision);
 }
 
 /// From here on one map, in the frame of the earlier one, or everything as before. What lies behind can no longer be solved
@@ -112,7 +105,7 @@ bool NavigationLoop::join(const relocalize::Place& place, PlacedDecision& decisi
   const PlaceSearch& search = *place_search_;
   const Seen seen = seen_landmarks(belief_.existence, options_.search.constellation.least_hits);
   JoinedMaps joined = join_maps(belief_.filter, search.earlier().landmarks(), place, seen.confirmed, seen.unconfirmed,
-                                search.pair_noise_m(), options_.search);
+                                search.lengths().pair_noise_m, options_.search);
   decision.cost = joined.closing.cost;
   decision.dof = joined.closing.dof;
   decision.limit = joined.closing.limit;

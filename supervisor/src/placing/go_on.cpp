@@ -2,11 +2,21 @@
 // A session that knows where on an earlier map it begins.
 #include "loop/navigation_loop.hpp"
 
+#include "placing/earlier_map.hpp"
+
 namespace helixnav::supervisor {
+namespace {
+
+core::PoseGaussian pose_of(const core::JointMap& earlier) {
+  const EarlierMap checked(earlier);
+  return {earlier.joint.pose, earlier.joint.covariance.topLeftCorner<3, 3>()};
+}
+
+}  // namespace
 
 /// Existence: as sure as what was mature or tentative then was when it became so; old is what is far away.
 NavigationLoop::NavigationLoop(const core::JointMap& earlier, const NavigatorOptions& options)
-    : NavigationLoop(core::PoseGaussian{earlier.joint.pose, earlier.joint.covariance.topLeftCorner<3, 3>()}, options) {
+    : NavigationLoop(pose_of(earlier), options) {
   belief_.filter = cekf::CompressedEkf(earlier.joint, earlier.next_name, options.filter);
   for (std::size_t i = 0; i < earlier.joint.ids.size(); ++i) {
     association::LandmarkRecord record;

@@ -21,13 +21,12 @@ core::PlacedDecision::Verdict verdict_of(relocalize::Verdict verdict) {
 PlaceSearch::PlaceSearch(const core::JointMap& earlier, const relocalize::IndexOptions& lengths)
     : earlier_(earlier), index_(earlier_.index(lengths)) {}
 
-bool PlaceSearch::is_due(const relocalize::Question& question) const {
-  if (question.landmarks.size() < least_landmarks || question.looked.empty()) return false;
-  const auto fresh =
-      std::count_if(question.landmarks.begin(), question.landmarks.end(), [&](const relocalize::Landmark& landmark) {
-        return !std::binary_search(asked_with_.begin(), asked_with_.end(), landmark.id);
-      });
-  return 5 * static_cast<std::size_t>(fresh) >= question.landmarks.size();
+bool PlaceSearch::is_due(const std::vector<core::LandmarkId>& landmarks) const {
+  if (landmarks.size() < least_landmarks || !(index_.looked_at_m2() > 0.0)) return false;
+  const auto fresh = std::count_if(landmarks.begin(), landmarks.end(), [&](core::LandmarkId id) {
+    return !std::binary_search(asked_with_.begin(), asked_with_.end(), id);
+  });
+  return 5 * static_cast<std::size_t>(fresh) >= landmarks.size();
 }
 
 relocalize::Answer PlaceSearch::ask(const relocalize::Question& question, core::PlacedDecision& decision) const {

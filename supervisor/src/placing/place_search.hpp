@@ -17,11 +17,10 @@ class PlaceSearch {
   PlaceSearch(const core::JointMap& earlier, const relocalize::IndexOptions& lengths);
 
   const EarlierMap& earlier() const { return earlier_; }
-  double reach_m() const { return index_.options().reach_m; }
-  double pair_noise_m() const { return index_.options().pair_noise_m; }
+  const relocalize::IndexOptions& lengths() const { return index_.options(); }
 
-  /// Enough landmarks, and enough of them new since the last question: a fifth.
-  bool is_due(const relocalize::Question& question) const;
+  /// Enough landmarks to ask with, and enough of them new since the last question: a fifth.
+  bool is_due(const std::vector<core::LandmarkId>& landmarks) const;
 
   /// The answer, and what it says as a decision (nothing merged yet).
   relocalize::Answer ask(const relocalize::Question& question, core::PlacedDecision& decision) const;

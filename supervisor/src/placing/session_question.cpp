@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -15,29 +14,6 @@ namespace {
 
 constexpr std::size_t most_landmarks = 40;
 constexpr double surely_seen = 0.8;  ///< of the reach
-
-struct Nearest {
-  std::vector<core::LandmarkId> ids;
-  double within_m = std::numeric_limits<double>::infinity();  ///< of the vehicle: beyond, landmarks were left out
-};
-
-Nearest nearest_landmarks(const Belief& belief, double seen_within_m) {
-  const Eigen::Vector2d at_m = belief.filter.pose().mean.position_m();
-  std::vector<std::pair<double, core::LandmarkId>> order;
-  for (const association::LandmarkRecord& record : belief.existence.records()) {
-    if (record.state != core::LandmarkState::mature) continue;
-    if (belief.existence.path_m() - record.last_seen_path_m > seen_within_m) continue;
-    order.emplace_back((belief.filter.landmark_mean(record.id) - at_m).norm(), record.id);
-  }
-  std::sort(order.begin(), order.end());
-  Nearest nearest;
-  if (order.size() > most_landmarks) {
-    order.resize(most_landmarks);
-    nearest.within_m = order.back().first;
-  }
-  for (const auto& [distance_m, id] : order) nearest.ids.push_back(id);
-  return nearest;
-}
 
 /// The largest disc in the view: about the sensor where it looks all around, else ahead of it.
 relocalize::Disc disc_in_view(const core::FieldOfView& view, double reach_m, const core::Pose2& T_world_sensor) {
@@ -67,22 +43,39 @@ std::vector<relocalize::Disc> looked_at(const Belief& belief, const core::FieldO
 
 }  // namespace
 
-relocalize::Question session_question(const Belief& belief, const core::FieldOfView& view, double reach_m,
-                                      double pair_noise_m, const SearchOptions& options) {
+LandmarksAbout landmarks_about(const Belief& belief, double seen_within_m) {
+  const Eigen::Vector2d at_m = belief.filter.pose().mean.position_m();
+  std::vector<std::pair<double, core::LandmarkId>> order;
+  for (const association::LandmarkRecord& record : belief.existence.records()) {
+    if (record.state != core::LandmarkState::mature) continue;
+    if (belief.existence.path_m() - record.last_seen_path_m > seen_within_m) continue;
+    order.emplace_back((belief.filter.landmark_mean(record.id) - at_m).norm(), record.id);
+  }
+  std::sort(order.begin(), order.end());
+  LandmarksAbout about;
+  if (order.size() > most_landmarks) {
+    order.resize(most_landmarks);
+    about.within_m = order.back().first;
+  }
+  for (const auto& [distance_m, id] : order) about.ids.push_back(id);
+  return about;
+}
+
+relocalize::Question session_question(const Belief& belief, const LandmarksAbout& about, const core::FieldOfView& view,
+                                      const relocalize::IndexOptions& lengths, double seen_within_m) {
   relocalize::Question question;
-  const Nearest nearest = nearest_landmarks(belief, options.branch_seen_within_m);
-  const core::JointGaussian joint = belief.filter.joint(nearest.ids);
+  const core::JointGaussian joint = belief.filter.joint(about.ids);
   const Eigen::Index n = joint.covariance.rows() - 3;
   const std::vector<Eigen::Matrix2d> relative =
       relative_covariances(joint.points_m, joint.covariance.bottomRightCorner(n, n));
-  for (std::size_t i = 0; i < nearest.ids.size(); ++i) {
+  const Eigen::Matrix2d half_m2 = 0.5 * lengths.pair_noise_m * lengths.pair_noise_m * Eigen::Matrix2d::Identity();
+  for (std::size_t i = 0; i < about.ids.size(); ++i) {
     relocalize::Landmark& landmark = question.landmarks.emplace_back();
-    landmark.id = nearest.ids[i];
-    landmark.point = {joint.points_m[i],
-                      relative[i] + 0.5 * pair_noise_m * pair_noise_m * Eigen::Matrix2d::Identity()};
+    landmark.id = about.ids[i];
+    landmark.point = {joint.points_m[i], relative[i] + half_m2};
   }
-  const double since_path_m = belief.existence.path_m() - options.branch_seen_within_m;
-  question.looked = looked_at(belief, view, reach_m, since_path_m, nearest.within_m);
+  const double since_path_m = belief.existence.path_m() - seen_within_m;
+  question.looked = looked_at(belief, view, lengths.reach_m, since_path_m, about.within_m);
   return question;
 }
 

@@ -36,7 +36,7 @@ class Navigator {
   explicit Navigator(const core::PoseGaussian& start, const NavigatorOptions& options = {});
   /// Goes on in the map of an earlier session, from the pose in it and with its correlations. Names given to landmarks from
   /// now on are above those of the map. PreconditionError where cekf::CompressedEkf refuses the joint estimate.
-  Navigator(const core::JointMap& earlier, const NavigatorOptions& options);
+  static Navigator go_on_in(const core::JointMap& earlier, const NavigatorOptions& options = {});
   ~Navigator();
   Navigator(Navigator&&) noexcept;
   Navigator& operator=(Navigator&&) noexcept;
@@ -70,6 +70,8 @@ class Navigator {
   const cekf::CompressedEkf& filter() const;
 
  private:
+  explicit Navigator(std::unique_ptr<NavigationLoop> loop);
+
   std::unique_ptr<NavigationLoop> loop_;
 };
 
