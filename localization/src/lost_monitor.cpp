@@ -9,7 +9,8 @@
 namespace helixnav::localization {
 namespace {
 
-const double missed_nats = std::log(0.9 / 0.3);  ///< one that is there is missed in three of ten looks, clutter hits one
+const double missed_nats =
+    std::log(0.9 / 0.3);  ///< one that is there is missed in three of ten looks, clutter hits one
 constexpr double lost_nats = 20.0;
 constexpr double surely_seen = 0.8;  ///< of the reach
 constexpr int few = 3;
@@ -22,7 +23,8 @@ bool is_in_view(const Eigen::Vector2d& point_sensor_m, const core::FieldOfView& 
   const double margin_rad = 0.05 * (view.max_bearing_rad - view.min_bearing_rad);
   const bool all_around = view.max_bearing_rad - view.min_bearing_rad >= 2.0 * core::pi - 1e-6;
   const double bearing_rad = std::atan2(point_sensor_m.y(), point_sensor_m.x());
-  return all_around || (bearing_rad > view.min_bearing_rad + margin_rad && bearing_rad < view.max_bearing_rad - margin_rad);
+  return all_around ||
+         (bearing_rad > view.min_bearing_rad + margin_rad && bearing_rad < view.max_bearing_rad - margin_rad);
 }
 
 }  // namespace

@@ -150,14 +150,13 @@ std::string begin_of(const core::PlacedDecision& d) {
 }
 
 std::string evidence_of(const core::PlacedDecision& d) {
-  return counted(d.pairs, "landmark") + " of " + short_number(d.landmarks) + " about the vehicle stand as on the map, " +
-         short_number(d.evidence) + " nats better than by chance and " + short_number(d.lead) +
-         " ahead of any other place (" + short_number(d.needed) + " are needed of each)";
+  return counted(d.pairs, "landmark") + " of " + short_number(d.landmarks) +
+         " about the vehicle stand as on the map, " + short_number(d.evidence) + " nats better than by chance and " +
+         short_number(d.lead) + " ahead of any other place (" + short_number(d.needed) + " are needed of each)";
 }
 
 std::string sentence(const core::PlacedDecision& d) {
-  const std::string after =
-      " after " + short_number(d.driven_m) + " m, question " + std::to_string(d.questions) + ": ";
+  const std::string after = " after " + short_number(d.driven_m) + " m, question " + std::to_string(d.questions) + ": ";
   switch (d.verdict) {
     case core::PlacedDecision::Verdict::sought:
       return "This session does not know where it is on a map of " + counted(d.earlier_landmarks, "landmark") +

@@ -94,9 +94,7 @@ const core::StepReport& step_numbered(const runs::Run& run, std::int64_t step) {
   throw core::InputError(run.path + ": no step " + std::to_string(step) + "; this run has " + steps);
 }
 
-bool is_placing(const Decided& decided) {
-  return std::holds_alternative<core::PlacedDecision>(*decided.decision);
-}
+bool is_placing(const Decided& decided) { return std::holds_alternative<core::PlacedDecision>(*decided.decision); }
 
 /// Whether a session found its place on an earlier map, where it looked for one.
 std::string places_of(const std::vector<Decided>& decided) {
@@ -124,8 +122,7 @@ std::string explain_run(const runs::Run& run) {
                      std::to_string(count_of(closures, "undecided")) + " left undecided.\n";
   text += places_of(decided);
   const bool nothing_else = std::all_of(decided.begin(), decided.end(), is_placing);
-  if (nothing_else)
-    return text + "No return was ambiguous enough for a search: every scan was associated at once.\n";
+  if (nothing_else) return text + "No return was ambiguous enough for a search: every scan was associated at once.\n";
   for (std::size_t i = 0; i < closures.size(); ++i) {
     text += "\nClosure " + std::to_string(i + 1) + ", " + when(*closures[i].step) + ". " +
             sentence_of(*closures[i].decision) + '\n';

@@ -48,4 +48,10 @@ void bring_into_map(Run& run) {
   }
 }
 
+std::vector<core::Pose2> poses_of(const Run& run) {
+  std::vector<core::Pose2> poses;
+  for (const core::StepReport& step : run.steps) poses.push_back(step.pose.mean);
+  return poses;
+}
+
 }  // namespace helixnav::runs

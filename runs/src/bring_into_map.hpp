@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "helixnav/runs/run.hpp"
 
@@ -15,5 +16,8 @@ std::optional<std::size_t> step_of_placing(const Run& run);
 /// names, so that a run has one frame. Covariances are turned; that of the pose itself is left out.
 /// Test: runs/placed_run_test.cpp.
 void bring_into_map(Run& run);
+
+/// [step] the poses.
+std::vector<core::Pose2> poses_of(const Run& run);
 
 }  // namespace helixnav::runs

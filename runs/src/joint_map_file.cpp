@@ -86,13 +86,14 @@ class Bytes {
 /// The number of landmarks of a file that is whole.
 std::size_t check_frame(const std::string& path, std::string_view bytes) {
   if (bytes.size() < header_bytes || bytes.substr(0, magic.size()) != magic) {
-    refuse(path, bytes.empty() ? "the file is empty; expected a map.bin" : "no map.bin: it does not begin with HELIXMAP");
+    refuse(path,
+           bytes.empty() ? "the file is empty; expected a map.bin" : "no map.bin: it does not begin with HELIXMAP");
   }
   Bytes header(bytes.substr(magic.size()));
   const std::uint32_t found = header.small();
   if (found != version) {
-    refuse(path, "version " + std::to_string(found) + " of map.bin; this program reads version " +
-                     std::to_string(version));
+    refuse(path,
+           "version " + std::to_string(found) + " of map.bin; this program reads version " + std::to_string(version));
   }
   const std::size_t landmarks = header.small();
   if (landmarks > most_joint_landmarks) {

@@ -36,8 +36,9 @@ inline constexpr const char* summary_file = "summary.json";
 inline constexpr const char* report_file = "report.html";
 
 inline constexpr const char* run_files[] = {
-    "manifest.json",       "trajectory.tum",      "trajectory_final.tum", "map.csv",     "associations.csv",
-    "decisions.csv",       "health.csv",          "summary.json",         "report.html", "truth_poses.csv",
-    "truth_positions.csv", "truth_landmarks.csv", "truth_labels.csv",     "merges.csv",  "clouds.csv", "map.bin"};
+    "manifest.json",    "trajectory.tum",  "trajectory_final.tum", "map.csv",
+    "associations.csv", "decisions.csv",   "health.csv",           "summary.json",
+    "report.html",      "truth_poses.csv", "truth_positions.csv",  "truth_landmarks.csv",
+    "truth_labels.csv", "merges.csv",      "clouds.csv",           "map.bin"};
 
 }  // namespace helixnav::runs

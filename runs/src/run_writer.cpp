@@ -160,12 +160,6 @@ std::string final_trajectory_text(const std::vector<core::StepReport>& steps, co
   return text;
 }
 
-std::vector<core::Pose2> poses_of(const std::vector<core::StepReport>& steps) {
-  std::vector<core::Pose2> poses;
-  for (const core::StepReport& step : steps) poses.push_back(step.pose.mean);
-  return poses;
-}
-
 // One growing table with the block of the present step.
 struct Table {
   files::AppendFile file;
@@ -241,7 +235,7 @@ void RunWriter::finish(const Run& run, const std::string& report_page, const std
   if (run.smoothed) {
     files::write_whole_file(folder_ + "/trajectory_final.tum", final_trajectory_text(run.steps, run.smoothed->poses));
   } else if (step_of_placing(run)) {
-    files::write_whole_file(folder_ + "/trajectory_final.tum", final_trajectory_text(run.steps, poses_of(run.steps)));
+    files::write_whole_file(folder_ + "/trajectory_final.tum", final_trajectory_text(run.steps, poses_of(run)));
   }
   if (run.joint_map && run.joint_map->joint.ids.size() <= most_joint_landmarks) {
     files::write_whole_file(folder_ + '/' + joint_map_file, joint_map_bytes(*run.joint_map));

@@ -69,8 +69,8 @@ class GoOn : public testing::Test {
   fs::path folder(const std::string& name) const { return folder_.path() / name; }
   json summary(const std::string& name) const { return json::parse(text_of(folder(name) / "summary.json")); }
   Outcome replay(const std::string& log, const std::vector<std::string>& words, const std::string& out) const {
-    std::vector<std::string> all{"replay",          folder(log),  "--log.max_range_m", "15", "--log.view_deg", "360",
-                                 "--quiet",         "--out",      folder(out)};
+    std::vector<std::string> all{"replay",  folder(log), "--log.max_range_m", "15", "--log.view_deg", "360",
+                                 "--quiet", "--out",     folder(out)};
     all.insert(all.end(), words.begin(), words.end());
     return run(all);
   }
@@ -165,7 +165,8 @@ TEST_F(GoOn, ALocalizerFindsItsPlaceFromAnUnknownStart) {
 TEST_F(GoOn, ALocalizerThatIsWrongFindsOutAndFindsItsPlace) {
   write_yesterday();
   write("tuesday.circles", drive_text(grove(1, 50), 2.0, 240, 2));
-  must("tuesday.circles", {"--localize", "--map", folder("monday")}, "wrong");  // believes that it begins where Monday did
+  must("tuesday.circles", {"--localize", "--map", folder("monday")},
+       "wrong");  // believes that it begins where Monday did
   EXPECT_EQ(summary("wrong").at("placed").at("found"), true);
 }
 

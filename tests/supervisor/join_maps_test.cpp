@@ -106,9 +106,8 @@ TEST(JoinMaps, IsLeastSquaresOverBothMapsWithAFreePlace) {
       const Eigen::Vector2d difference_m = joined.filter.landmark_mean(i) - expected.x.segment<2>(22 + 2 * i);
       EXPECT_LT(difference_m.norm(), 2e-4) << "landmark " << i << " of seed " << seed;
     }
-    const core::Pose2 pose =
-        core::compose(core::Pose2(Eigen::Vector3d(expected.x.head<3>())),
-                      core::Pose2(Eigen::Vector3d(expected.x.segment<3>(3))));
+    const core::Pose2 pose = core::compose(core::Pose2(Eigen::Vector3d(expected.x.head<3>())),
+                                           core::Pose2(Eigen::Vector3d(expected.x.segment<3>(3))));
     EXPECT_LT((joined.filter.pose().mean.position_m() - pose.position_m()).norm(), 5e-4);
     EXPECT_NEAR(core::wrap_to_pi(joined.filter.pose().mean.heading_rad - pose.heading_rad), 0.0, 5e-5);
   }

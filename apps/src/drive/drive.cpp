@@ -45,8 +45,9 @@ void check_earlier_labels(const EarlierSession& earlier) {
     throw core::InputError("--association known does not look for its place: give --start end, or a pose");
   }
   if (earlier.landmark_of.empty()) {
-    throw core::InputError("--association known needs to know the labels of the map's landmarks: give --map the folder "
-                           "of a run over a labelled log");
+    throw core::InputError(
+        "--association known needs to know the labels of the map's landmarks: give --map the folder "
+        "of a run over a labelled log");
   }
 }
 

@@ -19,15 +19,15 @@ namespace {
 constexpr std::ptrdiff_t least_to_be_found = 5;  ///< pairs of a place, see relocalize::ask
 
 void check_size(const std::string& file, const EarlierSession& session) {
-  const auto mature =
-      std::count(session.map.states.begin(), session.map.states.end(), core::LandmarkState::mature);
+  const auto mature = std::count(session.map.states.begin(), session.map.states.end(), core::LandmarkState::mature);
   const bool unknown = session.start.kind == SessionStart::Kind::unknown;
   const std::ptrdiff_t least = unknown ? least_to_be_found : 1;
   if (mature >= least) return;
   throw core::InputError(file + ": the map holds " + std::to_string(mature) +
                          (mature == 1 ? " mature landmark" : " mature landmarks") + "; " +
-                         (unknown ? "a place on it can be found from " + std::to_string(least) + " on: give --start a pose"
-                                  : "there is nothing to go on in"));
+                         (unknown
+                              ? "a place on it can be found from " + std::to_string(least) + " on: give --start a pose"
+                              : "there is nothing to go on in"));
 }
 
 }  // namespace
@@ -69,7 +69,8 @@ EarlierSession read_earlier_session(const std::string& folder, const SessionStar
   const std::string file = joint_map_file_in(folder);
   if (!fs::exists(file)) {
     throw core::InputError(file + ": not there. A run that came to its end writes it, unless it has more than " +
-                           std::to_string(runs::most_joint_landmarks) + " landmarks, only localised, or is of version 0.1");
+                           std::to_string(runs::most_joint_landmarks) +
+                           " landmarks, only localised, or is of version 0.1");
   }
   EarlierSession session{runs::read_joint_map(file), {}, start};
   check_size(file, session);

@@ -81,7 +81,11 @@ core::StepReport on_no_map(const core::StepReport& own, std::size_t landmarks) {
   report.pose = own.pose;
   report.associations = own.associations;
   for (core::AssociationReport& a : report.associations) {
-    a = {a.observation, core::Outcome::rejected, core::no_landmark, std::numeric_limits<double>::quiet_NaN(), 0,
+    a = {a.observation,
+         core::Outcome::rejected,
+         core::no_landmark,
+         std::numeric_limits<double>::quiet_NaN(),
+         0,
          std::numeric_limits<double>::infinity()};
   }
   report.mapped_landmarks = static_cast<int>(landmarks);

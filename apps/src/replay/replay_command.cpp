@@ -16,6 +16,7 @@
 #include "common/settings.hpp"
 #include "common/vehicle_option.hpp"
 #include "drive/drive.hpp"
+#include "drive/start_option.hpp"
 #include "estimate_range_scale.hpp"
 #include "fuse_gps.hpp"
 #include "helixnav/logs/field_of_view.hpp"
@@ -88,30 +89,12 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   task.manifest.inputs = input_files(job.path);
   if (!job.vehicle.empty()) task.manifest.inputs.push_back(input_files(job.vehicle).front());
   if (!job.map.empty()) {
-    const std::vector<runs::InputFile> of_map = input_files(job.localize ? map_file(job.map) : joint_map_file_in(job.map));
+    const std::vector<runs::InputFile> of_map =
+        input_files(job.localize ? map_file(job.map) : joint_map_file_in(job.map));
     task.manifest.inputs.insert(task.manifest.inputs.end(), of_map.begin(), of_map.end());
   }
   task.reading_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return drive(task);
-}
-
-CLI::Option* add_start(CLI::App& command, ReplayJob& job) {
-  const auto objection_to = [](const std::string& word) {
-    std::string objection;
-    session_start_from(word, objection);
-    return objection;
-  };
-  const auto take = [&job](const std::string& word) {
-    std::string none;
-    job.start = session_start_from(word, none);
-  };
-  return command
-      .add_option_function<std::string>("--start", take,
-                                        "Where on that map: unknown (mapping on its own until the place is found; the "
-                                        "default, but for --localize, which begins as the log says), end (where that run "
-                                        "ended), or a pose in metres and radians")
-      ->type_name("unknown|end|x,y,heading")
-      ->check(objection_to);
 }
 
 void add_blackouts(CLI::App& command, ReplayJob& job) {
@@ -143,10 +126,10 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
   CLI::Option* smooth = command->add_flag(
       "--smooth", job->smooth,
       "Then smooth with the filter's associations: trajectory_final.tum, chi2 and dof (GPS fixes left out)");
-  CLI::Option* map = command->add_option("--map", job->map,
-                                         "Go on in the map of an earlier run: its folder. With --localize a map.csv will do");
+  CLI::Option* map = command->add_option(
+      "--map", job->map, "Go on in the map of an earlier run: its folder. With --localize a map.csv will do");
   map->type_name("RUN")->excludes(smooth);
-  add_start(*command, *job)->needs(map);
+  add_start_option(*command, job->start)->needs(map);
   CLI::Option* localize =
       command->add_flag("--localize", job->localize, "Estimate the pose alone, in the map given, which stays as it is");
   localize->needs(map);

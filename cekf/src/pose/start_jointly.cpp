@@ -40,7 +40,8 @@ void check_start(const core::JointGaussian& start, LandmarkId next_name) {
   if (!shaped || !std::all_of(start.points_m.begin(), start.points_m.end(), is_finite) ||
       !may_be_covariance(start.covariance)) {
     throw core::PreconditionError(
-        "CompressedEkf: a joint start needs different ids below the next name, finite points and a covariance of pose and "
+        "CompressedEkf: a joint start needs different ids below the next name, finite points and a covariance of pose "
+        "and "
         "landmarks");
   }
 }

@@ -126,8 +126,8 @@ class NavigationLoop {
   Pending pending_;
   Undo undo_;
   std::uint64_t searches_ = 0;
-  std::shared_ptr<const core::JointMap> sought_in_;  ///< an earlier map, as long as the place on it is unknown
-  std::shared_ptr<PlaceSearch> place_search_;        ///< in it, from the first scan on
+  std::shared_ptr<const core::JointMap> sought_in_;        ///< an earlier map, as long as the place on it is unknown
+  std::shared_ptr<PlaceSearch> place_search_;              ///< in it, from the first scan on
   std::map<std::int64_t, std::vector<std::size_t>> used_;  ///< [step] observations of the scans that were thinned
 };
 

@@ -59,7 +59,8 @@ void NavigationLoop::look_for_place_in(const core::JointMap& earlier) {
     throw core::PreconditionError("look_for_place_in: a session that has begun cannot look for its place any more");
   }
   EarlierMap checked(earlier);
-  if (checked.landmarks().ids.empty()) throw core::PreconditionError("look_for_place_in: no mature landmark in the map");
+  if (checked.landmarks().ids.empty())
+    throw core::PreconditionError("look_for_place_in: no mature landmark in the map");
   sought_in_ = std::make_shared<const core::JointMap>(earlier);
   belief_.filter.name_from(earlier.next_name);
   std::get<Mapping>(mode_).trust(take_checkpoint(belief_, tape_));

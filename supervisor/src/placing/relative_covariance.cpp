@@ -32,8 +32,7 @@ std::vector<Eigen::Matrix2d> relative_covariances(const std::vector<Eigen::Vecto
   const Eigen::MatrixXd LQ = left * Q;
   for (std::size_t i = 0; i < relative.size(); ++i) {
     const auto row = 2 * static_cast<Eigen::Index>(i);
-    const Eigen::Matrix2d own =
-        left.block<2, 2>(row, row) - LQ.middleRows<2>(row) * Q.middleRows<2>(row).transpose();
+    const Eigen::Matrix2d own = left.block<2, 2>(row, row) - LQ.middleRows<2>(row) * Q.middleRows<2>(row).transpose();
     relative[i] = 0.5 * (own + own.transpose());
   }
   return relative;

@@ -14,7 +14,7 @@ namespace helixnav::supervisor {
 /// What the session has mapped about the vehicle: the mature landmarks nearest to it that were seen within the length of a
 /// branch, 40 at most.
 struct LandmarksAbout {
-  std::vector<core::LandmarkId> ids;  ///< nearest first
+  std::vector<core::LandmarkId> ids;                          ///< nearest first
   double within_m = std::numeric_limits<double>::infinity();  ///< of the vehicle: beyond, landmarks were left out
 };
 LandmarksAbout landmarks_about(const Belief& belief, double seen_within_m);

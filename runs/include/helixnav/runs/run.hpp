@@ -34,8 +34,8 @@ struct Run {
   /// In order of time; revisions applied; only the clouds that were kept; all in one frame, also those before a session
   /// found its place on an earlier map.
   std::vector<core::StepReport> steps;
-  std::vector<double> microseconds;     ///< [step] wall clock
-  std::vector<core::MapLandmark> map;   ///< empty unless the run finished
+  std::vector<double> microseconds;    ///< [step] wall clock
+  std::vector<core::MapLandmark> map;  ///< empty unless the run finished
   RunTruth truth;
   bool finished = false;  ///< the run finished
 
