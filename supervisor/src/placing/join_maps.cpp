@@ -25,6 +25,23 @@ SearchOptions across_sessions(SearchOptions options, double pair_noise_m, std::s
   return options;
 }
 
+/// Turns pose and points, rows of the matrix.
+void turn_rows(double angle_rad, Eigen::MatrixXd& rows) {
+  const Eigen::Matrix2d R = core::rotation(angle_rad);
+  rows.topRows<2>() = (R * rows.topRows<2>()).eval();
+  for (Eigen::Index row = 3; row < rows.rows(); row += 2) {
+    rows.middleRows<2>(row) = (R * rows.middleRows<2>(row)).eval();
+  }
+}
+
+Eigen::MatrixXd turned(const Eigen::MatrixXd& covariance, double angle_rad) {
+  Eigen::MatrixXd once = covariance;
+  turn_rows(angle_rad, once);
+  Eigen::MatrixXd twice = once.transpose();
+  turn_rows(angle_rad, twice);
+  return twice;
+}
+
 }  // namespace
 
 core::JointGaussian side_by_side(const core::JointGaussian& session, const core::JointGaussian& earlier,
@@ -32,18 +49,14 @@ core::JointGaussian side_by_side(const core::JointGaussian& session, const core:
   const core::Pose2& T = T_map_session.mean;
   const auto own = session.covariance.rows();
   const auto other = earlier.covariance.rows() - 3;
-  const core::ComposeJacobians J = core::compose_jacobians(T, session.pose);
   core::JointGaussian joint;
   joint.pose = core::compose(T, session.pose);
-  Eigen::MatrixXd turned = Eigen::MatrixXd::Zero(own, own);  // by the session's own errors
-  Eigen::MatrixXd common(own, 3);                            // by the error of T
-  turned.topLeftCorner<3, 3>() = J.J_second;
-  common.topRows<3>() = J.J_first;
+  Eigen::MatrixXd common(own, 3);  // of the session's errors, those of T
+  common.topRows<3>() = core::compose_jacobians(T, session.pose).J_first;
   const Eigen::Matrix2d R = core::rotation(T.heading_rad);
   for (std::size_t i = 0; i < session.ids.size(); ++i) {
     const auto row = 3 + 2 * static_cast<Eigen::Index>(i);
     const Eigen::Vector2d arm_m = R * session.points_m[i];
-    turned.block<2, 2>(row, row) = R;
     common.middleRows<2>(row) << 1.0, 0.0, -arm_m.y(), 0.0, 1.0, arm_m.x();
     joint.ids.push_back(session.ids[i]);
     joint.points_m.push_back(core::transform(T, session.points_m[i]));
@@ -51,8 +64,8 @@ core::JointGaussian side_by_side(const core::JointGaussian& session, const core:
   joint.ids.insert(joint.ids.end(), earlier.ids.begin(), earlier.ids.end());
   joint.points_m.insert(joint.points_m.end(), earlier.points_m.begin(), earlier.points_m.end());
   joint.covariance = Eigen::MatrixXd::Zero(own + other, own + other);
-  Eigen::MatrixXd moved = turned * session.covariance * turned.transpose();
-  moved += common * T_map_session.covariance * common.transpose();
+  Eigen::MatrixXd moved = turned(session.covariance, T.heading_rad);
+  moved.noalias() += common * T_map_session.covariance * common.transpose();
   joint.covariance.topLeftCorner(own, own) = 0.5 * (moved + moved.transpose());
   joint.covariance.bottomRightCorner(other, other) = earlier.covariance.bottomRightCorner(other, other);
   return joint;
