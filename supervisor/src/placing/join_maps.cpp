@@ -25,6 +25,12 @@ SearchOptions across_sessions(SearchOptions options, double pair_noise_m, std::s
   return options;
 }
 
+std::vector<core::LandmarkId> those_in(const cekf::CompressedEkf& filter, std::vector<core::LandmarkId> ids) {
+  const auto gone = [&](core::LandmarkId id) { return !filter.contains(id); };
+  ids.erase(std::remove_if(ids.begin(), ids.end(), gone), ids.end());
+  return ids;
+}
+
 /// Turns pose and points, rows of the matrix.
 void turn_rows(double angle_rad, Eigen::MatrixXd& rows) {
   const Eigen::Matrix2d R = core::rotation(angle_rad);
@@ -94,7 +100,7 @@ JoinedMaps join_maps(const cekf::CompressedEkf& session, const core::JointGaussi
     joined.filter.merge(rest, across.merge_sigma_m);
     note(rest, closing);
   }
-  forget_copies(joined.filter, unconfirmed, earlier.ids, across, closing);
+  forget_copies(joined.filter, those_in(joined.filter, unconfirmed), earlier.ids, across, closing);
   return joined;
 }
 
