@@ -64,7 +64,7 @@ std::string drive_text(const std::vector<Eigen::Vector2d>& trees_m, double begin
   return text;
 }
 
-class GoOn : public testing::Test {
+class GoOn : public ::testing::Test {
  protected:
   fs::path folder(const std::string& name) const { return folder_.path() / name; }
   json summary(const std::string& name) const { return json::parse(text_of(folder(name) / "summary.json")); }

@@ -19,7 +19,7 @@ core::JointGaussian two_landmarks() {
   return start;
 }
 
-class JointStart : public testing::TestWithParam<Retraction> {};
+class JointStart : public ::testing::TestWithParam<Retraction> {};
 
 /// The oracle is never interrupted; the filter is made anew from its joint estimate four times on the way.
 TEST_P(JointStart, GoesOnAsIfItHadNeverBeenInterrupted) {
@@ -37,7 +37,7 @@ TEST_P(JointStart, GoesOnAsIfItHadNeverBeenInterrupted) {
   EXPECT_LE(d.mean, 1e-7);
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, JointStart, testing::Values(Retraction::standard, Retraction::right_invariant));
+INSTANTIATE_TEST_SUITE_P(Both, JointStart, ::testing::Values(Retraction::standard, Retraction::right_invariant));
 
 TEST(JointStartOf, AnyOrderOfNamesIsTheSameMap) {
   const CompressedEkf filter(two_landmarks(), 9);

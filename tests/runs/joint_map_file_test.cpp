@@ -27,7 +27,7 @@ core::JointMap three_landmarks() {
   return map;
 }
 
-class JointMapFile : public testing::Test {
+class JointMapFile : public ::testing::Test {
  protected:
   std::string path() const { return (folder_.path() / "map.bin").string(); }
   core::JointMap read(const std::string& bytes) const {

@@ -33,7 +33,7 @@ core::PlacedDecision placed(core::PlacedDecision::Verdict verdict) {
 }
 
 /// Six steps, placed in the fourth; `from_the_begin`: not because the place had been known and was lost.
-Run write_run(const std::string& folder, bool from_the_begin) {
+runs::Run write_run(const std::string& folder, bool from_the_begin) {
   RunWriter writer(folder, {}, {});
   RunRecorder recorder(folder, {}, {});
   for (int k = 0; k < 6; ++k) {
@@ -43,7 +43,7 @@ Run write_run(const std::string& folder, bool from_the_begin) {
     writer.write(step, 0.0);
     recorder.add(step, 0.0);
   }
-  Run run = recorder.finish({});
+  runs::Run run = recorder.finish({});
   run.joint_map.emplace();
   run.joint_map->joint.covariance = Eigen::MatrixXd::Identity(3, 3);
   writer.finish(run, "page", "{}");
@@ -53,8 +53,8 @@ Run write_run(const std::string& folder, bool from_the_begin) {
 TEST(PlacedRun, HasOneFrameInMemoryAndInItsFolder) {
   const testing::TemporaryFolder folder;
   const std::string path = (folder.path() / "run").string();
-  const Run run = write_run(path, true);
-  const Run read = read_run(path);
+  const runs::Run run = write_run(path, true);
+  const runs::Run read = read_run(path);
   ASSERT_EQ(read.steps.size(), 6u);
   for (int k = 0; k < 6; ++k) {
     const auto i = static_cast<std::size_t>(k);
@@ -71,7 +71,7 @@ TEST(PlacedRun, HasOneFrameInMemoryAndInItsFolder) {
 
 TEST(PlacedRun, WhatWasKnownBeforeItWasLostStaysWhereItIs) {
   const testing::TemporaryFolder folder;
-  const Run run = write_run((folder.path() / "run").string(), false);
+  const runs::Run run = write_run((folder.path() / "run").string(), false);
   EXPECT_EQ(run.steps[1].pose.mean.x_m, 0.5);
 }
 
