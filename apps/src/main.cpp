@@ -56,6 +56,7 @@ ExitCode run(int argc, char** argv) {
   remember_command_line(argc, argv);
   ExitCode code = ExitCode::ok;
   add_replay_command(app, code);
+  add_stream_command(app, code);
   add_smooth_command(app, code);
   add_convert_command(app, code);
   add_simulate_command(app, code);

@@ -3,101 +3,63 @@
 
 #include <numeric>
 
-#include "helixnav/core/errors.hpp"
+#include "joint.hpp"
 #include "selected_inverse.hpp"
-#include "session.hpp"
 
 namespace helixnav::smoothing {
 namespace {
 
-/// H factorised at the values of the problem, and who stands in which column.
-class FactorizedProblem {
- public:
-  explicit FactorizedProblem(const Problem& problem) : session_(checked(problem), options_) {
-    if (session_.layout.columns == 0) return;
-    session_.linearize();
-    session_.factorize_undamped();
-    position_.resize(static_cast<std::size_t>(session_.layout.columns));
-    const FactorView L = session_.cholesky.factor();
-    for (int k = 0; k < L.columns; ++k) position_[static_cast<std::size_t>(L.permutation[k])] = k;
+const Problem& checked(const Problem& problem) {
+  check_problem(problem);
+  return problem;
+}
+
+/// The problem with H factorised at its values.
+struct FactorizedProblem {
+  explicit FactorizedProblem(const Problem& problem) : session(checked(problem), options) {
+    if (session.layout.columns == 0) return;
+    session.linearize();
+    session.factorize_undamped();
   }
 
-  int pose_column(int pose) const { return session_.layout.pose_column.at(static_cast<std::size_t>(pose)); }
-  int landmark_column(int landmark) const {
-    return session_.layout.landmark_column.at(static_cast<std::size_t>(landmark));
-  }
-  int position(int column) const { return position_[static_cast<std::size_t>(column)]; }
-  int columns() const { return session_.layout.columns; }
-  Cholesky& cholesky() { return session_.cholesky; }
-
- private:
-  static const Problem& checked(const Problem& problem) {
-    check_problem(problem);
-    return problem;
-  }
-
-  Options options_;
-  Session session_;
-  std::vector<int> position_;
+  Options options;
+  Session session;
 };
 
+/// Chosen variables of N coordinates each, `at` the position of each coordinate in the elimination order.
 template <int N>
-Eigen::Matrix<double, N, N> block(const FactorizedProblem& problem, const SelectedInverse& inverse, int column) {
+Eigen::Matrix<double, N, N> block(const SelectedInverse& inverse, const int* at) {
   Eigen::Matrix<double, N, N> covariance;
   for (int r = 0; r < N; ++r) {
-    for (int c = r; c < N; ++c) {
-      covariance(r, c) = covariance(c, r) = inverse.at(problem.position(column + r), problem.position(column + c));
-    }
+    for (int c = r; c < N; ++c) covariance(r, c) = covariance(c, r) = inverse.at(at[r], at[c]);
   }
   return covariance;
-}
-
-void check_chosen(const std::vector<int>& chosen, std::size_t size, const char* what) {
-  for (const int i : chosen) {
-    if (i < 0 || static_cast<std::size_t>(i) >= size) {
-      throw core::PreconditionError(std::string("smoothing: there is no ") + what + " with index " + std::to_string(i));
-    }
-  }
-}
-
-/// Columns of H that the chosen variables occupy, −1 for each coordinate of a fixed pose.
-std::vector<int> columns_of(const FactorizedProblem& problem, const std::vector<int>& poses,
-                            const std::vector<int>& landmarks) {
-  std::vector<int> columns;
-  for (const int pose : poses) {
-    const int column = problem.pose_column(pose);
-    for (int k = 0; k < 3; ++k) columns.push_back(column < 0 ? -1 : column + k);
-  }
-  for (const int landmark : landmarks) {
-    for (int k = 0; k < 2; ++k) columns.push_back(problem.landmark_column(landmark) + k);
-  }
-  return columns;
 }
 
 }  // namespace
 
 MarginalCovariances marginal_covariances(const Problem& problem, const std::vector<int>& poses,
                                          const std::vector<int>& landmarks) {
-  check_chosen(poses, problem.graph.poses.size(), "pose");
-  check_chosen(landmarks, problem.graph.landmarks.size(), "landmark");
-  FactorizedProblem factorized(problem);
-  std::vector<int> chosen;
-  for (const int column : columns_of(factorized, poses, landmarks)) {
-    if (column >= 0) chosen.push_back(factorized.position(column));
+  const FactorizedProblem factorized(problem);
+  const std::vector<int> position = positions(factorized.session);
+  std::vector<int> chosen = columns_of(factorized.session, poses, landmarks);
+  std::vector<int> free;
+  for (int& column : chosen) {
+    if (column < 0) continue;
+    column = position[static_cast<std::size_t>(column)];
+    free.push_back(column);
   }
   MarginalCovariances marginals;
-  if (chosen.empty()) {
+  if (free.empty()) {
     marginals.poses.assign(poses.size(), Eigen::Matrix3d::Zero());
     return marginals;
   }
-  const SelectedInverse inverse(factorized.cholesky().factor(), chosen);
-  for (const int pose : poses) {
-    const int column = factorized.pose_column(pose);
-    marginals.poses.push_back(column < 0 ? Eigen::Matrix3d::Zero() : block<3>(factorized, inverse, column));
+  const SelectedInverse inverse(factorized.session.cholesky.factor(), free);
+  const int* at = chosen.data();
+  for (std::size_t k = 0; k < poses.size(); ++k, at += 3) {
+    marginals.poses.push_back(*at < 0 ? Eigen::Matrix3d::Zero() : block<3>(inverse, at));
   }
-  for (const int landmark : landmarks) {
-    marginals.landmarks.push_back(block<2>(factorized, inverse, factorized.landmark_column(landmark)));
-  }
+  for (std::size_t k = 0; k < landmarks.size(); ++k, at += 2) marginals.landmarks.push_back(block<2>(inverse, at));
   return marginals;
 }
 
@@ -109,26 +71,7 @@ std::vector<Eigen::Matrix2d> landmark_covariances(const Problem& problem) {
 
 Eigen::MatrixXd joint_covariance(const Problem& problem, const std::vector<int>& poses,
                                  const std::vector<int>& landmarks) {
-  check_chosen(poses, problem.graph.poses.size(), "pose");
-  check_chosen(landmarks, problem.graph.landmarks.size(), "landmark");
-  FactorizedProblem factorized(problem);
-  const std::vector<int> columns = columns_of(factorized, poses, landmarks);
-  const Eigen::Index n = static_cast<Eigen::Index>(columns.size());
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd unit = Eigen::VectorXd::Zero(factorized.columns());
-  Eigen::VectorXd column_of_inverse;
-  for (Eigen::Index c = 0; c < n; ++c) {
-    const int column = columns[static_cast<std::size_t>(c)];
-    if (column < 0) continue;
-    unit[column] = 1.0;
-    factorized.cholesky().solve(unit, column_of_inverse);
-    unit[column] = 0.0;
-    for (Eigen::Index r = 0; r < n; ++r) {
-      const int row = columns[static_cast<std::size_t>(r)];
-      if (row >= 0) covariance(r, c) = column_of_inverse[row];
-    }
-  }
-  return 0.5 * (covariance + covariance.transpose());
+  return joint_covariance(FactorizedProblem(problem).session, poses, landmarks);
 }
 
 }  // namespace helixnav::smoothing

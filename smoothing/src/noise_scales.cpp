@@ -14,12 +14,12 @@ namespace {
 
 enum class Kind { odometry, landmarks };
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
+std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
 
 void draw_odometry(Problem& problem, bool noisy, core::RandomStream& random) {
   for (auto& edge : problem.graph.pose_edges) {
-    const core::Pose2 moved = core::between(problem.graph.poses[index(edge.from)].T_world_robot,
-                                            problem.graph.poses[index(edge.to)].T_world_robot);
+    const core::Pose2 moved = core::between(problem.graph.poses[index_of(edge.from)].T_world_robot,
+                                            problem.graph.poses[index_of(edge.to)].T_world_robot);
     const Eigen::Vector3d noise = noisy ? random.normal3(edge.covariance) : Eigen::Vector3d(Eigen::Vector3d::Zero());
     edge.T_from_to = core::Pose2(Eigen::Vector3d(moved.vector() + noise));
   }
@@ -28,8 +28,8 @@ void draw_odometry(Problem& problem, bool noisy, core::RandomStream& random) {
 void draw_landmarks(Problem& problem, bool noisy, core::RandomStream& random) {
   for (auto& edge : problem.graph.landmark_edges) {
     core::Observation& z = edge.observation;
-    z.z = core::predict_observation(z.kind, problem.graph.poses[index(edge.pose)].T_world_robot, edge.T_robot_sensor,
-                                    problem.graph.landmarks[index(edge.landmark)].point_m)
+    z.z = core::predict_observation(z.kind, problem.graph.poses[index_of(edge.pose)].T_world_robot, edge.T_robot_sensor,
+                                    problem.graph.landmarks[index_of(edge.landmark)].point_m)
               .z_hat;
     if (!noisy) continue;
     core::ObsVector normal(z.z.size());

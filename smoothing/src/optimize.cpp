@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/smoothing/optimize.hpp"
 
+#include "helixnav/smoothing/minimum.hpp"
 #include "session.hpp"
 
 namespace helixnav::smoothing {
-Report optimize(Problem& problem, const Options& options) {
-  check_problem(problem);
-  Session session(problem, options);
-  if (session.layout.columns > 0) {
-    session.report.reason = levenberg_marquardt(session);
-    session.linearize();
-    session.factorize_undamped();  // damping hides what the measurements leave open
-  } else {
-    session.report.reason = Reason::converged;
-  }
-  put_state(session.state, problem.graph);
-  session.report.chi2 = session.chi2;
-  return session.report;
-}
+
+Report optimize(Problem& problem, const Options& options) { return Minimum(problem, options).report(); }
 
 Chi2 evaluate_chi2(const Problem& problem, const RobustKernel& kernel) {
   check_problem(problem);

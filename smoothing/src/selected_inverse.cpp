@@ -4,22 +4,9 @@
 #include <algorithm>
 
 #include "helixnav/core/errors.hpp"
+#include "paths_to_root.hpp"
 
 namespace helixnav::smoothing {
-namespace {
-
-std::vector<char> columns_on_paths(const FactorView& L, const std::vector<int>& chosen_positions) {
-  std::vector<char> wanted(static_cast<std::size_t>(L.columns), 0);
-  for (int j : chosen_positions) {
-    while (j >= 0 && !wanted[static_cast<std::size_t>(j)]) {
-      wanted[static_cast<std::size_t>(j)] = 1;
-      j = L.column_size[j] > 1 ? L.row_index[L.column_start[j] + 1] : -1;  // parent in the elimination tree
-    }
-  }
-  return wanted;
-}
-
-}  // namespace
 
 SelectedInverse::SelectedInverse(const FactorView& L, const std::vector<int>& chosen_positions)
     : L_(L),

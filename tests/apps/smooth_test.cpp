@@ -15,6 +15,7 @@
 #include "helixnav/runs/run_folder.hpp"
 #include "program.hpp"
 #include "real_data.hpp"
+#include "sanitized.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -98,6 +99,7 @@ TEST_F(Smooth, TakesTheFiltersDlrRunEToTheSameOptimumInTenIterations) {
 
 // From odometry the same log ends in a local minimum above 10^6: smoothing/victoria_park_test.cpp.
 TEST_F(Smooth, TakesTheFiltersVictoriaParkToTheReferenceOptimum) {
+  if (support::sanitized) return;  // the same code as FollowsAReplayWithTheFiltersOwnAssociations, three times as long
   find_real_data("victoria_park_graph/raw/VicPark_clean_data.mat");
   if (IsSkipped()) return;
   must({"replay", path_, "--association", "known", "--smooth", "--filter.cell_side_m", "15", "--filter.hysteresis_m",

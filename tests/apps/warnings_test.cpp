@@ -52,7 +52,7 @@ class Warnings : public ::testing::Test {
 };
 
 TEST_F(Warnings, TellThatTheLogIsBetterThanAssumed) {
-  expect(replay(), 0, "times smaller than the noise told");  // it has no error at all
+  expect(replay(), 0, "times smaller than the assumed noise");  // it has no error at all
 }
 
 TEST_F(Warnings, TellOfAMapWithoutALandmark) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "random_program.hpp"
+#include "sanitized.hpp"
 
 namespace helixnav::cekf {
 namespace {
@@ -13,7 +14,8 @@ namespace {
 class Equality : public testing::TestWithParam<Retraction> {};
 
 TEST_P(Equality, HoldsTo1em10InOnePhase) {
-  for (const std::uint64_t seed : {1u, 5u}) {
+  for (const std::uint64_t seed :
+       support::sanitized ? std::vector<std::uint64_t>{5} : std::vector<std::uint64_t>{1, 5}) {
     RandomProgram program(seed, {GetParam(), 220, 0, seed == 5});
     for (int k = 0; k < 300; ++k) program.step();
     program.switch_region_randomly();

@@ -56,6 +56,15 @@ TEST(EventLoop, NumbersTheStepsItself) {
   EXPECT_EQ(loop.steps(), 2);
 }
 
+TEST(EventLoop, NumbersTheStepsOfTheNextPartOnFromThoseBefore) {
+  const std::vector<Event> events = two_scans();
+  Scribe scribe;
+  EventLoop loop(events, scribe, 5);
+  EXPECT_EQ(loop.next()->step, 5);
+  EXPECT_EQ(loop.next()->step, 6);
+  EXPECT_EQ(loop.steps(), 7);
+}
+
 TEST(EventLoop, OfNoEventsMakesNoStep) {
   const std::vector<Event> events;
   Scribe scribe;

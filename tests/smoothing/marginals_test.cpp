@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "helixnav/core/errors.hpp"
-#include "helixnav/smoothing/optimize.hpp"
+#include "helixnav/smoothing/minimum.hpp"
 #include "normal_equations.hpp"
 #include "random_problem.hpp"
 
@@ -77,6 +77,32 @@ TEST_P(MarginalsOf, JointCovarianceEqualsTheDenseInverse) {
   EXPECT_LE((joint.block<3, 3>(3, 3) - P.block<3, 3>(pose, pose)).norm(), 1e-9 * scale);
   EXPECT_LE((joint.block<3, 2>(3, 8) - P.block<3, 2>(pose, landmark)).norm(), 1e-9 * scale);
   EXPECT_LE((joint.block<2, 2>(8, 8) - P.block<2, 2>(landmark, landmark)).norm(), 1e-9 * scale);
+}
+
+// All variables, so that the factor has wide blocks as well as narrow ones; and a choice in which order and repetition are
+// the caller's.
+TEST_P(MarginalsOf, JointCovarianceOfAllEqualsTheDenseInverse) {
+  const Problem problem = random_problem(GetParam(), {60, 50, 1.0}).problem;
+  const Layout layout = make_layout(problem);
+  const Eigen::MatrixXd P = dense_inverse(problem, layout);
+  const std::vector<int> poses = all(problem.graph.poses.size());
+  const std::vector<int> landmarks = all(problem.graph.landmarks.size());
+  const Eigen::MatrixXd joint = joint_covariance(problem, poses, landmarks);
+  ASSERT_EQ(joint.rows(), layout.columns + 3);
+  EXPECT_TRUE(joint.topRows<3>().isZero(0.0));
+  EXPECT_LE((joint.bottomRightCorner(layout.columns, layout.columns) - P).norm(), 1e-9 * P.norm());
+  EXPECT_EQ(joint, joint.transpose());
+  const Eigen::MatrixXd few = joint_covariance(problem, {7}, {9, 3, 9});
+  EXPECT_LE((few.block<2, 2>(3, 5) - joint.block<2, 2>(180 + 18, 180 + 6)).norm(), 1e-12 * P.norm());
+  EXPECT_LE((few.block<2, 2>(3, 3) - few.block<2, 2>(3, 7)).norm(), 1e-12 * P.norm());
+}
+
+TEST_P(MarginalsOf, AMinimumKnowsTheJointCovarianceThere) {
+  Problem problem = random_problem(GetParam()).problem;
+  const Minimum minimum(problem);
+  EXPECT_EQ(minimum.report().reason, Reason::converged);
+  const Eigen::MatrixXd afresh = joint_covariance(problem, {5, 29}, {0, 11});
+  EXPECT_LE((minimum.joint_covariance({5, 29}, {0, 11}) - afresh).norm(), 1e-9 * afresh.norm());
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, MarginalsOf, ::testing::Range<std::uint64_t>(1, 9));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "slip/noise_scale.hpp"
+#include "noise/noise_scale.hpp"
 
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -19,7 +20,7 @@ struct NoisyDrive {
     geometry_.ids = {0, 1, 2, 3, 4, 5};
   }
 
-  /// Scans told with noise as it is believed to be; odometry and detector are so many times (variance) worse.
+  /// Scans with the noise that is assumed by then; odometry and detector are so many times (variance) worse.
   NoiseScale learn(int scans) {
     NoiseScale scale;
     for (int k = 0; k < scans; ++k) {
@@ -37,12 +38,15 @@ struct NoisyDrive {
         pairs.push_back({i, i});
       }
       geometry_.covariance_m2 = by_pose() * Q * by_pose().transpose();
-      scale.observe(PairEquations(geometry_, seen, pairs, Eigen::Vector3d::Zero()), Q);
+      scale.observe(PairEquations(geometry_, seen, pairs, Eigen::Vector3d::Zero()), sides(k), Q);
     }
     return scale;
   }
 
  private:
+  /// Every tenth scan looks from another side.
+  std::vector<bool> sides(int scan) const { return std::vector<bool>(geometry_.points_m.size(), scan % 10 == 9); }
+
   static Eigen::Matrix3d claimed_Q() { return Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal(); }
 
   Eigen::MatrixXd by_pose() const {
@@ -77,6 +81,23 @@ TEST(NoiseScale, TellsOdometryFromDetector) {
   const NoiseScale both = NoisyDrive(4.0, 4.0).learn(1500);
   EXPECT_NEAR(both.observations(), 4.0, 0.5);
   EXPECT_NEAR(both.odometry(), 4.0, 1.0);
+}
+
+TEST(NoiseScale, LearnsThatThereIsLessNoise) {
+  const NoiseScale both = NoisyDrive(0.25, 0.25).learn(1500);
+  EXPECT_NEAR(both.observations(), 0.25, 0.05);
+  EXPECT_NEAR(both.odometry(), 0.25, 0.12);
+  const NoiseScale detector = NoisyDrive(1.0, 0.25).learn(1500);
+  EXPECT_NEAR(detector.observations(), 0.25, 0.08);
+  EXPECT_EQ(detector.odometry(), 1.0);
+}
+
+TEST(NoiseScale, TakesErrorsThatAreTheSameFromOnePlaceForNoLessNoise) {
+  EXPECT_EQ(NoisyDrive(1.0, 0.25).learn(9).observations(), 1.0) << "no landmark was seen from another side yet";
+}
+
+TEST(NoiseScale, TakesDisplacementsThatOdometryDoesNotExplainForErrorsOfTheDetectorThatAreNotWhite) {
+  EXPECT_EQ(NoisyDrive(4.0, 0.25).learn(1500).observations(), 1.0);
 }
 
 TEST(NoiseScale, RisesWithinAMinuteOfScans) {

@@ -12,6 +12,7 @@ namespace helixnav::apps {
 /// Each adds one subcommand to `app`; when the user calls it, it runs within app.parse() and leaves its verdict in
 /// `code`, which outlives the parse.
 void add_replay_command(CLI::App& app, ExitCode& code);
+void add_stream_command(CLI::App& app, ExitCode& code);
 void add_smooth_command(CLI::App& app, ExitCode& code);
 void add_convert_command(CLI::App& app, ExitCode& code);
 void add_simulate_command(CLI::App& app, ExitCode& code);

@@ -24,6 +24,8 @@ std::vector<std::string>& command_line() {
 
 void remember_command_line(int argc, char** argv) { command_line().assign(argv, argv + argc); }
 
+std::string command_line_text() { return runs::command_text(command_line()); }
+
 void add_folder_options(CLI::App& command, RunOptions& options) {
   command.add_option("--out", options.out, "Run folder to write; must be empty or new")->required()->type_name("DIR");
   command.add_flag("--overwrite", options.overwrite, "Replace the files of an earlier run in --out");
@@ -39,6 +41,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
 void prepare_run(CLI::App& command, const RunOptions& options) {
   namespace fs = std::filesystem;
   if (!options.config.empty()) apply_config_file(command, options.config);
+  if (options.out.empty()) return;
   if (!fs::exists(options.out)) return;
   if (!fs::is_directory(options.out))
     throw core::InputError(options.out + ": expected a folder for --out, found a file");
@@ -54,7 +57,7 @@ void fill_drive(Drive& drive, const RunOptions& options, const std::string& conf
   drive.quiet = options.quiet;
   drive.manifest.version = core::version();
   drive.manifest.commit = core::commit();
-  drive.manifest.command = runs::command_text(command_line());
+  drive.manifest.command = command_line_text();
   drive.manifest.recording = drive.recording.name;
   drive.manifest.config = config;
 }

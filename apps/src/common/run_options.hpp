@@ -39,5 +39,7 @@ std::vector<runs::InputFile> input_files(const std::string& path);
 
 /// The words of this process's command line, for the manifest.
 void remember_command_line(int argc, char** argv);
+/// Those that matter, as one line.
+std::string command_line_text();
 
 }  // namespace helixnav::apps

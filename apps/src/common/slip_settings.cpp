@@ -18,10 +18,10 @@ void add_slip_settings(CLI::App& command, Settings& settings) {
   command
       .add_option_function<std::string>(
           "--noise.adapt", [&noise](const std::string& word) { noise.adapt = word == "true"; },
-          "Learn factors on the covariances of odometry and observations while driving, 1 at least; false: use them as "
+          "Learn factors on the covariances of odometry and observations while driving, false: use them as "
           "assumed")
       ->check(one_of({"true", "false"}))
-      ->default_str("false")
+      ->default_str("true")
       ->group(settings_group);
 }
 

@@ -34,7 +34,7 @@ std::string no_landmark_text(const ObservationCounts& counts) {
 std::string collapse_text(const ObservationCounts& counts) {
   return warning(
       "matching collapsed: of %zu detections %.0f %% were matched, %.0f %% began landmarks; odometry or detections "
-      "are worse than told, or mounting, units or times are wrong. 'helixnav check' shows what was understood, "
+      "are worse than assumed, or mounting, units or times are wrong. 'helixnav check' shows what was understood, "
       "'helixnav calibrate' estimates the noise from the log",
       counts.seen, 100.0 * share(counts.matched, counts.seen), 100.0 * share(counts.began, counts.seen));
 }
@@ -43,12 +43,12 @@ std::string nis_text(double mean_per_dof) {
   const double factor = std::sqrt(std::max(mean_per_dof, 1e-6));
   if (mean_per_dof > 1.0) {
     return warning(
-        "innovations are %.2g times larger than the noise told allows (NIS %.3g per degree of freedom): "
+        "innovations are %.2g times larger than the assumed noise allows (NIS %.3g per degree of freedom): "
         "covariances are too small; 'helixnav calibrate' estimates the noise from the log",
         factor, mean_per_dof);
   }
   return warning(
-      "innovations are %.2g times smaller than the noise told (NIS %.3g per degree of freedom): the log is better "
+      "innovations are %.2g times smaller than the assumed noise (NIS %.3g per degree of freedom): the log is better "
       "than assumed, and returns will be harder to tell apart than they need be; 'helixnav calibrate' estimates "
       "the noise from the log",
       1.0 / factor, mean_per_dof);

@@ -4,8 +4,31 @@
 #include <cmath>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
+#include "matrices/add_outer.hpp"
+#include "matrices/packed_product.hpp"
+#include "region/touched_weights.hpp"
 
 namespace helixnav::cekf {
+namespace {
+
+/// e·M·eᵀ, its lower triangle, for a symmetric M. Weights that no update has reached are left out.
+Eigen::MatrixXd both_sides(const Eigen::MatrixXd& e, const Eigen::MatrixXd& M) {
+  const std::vector<int> touched = columns_not_zero(M);
+  const Eigen::MatrixXd M_touched = M(touched, touched);
+  ReservedMatrix reached(e.rows(), M_touched.cols());  // by the weights
+  ReservedMatrix product(e.rows(), e.rows());
+  if (touched.empty()) return product.view();
+  const Panels left(e, touched, left_width);
+  add_product(reached.col(0), reached.stride(), left, Panels(M_touched, right_width));
+  const Eigen::MatrixXd e_touched = e(Eigen::all, touched);
+  ReservedMatrix right(e.rows(), e_touched.cols());
+  right.view() = e_touched;
+  add_outer_lower(product.col(0), product.stride(), product.padded_rows(), product.cols(), reached.col(0),
+                  reached.stride(), right.col(0), right.stride(), e_touched.cols());
+  return product.view();
+}
+
+}  // namespace
 
 core::PoseGaussian CompressedEkf::pose() const { return {active_.pose, active_.P.view().topLeftCorner<3, 3>()}; }
 
@@ -72,7 +95,8 @@ core::JointGaussian CompressedEkf::joint(const std::vector<core::LandmarkId>& id
   const Eigen::MatrixXd cross = e * active_.A.view()(Eigen::all, active_columns);
   C(passive_rows, active_rows) = cross;
   C(active_rows, passive_rows) = cross.transpose();
-  Eigen::MatrixXd own = e * (active_.M.view().selfadjointView<Eigen::Lower>() * e.transpose());
+  const Eigen::MatrixXd M = active_.M.view().selfadjointView<Eigen::Lower>();
+  Eigen::MatrixXd own = both_sides(e, M);
   Eigen::MatrixXd before = Eigen::MatrixXd::Zero(own.rows(), own.cols());
   const bool has_pairs = passive_slots.size() > 1;  // a landmark's own block needs no phase read again
   if (has_pairs) before = phase_start_blocks(passive_slots);

@@ -10,6 +10,7 @@
 #include "helixnav/core/errors.hpp"
 #include "matrices/make_room.hpp"
 #include "matrices/packed_product.hpp"
+#include "region/touched_weights.hpp"
 
 namespace helixnav::cekf {
 namespace {
@@ -22,15 +23,6 @@ void add_own_blocks(const Eigen::MatrixXd& left, const ReservedMatrix& right, Ei
       blocks.block<2, 2>(i, 0) += left.block<2, 1>(i, k) * r.block<2, 1>(i, k).transpose();
     }
   }
-}
-
-/// The weights of an anchor that the phase never saw, nor anything through it, have stayed as they began.
-std::vector<int> columns_not_zero(const Eigen::MatrixXd& M) {
-  std::vector<int> columns;
-  for (int k = 0; k < static_cast<int>(M.cols()); ++k) {
-    if (!M.col(k).isZero(0.0)) columns.push_back(k);
-  }
-  return columns;
 }
 
 /// E·M, where M is symmetric and zero outside the rows and columns named.

@@ -15,6 +15,19 @@ void PassiveCovariance::grow(int rows) {
   rows_ = rows;
 }
 
+void PassiveCovariance::assign(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& symmetric) {
+  tiles_.clear();
+  rows_ = 0;
+  grow(static_cast<int>(symmetric.rows()));
+  for (int i = 0; i < rows_; i += tile) {
+    for (int j = 0; j <= i; j += tile) {
+      const int rows = std::min(tile, rows_ - i);
+      const int columns = std::min(tile, rows_ - j);
+      tile_at(i / tile, j / tile).topLeftCorner(rows, columns) = symmetric.block(i, j, rows, columns);
+    }
+  }
+}
+
 double PassiveCovariance::at(int i, int j) const {
   if (i < j) std::swap(i, j);
   return tile_at(i / tile, j / tile)(i % tile, j % tile);
@@ -26,10 +39,11 @@ void PassiveCovariance::set(int i, int j, double value) {
 }
 
 Eigen::Matrix2d PassiveCovariance::block(int slot_i, int slot_j) const {
-  Eigen::Matrix2d result;
-  for (int c = 0; c < 2; ++c) {
-    for (int r = 0; r < 2; ++r) result(r, c) = at(2 * slot_i + r, 2 * slot_j + c);
-  }
+  const int i = 2 * std::max(slot_i, slot_j);
+  const int j = 2 * std::min(slot_i, slot_j);
+  Eigen::Matrix2d result = tile_at(i / tile, j / tile).block<2, 2>(i % tile, j % tile);
+  if (i == j) result(0, 1) = result(1, 0);  // above the diagonal
+  if (slot_i < slot_j) result.transposeInPlace();
   return result;
 }
 

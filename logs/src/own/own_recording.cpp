@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "helixnav/core/errors.hpp"
-#include "helixnav/core/odometry.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/own_log.hpp"
 #include "motion.hpp"
 #include "own_doubts.hpp"
 #include "own_truth.hpp"
 #include "plausible.hpp"
+#include "sensor_rows.hpp"
+#include "weaver.hpp"
 
 namespace helixnav::logs {
 namespace {
@@ -22,62 +22,11 @@ namespace {
   throw core::InputError(log.name + ": " + message);
 }
 
-std::string where(const Vehicle& vehicle) { return vehicle.path.empty() ? "no vehicle.toml" : vehicle.path; }
-
-/// [sensor of the log] the vehicle's; a log that names none, and a vehicle that has but one, need no names.
+/// [sensor of the log] the vehicle's.
 std::vector<SensorModel> sensors_of(const OwnLog& log, const Vehicle& vehicle) {
   std::vector<SensorModel> sensors;
-  for (const std::string& name : log.sensor_names) {
-    const SensorModel* found = nullptr;
-    std::string known;
-    for (const SensorModel& sensor : vehicle.sensors) {
-      if (sensor.name == name || (vehicle.sensors.size() == 1 && (name.empty() || sensor.name.empty())))
-        found = &sensor;
-      known += (known.empty() ? "" : ", ") + sensor.name;
-    }
-    if (found == nullptr && !vehicle.sensors.empty()) {
-      throw core::InputError(where(vehicle) + ": no [[sensor]] is called '" + name + "' as in the column sensor of " +
-                             log.name + "; there are: " + known);
-    }
-    sensors.push_back(found == nullptr ? SensorModel() : *found);
-  }
+  for (const std::string& name : log.sensor_names) sensors.push_back(sensor_called(name, log.name, vehicle));
   return sensors;
-}
-
-double given_variance(const std::optional<double>& sigma, const SensorModel& sensor, const Vehicle& vehicle,
-                      const char* key) {
-  if (sigma) return *sigma * *sigma;
-  throw core::InputError(where(vehicle) +
-                         ": no noise of a detection is given: neither a column of detections.csv nor " + key +
-                         " in section [[sensor]]" + (sensor.name.empty() ? "" : " of '" + sensor.name + "'") +
-                         "; 'helixnav new-vehicle' writes an example");
-}
-
-/// As the sensor measures it, with the noise of the row, else of the sensor.
-core::Observation observation_of(const OwnDetection& row, const SensorModel& sensor, const Vehicle& vehicle) {
-  const bool own = row.R[0] > 0.0;
-  const auto range_variance = [&] {
-    return own ? row.R[0] : given_variance(sensor.sigma_range_m, sensor, vehicle, "sigma_range_m");
-  };
-  const auto bearing_variance = [&](double own_variance) {
-    return own ? own_variance : given_variance(sensor.sigma_bearing_rad, sensor, vehicle, "sigma_bearing_deg");
-  };
-  core::Observation observation;
-  if (row.kind == OwnDetection::Kind::range_bearing) {
-    observation = core::make_range_bearing(row.z[0] / sensor.range_scale, row.z[1], std::sqrt(range_variance()),
-                                           std::sqrt(bearing_variance(row.R[2])));
-  } else if (row.kind == OwnDetection::Kind::range) {
-    observation = core::make_range(row.z[0] / sensor.range_scale, std::sqrt(range_variance()));
-  } else if (row.kind == OwnDetection::Kind::bearing) {
-    observation = core::make_bearing(row.z[0], std::sqrt(bearing_variance(row.R[0])));
-  } else {
-    Eigen::Matrix2d R;
-    R << row.R[0], row.R[1], row.R[1], row.R[2];
-    if (!own) R = given_variance(sensor.sigma_point_m, sensor, vehicle, "sigma_point_m") * Eigen::Matrix2d::Identity();
-    observation = core::make_cartesian(Eigen::Vector2d(row.z[0], row.z[1]) / sensor.range_scale, R);
-  }
-  observation.R *= sensor.noise_scale * sensor.noise_scale;
-  return observation;
 }
 
 struct LabelledScan {
@@ -143,68 +92,32 @@ void check_clocks(const OwnLog& log, const std::vector<LabelledScan>& scans) {
   fail(log, text);
 }
 
-/// Lets motion come in, and scans at their times.
-class Weaver {
- public:
-  Weaver(const OwnLog& log, const Vehicle& vehicle, core::Recording& recording)
-      : log_(log),
-        motions_(log, vehicle),
-        T_vehicle_odometry_(vehicle.odometry.T_vehicle_odometry),
-        recording_(recording) {}
-
-  /// When the first motion begins.
-  core::Nanoseconds weave(std::vector<LabelledScan>& scans) {
-    const core::Nanoseconds last_ns = scans.back().scan.t_ns;
-    core::Nanoseconds first_ns = last_ns;
-    for (std::size_t row = 0; row < log_.odometry.size(); ++row) {
-      const std::optional<Motion> motion = motions_.of_row(row, last_ns);
-      if (!motion) continue;
-      first_ns = std::min(first_ns, motion->begin_ns);
-      for (; next_ < scans.size() && scans[next_].scan.t_ns < motion->end_ns; ++next_) {
-        move(*motion, scans[next_].scan.t_ns);
-        add(scans[next_]);
-      }
-      move(*motion, motion->end_ns);
+/// Lets motion and scans of the whole log come in. When the first motion begins.
+core::Nanoseconds weave(const OwnLog& log, const Vehicle& vehicle, std::vector<LabelledScan>& scans,
+                        core::Recording& recording) {
+  const Motions motions(log, vehicle);
+  Weaver weaver(vehicle.odometry.T_vehicle_odometry, recording.events);
+  const auto add = [&](LabelledScan& scan) {
+    weaver.add(std::move(scan.scan));
+    if (log.has_labels) recording.labels.push_back(std::move(scan.labels));
+  };
+  const core::Nanoseconds last_ns = scans.back().scan.t_ns;
+  core::Nanoseconds first_ns = last_ns;
+  std::size_t next = 0;
+  for (std::size_t row = 0; row < log.odometry.size(); ++row) {
+    const std::optional<Motion> motion = motions.of_row(row, last_ns);
+    if (!motion) continue;
+    first_ns = std::min(first_ns, motion->begin_ns);
+    for (; next < scans.size() && scans[next].scan.t_ns < motion->end_ns; ++next) {
+      weaver.move(*motion, scans[next].scan.t_ns);
+      add(scans[next]);
     }
-    for (; next_ < scans.size(); ++next_) add(scans[next_]);
-    flush();
-    return first_ns;
+    weaver.move(*motion, motion->end_ns);
   }
-
- private:
-  /// On to t_ns, as far as the motion goes there.
-  void move(const Motion& motion, core::Nanoseconds t_ns) {
-    if (!now_ns_ || *now_ns_ < motion.begin_ns) now_ns_ = motion.begin_ns;
-    const bool instantaneous = motion.end_ns == motion.begin_ns;
-    const bool nothing = motion.twist.isZero(0.0) && motion.covariance.isZero(0.0);
-    if (instantaneous && (nothing || t_ns != motion.end_ns)) return;
-    if (!instantaneous && t_ns <= *now_ns_) return;
-    const double share =
-        instantaneous ? 1.0 : core::seconds(t_ns - *now_ns_) / core::seconds(motion.end_ns - motion.begin_ns);
-    const core::Odometry part = part_of(motion, share, t_ns, T_vehicle_odometry_);
-    pending_ = pending_ ? core::chain(*pending_, part) : part;
-    now_ns_ = t_ns;
-  }
-
-  void flush() {
-    if (pending_) recording_.events.emplace_back(*pending_);
-    pending_.reset();
-  }
-
-  void add(LabelledScan& scan) {
-    flush();
-    recording_.events.emplace_back(std::move(scan.scan));
-    if (log_.has_labels) recording_.labels.push_back(std::move(scan.labels));
-  }
-
-  const OwnLog& log_;
-  Motions motions_;
-  core::Pose2 T_vehicle_odometry_;
-  core::Recording& recording_;
-  std::optional<core::Nanoseconds> now_ns_;
-  std::optional<core::Odometry> pending_;
-  std::size_t next_ = 0;
-};
+  for (; next < scans.size(); ++next) add(scans[next]);
+  weaver.flush();
+  return first_ns;
+}
 
 }  // namespace
 
@@ -219,7 +132,7 @@ core::Recording make_recording(const OwnLog& log, const Vehicle& vehicle) {
   recording.antenna_robot_m = vehicle.antenna_m;
   recording.remarks = log.remarks;
   const core::Nanoseconds first_scan_ns = scans.front().scan.t_ns;
-  const core::Nanoseconds first_motion_ns = Weaver(log, vehicle, recording).weave(scans);
+  const core::Nanoseconds first_motion_ns = weave(log, vehicle, scans, recording);
   add_truth(log, std::min(first_scan_ns, first_motion_ns), recording);
   for (std::string& doubt : doubts_of(log, vehicle, recording)) recording.remarks.push_back(std::move(doubt));
   return recording;

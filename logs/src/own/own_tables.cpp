@@ -37,13 +37,15 @@ void sort_odometry(OwnLog& log) {
   log.odometry_covariances = std::move(covariances);
 }
 
-bool is_whole_number(const std::string& word, std::int64_t& value) {
+}  // namespace
+
+std::optional<std::int64_t> whole_number(const std::string& word) {
+  std::int64_t value = 0;
   const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   constexpr std::int64_t most = std::int64_t{1} << 53;
-  return error == std::errc{} && stop == word.data() + word.size() && value >= 0 && value < most;
+  const bool whole = error == std::errc{} && stop == word.data() + word.size() && value >= 0 && value < most;
+  return whole ? std::optional(value) : std::nullopt;
 }
-
-}  // namespace
 
 core::Nanoseconds RowTimes::take(const Row& row, std::size_t column) {
   constexpr core::Nanoseconds tolerated_ns = 1'000'000'000;
@@ -162,26 +164,26 @@ void OwnTables::drop_repeated_detections() {
   const auto same = [](const OwnDetection& a, const OwnDetection& b) {
     return a.t_ns == b.t_ns && a.sensor == b.sensor && a.kind == b.kind && a.z == b.z && a.label == b.label;
   };
-  std::vector<OwnDetection>& all = log_.detections;
+  std::vector<OwnDetection>& rows = log_.detections;
   std::size_t kept = 0, begin = 0;  // of those kept of this scan
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (begin < kept && (all[begin].t_ns != all[i].t_ns || all[begin].sensor != all[i].sensor)) begin = kept;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (begin < kept && (rows[begin].t_ns != rows[i].t_ns || rows[begin].sensor != rows[i].sensor)) begin = kept;
     const bool repeated =
-        std::any_of(all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(kept),
-                    [&](const OwnDetection& other) { return same(other, all[i]); });
-    if (!repeated) all[kept++] = all[i];
+        std::any_of(rows.begin() + static_cast<std::ptrdiff_t>(begin), rows.begin() + static_cast<std::ptrdiff_t>(kept),
+                    [&](const OwnDetection& other) { return same(other, rows[i]); });
+    if (!repeated) rows[kept++] = rows[i];
   }
-  if (kept == all.size()) return;
-  log_.remarks.push_back("detections: " + counted(all.size() - kept, "row") + " that repeat another, left out");
-  all.resize(kept);
+  if (kept == rows.size()) return;
+  log_.remarks.push_back("detections: " + counted(rows.size() - kept, "row") + " that repeat another, left out");
+  rows.resize(kept);
 }
 
 void OwnTables::number_identities() {
   std::vector<core::Label> label_of;
-  std::int64_t number = 0;
   for (const std::string& word : ids_.words()) {
-    if (!is_whole_number(word, number)) break;
-    label_of.push_back(number);
+    const std::optional<std::int64_t> number = whole_number(word);
+    if (!number) break;
+    label_of.push_back(*number);
   }
   log_.has_labels = !ids_.words().empty();
   if (label_of.size() != ids_.words().size()) {
@@ -193,6 +195,20 @@ void OwnTables::number_identities() {
   };
   for (OwnDetection& detection : log_.detections) renumber(detection.label);
   for (core::TrueLandmark& landmark : log_.true_landmarks) renumber(landmark.label);
+}
+
+OwnLog OwnTables::take_rows() {
+  OwnLog rows = std::move(log_);
+  log_ = OwnLog();
+  log_.odometry_kind = rows.odometry_kind;
+  odometry_known_ = false;
+  rows.sensor_names = sensors_.words();
+  rows.id_names = ids_.words();
+  sensors_ = WordNumbers();
+  ids_ = WordNumbers();
+  classes_ = WordNumbers();
+  for (RowTimes& times : times_) times = RowTimes();
+  return rows;
 }
 
 OwnLog OwnTables::finish(std::string name) {

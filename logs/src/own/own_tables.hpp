@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,12 +39,17 @@ class WordNumbers {
   std::vector<std::string> words_;
 };
 
+/// The number that an identity is, from 0 on and below 2⁵³; nothing for a name.
+std::optional<std::int64_t> whole_number(const std::string& word);
+
 /// The tables of a log as they fill it. Each reads the rows of one kind: begin() once its columns are known (again, where
 /// they change, as in JSON Lines), add() for each row. finish() sorts, numbers identities and tells what was done.
 class OwnTables {
  public:
   enum class Table { odometry, detections, fixes, truth_poses, truth_landmarks };
-  static constexpr std::size_t table_count = 5;
+  static constexpr std::array all{Table::odometry, Table::detections, Table::fixes, Table::truth_poses,
+                                  Table::truth_landmarks};
+  static constexpr std::size_t table_count = all.size();
   static std::string_view name_of(Table table);
   static const std::vector<ColumnKind>& columns_of(Table table);
 
@@ -53,6 +60,10 @@ class OwnTables {
   void begin(Table table, const TableColumns& columns);
   void add(Table table, const Row& row);
   OwnLog finish(std::string name);
+
+  /// What was added since the last call, in the order in which it came and without a name, for what comes line by line:
+  /// sensors, classes and identities (by id_names) are numbered in it alone, and so is the order of times judged.
+  OwnLog take_rows();
 
  private:
   void begin_odometry(const TableColumns& columns);

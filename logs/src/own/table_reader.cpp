@@ -50,7 +50,7 @@ bool begins_with_number(const std::string& cell) {
 }  // namespace
 
 void fail_at(const std::string& path, std::size_t line, std::size_t column, const std::string& message) {
-  throw core::InputError(path + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + message);
+  throw PlacedInputError(path, line, column, message);
 }
 
 LineReader::LineReader(const std::filesystem::path& path) : file_(path, std::ios::binary) {

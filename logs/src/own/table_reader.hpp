@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "helixnav/core/errors.hpp"
+
 namespace helixnav::logs {
 
 /// One cell of a table, with the character of its line that it begins at, from 1.
@@ -68,7 +70,23 @@ class TableReader {
   std::vector<std::string> unquoted_;  ///< cells whose text is not as in the file
 };
 
-/// "path:line:column: message" as a core::InputError.
+/// A core::InputError that knows its place.
+class PlacedInputError : public core::InputError {
+ public:
+  PlacedInputError(const std::string& path, std::size_t line, std::size_t column, const std::string& message)
+      : core::InputError(path + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + message),
+        column_(column),
+        message_(message) {}
+
+  std::size_t column() const { return column_; }
+  const std::string& message() const { return message_; }  ///< without the place
+
+ private:
+  std::size_t column_;
+  std::string message_;
+};
+
+/// "path:line:column: message" as a PlacedInputError.
 [[noreturn]] void fail_at(const std::string& path, std::size_t line, std::size_t column, const std::string& message);
 
 }  // namespace helixnav::logs

@@ -9,7 +9,6 @@
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "loop/coverage_trace.hpp"
 #include "loop/tape.hpp"
-#include "slip/noise_scale.hpp"
 #include "slip/slip_record.hpp"
 
 namespace helixnav::supervisor {
@@ -21,7 +20,7 @@ struct LeftOpen {
 };
 
 /// Everything that rolls back: pose and map, which landmarks exist, what ground was covered, which old landmark awaits its
-/// confirmation, how the vehicle slipped, what the noise came to, and the number of scans so far.
+/// confirmation, how the vehicle slipped, and the number of scans so far.
 struct Belief {
   cekf::CompressedEkf filter;
   association::LandmarkLife existence;
@@ -29,9 +28,7 @@ struct Belief {
   Confirmation confirmation;
   std::int64_t step = 0;
   SlipRecord slips = {};
-  NoiseScale noise = {};
   std::vector<LeftOpen> left_open = {};
-  Eigen::Matrix3d moved = Eigen::Matrix3d::Zero();  ///< covariance of the motion since the last scan, as told
 };
 
 /// A belief to come back to, and where the tape was then. A snapshot of O(n_a²) bytes and the landmarks' existence; good as
@@ -43,18 +40,11 @@ struct Checkpoint {
   std::int64_t step;
   Tape::Position position;
   SlipRecord slips = {};
-  NoiseScale noise = {};
   std::vector<LeftOpen> left_open = {};
 };
 
 inline Checkpoint take_checkpoint(const Belief& belief, const Tape& tape) {
-  return {belief.filter.snapshot(),
-          belief.existence,
-          belief.confirmation,
-          belief.step,
-          tape.end(),
-          belief.slips,
-          belief.noise,
+  return {belief.filter.snapshot(), belief.existence, belief.confirmation, belief.step, tape.end(), belief.slips,
           belief.left_open};
 }
 
@@ -66,7 +56,6 @@ inline void roll_back(const Checkpoint& checkpoint, Belief& belief) {
   belief.confirmation = checkpoint.confirmation;
   belief.step = checkpoint.step;
   belief.slips = checkpoint.slips;
-  belief.noise = checkpoint.noise;
   belief.left_open = checkpoint.left_open;
 }
 

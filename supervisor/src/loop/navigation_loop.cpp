@@ -38,7 +38,7 @@ NavigationLoop::NavigationLoop(const core::PoseGaussian& start, const NavigatorO
 
 void NavigationLoop::move(const core::Odometry& measured) {
   core::Odometry odometry = measured;
-  odometry.covariance *= belief_.noise.odometry();
+  odometry.covariance *= noise_.scale.odometry();
   pending_.motion = pending_.motion ? core::chain(*pending_.motion, odometry) : odometry;
   pending_.driven_m += odometry.T_before_after.position_m().norm();
 }
@@ -62,24 +62,28 @@ StepReport NavigationLoop::observe(const Scan& scan) {
   return report;
 }
 
-/// `note` goes into the report. The scan is told with the noise that was learnt.
+/// `note` goes into the report.
 StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* note) {
-  if (belief_.noise.observations() == 1.0) return take_told(scan, note);
-  Scan told = scan;
-  for (core::Observation& observation : told.observations) observation.R *= belief_.noise.observations();
-  return take_told(told, note);
-}
-
-StepReport NavigationLoop::take_told(const Scan& scan, const core::Decision* note) {
   return all_or_nothing([&] {
     if (note != nullptr) pending_.decisions.push_back(*note);
-    StepReport report = step(scan);
+    predict();
+    learn_noise(scan);
+    StepReport report = take_as_assumed(scan);
     checkpoint_if_settled();
     if (has_lost_its_place()) return roll_back_and_relocalise(std::move(report));
-    tell_again();
+    solve_with_learnt_noise();
+    report.pose = belief_.filter.pose();
     if (sought_in_) find_place(scan.field_of_view, report);
     return report;
   });
+}
+
+/// With the noise that is assumed by now.
+StepReport NavigationLoop::take_as_assumed(const Scan& scan) {
+  if (noise_.scale.observations() == 1.0) return step(scan);
+  Scan assumed = scan;
+  for (core::Observation& observation : assumed.observations) observation.R *= noise_.scale.observations();
+  return step(assumed);
 }
 
 bool NavigationLoop::fix(const core::AbsoluteFix& fix) {
@@ -98,8 +102,6 @@ StepReport NavigationLoop::step(const Scan& scan) {
   const Confirmation before = belief_.confirmation;
   report.associations = associate_scan(gated, options_, belief_.existence.path_m(), belief_.confirmation);
   const bool slipped = allow_for_slip(scan, before, report);
-  if (!slipped) learn_noise(scan, gated.gating->joint, report.associations);
-  belief_.moved.setZero();
   belief_.slips.see(landmarks_with(Outcome::matched, report.associations).size());
   update(scan, slipped, report);
   augment(scan, report);
@@ -113,7 +115,7 @@ StepReport NavigationLoop::step(const Scan& scan) {
 void NavigationLoop::predict() {
   if (!pending_.motion) return;
   belief_.filter.predict(*pending_.motion);
-  belief_.moved = pending_.motion->covariance;
+  noise_.moved += pending_.motion->covariance;
   if (Searching* open = searching()) open->search.move(*pending_.motion);
   belief_.existence.drive(pending_.driven_m);
   tape_.append(Tape::Motion{*pending_.motion, pending_.driven_m});

@@ -16,6 +16,7 @@
 #include "loop/belief.hpp"
 #include "loop/mode.hpp"
 #include "loop/tape.hpp"
+#include "noise/noise_learner.hpp"
 #include "placing/place_search.hpp"
 #include "slip/slip_decision.hpp"
 
@@ -57,7 +58,7 @@ class NavigationLoop {
   // loop/navigation_loop.cpp
   void fit_to(const core::FieldOfView& view);
   core::StepReport take_step(const core::Scan& scan, const core::Decision* note);
-  core::StepReport take_told(const core::Scan& scan, const core::Decision* note);
+  core::StepReport take_as_assumed(const core::Scan& scan);
   core::StepReport step(const core::Scan& scan);
   void predict();
   bool use_fix(const core::AbsoluteFix& fix);
@@ -79,10 +80,9 @@ class NavigationLoop {
   std::vector<core::LandmarkId> landmarks_near(const core::Scan& scan) const;
   void move_unmeasured(const Eigen::Matrix3d& covariance, core::Nanoseconds t_ns);
 
-  // slip/learn_noise.cpp
-  void learn_noise(const core::Scan& scan, const core::JointGaussian& joint,
-                   const std::vector<core::AssociationReport>& fate);
-  void tell_again();
+  // noise/learn_noise.cpp
+  void learn_noise(const core::Scan& scan);
+  void solve_with_learnt_noise();
 
   // search/search_mode.cpp
   void begin_search();
@@ -122,6 +122,8 @@ class NavigationLoop {
   core::PoseGaussian start_;
   Belief belief_;
   Tape tape_;
+  NoiseLearner noise_;
+  NoiseLearner noise_before_;  ///< this call, for recover(); kept so that its memory is used again
   Mode mode_;
   Pending pending_;
   Undo undo_;

@@ -46,6 +46,7 @@ void NavigationLoop::recover() {
   pending_ = {};
   process_again(
       since, [](const Tape::Fix&, bool) {}, [](const core::StepReport&) {});
+  std::swap(noise_, noise_before_);
   pending_ = std::move(undo.pending);
 }
 

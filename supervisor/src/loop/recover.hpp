@@ -11,6 +11,7 @@ namespace helixnav::supervisor {
 template <class Call>
 auto NavigationLoop::all_or_nothing(const Call& call) {
   undo_ = Undo{pending_, tape_.end(), searches_, {}, {}, {}};
+  noise_before_ = noise_;
   try {
     auto result = call();
     commit();

@@ -60,7 +60,7 @@ class Tape {
   void append(Entry entry);
   Position end() const { return forgotten_ + entries_.size(); }
 
-  /// The tape of the same drive, had the covariances of all observations and of all measured motion been told this many
+  /// The tape of the same drive, had the covariances of all observations and of all measured motion been this many
   /// times as large. What that would have cost is not known: costs are what it was at least.
   Tape rescaled(double observations, double odometry) const;
 

@@ -6,18 +6,47 @@
 
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
-#include "helixnav/core/observation.hpp"
-#include "helixnav/smoothing/optimize.hpp"
+#include "helixnav/smoothing/minimum.hpp"
 #include "smoothing/drive_graph.hpp"
 
 namespace helixnav::supervisor {
 namespace {
 
-/// x, y, heading [m, m, rad]. Odometry of rank two, a certain start and an exact fix have no inverse; so much is added to them, a
-/// few ten-thousandths of what the simulated truck drifts.
-const Eigen::Vector3d softening(2e-5, 2e-5, 2e-6);
+/// The filter that all measurements linearised at the minimum make: the pose at the end of the drive and the landmarks that
+/// `before` has, everything else eliminated.
+cekf::CompressedEkf filter_at(const smoothing::Minimum& minimum, const core::LandmarkGraph& graph,
+                              const cekf::CompressedEkf& before) {
+  core::JointGaussian joint;
+  std::vector<int> landmarks;
+  for (std::size_t k = 0; k < graph.landmarks.size(); ++k) {
+    const auto id = static_cast<core::LandmarkId>(graph.landmarks[k].name);
+    if (!before.contains(id)) continue;
+    joint.ids.push_back(id);
+    joint.points_m.push_back(graph.landmarks[k].point_m);
+    landmarks.push_back(static_cast<int>(k));
+  }
+  joint.pose = graph.poses.back().T_world_robot;
+  joint.covariance = minimum.joint_covariance({static_cast<int>(graph.poses.size()) - 1}, landmarks);
+  return {joint, before.next_name(), before.options()};
+}
+
+/// χ² of three more degrees of freedom, exceeded once in a million times: by less the two costs differ that would be one
+/// if everything were linear. Measured: −12 to 17 (docs/adr/0010-solving-the-drive.md).
+double slack() { return core::chi2_quantile(0.999999, 3); }
+
+smoothing::Options from_a_good_start() {
+  smoothing::Options options;
+  options.first_damping = 1e-8;
+  options.ordering = smoothing::Ordering::amd;
+  return options;
+}
+
+}  // namespace
 
 smoothing::Problem problem_of(const core::PoseGaussian& start, core::LandmarkGraph graph) {
+  // x, y, heading [m, m, rad]. Odometry of rank two, a certain start and an exact fix have no inverse; so much is added to
+  // them, a few ten-thousandths of what the simulated truck drifts.
+  const Eigen::Vector3d softening(2e-5, 2e-5, 2e-6);
   smoothing::Problem problem;
   problem.graph = std::move(graph);
   const Eigen::Matrix3d certain = softening.cwiseAbs2().asDiagonal();
@@ -27,106 +56,18 @@ smoothing::Problem problem_of(const core::PoseGaussian& start, core::LandmarkGra
   return problem;
 }
 
-/// Drives through the solved graph with measurements that are just what it predicts: the mean stays on it, and the
-/// covariance comes to be that of all measurements linearised there.
-class Refilter {
- public:
-  Refilter(const core::PoseGaussian& start, const core::LandmarkGraph& graph, const cekf::CompressedEkf& before)
-      : graph_(graph),
-        before_(before),
-        left_(graph.landmarks.size(), 0),
-        filter_({graph.poses.front().T_world_robot, start.covariance}, before.options()) {
-    for (const auto& edge : graph_.landmark_edges) ++left_[static_cast<std::size_t>(edge.landmark)];
-  }
-
-  cekf::CompressedEkf run() {
-    std::size_t edge = 0;
-    std::size_t fix = 0;
-    for (int pose = 0; pose < static_cast<int>(graph_.poses.size()); ++pose) {
-      reach(pose);
-      std::vector<cekf::Match> known;
-      for (; edge < graph_.landmark_edges.size() && graph_.landmark_edges[edge].pose == pose; ++edge) {
-        see(graph_.landmark_edges[edge], known);
-      }
-      filter_.update(known);
-      for (; fix < graph_.fix_edges.size() && graph_.fix_edges[fix].pose == pose; ++fix) {
-        core::AbsoluteFix exact = graph_.fix_edges[fix].fix;
-        exact.position_world_m = core::transform(at(pose), exact.antenna_robot_m);
-        filter_.update_position(exact);
-      }
-      forget_lost();
-      filter_.switch_region_if_due();
-    }
-    filter_.name_from(before_.next_name());
-    return std::move(filter_);
-  }
-
- private:
-  const core::Pose2& at(int pose) const { return graph_.poses[static_cast<std::size_t>(pose)].T_world_robot; }
-
-  void reach(int pose) {
-    if (pose == 0) return;
-    core::Odometry exact;
-    exact.T_before_after = core::between(at(pose - 1), at(pose));
-    exact.covariance = graph_.pose_edges[static_cast<std::size_t>(pose - 1)].covariance;
-    filter_.predict(exact);
-  }
-
-  void see(const core::LandmarkGraph::LandmarkEdge& edge, std::vector<cekf::Match>& known) {
-    const core::LandmarkGraph::Landmark& landmark = graph_.landmarks[static_cast<std::size_t>(edge.landmark)];
-    cekf::Match exact{static_cast<core::LandmarkId>(landmark.name), edge.observation, edge.T_robot_sensor};
-    exact.observation.z =
-        core::predict_observation(edge.observation.kind, at(edge.pose), edge.T_robot_sensor, landmark.point_m).z_hat;
-    if (--left_[static_cast<std::size_t>(edge.landmark)] == 0 && !before_.contains(exact.landmark)) {
-      lost_.push_back(exact.landmark);
-    }
-    if (filter_.contains(exact.landmark)) {
-      known.push_back(exact);
-    } else {
-      filter_.augment(exact.observation, exact.T_robot_sensor, exact.landmark);
-    }
-  }
-
-  void forget_lost() {
-    for (const core::LandmarkId id : lost_) filter_.remove(id);
-    lost_.clear();
-  }
-
-  const core::LandmarkGraph& graph_;
-  const cekf::CompressedEkf& before_;
-  std::vector<int> left_;  ///< observations still to come, by landmark
-  std::vector<core::LandmarkId> lost_;
-  cekf::CompressedEkf filter_;
-};
-
-/// χ² of three more degrees of freedom, exceeded once in a million times: by less the two costs differ that would be one
-/// if everything were linear. Measured: −12 to 17 (docs/adr/0010-solving-the-drive.md).
-double slack() { return core::chi2_quantile(0.999999, 3); }
-
-smoothing::Report solve(const core::PoseGaussian& start, core::LandmarkGraph& graph) {
-  smoothing::Problem problem = problem_of(start, graph);
-  smoothing::Options options;
-  options.first_damping = 1e-8;  // from a good start
-  options.ordering = smoothing::Ordering::amd;
-  smoothing::Report report = smoothing::optimize(problem, options);
-  graph.poses = std::move(problem.graph.poses);
-  graph.landmarks = std::move(problem.graph.landmarks);
-  return report;
-}
-
-}  // namespace
-
 Smoothing smooth_drive(const cekf::CompressedEkf& filter, const core::PoseGaussian& start, const Tape& tape) {
   Smoothing result;
   result.limit = drive_cost(tape) + slack();
   try {
-    core::LandmarkGraph graph = graph_of(start, tape, filter);
-    result.poses = static_cast<int>(graph.poses.size());
-    const smoothing::Report report = solve(start, graph);
+    smoothing::Problem problem = problem_of(start, graph_of(start, tape, filter));
+    result.poses = static_cast<int>(problem.graph.poses.size());
+    const smoothing::Minimum minimum(problem, from_a_good_start());
+    const smoothing::Report& report = minimum.report();
     result.chi2 = report.chi2.total();
     result.iterations = static_cast<int>(report.iterations.size());
     if (report.reason != smoothing::Reason::converged || !(result.chi2 <= result.limit)) return result;
-    result.solved.emplace(Refilter(start, graph, filter).run());
+    result.solved.emplace(filter_at(minimum, problem.graph, filter));
   } catch (const core::NumericalError&) {
     result.solved.reset();  // what cannot be solved leaves the filter as it is
   }

@@ -5,6 +5,8 @@
 
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/landmark_graph.hpp"
+#include "helixnav/smoothing/problem.hpp"
 #include "loop/tape.hpp"
 
 namespace helixnav::supervisor {
@@ -19,12 +21,15 @@ struct Smoothing {
 };
 
 /// The filter at the least-squares solution of the whole drive with the associations known now, and with the covariance
-/// of all measurements linearised there: the drive is filtered once more along the solution. After a closing that
-/// turned a part of the map by many degrees the filter is linearised where that part was drawn, and no retraction of
-/// its own undoes that (docs/adr/0010-solving-the-drive.md). Not accepted: no convergence, or a minimum that costs more
-/// than the filter's own solution, which is then another one. Landmarks keep their ids. Cost: a few sparse
-/// factorisations and the filter's updates of the whole drive; ADR 10 has milliseconds. Test:
-/// supervisor/smooth_drive_test.cpp.
+/// of all measurements linearised there, from the factorisation that least squares ended with. After a closing that turned a
+/// part of the map by many degrees the filter is linearised where that part was drawn, and no retraction of its own undoes
+/// that (docs/adr/0010-solving-the-drive.md). Not accepted: no convergence, or a minimum that costs more than the filter's
+/// own solution, which is then another one. Landmarks keep their ids. Cost: a few sparse factorisations and N² times the
+/// nonzeros of their factor a landmark; ADR 10 has milliseconds. Test: supervisor/smooth_drive_test.cpp (a filter that
+/// drives along the solution).
 Smoothing smooth_drive(const cekf::CompressedEkf& filter, const core::PoseGaussian& start, const Tape& tape);
+
+/// The graph with what holds the start, and with covariances of which every one has an inverse.
+smoothing::Problem problem_of(const core::PoseGaussian& start, core::LandmarkGraph graph);
 
 }  // namespace helixnav::supervisor

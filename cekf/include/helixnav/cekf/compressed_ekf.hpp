@@ -40,11 +40,10 @@ class CompressedEkf {
   /// Start covariance symmetric positive semidefinite; all zero is allowed (map frame = pose at start).
   explicit CompressedEkf(const core::PoseGaussian& start, const FilterOptions& options = {});
 
-  /// Begins with a pose and landmarks that are known jointly, as joint() of another filter gives them. Landmarks named later
-  /// are `next_name` and above. PreconditionError unless ids are different and below `next_name`, and the covariance is
-  /// finite, symmetric, of the right size and without negative variances or correlations above 1 (that it is positive
-  /// semidefinite is the caller's word: checking it costs O(N³)). O(N²). Test: cekf/joint_start_test.cpp (equal to a full EKF
-  /// begun so; a filter that goes on from its own joint()).
+  /// From the joint estimate of the pose and of all landmarks of the map, which keep their ids; those named later are
+  /// `next_name` and above. The region around the vehicle is active. PreconditionError for ids that are twice, negative or
+  /// not below `next_name`, sizes that do not fit, values that are not finite or variances below zero; that the covariance
+  /// is positive semidefinite is the caller's word. O(N²). Test: cekf/joint_start_test.cpp.
   CompressedEkf(const core::JointGaussian& start, core::LandmarkId next_name, const FilterOptions& options = {});
 
   const FilterOptions& options() const { return options_; }
@@ -156,6 +155,11 @@ class CompressedEkf {
 
   const Place& place_of(core::LandmarkId id, const char* verb) const;
   int weights_per_anchor() const { return options_.retraction == Retraction::right_invariant ? 2 : 1; }
+
+  // start.cpp
+  void check_options() const;
+  void begin_at(const core::PoseGaussian& pose);
+  void take_in_passive(const core::JointGaussian& start, Phase& first);
 
   // augment.cpp
   void name_newest(const Eigen::Vector2d& point_m, core::LandmarkId id);

@@ -19,6 +19,8 @@ class PassiveCovariance {
   int rows() const { return rows_; }
   /// New rows are zero.
   void grow(int rows);
+  /// Becomes this symmetric matrix, of which the lower triangle is read.
+  void assign(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& symmetric);
   double at(int i, int j) const;
   Eigen::Matrix2d block(int slot_i, int slot_j) const;
   /// Columns 2s and 2s+1, rows() × 2.

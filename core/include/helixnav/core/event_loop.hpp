@@ -19,14 +19,16 @@ namespace helixnav::core {
 /// after each:
 ///   EventLoop loop(recording.events, estimator);
 ///   while (const auto step = loop.next()) …
-/// Events and estimator must outlive the loop. Test: core/event_loop_test.cpp.
+/// Events and estimator must outlive the loop. A live drive comes in parts: a loop for each, numbering on with `first_step`.
+/// Test: core/event_loop_test.cpp.
 template <typename Estimator>
 class EventLoop {
  public:
-  EventLoop(const std::vector<Event>& events, Estimator& estimator) : events_(events), estimator_(estimator) {}
+  EventLoop(const std::vector<Event>& events, Estimator& estimator, std::int64_t first_step = 0)
+      : events_(events), estimator_(estimator), steps_(first_step) {}
 
   /// Feeds the events up to and with the next one that makes a step; nothing when none is left. Steps are numbered as
-  /// they come, from 0. NumericalError and PreconditionError of the estimator pass with step and time before their words.
+  /// they come. NumericalError and PreconditionError of the estimator pass with step and time before their words.
   std::optional<StepReport> next() {
     while (fed_ < events_.size()) {
       std::optional<StepReport> step = take(events_[fed_++]);
@@ -40,7 +42,7 @@ class EventLoop {
   /// How many events were fed; after a step, the event before this number made it.
   std::size_t fed() const { return fed_; }
 
-  /// How many steps were made.
+  /// Number of the next step: how many were made since step 0.
   std::int64_t steps() const { return steps_; }
 
  private:
@@ -62,7 +64,7 @@ class EventLoop {
   const std::vector<Event>& events_;
   Estimator& estimator_;
   std::size_t fed_ = 0;
-  std::int64_t steps_ = 0;
+  std::int64_t steps_;
 };
 
 }  // namespace helixnav::core

@@ -25,8 +25,9 @@ MarginalCovariances marginal_covariances(const Problem& problem, const std::vect
 /// The same of every landmark.
 std::vector<Eigen::Matrix2d> landmark_covariances(const Problem& problem);
 
-/// The joint covariance of the chosen poses and landmarks, (3p+2n)×(3p+2n) in the order given, poses first; two triangular
-/// solves a column. Errors as optimize(). Test: smoothing/marginals_test.cpp.
+/// The joint covariance of the chosen poses and landmarks, (3p+2n)×(3p+2n) in the order given, poses first. The same
+/// recursion with dense blocks for all pairs: 2·nnz(L)·(3p+2n) flops at most, 8·(3p+2n)² bytes beside the result, some
+/// more for poses that lie on the paths from landmarks to the root. Errors as optimize(). Test: smoothing/marginals_test.cpp.
 Eigen::MatrixXd joint_covariance(const Problem& problem, const std::vector<int>& poses,
                                  const std::vector<int>& landmarks);
 

@@ -6,7 +6,7 @@ namespace helixnav::supervisor {
 /// Whether the covariances that odometry and detector claim are believed, or multiplied by factors learnt while driving.
 /// Figures: docs/slips.md.
 struct NoiseOptions {
-  bool adapt = false;
+  bool adapt = true;
 };
 
 }  // namespace helixnav::supervisor

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace helixnav::apps {
+
+/// Where lines come from and answers go to: standard input and output, or one client after another on a socket of this
+/// machine. Reading and writing block, but come back at once when the program is interrupted. Test: apps/stream_test.cpp.
+class LineChannel {
+ public:
+  /// "" for the standard streams, "unix:PATH" or "tcp:PORT" on 127.0.0.1 (0: a free one). InputError for an address that
+  /// cannot be listened on.
+  explicit LineChannel(const std::string& address);
+  ~LineChannel();
+  LineChannel(const LineChannel&) = delete;
+  LineChannel& operator=(const LineChannel&) = delete;
+
+  /// Where clients find it; empty for the standard streams.
+  const std::string& address() const { return address_; }
+
+  /// Waits for the next line, its end taken off; the last of an input or of a client may have none. Of one longer than
+  /// longest_line only the beginning is given. False at the end of input, or when interrupted.
+  bool next(std::string& line);
+
+  /// Of the last line, from 1, in its input or of its client.
+  std::size_t line_number() const { return number_; }
+
+  /// Writes a line and its end; waits for whoever reads slowly. To a client that is gone nothing is written. False when
+  /// nobody reads the standard output any more.
+  bool send(std::string line);
+
+  static constexpr std::size_t longest_line = 1 << 20;
+
+ private:
+  bool wait_for(int descriptor, short what);
+  bool accept_client();
+  void drop_client();
+  bool take_line(std::string& line);
+  void fill();
+
+  std::string address_;
+  std::string path_;  ///< of a Unix socket, to be removed
+  int listening_ = -1;
+  int in_ = -1, out_ = -1;
+  std::string buffer_;
+  std::size_t begin_ = 0, searched_ = 0;
+  bool skipping_ = false;  ///< the rest of a line that is too long
+  bool ended_ = false;     ///< this input
+  std::size_t number_ = 0;
+};
+
+}  // namespace helixnav::apps

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "live_navigator.hpp"
+
+#include "common/fit_to_recording.hpp"
+#include "helixnav/logs/field_of_view.hpp"
+
+namespace helixnav::apps {
+
+void LiveNavigator::prepare(core::Recording& next) {
+  apply_log_settings(next, settings_);
+  labels_ = &next.labels;
+  scan_ = 0;
+  if (navigator_ || next.events.empty()) return;
+  const supervisor::NavigatorOptions options = fit_to_recording(settings_, next);
+  lengths_text_ = apps::lengths_text(options, logs::field_of_view_of(next));
+  if (settings_.known_association) {
+    navigator_.emplace(std::in_place_type<supervisor::NamedNavigator>, next.start, options);
+  } else {
+    navigator_.emplace(std::in_place_type<supervisor::Navigator>, next.start, options);
+  }
+}
+
+std::optional<core::StepReport> LiveNavigator::take(const core::Event& event) {
+  const bool is_scan = std::holds_alternative<core::Scan>(event);
+  const std::size_t scan = is_scan ? scan_++ : 0;
+  if (auto* unnamed = std::get_if<supervisor::Navigator>(&*navigator_)) return unnamed->take(event);
+  auto& named = std::get<supervisor::NamedNavigator>(*navigator_);
+  return is_scan ? named.take(event, labels_->at(scan)) : named.take(event, {});
+}
+
+std::vector<core::MapLandmark> LiveNavigator::map() const {
+  if (!navigator_) return {};
+  return std::visit([](const auto& navigator) { return navigator.map(); }, *navigator_);
+}
+
+}  // namespace helixnav::apps

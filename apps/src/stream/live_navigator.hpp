@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "common/settings.hpp"
+#include "helixnav/core/recording.hpp"
+#include "helixnav/supervisor/named_navigator.hpp"
+#include "helixnav/supervisor/navigator.hpp"
+
+namespace helixnav::apps {
+
+/// The navigator of a drive that goes on, as core::EventLoop wants it: what replay makes of the same events. It begins with
+/// the first events, whose sensor gives its lengths.
+class LiveNavigator {
+ public:
+  explicit LiveNavigator(const Settings& settings) : settings_(settings) {}
+
+  /// Events that come next, with their labels; settings on sensor and covariances are applied to them.
+  void prepare(core::Recording& next);
+
+  /// Events of the recording that was prepared last, in order. The report of a scan.
+  std::optional<core::StepReport> take(const core::Event& event);
+
+  bool has_begun() const { return navigator_.has_value(); }
+  std::vector<core::MapLandmark> map() const;
+  /// Lengths in force, for the manifest.
+  const std::string& lengths_text() const { return lengths_text_; }
+
+ private:
+  using Either = std::variant<supervisor::Navigator, supervisor::NamedNavigator>;
+
+  const Settings& settings_;
+  std::optional<Either> navigator_;
+  std::string lengths_text_;
+  const std::vector<std::vector<core::Label>>* labels_ = nullptr;
+  std::size_t scan_ = 0;
+};
+
+}  // namespace helixnav::apps

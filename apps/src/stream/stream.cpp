@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stream.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "answer.hpp"
+#include "common/interrupt.hpp"
+#include "common/timed.hpp"
+#include "helixnav/core/errors.hpp"
+#include "helixnav/core/event_loop.hpp"
+#include "helixnav/logs/own_stream.hpp"
+#include "helixnav/reports/finish_run.hpp"
+#include "helixnav/runs/run_folder.hpp"
+#include "helixnav/runs/run_writer.hpp"
+#include "line_channel.hpp"
+#include "live_navigator.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+class Stream {
+ public:
+  explicit Stream(const StreamJob& job)
+      : job_(job),
+        input_(*job.settings.logs.vehicle, job.settings.known_association),
+        navigator_(job.settings),
+        channel_(job.listen) {
+    if (!job.listen.empty()) std::fprintf(stderr, "helixnav: listening on %s\n", channel_.address().c_str());
+  }
+
+  ExitCode run() {
+    std::string line;
+    while (reader_is_there_ && channel_.next(line)) answer(input_.take(line, channel_.line_number()));
+    if (reader_is_there_ && !interrupted()) answer(input_.finish());
+    return end();
+  }
+
+ private:
+  void answer(logs::StreamedEvents next) {
+    for (const std::string& remark : next.remarks) send(note_answer(remark));
+    for (const logs::RefusedLine& refused : next.refused) refuse(refused);
+    navigator_.prepare(next.recording);
+    navigate(next);
+  }
+
+  /// A scan on which the mathematics breaks down is left out; the navigator stands as before it.
+  void navigate(const logs::StreamedEvents& next) {
+    const std::vector<core::Event>& events = next.recording.events;
+    Timed timed(navigator_);
+    core::EventLoop loop(events, timed, steps_);
+    std::size_t scan = 0;
+    for (std::size_t fed = 0; fed < events.size(); fed = loop.fed()) {
+      std::optional<core::StepReport> step;
+      try {
+        step = loop.next();
+      } catch (const core::NumericalError& error) {
+        ++broken_;
+        refuse({next.lines[scan], "", error.what()});
+      } catch (const core::PreconditionError& error) {
+        refuse({next.lines[scan], "", error.what()});
+      }
+      if (step) answer(*step, next.lines[scan], 1e6 * timed.last_s());
+      if (std::holds_alternative<core::Scan>(events[loop.fed() - 1])) ++scan;
+      steps_ = loop.steps();
+    }
+  }
+
+  void answer(const core::StepReport& step, std::size_t line, double microseconds) {
+    if (!job_.out.empty()) write(step, microseconds);
+    send(scan_answer(step, line));
+  }
+
+  void write(const core::StepReport& step, double microseconds) {
+    if (!writer_) open_folder();
+    writer_->write(step, microseconds);
+  }
+
+  void open_folder() {
+    using IfNotEmpty = runs::RunWriter::IfNotEmpty;
+    runs::RunManifest manifest = job_.manifest;
+    manifest.config += navigator_.lengths_text();
+    core::Recording recording;
+    recording.name = manifest.recording;
+    writer_ = std::make_unique<runs::RunWriter>(job_.out, manifest, recording,
+                                                job_.overwrite ? IfNotEmpty::overwrite : IfNotEmpty::refuse);
+  }
+
+  void send(std::string line) { reader_is_there_ = reader_is_there_ && channel_.send(std::move(line)); }
+
+  void refuse(const logs::RefusedLine& refused) {
+    ++refused_;
+    send(refused_answer(refused));
+  }
+
+  /// The steps are read back from the folder: memory does not grow with the drive.
+  void finish_folder() {
+    if (!writer_) open_folder();
+    runs::Run run = runs::read_run(job_.out);
+    run.map = navigator_.map();
+    run.finished = true;
+    reports::finish_run(run, *writer_);
+    std::fprintf(stderr, "run folder: %s   report: %s/report.html\n", job_.out.c_str(), job_.out.c_str());
+  }
+
+  ExitCode end() {
+    const bool stopped = interrupted();
+    send(end_answer(steps_, refused_, stopped ? "signal" : "end of input"));
+    if (!job_.out.empty()) finish_folder();
+    std::fprintf(stderr, "helixnav: %lld scans answered, %lld lines refused\n", static_cast<long long>(steps_),
+                 static_cast<long long>(refused_));
+    if (!reader_is_there_) {
+      std::fputs("helixnav: the standard output is closed: nobody reads the answers\n", stderr);
+      return ExitCode::data;
+    }
+    if (stopped) return ExitCode::interrupted;
+    return broken_ > 0 ? ExitCode::numerical : ExitCode::ok;
+  }
+
+  const StreamJob& job_;
+  logs::OwnStream input_;
+  LiveNavigator navigator_;
+  LineChannel channel_;
+  std::unique_ptr<runs::RunWriter> writer_;
+  bool reader_is_there_ = true;
+  std::int64_t steps_ = 0, refused_ = 0, broken_ = 0;
+};
+
+}  // namespace
+
+ExitCode stream(const StreamJob& job) {
+  catch_interrupts();
+  return Stream(job).run();
+}
+
+}  // namespace helixnav::apps

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "common/exit_code.hpp"
+#include "common/settings.hpp"
+#include "helixnav/runs/run_manifest.hpp"
+
+namespace helixnav::apps {
+
+struct StreamJob {
+  Settings settings;   ///< with the vehicle
+  std::string listen;  ///< address of a socket; empty: the standard streams
+  std::string out;     ///< run folder; empty: none
+  bool overwrite = false;
+  runs::RunManifest manifest;
+};
+
+/// Navigates along a stream until its end or a signal, with an answer to each scan. The run folder is that of replay, but
+/// for truth, of which a stream knows none.
+ExitCode stream(const StreamJob& job);
+
+}  // namespace helixnav::apps

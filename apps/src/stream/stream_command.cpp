@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "common/commands.hpp"
+#include "common/config_file.hpp"
+#include "common/run_options.hpp"
+#include "common/vehicle_option.hpp"
+#include "helixnav/core/version.hpp"
+#include "stream.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+struct StreamOptions {
+  std::string vehicle;
+  RunOptions run;
+  StreamJob job;
+};
+
+ExitCode run_stream(CLI::App& command, StreamOptions& options) {
+  prepare_run(command, options.run);
+  StreamJob& job = options.job;
+  if (job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "needs a whole log: a stream uses no fixes");
+  apply_vehicle(command, options.vehicle, "", job.settings);
+  job.out = options.run.out;
+  job.overwrite = options.run.overwrite;
+  job.manifest.version = core::version();
+  job.manifest.commit = core::commit();
+  job.manifest.command = command_line_text();
+  job.manifest.recording = "stream";
+  job.manifest.config = dump_config(command);
+  job.manifest.inputs = input_files(options.vehicle);
+  return stream(job);
+}
+
+}  // namespace
+
+void add_stream_command(CLI::App& app, ExitCode& code) {
+  CLI::App* command = app.add_subcommand("stream", "Navigate live: JSON Lines in, one answer line a scan out");
+  const auto options = std::make_shared<StreamOptions>();
+  add_vehicle_option(*command, options->vehicle);
+  command->get_option("--vehicle")->required();
+  command
+      ->add_option("--listen", options->job.listen,
+                   "Serve one client after another on unix:PATH or tcp:PORT of 127.0.0.1, not the standard streams")
+      ->type_name("ADDRESS");
+  command->add_option("--out", options->run.out, "Run folder to write beside; must be empty or new")->type_name("DIR");
+  command->add_flag("--overwrite", options->run.overwrite, "Replace the files of an earlier run in --out");
+  command->add_option("--config", options->run.config, "INI or TOML file of the settings (helixnav config --dump)")
+      ->type_name("FILE");
+  add_settings(*command, options->job.settings);
+  command->footer(
+      "Lines as in docs/your_own_log.md, answers as in docs/live.md. Ends with the input, on SIGINT and on SIGTERM.\n\n"
+      "Examples:\n"
+      "  helixnav stream --vehicle vehicle.toml --out runs/live < drive.jsonl\n"
+      "  mkfifo lines; helixnav stream --vehicle vehicle.toml < lines\n"
+      "  helixnav stream --vehicle vehicle.toml --listen unix:/run/user/1000/helixnav\n");
+  command->callback([command, options, &code] { code = run_stream(*command, *options); });
+}
+
+}  // namespace helixnav::apps

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "live_motion.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace helixnav::logs {
+namespace {
+
+double longest_delay_s(const Vehicle& vehicle) {
+  double longest_s = 0.0;
+  for (const SensorModel& sensor : vehicle.sensors) longest_s = std::max(longest_s, sensor.delay_s);
+  return longest_s;
+}
+
+}  // namespace
+
+LiveMotion::LiveMotion(const Vehicle& vehicle, double late_s)
+    : vehicle_(vehicle),
+      late_ns_(core::nanoseconds_from_seconds(late_s + longest_delay_s(vehicle))),
+      weaver_(vehicle.odometry.T_vehicle_odometry, woven_) {}
+
+void LiveMotion::check(const OwnLog& log) const {
+  if (log.odometry.empty()) return;
+  if (!rows_.odometry.empty() && log.odometry_kind != rows_.odometry_kind) {
+    throw StreamRefusal("odometry", "odometry as " + std::string(name_of(log.odometry_kind)) + " after " +
+                                        std::string(name_of(rows_.odometry_kind)) + "; a stream has one kind");
+  }
+  const Motions told(log, vehicle_);
+  if (rows_.odometry.empty()) return;
+  core::Nanoseconds last_ns = rows_.odometry.back().t_ns;
+  for (const OwnOdometry& row : log.odometry) {
+    const bool answered = row.t_ns == woven_ns_ && !told.holds();
+    if (row.t_ns < last_ns || answered) {
+      char text[160];
+      std::snprintf(text, sizeof text, "odometry at %.9g s comes after odometry at %.9g s%s", core::seconds(row.t_ns),
+                    core::seconds(last_ns), answered ? " by which a scan was answered" : "");
+      throw StreamRefusal("t", text);
+    }
+    last_ns = row.t_ns;
+  }
+}
+
+void LiveMotion::add(const OwnLog& log) {
+  if (log.odometry.empty()) return;
+  const bool first = rows_.odometry.empty();
+  rows_.odometry_kind = log.odometry_kind;
+  rows_.odometry.insert(rows_.odometry.end(), log.odometry.begin(), log.odometry.end());
+  rows_.odometry_covariances.insert(rows_.odometry_covariances.end(), log.odometry_covariances.begin(),
+                                    log.odometry_covariances.end());
+  rows_.odometry_covariances.resize(rows_.odometry.size(), Eigen::Matrix3d::Zero());
+  if (first) motions_.emplace(rows_, vehicle_);
+}
+
+bool LiveMotion::is_known(std::size_t row) const {
+  const std::size_t rows = rows_.odometry.size();
+  return motions_ && row < rows && (row + 1 < rows || last_ns_ || !motions_->holds());
+}
+
+void LiveMotion::weave_to(core::Nanoseconds t_ns, std::vector<core::Event>& events) {
+  for (; is_known(next_); ++next_) {
+    const std::optional<Motion> motion = motions_->of_row(next_, last_ns_.value_or(t_ns));
+    if (!motion) continue;
+    if (t_ns < motion->end_ns) {
+      weaver_.move(*motion, t_ns);
+      break;
+    }
+    weaver_.move(*motion, motion->end_ns);
+  }
+  weaver_.flush();
+  events.insert(events.end(), woven_.begin(), woven_.end());
+  woven_.clear();
+  woven_ns_ = std::max(woven_ns_, t_ns);
+  drop_woven();
+}
+
+void LiveMotion::weave_old(core::Nanoseconds before_ns) {
+  if (rows_.odometry.empty()) return;
+  core::Nanoseconds until_ns = rows_.odometry.back().t_ns - late_ns_;
+  if (before_ns != std::numeric_limits<core::Nanoseconds>::min()) until_ns = std::min(until_ns, before_ns);
+  for (; is_known(next_); ++next_) {
+    const std::optional<Motion> motion = motions_->of_row(next_, until_ns);
+    if (!motion) continue;
+    if (motion->end_ns > until_ns) break;
+    weaver_.move(*motion, motion->end_ns);
+    woven_ns_ = std::max(woven_ns_, motion->end_ns);
+  }
+  drop_woven();
+}
+
+/// All but the row before the next one, which poses are measured from.
+void LiveMotion::drop_woven() {
+  constexpr std::size_t many = 256;
+  if (next_ < many) return;
+  const auto count = static_cast<std::ptrdiff_t>(next_ - 1);
+  rows_.odometry.erase(rows_.odometry.begin(), rows_.odometry.begin() + count);
+  rows_.odometry_covariances.erase(rows_.odometry_covariances.begin(), rows_.odometry_covariances.begin() + count);
+  next_ = 1;
+}
+
+}  // namespace helixnav::logs

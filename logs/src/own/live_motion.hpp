@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "helixnav/core/errors.hpp"
+#include "helixnav/logs/own_log.hpp"
+#include "weaver.hpp"
+
+namespace helixnav::logs {
+
+/// Why something that can be read cannot be used now.
+class StreamRefusal : public core::InputError {
+ public:
+  StreamRefusal(std::string key, const std::string& why) : core::InputError(why), key_(std::move(key)) {}
+  const std::string& key() const { return key_; }
+
+ private:
+  std::string key_;
+};
+
+/// The odometry of a stream: rows that come, motion that is due. Keeps the rows since the last scan, at most those of the
+/// last second and of the sensors' delays; older ones become one increment.
+class LiveMotion {
+ public:
+  LiveMotion(const Vehicle& vehicle, double late_s);
+
+  /// Throws StreamRefusal for rows that go back in time or are of another kind, core::InputError for noise or geometry that
+  /// nobody tells. Changes nothing.
+  void check(const OwnLog& log) const;
+  void add(const OwnLog& log);
+
+  /// Whether a row at or after that time has come.
+  bool covers(core::Nanoseconds t_ns) const { return !rows_.odometry.empty() && rows_.odometry.back().t_ns >= t_ns; }
+
+  /// The motion up to t_ns, which is covered or at the end, appended to the events. Times must not go back.
+  void weave_to(core::Nanoseconds t_ns, std::vector<core::Event>& events);
+
+  /// Motion too old for any scan that may still come, none behind `before_ns`, is put together.
+  void weave_old(core::Nanoseconds before_ns);
+
+  /// No rows come any more: the last one holds until there.
+  void end_at(core::Nanoseconds last_ns) { last_ns_ = last_ns; }
+
+  /// Nothing before that may come any more.
+  core::Nanoseconds woven_ns() const { return woven_ns_; }
+
+ private:
+  bool is_known(std::size_t row) const;
+  void drop_woven();
+
+  const Vehicle& vehicle_;
+  core::Nanoseconds late_ns_;
+  OwnLog rows_;  ///< from the one before next_ on, always with covariances
+  std::optional<Motions> motions_;
+  std::size_t next_ = 0;  ///< row whose motion is not all woven
+  std::optional<core::Nanoseconds> last_ns_;
+  core::Nanoseconds woven_ns_ = std::numeric_limits<core::Nanoseconds>::min();
+  std::vector<core::Event> woven_;
+  Weaver weaver_;
+};
+
+}  // namespace helixnav::logs

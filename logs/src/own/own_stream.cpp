@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/logs/own_stream.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "helixnav/core/errors.hpp"
+#include "json_rows.hpp"
+#include "live_motion.hpp"
+#include "live_scans.hpp"
+#include "own_tables.hpp"
+
+namespace helixnav::logs {
+namespace {
+
+constexpr core::Nanoseconds nothing_yet_ns = std::numeric_limits<core::Nanoseconds>::min();
+
+void check_told(const Vehicle& vehicle) {
+  if (vehicle.sensors.empty()) throw core::InputError(vehicle.path + ": a stream needs a [[sensor]], found none");
+  for (const SensorModel& sensor : vehicle.sensors) {
+    const bool reach = sensor.reach_m || sensor.reliable_range_m;
+    if (reach && sensor.min_bearing_rad) continue;
+    throw core::InputError(vehicle.path + ": a stream needs " + (reach ? "view_deg" : "reach_m") + " in [[sensor]]" +
+                           (sensor.name.empty() ? "" : " '" + sensor.name + "'") +
+                           ", because it cannot be estimated from a log that is yet to come");
+  }
+}
+
+/// The key in quotes at this place of the line, from 1; empty where none begins.
+std::string key_at(std::string_view line, std::size_t column) {
+  if (column == 0 || column > line.size() || line[column - 1] != '"') return {};
+  const std::size_t end = line.find('"', column);
+  return end == std::string_view::npos ? std::string() : std::string(line.substr(column, end - column));
+}
+
+}  // namespace
+
+struct OwnStream::State {
+  State(const Vehicle& told, bool by_identity)
+      : vehicle(told),
+        motion(vehicle, late_s),
+        scans(vehicle, by_identity),
+        rows(std::make_unique<JsonRows>("stream")) {}
+
+  void read(std::string_view line, std::size_t number);
+  void refuse(std::size_t line, std::string key, std::string why) {
+    out.refused.push_back({line, std::move(key), std::move(why)});
+  }
+  void check_times(const OwnLog& log);
+  void check_jump(core::Nanoseconds t_ns);
+  void remark_once(const std::string& text);
+  void weave(bool at_end);
+
+  Vehicle vehicle;
+  LiveMotion motion;
+  LiveScans scans;
+  std::unique_ptr<JsonRows> rows;
+  OwnTables tables{true};
+  core::Nanoseconds newest_ns = nothing_yet_ns;
+  core::Nanoseconds jumped_ns = nothing_yet_ns;  ///< an event that was refused because it was so far ahead
+  std::vector<std::string> said;
+  StreamedEvents out;
+};
+
+void OwnStream::State::remark_once(const std::string& text) {
+  constexpr std::size_t most = 50;
+  if (said.size() >= most || std::find(said.begin(), said.end(), text) != said.end()) return;
+  said.push_back(text);
+  out.remarks.push_back(text);
+}
+
+/// One wrong stamp must not make everything after it late.
+void OwnStream::State::check_jump(core::Nanoseconds t_ns) {
+  constexpr core::Nanoseconds hour_ns = 3'600'000'000'000;
+  if (newest_ns != nothing_yet_ns && t_ns > newest_ns + hour_ns) {
+    const bool again = jumped_ns != nothing_yet_ns && std::abs(t_ns - jumped_ns) < hour_ns;
+    if (!again) {
+      jumped_ns = t_ns;
+      throw StreamRefusal("t", "the time is " + LiveScans::text_of(t_ns - newest_ns) +
+                                   " s ahead of the newest; it is believed when the next one is there, too");
+    }
+  }
+  jumped_ns = nothing_yet_ns;
+  newest_ns = std::max(newest_ns, t_ns);
+}
+
+void OwnStream::State::check_times(const OwnLog& log) {
+  core::Nanoseconds latest_ns = nothing_yet_ns;
+  for (const OwnOdometry& row : log.odometry) latest_ns = std::max(latest_ns, row.t_ns);
+  for (const OwnDetection& row : log.detections) latest_ns = std::max(latest_ns, row.t_ns);
+  if (latest_ns != nothing_yet_ns) check_jump(latest_ns);
+}
+
+void OwnStream::State::read(std::string_view line, std::size_t number) {
+  try {
+    rows->read(line, number, tables);
+    const OwnLog log = tables.take_rows();
+    for (const std::string& remark : log.remarks) remark_once(remark);
+    if (!log.fixes.empty() || !log.true_poses.empty() || !log.true_positions.empty() || !log.true_landmarks.empty()) {
+      remark_once("stream: fixes and truth are not used; replay compares with them");
+    }
+    check_times(log);
+    motion.check(log);
+    const std::vector<LiveScans::Seen> seen = scans.check(log, motion.woven_ns());
+    motion.add(log);
+    scans.add(seen, rows->last_was_list(), number);
+    return;
+  } catch (const PlacedInputError& error) {
+    refuse(number, key_at(line, error.column()), error.message());
+  } catch (const StreamRefusal& refusal) {
+    refuse(number, refusal.key(), refusal.what());
+  } catch (const core::InputError& error) {
+    refuse(number, "", error.what());
+  }
+  // A line that is refused leaves nothing behind: neither rows, nor a kind of odometry, nor columns.
+  tables = OwnTables(true);
+  rows = std::make_unique<JsonRows>("stream");
+}
+
+void OwnStream::State::weave(bool at_end) {
+  if (at_end) {
+    scans.close_all();
+    if (!scans.empty()) motion.end_at(scans.last_ns());
+  }
+  std::vector<core::Event>& events = out.recording.events;
+  while (scans.first_is_closed() && (at_end || motion.covers(scans.first_ns()))) {
+    LiveScan scan = scans.pop();
+    motion.weave_to(scan.scan.t_ns, events);
+    events.emplace_back(std::move(scan.scan));
+    out.recording.labels.push_back(std::move(scan.labels));
+    out.lines.push_back(scan.line);
+  }
+  motion.weave_old(scans.empty() ? nothing_yet_ns : scans.first_ns());
+  while (scans.size() > most_waiting) {
+    const LiveScan scan = scans.pop();
+    refuse(scan.line, "t",
+           "no odometry has reached the time of this scan, " + LiveScans::text_of(scan.scan.t_ns) +
+               " s; are both of the same clock?");
+  }
+}
+
+OwnStream::OwnStream(const Vehicle& vehicle, bool by_identity) {
+  check_told(vehicle);
+  state_ = std::make_unique<State>(vehicle, by_identity);
+}
+
+OwnStream::~OwnStream() = default;
+
+StreamedEvents OwnStream::take(std::string_view line, std::size_t number) {
+  state_->out = StreamedEvents();
+  state_->out.recording.extraneous_per_scan = 0.0;
+  if (line.find_first_not_of(" \t") == std::string_view::npos) return std::move(state_->out);
+  state_->read(line, number);
+  state_->weave(false);
+  return std::move(state_->out);
+}
+
+StreamedEvents OwnStream::finish() {
+  state_->out = StreamedEvents();
+  state_->out.recording.extraneous_per_scan = 0.0;
+  state_->weave(true);
+  return std::move(state_->out);
+}
+
+}  // namespace helixnav::logs

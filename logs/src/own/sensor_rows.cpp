@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sensor_rows.hpp"
+
+#include <cmath>
+#include <optional>
+
+#include "helixnav/core/errors.hpp"
+
+namespace helixnav::logs {
+namespace {
+
+std::string where(const Vehicle& vehicle) { return vehicle.path.empty() ? "no vehicle.toml" : vehicle.path; }
+
+double given_variance(const std::optional<double>& sigma, const SensorModel& sensor, const Vehicle& vehicle,
+                      const char* key) {
+  if (sigma) return *sigma * *sigma;
+  throw core::InputError(where(vehicle) +
+                         ": no noise of a detection is given: neither a column of detections.csv nor " + key +
+                         " in section [[sensor]]" + (sensor.name.empty() ? "" : " of '" + sensor.name + "'") +
+                         "; 'helixnav new-vehicle' writes an example");
+}
+
+}  // namespace
+
+SensorModel sensor_called(const std::string& name, const std::string& log, const Vehicle& vehicle) {
+  const SensorModel* found = nullptr;
+  std::string known;
+  for (const SensorModel& sensor : vehicle.sensors) {
+    if (sensor.name == name || (vehicle.sensors.size() == 1 && (name.empty() || sensor.name.empty()))) found = &sensor;
+    known += (known.empty() ? "" : ", ") + sensor.name;
+  }
+  if (found == nullptr && !vehicle.sensors.empty()) {
+    throw core::InputError(where(vehicle) + ": no [[sensor]] is called '" + name + "' as in the column sensor of " +
+                           log + "; there are: " + known);
+  }
+  return found == nullptr ? SensorModel() : *found;
+}
+
+core::Observation observation_of(const OwnDetection& row, const SensorModel& sensor, const Vehicle& vehicle) {
+  const bool own = row.R[0] > 0.0;
+  const auto range_variance = [&] {
+    return own ? row.R[0] : given_variance(sensor.sigma_range_m, sensor, vehicle, "sigma_range_m");
+  };
+  const auto bearing_variance = [&](double own_variance) {
+    return own ? own_variance : given_variance(sensor.sigma_bearing_rad, sensor, vehicle, "sigma_bearing_deg");
+  };
+  core::Observation observation;
+  if (row.kind == OwnDetection::Kind::range_bearing) {
+    observation = core::make_range_bearing(row.z[0] / sensor.range_scale, row.z[1], std::sqrt(range_variance()),
+                                           std::sqrt(bearing_variance(row.R[2])));
+  } else if (row.kind == OwnDetection::Kind::range) {
+    observation = core::make_range(row.z[0] / sensor.range_scale, std::sqrt(range_variance()));
+  } else if (row.kind == OwnDetection::Kind::bearing) {
+    observation = core::make_bearing(row.z[0], std::sqrt(bearing_variance(row.R[0])));
+  } else {
+    Eigen::Matrix2d R;
+    R << row.R[0], row.R[1], row.R[1], row.R[2];
+    if (!own) R = given_variance(sensor.sigma_point_m, sensor, vehicle, "sigma_point_m") * Eigen::Matrix2d::Identity();
+    observation = core::make_cartesian(Eigen::Vector2d(row.z[0], row.z[1]) / sensor.range_scale, R);
+  }
+  observation.R *= sensor.noise_scale * sensor.noise_scale;
+  return observation;
+}
+
+}  // namespace helixnav::logs

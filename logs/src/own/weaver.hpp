@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "helixnav/core/events.hpp"
+#include "motion.hpp"
+
+namespace helixnav::logs {
+
+/// Makes events of motions and scans in order of time: before a scan, the motion since the one before as one increment.
+/// Whole logs and streams are woven by it. Test: logs/own_recording_test.cpp, logs/own_stream_test.cpp.
+class Weaver {
+ public:
+  Weaver(const core::Pose2& T_vehicle_odometry, std::vector<core::Event>& events)
+      : T_vehicle_odometry_(T_vehicle_odometry), events_(events) {}
+
+  /// On to t_ns, as far as the motion goes there.
+  void move(const Motion& motion, core::Nanoseconds t_ns);
+
+  /// The motion so far, then the scan.
+  void add(core::Scan scan);
+
+  /// The motion so far.
+  void flush();
+
+ private:
+  core::Pose2 T_vehicle_odometry_;
+  std::vector<core::Event>& events_;
+  std::optional<core::Nanoseconds> now_ns_;
+  std::optional<core::Odometry> pending_;
+};
+
+}  // namespace helixnav::logs

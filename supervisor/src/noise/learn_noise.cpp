@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Noise that is learnt: what a scan says of it, and the drive solved anew once it is known.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "loop/navigation_loop.hpp"
+#include "smoothing/smooth_drive.hpp"
+
+namespace helixnav::supervisor {
+
+/// Before the scan is associated, with the covariances that it claims. What is learnt holds for this scan already: the
+/// second scan of a drive would else begin a second copy of every landmark where the noise is assumed far too small.
+void NavigationLoop::learn_noise(const core::Scan& scan) {
+  const Eigen::Matrix3d Q = std::exchange(noise_.moved, Eigen::Matrix3d::Zero());
+  if (!options_.noise.adapt || searching() != nullptr) return;
+  noise_.sides.next_scan();
+  const std::vector<NoisePair> found = noise_pairs(belief_.filter, scan);
+  constexpr std::size_t least_pairs = 3;
+  if (found.size() < least_pairs) return;
+
+  std::vector<core::LandmarkId> ids;
+  std::vector<SeenPoint> seen;
+  std::vector<PointPair> pairs;
+  std::vector<bool> new_sides;
+  for (const NoisePair& pair : found) {
+    pairs.push_back({seen.size(), ids.size()});
+    ids.push_back(pair.landmark);
+    seen.push_back(pair.seen);
+    seen.back().covariance_m2 *= noise_.scale.observations();
+    const Eigen::Vector2d at_m = core::transform(belief_.filter.pose().mean, pair.seen.point_m);
+    const Eigen::Vector2d back_m = belief_.filter.pose().mean.position_m() - at_m;
+    new_sides.push_back(noise_.sides.is_new_side(pair.landmark, std::atan2(back_m.y(), back_m.x())));
+  }
+  const RelativeGeometry geometry(belief_.filter.joint(ids));
+  noise_.scale.observe(PairEquations(geometry, seen, pairs, Eigen::Vector3d::Zero()), new_sides, Q);
+}
+
+/// What was processed with another noise before that was known is solved once more, with the noise as it is known now; where
+/// that cannot be solved all stays as it was.
+void NavigationLoop::solve_with_learnt_noise() {
+  constexpr double too_little = 1.25;   // overconfident: mended at once
+  constexpr double too_much = 1.0 / 3;  // only cautious: worth its cost rarely
+  Mapping* mapping = std::get_if<Mapping>(&mode_);
+  const double observations = noise_.scale.observations() / noise_.scale.applied_observations;
+  const double odometry = noise_.scale.odometry() / noise_.scale.applied_odometry;
+  const auto is_worth_it = [&](double change) { return change > too_little || change < too_much; };
+  if (mapping == nullptr || !(is_worth_it(observations) || is_worth_it(odometry))) return;
+  noise_.scale.applied_observations = noise_.scale.observations();
+  noise_.scale.applied_odometry = noise_.scale.odometry();
+  if (!tape_.holds_drive()) return;
+  Tape again = tape_.rescaled(observations, odometry);
+  Smoothing smoothing = smooth_drive(belief_.filter, start_, again);
+  if (!smoothing.solved) return;
+  again.append(Tape::Solved{smoothing.chi2});
+  Checkpoint trusted = take_checkpoint(belief_, again);
+  trusted.filter = smoothing.solved->snapshot();
+  std::swap(belief_.filter, *smoothing.solved);
+  std::swap(tape_, again);
+  mapping->trust(std::move(trusted));
+}
+
+}  // namespace helixnav::supervisor

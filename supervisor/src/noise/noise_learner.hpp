@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "noise/noise_pairs.hpp"
+#include "noise/noise_scale.hpp"
+
+namespace helixnav::supervisor {
+
+/// What is known of the noise. It is the sensors', not the belief's: a roll-back does not take it back.
+struct NoiseLearner {
+  NoiseScale scale;
+  SidesSeen sides;
+  Eigen::Matrix3d moved = Eigen::Matrix3d::Zero();  ///< covariance of the motion since the last scan, as assumed
+};
+
+}  // namespace helixnav::supervisor

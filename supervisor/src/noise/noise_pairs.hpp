@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "slip/relative_geometry.hpp"
+
+namespace helixnav::supervisor {
+
+/// A point that was seen and the only landmark that it can be, however large the noise may be.
+struct NoisePair {
+  SeenPoint seen;
+  core::LandmarkId landmark;
+};
+
+/// Pairs four times nearer to each other than either is to the next of its kind. No gate takes part: with noise assumed far
+/// too small a gate admits only what happens to fit. O(n²) in the points seen, at most 24, nearest to the sensor first.
+/// Test: supervisor/noise_pairs_test.cpp.
+std::vector<NoisePair> noise_pairs(const cekf::CompressedEkf& filter, const core::Scan& scan);
+
+/// From which side each landmark was seen when its error last counted as independent. Landmarks that were out of view for a
+/// while are forgotten: O(landmarks in view) bytes. Test: supervisor/noise_pairs_test.cpp.
+class SidesSeen {
+ public:
+  void next_scan();
+
+  /// True when the landmark is seen from a side half a radian or more from the last that counted, which this then is.
+  bool is_new_side(core::LandmarkId id, double bearing_to_vehicle_rad);
+
+ private:
+  struct Side {
+    double bearing_rad;
+    long scan;
+  };
+
+  std::map<core::LandmarkId, Side> sides_;
+  long scan_ = 0;
+};
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "noise/noise_scale.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace helixnav::supervisor {
+namespace {
+
+using Eigen::Index;
+
+constexpr double prior_errors = 20.0;       // of the belief that the detector is as assumed
+constexpr double most_pose_nis = 16.3;      // χ²₃ of 99.9 %: a slip is no noise
+constexpr double least_weight = 2.0;        // scans in which odometry's share is all that there is
+constexpr double least_independent = 20.0;  // pairs from new sides, before less noise is believed
+constexpr double dead_band = 1.35;
+constexpr double most = 25.0;
+constexpr double sure_sigmas = 3.0;
+constexpr double keep_mean = 1.0 - 1.0 / 100.0;
+
+/// A factor that is not in force yet has to be sure; one that is, only likelier than none.
+double most_sigmas(double in_force) { return in_force == 1.0 ? sure_sigmas : 1.0; }
+
+double bounded(double factor) { return std::clamp(factor, 1.0 / most, most); }
+
+}  // namespace
+
+/// E[nis / 3] = share · q + (1 − share) · detector for motion whose noise is q times as assumed.
+void NoiseScale::Displacements::add(double nis, double share, double detector, double in_force) {
+  sum = keep * sum + in_force * share * (nis / 3.0 - (1.0 - share) * detector);
+  weight = keep * weight + share * share;
+}
+
+double NoiseScale::Displacements::scale() const { return weight > least_weight ? sum / weight : 1.0; }
+double NoiseScale::Displacements::sigma() const { return std::sqrt(2.0 / 3.0 / weight); }
+
+void NoiseScale::observe(const PairEquations& pairs, const std::vector<bool>& new_sides, const Eigen::Matrix3d& Q) {
+  constexpr Index least_rows = 6;
+  if (pairs.nu.size() < least_rows) return;
+  const Eigen::LLT<Eigen::MatrixXd> S(pairs.S);
+  if (S.info() != Eigen::Success) return;
+  const Eigen::Matrix3d information = pairs.A.transpose() * S.solve(pairs.A);
+  const Eigen::LLT<Eigen::Matrix3d> root(information);
+  if (root.info() != Eigen::Success) return;
+  const Eigen::Vector3d weighed = pairs.A.transpose() * S.solve(pairs.nu);
+  add_rest(pairs, root.solve(weighed), information, new_sides);
+  add_displacement(root.matrixL().solve(weighed), std::clamp((Q * information).trace() / 3.0, 0.0, 1.0));
+  const double detector = detector_factor();
+  odometry_ = odometry_factor();
+  observations_ = detector;
+}
+
+/// What no displacement explains, by pairs: e = ν − Aδ with covariance S − A(AᵀS⁻¹A)⁻¹Aᵀ.
+void NoiseScale::add_rest(const PairEquations& pairs, const Eigen::Vector3d& displacement,
+                          const Eigen::Matrix3d& information, const std::vector<bool>& new_sides) {
+  const Index rows = pairs.nu.size();
+  const Eigen::Matrix3d of_displacement = information.inverse();
+  const Eigen::VectorXd rest = pairs.nu - pairs.A * displacement;
+  const double weight = static_cast<double>(rows - 3) / static_cast<double>(rows);  // they are not independent
+  for (FadingErrors* errors : {&slow_, &quick_, &new_sides_}) errors->fade();
+  for (Index i = 0; i < rows / 2; ++i) {
+    const auto A = pairs.A.middleRows<2>(2 * i);
+    const Eigen::Matrix2d covariance = pairs.S.block<2, 2>(2 * i, 2 * i) - A * of_displacement * A.transpose();
+    const Eigen::LLT<Eigen::Matrix2d> factor(covariance);
+    if (factor.info() != Eigen::Success) continue;
+    const double squared =
+        observations_ * factor.matrixL().solve(Eigen::Vector2d(rest.segment<2>(2 * i))).squaredNorm();
+    slow_.add(squared, weight);
+    quick_.add(squared, weight);
+    if (new_sides[static_cast<std::size_t>(i)]) new_sides_.add(squared, weight);
+  }
+}
+
+void NoiseScale::add_displacement(const Eigen::Vector3d& w, double share) {
+  const double about_mean = (w - mean_).squaredNorm() / (1.0 + 1.0 / mean_weight_);
+  mean_weight_ = keep_mean * mean_weight_ + 1.0;
+  mean_ += (w - mean_) / mean_weight_;
+  const double credible = slow_.weight() / (slow_.weight() + prior_errors);
+  const double detector = std::pow(slow_.scale(), credible) / observations_;
+  slow_motion_.add(std::min(most_pose_nis, about_mean), share, std::max(1.0, detector), odometry_);
+  quick_motion_.add(std::min(most_pose_nis, about_mean), share, std::max(1.0, detector), odometry_);
+  biased_motion_.add(std::min(most_pose_nis, w.squaredNorm()), share, detector, odometry_);
+}
+
+/// Up by all errors, a rise that the quick window is sure of at once. Down only where independent errors say so as well.
+double NoiseScale::detector_factor() const {
+  const double sigmas = most_sigmas(observations_);
+  const double rise = std::log(quick_.scale()) - sure_sigmas * quick_.log_sigma();
+  const double slow = std::log(slow_.scale());
+  const double up = std::max(rise, slow > sigmas * slow_.log_sigma() ? slow : 0.0);
+  if (up > std::log(dead_band)) return bounded(std::exp(up));
+  const double independent = std::log(new_sides_.scale());
+  const double sigma = new_sides_.log_sigma();
+  if (!(independent < -std::max(std::log(dead_band), sigmas * sigma))) return 1.0;
+  if (new_sides_.weight() < least_independent || !motion_is_as_assumed_at_most()) return 1.0;
+  return bounded(std::min(1.0, std::max({std::exp(slow), slow_.mean_scale(), std::exp(independent - sigma)})));
+}
+
+/// Where displacements are larger than odometry and such a detector explain, the detector errs for all landmarks alike, and
+/// its errors are not white.
+bool NoiseScale::motion_is_as_assumed_at_most() const {
+  return biased_motion_.weight > least_weight && biased_motion_.scale() - biased_motion_.sigma() < dead_band;
+}
+
+/// Likewise; down by what is left with the mean in it.
+double NoiseScale::odometry_factor() const {
+  const double sigmas = most_sigmas(odometry_);
+  const double rise = quick_motion_.scale() * (1.0 - sure_sigmas * quick_motion_.sigma());
+  const double slow = slow_motion_.scale();
+  const double up = std::max(rise, slow > 1.0 + sigmas * slow_motion_.sigma() ? slow : 1.0);
+  if (up > dead_band) return bounded(up);
+  const double with_mean = biased_motion_.scale() + biased_motion_.sigma();
+  const bool is_less = with_mean < 1.0 / dead_band && with_mean < 1.0 - (sigmas - 1.0) * biased_motion_.sigma();
+  return is_less ? bounded(with_mean) : 1.0;
+}
+
+}  // namespace helixnav::supervisor

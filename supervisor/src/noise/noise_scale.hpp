@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "noise/fading_errors.hpp"
+#include "slip/relative_geometry.hpp"
+
+namespace helixnav::supervisor {
+
+/// Factors on the covariances that odometry and detector claim, learnt from where landmarks are seen. The innovation of
+/// three pairs or more falls into what a displacement of the vehicle explains (3 degrees of freedom, wᵀw with w ~ N(0, I))
+/// and the rest, which odometry has no part in: the rest says the detector's factor, and what of w is odometry's share
+/// says odometry's.
+///
+/// Up: every scan counts, and of w only what is not a constant. A mean over many scans is a bias (a wheel's radius, a wrong
+/// scale of ranges) and no noise, or DLR's forward motion, 8 % too long against its detector, would pass for four times the
+/// variance. Down: the detector's factor needs errors that are independent as well, of landmarks seen from another side than
+/// when they last counted, and displacements that odometry explains; odometry's needs all of w. Rules and figures:
+/// docs/slips.md. Test: supervisor/noise_scale_test.cpp.
+class NoiseScale {
+ public:
+  /// One scan while nothing is in question; Q: the covariance of the motion before it (x, y, heading; robot frame);
+  /// `new_sides[k]`: pair k looks at its landmark from another side than when it last counted.
+  void observe(const PairEquations& pairs, const std::vector<bool>& new_sides, const Eigen::Matrix3d& Q);
+
+  double odometry() const { return odometry_; }          ///< factor on covariances
+  double observations() const { return observations_; }  ///< factor on covariances
+
+  /// The factors that the whole drive was processed with; 1 at its begin.
+  double applied_odometry = 1.0;
+  double applied_observations = 1.0;
+
+ private:
+  /// Odometry's share of displacements, fading; the factors that were in force are multiplied back.
+  struct Displacements {
+    double keep;
+    double sum = 0.0;
+    double weight = 0.0;
+
+    void add(double nis, double share, double detector, double in_force);
+    double scale() const;
+    double sigma() const;  ///< of scale(), where it is 1
+  };
+
+  void add_rest(const PairEquations& pairs, const Eigen::Vector3d& displacement, const Eigen::Matrix3d& information,
+                const std::vector<bool>& new_sides);
+  void add_displacement(const Eigen::Vector3d& w, double share);
+  bool motion_is_as_assumed_at_most() const;
+  double detector_factor() const;
+  double odometry_factor() const;
+
+  FadingErrors slow_{1.0 - 1.0 / 300.0};
+  FadingErrors quick_{1.0 - 1.0 / 60.0};
+  FadingErrors new_sides_{1.0 - 1.0 / 1000.0};
+  Displacements slow_motion_{1.0 - 1.0 / 1000.0};
+  Displacements quick_motion_{1.0 - 1.0 / 60.0};
+  Displacements biased_motion_{1.0 - 1.0 / 1000.0};
+  Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();  ///< of w
+  double mean_weight_ = 20.0;                       ///< so many scans of the belief that there is no bias
+  double odometry_ = 1.0;
+  double observations_ = 1.0;
+};
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/logs/own_stream.hpp"
+
+#include <random>
+#include <sstream>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "own_log_folder.hpp"
+
+namespace helixnav::logs {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+constexpr const char* vehicle_text =
+    "[odometry]\nwheelbase_m = 1.5\ntrack_m = 0.8\nsigma_along_m_per_sqrt_m = 0.02\nsigma_v_mps = 0.1\n"
+    "sigma_heading_deg_per_sqrt_m = 0.5\nx_m = 0.4\n"
+    "[[sensor]]\nname = \"near\"\nreach_m = 12\nview_deg = [-180, 180]\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n"
+    "[[sensor]]\nname = \"far\"\nx_m = 0.3\nreach_m = 40\nview_deg = [-90, 90]\nsigma_range_m = 0.1\n"
+    "sigma_bearing_deg = 0.3\ndelay_s = 0.125\n";
+
+/// A drive of random steps as lines in order of time, odometry told in one of its ways.
+Lines lines_of_drive(const std::string& kind, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+  };
+  Lines lines;
+  double x = 0.0, heading = 0.0;
+  double t = uniform(0.0, 0.1);
+  for (int i = 0; i < 120; ++i) {
+    std::ostringstream odometry, near, far;
+    odometry.precision(17);
+    near.precision(17);
+    far.precision(17);
+    const double v = uniform(0.0, 2.0), turn = uniform(-0.2, 0.2);
+    odometry << R"({"odometry": {"t": )" << t << ", ";
+    if (kind == "increments") odometry << R"("dx": )" << 0.1 * v << R"(, "dheading_deg": )" << turn;
+    if (kind == "velocities") odometry << R"("v": )" << v << R"(, "omega": )" << turn;
+    if (kind == "steering") odometry << R"("v_kmh": )" << v << R"(, "steering": )" << turn;
+    if (kind == "wheels") odometry << R"("v_left": )" << v << R"(, "v_right": )" << v + turn;
+    if (kind == "poses") odometry << R"("x": )" << (x += v) << R"(, "y": 3, "heading": )" << (heading += turn);
+    lines.push_back(odometry.str() + "}}");
+    if (uniform(0.0, 1.0) < 0.6) {
+      near << R"({"detections": [{"sensor": "near", "id": 7, "t": )" << t + uniform(0.0, 0.05) << R"(, "range": )"
+           << uniform(1.0, 12.0) << R"(, "bearing": 0.5}]})";
+      lines.push_back(near.str());
+    }
+    if (uniform(0.0, 1.0) < 0.3) {  // on the odometry's own time, row by row
+      for (int row = 0; row < 3; ++row) {
+        far.str("");
+        far << R"({"detections": {"sensor": "far", "t": )" << t + 0.125 + 0.06 << R"(, "range": )"
+            << 3.0 + row + uniform(0.0, 0.5) << R"(, "bearing_deg": )" << 10.0 * row << "}}";
+        lines.push_back(far.str());
+      }
+    }
+    t += uniform(0.07, 0.1);
+  }
+  return lines;
+}
+
+/// Everything that comes of lines.
+StreamedEvents streamed(OwnStream& stream, const Lines& lines) {
+  StreamedEvents all;
+  const auto append = [&](StreamedEvents next) {
+    for (core::Event& event : next.recording.events) all.recording.events.push_back(std::move(event));
+    for (auto& labels : next.recording.labels) all.recording.labels.push_back(std::move(labels));
+    for (const std::size_t line : next.lines) all.lines.push_back(line);
+    for (const RefusedLine& refused : next.refused) all.refused.push_back(refused);
+    for (const std::string& remark : next.remarks) all.remarks.push_back(remark);
+  };
+  for (std::size_t i = 0; i < lines.size(); ++i) append(stream.take(lines[i], i + 1));
+  append(stream.finish());
+  return all;
+}
+
+/// Bit for bit.
+void expect_same(const core::Event& a, const core::Event& b) {
+  ASSERT_EQ(a.index(), b.index());
+  EXPECT_EQ(core::time_of(a), core::time_of(b));
+  if (const auto* odometry = std::get_if<core::Odometry>(&a)) {
+    const auto& other = std::get<core::Odometry>(b);
+    EXPECT_EQ(odometry->T_before_after.vector(), other.T_before_after.vector());
+    EXPECT_EQ(odometry->covariance, other.covariance);
+    return;
+  }
+  const auto& scan = std::get<core::Scan>(a);
+  const auto& other = std::get<core::Scan>(b);
+  EXPECT_EQ(scan.T_robot_sensor.vector(), other.T_robot_sensor.vector());
+  EXPECT_EQ(scan.field_of_view.max_range_m, other.field_of_view.max_range_m);
+  EXPECT_EQ(scan.field_of_view.reach_m, other.field_of_view.reach_m);
+  EXPECT_EQ(scan.field_of_view.min_bearing_rad, other.field_of_view.min_bearing_rad);
+  ASSERT_EQ(scan.observations.size(), other.observations.size());
+  for (std::size_t i = 0; i < scan.observations.size(); ++i) {
+    EXPECT_EQ(scan.observations[i].z, other.observations[i].z);
+    EXPECT_EQ(scan.observations[i].R, other.observations[i].R);
+  }
+}
+
+std::string text_of(const Lines& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + '\n';
+  return text;
+}
+
+class OwnStreamOf : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(OwnStreamOf, EachKindOfOdometryGivesTheEventsOfTheLogToTheLastBit) {
+  const testing::TemporaryFolder folder;
+  const Vehicle vehicle = read_vehicle(folder.write("vehicle.toml", vehicle_text));
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Lines lines = lines_of_drive(GetParam(), seed);
+    core::Recording whole = make_recording(read_own_log(folder.write("log.jsonl", text_of(lines))), vehicle);
+    while (!std::holds_alternative<core::Scan>(whole.events.back())) whole.events.pop_back();
+    OwnStream stream(vehicle, true);
+    const StreamedEvents live = streamed(stream, lines);
+    ASSERT_TRUE(live.refused.empty()) << live.refused.front().why;
+    ASSERT_EQ(live.recording.events.size(), whole.events.size());
+    for (std::size_t i = 0; i < whole.events.size(); ++i) expect_same(live.recording.events[i], whole.events[i]);
+    EXPECT_EQ(live.recording.labels, whole.labels);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, OwnStreamOf,
+                         ::testing::Values("increments", "velocities", "steering", "wheels", "poses"));
+
+class OwnStreamLines : public ::testing::Test {
+ protected:
+  StreamedEvents take(const std::string& line) { return stream_.take(line, ++number_); }
+  std::size_t scans_of(const std::string& line) { return take(line).lines.size(); }
+  void expect_refused(const std::string& line, const std::string& key, const std::string& words) {
+    const StreamedEvents answer = take(line);
+    ASSERT_EQ(answer.refused.size(), 1u) << line;
+    EXPECT_EQ(answer.refused[0].line, number_);
+    EXPECT_EQ(answer.refused[0].key, key) << answer.refused[0].why;
+    EXPECT_NE(answer.refused[0].why.find(words), std::string::npos) << answer.refused[0].why;
+    EXPECT_TRUE(answer.recording.events.empty());
+  }
+
+  static std::string odometry(double t_s) {
+    return "{\"odometry\": {\"t\": " + std::to_string(t_s) + ", \"v\": 1, \"omega\": 0}}";
+  }
+  static std::string scan(double t_s) {
+    return "{\"detections\": [{\"t\": " + std::to_string(t_s) + ", \"range\": 5, \"bearing\": 0}]}";
+  }
+
+  testing::TemporaryFolder folder_;
+  Vehicle vehicle_ = read_vehicle(
+      folder_.write("vehicle.toml",
+                    "[odometry]\nsigma_v_mps = 0.1\n"
+                    "[[sensor]]\nreach_m = 12\nview_deg = [-90, 90]\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n"));
+  OwnStream stream_{vehicle_};
+  std::size_t number_ = 0;
+};
+
+TEST_F(OwnStreamLines, MakeAScanDueWhenOdometryHasReachedItsTime) {
+  EXPECT_EQ(scans_of(odometry(0.0)), 0u);
+  EXPECT_EQ(scans_of(scan(0.05)), 0u);
+  EXPECT_EQ(scans_of(odometry(0.04)), 0u);
+  EXPECT_EQ(scans_of(odometry(0.1)), 1u);
+  EXPECT_EQ(scans_of(scan(0.1)), 1u) << "a list is a whole scan, and the odometry is there";
+  EXPECT_EQ(scans_of(R"({"detections": {"t": 0.1, "range": 5, "bearing": 0}})"), 0u) << "answered before";
+}
+
+TEST_F(OwnStreamLines, KeepAScanOpenWhileItsRowsCome) {
+  take(odometry(0.0));
+  take(odometry(1.0));
+  EXPECT_EQ(scans_of(R"({"detections": {"t": 0.5, "range": 5, "bearing": 0}})"), 0u);
+  EXPECT_EQ(scans_of(R"({"detections": {"t": 0.5, "range": 6, "bearing": 0}})"), 0u);
+  const StreamedEvents due = take(R"({"detections": {"t": 0.6}})");
+  ASSERT_EQ(due.lines, std::vector<std::size_t>{3});
+  EXPECT_EQ(std::get<core::Scan>(due.recording.events.back()).observations.size(), 2u);
+}
+
+TEST_F(OwnStreamLines, AreWovenInLateAsLongAsNothingLaterIsDone) {
+  for (int i = 0; i <= 10; ++i) take(odometry(0.1 * i));
+  EXPECT_EQ(scans_of(scan(0.35)), 1u);
+  expect_refused(scan(0.25), "t", "late");
+  EXPECT_EQ(scans_of(scan(0.95)), 1u);
+  for (int i = 11; i <= 40; ++i) take(odometry(0.1 * i));
+  expect_refused(scan(1.5), "t", "late");
+  EXPECT_EQ(scans_of(scan(3.9)), 1u);
+}
+
+TEST_F(OwnStreamLines, ThatAreWrongAreRefusedWithTheirKeyAndLeaveNothingBehind) {
+  take(odometry(0.0));
+  expect_refused("{\"odometry\": {\"t\": 0.5, \"v\": 1", "", "no JSON");
+  expect_refused("[1, 2]", "", "expected an object");
+  expect_refused(R"({"odometry": {"t": NaN, "v": 1, "omega": 0}})", "", "no JSON");
+  expect_refused(R"({"odometry": {"t": 0.5, "v": "nan", "omega": 0}})", "v", "expected a number");
+  expect_refused(R"({"odometry": {"t": 0.5, "v": 1e999, "omega": 0}})", "", "no JSON");
+  expect_refused(R"({"odometry": {"t": 0.5, "v": null, "omega": 0}})", "v", "an empty cell");
+  expect_refused(R"({"odometry": {"t": 0.5, "v": [1], "omega": 0}})", "v", "expected a number or text");
+  expect_refused(R"({"odometry": {"t": 0.5, "x": 1, "y": 0, "heading": 0}})", "odometry", "a stream has one kind");
+  expect_refused(R"({"odometry": {"t": -0.1, "v": 1, "omega": 0}})", "t", "comes after odometry at 0 s");
+  expect_refused(R"({"odometre": {}})", "odometre", "the nearest is 'odometry'");
+  expect_refused(R"({"detections": [{"t": 0.1, "range": 5, "bearing": 0}, {"t": 0.1, "range": -5, "bearing": 0}]})",
+                 "range", "greater than 0");
+  expect_refused(R"({"detections": [{"t": 0.1, "range": 5, "bearing": 90}]})", "bearing", "_deg");
+  expect_refused(R"({"detections": [{"t": 0.1, "x": 5, "y": 90}]})", "", "sigma_point_m");
+  take(odometry(1.0));
+  EXPECT_EQ(scans_of(scan(0.1)), 1u) << "and with one detection";
+}
+
+TEST_F(OwnStreamLines, OfOneWrongTimeDoNotMakeTheRestLate) {
+  take(odometry(0.0));
+  expect_refused(odometry(2e9), "t", "ahead of the newest");
+  EXPECT_TRUE(take(odometry(0.1)).refused.empty());
+  expect_refused(odometry(1e8), "t", "ahead of the newest");
+  EXPECT_TRUE(take(odometry(1e8 + 0.1)).refused.empty()) << "the clock did jump";
+  expect_refused(odometry(0.2), "t", "comes after");
+}
+
+TEST_F(OwnStreamLines, OfAnotherClockAreNotKeptForEver) {
+  take(odometry(0.0));
+  std::size_t refused = 0;
+  for (std::size_t i = 0; i < OwnStream::most_waiting + 10; ++i) {
+    refused += take(scan(1.0 + 0.01 * static_cast<double>(i))).refused.size();
+  }
+  EXPECT_EQ(refused, 10u);
+}
+
+TEST_F(OwnStreamLines, OfTruthAndFixesArePassedOverWithOneRemark) {
+  EXPECT_EQ(take(R"({"fixes": {"t": 0, "x": 1, "y": 2}})").remarks.size(), 1u);
+  EXPECT_TRUE(take(R"({"truth_poses": {"t": 0, "x": 1, "y": 2}})").remarks.empty());
+  EXPECT_TRUE(take("").refused.empty());
+}
+
+TEST_F(OwnStreamLines, MixNamesAndNumbersAsIdentitiesOnlyWhereNamesCameFirst) {
+  OwnStream numbers(vehicle_, true), names(vehicle_, true);
+  const std::string name = R"({"detections": [{"t": 0, "range": 5, "bearing": 0, "id": "church"}]})";
+  const std::string number = R"({"detections": [{"t": 0, "range": 6, "bearing": 0, "id": 17}]})";
+  EXPECT_EQ(streamed(names, {name, number}).recording.labels, (std::vector<std::vector<core::Label>>{{0, 1}}));
+  const StreamedEvents refused = streamed(numbers, {number, name});
+  ASSERT_EQ(refused.refused.size(), 1u);
+  EXPECT_EQ(refused.refused[0].key, "id");
+  EXPECT_EQ(refused.recording.labels, (std::vector<std::vector<core::Label>>{{17}}));
+}
+
+TEST(OwnStream, NeedsTheViewThatOnlyAWholeLogWouldTell) {
+  const testing::TemporaryFolder folder;
+  const auto error = [&](const std::string& sensor) {
+    const Vehicle vehicle = read_vehicle(folder.write("vehicle.toml", "[odometry]\nsigma_v_mps = 0.1\n" + sensor));
+    return testing::input_error_of([&] { OwnStream stream(vehicle); });
+  };
+  EXPECT_NE(error("").find("needs a [[sensor]]"), std::string::npos);
+  EXPECT_NE(error("[[sensor]]\nview_deg = [-90, 90]\n").find("needs reach_m"), std::string::npos);
+  EXPECT_NE(error("[[sensor]]\nreach_m = 12\n").find("needs view_deg"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace helixnav::logs
