@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string_view>
@@ -20,7 +21,7 @@ static_assert(sizeof(double) == 8, "map.bin holds IEEE doubles");
 constexpr std::string_view magic = "HELIXMAP";
 constexpr std::uint32_t version = 1;
 constexpr std::size_t digest_bytes = 32;
-constexpr std::size_t header_bytes = 8 + 4 + 4 + 4;  // magic, version, landmarks, next name
+constexpr std::size_t header_bytes = 8 + 4 + 4 + 4 + 8;  // magic, version, landmarks, next name, reach
 
 std::string digest_of(std::string_view bytes) {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
@@ -119,6 +120,7 @@ void check_content(const std::string& path, const core::JointMap& map) {
   const auto is_finite = [](const Eigen::Vector2d& point_m) { return point_m.allFinite(); };
   const bool finite = map.joint.pose.vector().allFinite() && map.joint.covariance.allFinite() &&
                       std::all_of(map.joint.points_m.begin(), map.joint.points_m.end(), is_finite);
+  if (!(map.reach_m >= 0.0) || !std::isfinite(map.reach_m)) refuse(path, "expected the reach of a sensor, 0 or above");
   if (!finite || map.joint.covariance.diagonal().minCoeff() < 0.0) {
     refuse(path, "expected finite numbers and variances that are not negative");
   }
@@ -139,6 +141,7 @@ std::string joint_map_bytes(const core::JointMap& map) {
   put_unsigned(bytes, version);
   put_unsigned(bytes, static_cast<std::uint32_t>(n));
   put(bytes, static_cast<std::int32_t>(map.next_name));
+  put(bytes, map.reach_m);
   for (std::size_t i = 0; i < n; ++i) {
     put(bytes, static_cast<std::int32_t>(joint.ids[i]));
     put(bytes, static_cast<std::int32_t>(map.states[i]));
@@ -161,6 +164,7 @@ core::JointMap read_joint_map(const std::string& path) {
   Bytes bytes(std::string_view(file).substr(magic.size() + 8));
   core::JointMap map;
   map.next_name = bytes.integer();
+  map.reach_m = bytes.number();
   for (std::size_t i = 0; i < n; ++i) {
     map.joint.ids.push_back(bytes.integer());
     const std::uint32_t state = bytes.small();

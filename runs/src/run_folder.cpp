@@ -206,14 +206,18 @@ std::vector<core::MapLandmark> read_map(const std::string& path) {
   return map;
 }
 
-Run read_run(const std::string& path) {
+RunManifest read_manifest(const std::string& path) {
   const std::string manifest = path + '/' + manifest_file;
   if (!fs::exists(manifest)) {
     throw core::InputError(path + ": not a run folder: expected a file " + manifest_file + " in it");
   }
+  return manifest_from_text(manifest, files::read_whole_file(manifest));
+}
+
+Run read_run(const std::string& path) {
   Run run;
   run.path = path;
-  run.manifest = manifest_from_text(manifest, files::read_whole_file(manifest));
+  run.manifest = read_manifest(path);
   RunTables tables = read_tables(path);
   assemble(tables, run);
   bring_into_map(run);

@@ -14,6 +14,7 @@
 #include "helixnav/files/number_text.hpp"
 #include "helixnav/runs/joint_map_file.hpp"
 #include "helixnav/runs/words.hpp"
+#include "map_text.hpp"
 #include "run_tables.hpp"
 #include "write_truth.hpp"
 
@@ -135,21 +136,6 @@ void append_health(std::string& text, const core::StepReport& report, std::int64
                        static_cast<std::int64_t>(report.merged.size()), cloud_rows});
   append_cells(text, {std::round(microseconds * 10.0) / 10.0});
   text += '\n';
-}
-
-std::string map_text(const std::vector<core::MapLandmark>& map) {
-  std::string text(map_table.header);
-  text += '\n';
-  for (const core::MapLandmark& landmark : map) {
-    const Eigen::Matrix2d& P = landmark.point.covariance_m2;
-    files::append_number(text, std::int64_t{landmark.id});
-    append_cells(text, {landmark.point.mean_m.x(), landmark.point.mean_m.y(), P(0, 0), P(0, 1), P(1, 1)});
-    append_counts(text, {landmark.observations});
-    text += ',';
-    text += word_of(state_words, landmark.state);
-    text += '\n';
-  }
-  return text;
 }
 
 std::string final_trajectory_text(const std::vector<core::StepReport>& steps, const std::vector<core::Pose2>& poses) {

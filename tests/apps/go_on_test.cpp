@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // replay --map: a session goes on in the map of an earlier one.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -108,8 +109,9 @@ TEST_F(GoOn, ASessionBegunAnywhereIsPlacedAndBecomesOneMap) {
   std::getline(final_poses, header);
   double t_s = 0.0, x_m = 0.0, y_m = 0.0;
   final_poses >> t_s >> x_m >> y_m;
-  EXPECT_NEAR(x_m, radius_m * std::sin(2.0), 0.5);
-  EXPECT_NEAR(y_m, radius_m * (1.0 - std::cos(2.0)), 0.5);
+  // DLR's x axis points to the left of ours.
+  EXPECT_NEAR(y_m, radius_m * std::sin(2.0), 0.5);
+  EXPECT_NEAR(-x_m, radius_m * (1.0 - std::cos(2.0)), 0.5);
   // And a third session goes on in what came of both.
   must("monday.circles", {"--map", folder("tuesday")}, "wednesday");
   EXPECT_EQ(summary("wednesday").at("placed").at("found"), true);
@@ -197,6 +199,42 @@ TEST_F(GoOn, WhatIsNoMapToGoOnInEndsWithStatus3AndNamesTheFile) {
   const Outcome nowhere = replay("monday.circles", {"--map", folder("nowhere")}, "none");
   EXPECT_EQ(nowhere.exit_code, 3);
   EXPECT_NE(nowhere.err.find("expected the folder of a run"), std::string::npos) << nowhere.err;
+}
+
+TEST_F(GoOn, RunsThatBeganAnywhereAreJoinedToOneMapToGoOnIn) {
+  write_yesterday();
+  std::vector<Eigen::Vector2d> trees_m = grove(1, 50);
+  const auto by_the_road = [](const Eigen::Vector2d& tree_m) { return std::abs(tree_m.norm() - radius_m) < 8.0; };
+  trees_m.erase(std::find_if(trees_m.begin(), trees_m.end(), by_the_road));
+  write("tuesday.circles", drive_text(trees_m, 2.0, 240, 2));
+  write("elsewhere.circles", drive_text(grove(2, 30), 0.0, 200, 3));
+  must("tuesday.circles", {}, "tuesday");
+  must("elsewhere.circles", {}, "elsewhere");
+  const Outcome joined =
+      run({"join", folder("monday"), folder("tuesday"), folder("elsewhere"), "--out", folder("week")});
+  EXPECT_EQ(joined.exit_code, 0) << joined.err;
+  EXPECT_NE(joined.out.find("component 2"), std::string::npos) << joined.out;
+  EXPECT_TRUE(fs::exists(folder("week") / "component_2" / "map.bin"));
+  EXPECT_FALSE(fs::exists(folder("week") / "component_3"));
+  EXPECT_NE(text_of(folder("week") / "joins.csv").find(",accepted,"), std::string::npos);
+  EXPECT_NE(text_of(folder("week") / "changes.csv").find(",gone,"), std::string::npos) << "the tree that was felled";
+  must("tuesday.circles", {"--map", folder("week")}, "next");
+  EXPECT_EQ(summary("next").at("placed").at("found"), true);
+}
+
+TEST_F(GoOn, OneMapTwiceIsRefused) {
+  write_yesterday();
+  write("tuesday.circles", drive_text(grove(1, 50), 2.0, 240, 2));
+  must("tuesday.circles", {"--map", folder("monday")}, "tuesday");
+  const auto refused = [&](const std::string& other, const std::string& because) {
+    const Outcome outcome = run({"join", folder("monday"), other, "--out", folder("none")});
+    EXPECT_EQ(outcome.exit_code, 3);
+    EXPECT_NE(outcome.err.find(because), std::string::npos) << outcome.err;
+    EXPECT_FALSE(fs::exists(folder("none")));
+  };
+  refused(folder("monday"), "the same map as");
+  refused(folder("tuesday"), "holds it already");
+  refused(folder("nowhere"), "expected the folder of a run");
 }
 
 TEST_F(GoOn, AMapOfOneLandmarkIsTooSmallToBeFoundOn) {

@@ -16,6 +16,7 @@ namespace {
 core::JointMap three_landmarks() {
   core::JointMap map;
   map.next_name = 12;
+  map.reach_m = 12.5;
   map.joint.pose = core::Pose2(1.0 / 3.0, -2.0, 0.1);
   map.joint.ids = {2, 5, 11};
   map.joint.points_m = {{1.0, 2.0}, {-3.0, 1e-9}, {0.1, 0.7}};
@@ -51,6 +52,7 @@ TEST_F(JointMapFile, GoesThereAndBackBitForBit) {
   const core::JointMap map = three_landmarks();
   const core::JointMap back = read(joint_map_bytes(map));
   EXPECT_EQ(back.next_name, map.next_name);
+  EXPECT_EQ(back.reach_m, map.reach_m);
   EXPECT_EQ(back.joint.ids, map.joint.ids);
   EXPECT_EQ(back.joint.points_m, map.joint.points_m);
   EXPECT_EQ(back.joint.pose.vector(), map.joint.pose.vector());

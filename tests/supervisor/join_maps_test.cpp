@@ -109,7 +109,8 @@ TEST(JoinMaps, IsLeastSquaresOverBothMapsWithAFreePlace) {
     const core::Pose2 pose = core::compose(core::Pose2(Eigen::Vector3d(expected.x.head<3>())),
                                            core::Pose2(Eigen::Vector3d(expected.x.segment<3>(3))));
     EXPECT_LT((joined.filter.pose().mean.position_m() - pose.position_m()).norm(), 5e-4);
-    EXPECT_NEAR(core::wrap_to_pi(joined.filter.pose().mean.heading_rad - pose.heading_rad), 0.0, 5e-5);
+    EXPECT_NEAR(core::wrap_to_pi(joined.filter.pose().mean.heading_rad - pose.heading_rad), 0.0, 1e-4)
+        << "first order: 3 % of its σ";
   }
 }
 

@@ -60,10 +60,10 @@ std::string joint_map_file_in(const std::string& folder) {
   return (std::filesystem::path(folder) / "map.bin").string();
 }
 
-EarlierSession read_earlier_session(const std::string& folder, const SessionStart& start) {
+core::JointMap read_joint_map_in(const std::string& folder) {
   namespace fs = std::filesystem;
   if (!fs::is_directory(folder)) {
-    throw core::InputError(folder + ": expected the folder of a run to go on in" +
+    throw core::InputError(folder + ": expected the folder of a run with its map" +
                            (fs::exists(folder) ? ", found a file (a map.csv alone serves --localize only)" : ""));
   }
   const std::string file = joint_map_file_in(folder);
@@ -72,9 +72,13 @@ EarlierSession read_earlier_session(const std::string& folder, const SessionStar
                            std::to_string(runs::most_joint_landmarks) +
                            " landmarks, only localised, or is of version 0.1");
   }
-  EarlierSession session{runs::read_joint_map(file), {}, start};
-  check_size(file, session);
-  if (!fs::exists(fs::path(folder) / "manifest.json")) return session;
+  return runs::read_joint_map(file);
+}
+
+EarlierSession read_earlier_session(const std::string& folder, const SessionStart& start) {
+  EarlierSession session{read_joint_map_in(folder), {}, start};
+  check_size(joint_map_file_in(folder), session);
+  if (!std::filesystem::exists(std::filesystem::path(folder) / "manifest.json")) return session;
   const std::vector<core::LandmarkId>& ids = session.map.joint.ids;
   for (const auto& [label, id] : landmarks_by_label(runs::read_run(folder))) {
     if (std::binary_search(ids.begin(), ids.end(), id)) session.landmark_of[label] = id;

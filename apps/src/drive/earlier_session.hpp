@@ -34,6 +34,9 @@ struct EarlierSession {
 /// used, or it holds too few mature landmarks to begin so.
 EarlierSession read_earlier_session(const std::string& folder, const SessionStart& start);
 
+/// The map that a run left in its folder. InputError naming the file where there is none or it cannot be used.
+core::JointMap read_joint_map_in(const std::string& folder);
+
 /// The map.bin in it.
 std::string joint_map_file_in(const std::string& folder);
 

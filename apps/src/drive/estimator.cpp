@@ -49,10 +49,12 @@ struct NavigatorDrive {
 };
 
 /// Nothing where it is too large to be saved.
-std::optional<core::JointMap> joint_map_of(const ChosenNavigator& navigator) {
+std::optional<core::JointMap> joint_map_of(const ChosenNavigator& navigator, const core::Recording& recording) {
   const std::vector<core::MapLandmark> landmarks = navigator.map();
   if (landmarks.size() > runs::most_joint_landmarks) return std::nullopt;
-  return supervisor::joint_map(navigator.filter(), landmarks);
+  core::JointMap map = supervisor::joint_map(navigator.filter(), landmarks);
+  map.reach_m = logs::field_of_view_of(recording).reach().value_or(0.0);
+  return map;
 }
 
 }  // namespace
@@ -61,7 +63,7 @@ Estimator navigator_of(const Drive& job) {
   const auto drive = std::make_shared<NavigatorDrive>(job);
   return {[drive](const core::Event& event) { return drive->navigator.take(event); },
           [drive] { return drive->navigator.pose(); }, [drive] { return drive->navigator.map(); },
-          [drive] { return joint_map_of(drive->navigator); }};
+          [drive, &job] { return joint_map_of(drive->navigator, job.recording); }};
 }
 
 Estimator localizer_of(const Drive& job, LabelAgreement& agreement) {

@@ -123,9 +123,7 @@ bool NavigationLoop::join(const relocalize::Place& place, PlacedDecision& decisi
               {},
               belief_.step,
               belief_.slips,
-              belief_.noise,
-              belief_.left_open,
-              belief_.moved};
+              belief_.left_open};
   both.coverage.change_frame(decision.T_map_session);
   Mapping mapping;
   std::vector<LandmarkId> recognised;

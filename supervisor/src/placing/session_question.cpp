@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "helixnav/core/angle.hpp"
-#include "placing/relative_covariance.hpp"
+#include "placing/question_landmarks.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -63,17 +64,10 @@ LandmarksAbout landmarks_about(const Belief& belief, double seen_within_m) {
 
 relocalize::Question session_question(const Belief& belief, const LandmarksAbout& about, const core::FieldOfView& view,
                                       const relocalize::IndexOptions& lengths, double seen_within_m) {
+  std::vector<std::size_t> all(about.ids.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
   relocalize::Question question;
-  const core::JointGaussian joint = belief.filter.joint(about.ids);
-  const Eigen::Index n = joint.covariance.rows() - 3;
-  const std::vector<Eigen::Matrix2d> relative =
-      relative_covariances(joint.points_m, joint.covariance.bottomRightCorner(n, n));
-  const Eigen::Matrix2d half_m2 = 0.5 * lengths.pair_noise_m * lengths.pair_noise_m * Eigen::Matrix2d::Identity();
-  for (std::size_t i = 0; i < about.ids.size(); ++i) {
-    relocalize::Landmark& landmark = question.landmarks.emplace_back();
-    landmark.id = about.ids[i];
-    landmark.point = {joint.points_m[i], relative[i] + half_m2};
-  }
+  question.landmarks = question_landmarks(belief.filter.joint(about.ids), all, lengths.pair_noise_m);
   const double since_path_m = belief.existence.path_m() - seen_within_m;
   question.looked = looked_at(belief, view, lengths.reach_m, since_path_m, about.within_m);
   return question;

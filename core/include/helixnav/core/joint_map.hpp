@@ -14,6 +14,7 @@ struct JointMap {
   std::vector<LandmarkState> states;  ///< [landmark] tentative or mature
   std::vector<int> observations;      ///< [landmark]
   LandmarkId next_name = 0;           ///< landmarks named later are this one and above
+  double reach_m = 0.0;               ///< of the sensor that drew it; 0: unknown
 };
 
 }  // namespace helixnav::core
