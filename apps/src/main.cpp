@@ -60,6 +60,7 @@ ExitCode run(int argc, char** argv) {
   add_smooth_command(app, code);
   add_convert_command(app, code);
   add_simulate_command(app, code);
+  add_join_command(app, code);
   add_montecarlo_command(app, code);
   add_evaluate_command(app, code);
   add_explain_command(app, code);

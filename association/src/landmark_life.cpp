@@ -115,6 +115,20 @@ bool LandmarkLife::is_dying(const LandmarkRecord& record) const {
          path_m_ - record.last_seen_path_m > options_.tentative_patience_m;
 }
 
+void LandmarkLife::adopt(const LandmarkRecord& record) {
+  if (contains(record.id) || record.id < 0) {
+    throw core::PreconditionError("landmark life: landmark " + std::to_string(record.id) + " is recorded, or no name");
+  }
+  records_.insert(std::lower_bound(records_.begin(), records_.end(), record.id, before), record);
+}
+
+void LandmarkLife::change_frame(const core::Pose2& T_new_old) {
+  for (LandmarkRecord& record : records_) {
+    record.last_hit_at_m = core::transform(T_new_old, record.last_hit_at_m);
+    record.last_miss_at_m = core::transform(T_new_old, record.last_miss_at_m);
+  }
+}
+
 void LandmarkLife::remove(LandmarkId id) {
   LandmarkRecord* record = find(id);
   if (record == nullptr) throw core::PreconditionError("landmark life: no landmark " + std::to_string(id));

@@ -120,6 +120,26 @@ void numbers(FixDecision& d, Visit&& visit) {
   visit("pose_sigma_m", d.pose_sigma_m);
 }
 
+template <class Visit>
+void numbers(PlacedDecision& d, Visit&& visit) {
+  visit("earlier_landmarks", d.earlier_landmarks);
+  visit("questions", d.questions);
+  visit("landmarks", d.landmarks);
+  visit("pairs", d.pairs);
+  visit("evidence", d.evidence);
+  visit("lead", d.lead);
+  visit("needed", d.needed);
+  visit("merged", d.merged);
+  visit("cost", d.cost);
+  visit("dof", d.dof);
+  visit("limit", d.limit);
+  visit("driven_m", d.driven_m);
+  visit("x_m", d.T_map_session.x_m);
+  visit("y_m", d.T_map_session.y_m);
+  visit("heading_rad", d.T_map_session.heading_rad);
+}
+
+constexpr const char* placed_words[] = {"sought", "accepted", "ambiguous", "refused", "not-here"};
 constexpr const char* reason_words[] = {"timed-out", "nothing-here", "abandoned", "outdone"};
 constexpr const char* verification_words[] = {"accepted", "too-few-matches", "ratio-too-low", "rival-too-good"};
 
@@ -150,6 +170,7 @@ KindAndVerdict words_of(const ClosureDecision& d) { return {"closure", word_of(d
 KindAndVerdict words_of(const UndecidedDecision&) { return {"closure", "undecided"}; }
 KindAndVerdict words_of(const SmoothingDecision& d) { return {"smoothing", word_of(d.accepted)}; }
 KindAndVerdict words_of(const FixDecision& d) { return {"fix", word_of(d.accepted)}; }
+KindAndVerdict words_of(const PlacedDecision& d) { return {"placed", placed_words[static_cast<int>(d.verdict)]}; }
 
 /// Names that rows of earlier versions have.
 std::string_view former_name(std::string_view name) {
@@ -189,6 +210,14 @@ Decision search_decision(const DecisionRow& row) {
   return fill(ended, row);
 }
 
+Decision placed_decision(const DecisionRow& row) {
+  const int verdict = index_in(placed_words, row.verdict);
+  if (verdict < 0) return OtherDecision{row.kind, row.verdict, row.numbers};
+  PlacedDecision placed;
+  placed.verdict = static_cast<PlacedDecision::Verdict>(verdict);
+  return fill(placed, row);
+}
+
 }  // namespace
 
 DecisionRow row_of(const Decision& decision) {
@@ -215,6 +244,7 @@ Decision decision_of(const DecisionRow& row) {
   if (row.kind == "trigger" && rolled_back) return fill(RollbackDecision{}, row);
   if (row.kind == "slip" && accepted) return fill(SlipDecision{}, row);
   if (row.kind == "search") return search_decision(row);
+  if (row.kind == "placed") return placed_decision(row);
   if (row.kind == "closure" && row.verdict == "undecided") return fill(UndecidedDecision{}, row);
   if (row.kind == "closure" && judged) return fill(ClosureDecision{}, accepted, row);
   if (row.kind == "smoothing" && judged) return fill(SmoothingDecision{}, accepted, row);

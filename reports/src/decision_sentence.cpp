@@ -143,6 +143,40 @@ std::string sentence(const core::FixDecision& d) {
          (d.accepted ? " within the gate " : " beyond the gate ") + short_number(d.gate) + ".";
 }
 
+/// Where the session was on the earlier map when it began.
+std::string begin_of(const core::PlacedDecision& d) {
+  return "it began at (" + short_number(d.T_map_session.x_m) + ", " + short_number(d.T_map_session.y_m) +
+         ") m, heading " + degrees(d.T_map_session.heading_rad);
+}
+
+std::string evidence_of(const core::PlacedDecision& d) {
+  return counted(d.pairs, "landmark") + " of " + short_number(d.landmarks) +
+         " about the vehicle stand as on the map, " + short_number(d.evidence) + " nats better than by chance and " +
+         short_number(d.lead) + " ahead of any other place (" + short_number(d.needed) + " are needed of each)";
+}
+
+std::string sentence(const core::PlacedDecision& d) {
+  const std::string after = " after " + short_number(d.driven_m) + " m, question " + std::to_string(d.questions) + ": ";
+  switch (d.verdict) {
+    case core::PlacedDecision::Verdict::sought:
+      return "This session does not know where it is on a map of " + counted(d.earlier_landmarks, "landmark") +
+             " from an earlier one: it maps on its own and asks.";
+    case core::PlacedDecision::Verdict::accepted:
+      return "Found its place on the earlier map" + after + evidence_of(d) + "; their joint cost " +
+             short_number(d.cost) + " is within " + short_number(d.limit) + ". From here on both are one map (" +
+             counted(d.merged, "landmark") + " merged); " + begin_of(d) + " of it.";
+    case core::PlacedDecision::Verdict::ambiguous:
+      return "Not placed" + after + "a place fits, and others may as well: " + evidence_of(d) + '.';
+    case core::PlacedDecision::Verdict::refused:
+      return "Not placed" + after + "the pairs contradict each other, their joint cost " + short_number(d.cost) +
+             " exceeds " + short_number(d.limit) + ". " + evidence_of(d) + '.';
+    case core::PlacedDecision::Verdict::not_here:
+      return "Not placed" + after + "no place on the earlier map fits the " + counted(d.landmarks, "landmark") +
+             " about the vehicle better than chance would.";
+  }
+  return {};
+}
+
 std::string sentence(const core::OtherDecision& d) {
   std::string sentence = d.kind + " " + d.verdict;
   char separator = ':';

@@ -94,6 +94,22 @@ const core::StepReport& step_numbered(const runs::Run& run, std::int64_t step) {
   throw core::InputError(run.path + ": no step " + std::to_string(step) + "; this run has " + steps);
 }
 
+bool is_placing(const Decided& decided) { return std::holds_alternative<core::PlacedDecision>(*decided.decision); }
+
+/// Whether a session found its place on an earlier map, where it looked for one.
+std::string places_of(const std::vector<Decided>& decided) {
+  std::string text;
+  bool accepted = false;
+  for (const Decided& one : decided) {
+    if (!is_placing(one)) continue;
+    text += line_of(one);
+    accepted = accepted || verdict_of(one) == "accepted";
+  }
+  if (text.empty()) return {};
+  const char* const end = accepted ? "" : "  It never found its place: the map is that of this session alone.\n";
+  return "\nThe earlier map:\n" + text + end + '\n';
+}
+
 }  // namespace
 
 std::string explain_run(const runs::Run& run) {
@@ -104,8 +120,9 @@ std::string explain_run(const runs::Run& run) {
                      " steps; closings: " + std::to_string(count_of(closures, "accepted")) + " accepted, " +
                      std::to_string(count_of(closures, "refused")) + " refused, " +
                      std::to_string(count_of(closures, "undecided")) + " left undecided.\n";
-  if (decided.empty())
-    return text + "No return was ambiguous enough for a search: every scan was associated at once.\n";
+  text += places_of(decided);
+  const bool nothing_else = std::all_of(decided.begin(), decided.end(), is_placing);
+  if (nothing_else) return text + "No return was ambiguous enough for a search: every scan was associated at once.\n";
   for (std::size_t i = 0; i < closures.size(); ++i) {
     text += "\nClosure " + std::to_string(i + 1) + ", " + when(*closures[i].step) + ". " +
             sentence_of(*closures[i].decision) + '\n';

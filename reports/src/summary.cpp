@@ -5,8 +5,10 @@
 #include <array>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 #include <variant>
 
+#include "helixnav/core/decision_row.hpp"
 #include "helixnav/runs/words.hpp"
 #include "json.hpp"
 
@@ -34,6 +36,24 @@ Json closures_to_json(const runs::Run& run) {
     }
   }
   return {{"accepted", accepted}, {"refused", refused}, {"undecided", undecided}};
+}
+
+/// What a session that looked for its place on an earlier map said of it last.
+std::optional<core::PlacedDecision> last_placing(const runs::Run& run) {
+  std::optional<core::PlacedDecision> last;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::Decision& decision : step.decisions) {
+      if (const auto* placed = std::get_if<core::PlacedDecision>(&decision)) last = *placed;
+    }
+  }
+  return last;
+}
+
+Json placed_to_json(const core::PlacedDecision& last) {
+  const bool found = last.verdict == core::PlacedDecision::Verdict::accepted;
+  Json json = {{"found", found}, {"last", core::row_of(last).verdict}};
+  if (found) json.update({{"driven_m", last.driven_m}, {"questions", last.questions}, {"pairs", last.pairs}});
+  return json;
 }
 
 std::int64_t count_landmarks(const runs::Run& run, core::LandmarkState state) {
@@ -74,6 +94,7 @@ Json summary_to_json(const runs::Run& run, const evaluation::Evaluation& evaluat
   json["landmarks"] = {{"mature", count_landmarks(run, core::LandmarkState::mature)},
                        {"tentative", count_landmarks(run, core::LandmarkState::tentative)}};
   json["closures"] = closures_to_json(run);
+  if (const auto placed = last_placing(run)) json["placed"] = placed_to_json(*placed);
   json["observations"] = observations_to_json(run);
   json.update(evaluation_to_json(evaluation));
   return json;

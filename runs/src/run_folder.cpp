@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "bring_into_map.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/files/file.hpp"
@@ -205,16 +206,21 @@ std::vector<core::MapLandmark> read_map(const std::string& path) {
   return map;
 }
 
-Run read_run(const std::string& path) {
+RunManifest read_manifest(const std::string& path) {
   const std::string manifest = path + '/' + manifest_file;
   if (!fs::exists(manifest)) {
     throw core::InputError(path + ": not a run folder: expected a file " + manifest_file + " in it");
   }
+  return manifest_from_text(manifest, files::read_whole_file(manifest));
+}
+
+Run read_run(const std::string& path) {
   Run run;
   run.path = path;
-  run.manifest = manifest_from_text(manifest, files::read_whole_file(manifest));
+  run.manifest = read_manifest(path);
   RunTables tables = read_tables(path);
   assemble(tables, run);
+  bring_into_map(run);
   if (fs::exists(path + "/map.csv")) run.map = read_map(path + "/map.csv");
   if (has_truth(path)) run.truth = read_truth(path);
   run.finished = fs::exists(path + '/' + summary_file);

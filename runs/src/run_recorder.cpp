@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bring_into_map.hpp"
 #include "cloud_choice.hpp"
 #include "put_association.hpp"
 
@@ -69,6 +70,7 @@ Run RunRecorder::finish(const std::vector<core::MapLandmark>& map) {
   run.map = map;
   for (core::MapLandmark& landmark : run.map) mirror_upper_triangle(landmark.point.covariance_m2);
   run.finished = true;
+  bring_into_map(run);
   return run;
 }
 

@@ -31,12 +31,14 @@ inline constexpr RunTable truth_landmarks_table{"truth_landmarks.csv", "label,x,
 inline constexpr RunTable truth_labels_table{"truth_labels.csv", "step,observation,label"};
 
 inline constexpr const char* manifest_file = "manifest.json";
+inline constexpr const char* joint_map_file = "map.bin";
 inline constexpr const char* summary_file = "summary.json";
 inline constexpr const char* report_file = "report.html";
 
 inline constexpr const char* run_files[] = {
-    "manifest.json",       "trajectory.tum",      "trajectory_final.tum", "map.csv",     "associations.csv",
-    "decisions.csv",       "health.csv",          "summary.json",         "report.html", "truth_poses.csv",
-    "truth_positions.csv", "truth_landmarks.csv", "truth_labels.csv",     "merges.csv",  "clouds.csv"};
+    "manifest.json",    "trajectory.tum",  "trajectory_final.tum", "map.csv",
+    "associations.csv", "decisions.csv",   "health.csv",           "summary.json",
+    "report.html",      "truth_poses.csv", "truth_positions.csv",  "truth_landmarks.csv",
+    "truth_labels.csv", "merges.csv",      "clouds.csv",           "map.bin"};
 
 }  // namespace helixnav::runs

@@ -6,12 +6,15 @@
 #include <filesystem>
 #include <initializer_list>
 
+#include "bring_into_map.hpp"
 #include "cloud_choice.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/files/file.hpp"
 #include "helixnav/files/number_text.hpp"
+#include "helixnav/runs/joint_map_file.hpp"
 #include "helixnav/runs/words.hpp"
+#include "map_text.hpp"
 #include "run_tables.hpp"
 #include "write_truth.hpp"
 
@@ -135,21 +138,6 @@ void append_health(std::string& text, const core::StepReport& report, std::int64
   text += '\n';
 }
 
-std::string map_text(const std::vector<core::MapLandmark>& map) {
-  std::string text(map_table.header);
-  text += '\n';
-  for (const core::MapLandmark& landmark : map) {
-    const Eigen::Matrix2d& P = landmark.point.covariance_m2;
-    files::append_number(text, std::int64_t{landmark.id});
-    append_cells(text, {landmark.point.mean_m.x(), landmark.point.mean_m.y(), P(0, 0), P(0, 1), P(1, 1)});
-    append_counts(text, {landmark.observations});
-    text += ',';
-    text += word_of(state_words, landmark.state);
-    text += '\n';
-  }
-  return text;
-}
-
 std::string final_trajectory_text(const std::vector<core::StepReport>& steps, const std::vector<core::Pose2>& poses) {
   std::string text(trajectory_table.header);
   text += '\n';
@@ -232,6 +220,11 @@ void RunWriter::finish(const Run& run, const std::string& report_page, const std
   files::write_whole_file(folder_ + "/map.csv", map_text(run.map));
   if (run.smoothed) {
     files::write_whole_file(folder_ + "/trajectory_final.tum", final_trajectory_text(run.steps, run.smoothed->poses));
+  } else if (step_of_placing(run)) {
+    files::write_whole_file(folder_ + "/trajectory_final.tum", final_trajectory_text(run.steps, poses_of(run)));
+  }
+  if (run.joint_map && run.joint_map->joint.ids.size() <= most_joint_landmarks) {
+    files::write_whole_file(folder_ + '/' + joint_map_file, joint_map_bytes(*run.joint_map));
   }
   files::write_whole_file(folder_ + '/' + report_file, report_page);
   files::write_whole_file(folder_ + '/' + summary_file, summary);

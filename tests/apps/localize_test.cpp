@@ -113,7 +113,11 @@ TEST_F(Localize, IsToldHowToBeAskedFor) {
     EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
   };
   usage({"--localize"}, "--map");
-  usage({"--map", "somewhere"}, "--localize");
+  usage({"--start", "end"}, "--map");
+  usage({"--map", "somewhere", "--smooth"}, "--smooth");
+  usage({"--map", "somewhere", "--start", "here"}, "expected unknown, end, or a pose");
+  usage({"--map", "somewhere", "--start", "1,2"}, "expected unknown, end, or a pose");
+  usage({"--localize", "--map", "somewhere", "--start", "end"}, "--start end");
   usage({"--localize", "--map", "somewhere", "--smooth"}, "--smooth");
   usage({"--localize", "--map", "somewhere", "--gps", "fuse"}, "--gps fuse");
   usage({"--localise", "--map", "somewhere"}, "did you mean '--localize'");

@@ -23,6 +23,9 @@ std::vector<DecisionRow> all_rows() {
   for (const char* kind : {"closure", "smoothing", "fix"}) {
     for (const char* verdict : {"accepted", "refused"}) rows.push_back(row_of(decision_of({kind, verdict, {}})));
   }
+  for (const char* verdict : {"sought", "accepted", "ambiguous", "refused", "not-here"}) {
+    rows.push_back(row_of(decision_of({"placed", verdict, {}})));
+  }
   return rows;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -24,6 +25,10 @@ class ChosenNavigator {
   ChosenNavigator(const core::Recording& recording, const supervisor::NavigatorOptions& options, bool known_association,
                   const Labels& labels)
       : labels_(&labels), navigator_(chosen(recording, options, known_association)) {}
+  /// Begun elsewhere.
+  template <class Begun>
+  ChosenNavigator(Begun&& navigator, const Labels& labels)
+      : labels_(&labels), navigator_(std::forward<Begun>(navigator)) {}
 
   /// Events in order. The report of a scan.
   std::optional<core::StepReport> take(const core::Event& event) {

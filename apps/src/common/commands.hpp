@@ -16,6 +16,7 @@ void add_stream_command(CLI::App& app, ExitCode& code);
 void add_smooth_command(CLI::App& app, ExitCode& code);
 void add_convert_command(CLI::App& app, ExitCode& code);
 void add_simulate_command(CLI::App& app, ExitCode& code);
+void add_join_command(CLI::App& app, ExitCode& code);
 void add_montecarlo_command(CLI::App& app, ExitCode& code);
 void add_evaluate_command(CLI::App& app, ExitCode& code);
 void add_explain_command(CLI::App& app, ExitCode& code);

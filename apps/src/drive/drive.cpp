@@ -40,7 +40,19 @@ double quantile(std::vector<double> times, double fraction) {
   return *nth;
 }
 
+void check_earlier_labels(const EarlierSession& earlier) {
+  if (earlier.start.kind == SessionStart::Kind::unknown) {
+    throw core::InputError("--association known does not look for its place: give --start end, or a pose");
+  }
+  if (earlier.landmark_of.empty()) {
+    throw core::InputError(
+        "--association known needs to know the labels of the map's landmarks: give --map the folder "
+        "of a run over a labelled log");
+  }
+}
+
 void check_labels(const Drive& job) {
+  if (job.known_association && job.earlier) check_earlier_labels(*job.earlier);
   if (job.known_association && job.recording.labels.empty()) {
     throw core::InputError(job.recording.name +
                            ": --association known needs a labelled log, and this one has no labels");
@@ -136,6 +148,7 @@ ExitCode drive(const Drive& job) {
   const std::vector<double>& step_us = driven.step_us;
 
   runs::Run run = recorder.finish(estimator.map());
+  run.joint_map = estimator.joint_map();
   run.timing = {{"median_us", quantile(step_us, 0.5)},
                 {"p99_us", quantile(step_us, 0.99)},
                 {"max_us", quantile(step_us, 1.0)},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/exit_code.hpp"
+#include "earlier_session.hpp"
 #include "given_map.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/runs/run_manifest.hpp"
@@ -18,10 +19,11 @@ namespace helixnav::apps {
 struct Drive {
   core::Recording recording;
   supervisor::NavigatorOptions navigator;
-  std::optional<GivenMap> given_map;  ///< localise in it instead of mapping
-  bool known_association = false;     ///< use the recording's labels as identities
-  std::vector<bool> withheld;         ///< [scan] not to be fed (blackout.hpp); empty: none is
-  bool smooth = false;                ///< afterwards, with the filter's own associations
+  std::optional<GivenMap> given_map;      ///< localise in it instead of mapping
+  std::optional<EarlierSession> earlier;  ///< go on in its map
+  bool known_association = false;         ///< use the recording's labels as identities
+  std::vector<bool> withheld;             ///< [scan] not to be fed (blackout.hpp); empty: none is
+  bool smooth = false;                    ///< afterwards, with the filter's own associations
   std::string out;
   bool overwrite = false;
   bool quiet = false;

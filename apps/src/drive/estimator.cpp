@@ -3,33 +3,18 @@
 
 #include <cstddef>
 #include <memory>
+#include <utility>
 #include <variant>
 
 #include "common/chosen_navigator.hpp"
-#include "helixnav/localization/localizer.hpp"
+#include "helixnav/logs/field_of_view.hpp"
+#include "helixnav/runs/joint_map_file.hpp"
+#include "helixnav/supervisor/joint_map.hpp"
+#include "helixnav/supervisor/lengths.hpp"
+#include "localizer_feed.hpp"
 
 namespace helixnav::apps {
 namespace {
-
-localization::LocalizerOptions options_of(const supervisor::NavigatorOptions& navigator) {
-  localization::LocalizerOptions options;
-  options.method = navigator.method;
-  options.association = navigator.association;
-  options.gates = navigator.gates;
-  options.extraneous_per_scan = navigator.extraneous_per_scan;
-  options.candidate_sigmas = navigator.candidate_sigmas;
-  return options;
-}
-
-std::vector<core::LandmarkId> landmarks_of(const std::vector<core::Label>& labels, const GivenMap& map) {
-  std::vector<core::LandmarkId> landmarks;
-  landmarks.reserve(labels.size());
-  for (const core::Label label : labels) {
-    const auto known = map.landmark_of.find(label);
-    landmarks.push_back(known == map.landmark_of.end() ? core::no_landmark : known->second);
-  }
-  return landmarks;
-}
 
 /// [scan fed] labels: of the scans withheld an estimator hears nothing.
 std::vector<std::vector<core::Label>> labels_fed(const Drive& job) {
@@ -40,55 +25,51 @@ std::vector<std::vector<core::Label>> labels_fed(const Drive& job) {
   return labels;
 }
 
-/// The localizer as core::EventLoop wants it. Fixes are not used.
-struct LocalizerFeed {
-  localization::Localizer localizer;
-  const Drive& job;
-  LabelAgreement& agreement;
-  std::vector<std::vector<core::Label>> labels_of;
-  std::size_t scans = 0;
-
-  std::optional<core::StepReport> take(const core::Event& event) {
-    if (const auto* odometry = std::get_if<core::Odometry>(&event)) localizer.move(*odometry);
-    const auto* scan = std::get_if<core::Scan>(&event);
-    if (scan == nullptr) return std::nullopt;
-    return observe(*scan, scans++);
+/// A session that does not know where it is calls its own start the origin.
+ChosenNavigator begun(const Drive& job, const std::vector<std::vector<core::Label>>& labels) {
+  if (!job.earlier) return {job.recording, job.navigator, job.known_association, labels};
+  const EarlierSession& earlier = *job.earlier;
+  if (earlier.start.kind == SessionStart::Kind::unknown) {
+    supervisor::Navigator navigator(core::PoseGaussian{}, job.navigator);
+    navigator.look_for_place_in(earlier.map);
+    return {std::move(navigator), labels};
   }
-
-  core::StepReport observe(const core::Scan& scan, std::size_t i) {
-    const GivenMap& map = *job.given_map;
-    if (job.recording.labels.empty()) return localizer.observe(scan);
-    const std::vector<core::Label>& labels = labels_of[i];
-    const core::StepReport report =
-        job.known_association ? localizer.observe(scan, landmarks_of(labels, map)) : localizer.observe(scan);
-    agreement.count(report, labels, map);
-    return report;
-  }
-};
+  const double reach_m = logs::field_of_view_of(job.recording).reach().value_or(supervisor::reference_reach_m);
+  const bool at_end = earlier.start.kind == SessionStart::Kind::end;
+  const core::JointMap map = at_end ? earlier.map : seen_from(earlier.map, earlier.start.T_map_robot, reach_m);
+  if (job.known_association) return {supervisor::NamedNavigator(map, earlier.landmark_of, job.navigator), labels};
+  return {supervisor::Navigator::go_on_in(map, job.navigator), labels};
+}
 
 struct NavigatorDrive {
   std::vector<std::vector<core::Label>> labels;
   ChosenNavigator navigator;
 
-  explicit NavigatorDrive(const Drive& job)
-      : labels(labels_fed(job)), navigator(job.recording, job.navigator, job.known_association, labels) {}
+  explicit NavigatorDrive(const Drive& job) : labels(labels_fed(job)), navigator(begun(job, labels)) {}
 };
+
+/// Nothing where it is too large to be saved.
+std::optional<core::JointMap> joint_map_of(const ChosenNavigator& navigator, const core::Recording& recording) {
+  const std::vector<core::MapLandmark> landmarks = navigator.map();
+  if (landmarks.size() > runs::most_joint_landmarks) return std::nullopt;
+  core::JointMap map = supervisor::joint_map(navigator.filter(), landmarks);
+  map.reach_m = logs::field_of_view_of(recording).reach().value_or(0.0);
+  return map;
+}
 
 }  // namespace
 
 Estimator navigator_of(const Drive& job) {
   const auto drive = std::make_shared<NavigatorDrive>(job);
   return {[drive](const core::Event& event) { return drive->navigator.take(event); },
-          [drive] { return drive->navigator.pose(); }, [drive] { return drive->navigator.map(); }};
+          [drive] { return drive->navigator.pose(); }, [drive] { return drive->navigator.map(); },
+          [drive, &job] { return joint_map_of(drive->navigator, job.recording); }};
 }
 
 Estimator localizer_of(const Drive& job, LabelAgreement& agreement) {
-  const GivenMap& map = *job.given_map;
-  const auto feed = std::make_shared<LocalizerFeed>(
-      LocalizerFeed{localization::Localizer(job.recording.start, map.landmarks, options_of(job.navigator)), job,
-                    agreement, labels_fed(job)});
-  return {[feed](const core::Event& event) { return feed->take(event); }, [feed] { return feed->localizer.pose(); },
-          [&map] { return map.landmarks; }};
+  const auto feed = std::make_shared<LocalizerFeed>(job, labels_fed(job), agreement);
+  return {[feed](const core::Event& event) { return feed->take(event); }, [feed] { return feed->pose(); },
+          [&job] { return job.given_map->landmarks; }, [] { return std::nullopt; }};
 }
 
 }  // namespace helixnav::apps

@@ -18,6 +18,8 @@ struct Estimator {
   std::function<std::optional<core::StepReport>(const core::Event&)> take;  ///< for core::EventLoop
   std::function<core::PoseGaussian()> pose;                                 ///< at the last scan or fix
   std::function<std::vector<core::MapLandmark>()> map;
+  std::function<std::optional<core::JointMap>()>
+      joint_map;  ///< to go on in; nothing of a localizer, or where it is too large
 };
 
 Estimator navigator_of(const Drive& job);

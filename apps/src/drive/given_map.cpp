@@ -13,6 +13,12 @@
 namespace helixnav::apps {
 namespace {
 
+double ratio(std::size_t part, std::size_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace
+
 std::map<core::Label, core::LandmarkId> landmarks_by_label(const runs::Run& run) {
   std::map<core::Label, std::map<core::LandmarkId, int>> votes;
   for (std::size_t k = 0; k < std::min(run.steps.size(), run.truth.labels.size()); ++k) {
@@ -30,12 +36,6 @@ std::map<core::Label, core::LandmarkId> landmarks_by_label(const runs::Run& run)
   }
   return landmark_of;
 }
-
-double ratio(std::size_t part, std::size_t whole) {
-  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
-}
-
-}  // namespace
 
 std::string map_file(const std::string& path) {
   return std::filesystem::is_directory(path) ? (std::filesystem::path(path) / "map.csv").string() : path;

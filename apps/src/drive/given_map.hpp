@@ -3,12 +3,15 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "earlier_session.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/core/step_report.hpp"
+#include "helixnav/runs/run.hpp"
 
 namespace helixnav::apps {
 
@@ -16,7 +19,11 @@ namespace helixnav::apps {
 struct GivenMap {
   std::vector<core::MapLandmark> landmarks;             ///< mature ones
   std::map<core::Label, core::LandmarkId> landmark_of;  ///< by label; empty when the run had no labels
+  std::optional<SessionStart> start;                    ///< on it; nothing: as the log says
 };
+
+/// The landmark that most observations of a label were matched with.
+std::map<core::Label, core::LandmarkId> landmarks_by_label(const runs::Run& run);
 
 /// Reads a map.csv, alone or in a run folder. Who is who is taken from that run's associations and labels: a label is
 /// the landmark that most of its observations were matched with. InputError when there is no map.

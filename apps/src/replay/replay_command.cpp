@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "common/settings.hpp"
 #include "common/vehicle_option.hpp"
 #include "drive/drive.hpp"
+#include "drive/start_option.hpp"
 #include "estimate_range_scale.hpp"
 #include "fuse_gps.hpp"
 #include "helixnav/logs/field_of_view.hpp"
@@ -29,6 +31,7 @@ struct ReplayJob {
   bool smooth = false;
   bool localize = false;
   std::string map;
+  std::optional<SessionStart> start;
   std::vector<Blackout> blackouts;
   RunOptions run;
   Settings settings;
@@ -45,9 +48,24 @@ void scale_ranges(core::Recording& recording, const Settings& settings) {
   divide_ranges(recording, scale);
 }
 
+/// To localise in, or to go on in.
+void take_map(const ReplayJob& job, Drive& task) {
+  if (job.map.empty()) return;
+  if (job.localize) {
+    task.given_map = read_given_map(job.map);
+    task.given_map->start = job.start;
+  } else {
+    task.earlier = read_earlier_session(job.map, job.start.value_or(SessionStart{}));
+  }
+}
+
 ExitCode replay(CLI::App& command, ReplayJob& job) {
   prepare_run(command, job.run);
-  if (job.localize && job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "excludes --localize");
+  if (job.localize && job.start && job.start->kind == SessionStart::Kind::end)
+    throw CLI::ValidationError("--start end", "goes on mapping, and --localize does not map");
+  if (job.localize && job.start && job.settings.known_association)
+    throw CLI::ValidationError("--start", "with --localize is for logs without identities: these tell where one is");
+  if (!job.map.empty() && job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "excludes --map");
   const auto begin = std::chrono::steady_clock::now();
   Drive task;
   apply_vehicle(command, job.vehicle, job.path, job.settings);
@@ -66,12 +84,13 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   const std::string sensor_text = lengths_text(task.navigator, logs::field_of_view_of(task.recording));
   fill_drive(task, job.run, dump_config(command) + sensor_text);
   task.smooth = job.smooth;
-  if (job.localize) task.given_map = read_given_map(job.map);
+  take_map(job, task);
   task.known_association = job.settings.known_association;
   task.manifest.inputs = input_files(job.path);
   if (!job.vehicle.empty()) task.manifest.inputs.push_back(input_files(job.vehicle).front());
-  if (job.localize) {
-    const std::vector<runs::InputFile> of_map = input_files(map_file(job.map));
+  if (!job.map.empty()) {
+    const std::vector<runs::InputFile> of_map =
+        input_files(job.localize ? map_file(job.map) : joint_map_file_in(job.map));
     task.manifest.inputs.insert(task.manifest.inputs.end(), of_map.begin(), of_map.end());
   }
   task.reading_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -107,13 +126,13 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
   CLI::Option* smooth = command->add_flag(
       "--smooth", job->smooth,
       "Then smooth with the filter's associations: trajectory_final.tum, chi2 and dof (GPS fixes left out)");
-  CLI::Option* map = command->add_option("--map", job->map, "Map to localise in: a run folder or its map.csv");
-  map->type_name("FILE");
+  CLI::Option* map = command->add_option(
+      "--map", job->map, "Go on in the map of an earlier run: its folder. With --localize a map.csv will do");
+  map->type_name("RUN")->excludes(smooth);
+  add_start_option(*command, job->start)->needs(map);
   CLI::Option* localize =
       command->add_flag("--localize", job->localize, "Estimate the pose alone, in the map given, which stays as it is");
   localize->needs(map);
-  map->needs(localize);
-  localize->excludes(smooth);
   add_blackouts(*command, *job);
   add_run_options(*command, job->run);
   add_settings(*command, job->settings);
@@ -126,6 +145,7 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
       "  helixnav replay victoria_park_ascii.zip --out runs/vp\n"
       "  helixnav replay isam_victoriaPark.txt --association known --out runs/graph\n"
       "  helixnav replay data_set.mat --out runs/carpark --config mine.toml\n"
+      "  helixnav replay tuesday --map runs/monday --out runs/tuesday\n"
       "  helixnav replay map.circles --localize --map runs/optimum --out runs/located\n"
       "  helixnav replay victoria_park_ascii.zip --blackout 600:660 --blackout 900:930 --out runs/blind\n");
   command->callback([command, job, &code] { code = replay(*command, *job); });

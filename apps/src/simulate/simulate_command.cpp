@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -14,7 +15,10 @@
 #include "common/settings.hpp"
 #include "common/validators.hpp"
 #include "drive/drive.hpp"
+#include "drive/start_option.hpp"
+#include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
+#include "helixnav/sim/part_of.hpp"
 #include "helixnav/sim/simulate.hpp"
 
 namespace helixnav::apps {
@@ -23,6 +27,11 @@ namespace {
 struct SimulateJob {
   std::string scenario = "large-loop";
   std::uint64_t seed = 1;
+  std::optional<std::uint64_t> day;
+  double from_s = 0.0;
+  double until_s = 1e9;
+  std::string map;
+  std::optional<SessionStart> start;
   RunOptions run;
   ScenarioSettings scenario_settings;
   Settings settings;
@@ -37,15 +46,43 @@ std::string scenario_list() {
   return list;
 }
 
+/// Another day is another drive through the same world: other noise, other detections.
+core::Recording recording_of(const SimulateJob& job) {
+  const sim::Scenario scenario = scenario_of(job.scenario, job.scenario_settings);
+  const core::Recording whole =
+      sim::simulate_in(sim::build_world(scenario.world, job.seed), scenario, job.day.value_or(job.seed));
+  if (job.from_s == 0.0 && job.until_s == 1e9) return whole;
+  core::Recording part =
+      sim::part_of(whole, core::nanoseconds_from_seconds(job.from_s), core::nanoseconds_from_seconds(job.until_s));
+  if (part.true_poses.empty()) throw core::InputError("--from, --until: no scan of the drive lies between them");
+  part.start.mean = part.true_poses.front().T_world_robot;
+  return part;
+}
+
+void add_sessions(CLI::App& command, SimulateJob& job) {
+  const auto any = number_between(std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max());
+  command.add_option("--day", job.day, "Seed of the drive's noise, in the world of --seed (default: --seed)")
+      ->check(any);
+  command.add_option("--from", job.from_s, "Begin with this second of the drive")->check(number_between(0.0, 1e9));
+  command.add_option("--until", job.until_s, "End with this second of the drive")->check(number_between(0.0, 1e9));
+  CLI::Option* map = command.add_option("--map", job.map, "Go on in the map of an earlier run: its folder");
+  map->type_name("RUN");
+  add_start_option(command, job.start)->needs(map);
+}
+
 ExitCode simulate(CLI::App& command, SimulateJob& job) {
   prepare_run(command, job.run);
   Drive task;
-  task.recording = sim::simulate(scenario_of(job.scenario, job.scenario_settings), job.seed);
+  task.recording = recording_of(job);
   task.navigator = fit_to_recording(job.settings, task.recording);
   const std::string sensor_text = lengths_text(task.navigator, logs::field_of_view_of(task.recording));
   fill_drive(task, job.run, dump_config(command) + sensor_text);
   task.known_association = job.settings.known_association;
   task.manifest.seed = job.seed;
+  if (!job.map.empty()) {
+    task.earlier = read_earlier_session(job.map, job.start.value_or(SessionStart{}));
+    task.manifest.inputs = input_files(joint_map_file_in(job.map));
+  }
   return drive(task);
 }
 
@@ -60,10 +97,14 @@ void add_simulate_command(CLI::App& app, ExitCode& code) {
   command->add_option("--seed", job->seed, "Seed of every random stream")
       ->capture_default_str()
       ->check(number_between(std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max()));
+  add_sessions(*command, *job);
   add_run_options(*command, job->run);
   add_scenario_settings(*command, job->scenario_settings);
   add_settings(*command, job->settings);
-  command->footer(scenario_list() + "\nExample:\n  helixnav simulate large-loop --seed 1 --out runs/loop\n");
+  command->footer(scenario_list() +
+                  "\nExamples:\n  helixnav simulate large-loop --seed 1 --out runs/loop\n"
+                  "  helixnav simulate town --seed 1 --until 700 --out runs/monday\n"
+                  "  helixnav simulate town --seed 1 --day 2 --from 300 --map runs/monday --out runs/tuesday\n");
   command->callback([command, job, &code] { code = simulate(*command, *job); });
 }
 

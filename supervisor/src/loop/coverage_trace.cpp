@@ -12,6 +12,10 @@ void CoverageTrace::back_to(double path_m) {
   while (!points_.empty() && points_.back().path_m > path_m) points_.pop_back();
 }
 
+void CoverageTrace::change_frame(const core::Pose2& T_new_old) {
+  for (Point& point : points_) point.T_world_sensor = core::compose(T_new_old, point.T_world_sensor);
+}
+
 std::vector<core::Pose2> CoverageTrace::between(double from_m, double to_m) const {
   std::vector<core::Pose2> poses;
   for (const Point& point : points_) {

@@ -20,6 +20,9 @@ class CoverageTrace {
   /// Forgets what was passed after `path_m`.
   void back_to(double path_m);
 
+  /// Everything so far was told in another frame.
+  void change_frame(const core::Pose2& T_new_old);
+
   /// Sensor poses passed at path lengths in [from_m, to_m).
   std::vector<core::Pose2> between(double from_m, double to_m) const;
 

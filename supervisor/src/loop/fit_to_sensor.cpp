@@ -14,7 +14,9 @@ bool fit_to_sensor(const core::FieldOfView& view, bool before_first_scan, Naviga
   const bool new_cells = fitted.filter.cell_side_m != options.filter.cell_side_m ||
                          fitted.filter.hysteresis_m != options.filter.hysteresis_m;
   const bool start_again = new_cells && before_first_scan;
-  if (start_again) filter = cekf::CompressedEkf(filter.pose(), fitted.filter);
+  if (start_again) {
+    filter = cekf::CompressedEkf(filter.joint(filter.landmarks()), filter.next_name(), fitted.filter);
+  }
   options = std::move(fitted);
   return start_again;
 }

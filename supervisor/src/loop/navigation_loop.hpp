@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "loop/mode.hpp"
 #include "loop/tape.hpp"
 #include "noise/noise_learner.hpp"
+#include "placing/place_search.hpp"
 #include "slip/slip_decision.hpp"
 
 namespace helixnav::supervisor {
@@ -27,10 +29,12 @@ namespace helixnav::supervisor {
 class NavigationLoop {
  public:
   NavigationLoop(const core::PoseGaussian& start, const NavigatorOptions& options);
+  NavigationLoop(const core::JointMap& earlier, const NavigatorOptions& options);  // placing/go_on.cpp
 
   void move(const core::Odometry& odometry);
   core::StepReport observe(const core::Scan& scan);
   bool fix(const core::AbsoluteFix& fix);
+  void look_for_place_in(const core::JointMap& earlier);  // placing/find_place.cpp
 
   const Belief& belief() const { return belief_; }
 
@@ -93,6 +97,11 @@ class NavigationLoop {
   bool has_lost_its_place() const;
   core::StepReport roll_back_and_relocalise(core::StepReport report);
 
+  // placing/find_place.cpp
+  PlaceSearch& place_search();
+  void find_place(const core::FieldOfView& view, core::StepReport& report);
+  bool join(const relocalize::Place& place, core::PlacedDecision& decision, core::StepReport& report);
+
   // loop/process_again.hpp
   template <class AfterFix, class AfterScan>
   void process_again(const std::vector<Tape::Entry>& since, const AfterFix& after_fix, const AfterScan& after_scan);
@@ -119,6 +128,8 @@ class NavigationLoop {
   Pending pending_;
   Undo undo_;
   std::uint64_t searches_ = 0;
+  std::shared_ptr<const core::JointMap> sought_in_;        ///< an earlier map, as long as the place on it is unknown
+  std::shared_ptr<PlaceSearch> place_search_;              ///< in it, from the first scan on
   std::map<std::int64_t, std::vector<std::size_t>> used_;  ///< [step] observations of the scans that were thinned
 };
 

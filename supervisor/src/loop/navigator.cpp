@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/supervisor/navigator.hpp"
 
+#include <utility>
 #include <variant>
 
 #include "helixnav/core/check_event.hpp"
@@ -10,6 +11,12 @@ namespace helixnav::supervisor {
 
 Navigator::Navigator(const core::PoseGaussian& start, const NavigatorOptions& options)
     : loop_(std::make_unique<NavigationLoop>(start, options)) {}
+
+Navigator::Navigator(std::unique_ptr<NavigationLoop> loop) : loop_(std::move(loop)) {}
+
+Navigator Navigator::go_on_in(const core::JointMap& earlier, const NavigatorOptions& options) {
+  return Navigator(std::make_unique<NavigationLoop>(earlier, options));
+}
 
 Navigator::~Navigator() = default;
 Navigator::Navigator(Navigator&&) noexcept = default;
@@ -36,6 +43,8 @@ bool Navigator::fix(const core::AbsoluteFix& fix) {
   core::check(fix);
   return loop_->fix(fix);
 }
+
+void Navigator::look_for_place_in(const core::JointMap& earlier) { loop_->look_for_place_in(earlier); }
 
 core::PoseGaussian Navigator::pose() const { return filter().pose(); }
 const cekf::CompressedEkf& Navigator::filter() const { return loop_->belief().filter; }

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "helixnav/core/landmark_id.hpp"
+#include "helixnav/core/se2.hpp"
 #include "helixnav/core/step_report.hpp"
 
 namespace helixnav::association {
@@ -64,6 +65,12 @@ class LandmarkLife {
   /// seen or expected id that is not recorded or a born one that is.
   LifeChanges observe(const Eigen::Vector2d& sensor_m, const std::vector<core::LandmarkId>& seen,
                       const std::vector<core::LandmarkId>& born, const std::vector<core::LandmarkId>& expected);
+
+  /// A landmark of an earlier drive. PreconditionError for an id that is recorded.
+  void adopt(const LandmarkRecord& record);
+
+  /// Everything so far was told in another frame: places of the sensor are moved, evidence stays.
+  void change_frame(const core::Pose2& T_new_old);
 
   /// A landmark that the filter lost for another reason.
   void remove(core::LandmarkId id);

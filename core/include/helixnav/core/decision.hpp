@@ -131,6 +131,32 @@ struct FixDecision {
   double pose_sigma_m = 0.0;  ///< after it
 };
 
+/// The session and the map of an earlier one: whether, where and by which evidence the one was found in the other. Rows where
+/// nothing changed since the row before are left out.
+struct PlacedDecision {
+  enum class Verdict {
+    sought,     ///< the place is unknown: the session maps on its own and asks
+    accepted,   ///< found: from here on one map, in the frame of the earlier one
+    ambiguous,  ///< a place fits, and so may others
+    refused,    ///< the best place, of which the landmarks contradict each other
+    not_here,   ///< no place fits better than chance would
+  };
+  Verdict verdict = Verdict::sought;
+  int earlier_landmarks = 0;
+  int questions = 0;      ///< asked so far
+  int landmarks = 0;      ///< of the question
+  int pairs = 0;          ///< of the best place
+  double evidence = 0.0;  ///< ln of the likelihood of that place against chance
+  double lead = 0.0;      ///< over its best rival, see relocalize::Answer::gap
+  double needed = 0.0;    ///< of evidence and lead each
+  int merged = 0;
+  double cost = 0.0;  ///< χ² of the pairs with dof, where the maps were joined or would have been
+  int dof = 0;
+  double limit = 0.0;
+  double driven_m = 0.0;  ///< by this session
+  Pose2 T_map_session;    ///< of the best place
+};
+
 /// A row of decisions.csv of a kind that this version does not know: listed as it stands.
 struct OtherDecision {
   std::string kind;
@@ -141,7 +167,7 @@ struct OtherDecision {
 /// A decision of the navigator that is worth a sentence, with the numbers that decided it.
 using Decision = std::variant<TriggerDecision, RollbackDecision, SlipDecision, AttemptStarted, AttemptEnded,
                               ReferenceUnusable, VerificationDecision, ClosureDecision, UndecidedDecision,
-                              SmoothingDecision, FixDecision, OtherDecision>;
+                              SmoothingDecision, FixDecision, PlacedDecision, OtherDecision>;
 
 /// True for what ends a search: a closing accepted or refused, or a search given up.
 inline bool is_closure(const Decision& decision) {

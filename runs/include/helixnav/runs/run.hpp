@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "helixnav/core/joint_map.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/runs/run_manifest.hpp"
@@ -30,9 +31,11 @@ RunTruth truth_of(const core::Recording& recording);
 struct Run {
   std::string path;  ///< of its folder
   RunManifest manifest;
-  std::vector<core::StepReport> steps;  ///< in order of time; revisions applied; only the clouds that were kept
-  std::vector<double> microseconds;     ///< [step] wall clock
-  std::vector<core::MapLandmark> map;   ///< empty unless the run finished
+  /// In order of time; revisions applied; only the clouds that were kept; all in one frame, also those before a session
+  /// found its place on an earlier map.
+  std::vector<core::StepReport> steps;
+  std::vector<double> microseconds;    ///< [step] wall clock
+  std::vector<core::MapLandmark> map;  ///< empty unless the run finished
   RunTruth truth;
   bool finished = false;  ///< the run finished
 
@@ -42,6 +45,7 @@ struct Run {
   std::vector<std::pair<std::string, double>> numbers;
   std::vector<std::pair<std::string, double>> timing;  ///< wall clock, into summary.json under "timing"
   std::optional<SmoothedRun> smoothed;
+  std::optional<core::JointMap> joint_map;  ///< into map.bin
 };
 
 /// Adds what a smoother made of the run. Where it ran alone, its poses are the run's from now on.

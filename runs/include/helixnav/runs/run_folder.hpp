@@ -14,6 +14,9 @@ namespace helixnav::runs {
 /// Test: runs/run_folder_test.cpp (tables cut at every kind of byte).
 Run read_run(const std::string& path);
 
+/// Reads the manifest.json of a run folder. InputError where there is none or it cannot be used.
+RunManifest read_manifest(const std::string& path);
+
 /// Reads a map.csv. InputError naming file:line. Test: runs/run_folder_test.cpp.
 std::vector<core::MapLandmark> read_map(const std::string& path);
 

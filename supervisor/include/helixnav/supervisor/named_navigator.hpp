@@ -9,6 +9,7 @@
 
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/events.hpp"
+#include "helixnav/core/joint_map.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/supervisor/delayed_landmarks.hpp"
 #include "helixnav/supervisor/navigator_options.hpp"
@@ -23,6 +24,13 @@ namespace helixnav::supervisor {
 class NamedNavigator {
  public:
   explicit NamedNavigator(const core::PoseGaussian& start, const NavigatorOptions& options = {});
+
+  /// Goes on in the map of an earlier session, from the pose in it and with its correlations, as if that session had not
+  /// ended: `landmark_of` names its landmarks. Sightings of ranges or bearings alone that had fixed no landmark yet are lost.
+  /// PreconditionError where cekf::CompressedEkf refuses the joint estimate, or for a landmark that the map does not have.
+  /// Test: supervisor/go_on_test.cpp (equal to 1e-7).
+  NamedNavigator(const core::JointMap& earlier, const std::map<std::int64_t, core::LandmarkId>& landmark_of,
+                 const NavigatorOptions& options = {});
 
   /// Any event; `identities` belong to a scan. The report of a scan, nothing for others.
   std::optional<core::StepReport> take(const core::Event& event, const std::vector<std::int64_t>& identities);

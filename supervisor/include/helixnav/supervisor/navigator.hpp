@@ -7,6 +7,7 @@
 
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/events.hpp"
+#include "helixnav/core/joint_map.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/supervisor/navigator_options.hpp"
 
@@ -33,9 +34,19 @@ class NavigationLoop;
 class Navigator {
  public:
   explicit Navigator(const core::PoseGaussian& start, const NavigatorOptions& options = {});
+  /// Goes on in the map of an earlier session, from the pose in it and with its correlations. Names given to landmarks from
+  /// now on are above those of the map. PreconditionError where cekf::CompressedEkf refuses the joint estimate.
+  static Navigator go_on_in(const core::JointMap& earlier, const NavigatorOptions& options = {});
   ~Navigator();
   Navigator(Navigator&&) noexcept;
   Navigator& operator=(Navigator&&) noexcept;
+
+  /// This session begins somewhere on the earlier map, or elsewhere: it maps on its own and asks that map, whenever a fifth of
+  /// the landmarks about the vehicle are new, where they are (relocalize::ask, α = 1e-5 for the whole session). Once an answer
+  /// is closed and its pairs do not contradict each other, both become one map in the frame of the earlier one
+  /// (core::PlacedDecision), in which mapping goes on; a doubtful answer leaves both apart. Only before the first scan, and
+  /// with at least one mature landmark: PreconditionError. Test: supervisor/find_place_test.cpp.
+  void look_for_place_in(const core::JointMap& earlier);
 
   /// Any event: move, observe or fix. The report of a scan, nothing for others.
   std::optional<core::StepReport> take(const core::Event& event);
@@ -59,6 +70,8 @@ class Navigator {
   const cekf::CompressedEkf& filter() const;
 
  private:
+  explicit Navigator(std::unique_ptr<NavigationLoop> loop);
+
   std::unique_ptr<NavigationLoop> loop_;
 };
 

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "earlier_session.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+
+#include "given_map.hpp"
+#include "helixnav/core/errors.hpp"
+#include "helixnav/files/number_text.hpp"
+#include "helixnav/runs/joint_map_file.hpp"
+#include "helixnav/runs/run_folder.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+constexpr std::ptrdiff_t least_to_be_found = 5;  ///< pairs of a place, see relocalize::ask
+
+void check_size(const std::string& file, const EarlierSession& session) {
+  const auto mature = std::count(session.map.states.begin(), session.map.states.end(), core::LandmarkState::mature);
+  const bool unknown = session.start.kind == SessionStart::Kind::unknown;
+  const std::ptrdiff_t least = unknown ? least_to_be_found : 1;
+  if (mature >= least) return;
+  throw core::InputError(file + ": the map holds " + std::to_string(mature) +
+                         (mature == 1 ? " mature landmark" : " mature landmarks") + "; " +
+                         (unknown
+                              ? "a place on it can be found from " + std::to_string(least) + " on: give --start a pose"
+                              : "there is nothing to go on in"));
+}
+
+}  // namespace
+
+SessionStart session_start_from(const std::string& word, std::string& objection) {
+  SessionStart start;
+  if (word == "unknown") return start;
+  start.kind = SessionStart::Kind::end;
+  if (word == "end") return start;
+  start.kind = SessionStart::Kind::pose;
+  std::array<double, 3> numbers{};
+  std::string_view rest = word;
+  bool fine = std::count(word.begin(), word.end(), ',') == 2;
+  for (double& number : numbers) {
+    const std::string_view cell = rest.substr(0, rest.find(','));
+    const auto value = files::parse_number(cell);
+    fine = fine && value && std::isfinite(*value);
+    number = value.value_or(0.0);
+    rest.remove_prefix(std::min(cell.size() + 1, rest.size()));
+  }
+  if (!fine) {
+    objection = "'" + word + "': expected unknown, end, or a pose x,y,heading in metres and radians";
+    return {};
+  }
+  start.T_map_robot = core::Pose2(numbers[0], numbers[1], numbers[2]);
+  return start;
+}
+
+std::string joint_map_file_in(const std::string& folder) {
+  return (std::filesystem::path(folder) / "map.bin").string();
+}
+
+core::JointMap read_joint_map_in(const std::string& folder) {
+  namespace fs = std::filesystem;
+  if (!fs::is_directory(folder)) {
+    throw core::InputError(folder + ": expected the folder of a run with its map" +
+                           (fs::exists(folder) ? ", found a file (a map.csv alone serves --localize only)" : ""));
+  }
+  const std::string file = joint_map_file_in(folder);
+  if (!fs::exists(file)) {
+    throw core::InputError(file + ": not there. A run that came to its end writes it, unless it has more than " +
+                           std::to_string(runs::most_joint_landmarks) +
+                           " landmarks, only localised, or is of version 0.1");
+  }
+  return runs::read_joint_map(file);
+}
+
+EarlierSession read_earlier_session(const std::string& folder, const SessionStart& start) {
+  EarlierSession session{read_joint_map_in(folder), {}, start};
+  check_size(joint_map_file_in(folder), session);
+  if (!std::filesystem::exists(std::filesystem::path(folder) / "manifest.json")) return session;
+  const std::vector<core::LandmarkId>& ids = session.map.joint.ids;
+  for (const auto& [label, id] : landmarks_by_label(runs::read_run(folder))) {
+    if (std::binary_search(ids.begin(), ids.end(), id)) session.landmark_of[label] = id;
+  }
+  return session;
+}
+
+core::JointMap seen_from(core::JointMap map, const core::Pose2& T_map_robot, double reach_m) {
+  const double sigma_m = reach_m / 60.0;
+  constexpr double sigma_rad = 3.0 * core::pi / 180.0;
+  map.joint.pose = T_map_robot;
+  Eigen::MatrixXd& P = map.joint.covariance;
+  P.topRows(3).setZero();
+  P.leftCols(3).setZero();
+  P.diagonal().head<3>() << sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad;
+  return map;
+}
+
+}  // namespace helixnav::apps

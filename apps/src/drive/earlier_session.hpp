@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "helixnav/core/joint_map.hpp"
+#include "helixnav/core/recording.hpp"
+
+namespace helixnav::apps {
+
+/// Where a session begins on an earlier map.
+struct SessionStart {
+  enum class Kind {
+    unknown,  ///< to be found out
+    end,      ///< where the session that made the map ended, known as it was then
+    pose,     ///< as given, on the map
+  };
+  Kind kind = Kind::unknown;
+  core::Pose2 T_map_robot;  ///< of `pose`
+};
+
+/// "unknown", "end" or "x,y,heading" in metres and radians; says in `objection` what is wrong with another word.
+SessionStart session_start_from(const std::string& word, std::string& objection);
+
+/// An earlier session to go on from.
+struct EarlierSession {
+  core::JointMap map;
+  std::map<core::Label, core::LandmarkId> landmark_of;  ///< by label; empty when that run had no labels
+  SessionStart start;
+};
+
+/// Reads the folder of a run that came to its end. InputError naming the file where there is no map.bin in it, it cannot be
+/// used, or it holds too few mature landmarks to begin so.
+EarlierSession read_earlier_session(const std::string& folder, const SessionStart& start);
+
+/// The map that a run left in its folder. InputError naming the file where there is none or it cannot be used.
+core::JointMap read_joint_map_in(const std::string& folder);
+
+/// The map.bin in it.
+std::string joint_map_file_in(const std::string& folder);
+
+/// The map as a session goes on in it from a given pose, independent of it and known to a 60th of the reach and 3°.
+core::JointMap seen_from(core::JointMap map, const core::Pose2& T_map_robot, double reach_m);
+
+}  // namespace helixnav::apps

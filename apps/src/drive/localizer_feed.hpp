@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "drive.hpp"
+#include "helixnav/localization/localizer.hpp"
+#include "helixnav/localization/lost_monitor.hpp"
+#include "helixnav/supervisor/navigator.hpp"
+
+namespace helixnav::apps {
+
+/// The localizer as core::EventLoop wants it, and beside it, while the place on the map is unknown or lost, a navigator that
+/// maps on its own from there and asks the map. When that has found its place, localization goes on from there.
+/// Fixes are not used. The job must outlive it.
+class LocalizerFeed {
+ public:
+  LocalizerFeed(const Drive& job, std::vector<std::vector<core::Label>> labels_fed, LabelAgreement& agreement);
+
+  std::optional<core::StepReport> take(const core::Event& event);
+  core::PoseGaussian pose() const { return localizer_ ? localizer_->pose() : finder_->pose(); }
+
+ private:
+  void begin_to_look();
+  core::StepReport observe(const core::Scan& scan, std::size_t i);
+  core::StepReport localize(const core::Scan& scan, std::size_t i);
+  void watch(const core::Scan& scan, core::StepReport& report);
+  void take_place(core::StepReport&& found, core::StepReport& report);
+
+  const Drive& job_;
+  std::vector<std::vector<core::Label>> labels_of_;
+  LabelAgreement& agreement_;
+  localization::LostMonitor monitor_;
+  std::optional<localization::Localizer> localizer_;  ///< none before the place was known at all
+  std::optional<supervisor::Navigator> finder_;       ///< while it is not
+  std::size_t scans_ = 0;
+  double driven_m_ = 0.0;  ///< since the last scan
+};
+
+}  // namespace helixnav::apps

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "session_changes.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "helixnav/supervisor/lengths.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+/// About the landmarks that a session has, in the frame of its component.
+class Ground {
+ public:
+  Ground(const core::JointMap& component, const supervisor::JoinedSession& session, double reach_m) {
+    for (const auto& [own, name] : session.name_of) {
+      const auto at = std::lower_bound(component.joint.ids.begin(), component.joint.ids.end(), name);
+      ids_.push_back(name);
+      points_m_.push_back(component.joint.points_m[static_cast<std::size_t>(at - component.joint.ids.begin())]);
+    }
+    std::sort(ids_.begin(), ids_.end());
+    for (const Eigen::Vector2d& point_m : points_m_) radii_m_.push_back(radius_m(point_m, reach_m));
+  }
+
+  bool has(core::LandmarkId id) const { return std::binary_search(ids_.begin(), ids_.end(), id); }
+  bool looked_at(const Eigen::Vector2d& at_m) const {
+    for (std::size_t i = 0; i < points_m_.size(); ++i) {
+      if ((points_m_[i] - at_m).norm() <= radii_m_[i]) return true;
+    }
+    return false;
+  }
+
+ private:
+  double radius_m(const Eigen::Vector2d& at_m, double reach_m) const {
+    constexpr std::size_t eighth = 8;  // the landmark itself is the nearest
+    constexpr double share = 0.6;
+    std::vector<double> distances_m;
+    for (const Eigen::Vector2d& other_m : points_m_) distances_m.push_back((other_m - at_m).norm());
+    if (distances_m.size() <= eighth) return 0.0;
+    std::nth_element(distances_m.begin(), distances_m.begin() + eighth, distances_m.end());
+    return share * std::min(distances_m[eighth], reach_m);
+  }
+
+  std::vector<core::LandmarkId> ids_;
+  std::vector<Eigen::Vector2d> points_m_;
+  std::vector<double> radii_m_;
+};
+
+void add_shared(std::size_t number, const core::JointMap& component, const std::vector<Ground>& grounds,
+                const std::vector<std::size_t>& sessions, std::vector<ChangedLandmark>& shared) {
+  for (std::size_t i = 0; i < component.joint.ids.size(); ++i) {
+    ChangedLandmark landmark{number, component.joint.ids[i], component.joint.points_m[i], {}, {}};
+    for (std::size_t k = 0; k < sessions.size(); ++k) {
+      if (grounds[k].has(landmark.id)) {
+        landmark.seen_in.push_back(sessions[k]);
+      } else if (grounds[k].looked_at(landmark.point_m)) {
+        landmark.missing_in.push_back(sessions[k]);
+      }
+    }
+    if (landmark.seen_in.size() + landmark.missing_in.size() > 1) shared.push_back(std::move(landmark));
+  }
+}
+
+}  // namespace
+
+Change ChangedLandmark::change() const {
+  if (missing_in.empty()) return Change::kept;
+  if (missing_in.front() > seen_in.back()) return Change::gone;
+  return missing_in.back() < seen_in.front() ? Change::appeared : Change::both;
+}
+
+const char* name_of(Change change) {
+  switch (change) {
+    case Change::gone:
+      return "gone";
+    case Change::appeared:
+      return "new";
+    case Change::both:
+      return "both";
+    case Change::kept:
+      break;
+  }
+  return "kept";
+}
+
+std::vector<ChangedLandmark> shared_landmarks(const std::vector<core::JointMap>& sessions,
+                                              const supervisor::JoinedSessions& joined) {
+  std::vector<ChangedLandmark> shared;
+  for (std::size_t number = 0; number < joined.components.size(); ++number) {
+    std::vector<std::size_t> members;
+    std::vector<Ground> grounds;
+    for (std::size_t k = 0; k < sessions.size(); ++k) {
+      if (joined.sessions[k].component != number) continue;
+      const double reach_m = sessions[k].reach_m > 0.0 ? sessions[k].reach_m : supervisor::reference_reach_m;
+      members.push_back(k);
+      grounds.emplace_back(joined.components[number], joined.sessions[k], reach_m);
+    }
+    add_shared(number, joined.components[number], grounds, members, shared);
+  }
+  return shared;
+}
+
+}  // namespace helixnav::apps

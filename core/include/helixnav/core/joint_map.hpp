@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/step_report.hpp"
+
+namespace helixnav::core {
+
+/// A map with all correlations and the pose at its end: what another session needs to go on in it.
+struct JointMap {
+  JointGaussian joint;                ///< ids ascending
+  std::vector<LandmarkState> states;  ///< [landmark] tentative or mature
+  std::vector<int> observations;      ///< [landmark]
+  LandmarkId next_name = 0;           ///< landmarks named later are this one and above
+  double reach_m = 0.0;               ///< of the sensor that drew it; 0: unknown
+};
+
+}  // namespace helixnav::core

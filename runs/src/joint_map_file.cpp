@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/runs/joint_map_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+#include <openssl/evp.h>
+
+#include "helixnav/core/errors.hpp"
+#include "helixnav/files/file.hpp"
+
+namespace helixnav::runs {
+namespace {
+
+static_assert(sizeof(double) == 8, "map.bin holds IEEE doubles");
+
+constexpr std::string_view magic = "HELIXMAP";
+constexpr std::uint32_t version = 1;
+constexpr std::size_t digest_bytes = 32;
+constexpr std::size_t header_bytes = 8 + 4 + 4 + 4 + 8;  // magic, version, landmarks, next name, reach
+
+std::string digest_of(std::string_view bytes) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned length = 0;
+  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1 ||
+      length != digest_bytes) {
+    throw core::NumericalError("map.bin: SHA-256 is not to be had");
+  }
+  return {reinterpret_cast<const char*>(digest.data()), digest_bytes};
+}
+
+std::size_t size_for(std::size_t landmarks) {
+  const std::size_t rows = 3 + 2 * landmarks;
+  return header_bytes + 12 * landmarks + 8 * (rows + rows * (rows + 1) / 2) + digest_bytes;
+}
+
+/// Little-endian, whatever the machine.
+template <class Unsigned>
+void put_unsigned(std::string& bytes, Unsigned value) {
+  for (std::size_t k = 0; k < sizeof(Unsigned); ++k) bytes += static_cast<char>((value >> (8 * k)) & 0xffU);
+}
+
+void put(std::string& bytes, std::int32_t value) { put_unsigned(bytes, static_cast<std::uint32_t>(value)); }
+
+void put(std::string& bytes, double value) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  put_unsigned(bytes, bits);
+}
+
+/// Takes numbers off the front of bytes that are known to suffice.
+class Bytes {
+ public:
+  explicit Bytes(std::string_view rest) : rest_(rest) {}
+
+  std::uint32_t small() { return take<std::uint32_t>(); }
+  std::int32_t integer() { return static_cast<std::int32_t>(small()); }
+  double number() {
+    const auto bits = take<std::uint64_t>();
+    double value = 0.0;
+    std::memcpy(&value, &bits, sizeof value);
+    return value;
+  }
+
+ private:
+  template <class Unsigned>
+  Unsigned take() {
+    Unsigned value = 0;
+    for (std::size_t k = 0; k < sizeof(Unsigned); ++k) {
+      value |= static_cast<Unsigned>(static_cast<Unsigned>(static_cast<unsigned char>(rest_[k])) << (8 * k));
+    }
+    rest_.remove_prefix(sizeof(Unsigned));
+    return value;
+  }
+
+  std::string_view rest_;
+};
+
+[[noreturn]] void refuse(const std::string& path, const std::string& problem) {
+  throw core::InputError(path + ": " + problem);
+}
+
+/// The number of landmarks of a file that is whole.
+std::size_t check_frame(const std::string& path, std::string_view bytes) {
+  if (bytes.size() < header_bytes || bytes.substr(0, magic.size()) != magic) {
+    refuse(path,
+           bytes.empty() ? "the file is empty; expected a map.bin" : "no map.bin: it does not begin with HELIXMAP");
+  }
+  Bytes header(bytes.substr(magic.size()));
+  const std::uint32_t found = header.small();
+  if (found != version) {
+    refuse(path,
+           "version " + std::to_string(found) + " of map.bin; this program reads version " + std::to_string(version));
+  }
+  const std::size_t landmarks = header.small();
+  if (landmarks > most_joint_landmarks) {
+    refuse(path, "says that it holds " + std::to_string(landmarks) + " landmarks; expected at most " +
+                     std::to_string(most_joint_landmarks));
+  }
+  if (bytes.size() != size_for(landmarks)) {
+    refuse(path, "the file has " + std::to_string(bytes.size()) + " bytes; a map of " + std::to_string(landmarks) +
+                     " landmarks has " + std::to_string(size_for(landmarks)) + ": it is cut short or damaged");
+  }
+  const std::string_view body = bytes.substr(0, bytes.size() - digest_bytes);
+  if (bytes.substr(body.size()) != digest_of(body)) refuse(path, "the checksum does not fit: the file is damaged");
+  return landmarks;
+}
+
+/// What a program other than this one may have written.
+void check_content(const std::string& path, const core::JointMap& map) {
+  core::LandmarkId last = -1;
+  for (const core::LandmarkId id : map.joint.ids) {
+    if (id <= last || id >= map.next_name) refuse(path, "names of landmarks are not ascending below the next name");
+    last = id;
+  }
+  const auto is_finite = [](const Eigen::Vector2d& point_m) { return point_m.allFinite(); };
+  const bool finite = map.joint.pose.vector().allFinite() && map.joint.covariance.allFinite() &&
+                      std::all_of(map.joint.points_m.begin(), map.joint.points_m.end(), is_finite);
+  if (!(map.reach_m >= 0.0) || !std::isfinite(map.reach_m)) refuse(path, "expected the reach of a sensor, 0 or above");
+  if (!finite || map.joint.covariance.diagonal().minCoeff() < 0.0) {
+    refuse(path, "expected finite numbers and variances that are not negative");
+  }
+}
+
+}  // namespace
+
+std::string joint_map_bytes(const core::JointMap& map) {
+  const core::JointGaussian& joint = map.joint;
+  const std::size_t n = joint.ids.size();
+  const auto rows = static_cast<Eigen::Index>(3 + 2 * n);
+  if (n > most_joint_landmarks || joint.points_m.size() != n || map.states.size() != n ||
+      map.observations.size() != n || joint.covariance.rows() != rows || joint.covariance.cols() != rows) {
+    throw core::PreconditionError("joint_map_bytes: the parts of the map do not fit, or it is too large");
+  }
+  std::string bytes(magic);
+  bytes.reserve(size_for(n));
+  put_unsigned(bytes, version);
+  put_unsigned(bytes, static_cast<std::uint32_t>(n));
+  put(bytes, static_cast<std::int32_t>(map.next_name));
+  put(bytes, map.reach_m);
+  for (std::size_t i = 0; i < n; ++i) {
+    put(bytes, static_cast<std::int32_t>(joint.ids[i]));
+    put(bytes, static_cast<std::int32_t>(map.states[i]));
+    put(bytes, static_cast<std::int32_t>(map.observations[i]));
+  }
+  for (const double coordinate : {joint.pose.x_m, joint.pose.y_m, joint.pose.heading_rad}) put(bytes, coordinate);
+  for (const Eigen::Vector2d& point_m : joint.points_m) {
+    put(bytes, point_m.x());
+    put(bytes, point_m.y());
+  }
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) put(bytes, 0.5 * (joint.covariance(i, j) + joint.covariance(j, i)));
+  }
+  return bytes + digest_of(bytes);
+}
+
+core::JointMap read_joint_map(const std::string& path) {
+  const std::string file = files::read_whole_file(path);
+  const std::size_t n = check_frame(path, file);
+  Bytes bytes(std::string_view(file).substr(magic.size() + 8));
+  core::JointMap map;
+  map.next_name = bytes.integer();
+  map.reach_m = bytes.number();
+  for (std::size_t i = 0; i < n; ++i) {
+    map.joint.ids.push_back(bytes.integer());
+    const std::uint32_t state = bytes.small();
+    if (state > static_cast<std::uint32_t>(core::LandmarkState::mature)) refuse(path, "an unknown state of a landmark");
+    map.states.push_back(static_cast<core::LandmarkState>(state));
+    map.observations.push_back(bytes.integer());
+  }
+  const double x_m = bytes.number();
+  const double y_m = bytes.number();
+  map.joint.pose.x_m = x_m;
+  map.joint.pose.y_m = y_m;
+  map.joint.pose.heading_rad = bytes.number();
+  for (std::size_t i = 0; i < n; ++i) {
+    const double point_x_m = bytes.number();
+    map.joint.points_m.emplace_back(point_x_m, bytes.number());
+  }
+  const auto rows = static_cast<Eigen::Index>(3 + 2 * n);
+  map.joint.covariance.resize(rows, rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) map.joint.covariance(i, j) = map.joint.covariance(j, i) = bytes.number();
+  }
+  check_content(path, map);
+  return map;
+}
+
+}  // namespace helixnav::runs

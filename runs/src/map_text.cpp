@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map_text.hpp"
+
+#include "helixnav/files/number_text.hpp"
+#include "helixnav/runs/words.hpp"
+#include "run_tables.hpp"
+
+namespace helixnav::runs {
+
+std::string map_text(const std::vector<core::MapLandmark>& map) {
+  std::string text(map_table.header);
+  text += '\n';
+  for (const core::MapLandmark& landmark : map) {
+    const Eigen::Matrix2d& P = landmark.point.covariance_m2;
+    files::append_number(text, std::int64_t{landmark.id});
+    for (const double value : {landmark.point.mean_m.x(), landmark.point.mean_m.y(), P(0, 0), P(0, 1), P(1, 1)}) {
+      text += ',';
+      files::append_number(text, value);
+    }
+    text += ',';
+    files::append_number(text, std::int64_t{landmark.observations});
+    text += ',';
+    text += word_of(state_words, landmark.state);
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace helixnav::runs

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <vector>
+
+#include "helixnav/core/decision.hpp"
+#include "helixnav/core/joint_map.hpp"
+
+namespace helixnav::supervisor {
+
+/// What became of one session.
+struct JoinedSession {
+  std::size_t component = 0;        ///< of the result
+  core::Pose2 T_component_session;  ///< identity for the session that gave the component its frame
+  /// How it was placed. Of a session that stayed apart: why its best place on the first component was not taken; of the
+  /// first session of all: `sought`, with no numbers.
+  core::PlacedDecision decision;
+  std::map<core::LandmarkId, core::LandmarkId> name_of;  ///< mature landmarks of the session, by their names in it
+};
+
+/// Maps of several sessions as few as can be said.
+struct JoinedSessions {
+  std::vector<core::JointMap> components;  ///< mature landmarks only; that of the largest session first
+  std::vector<JoinedSession> sessions;     ///< [session]
+};
+
+/// Joins maps that were made independently of each other, each in a frame of its own, without a prior. The session with the
+/// most mature landmarks gives a component its frame; every other session asks that component where it is
+/// (relocalize::ask, with constellations of up to 40 landmarks from all over its map), and is merged with it when the answer
+/// is closed and χ² of the pairs passes (join_maps); what was joined is asked again by those still apart, and those that stay
+/// apart begin the next component. α = 1e-5 bounds the probability of a false answer for each pair of sessions. The result
+/// does not depend on the order of the sessions, but for the numbering of those as large as each other.
+/// PreconditionError for a map of which the parts do not fit each other. Cost: for each pair of sessions an index and a
+/// question every 20 landmarks, and O(N²·pairs) for each join. Test: supervisor/join_sessions_test.cpp.
+JoinedSessions join_sessions(const std::vector<core::JointMap>& sessions);
+
+}  // namespace helixnav::supervisor

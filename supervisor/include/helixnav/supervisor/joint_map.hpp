@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/joint_map.hpp"
+
+namespace helixnav::supervisor {
+
+/// What a session leaves to the next one: its landmarks, as its navigator's map() lists them, and its pose with all
+/// correlations. O(N²).
+core::JointMap joint_map(const cekf::CompressedEkf& filter, const std::vector<core::MapLandmark>& landmarks);
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "helixnav/core/joint_map.hpp"
+#include "helixnav/relocalize/map_index.hpp"
+
+namespace helixnav::supervisor {
+
+/// The mature landmarks of an earlier session, in its frame, ready to be asked. Tentative ones are left out.
+class EarlierMap {
+ public:
+  /// PreconditionError when the parts of the map do not fit each other.
+  explicit EarlierMap(const core::JointMap& map);
+
+  /// Landmarks with covariances relative to their neighbours within reach, on top of the noise of a pair.
+  relocalize::MapIndex index(const relocalize::IndexOptions& lengths) const;
+
+  /// Pose meaningless, ids ascending.
+  const core::JointGaussian& landmarks() const { return landmarks_; }
+  int observations(std::size_t landmark) const { return observations_[landmark]; }
+  core::LandmarkId next_name() const { return next_name_; }
+
+ private:
+  core::PointGaussian relative_to_neighbours(std::size_t landmark, double reach_m) const;
+
+  core::JointGaussian landmarks_;
+  std::vector<int> observations_;
+  core::LandmarkId next_name_;
+};
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The loop of a session that does not know where on an earlier map it is.
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "helixnav/core/errors.hpp"
+#include "helixnav/supervisor/lengths.hpp"
+#include "loop/navigation_loop.hpp"
+#include "placing/join_maps.hpp"
+#include "placing/session_question.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+using core::LandmarkId;
+using core::PlacedDecision;
+
+struct Seen {
+  std::vector<LandmarkId> confirmed, unconfirmed;
+};
+
+Seen seen_landmarks(const association::LandmarkLife& existence, int least_hits) {
+  Seen seen;
+  for (const association::LandmarkRecord& record : existence.records()) {
+    (record.hits >= least_hits ? seen.confirmed : seen.unconfirmed).push_back(record.id);
+  }
+  return seen;
+}
+
+/// What stood yesterday may be gone today: as sure as when it matured, and unseen for as long as anybody asks.
+association::LandmarkRecord record_of(const EarlierMap& earlier, std::size_t landmark,
+                                      const association::LifeOptions& life) {
+  association::LandmarkRecord record;
+  record.id = earlier.landmarks().ids[landmark];
+  record.state = core::LandmarkState::mature;
+  record.log_odds = life.mature_log_odds;
+  record.observations = earlier.observations(landmark);
+  record.hits = std::max(life.mature_looks, 1);
+  record.last_hit_at_m = record.last_miss_at_m = earlier.landmarks().points_m[landmark];
+  record.born_path_m = record.last_seen_path_m = -1e6;
+  return record;
+}
+
+association::LandmarkLife existence_of_both(const association::LandmarkLife& session, const EarlierMap& earlier,
+                                            const JoinedMaps& joined, const association::LifeOptions& life) {
+  association::LandmarkLife both = session;
+  both.change_frame(joined.T_map_session);
+  for (std::size_t i = 0; i < earlier.landmarks().ids.size(); ++i) both.adopt(record_of(earlier, i, life));
+  for (const core::MergedLandmarks& one : joined.closing.merged) both.merge(one.kept, one.removed);
+  for (const LandmarkId id : joined.closing.forgotten) both.remove(id);
+  return both;
+}
+
+}  // namespace
+
+void NavigationLoop::look_for_place_in(const core::JointMap& earlier) {
+  if (belief_.step > 0 || belief_.filter.mapped_count() > 0 || earlier.next_name < 0) {
+    throw core::PreconditionError("look_for_place_in: a session that has begun cannot look for its place any more");
+  }
+  EarlierMap checked(earlier);
+  if (checked.landmarks().ids.empty())
+    throw core::PreconditionError("look_for_place_in: no mature landmark in the map");
+  sought_in_ = std::make_shared<const core::JointMap>(earlier);
+  belief_.filter.name_from(earlier.next_name);
+  std::get<Mapping>(mode_).trust(take_checkpoint(belief_, tape_));
+}
+
+/// The index is made when the sensor is known.
+PlaceSearch& NavigationLoop::place_search() {
+  if (place_search_) return *place_search_;
+  relocalize::IndexOptions lengths;
+  lengths.reach_m = view_.reach().value_or(reference_reach_m);
+  constexpr double most_share = 1.0 / 20.0;
+  lengths.pair_noise_m = std::min(options_.search.constellation.branch_sigma_m, most_share * lengths.reach_m);
+  place_search_ = std::make_shared<PlaceSearch>(*sought_in_, lengths);
+  return *place_search_;
+}
+
+/// After a scan, while the place is unknown.
+void NavigationLoop::find_place(const core::FieldOfView& view, core::StepReport& report) {
+  if (searching() != nullptr) return;
+  const bool is_first = place_search_ == nullptr;
+  PlaceSearch& search = place_search();
+  PlacedDecision decision;
+  if (is_first) {
+    decision.earlier_landmarks = static_cast<int>(search.earlier().landmarks().ids.size());
+    report.decisions.emplace_back(decision);
+  }
+  const double seen_within_m = options_.search.branch_seen_within_m;
+  LandmarksAbout about = landmarks_about(belief_, seen_within_m);
+  if (!search.is_due(about.ids)) return;
+  const relocalize::Question question = session_question(belief_, about, view, search.lengths(), seen_within_m);
+  if (question.looked.empty()) return;
+  const relocalize::Answer answer = search.ask(question, decision);
+  decision.driven_m = belief_.existence.path_m();
+  std::sort(about.ids.begin(), about.ids.end());
+  report.decisions.reserve(report.decisions.size() + 1);
+  if (answer.verdict == relocalize::Verdict::closed && join(answer.places.front(), decision, report)) return;
+  if (search.asked(about.ids, decision.verdict)) report.decisions.emplace_back(decision);
+}
+
+/// From here on one map, in the frame of the earlier one, or everything as before. What lies behind can no longer be solved
+/// as a whole, since it says nothing of how the earlier map was made.
+bool NavigationLoop::join(const relocalize::Place& place, PlacedDecision& decision, core::StepReport& report) {
+  const PlaceSearch& search = *place_search_;
+  const Seen seen = seen_landmarks(belief_.existence, options_.search.constellation.least_hits);
+  JoinedMaps joined = join_maps(belief_.filter, search.earlier().landmarks(), place, seen.confirmed, seen.unconfirmed,
+                                search.lengths().pair_noise_m, options_.search);
+  decision.cost = joined.closing.cost;
+  decision.dof = joined.closing.dof;
+  decision.limit = joined.closing.limit;
+  decision.merged = static_cast<int>(joined.closing.merged.size());
+  if (!joined.closing.accepted) {
+    decision.verdict = PlacedDecision::Verdict::refused;
+    return false;
+  }
+  const core::Pose2 before = belief_.filter.pose().mean;
+  decision.T_map_session = core::compose(joined.filter.pose().mean, core::inverse(before));
+  Belief both{std::move(joined.filter),
+              existence_of_both(belief_.existence, search.earlier(), joined, options_.life),
+              belief_.coverage,
+              {},
+              belief_.step,
+              belief_.slips,
+              belief_.left_open};
+  both.coverage.change_frame(decision.T_map_session);
+  Mapping mapping;
+  std::vector<LandmarkId> recognised;
+  for (const core::MergedLandmarks& one : joined.closing.merged) recognised.push_back(one.kept);
+  mapping.monitor.close(both.existence.path_m(), recognised);
+  mapping.trust(take_checkpoint(both, tape_));
+  report.merged.insert(report.merged.end(), joined.closing.merged.begin(), joined.closing.merged.end());
+  report.pose = both.filter.pose();
+  report.active_landmarks = both.filter.active_count();
+  report.mapped_landmarks = both.filter.mapped_count();
+  report.decisions.emplace_back(decision);
+
+  // Nothing below throws.
+  belief_ = std::move(both);
+  mode_ = std::move(mapping);
+  tape_.drop_drive();
+  sought_in_.reset();
+  place_search_.reset();
+  return true;
+}
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A session that knows where on an earlier map it begins.
+#include "loop/navigation_loop.hpp"
+
+#include "placing/earlier_map.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+core::PoseGaussian pose_of(const core::JointMap& earlier) {
+  const EarlierMap checked(earlier);
+  return {earlier.joint.pose, earlier.joint.covariance.topLeftCorner<3, 3>()};
+}
+
+}  // namespace
+
+/// Existence: as sure as what was mature or tentative then was when it became so; old is what is far away.
+NavigationLoop::NavigationLoop(const core::JointMap& earlier, const NavigatorOptions& options)
+    : NavigationLoop(pose_of(earlier), options) {
+  belief_.filter = cekf::CompressedEkf(earlier.joint, earlier.next_name, options.filter);
+  for (std::size_t i = 0; i < earlier.joint.ids.size(); ++i) {
+    association::LandmarkRecord record;
+    record.id = earlier.joint.ids[i];
+    record.state = earlier.states[i];
+    const bool mature = record.state == core::LandmarkState::mature;
+    record.log_odds = mature ? options.life.mature_log_odds : options.life.birth_log_odds;
+    record.observations = earlier.observations[i];
+    record.hits = mature ? options.life.mature_looks : 1;
+    record.last_hit_at_m = record.last_miss_at_m = earlier.joint.pose.position_m();
+    const double away_m = (earlier.joint.points_m[i] - earlier.joint.pose.position_m()).norm();
+    if (mature && away_m > options.search.old_after_m) record.born_path_m = record.last_seen_path_m = -1e6;
+    belief_.existence.adopt(record);
+  }
+  tape_.drop_drive();
+  std::get<Mapping>(mode_).trust(take_checkpoint(belief_, tape_));
+}
+
+}  // namespace helixnav::supervisor

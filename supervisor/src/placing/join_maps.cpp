@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "placing/join_maps.hpp"
+
+#include <algorithm>
+
+#include <Eigen/LU>
+
+#include "closing/branch_pairs.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+constexpr double loosened = 1e4;  ///< of a variance: the pairs count once, not twice
+constexpr int share_dropped = 8;  ///< one pair in so many may be dropped
+
+KeptRemoved pairs_of(const relocalize::Place& place) {
+  KeptRemoved pairs;
+  for (const relocalize::Pair& pair : place.pairs) pairs.emplace_back(pair.map, pair.branch);
+  return pairs;
+}
+
+SearchOptions across_sessions(SearchOptions options, double pair_noise_m, std::size_t pairs) {
+  options.merge_sigma_m = options.duplicate_sigma_m = pair_noise_m;
+  options.most_dropped = std::max(1, static_cast<int>(pairs) / share_dropped);
+  return options;
+}
+
+std::vector<core::LandmarkId> those_in(const cekf::CompressedEkf& filter, std::vector<core::LandmarkId> ids) {
+  const auto gone = [&](core::LandmarkId id) { return !filter.contains(id); };
+  ids.erase(std::remove_if(ids.begin(), ids.end(), gone), ids.end());
+  return ids;
+}
+
+/// Turns pose and points, rows of the matrix.
+void turn_rows(double angle_rad, Eigen::MatrixXd& rows) {
+  const Eigen::Matrix2d R = core::rotation(angle_rad);
+  rows.topRows<2>() = (R * rows.topRows<2>()).eval();
+  for (Eigen::Index row = 3; row < rows.rows(); row += 2) {
+    rows.middleRows<2>(row) = (R * rows.middleRows<2>(row)).eval();
+  }
+}
+
+Eigen::MatrixXd turned(const Eigen::MatrixXd& covariance, double angle_rad) {
+  Eigen::MatrixXd once = covariance;
+  turn_rows(angle_rad, once);
+  Eigen::MatrixXd twice = once.transpose();
+  turn_rows(angle_rad, twice);
+  return twice;
+}
+
+}  // namespace
+
+core::JointGaussian side_by_side(const core::JointGaussian& session, const core::JointGaussian& earlier,
+                                 const core::PoseGaussian& T_map_session) {
+  const core::Pose2& T = T_map_session.mean;
+  const auto own = session.covariance.rows();
+  const auto other = earlier.covariance.rows() - 3;
+  core::JointGaussian joint;
+  joint.pose = core::compose(T, session.pose);
+  Eigen::MatrixXd common(own, 3);  // of the session's errors, those of T
+  common.topRows<3>() = core::compose_jacobians(T, session.pose).J_first;
+  const Eigen::Matrix2d R = core::rotation(T.heading_rad);
+  for (std::size_t i = 0; i < session.ids.size(); ++i) {
+    const auto row = 3 + 2 * static_cast<Eigen::Index>(i);
+    const Eigen::Vector2d arm_m = R * session.points_m[i];
+    common.middleRows<2>(row) << 1.0, 0.0, -arm_m.y(), 0.0, 1.0, arm_m.x();
+    joint.ids.push_back(session.ids[i]);
+    joint.points_m.push_back(core::transform(T, session.points_m[i]));
+  }
+  joint.ids.insert(joint.ids.end(), earlier.ids.begin(), earlier.ids.end());
+  joint.points_m.insert(joint.points_m.end(), earlier.points_m.begin(), earlier.points_m.end());
+  joint.covariance = Eigen::MatrixXd::Zero(own + other, own + other);
+  Eigen::MatrixXd moved = turned(session.covariance, T.heading_rad);
+  moved.noalias() += common * T_map_session.covariance * common.transpose();
+  joint.covariance.topLeftCorner(own, own) = 0.5 * (moved + moved.transpose());
+  joint.covariance.bottomRightCorner(other, other) = earlier.covariance.bottomRightCorner(other, other);
+  return joint;
+}
+
+JoinedMaps join_maps(const cekf::CompressedEkf& session, const core::JointGaussian& earlier,
+                     const relocalize::Place& place, const std::vector<core::LandmarkId>& confirmed,
+                     const std::vector<core::LandmarkId>& unconfirmed, double pair_noise_m,
+                     const SearchOptions& options) {
+  const Eigen::Matrix3d covariance = loosened * place.information.inverse();
+  const core::PoseGaussian T_map_session{place.T_map_branch, 0.5 * (covariance + covariance.transpose())};
+  const core::JointGaussian both = side_by_side(session.joint(session.landmarks()), earlier, T_map_session);
+  JoinedMaps joined{cekf::CompressedEkf(both, session.next_name(), session.options()), {}, T_map_session.mean};
+  KeptRemoved pairs = pairs_of(place);
+  const SearchOptions across = across_sessions(options, pair_noise_m, pairs.size());
+  Closing& closing = joined.closing;
+  if (!make_compatible(joined.filter, across, pairs, closing)) return joined;
+  joined.filter.merge(pairs, across.merge_sigma_m);
+  note(pairs, closing);
+  closing.accepted = true;
+  constexpr int most_passes = 10;
+  for (int pass = 0; pass < most_passes; ++pass) {
+    KeptRemoved rest = leftovers(joined.filter, confirmed, earlier.ids, across);
+    Closing rest_closing;
+    if (rest.empty() || !make_compatible(joined.filter, across, rest, rest_closing)) break;
+    joined.filter.merge(rest, across.merge_sigma_m);
+    note(rest, closing);
+  }
+  forget_copies(joined.filter, those_in(joined.filter, unconfirmed), earlier.ids, across, closing);
+  return joined;
+}
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/supervisor/join_sessions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "helixnav/relocalize/ask.hpp"
+#include "helixnav/supervisor/lengths.hpp"
+#include "placing/earlier_map.hpp"
+#include "placing/join_maps.hpp"
+#include "placing/map_questions.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+using core::LandmarkId;
+
+constexpr double alpha = 1e-5;  ///< of a false answer for one pair of sessions
+
+relocalize::IndexOptions lengths_of(const NavigatorOptions& options, double reach_m) {
+  constexpr double most_share = 1.0 / 20.0;
+  return {reach_m, std::min(options.search.constellation.branch_sigma_m, most_share * reach_m)};
+}
+
+/// Answers that were closed, the surest first.
+std::vector<relocalize::Answer> ask_for(const EarlierMap& session, const relocalize::MapIndex& index) {
+  const std::vector<relocalize::Question> questions = map_questions(session, index.options());
+  relocalize::AskOptions options;
+  options.alpha = alpha / static_cast<double>(std::max<std::size_t>(1, questions.size()));
+  std::vector<relocalize::Answer> answers;
+  for (const relocalize::Question& question : questions) answers.push_back(relocalize::ask(index, question, options));
+  std::stable_sort(answers.begin(), answers.end(), [](const relocalize::Answer& a, const relocalize::Answer& b) {
+    const auto rank = [](const relocalize::Answer& answer) {
+      return std::make_pair(static_cast<int>(answer.verdict), -answer.gap);
+    };
+    return rank(a) < rank(b);
+  });
+  return answers;
+}
+
+/// The session under names that the component does not use.
+core::JointGaussian renamed(const EarlierMap& session, LandmarkId from) {
+  core::JointGaussian joint = session.landmarks();
+  for (LandmarkId& id : joint.ids) id += from;
+  return joint;
+}
+
+core::PlacedDecision decision_of(const std::vector<relocalize::Answer>& answers, const core::JointMap& component) {
+  core::PlacedDecision decision;
+  decision.verdict = core::PlacedDecision::Verdict::not_here;
+  decision.earlier_landmarks = static_cast<int>(component.joint.ids.size());
+  decision.questions = static_cast<int>(answers.size());
+  decision.needed = -std::log(alpha / static_cast<double>(std::max<std::size_t>(1, answers.size())));
+  if (answers.empty()) return decision;
+  const relocalize::Answer& best = answers.front();
+  if (best.verdict == relocalize::Verdict::ambiguous) decision.verdict = core::PlacedDecision::Verdict::ambiguous;
+  decision.lead = best.gap;
+  if (best.places.empty()) return decision;
+  decision.pairs = static_cast<int>(best.places.front().pairs.size());
+  decision.evidence = best.places.front().evidence;
+  decision.T_map_session = best.places.front().T_map_branch;
+  return decision;
+}
+
+void note(const Closing& closing, core::PlacedDecision& decision) {
+  decision.cost = closing.cost;
+  decision.dof = closing.dof;
+  decision.limit = closing.limit;
+  decision.merged = static_cast<int>(closing.merged.size());
+  decision.verdict =
+      closing.accepted ? core::PlacedDecision::Verdict::accepted : core::PlacedDecision::Verdict::refused;
+}
+
+/// The component with the session in it. What was merged keeps the component's name and is as often observed as both.
+void take_in(const EarlierMap& session, const JoinedMaps& joined, JoinedSession& result, core::JointMap& component) {
+  const LandmarkId offset = component.next_name;
+  std::map<LandmarkId, int> observations;
+  for (std::size_t i = 0; i < component.joint.ids.size(); ++i) {
+    observations[component.joint.ids[i]] = component.observations[i];
+  }
+  std::map<LandmarkId, LandmarkId> kept_of;
+  for (const core::MergedLandmarks& one : joined.closing.merged) kept_of[one.removed] = one.kept;
+  for (std::size_t i = 0; i < session.landmarks().ids.size(); ++i) {
+    const LandmarkId own = session.landmarks().ids[i];
+    const auto merged = kept_of.find(own + offset);
+    const LandmarkId name = merged == kept_of.end() ? own + offset : merged->second;
+    if (!joined.filter.contains(name)) continue;
+    result.name_of[own] = name;
+    observations[name] += session.observations(i);
+  }
+  component.joint = joined.filter.joint(joined.filter.landmarks());
+  component.next_name = offset + session.next_name();
+  component.states.assign(component.joint.ids.size(), core::LandmarkState::mature);
+  component.observations.clear();
+  for (const LandmarkId id : component.joint.ids) component.observations.push_back(observations[id]);
+}
+
+/// Tries the surest places until one is accepted.
+bool place_in(const core::JointMap& session_map, JoinedSession& result, core::JointMap& component) {
+  const EarlierMap session(session_map);
+  const EarlierMap earlier(component);
+  const double reach_m = component.reach_m > 0.0 ? component.reach_m : reference_reach_m;
+  core::FieldOfView view;
+  view.max_range_m = reach_m;
+  const NavigatorOptions options = fit_lengths(NavigatorOptions{}, view);
+  const relocalize::IndexOptions lengths = lengths_of(options, reach_m);
+  const std::vector<relocalize::Answer> answers = ask_for(session, earlier.index(lengths));
+  result.decision = decision_of(answers, component);
+  if (answers.empty() || answers.front().verdict != relocalize::Verdict::closed) return false;
+  const LandmarkId offset = component.next_name;
+  const core::JointGaussian joint = renamed(session, offset);
+  const cekf::CompressedEkf filter(joint, offset + session.next_name(), options.filter);
+  constexpr std::size_t most_tried = 3;
+  for (std::size_t k = 0; k < std::min(most_tried, answers.size()); ++k) {
+    if (answers[k].verdict != relocalize::Verdict::closed) break;
+    relocalize::Place place = answers[k].places.front();
+    for (relocalize::Pair& pair : place.pairs) pair.branch += offset;
+    const JoinedMaps joined =
+        join_maps(filter, earlier.landmarks(), place, joint.ids, {}, lengths.pair_noise_m, options.search);
+    note(joined.closing, result.decision);
+    if (!joined.closing.accepted) continue;
+    result.T_component_session = core::compose(joined.filter.pose().mean, core::inverse(session_map.joint.pose));
+    result.decision.T_map_session = result.T_component_session;
+    take_in(session, joined, result, component);
+    return true;
+  }
+  return false;
+}
+
+/// The session alone, without what is not mature.
+core::JointMap begin(const core::JointMap& session, JoinedSession& result) {
+  const EarlierMap mature(session);
+  core::JointMap component = session;
+  component.joint.ids = mature.landmarks().ids;
+  component.joint.points_m = mature.landmarks().points_m;
+  component.joint.covariance = mature.landmarks().covariance;
+  component.states.assign(mature.landmarks().ids.size(), core::LandmarkState::mature);
+  component.observations.clear();
+  for (std::size_t i = 0; i < mature.landmarks().ids.size(); ++i) {
+    component.observations.push_back(mature.observations(i));
+    result.name_of[mature.landmarks().ids[i]] = mature.landmarks().ids[i];
+  }
+  return component;
+}
+
+/// Those with the most mature landmarks first.
+std::vector<std::size_t> largest_first(const std::vector<core::JointMap>& sessions) {
+  const auto size = [&](std::size_t k) {
+    const std::vector<core::LandmarkState>& states = sessions[k].states;
+    return std::count(states.begin(), states.end(), core::LandmarkState::mature);
+  };
+  std::vector<std::size_t> order(sessions.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto before = [&](std::size_t a, std::size_t b) {
+    const Eigen::Vector3d pose_a = sessions[a].joint.pose.vector();
+    const Eigen::Vector3d pose_b = sessions[b].joint.pose.vector();
+    const auto key = [&](std::size_t k, const Eigen::Vector3d& pose) {
+      return std::make_tuple(-size(k), pose.x(), pose.y(), pose.z());
+    };
+    return key(a, pose_a) < key(b, pose_b);
+  };
+  std::stable_sort(order.begin(), order.end(), before);
+  return order;
+}
+
+}  // namespace
+
+JoinedSessions join_sessions(const std::vector<core::JointMap>& sessions) {
+  JoinedSessions result;
+  result.sessions.resize(sessions.size());
+  std::vector<std::size_t> apart = largest_first(sessions);
+  while (!apart.empty()) {
+    const std::size_t number = result.components.size();
+    result.sessions[apart.front()].component = number;
+    core::JointMap component = begin(sessions[apart.front()], result.sessions[apart.front()]);
+    apart.erase(apart.begin());
+    for (std::size_t k = 0; k < apart.size();) {
+      JoinedSession& session = result.sessions[apart[k]];
+      if (!place_in(sessions[apart[k]], session, component)) {
+        ++k;
+        continue;
+      }
+      session.component = number;
+      apart.erase(apart.begin() + static_cast<std::ptrdiff_t>(k));
+      k = 0;  // the others may fit what it brought
+    }
+    result.components.push_back(std::move(component));
+  }
+  return result;
+}
+
+}  // namespace helixnav::supervisor

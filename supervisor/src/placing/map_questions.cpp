@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "placing/map_questions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "placing/question_landmarks.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+constexpr std::size_t least_landmarks = 8;
+constexpr std::size_t most_landmarks = 40;
+constexpr double share_of_eighth = 0.6;  ///< as MapIndex::look_around_landmarks
+
+using Near = std::vector<std::pair<double, std::size_t>>;
+
+/// The landmarks nearest to one of them, by distance.
+Near nearest(const core::JointGaussian& landmarks, std::size_t centre) {
+  Near near;
+  for (std::size_t i = 0; i < landmarks.ids.size(); ++i) {
+    near.emplace_back((landmarks.points_m[i] - landmarks.points_m[centre]).norm(), i);
+  }
+  const std::size_t kept = std::min(most_landmarks, near.size());
+  std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(kept), near.end());
+  near.resize(kept);
+  return near;
+}
+
+/// Ground about the landmarks, none farther from the centre than the farthest of them.
+std::vector<relocalize::Disc> ground_about(const core::JointGaussian& landmarks, const Near& near, double reach_m) {
+  std::vector<relocalize::Disc> discs;
+  for (const auto& [distance_m, i] : near) {
+    std::vector<double> others_m;
+    for (const auto& [unused_m, j] : near) others_m.push_back((landmarks.points_m[j] - landmarks.points_m[i]).norm());
+    const auto eighth = others_m.begin() + std::min<std::ptrdiff_t>(8, static_cast<std::ptrdiff_t>(near.size()) - 1);
+    std::nth_element(others_m.begin(), eighth, others_m.end());
+    const double radius_m = std::min(share_of_eighth * std::min(*eighth, reach_m), near.back().first - distance_m);
+    if (radius_m > 0.0) discs.push_back({landmarks.points_m[i], radius_m});
+  }
+  return discs;
+}
+
+}  // namespace
+
+std::vector<relocalize::Question> map_questions(const EarlierMap& map, const relocalize::IndexOptions& lengths) {
+  const core::JointGaussian& landmarks = map.landmarks();
+  std::vector<relocalize::Question> questions;
+  if (landmarks.ids.size() < least_landmarks) return questions;
+  std::vector<bool> asked(landmarks.ids.size(), false);
+  for (std::size_t centre = 0; centre < asked.size(); ++centre) {
+    if (asked[centre]) continue;
+    const Near near = nearest(landmarks, centre);
+    std::vector<std::size_t> chosen;
+    for (const auto& [distance_m, i] : near) {
+      if (chosen.size() < near.size() / 2) asked[i] = true;
+      chosen.push_back(i);
+    }
+    relocalize::Question question;
+    question.landmarks = question_landmarks(landmarks, chosen, lengths.pair_noise_m);
+    question.looked = ground_about(landmarks, near, lengths.reach_m);
+    if (!question.looked.empty()) questions.push_back(std::move(question));
+  }
+  return questions;
+}
+
+}  // namespace helixnav::supervisor

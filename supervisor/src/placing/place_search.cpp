@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "placing/place_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace helixnav::supervisor {
+namespace {
+
+constexpr double alpha = 1e-5;
+constexpr std::size_t least_landmarks = 8;
+
+core::PlacedDecision::Verdict verdict_of(relocalize::Verdict verdict) {
+  if (verdict == relocalize::Verdict::closed) return core::PlacedDecision::Verdict::accepted;
+  const bool ambiguous = verdict == relocalize::Verdict::ambiguous;
+  return ambiguous ? core::PlacedDecision::Verdict::ambiguous : core::PlacedDecision::Verdict::not_here;
+}
+
+}  // namespace
+
+PlaceSearch::PlaceSearch(const core::JointMap& earlier, const relocalize::IndexOptions& lengths)
+    : earlier_(earlier), index_(earlier_.index(lengths)) {}
+
+bool PlaceSearch::is_due(const std::vector<core::LandmarkId>& landmarks) const {
+  if (landmarks.size() < least_landmarks || !(index_.looked_at_m2() > 0.0)) return false;
+  const auto fresh = std::count_if(landmarks.begin(), landmarks.end(), [&](core::LandmarkId id) {
+    return !std::binary_search(asked_with_.begin(), asked_with_.end(), id);
+  });
+  return 5 * static_cast<std::size_t>(fresh) >= landmarks.size();
+}
+
+relocalize::Answer PlaceSearch::ask(const relocalize::Question& question, core::PlacedDecision& decision) const {
+  const double k = questions_ + 1;
+  relocalize::AskOptions options;
+  options.alpha = alpha / (k * (k + 1.0));
+  relocalize::Answer answer = relocalize::ask(index_, question, options);
+  decision.verdict = verdict_of(answer.verdict);
+  decision.earlier_landmarks = static_cast<int>(earlier_.landmarks().ids.size());
+  decision.questions = questions_ + 1;
+  decision.landmarks = static_cast<int>(question.landmarks.size());
+  decision.needed = -std::log(options.alpha);
+  decision.lead = answer.gap;
+  if (answer.places.empty()) return answer;
+  const relocalize::Place& best = answer.places.front();
+  decision.pairs = static_cast<int>(best.pairs.size());
+  decision.evidence = best.evidence;
+  decision.T_map_session = best.T_map_branch;
+  return answer;
+}
+
+bool PlaceSearch::asked(std::vector<core::LandmarkId>& landmarks, core::PlacedDecision::Verdict verdict) noexcept {
+  ++questions_;
+  asked_with_.swap(landmarks);
+  const bool differs = verdict != last_;
+  last_ = verdict;
+  return differs;
+}
+
+}  // namespace helixnav::supervisor

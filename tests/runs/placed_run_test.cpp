@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A session that found its place on an earlier map is a run in one frame, in memory and in its folder.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "helixnav/runs/joint_map_file.hpp"
+#include "helixnav/runs/run_folder.hpp"
+#include "helixnav/runs/run_recorder.hpp"
+#include "helixnav/runs/run_writer.hpp"
+#include "temporary_folder.hpp"
+
+namespace helixnav::runs {
+namespace {
+
+const core::Pose2 T_map_session(10.0, -5.0, 1.0);
+
+core::StepReport step_at(int k, bool in_map) {
+  core::StepReport step;
+  step.step = k;
+  step.t_ns = 1000000000LL * k;
+  const core::Pose2 own(0.5 * k, 0.1 * k, 0.02 * k);
+  step.pose.mean = in_map ? core::compose(T_map_session, own) : own;
+  step.pose.covariance = Eigen::Vector3d(1.0, 4.0, 0.01).asDiagonal();
+  return step;
+}
+
+core::PlacedDecision placed(core::PlacedDecision::Verdict verdict) {
+  core::PlacedDecision decision;
+  decision.verdict = verdict;
+  decision.T_map_session = T_map_session;
+  return decision;
+}
+
+/// Six steps, placed in the fourth; `from_the_begin`: not because the place had been known and was lost.
+runs::Run write_run(const std::string& folder, bool from_the_begin) {
+  RunWriter writer(folder, {}, {});
+  RunRecorder recorder(folder, {}, {});
+  for (int k = 0; k < 6; ++k) {
+    core::StepReport step = step_at(k, k >= 3);
+    if (k == 0 && from_the_begin) step.decisions.emplace_back(placed(core::PlacedDecision::Verdict::sought));
+    if (k == 3) step.decisions.emplace_back(placed(core::PlacedDecision::Verdict::accepted));
+    writer.write(step, 0.0);
+    recorder.add(step, 0.0);
+  }
+  runs::Run run = recorder.finish({});
+  run.joint_map.emplace();
+  run.joint_map->joint.covariance = Eigen::MatrixXd::Identity(3, 3);
+  writer.finish(run, "page", "{}");
+  return run;
+}
+
+TEST(PlacedRun, HasOneFrameInMemoryAndInItsFolder) {
+  const testing::TemporaryFolder folder;
+  const std::string path = (folder.path() / "run").string();
+  const runs::Run run = write_run(path, true);
+  const runs::Run read = read_run(path);
+  ASSERT_EQ(read.steps.size(), 6u);
+  for (int k = 0; k < 6; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const core::Pose2 expected = step_at(k, true).pose.mean;
+    EXPECT_LT((run.steps[i].pose.mean.vector() - expected.vector()).norm(), 1e-12);
+    EXPECT_LT((read.steps[i].pose.mean.vector() - run.steps[i].pose.mean.vector()).norm(), 1e-12);
+    EXPECT_LT((read.steps[i].pose.covariance - run.steps[i].pose.covariance).norm(), 1e-12);
+  }
+  EXPECT_NE(run.steps[0].pose.covariance(0, 1), 0.0) << "turned with the frame";
+  EXPECT_EQ(run.steps[3].pose.covariance(0, 1), 0.0);
+  EXPECT_TRUE(std::filesystem::exists(path + "/trajectory_final.tum"));
+  EXPECT_TRUE(read_joint_map(path + "/map.bin").joint.ids.empty());
+}
+
+TEST(PlacedRun, WhatWasKnownBeforeItWasLostStaysWhereItIs) {
+  const testing::TemporaryFolder folder;
+  const runs::Run run = write_run((folder.path() / "run").string(), false);
+  EXPECT_EQ(run.steps[1].pose.mean.x_m, 0.5);
+}
+
+}  // namespace
+}  // namespace helixnav::runs

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "placing/join_maps.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "helixnav/core/random.hpp"
+#include "placing/relative_covariance.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+constexpr double pair_noise_m = 0.1;
+const core::Pose2 T_true(20.0, -7.0, 2.1);
+
+Eigen::MatrixXd some_covariance(Eigen::Index n, double sigma, core::RandomStream& random) {
+  Eigen::MatrixXd root(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = 0; i < n; ++i) root(i, j) = random.normal(0.0, sigma / std::sqrt(static_cast<double>(n)));
+  }
+  return root * root.transpose() + 0.1 * sigma * sigma * Eigen::MatrixXd::Identity(n, n);
+}
+
+/// The same eight points twice: as the session knows them, and as the map does. Names 0… and 100….
+struct TwoMaps {
+  core::JointGaussian session, earlier;
+  relocalize::Place place;
+
+  explicit TwoMaps(std::uint64_t seed) {
+    core::RandomStream random(seed, "two maps");
+    session.pose = core::Pose2(1.0, 2.0, 0.3);
+    session.covariance = some_covariance(19, 0.03, random);
+    earlier.covariance = some_covariance(19, 0.03, random);
+    place.T_map_branch = T_true;
+    for (int i = 0; i < 8; ++i) {
+      const double x_m = random.uniform(-15.0, 15.0);
+      const Eigen::Vector2d at_m(x_m, random.uniform(-15.0, 15.0));
+      const double dx_m = random.normal(0.0, 0.03);
+      const Eigen::Vector2d error_m(dx_m, random.normal(0.0, 0.03));
+      session.ids.push_back(100 + i);
+      session.points_m.push_back(at_m);
+      earlier.ids.push_back(i);
+      earlier.points_m.push_back(core::transform(T_true, at_m) + error_m);
+      place.pairs.push_back({100 + i, i});
+    }
+    place.information = Eigen::Vector3d(800.0, 800.0, 8e4).asDiagonal();
+  }
+};
+
+/// Least squares over both maps and the place: session, map and pairs are measurements, the place is free.
+struct LeastSquares {
+  Eigen::VectorXd x;  ///< place (3), session's pose (3), its points (16), the map's (16)
+
+  explicit LeastSquares(const TwoMaps& maps) : x(38) {
+    x << maps.place.T_map_branch.vector(), maps.session.pose.vector(), Eigen::VectorXd::Zero(32);
+    for (int i = 0; i < 8; ++i) {
+      x.segment<2>(6 + 2 * i) = maps.session.points_m[static_cast<std::size_t>(i)];
+      x.segment<2>(22 + 2 * i) = maps.earlier.points_m[static_cast<std::size_t>(i)];
+    }
+    const Eigen::VectorXd told = x;
+    Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(38, 38);
+    prior.block(3, 3, 19, 19) = maps.session.covariance.inverse();
+    prior.block(22, 22, 16, 16) = maps.earlier.covariance.bottomRightCorner(16, 16).inverse();
+    for (int iteration = 0; iteration < 20; ++iteration) {
+      Eigen::MatrixXd H = prior;
+      Eigen::VectorXd g = prior * (told - x);
+      for (int i = 0; i < 8; ++i) add_pair(i, H, g);
+      x += H.ldlt().solve(g);
+    }
+  }
+
+  Eigen::Vector2d placed(int i) const {
+    return core::transform(core::Pose2(Eigen::Vector3d(x.head<3>())), x.segment<2>(6 + 2 * i));
+  }
+
+ private:
+  void add_pair(int i, Eigen::MatrixXd& H, Eigen::VectorXd& g) const {
+    const Eigen::Matrix2d R = core::rotation(x[2]);
+    const Eigen::Vector2d arm_m = R * x.segment<2>(6 + 2 * i);
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(2, 38);
+    J.leftCols<3>() << 1.0, 0.0, -arm_m.y(), 0.0, 1.0, arm_m.x();
+    J.middleCols<2>(6 + 2 * i) = R;
+    J.middleCols<2>(22 + 2 * i) = -Eigen::Matrix2d::Identity();
+    const Eigen::Vector2d r = x.segment<2>(22 + 2 * i) - placed(i);
+    const double weight = 1.0 / (pair_noise_m * pair_noise_m);
+    H += weight * J.transpose() * J;
+    g += weight * J.transpose() * r;
+  }
+};
+
+JoinedMaps join(const TwoMaps& maps, const SearchOptions& options = {}) {
+  const cekf::CompressedEkf session(maps.session, 200);
+  return join_maps(session, maps.earlier, maps.place, maps.session.ids, {}, pair_noise_m, options);
+}
+
+TEST(JoinMaps, IsLeastSquaresOverBothMapsWithAFreePlace) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const TwoMaps maps(seed);
+    const JoinedMaps joined = join(maps);
+    ASSERT_TRUE(joined.closing.accepted);
+    ASSERT_EQ(joined.closing.merged.size(), 8u);
+    const LeastSquares expected(maps);
+    for (int i = 0; i < 8; ++i) {
+      const Eigen::Vector2d difference_m = joined.filter.landmark_mean(i) - expected.x.segment<2>(22 + 2 * i);
+      EXPECT_LT(difference_m.norm(), 2e-4) << "landmark " << i << " of seed " << seed;
+    }
+    const core::Pose2 pose = core::compose(core::Pose2(Eigen::Vector3d(expected.x.head<3>())),
+                                           core::Pose2(Eigen::Vector3d(expected.x.segment<3>(3))));
+    EXPECT_LT((joined.filter.pose().mean.position_m() - pose.position_m()).norm(), 5e-4);
+    EXPECT_NEAR(core::wrap_to_pi(joined.filter.pose().mean.heading_rad - pose.heading_rad), 0.0, 1e-4)
+        << "first order: 3 % of its σ";
+  }
+}
+
+TEST(JoinMaps, KeepsTheNamesOfTheEarlierMapAndGivesNoneTwice) {
+  const JoinedMaps joined = join(TwoMaps(4));
+  EXPECT_EQ(joined.filter.landmarks(), (std::vector<core::LandmarkId>{0, 1, 2, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(joined.filter.next_name(), 200);
+}
+
+TEST(JoinMaps, PairsThatContradictEachOtherAreRefused) {
+  TwoMaps maps(5);
+  for (std::size_t i = 0; i < 4; ++i) maps.earlier.points_m[i].x() += i % 2 == 0 ? 1.0 : -1.0;
+  const JoinedMaps joined = join(maps);
+  EXPECT_FALSE(joined.closing.accepted);
+  EXPECT_GT(joined.closing.cost, joined.closing.limit);
+  EXPECT_EQ(joined.filter.mapped_count(), 16);
+}
+
+TEST(JoinMaps, OneWrongPairOfEightIsDropped) {
+  TwoMaps maps(6);
+  maps.earlier.points_m[3].y() += 2.0;
+  const JoinedMaps joined = join(maps);
+  EXPECT_TRUE(joined.closing.accepted);
+  EXPECT_EQ(joined.closing.dropped, 1);
+  EXPECT_TRUE(joined.filter.contains(103));
+  EXPECT_TRUE(joined.filter.contains(3));
+}
+
+TEST(JoinMaps, WhatTheQuestionLeftOutIsMergedAfterwards) {
+  TwoMaps maps(7);
+  maps.place.pairs.resize(6);
+  EXPECT_EQ(join(maps).closing.merged.size(), 8u);
+}
+
+TEST(RelativeCovariance, CommonMotionLeavesNothing) {
+  core::RandomStream random(8, "relative");
+  std::vector<Eigen::Vector2d> points_m;
+  Eigen::MatrixXd B(20, 3);
+  for (int i = 0; i < 10; ++i) {
+    const double x_m = random.uniform(0.0, 20.0);
+    points_m.emplace_back(x_m, random.uniform(0.0, 20.0));
+    B.middleRows<2>(2 * i) << 1.0, 0.0, -points_m.back().y(), 0.0, 1.0, points_m.back().x();
+  }
+  const Eigen::MatrixXd common = B * Eigen::Vector3d(4.0, 9.0, 0.01).asDiagonal() * B.transpose();
+  for (const Eigen::Matrix2d& own : relative_covariances(points_m, common)) EXPECT_LT(own.norm(), 1e-9);
+  const Eigen::MatrixXd both = common + 0.04 * Eigen::MatrixXd::Identity(20, 20);
+  double trace = 0.0;
+  for (const Eigen::Matrix2d& own : relative_covariances(points_m, both)) trace += own.trace();
+  EXPECT_NEAR(trace, 0.04 * 17, 1e-9) << "20 coordinates less the three that they have in common";
+  EXPECT_EQ(relative_covariances({points_m[0]}, common.topLeftCorner(2, 2))[0], Eigen::Matrix2d::Zero());
+}
+
+}  // namespace
+}  // namespace helixnav::supervisor
