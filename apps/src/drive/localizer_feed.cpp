@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 #include <utility>
 #include <variant>
 
+#include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
+#include "helixnav/runs/joint_map_file.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 
 namespace helixnav::apps {
@@ -60,6 +63,12 @@ core::PoseGaussian start_of(const Drive& job) {
   return {seen.pose, seen.covariance.topLeftCorner<3, 3>()};
 }
 
+/// The finder joins its own map with all of this one, with a dense covariance.
+bool can_be_searched(const GivenMap& map) {
+  constexpr std::size_t least_to_be_found = 5;
+  return map.landmarks.size() >= least_to_be_found && map.landmarks.size() <= runs::most_joint_landmarks;
+}
+
 bool has_found(const core::StepReport& report) {
   return std::any_of(report.decisions.begin(), report.decisions.end(), [](const core::Decision& decision) {
     const auto* placed = std::get_if<core::PlacedDecision>(&decision);
@@ -102,6 +111,11 @@ LocalizerFeed::LocalizerFeed(const Drive& job, std::vector<std::vector<core::Lab
       monitor_(job.given_map->landmarks, reach_of(job)) {
   const std::optional<SessionStart>& start = job.given_map->start;
   const bool unknown = start && start->kind == SessionStart::Kind::unknown;
+  if (unknown && !can_be_searched(*job.given_map)) {
+    throw core::InputError("--start unknown: a map of " + std::to_string(job.given_map->landmarks.size()) +
+                           " landmarks cannot be searched; expected 5 to " +
+                           std::to_string(runs::most_joint_landmarks) + ": give a pose");
+  }
   if (unknown) {
     begin_to_look();
   } else {
@@ -152,8 +166,7 @@ core::StepReport LocalizerFeed::localize(const core::Scan& scan, std::size_t i) 
 void LocalizerFeed::watch(const core::Scan& scan, core::StepReport& report) {
   monitor_.observe(scan, report, driven_m_);
   if (finder_ && !monitor_.is_lost()) finder_.reset();
-  constexpr std::size_t least_to_be_found = 5;
-  if (!finder_ && monitor_.is_lost() && job_.given_map->landmarks.size() >= least_to_be_found) begin_to_look();
+  if (!finder_ && monitor_.is_lost() && can_be_searched(*job_.given_map)) begin_to_look();
 }
 
 void LocalizerFeed::take_place(core::StepReport&& found, core::StepReport& report) {
