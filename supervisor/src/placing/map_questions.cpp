@@ -10,8 +10,8 @@
 namespace helixnav::supervisor {
 namespace {
 
-constexpr std::size_t least_landmarks = 8;
-constexpr std::size_t most_landmarks = 40;
+constexpr std::size_t least_in_question = 8;
+constexpr std::size_t most_in_question = 40;
 constexpr double share_of_eighth = 0.6;  ///< as MapIndex::look_around_landmarks
 
 using Near = std::vector<std::pair<double, std::size_t>>;
@@ -22,7 +22,7 @@ Near nearest(const core::JointGaussian& landmarks, std::size_t centre) {
   for (std::size_t i = 0; i < landmarks.ids.size(); ++i) {
     near.emplace_back((landmarks.points_m[i] - landmarks.points_m[centre]).norm(), i);
   }
-  const std::size_t kept = std::min(most_landmarks, near.size());
+  const std::size_t kept = std::min(most_in_question, near.size());
   std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(kept), near.end());
   near.resize(kept);
   return near;
@@ -47,7 +47,7 @@ std::vector<relocalize::Disc> ground_about(const core::JointGaussian& landmarks,
 std::vector<relocalize::Question> map_questions(const EarlierMap& map, const relocalize::IndexOptions& lengths) {
   const core::JointGaussian& landmarks = map.landmarks();
   std::vector<relocalize::Question> questions;
-  if (landmarks.ids.size() < least_landmarks) return questions;
+  if (landmarks.ids.size() < least_in_question) return questions;
   std::vector<bool> asked(landmarks.ids.size(), false);
   for (std::size_t centre = 0; centre < asked.size(); ++centre) {
     if (asked[centre]) continue;

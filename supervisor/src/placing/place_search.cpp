@@ -8,7 +8,7 @@ namespace helixnav::supervisor {
 namespace {
 
 constexpr double alpha = 1e-5;
-constexpr std::size_t least_landmarks = 8;
+constexpr std::size_t least_to_ask = 8;
 
 core::PlacedDecision::Verdict verdict_of(relocalize::Verdict verdict) {
   if (verdict == relocalize::Verdict::closed) return core::PlacedDecision::Verdict::accepted;
@@ -22,7 +22,7 @@ PlaceSearch::PlaceSearch(const core::JointMap& earlier, const relocalize::IndexO
     : earlier_(earlier), index_(earlier_.index(lengths)) {}
 
 bool PlaceSearch::is_due(const std::vector<core::LandmarkId>& landmarks) const {
-  if (landmarks.size() < least_landmarks || !(index_.looked_at_m2() > 0.0)) return false;
+  if (landmarks.size() < least_to_ask || !(index_.looked_at_m2() > 0.0)) return false;
   const auto fresh = std::count_if(landmarks.begin(), landmarks.end(), [&](core::LandmarkId id) {
     return !std::binary_search(asked_with_.begin(), asked_with_.end(), id);
   });

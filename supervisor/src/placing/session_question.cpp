@@ -13,7 +13,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-constexpr std::size_t most_landmarks = 40;
+constexpr std::size_t most_asked_with = 40;
 constexpr double surely_seen = 0.8;  ///< of the reach
 
 /// The largest disc in the view: about the sensor where it looks all around, else ahead of it.
@@ -54,8 +54,8 @@ LandmarksAbout landmarks_about(const Belief& belief, double seen_within_m) {
   }
   std::sort(order.begin(), order.end());
   LandmarksAbout about;
-  if (order.size() > most_landmarks) {
-    order.resize(most_landmarks);
+  if (order.size() > most_asked_with) {
+    order.resize(most_asked_with);
     about.within_m = order.back().first;
   }
   for (const auto& [distance_m, id] : order) about.ids.push_back(id);
