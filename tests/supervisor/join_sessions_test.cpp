@@ -29,11 +29,11 @@ std::vector<Eigen::Vector2d> grove(std::uint64_t seed, int trees) {
 
 /// What a session that began at T_world_session knows of the trees between two x, a tenth of which it missed. Tree i of the
 /// world is its landmark 2·i.
-struct Session {
+struct MappedSession {
   core::JointMap map;
   core::Pose2 T_world_session;
 
-  Session(const std::vector<Eigen::Vector2d>& trees_m, double from_m, double to_m, std::uint64_t seed) {
+  MappedSession(const std::vector<Eigen::Vector2d>& trees_m, double from_m, double to_m, std::uint64_t seed) {
     core::RandomStream random(seed, "session");
     const double x_m = random.uniform(from_m, to_m);
     const double y_m = random.uniform(0.0, 40.0);
@@ -55,17 +55,17 @@ struct Session {
   }
 };
 
-std::vector<core::JointMap> maps_of(const std::vector<Session>& sessions) {
+std::vector<core::JointMap> maps_of(const std::vector<MappedSession>& sessions) {
   std::vector<core::JointMap> maps;
-  for (const Session& session : sessions) maps.push_back(session.map);
+  for (const MappedSession& session : sessions) maps.push_back(session.map);
   return maps;
 }
 
 /// Three drives through one grove, each overlapping the next, and one elsewhere.
-std::vector<Session> three_and_a_stranger(std::uint64_t seed) {
+std::vector<MappedSession> three_and_a_stranger(std::uint64_t seed) {
   const std::vector<Eigen::Vector2d> here_m = grove(seed, 150);
-  return {Session(here_m, 0.0, 60.0, 10 * seed + 1), Session(here_m, 35.0, 90.0, 10 * seed + 2),
-          Session(here_m, 65.0, 120.0, 10 * seed + 3), Session(grove(seed + 500, 150), 0.0, 60.0, 10 * seed + 4)};
+  return {MappedSession(here_m, 0.0, 60.0, 10 * seed + 1), MappedSession(here_m, 35.0, 90.0, 10 * seed + 2),
+          MappedSession(here_m, 65.0, 120.0, 10 * seed + 3), MappedSession(grove(seed + 500, 150), 0.0, 60.0, 10 * seed + 4)};
 }
 
 std::vector<Eigen::Vector2d> points_by_x(const core::JointMap& map) {
@@ -86,7 +86,7 @@ int wrong_pairs(const JoinedSession& a, const JoinedSession& b) {
 
 TEST(JoinSessions, DrivesThatOverlapBecomeOneMapAndStrangersStayApart) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    const std::vector<Session> sessions = three_and_a_stranger(seed);
+    const std::vector<MappedSession> sessions = three_and_a_stranger(seed);
     const JoinedSessions joined = join_sessions(maps_of(sessions));
     ASSERT_EQ(joined.components.size(), 2u) << "seed " << seed;
     EXPECT_EQ(std::count_if(joined.sessions.begin(), joined.sessions.end(),
@@ -126,13 +126,13 @@ TEST(JoinSessions, TheOrderOfTheSessionsDoesNotMatter) {
 }
 
 TEST(JoinSessions, TakingASessionOutIsJoiningTheOthers) {
-  const std::vector<Session> sessions = three_and_a_stranger(4);
+  const std::vector<MappedSession> sessions = three_and_a_stranger(4);
   const JoinedSessions joined = join_sessions({sessions[0].map, sessions[2].map});
   EXPECT_EQ(joined.components.size(), 2u) << "the drive that connected them is gone";
 }
 
 TEST(JoinSessions, WhatBothSawIsKnownBetterAndCountedOnce) {
-  const std::vector<Session> sessions = three_and_a_stranger(5);
+  const std::vector<MappedSession> sessions = three_and_a_stranger(5);
   const JoinedSessions joined = join_sessions({sessions[0].map, sessions[1].map});
   ASSERT_EQ(joined.components.size(), 1u);
   const core::JointMap& map = joined.components[0];

@@ -18,7 +18,7 @@ namespace {
 
 using core::LandmarkId;
 
-constexpr double alpha = 1e-5;  ///< of a false answer for one pair of sessions
+constexpr double alpha_a_pair = 1e-5;  ///< of a false answer for one pair of sessions
 
 relocalize::IndexOptions lengths_of(const NavigatorOptions& options, double reach_m) {
   constexpr double most_share = 1.0 / 20.0;
@@ -29,7 +29,7 @@ relocalize::IndexOptions lengths_of(const NavigatorOptions& options, double reac
 std::vector<relocalize::Answer> ask_for(const EarlierMap& session, const relocalize::MapIndex& index) {
   const std::vector<relocalize::Question> questions = map_questions(session, index.options());
   relocalize::AskOptions options;
-  options.alpha = alpha / static_cast<double>(std::max<std::size_t>(1, questions.size()));
+  options.alpha = alpha_a_pair / static_cast<double>(std::max<std::size_t>(1, questions.size()));
   std::vector<relocalize::Answer> answers;
   for (const relocalize::Question& question : questions) answers.push_back(relocalize::ask(index, question, options));
   std::stable_sort(answers.begin(), answers.end(), [](const relocalize::Answer& a, const relocalize::Answer& b) {
@@ -53,7 +53,7 @@ core::PlacedDecision decision_of(const std::vector<relocalize::Answer>& answers,
   decision.verdict = core::PlacedDecision::Verdict::not_here;
   decision.earlier_landmarks = static_cast<int>(component.joint.ids.size());
   decision.questions = static_cast<int>(answers.size());
-  decision.needed = -std::log(alpha / static_cast<double>(std::max<std::size_t>(1, answers.size())));
+  decision.needed = -std::log(alpha_a_pair / static_cast<double>(std::max<std::size_t>(1, answers.size())));
   if (answers.empty()) return decision;
   const relocalize::Answer& best = answers.front();
   if (best.verdict == relocalize::Verdict::ambiguous) decision.verdict = core::PlacedDecision::Verdict::ambiguous;
