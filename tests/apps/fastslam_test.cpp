@@ -159,6 +159,28 @@ TEST_F(FastSlamFilter, RefusesLogsThatItCannotMap) {
   refused({"--fastslam.association", "known"}, "--fastslam.association known needs a labelled log");
 }
 
+TEST_F(FastSlamFilter, TakesTheDetectionProbabilityOfTheVehicle) {
+  folder_.write("log/odometry.csv", "t,v,omega\n0,2,0\n1,2,0\n2,2,0\n");
+  folder_.write("log/detections.csv", "t,range_m,bearing_deg\n1,10,5\n2,8,6\n");
+  folder_.write("log/vehicle.toml",
+                "[odometry]\nsigma_along_m_per_sqrt_m = 0.05\nsigma_sideways_m_per_sqrt_m = 0.02\n"
+                "sigma_heading_deg_per_sqrt_m = 0.3\n"
+                "[[sensor]]\nreach_m = 30\nsigma_range_m = 0.1\nsigma_bearing_deg = 0.5\n"
+                "detection_probability = 0.625\n");
+  const auto checked = [&](const Words& options) {
+    Words words{"check", out("log"), "--filter", "fastslam"};
+    words.insert(words.end(), options.begin(), options.end());
+    return run(words).out;
+  };
+  const std::string said =
+      "settings    FastSLAM 2.0, 200 particles, association likelihood-ratio, detection probability ";
+  EXPECT_NE(checked({}).find(said + "0.625\n"), std::string::npos) << checked({});
+  EXPECT_NE(checked({"--fastslam.detection_probability", "0.75"}).find(said + "0.75\n"), std::string::npos);
+  must({"replay", out("log")}, "run", {});
+  const std::string config = json::parse(text_of(out("run") / "manifest.json")).at("config");
+  EXPECT_NE(config.find("\ndetection_probability = 0.625\n"), std::string::npos);
+}
+
 TEST_F(FastSlamFilter, RefusesWhatHasNoPartInIt) {
   const Words replay{"replay", circle(10)};
   refuse(replay, {"--smooth"}, {"--smooth", "fastslam"});

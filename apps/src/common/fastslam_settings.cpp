@@ -2,6 +2,7 @@
 #include "fastslam_settings.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -171,6 +172,18 @@ void check_filter(const CLI::App& command, const GivenOptions& given, const Fast
     settings.chosen ? refuse_with_fastslam(*option) : refuse_without_fastslam(*option);
   }
   if (settings.chosen) refuse_contradictions(command, settings.options);
+}
+
+std::string text_of(const FastSlamSettings& settings) {
+  const fastslam::Options& options = settings.options;
+  const auto is_chosen = [&](const auto& association) { return association.second == options.association; };
+  const auto chosen = std::find_if(associations.begin(), associations.end(), is_chosen);
+  char text[200];
+  std::snprintf(text, sizeof text, "FastSLAM %s, %zu particles, association %s, detection probability %.3g%s",
+                options.proposal == fastslam::Proposal::motion ? "1.0" : "2.0", options.particles,
+                chosen->first.c_str(), options.detection_probability,
+                options.weigh_unseen ? "" : " (landmarks unseen are not weighed)");
+  return text;
 }
 
 void require_compressed_ekf(const CLI::App& command, const GivenOptions& given, const FastSlamSettings& settings,

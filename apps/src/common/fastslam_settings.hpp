@@ -32,4 +32,7 @@ void check_filter(const CLI::App& command, const GivenOptions& given, const Fast
 void require_compressed_ekf(const CLI::App& command, const GivenOptions& given, const FastSlamSettings& settings,
                             const std::string& why);
 
+/// The settings that matter most, in a line.
+std::string text_of(const FastSlamSettings& settings);
+
 }  // namespace helixnav::apps

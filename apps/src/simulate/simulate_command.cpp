@@ -107,7 +107,8 @@ void add_simulate_command(CLI::App& app, ExitCode& code) {
   command->footer(scenario_list() +
                   "\nExamples:\n  helixnav simulate large-loop --seed 1 --out runs/loop\n"
                   "  helixnav simulate town --seed 1 --until 700 --out runs/monday\n"
-                  "  helixnav simulate town --seed 1 --day 2 --from 300 --map runs/monday --out runs/tuesday\n");
+                  "  helixnav simulate town --seed 1 --day 2 --from 300 --map runs/monday --out runs/tuesday\n"
+                  "  helixnav simulate circuit --filter fastslam --out runs/particles\n");
   command->callback([command, job, &code] { code = simulate(*command, *job); });
 }
 
