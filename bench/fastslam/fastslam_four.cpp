@@ -10,6 +10,7 @@
 #include "helixnav/core/odometry.hpp"
 #include "helixnav/core/random.hpp"
 #include "helixnav/logs/read_recording.hpp"
+#include "helixnav/supervisor/named_navigator.hpp"
 #include "helixnav/supervisor/navigator.hpp"
 
 namespace helixnav::bench {
@@ -136,18 +137,21 @@ FourScore run(const FourWorld& world, const Method& method, const fastslam::Opti
   const auto add = [&](const core::Pose2& pose, const DrivenScan& driven) {
     squares += (pose.position_m() - driven.truth.position_m()).squaredNorm() / static_cast<double>(world.drive.size());
   };
-  if (method.kalman) {
-    supervisor::Navigator navigator({}, {});
+  const auto navigate = [&](auto navigator, const auto& observe) {
     for (const DrivenScan& driven : world.drive) {
       navigator.move(driven.odometry);
-      if (method.known()) {
-        navigator.observe(driven.scan, driven.names);
-      } else {
-        navigator.observe(driven.scan);
-      }
+      observe(navigator, driven);
       add(navigator.pose().mean, driven);
     }
     return judge(navigator.map(), world, std::sqrt(squares));
+  };
+  if (method.kalman && method.known()) {
+    return navigate(supervisor::NamedNavigator(core::PoseGaussian{}),
+                    [](auto& navigator, const DrivenScan& driven) { navigator.observe(driven.scan, driven.names); });
+  }
+  if (method.kalman) {
+    return navigate(supervisor::Navigator(core::PoseGaussian{}),
+                    [](auto& navigator, const DrivenScan& driven) { navigator.observe(driven.scan); });
   }
   fastslam::FastSlam slam(core::PoseGaussian{}, options, static_cast<std::uint64_t>(seed));
   for (const DrivenScan& driven : world.drive) add(step(slam, driven, method.known()).pose.mean, driven);

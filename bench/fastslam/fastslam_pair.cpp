@@ -9,6 +9,7 @@
 
 #include "fastslam_study.hpp"
 #include "helixnav/core/random.hpp"
+#include "helixnav/supervisor/named_navigator.hpp"
 #include "helixnav/supervisor/navigator.hpp"
 
 namespace helixnav::bench {
@@ -122,20 +123,25 @@ std::vector<Eigen::Vector2d> mature_of(const std::vector<core::MapLandmark>& map
 /// Verdicts after the first lap and after the last.
 using Verdicts = std::array<Verdict, 2>;
 
-Verdicts run_kalman(const PairWorld& world, bool known) {
-  supervisor::Navigator navigator({}, {});
+template <class Navigator, class Observe>
+Verdicts navigate(const PairWorld& world, Navigator navigator, const Observe& observe) {
   Verdicts verdicts;
   for (std::size_t i = 0; i < world.drive.size(); ++i) {
     navigator.move(world.drive[i].odometry);
-    if (known) {
-      navigator.observe(world.drive[i].scan, world.drive[i].names);
-    } else {
-      navigator.observe(world.drive[i].scan);
-    }
+    observe(navigator, world.drive[i]);
     if (i + 1 == static_cast<std::size_t>(scans_a_lap)) verdicts[0] = judge(mature_of(navigator.map()), world);
   }
   verdicts[1] = judge(mature_of(navigator.map()), world);
   return verdicts;
+}
+
+Verdicts run_kalman(const PairWorld& world, bool known) {
+  if (known) {
+    return navigate(world, supervisor::NamedNavigator(core::PoseGaussian{}),
+                    [](auto& navigator, const DrivenScan& driven) { navigator.observe(driven.scan, driven.names); });
+  }
+  return navigate(world, supervisor::Navigator(core::PoseGaussian{}),
+                  [](auto& navigator, const DrivenScan& driven) { navigator.observe(driven.scan); });
 }
 
 Verdicts run_particles(const PairWorld& world, const fastslam::Options& options, bool known, int run, double& us) {

@@ -13,8 +13,8 @@
 #include <time.h>
 
 #include "helixnav/core/recording.hpp"
+#include "helixnav/evaluation/alignment.hpp"
 #include "helixnav/fastslam/fast_slam.hpp"
-#include "helixnav/logs/alignment.hpp"
 
 /// What the experiments on FastSLAM share: drives with names, scores, intervals.
 namespace helixnav::bench {
@@ -135,7 +135,7 @@ inline PathScore score_path(const std::vector<TimedPose>& path, const core::Reco
     fixes.push_back(fix.position_m);
     antenna.push_back(core::transform(at, recording.antenna_robot_m));
   }
-  const logs::RigidAlignment alignment = logs::align_rigidly(fixes, antenna, limit_m);
+  const evaluation::RigidAlignment alignment = evaluation::align_rigidly(fixes, antenna, limit_m);
   PathScore score;
   score.T_truth_map = alignment.T_a_b;
   std::vector<double> errors;

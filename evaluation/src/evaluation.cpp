@@ -164,6 +164,24 @@ RevisitEvaluation evaluate_revisits(const std::vector<core::StepReport>& steps) 
   return result;
 }
 
+std::optional<ParticleEvaluation> evaluate_particles(const std::vector<core::StepReport>& steps) {
+  ParticleEvaluation result;
+  for (const core::StepReport& step : steps) {
+    if (!step.particles) continue;
+    const core::CloudReport& cloud = *step.particles;
+    result.mean_effective_share += cloud.effective_size / static_cast<double>(cloud.hypotheses);
+    result.resamplings += cloud.resampled ? 1 : 0;
+    result.mean_ancestors += static_cast<double>(cloud.distinct_ancestors);
+    result.least_ancestors =
+        result.scans == 0 ? cloud.distinct_ancestors : std::min(result.least_ancestors, cloud.distinct_ancestors);
+    ++result.scans;
+  }
+  if (result.scans == 0) return std::nullopt;
+  result.mean_effective_share /= static_cast<double>(result.scans);
+  result.mean_ancestors /= static_cast<double>(result.scans);
+  return result;
+}
+
 }  // namespace
 
 double quantile_of_sorted(const std::vector<double>& sorted, double fraction) {
@@ -192,6 +210,7 @@ Evaluation evaluate(const runs::Run& run, const runs::RunTruth& truth, const Eva
   if (!truth.landmarks.empty()) evaluation.map = evaluate_map(run, truth, T_truth_map, options.landmark_limit_m);
   evaluation.nis = evaluate_nis(run.steps);
   evaluation.revisits = evaluate_revisits(run.steps);
+  evaluation.particles = evaluate_particles(run.steps);
   return evaluation;
 }
 

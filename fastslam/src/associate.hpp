@@ -66,6 +66,9 @@ class Associator {
   /// νᵀS⁻¹ν of a landmark that h's particle holds, seen from (x, P).
   double nis(const Hypothesis& h, LineageId id, std::size_t observation) const;
 
+  /// The match moves (x, P), with FastSLAM 2.0, and weighs; `known`: without a doubt, whatever its likelihood was before.
+  void take(Hypothesis& h, const Candidate& candidate, bool known) const;
+
  private:
   struct Innovation {
     Pair pair;
@@ -82,7 +85,6 @@ class Associator {
   double spread_m2(const Hypothesis& h, const PreparedObservation& z) const;
   void find_candidates(const Hypothesis& h, std::size_t observation, double gate, bool likelihood,
                        AssociationScratch& scratch) const;
-  void take(Hypothesis& h, const Candidate& candidate, bool known) const;
   void find_pairs(const Hypothesis& h, AssociationScratch& scratch) const;
   bool has_no_landmark_left(std::size_t observation, const Choice* choices, const AssociationScratch& scratch) const;
   void split_in_gate(const Hypothesis& h, const Choice* choices, std::size_t observation,

@@ -129,7 +129,9 @@ std::vector<core::MapLandmark> FastSlam::map_of(std::size_t particle) const {
 }
 
 std::size_t FastSlam::best() const { return impl_->best; }
-const CloudReport& FastSlam::cloud() const { return impl_->cloud; }
+std::vector<core::MixedLandmark> FastSlam::mixture() const { return impl_->mixture(); }
+const core::CloudReport& FastSlam::cloud() const { return impl_->cloud; }
+const std::vector<std::uint32_t>& FastSlam::parents() const { return impl_->parents; }
 MemoryReport FastSlam::memory() const { return impl_->memory(); }
 
 KnownName FastSlam::name_of(core::LandmarkId id) const {

@@ -24,6 +24,7 @@ struct FastSlam::Impl {
   void begin_with(const std::vector<core::PointGaussian>& landmarks);
   core::StepReport update(const core::Scan& scan, const std::vector<KnownName>* names, std::size_t robot);
   std::vector<core::MapLandmark> map_of(std::size_t particle) const;
+  std::vector<core::MixedLandmark> mixture() const;
   MemoryReport memory() const;
 
   /// What belongs to a robot: the poses of all particles, and its motion.
@@ -57,7 +58,7 @@ struct FastSlam::Impl {
   std::vector<PersistentMap> maps;  ///< [particle]
   std::size_t best = 0;
   Genealogy genealogy;
-  CloudReport cloud;
+  core::CloudReport cloud;
   std::size_t most_node_bytes = 0;
   std::int64_t step = 0;
   std::uint16_t looks = 0;  ///< of all robots, modulo 2^16
@@ -102,7 +103,9 @@ struct FastSlam::Impl {
   void sweep_lineages();
   void drive(Robot& robot, const core::Odometry& motion, const core::Pose2& T_robot_sensor);
   std::vector<Choice> known_choices(const std::vector<KnownName>& names) const;
-  core::StepReport report(const core::Scan& scan, const Associator& associator, std::size_t heaviest) const;
+  Hypothesis before_scan(const Hypothesis& h, const Robot& robot, const core::Odometry& motion) const;
+  core::StepReport report(const core::Scan& scan, const Associator& associator, std::size_t heaviest,
+                          const Hypothesis& before) const;
   std::size_t node_bytes() const;
 };
 

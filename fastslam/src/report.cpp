@@ -5,27 +5,29 @@
 
 namespace helixnav::fastslam {
 
-/// What the heaviest hypothesis made of the scan; births get their ids later.
-core::StepReport FastSlam::Impl::report(const core::Scan& scan, const Associator& associator,
-                                        std::size_t heaviest) const {
+/// What the heaviest hypothesis made of the scan; births get their ids later. Innovations are those of `before`, the
+/// hypothesis before the scan; taken one after the other, their NIS add up to the joint one.
+core::StepReport FastSlam::Impl::report(const core::Scan& scan, const Associator& associator, std::size_t heaviest,
+                                        const Hypothesis& before) const {
   core::StepReport out;
   out.step = step;
   out.t_ns = scan.t_ns;
-  const Hypothesis& h = set.all[heaviest];
+  Hypothesis moving = before;
   for (std::size_t j = 0; j < set.observations; ++j) {
     const Choice choice = set.choices_of(heaviest)[j];
     core::AssociationReport& a = out.associations.emplace_back();
     a.observation = static_cast<int>(j);
-    a.nis = std::numeric_limits<double>::quiet_NaN();
-    a.margin_nats = std::numeric_limits<double>::infinity();
+    a.nis = a.margin_nats = std::numeric_limits<double>::quiet_NaN();  // alternatives: each particle has its own
     if (choice == begins_landmark) a.outcome = core::Outcome::augmented;
     if (choice < 0) continue;
+    const auto id = static_cast<LineageId>(choice);
     a.outcome = core::Outcome::matched;
     a.landmark = choice;
     a.dof = 2;
-    a.nis = associator.nis(h, static_cast<LineageId>(choice), j);
-    out.joint_nis += a.nis;
+    a.nis = associator.nis(before, id, j);
+    out.joint_nis += associator.nis(moving, id, j);
     out.joint_dof += a.dof;
+    associator.take(moving, {id, static_cast<std::uint32_t>(j), 0.0, 0.0}, true);
   }
   return out;
 }

@@ -31,7 +31,7 @@ core::StepReport FastSlam::Impl::update(const core::Scan& scan, const std::vecto
   }
   const auto heaviest =
       static_cast<std::size_t>(std::max_element(set_log_weight.begin(), set_log_weight.end()) - set_log_weight.begin());
-  core::StepReport out = report(scan, associator, heaviest);
+  core::StepReport out = report(scan, associator, heaviest, before_scan(set.all[heaviest], robots[robot], motion));
 
   drive(robots[robot], motion, scan.T_robot_sensor);
   choose(!scan.observations.empty());
@@ -50,6 +50,7 @@ core::StepReport FastSlam::Impl::update(const core::Scan& scan, const std::vecto
   }
   out.pose = robots[robot].mean;
   out.mapped_landmarks = static_cast<int>(maps[best].size());
+  out.particles = cloud;
   ++step;
   return out;
 }
@@ -80,19 +81,29 @@ void FastSlam::Impl::propose(const Robot& robot, const core::Odometry& motion, s
       Hypothesis& h = set.all[i];
       h.parent = static_cast<std::uint32_t>(i);
       h.log_weight = log_weight[i];
-      core::Pose2 moved = motion.T_before_after;
-      if (draws) moved = core::Pose2(moved.vector() + L * normals[i]);
-      h.x = core::compose(robot.poses[i], moved).vector();
-      h.pose = TurnedPose(h.x);
-      if (draws) {
-        h.P.setZero();
+      if (!draws) {
+        h = before_scan(h, robot, motion);
         continue;
       }
-      Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
-      J.topLeftCorner<2, 2>() = core::rotation(robot.poses[i].heading_rad);
-      h.P = J * motion.covariance * J.transpose();
+      const core::Pose2 moved(motion.T_before_after.vector() + L * normals[i]);
+      h.x = core::compose(robot.poses[i], moved).vector();
+      h.pose = TurnedPose(h.x);
+      h.P.setZero();
     }
   });
+}
+
+/// The hypothesis with its pose as odometry has it: with FastSLAM 1.0 the scan does not change it.
+Hypothesis FastSlam::Impl::before_scan(const Hypothesis& h, const Robot& robot, const core::Odometry& motion) const {
+  Hypothesis before = h;
+  if (options.proposal == Proposal::motion) return before;
+  const core::Pose2& pose = robot.poses[h.parent];
+  before.x = core::compose(pose, motion.T_before_after).vector();
+  before.pose = TurnedPose(before.x);
+  Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
+  J.topLeftCorner<2, 2>() = core::rotation(pose.heading_rad);
+  before.P = J * motion.covariance * J.transpose();
+  return before;
 }
 
 std::vector<Choice> FastSlam::Impl::known_choices(const std::vector<KnownName>& names) const {

@@ -75,6 +75,8 @@
   // A smoother's run without a filter: no steps that were estimated one after the other, so nothing of them to show.
   const smoothing = data.smoothing;
   const filtered = !(smoothing && smoothing.alone);
+  // A cloud of particles, each with a path and a map: no closures.
+  const particles = data.particles;
   const last = (list) => list[list.length - 1];
 
   const smoothingTable = () => table("Least squares", [
@@ -93,6 +95,13 @@
     ["95 % band of that mean", `${fixed(summary.nis.mean_low_95, 3)} … ${fixed(summary.nis.mean_high_95, 3)}`],
     ["single updates inside their 95 % band", percent(summary.nis.inside_95)],
     ...Object.entries(summary.observations).map(([name, value]) => [`observations ${name}`, count(value)]),
+  ]);
+
+  const particlesTable = () => table("Particles", [
+    ["effective size by the hypotheses weighed, mean", percent(summary.particles.effective_share)],
+    ["resamplings", count(summary.particles.resamplings)],
+    ["ancestors a loop ago, mean", fixed(summary.particles.ancestors_mean, 1)],
+    ["ancestors a loop ago, least", count(summary.particles.ancestors_least)],
   ]);
 
   const clockTable = () => table("Wall clock", Object.entries(clock.timing).filter(
@@ -119,7 +128,10 @@
     if (smoothing) card(fixed(last(smoothing.chi2) / smoothing.dof, 3), "χ² over degrees of freedom");
     card(count(summary.landmarks.mature),
          filtered ? `mature landmarks, ${count(summary.landmarks.tentative)} tentative` : "landmarks");
-    if (filtered) {
+    if (particles) {
+      card(`${fixed(summary.particles.ancestors_mean, 1)} / ${count(summary.particles.ancestors_least)}`,
+           "ancestors of all particles a loop ago, mean / least");
+    } else if (filtered) {
       const closures = summary.closures;
       card(`${closures.accepted} / ${closures.refused} / ${closures.undecided}`,
            "closures accepted / refused / undecided");
@@ -136,6 +148,7 @@
     if (summary.heading_error) tables.append(poseTable());
     if (summary.landmark_error) tables.append(landmarkTable(summary.landmark_error));
     if (smoothing) tables.append(smoothingTable());
+    if (particles) tables.append(particlesTable());
     if (filtered) tables.append(filterTable());
     tables.append(clockTable());
   };
@@ -296,6 +309,26 @@
         text: closures.map((d) => `${d.verdict} at step ${d.step}`) })];
   };
 
+  const pathsTraces = () => {
+    if (!particles || !particles.paths) return [];
+    return [line(`paths of ${count(particles.paths.ends)} particles`, particles.paths.x, particles.paths.y, c.other,
+      { line: { color: c.other, width: 1 }, opacity: .7, hoverinfo: "skip" })];
+  };
+
+  const mixtureTraces = () => {
+    if (!particles || !particles.mixture || particles.mixture.length === 0) return [];
+    const name = "landmarks of the mixture";
+    const outline = ellipses(particles.mixture.map((m) => [m.x, m.y, m.sxx, m.sxy, m.syy]));
+    return [
+      line(name, outline.x, outline.y, c.other,
+        { line: { color: c.other, width: 1, dash: "dot" }, hoverinfo: "skip", legendgroup: name, showlegend: false }),
+      dots(name, particles.mixture.map((m) => m.x), particles.mixture.map((m) => m.y), c.other,
+        { marker: { color: c.other, size: 6, symbol: "x-thin", line: { color: c.other, width: 1.5 } }, legendgroup: name,
+          text: particles.mixture.map((m) => `landmark ${m.id}<br>in ${percent(m.share)} of the weight`),
+          hovertemplate: "%{text}<br>(%{x:.2f}, %{y:.2f}) m<extra></extra>" }),
+    ];
+  };
+
   const drawMap = () => {
     const path = data.path;
     const outline = ellipses(path.ellipses);
@@ -306,6 +339,7 @@
         text: ["start", "end"], hovertemplate: "%{text}<extra></extra>" })];
     draw("map", [
       ...truthTraces(),
+      ...pathsTraces(),
       line(filtered ? "estimated path" : "smoothed path", path.x, path.y, c.estimate, { line: { color: c.estimate, width: 2 }, customdata: path.t,
         hovertemplate: "%{customdata:.1f} s<br>(%{x:.2f}, %{y:.2f}) m<extra>estimate</extra>" }),
       ...(filtered ? [line("95 % ellipses", outline.x, outline.y, c.estimate,
@@ -314,6 +348,7 @@
         { marker: { color: c.truth, size: 10, symbol: "circle-open" }, hoverinfo: "x+y" })] : []),
       ...landmarkTraces("tentative", c.faint, "diamond"),
       ...landmarkTraces("mature", c.landmark, "circle"),
+      ...mixtureTraces(),
       ...closureTrace(),
       ...ends,
     ], {
@@ -325,6 +360,8 @@
          path stand ${count(path.ellipse_stride)} scans apart.`
       : `Optimum of all measurements in the map frame (pose at the start). Ellipses hold the true position of a landmark
          with 95 % if the covariances are right.`) +
+      (particles ? " Landmarks are those of the heaviest particle; those of the mixture are in most of the weight as mature." +
+        " Looking back, the paths of all particles join." : "") +
       (data.truth && data.truth.aligned ? " The fixes were brought into the map frame by the alignment." : "");
   };
 
@@ -371,6 +408,20 @@
         ? "Estimated antenna position minus fix along the axes of the map frame, after the alignment." +
           (filtered ? " The band is that of the estimate; the noise of the fixes comes on top." : "")
         : "Estimate minus truth along the axes of the map frame, without any alignment.";
+  };
+
+  const drawParticles = () => {
+    if (!particles) return;
+    const h = particles.health;
+    draw("particles", [
+      line("hypotheses weighed", h.t, h.hypotheses, c.faint),
+      line("effective size", h.t, h.effective, c.estimate),
+      line("ancestors a loop ago", h.t, h.ancestors, c.bad, { line: { color: c.bad, width: 2, shape: "hv" } }),
+    ], { xaxis: timeAxis(), yaxis: axis("particles [count]", { type: "log" }) });
+    byId("particles-note").textContent =
+      `Of how many particles a loop's length ago (fastslam.genealogy_m) those of today descend: 1 says that the path of before
+       is a single guess, and the covariance knows nothing of the others. The effective size is no alarm for that.` +
+      (h.block > 1 ? ` Blocks of ${h.block} scans: means, and the least number of ancestors.` : "");
   };
 
   const drawNis = () => {
@@ -563,10 +614,15 @@
     c = colours();
     for (const chart of [drawMap, drawErrors, drawSmoothing]) chart();
     if (!filtered) return;
-    for (const chart of [drawNis, drawLandmarks, drawObservations, drawTiming, drawClosures]) chart();
+    for (const chart of [drawParticles, drawNis, drawLandmarks, drawObservations, drawTiming, drawClosures]) chart();
   };
 
-  for (const section of document.querySelectorAll(".of-filter")) section.hidden = !filtered;
+  const hide = (className, hidden) => {
+    for (const section of document.querySelectorAll(className)) section.hidden = hidden;
+  };
+  hide(".of-filter", !filtered);
+  hide(".of-navigator", !filtered || Boolean(particles));
+  hide(".of-particles", !particles);
   writeHeader();
   writeSummary();
   writeDecisions();

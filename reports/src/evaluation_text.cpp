@@ -64,6 +64,23 @@ std::string map_text(const evaluation::MapEvaluation& map) {
   return text;
 }
 
+std::string particles_text(const evaluation::ParticleEvaluation& particles) {
+  return format("particles            effective size %.1f %% in the mean, %zu resamplings in %zu scans\n",
+                100.0 * particles.mean_effective_share, particles.resamplings, particles.scans) +
+         format(
+             "  ancestors          %.1f in the mean, %zu at least: particles a loop ago that all of today descend "
+             "from\n",
+             particles.mean_ancestors, particles.least_ancestors);
+}
+
+Json particles_to_json(const evaluation::ParticleEvaluation& particles) {
+  return {{"scans", particles.scans},
+          {"effective_share", particles.mean_effective_share},
+          {"resamplings", particles.resamplings},
+          {"ancestors_mean", particles.mean_ancestors},
+          {"ancestors_least", particles.least_ancestors}};
+}
+
 Json statistics_to_json(const evaluation::ErrorStatistics& statistics, const std::string& unit) {
   return {{"rmse_" + unit, statistics.rmse},
           {"median_" + unit, statistics.median},
@@ -116,6 +133,7 @@ std::string evaluation_text(const evaluation::Evaluation& evaluation) {
                    evaluation.revisits.mean_nis_per_dof, evaluation.revisits.revisits,
                    static_cast<int>(evaluation::RevisitEvaluation::unseen_steps));
   }
+  if (evaluation.particles) text += particles_text(*evaluation.particles);
   return text;
 }
 
@@ -137,6 +155,7 @@ Json evaluation_to_json(const evaluation::Evaluation& evaluation) {
                  {"inside_95", evaluation.nis.inside_95}};
   json["revisits"] = {{"count", evaluation.revisits.revisits},
                       {"mean_nis_per_dof", evaluation.revisits.mean_nis_per_dof}};
+  if (evaluation.particles) json["particles"] = particles_to_json(*evaluation.particles);
   return json;
 }
 

@@ -59,6 +59,11 @@ std::string margin_of(const core::AssociationReport& a) {
   return "the best other explanation costs " + short_number(a.margin_nats) + " nats more";
 }
 
+/// The same after what was chosen; empty where nobody asked.
+std::string rival_of(const core::AssociationReport& a) {
+  return std::isnan(a.margin_nats) ? std::string() : "; " + margin_of(a);
+}
+
 std::string nis_of(const core::AssociationReport& a) {
   return "NIS " + short_number(a.nis) + " with " + std::to_string(a.dof) + " degrees of freedom";
 }
@@ -68,7 +73,7 @@ std::string fate_of(const core::AssociationReport& a) {
   const bool has_pair = a.dof > 0 && !std::isnan(a.nis);
   switch (a.outcome) {
     case core::Outcome::matched:
-      return "updated " + landmark + ": " + (has_pair ? nis_of(a) + "; " + margin_of(a) : "known by name") + '.';
+      return "updated " + landmark + ": " + (has_pair ? nis_of(a) + rival_of(a) : "known by name") + '.';
     case core::Outcome::augmented:
       return "began " + landmark + ": it is outside the gates of all landmarks.";
     case core::Outcome::rejected:
@@ -116,6 +121,11 @@ std::string explain_run(const runs::Run& run) {
   const std::vector<Decided> decided = decisions_of(run);
   std::vector<Decided> closures;
   std::copy_if(decided.begin(), decided.end(), std::back_inserter(closures), is_closure);
+  if (!run.steps.empty() && run.steps.back().particles) {
+    return std::to_string(run.steps.size()) +
+           " steps of a cloud of particles, each of which associates for itself: there are no closings to explain. "
+           "--step N says what the heaviest made of a scan.\n";
+  }
   std::string text = std::to_string(run.steps.size()) +
                      " steps; closings: " + std::to_string(count_of(closures, "accepted")) + " accepted, " +
                      std::to_string(count_of(closures, "refused")) + " refused, " +

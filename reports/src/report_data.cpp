@@ -9,6 +9,7 @@
 #include "helixnav/runs/words.hpp"
 #include "report_closures.hpp"
 #include "report_numbers.hpp"
+#include "report_particles.hpp"
 #include "report_series.hpp"
 #include "stride_for.hpp"
 
@@ -133,6 +134,7 @@ Json report_data(const runs::Run& run, const evaluation::Evaluation& evaluation)
   json["health"] = health_json(steps);
   json["nis"] = nis_json(steps);
   json["observations"] = observations_json(steps);
+  json["particles"] = evaluation.particles ? particles_data(run) : Json(nullptr);
   put_decisions(json, steps);
   json["closures"] = closures_data(run);
   return json;

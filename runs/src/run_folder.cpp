@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 
 #include "bring_into_map.hpp"
 #include "helixnav/core/decision_row.hpp"
@@ -63,6 +64,7 @@ struct RunTables {
   std::vector<core::MergedLandmarks> merges;
   std::vector<core::Pose2> particles;
   std::vector<HealthRow> health;
+  std::map<std::int64_t, core::CloudReport> clouds;  ///< by step; empty where no file has them
 };
 
 /// From the columns of its upper triangle, row by row. Element by element: a comma initialiser of Eigen must not be left by
@@ -123,6 +125,16 @@ core::Decision read_decision_row(const RunRow& row) {
   return core::decision_of(decision);
 }
 
+core::CloudReport read_cloud_report(const RunRow& row) {
+  core::CloudReport cloud;
+  cloud.hypotheses = static_cast<std::size_t>(row.integer_in(1, 0, int_max));
+  cloud.effective_size = row.number(2);
+  cloud.resampled = row.integer_in(3, 0, 1) == 1;
+  cloud.log_evidence = row.number(4);
+  cloud.distinct_ancestors = static_cast<std::size_t>(row.integer_in(5, 0, int_max));
+  return cloud;
+}
+
 RunTables read_tables(const std::string& folder) {
   const auto path = [&](const RunTable& table) { return folder + '/' + std::string(table.file); };
   RunTables tables;
@@ -146,6 +158,10 @@ RunTables read_tables(const std::string& folder) {
   });
   for_each_row(path(clouds_table), clouds_table,
                [&](const RunRow& row) { tables.particles.emplace_back(row.finite(1), row.finite(2), row.finite(3)); });
+  if (fs::exists(path(particles_table))) {
+    for_each_row(path(particles_table), particles_table,
+                 [&](const RunRow& row) { tables.clouds[row.integer(0)] = read_cloud_report(row); });
+  }
   return tables;
 }
 
@@ -174,6 +190,8 @@ void assemble(RunTables& tables, Run& run) {
     core::StepReport& step = run.steps.emplace_back(std::move(health.report));
     run.microseconds.push_back(health.microseconds);
     step.pose.mean = tables.trajectory[k].second;
+    const auto cloud = tables.clouds.find(step.step);
+    if (cloud != tables.clouds.end()) step.particles = cloud->second;
     take(tables.decisions, next_decision, health.decision_rows, step.decisions);
     take(tables.merges, next_merge, health.merge_rows, step.merged);
     take(tables.particles, next_particle, health.cloud_rows, step.cloud);

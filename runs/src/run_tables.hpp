@@ -24,6 +24,10 @@ inline constexpr RunTable health_table{
     "cloud_rows,microseconds"};
 inline constexpr RunTable merges_table{"merges.csv", "step,kept,removed"};
 inline constexpr RunTable clouds_table{"clouds.csv", "step,x,y,heading"};
+inline constexpr RunTable particles_table{"particles.csv",
+                                          "step,hypotheses,effective_size,resampled,log_evidence,distinct_ancestors"};
+inline constexpr RunTable paths_table{"paths.csv", "point,before,step,x,y,heading,share"};
+inline constexpr RunTable mixture_table{"mixture.csv", "id,x,y,sxx,sxy,syy,share,mature_share"};
 inline constexpr RunTable map_table{"map.csv", "id,x,y,sxx,sxy,syy,observations,state"};
 inline constexpr RunTable truth_poses_table{"truth_poses.csv", "t_s,x,y,heading"};
 inline constexpr RunTable truth_positions_table{"truth_positions.csv", "t_s,x,y,antenna_x,antenna_y"};
@@ -39,6 +43,7 @@ inline constexpr const char* run_files[] = {
     "manifest.json",    "trajectory.tum",  "trajectory_final.tum", "map.csv",
     "associations.csv", "decisions.csv",   "health.csv",           "summary.json",
     "report.html",      "truth_poses.csv", "truth_positions.csv",  "truth_landmarks.csv",
-    "truth_labels.csv", "merges.csv",      "clouds.csv",           "map.bin"};
+    "truth_labels.csv", "merges.csv",      "clouds.csv",           "map.bin",
+    "particles.csv",    "paths.csv",       "mixture.csv"};
 
 }  // namespace helixnav::runs

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <initializer_list>
+#include <optional>
 
+#include "append_cells.hpp"
 #include "bring_into_map.hpp"
 #include "cloud_choice.hpp"
 #include "helixnav/core/decision_row.hpp"
@@ -15,6 +16,7 @@
 #include "helixnav/runs/joint_map_file.hpp"
 #include "helixnav/runs/words.hpp"
 #include "map_text.hpp"
+#include "particle_tables.hpp"
 #include "run_tables.hpp"
 #include "write_truth.hpp"
 
@@ -35,20 +37,6 @@ void make_folder(const std::string& folder, RunWriter::IfNotEmpty if_not_empty) 
     throw core::InputError(folder + ": the folder is not empty; expected an empty or new one, or leave to overwrite");
   }
   for (const char* name : run_files) fs::remove(fs::path(folder) / name, error);
-}
-
-void append_cells(std::string& text, std::initializer_list<double> values) {
-  for (const double value : values) {
-    text += ',';
-    files::append_number(text, value);
-  }
-}
-
-void append_counts(std::string& text, std::initializer_list<std::int64_t> values) {
-  for (const std::int64_t value : values) {
-    text += ',';
-    files::append_number(text, value);
-  }
 }
 
 void append_step_and_time(std::string& text, const core::StepReport& report) {
@@ -170,6 +158,7 @@ struct RunWriter::Files {
   Table clouds;
   Table trajectory;
   Table health;
+  std::optional<Table> particles;  ///< from the first step on that has a cloud
   CloudChoice cloud_choice;
 
   explicit Files(const std::string& folder)
@@ -205,6 +194,11 @@ void RunWriter::write(const core::StepReport& report, double microseconds) {
   if (keeps_cloud) {
     for (const core::Pose2& pose : cloud) append_particle(f.clouds.block, report.step, pose);
   }
+  if (report.particles) {
+    if (!f.particles) f.particles.emplace(folder_, particles_table);
+    append_particles(f.particles->block, report.step, *report.particles);
+    f.particles->flush();
+  }
   append_trajectory(f.trajectory.block, report.t_ns, report.pose.mean);
   append_health(f.health.block, report, rows, particles, microseconds);
   // Health last: its row counts the rows of the others, so a reader knows when a step is complete.
@@ -225,6 +219,10 @@ void RunWriter::finish(const Run& run, const std::string& report_page, const std
   }
   if (run.joint_map && run.joint_map->joint.ids.size() <= most_joint_landmarks) {
     files::write_whole_file(folder_ + '/' + joint_map_file, joint_map_bytes(*run.joint_map));
+  }
+  if (run.particle_end) {
+    files::write_whole_file(folder_ + '/' + std::string(paths_table.file), paths_text(run.particle_end->paths));
+    files::write_whole_file(folder_ + '/' + std::string(mixture_table.file), mixture_text(run.particle_end->mixture));
   }
   files::write_whole_file(folder_ + '/' + report_file, report_page);
   files::write_whole_file(folder_ + '/' + summary_file, summary);

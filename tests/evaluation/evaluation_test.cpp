@@ -147,6 +147,22 @@ TEST(Evaluation, CountsARevisitOnlyAfterALongAbsence) {
   EXPECT_DOUBLE_EQ(evaluation.revisits.mean_nis_per_dof, 1.5);
 }
 
+TEST(Evaluation, OfParticlesHasTheirEffectiveShareAndAncestors) {
+  runs::Run run;
+  run.steps.resize(4);  // the second was withheld
+  run.steps[0].particles = core::CloudReport{100, 50.0, false, -1.0, 100};
+  run.steps[2].particles = core::CloudReport{200, 20.0, true, -1.0, 7};
+  run.steps[3].particles = core::CloudReport{100, 90.0, true, -1.0, 10};
+  const Evaluation evaluation = evaluate(run);
+  ASSERT_TRUE(evaluation.particles.has_value());
+  EXPECT_EQ(evaluation.particles->scans, 3u);
+  EXPECT_DOUBLE_EQ(evaluation.particles->mean_effective_share, 0.5);
+  EXPECT_EQ(evaluation.particles->resamplings, 2u);
+  EXPECT_DOUBLE_EQ(evaluation.particles->mean_ancestors, 39.0);
+  EXPECT_EQ(evaluation.particles->least_ancestors, 7u);
+  EXPECT_FALSE(evaluate(runs::Run{}).particles.has_value());
+}
+
 TEST(Evaluation, OfARunWithoutStepsOrTruthSaysSo) {
   const Evaluation evaluation = evaluate(runs::Run{});
   EXPECT_FALSE(evaluation.position);

@@ -65,7 +65,7 @@ TEST(Twins, OneParticleOfFastSlam1IsTheEkfOfItsLandmarksAtItsPoses) {
 }
 
 /// A robot that cannot turn and sees points in its own axes: everything is linear.
-TEST(Twins, NormaliserOfFastSlam2IsTheIntegralOverThePoseInTheLinearCase) {
+TEST(Twins, NormaliserAndInnovationsOfFastSlam2AreThoseOfTheLinearCase) {
   Options options = one_particle();
   options.proposal = Proposal::motion_and_scan;
   options.added_sigma_m = options.added_sigma_rad = 0.0;
@@ -80,7 +80,20 @@ TEST(Twins, NormaliserOfFastSlam2IsTheIntegralOverThePoseInTheLinearCase) {
   slam.predict(odometry);
   core::Scan second;
   second.observations = {core::make_cartesian({2.7, 0.9}, R1), core::make_cartesian({-1.6, 3.9}, R1)};
-  slam.update_known(second, {7, 8});
+  const core::StepReport report = slam.update_known(second, {7, 8});
+
+  // The innovations of both, as of before the scan, with their joint covariance.
+  const Eigen::Matrix2d Q = odometry.covariance.topLeftCorner<2, 2>();
+  const Eigen::Vector4d nu(0.2, 0.1, -0.1, 0.1);
+  Eigen::Matrix4d S = Q.replicate<2, 2>();
+  S.topLeftCorner<2, 2>() += R0 + R1;
+  S.bottomRightCorner<2, 2>() += R0 + R1;
+  EXPECT_NEAR(report.joint_nis, nu.dot(S.inverse() * nu), 1e-5);
+  const Eigen::Matrix2d S_of_one = Q + R0 + R1;
+  for (int j = 0; j < 2; ++j) {
+    const Eigen::Vector2d of_one = nu.segment<2>(2 * j);
+    EXPECT_NEAR(report.associations[static_cast<std::size_t>(j)].nis, of_one.dot(S_of_one.inverse() * of_one), 1e-5);
+  }
 
   // p(z) = ∫ N(x; f, Q) Π N(z_j; m_j − x, Σ_j + R) dx by the trapezoidal rule, which is exact for such functions.
   const Eigen::Matrix2d Q_inverse = odometry.covariance.topLeftCorner<2, 2>().inverse();

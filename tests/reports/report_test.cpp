@@ -78,6 +78,27 @@ TEST(Report, HoldsCloudsConstellationAndRivalOfEachClosure) {
   EXPECT_EQ(closure["matched"], nlohmann::json({{10.0, 0.333}}));
 }
 
+TEST(Report, HoldsHealthPathsAndMixtureOfACloudOfParticles) {
+  runs::Run run = example_run(3);
+  EXPECT_TRUE(element(render(run), "run-data")["particles"].is_null());
+  for (core::StepReport& step : run.steps) step.particles = core::CloudReport{100, 40.0, false, 0.0, 9};
+  // A stem of two points that parts into two ends.
+  run.particle_end = runs::ParticleEnd{{{0, -1, {0.0, 0.0, 0.0}, 1.0},
+                                        {1, 0, {1.0, 0.0, 0.0}, 1.0},
+                                        {2, 1, {2.0, 0.0, 0.0}, 0.5},
+                                        {2, 1, {2.0, 1.0, 0.0}, 0.5}},
+                                       {{7, {{1.0, -2.0}, Eigen::Matrix2d::Identity()}, 0.9, 0.8},
+                                        {8, {{1.0, -2.0}, Eigen::Matrix2d::Identity()}, 0.9, 0.4}}};
+  const nlohmann::json data = element(render(run), "run-data"), particles = data["particles"];
+  EXPECT_EQ(particles["health"]["effective"], nlohmann::json({40.0, 40.0, 40.0}));
+  EXPECT_EQ(particles["health"]["ancestors"], nlohmann::json({9, 9, 9}));
+  EXPECT_EQ(particles["paths"]["x"], nlohmann::json({2.0, 1.0, 0.0, nullptr, 2.0, 1.0, nullptr}));
+  EXPECT_EQ(particles["paths"]["y"], nlohmann::json({0.0, 0.0, 0.0, nullptr, 1.0, 0.0, nullptr}));
+  ASSERT_EQ(particles["mixture"].size(), 1u) << "only what most of the weight holds as mature";
+  EXPECT_EQ(particles["mixture"][0]["id"], 7);
+  EXPECT_EQ(data["summary"]["particles"]["ancestors_least"], 9);
+}
+
 TEST(Report, LoadsNothingFromElsewhere) {
   std::string page = render(example_run(20));
   const std::size_t charts = page.find(report_charts);

@@ -115,6 +115,37 @@ TEST(RunFolder, ReadsToTheLastCompleteStepWhereverAnyTableIsCut) {
   EXPECT_EQ(read_run(path).steps.size(), static_cast<std::size_t>(written));
 }
 
+TEST(RunFolder, HasTheCloudReportsOfTheStepsThatHaveThem) {
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "run").string();
+  const auto cloud_of = [](std::int64_t k) {
+    return core::CloudReport{100, 99.0 / static_cast<double>(k), k % 2 == 1, -1.0 / 3.0, static_cast<std::size_t>(k)};
+  };
+  {
+    RunWriter writer(path, example_manifest(), {});
+    for (std::int64_t k = 0; k < 20; ++k) {
+      core::StepReport step = example_step(k);
+      if (k % 5 != 0) step.particles = cloud_of(k);
+      writer.write(step, 10.0);
+    }
+  }
+  const runs::Run run = read_run(path);
+  ASSERT_EQ(run.steps.size(), 20u);
+  for (const core::StepReport& step : run.steps) {
+    expect_same(step, example_step(step.step));
+    ASSERT_EQ(step.particles.has_value(), step.step % 5 != 0) << step.step;
+    if (!step.particles) continue;
+    const core::CloudReport expected = cloud_of(step.step);
+    EXPECT_EQ(step.particles->hypotheses, expected.hypotheses);
+    EXPECT_EQ(step.particles->effective_size, expected.effective_size);
+    EXPECT_EQ(step.particles->resampled, expected.resampled);
+    EXPECT_EQ(step.particles->log_evidence, expected.log_evidence);
+    EXPECT_EQ(step.particles->distinct_ancestors, expected.distinct_ancestors);
+  }
+  write_without_end((folder.path() / "without").string(), 20);
+  EXPECT_FALSE(fs::exists(folder.path() / "without" / "particles.csv"));
+}
+
 TEST(RunFolder, IsReadableAfterTheWriterWasKilled) {
   const TemporaryFolder folder;
   const std::string path = (folder.path() / "run").string();

@@ -117,6 +117,21 @@ TEST(RunWriter, WritesThePathOfASmootherBesideThatOfTheSteps) {
   EXPECT_EQ(read_run(path).steps[1].pose.mean.x_m, example_step(1).pose.mean.x_m);
 }
 
+TEST(RunWriter, WritesPathsAndMixtureOfACloudOfParticles) {
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "run").string();
+  RunWriter writer(path, example_manifest(), {});
+  runs::Run run = example_run(0);
+  run.particle_end = ParticleEnd{{{0, -1, {1.0, 2.0, 0.5}, 1.0}, {3, 0, {1.5, 2.0, 0.25}, 0.75}},
+                                 {{7, {{1.0, -2.0}, Eigen::Matrix2d::Identity() * 0.5}, 0.75, 0.25}}};
+  writer.finish(run, "page", "{}");
+  EXPECT_EQ(files::read_whole_file(path + "/paths.csv"),
+            "point,before,step,x,y,heading,share\n0,-1,0,1,2,0.5,1\n1,0,3,1.5,2,0.25,0.75\n");
+  EXPECT_EQ(files::read_whole_file(path + "/mixture.csv"),
+            "id,x,y,sxx,sxy,syy,share,mature_share\n7,1,-2,0.5,0,0.5,0.75,0.25\n");
+  EXPECT_FALSE(fs::exists(path + "/particles.csv")) << "no step had a cloud";
+}
+
 TEST(RunWriter, LeavesNoTemporaryFileBehind) {
   const TemporaryFolder folder;
   write_example((folder.path() / "run").string(), 3);

@@ -124,7 +124,9 @@ ExitCode show_scan(const AssociateJob& job) {
 }
 
 ExitCode associate(CLI::App& command, AssociateJob& job) {
+  const GivenOptions given = options_given(command);
   if (!job.config.empty()) apply_config_file(command, job.config);
+  require_compressed_ekf(command, given, job.settings.fastslam, "associate compares methods of the compressed EKF");
   if (job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "has no part in comparing associations");
   catch_interrupts();
   return job.scan >= 0 ? show_scan(job) : compare(job);

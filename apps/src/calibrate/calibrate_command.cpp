@@ -95,7 +95,9 @@ void print_scale(const char* what, const smoothing::NoiseScale& scale) {
 }
 
 ExitCode calibrate(CLI::App& command, CalibrateJob& job) {
+  const GivenOptions given = options_given(command);
   if (!job.config.empty()) apply_config_file(command, job.config);
+  require_compressed_ekf(command, given, job.settings.fastslam, "calibrate judges noise by the compressed EKF");
   apply_vehicle(command, job.vehicle, job.path, job.settings);
   check_vehicle(job);
   if (!job.out.empty() && std::filesystem::exists(job.out)) {

@@ -38,6 +38,10 @@ std::string missing_text(const core::Recording& recording) {
 }
 
 void print_settings(const CheckJob& job, const core::Recording& recording) {
+  if (job.settings.fastslam.chosen) {
+    std::printf("settings    %s\n", text_of(job.settings.fastslam).c_str());
+    return;
+  }
   const supervisor::NavigatorOptions options = fit_to_recording(job.settings, recording);
   std::printf(
       "settings    association %s, detection probability %.3g (existence %.3g), %.3g detections of nothing mapped a "
@@ -49,7 +53,9 @@ void print_settings(const CheckJob& job, const core::Recording& recording) {
 }
 
 ExitCode check(CLI::App& command, CheckJob& job) {
+  const GivenOptions given = options_given(command);
   if (!job.config.empty()) apply_config_file(command, job.config);
+  check_filter(command, given, job.settings.fastslam);
   apply_vehicle(command, job.vehicle, job.path, job.settings);
   const logs::LogFormat format = logs::recognise(job.path);
   std::printf("log         %s, format %s\n", job.path.c_str(), std::string(logs::name_of(format)).c_str());

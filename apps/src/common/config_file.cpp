@@ -89,6 +89,14 @@ std::vector<CLI::Option*> configurable_options(const CLI::App& app) {
   return options;
 }
 
+std::set<const CLI::Option*> options_given(const CLI::App& app) {
+  std::set<const CLI::Option*> given;
+  for (const CLI::Option* option : configurable_options(app)) {
+    if (option->count() > 0) given.insert(option);
+  }
+  return given;
+}
+
 void apply_config_file(CLI::App& app, const std::string& path) {
   std::ifstream file(path);
   if (!file || std::filesystem::is_directory(path))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,9 @@ namespace helixnav::apps {
 
 /// The options of `app` that a configuration file may set: those whose name holds a dot, `--section.key`.
 std::vector<CLI::Option*> configurable_options(const CLI::App& app);
+
+/// Those of them that the command line sets; before apply_config_file.
+std::set<const CLI::Option*> options_given(const CLI::App& app);
 
 /// Sets from an INI or TOML file every configurable option that the command line left alone. Throws CLI::ValidationError
 /// that names file, line, key and the nearest key for an unknown one, or the allowed range for a bad value.

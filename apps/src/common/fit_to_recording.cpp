@@ -21,6 +21,19 @@ void scale_covariances(core::Recording& recording, double scale) {
 
 double in_degrees(double angle_rad) { return angle_rad * 180.0 / core::pi; }
 
+std::string view_text(const core::FieldOfView& view) {
+  std::ostringstream text;
+  text.precision(6);
+  text << "\n# Field of view: " << view.min_range_m << " to " << view.max_range_m << " m, "
+       << in_degrees(view.min_bearing_rad) << " to " << in_degrees(view.max_bearing_rad) << " deg; reach ";
+  if (view.reach()) {
+    text << *view.reach() << " m";
+  } else {
+    text << "unknown";
+  }
+  return text.str();
+}
+
 }  // namespace
 
 void apply_log_settings(core::Recording& recording, const Settings& settings) {
@@ -48,13 +61,8 @@ supervisor::NavigatorOptions fit_to_recording(const Settings& settings, const co
 std::string lengths_text(const supervisor::NavigatorOptions& options, const core::FieldOfView& view) {
   std::ostringstream text;
   text.precision(6);
-  text << "\n# Field of view: " << view.min_range_m << " to " << view.max_range_m << " m, "
-       << in_degrees(view.min_bearing_rad) << " to " << in_degrees(view.max_bearing_rad) << " deg; reach ";
-  if (view.reach()) {
-    text << *view.reach() << " m";
-  } else {
-    text << "unknown, taken for " << supervisor::reference_reach_m << " m";
-  }
+  text << view_text(view);
+  if (!view.reach()) text << ", taken for " << supervisor::reference_reach_m << " m";
   text << "\n# Lengths in force, by the reach unless given:\n";
   for (const supervisor::LengthInForce& length : supervisor::lengths_in_force(options)) {
     text << "# " << length.name << " = " << length.value << '\n';
@@ -66,6 +74,12 @@ std::string lengths_text(const supervisor::NavigatorOptions& options, const core
     text << options.search.extraneous_per_scan << '\n';
   }
   return text.str();
+}
+
+std::string in_force_text(const Settings& settings, const supervisor::NavigatorOptions& options,
+                          const core::Recording& recording) {
+  const core::FieldOfView view = logs::field_of_view_of(recording);
+  return settings.fastslam.chosen ? view_text(view) + '\n' : lengths_text(options, view);
 }
 
 }  // namespace helixnav::apps

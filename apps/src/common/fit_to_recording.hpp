@@ -21,4 +21,8 @@ supervisor::NavigatorOptions fit_to_recording(const Settings& settings, const co
 /// The sensor's field of view and all lengths in force, as lines of comment for the configuration in a manifest.
 std::string lengths_text(const supervisor::NavigatorOptions& options, const core::FieldOfView& view);
 
+/// What of this the filter chosen has: FastSLAM has no lengths.
+std::string in_force_text(const Settings& settings, const supervisor::NavigatorOptions& options,
+                          const core::Recording& recording);
+
 }  // namespace helixnav::apps

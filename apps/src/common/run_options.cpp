@@ -11,6 +11,7 @@
 #include "drive/drive.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
+#include "settings.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -60,6 +61,13 @@ void fill_drive(Drive& drive, const RunOptions& options, const std::string& conf
   drive.manifest.command = command_line_text();
   drive.manifest.recording = drive.recording.name;
   drive.manifest.config = config;
+}
+
+void choose_filter(Drive& drive, const Settings& settings) {
+  const FastSlamSettings& fastslam = settings.fastslam;
+  drive.fastslam = fastslam;
+  drive.known_association =
+      fastslam.chosen ? fastslam.options.association == fastslam::Association::known : settings.known_association;
 }
 
 std::vector<runs::InputFile> input_files(const std::string& path) {

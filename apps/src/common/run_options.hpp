@@ -13,6 +13,7 @@ class App;
 namespace helixnav::apps {
 
 struct Drive;
+struct Settings;
 
 /// Options of commands that write a run folder.
 struct RunOptions {
@@ -33,6 +34,9 @@ void prepare_run(CLI::App& command, const RunOptions& options);
 
 /// Copies the options into the drive and begins its manifest; `config` is the configuration in force.
 void fill_drive(Drive& drive, const RunOptions& options, const std::string& config);
+
+/// The filter that the settings choose, and whether labels are identities.
+void choose_filter(Drive& drive, const Settings& settings);
 
 /// The file, or the files of the folder in order of name, with their digests. InputError when one cannot be read.
 std::vector<runs::InputFile> input_files(const std::string& path);

@@ -27,6 +27,7 @@ CLI::Option* add_length(CLI::App& command, Settings& settings, const std::string
 void add_sensor_settings(CLI::App& command, Settings& settings);
 void add_search_settings(CLI::App& command, Settings& settings);
 void add_slip_settings(CLI::App& command, Settings& settings);
+void add_fastslam_settings(CLI::App& command, FastSlamSettings& settings);
 void add_log_settings(CLI::App& command, Settings& settings);
 
 }  // namespace helixnav::apps

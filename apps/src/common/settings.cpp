@@ -20,6 +20,14 @@ void choose_method(const std::string& chosen, Settings& settings) {
 }
 
 void add_filter(CLI::App& command, Settings& settings) {
+  command
+      .add_option_function<std::string>(
+          "--filter.method,--filter",
+          [&settings](const std::string& word) { settings.fastslam.chosen = word == "fastslam"; },
+          "What navigates; fastslam: a cloud of particles (replay and simulate; docs/fastslam.md)")
+      ->check(one_of({"compressed-ekf", "fastslam"}))
+      ->default_str("compressed-ekf")
+      ->group(settings_group);
   cekf::FilterOptions& filter = settings.navigator.filter;
   const auto set_retraction = [&filter](const std::string& word) {
     filter.retraction = word == "standard" ? cekf::Retraction::standard : cekf::Retraction::right_invariant;
@@ -92,6 +100,7 @@ void add_settings(CLI::App& command, Settings& settings) {
   add_landmarks(command, settings);
   add_search_settings(command, settings);
   add_slip_settings(command, settings);
+  add_fastslam_settings(command, settings.fastslam);
   add_log_settings(command, settings);
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "fastslam_settings.hpp"
 #include "helixnav/association/associate.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/read_recording.hpp"
@@ -20,6 +21,7 @@ namespace helixnav::apps {
 /// Everything that a configuration file may set, bound to the options --section.key of a command.
 struct Settings {
   supervisor::NavigatorOptions navigator;
+  FastSlamSettings fastslam;       ///< in place of the navigator, where it is chosen
   bool known_association = false;  ///< association.method is "known": the log's labels are the identities
   logs::RecordingSettings logs;
   std::map<std::string, double> given_lengths_m;  ///< by their names in supervisor/lengths.cpp; all others by the reach

@@ -33,6 +33,7 @@ void set_detection(CLI::App& command, const logs::Vehicle& vehicle) {
   if (probability) {
     set_unless_given(command, "--association.detection_probability", *probability);
     set_unless_given(command, "--landmarks.detection_probability", *probability);
+    set_unless_given(command, "--fastslam.detection_probability", *probability);
   }
   constexpr double new_per_scan = 0.5;
   if (clutter) set_unless_given(command, "--association.extraneous_per_scan", *clutter + new_per_scan);

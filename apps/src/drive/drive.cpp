@@ -53,14 +53,14 @@ void check_earlier_labels(const EarlierSession& earlier) {
 
 void check_labels(const Drive& job) {
   if (job.known_association && job.earlier) check_earlier_labels(*job.earlier);
+  const std::string option = job.fastslam.chosen ? "--fastslam.association known" : "--association known";
   if (job.known_association && job.recording.labels.empty()) {
-    throw core::InputError(job.recording.name +
-                           ": --association known needs a labelled log, and this one has no labels");
+    throw core::InputError(job.recording.name + ": " + option + " needs a labelled log, and this one has no labels");
   }
   if (job.known_association && job.given_map && job.given_map->landmark_of.empty()) {
-    throw core::InputError(
-        "--association known needs to know the labels of the map's landmarks: give --map the folder "
-        "of a run over a labelled log");
+    throw core::InputError(option +
+                           " needs to know the labels of the map's landmarks: give --map the folder "
+                           "of a run over a labelled log");
   }
 }
 
@@ -112,6 +112,11 @@ Driven navigate(const Drive& job, Estimator& estimator, runs::RunWriter& writer,
   return driven;
 }
 
+Estimator estimator_of(const Drive& job, LabelAgreement& agreement) {
+  if (job.given_map) return localizer_of(job, agreement);
+  return job.fastslam.chosen ? fastslam_of(job) : navigator_of(job);
+}
+
 /// Says on stderr what is not well.
 ExitCode verdict(const Drive& job, const Driven& driven, const runs::Run& run, const evaluation::Evaluation& evaluation,
                  ExitCode smoothed) {
@@ -143,7 +148,7 @@ ExitCode drive(const Drive& job) {
                          job.overwrite ? IfNotEmpty::overwrite : IfNotEmpty::refuse);
   runs::RunRecorder recorder(job.out, job.manifest, job.recording);
   LabelAgreement agreement;
-  Estimator estimator = job.given_map ? localizer_of(job, agreement) : navigator_of(job);
+  Estimator estimator = estimator_of(job, agreement);
   Driven driven = navigate(job, estimator, writer, recorder);
   const std::vector<double>& step_us = driven.step_us;
 
@@ -155,6 +160,7 @@ ExitCode drive(const Drive& job) {
                 {"reading_s", job.reading_s},
                 {"navigating_s", seconds_since(begin)}};
   run.numbers = numbers_of(agreement);
+  if (estimator.particle_end) run.particle_end = estimator.particle_end();
   if (!job.withheld.empty()) {
     const auto withheld = std::count(job.withheld.begin(), job.withheld.end(), true);
     run.numbers.emplace_back("blackout.scans", static_cast<double>(withheld));
@@ -164,7 +170,7 @@ ExitCode drive(const Drive& job) {
   const evaluation::Evaluation evaluation = reports::finish_run(run, writer);
   std::fputs(reports::evaluation_text(evaluation).c_str(), stdout);
   std::fputs(text_of(agreement).c_str(), stdout);
-  if (!job.given_map) {
+  if (!job.given_map && !job.fastslam.chosen) {
     std::printf("closings             %d accepted, %d refused, %d left undecided\n", driven.closings["accepted"],
                 driven.closings["refused"], driven.closings["undecided"]);
   }

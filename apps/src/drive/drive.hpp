@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/exit_code.hpp"
+#include "common/fastslam_settings.hpp"
 #include "earlier_session.hpp"
 #include "given_map.hpp"
 #include "helixnav/core/recording.hpp"
@@ -14,11 +15,12 @@
 
 namespace helixnav::apps {
 
-/// What replay and simulate have in common: a recording is driven through the navigator, or through the
-/// localizer, into a run folder.
+/// What replay and simulate have in common: a recording is driven through the navigator, through FastSLAM or through
+/// the localizer, into a run folder.
 struct Drive {
   core::Recording recording;
   supervisor::NavigatorOptions navigator;
+  FastSlamSettings fastslam;              ///< in place of the navigator, where it is chosen
   std::optional<GivenMap> given_map;      ///< localise in it instead of mapping
   std::optional<EarlierSession> earlier;  ///< go on in its map
   bool known_association = false;         ///< use the recording's labels as identities

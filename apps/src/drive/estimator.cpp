@@ -16,15 +16,6 @@
 namespace helixnav::apps {
 namespace {
 
-/// [scan fed] labels: of the scans withheld an estimator hears nothing.
-std::vector<std::vector<core::Label>> labels_fed(const Drive& job) {
-  std::vector<std::vector<core::Label>> labels;
-  for (std::size_t k = 0; k < job.recording.labels.size(); ++k) {
-    if (job.withheld.empty() || !job.withheld[k]) labels.push_back(job.recording.labels[k]);
-  }
-  return labels;
-}
-
 /// A session that does not know where it is calls its own start the origin.
 ChosenNavigator begun(const Drive& job, const std::vector<std::vector<core::Label>>& labels) {
   if (!job.earlier) return {job.recording, job.navigator, job.known_association, labels};
@@ -58,6 +49,14 @@ std::optional<core::JointMap> joint_map_of(const ChosenNavigator& navigator, con
 }
 
 }  // namespace
+
+std::vector<std::vector<core::Label>> labels_fed(const Drive& job) {
+  std::vector<std::vector<core::Label>> labels;
+  for (std::size_t k = 0; k < job.recording.labels.size(); ++k) {
+    if (job.withheld.empty() || !job.withheld[k]) labels.push_back(job.recording.labels[k]);
+  }
+  return labels;
+}
 
 Estimator navigator_of(const Drive& job) {
   const auto drive = std::make_shared<NavigatorDrive>(job);

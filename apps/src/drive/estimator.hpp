@@ -9,10 +9,11 @@
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/step_report.hpp"
+#include "helixnav/runs/run.hpp"
 
 namespace helixnav::apps {
 
-/// What a drive feeds: the navigator or the localizer, with the labels given to it when the job says so. The job must
+/// What a drive feeds: the navigator, FastSLAM or the localizer, with the labels given to it when the job says so. The job must
 /// outlive it.
 struct Estimator {
   std::function<std::optional<core::StepReport>(const core::Event&)> take;  ///< for core::EventLoop
@@ -20,9 +21,17 @@ struct Estimator {
   std::function<std::vector<core::MapLandmark>()> map;
   std::function<std::optional<core::JointMap>()>
       joint_map;  ///< to go on in; nothing of a localizer, or where it is too large
+  std::function<runs::ParticleEnd()> particle_end = {};  ///< of a cloud of particles only
 };
 
 Estimator navigator_of(const Drive& job);
+
+/// FastSLAM with job.fastslam; labels as NamedNavigator takes them. Its map is that of the heaviest particle. Fixes are
+/// not used.
+Estimator fastslam_of(const Drive& job);
+
+/// [scan fed] labels: of the scans withheld an estimator hears nothing.
+std::vector<std::vector<core::Label>> labels_fed(const Drive& job);
 
 /// Localises in job.given_map; `agreement` is counted up by each scan of a log with labels. Fixes are not used.
 Estimator localizer_of(const Drive& job, LabelAgreement& agreement);

@@ -64,7 +64,22 @@ void ObservationCounts::add(const core::StepReport& report) {
   }
 }
 
+/// FastSLAM begins a landmark with its first observation, so that each must place it.
+void check_all_place(const core::Recording& recording) {
+  for (const core::Event& event : recording.events) {
+    const auto* scan = std::get_if<core::Scan>(&event);
+    if (scan == nullptr) continue;
+    for (const core::Observation& observation : scan->observations) {
+      if (core::dimension(observation.kind) == 2) continue;
+      throw core::InputError(recording.name + ": holds a detection of a " +
+                             (observation.kind == core::ObservationKind::range ? "range" : "bearing") +
+                             " alone; --filter fastslam takes range and bearing, or points");
+    }
+  }
+}
+
 void check_observable(const Drive& job) {
+  if (job.fastslam.chosen) return check_all_place(job.recording);
   if (job.known_association || job.given_map) return;
   std::size_t seen = 0;
   for (const core::Event& event : job.recording.events) {

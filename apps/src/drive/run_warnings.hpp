@@ -18,7 +18,8 @@ struct ObservationCounts {
   void add(const core::StepReport& report);
 };
 
-/// InputError where the navigator could never map what the log holds: nothing but ranges or bearings, and no identities.
+/// InputError where the estimator could never map what the log holds: the navigator nothing but ranges or bearings without
+/// identities, FastSLAM any range or bearing alone.
 void check_observable(const Drive& job);
 
 /// What a user should know of a run that came to its end and is not to be trusted, with what to do: a map without

@@ -29,7 +29,10 @@ struct MonteCarloJob {
 };
 
 ExitCode run(CLI::App& command, MonteCarloJob& job) {
+  const GivenOptions given = options_given(command);
   if (!job.config.empty()) apply_config_file(command, job.config);
+  require_compressed_ekf(command, given, job.settings.fastslam,
+                         "campaigns are of the compressed EKF; simulate takes it");
   Campaign& campaign = job.campaign;
   campaign.scenario = scenario_of(job.scenario, job.scenario_settings);
   const core::FieldOfView& view = campaign.scenario.scanner.field_of_view;

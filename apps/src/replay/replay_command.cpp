@@ -59,13 +59,22 @@ void take_map(const ReplayJob& job, Drive& task) {
   }
 }
 
-ExitCode replay(CLI::App& command, ReplayJob& job) {
-  prepare_run(command, job.run);
+void refuse_contradictions(const ReplayJob& job) {
   if (job.localize && job.start && job.start->kind == SessionStart::Kind::end)
     throw CLI::ValidationError("--start end", "goes on mapping, and --localize does not map");
   if (job.localize && job.start && job.settings.known_association)
     throw CLI::ValidationError("--start", "with --localize is for logs without identities: these tell where one is");
   if (!job.map.empty() && job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "excludes --map");
+  if (!job.settings.fastslam.chosen) return;
+  if (!job.map.empty()) throw CLI::ValidationError("--map", "--filter fastslam begins a map of its own");
+  if (job.smooth) throw CLI::ValidationError("--smooth", "needs the associations of one map; fastslam has many");
+}
+
+ExitCode replay(CLI::App& command, ReplayJob& job) {
+  const GivenOptions given = options_given(command);
+  prepare_run(command, job.run);
+  check_filter(command, given, job.settings.fastslam);
+  refuse_contradictions(job);
   const auto begin = std::chrono::steady_clock::now();
   Drive task;
   apply_vehicle(command, job.vehicle, job.path, job.settings);
@@ -81,11 +90,11 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   if (!job.blackouts.empty()) task.withheld = withhold(task.recording, job.blackouts);
   apply_log_settings(task.recording, job.settings);
   task.navigator = fit_to_recording(job.settings, task.recording);
-  const std::string sensor_text = lengths_text(task.navigator, logs::field_of_view_of(task.recording));
-  fill_drive(task, job.run, dump_config(command) + sensor_text);
+  fill_drive(task, job.run, dump_config(command) + in_force_text(job.settings, task.navigator, task.recording));
   task.smooth = job.smooth;
   take_map(job, task);
-  task.known_association = job.settings.known_association;
+  choose_filter(task, job.settings);
+  if (task.fastslam.chosen) task.manifest.seed = task.fastslam.seed;
   task.manifest.inputs = input_files(job.path);
   if (!job.vehicle.empty()) task.manifest.inputs.push_back(input_files(job.vehicle).front());
   if (!job.map.empty()) {
@@ -146,6 +155,7 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
       "  helixnav replay isam_victoriaPark.txt --association known --out runs/graph\n"
       "  helixnav replay data_set.mat --out runs/carpark --config mine.toml\n"
       "  helixnav replay tuesday --map runs/monday --out runs/tuesday\n"
+      "  helixnav replay data_set.mat --filter fastslam --fastslam.detection_probability 0.5 --out runs/particles\n"
       "  helixnav replay map.circles --localize --map runs/optimum --out runs/located\n"
       "  helixnav replay victoria_park_ascii.zip --blackout 600:660 --blackout 900:930 --out runs/blind\n");
   command->callback([command, job, &code] { code = replay(*command, *job); });

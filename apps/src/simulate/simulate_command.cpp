@@ -71,13 +71,16 @@ void add_sessions(CLI::App& command, SimulateJob& job) {
 }
 
 ExitCode simulate(CLI::App& command, SimulateJob& job) {
+  const GivenOptions given = options_given(command);
   prepare_run(command, job.run);
+  check_filter(command, given, job.settings.fastslam);
+  if (job.settings.fastslam.chosen && !job.map.empty())
+    throw CLI::ValidationError("--map", "--filter fastslam begins a map of its own");
   Drive task;
   task.recording = recording_of(job);
   task.navigator = fit_to_recording(job.settings, task.recording);
-  const std::string sensor_text = lengths_text(task.navigator, logs::field_of_view_of(task.recording));
-  fill_drive(task, job.run, dump_config(command) + sensor_text);
-  task.known_association = job.settings.known_association;
+  fill_drive(task, job.run, dump_config(command) + in_force_text(job.settings, task.navigator, task.recording));
+  choose_filter(task, job.settings);
   task.manifest.seed = job.seed;
   if (!job.map.empty()) {
     task.earlier = read_earlier_session(job.map, job.start.value_or(SessionStart{}));
@@ -104,7 +107,8 @@ void add_simulate_command(CLI::App& app, ExitCode& code) {
   command->footer(scenario_list() +
                   "\nExamples:\n  helixnav simulate large-loop --seed 1 --out runs/loop\n"
                   "  helixnav simulate town --seed 1 --until 700 --out runs/monday\n"
-                  "  helixnav simulate town --seed 1 --day 2 --from 300 --map runs/monday --out runs/tuesday\n");
+                  "  helixnav simulate town --seed 1 --day 2 --from 300 --map runs/monday --out runs/tuesday\n"
+                  "  helixnav simulate circuit --filter fastslam --out runs/particles\n");
   command->callback([command, job, &code] { code = simulate(*command, *job); });
 }
 

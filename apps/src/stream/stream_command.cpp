@@ -21,8 +21,10 @@ struct StreamOptions {
 };
 
 ExitCode run_stream(CLI::App& command, StreamOptions& options) {
+  const GivenOptions given = options_given(command);
   prepare_run(command, options.run);
   StreamJob& job = options.job;
+  require_compressed_ekf(command, given, job.settings.fastslam, "a stream is navigated by the compressed EKF");
   if (job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "needs a whole log: a stream uses no fixes");
   apply_vehicle(command, options.vehicle, "", job.settings);
   job.out = options.run.out;

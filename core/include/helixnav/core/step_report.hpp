@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "helixnav/core/decision.hpp"
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/landmark_id.hpp"
+#include "helixnav/core/particle_cloud.hpp"
 #include "helixnav/core/se2.hpp"
 #include "helixnav/core/time.hpp"
 
@@ -29,9 +31,10 @@ struct AssociationReport {
   int observation = 0;  ///< index in the scan, from 0
   Outcome outcome = Outcome::ambiguous;
   LandmarkId landmark = no_landmark;
-  double nis = 0.0;          ///< νᵀS⁻¹ν of the pair chosen; NaN when there was none
-  int dof = 0;               ///< rows of ν; 0 when there was none
-  double margin_nats = 0.0;  ///< cost of the best alternative minus cost of the choice; +inf when there was none
+  double nis = 0.0;  ///< νᵀS⁻¹ν of the pair chosen; NaN when there was none
+  int dof = 0;       ///< rows of ν; 0 when there was none
+  double margin_nats =
+      0.0;  ///< cost of the best alternative minus cost of the choice; +inf when there was none, NaN when not asked
 };
 
 /// Two landmarks that turned out to be one: `removed` is gone, and what was seen of it was `kept`.
@@ -47,7 +50,8 @@ struct RevisedScan {
   std::vector<AssociationReport> associations;
 };
 
-/// Everything one scan did to the map and the pose. Filled by supervisor::Navigator, written by runs::RunWriter.
+/// Everything one scan did to the map and the pose. Filled by supervisor::Navigator or fastslam::FastSlam, written by
+/// runs::RunWriter.
 struct StepReport {
   std::int64_t step = 0;  ///< index of the scan, from 0
   Nanoseconds t_ns = 0;
@@ -64,6 +68,7 @@ struct StepReport {
   std::vector<RevisedScan> revised;     ///< by a rollback
   std::vector<Pose2> cloud;  ///< T_world_robot of particles of a search, thinned out for pictures; empty without
   std::vector<Pose2> drawn;  ///< same, where an attempt starts: as drawn on helices, before the scan weighed them
+  std::optional<CloudReport> particles;  ///< where the estimator is a cloud of particles
 };
 
 /// One landmark of the map as known now.

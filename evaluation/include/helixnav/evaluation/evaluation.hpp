@@ -92,6 +92,16 @@ struct RevisitEvaluation {
   double mean_nis_per_dof = 0.0;  ///< NaN without revisits
 };
 
+/// Of an estimator that is a cloud of particles: whether its covariance may be believed. Mean effective size is no alarm;
+/// few ancestors are (core::CloudReport).
+struct ParticleEvaluation {
+  std::size_t scans = 0;
+  double mean_effective_share = 0.0;  ///< effective size by the hypotheses weighed
+  std::size_t resamplings = 0;
+  double mean_ancestors = 0.0;
+  std::size_t least_ancestors = 0;
+};
+
 struct Evaluation {
   std::size_t steps = 0;
   std::optional<PositionEvaluation> position;
@@ -99,6 +109,7 @@ struct Evaluation {
   std::optional<MapEvaluation> map;
   NisEvaluation nis;
   RevisitEvaluation revisits;
+  std::optional<ParticleEvaluation> particles;
 };
 
 struct EvaluationOptions {

@@ -8,6 +8,7 @@
 
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/particle_cloud.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/fastslam/options.hpp"
 
@@ -16,18 +17,6 @@ namespace helixnav::fastslam {
 /// Names by which a caller tells landmarks apart (Association::known).
 using KnownName = std::int64_t;
 inline constexpr KnownName no_name = -1;  ///< an observation to leave out
-
-/// The health of the cloud after a scan.
-struct CloudReport {
-  std::size_t hypotheses = 0;   ///< weighed in this scan; more than particles with Association::multiple_hypotheses
-  double effective_size = 0.0;  ///< 1 / Σ w² before resampling
-  bool resampled = false;
-  double log_evidence = 0.0;  ///< log of Σ w before normalisation
-  /// Of how many particles `genealogy_m` of drive ago the particles of today descend: 1 says that the path of before is a
-  /// single guess. The effective size says nothing of it (docs/fastslam.md). Until so much was
-  /// driven, since the start.
-  std::size_t distinct_ancestors = 0;
-};
 
 /// Bytes that maps occupy.
 struct MemoryReport {
@@ -97,7 +86,15 @@ class FastSlam {
   /// Index of the heaviest particle: after resampling, one that descends from it.
   std::size_t best() const;
 
-  const CloudReport& cloud() const;
+  /// Landmarks of all particles by id, each the mixture of what the particles that hold it know, weight by weight. Ids are
+  /// given where an observation begins a landmark, to all particles for which it does. Cost: particles · landmarks.
+  std::vector<core::MixedLandmark> mixture() const;
+
+  const core::CloudReport& cloud() const;
+
+  /// [particle] index of that it descends from, among the particles before the last scan.
+  const std::vector<std::uint32_t>& parents() const;
+
   MemoryReport memory() const;
 
   /// Name of a landmark with Association::known; no_name for one that has none.

@@ -60,7 +60,7 @@ struct Options {
 
   double added_sigma_m = 1e-3;  ///< noise added to the odometry of each scan, in x and in y: keeps the cloud alive
   double added_sigma_rad = 1e-4;
-  double genealogy_m = 100.0;  ///< drive over which CloudReport::distinct_ancestors looks back: a loop's length
+  double genealogy_m = 100.0;  ///< drive over which core::CloudReport::distinct_ancestors looks back: a loop's length
   unsigned threads = 1;        ///< results do not depend on it
 };
 

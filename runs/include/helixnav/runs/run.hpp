@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "helixnav/core/joint_map.hpp"
+#include "helixnav/core/particle_cloud.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/runs/run_manifest.hpp"
@@ -25,6 +26,12 @@ struct RunTruth {
 
 /// What a recording knows of the truth.
 RunTruth truth_of(const core::Recording& recording);
+
+/// What an estimator that is a cloud of particles knows at the end of a drive, for paths.csv, mixture.csv and the report.
+struct ParticleEnd {
+  std::vector<core::PathPoint> paths;
+  std::vector<core::MixedLandmark> mixture;
+};
 
 /// A drive as a value: what an estimator reported step by step, what came of it, and what is known from elsewhere. It is
 /// made by RunRecorder while the drive goes on, or read from a folder by read_run.
@@ -46,6 +53,7 @@ struct Run {
   std::vector<std::pair<std::string, double>> timing;  ///< wall clock, into summary.json under "timing"
   std::optional<SmoothedRun> smoothed;
   std::optional<core::JointMap> joint_map;  ///< into map.bin
+  std::optional<ParticleEnd> particle_end;
 };
 
 /// Adds what a smoother made of the run. Where it ran alone, its poses are the run's from now on.

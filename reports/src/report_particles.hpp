@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "helixnav/runs/run.hpp"
+#include "json.hpp"
+
+namespace helixnav::reports {
+
+/// What the page draws of a cloud of particles: its health over time, its paths, its landmarks as all of it knows them.
+Json particles_data(const runs::Run& run);
+
+}  // namespace helixnav::reports
