@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bind.hpp"
+#include "common/fit_to_recording.hpp"
+#include "common/vehicle_option.hpp"
+#include "configuration.hpp"
+#include "helixnav/core/errors.hpp"
+#include "helixnav/logs/field_of_view.hpp"
+#include "helixnav/logs/read_recording.hpp"
+#include "helixnav/sim/simulate.hpp"
+#include "log.hpp"
+#include "replay/estimate_range_scale.hpp"
+#include "replay/fuse_gps.hpp"
+
+namespace helixnav::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// As replay of the program scales them.
+void scale_ranges(core::Recording& recording, const apps::Settings& settings) {
+  double scale = settings.plaza_range_scale;
+  if (scale == 0.0 && !settings.known_association) return;
+  if (scale == 0.0) scale = apps::estimate_range_scale(recording, settings.navigator);
+  apps::divide_ranges(recording, scale);
+}
+
+/// Reads as replay of the program does.
+core::Recording read_as_replay(const std::string& path, apps::Settings& settings) {
+  settings.logs.plaza.range_scale = 1.0;  // see scale_ranges
+  core::Recording recording = logs::read_recording(path, settings.logs);
+  const logs::LogFormat format = logs::recognise(path);
+  if (settings.logs.vehicle && format != logs::LogFormat::own) apps::tell_vehicle(recording, *settings.logs.vehicle);
+  if (format == logs::LogFormat::plaza) scale_ranges(recording, settings);
+  if (settings.gps.fuse) apps::fuse_gps(recording, settings.gps);
+  if (!recording.true_poses.empty()) recording.true_positions.clear();  // the better truth
+  apps::apply_log_settings(recording, settings);
+  return recording;
+}
+
+Log fitted(core::Recording recording, const Configuration& configuration) {
+  Log log;
+  log.navigator = apps::fit_to_recording(configuration.settings, recording);
+  log.known_association = configuration.settings.known_association;
+  log.config = configuration.text + apps::lengths_text(log.navigator, logs::field_of_view_of(recording));
+  log.recording = std::move(recording);
+  return log;
+}
+
+Log read_log(const fs::path& path, const fs::path& vehicle, const py::dict& options) {
+  Configuration configuration = configuration_of(options, vehicle.string(), path.string());
+  const py::gil_scoped_release released;
+  return fitted(read_as_replay(path.string(), configuration.settings), configuration);
+}
+
+Log simulate(const std::string& scenario, std::uint64_t seed, const py::dict& options) {
+  const Configuration configuration = configuration_of(options);
+  const py::gil_scoped_release released;
+  Log log = fitted(sim::simulate(sim::named_scenario(scenario), seed), configuration);
+  log.seed = seed;
+  return log;
+}
+
+Rows true_poses_of(const Log& log) {
+  Rows rows(static_cast<Eigen::Index>(log.recording.true_poses.size()), 4);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const core::TruePose& truth = log.recording.true_poses[static_cast<std::size_t>(i)];
+    rows.row(i) << core::seconds(truth.t_ns), truth.T_world_robot.vector().transpose();
+  }
+  return rows;
+}
+
+Rows true_positions_of(const Log& log) {
+  Rows rows(static_cast<Eigen::Index>(log.recording.true_positions.size()), 3);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const core::TruePosition& truth = log.recording.true_positions[static_cast<std::size_t>(i)];
+    rows.row(i) << core::seconds(truth.t_ns), truth.position_m.transpose();
+  }
+  return rows;
+}
+
+Rows true_landmarks_of(const Log& log) {
+  Rows rows(static_cast<Eigen::Index>(log.recording.true_landmarks.size()), 2);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    rows.row(i) = log.recording.true_landmarks[static_cast<std::size_t>(i)].point_m.transpose();
+  }
+  return rows;
+}
+
+}  // namespace
+
+void bind_log(py::module_& module) {
+  py::class_<Log>(module, "Log",
+                  "A drive as it was recorded or simulated, with the navigator's options for its sensor.")
+      .def_property_readonly("name", [](const Log& log) { return log.recording.name; })
+      .def_property_readonly("start", [](const Log& log) { return log.recording.start; })
+      .def_property_readonly(
+          "events", [](const Log& log) { return log.recording.events; },
+          "Odometry, Scan and AbsoluteFix in order; a copy.")
+      .def_property_readonly(
+          "labels", [](const Log& log) { return log.recording.labels; },
+          "Of each scan, of each observation: the identity, -1 for none; empty when the log has none.")
+      .def_property_readonly("true_poses", &true_poses_of, "(N, 4): t, x, y, heading in the map frame.")
+      .def_property_readonly("true_positions", &true_positions_of, "(N, 3): t, x, y in a frame of their own.")
+      .def_property_readonly("true_landmarks", &true_landmarks_of, "(N, 2).")
+      .def_property_readonly(
+          "remarks", [](const Log& log) { return log.recording.remarks; },
+          "What was mended, left out or is doubtful, a sentence each.")
+      .def_readonly("known_association", &Log::known_association)
+      .def_readonly("config", &Log::config, "The configuration in force, as helixnav config --dump writes it.")
+      .def("__len__", [](const Log& log) { return log.recording.events.size(); });
+  module.def(
+      "read_log", &read_log, py::arg("path"), py::arg("vehicle") = fs::path(), py::arg("options") = py::dict(),
+      "Reads a log as helixnav replay does. Options are keys and values as in a configuration file. InputError names "
+      "file, line and column.");
+  module.def("simulate", &simulate, py::arg("scenario") = "large-loop", py::arg("seed") = 1,
+             py::arg("options") = py::dict(),
+             "A drive through a world with known truth; the same seed gives the same drive.");
+}
+
+}  // namespace helixnav::python
