@@ -63,3 +63,7 @@ __all__ = [
     "replay",
     "simulate",
 ]
+
+for _name in __all__:  # where they are imported from is where messages say they are
+    globals()[_name].__module__ = __name__
+del _name

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <sstream>
 #include <string>
+#include <vector>
 
-#include "bind.hpp"
+#include "arrays.hpp"
 #include "helixnav/core/check_event.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/events.hpp"
@@ -14,7 +16,7 @@ namespace helixnav::python {
 namespace {
 
 using core::Pose2;
-using Matrix = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Rows2 = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
 core::ObservationKind kind_of(const std::string& word) {
   using core::ObservationKind;
@@ -30,55 +32,68 @@ const char* word_of(core::ObservationKind kind) {
   return words[static_cast<std::size_t>(kind)];
 }
 
-Pose2 pose_of(const Eigen::Vector3d& v) { return Pose2(v); }
+/// One observation of row z and covariance R, d×d.
+core::Observation observation_of(core::ObservationKind kind, const double* z, const double* R) {
+  const int d = core::dimension(kind);
+  core::Observation observation;
+  observation.kind = kind;
+  observation.z = Eigen::Map<const Eigen::VectorXd>(z, d);
+  observation.R = Eigen::Map<const Eigen::MatrixXd>(R, d, d).transpose();
+  return observation;
+}
 
-/// z is N×d, R d×d for all or N×d×d.
-std::vector<core::Observation> observations_of(const std::string& word, const Matrix& z, const Matrix& R) {
+/// z is N×d, R d×d for all or N×d×d; of a bearing or range alone, z may be N.
+std::vector<core::Observation> observations_of(const std::string& word, const Array& z, const Array& R) {
   const core::ObservationKind kind = kind_of(word);
   const py::ssize_t d = core::dimension(kind);
-  const py::ssize_t n = z.ndim() == 2 ? z.shape(0) : z.size() / d;
-  const bool shared = R.ndim() == 2 && R.shape(0) == d && R.shape(1) == d;
-  const bool each = R.ndim() == 3 && R.shape(0) == n && R.shape(1) == d && R.shape(2) == d;
   const bool rows = (z.ndim() == 2 && z.shape(1) == d) || (z.ndim() == 1 && (d == 1 || z.size() == 0));
-  if (!rows || !(shared || each)) {
-    throw core::PreconditionError("scan: expected z of shape (N, " + std::to_string(d) + ") and R of shape (" +
-                                  std::to_string(d) + ", " + std::to_string(d) + ") or (N, " + std::to_string(d) +
-                                  ", " + std::to_string(d) + ")");
+  const py::ssize_t n = rows ? z.shape(0) : 0;
+  const bool square = R.ndim() >= 2 && R.shape(R.ndim() - 1) == d && R.shape(R.ndim() - 2) == d;
+  const bool shared = R.ndim() == 2;
+  if (!rows || !square || !(shared || (R.ndim() == 3 && R.shape(0) == n))) {
+    const std::string width = std::to_string(d);
+    const std::string wide = width + ", " + width + ")";
+    throw core::PreconditionError("scan of kind " + word + ": expected z of shape (N, " + width + ") and R of shape (" +
+                                  wide + " or (N, " + wide + ", found " + shape_text(z) + " and " + shape_text(R));
   }
-  std::vector<core::Observation> observations(static_cast<std::size_t>(n));
-  for (py::ssize_t i = 0; i < n; ++i) {
-    core::Observation& observation = observations[static_cast<std::size_t>(i)];
-    observation.kind = kind;
-    observation.z.resize(d);
-    observation.R.resize(d, d);
-    for (py::ssize_t r = 0; r < d; ++r) {
-      observation.z[r] = z.data()[i * d + r];
-      for (py::ssize_t c = 0; c < d; ++c) observation.R(r, c) = R.data()[(shared ? 0 : i * d * d) + r * d + c];
-    }
-  }
+  std::vector<core::Observation> observations;
+  for (py::ssize_t i = 0; i < n; ++i)
+    observations.push_back(observation_of(kind, z.data() + i * d, R.data() + (shared ? 0 : i * d * d)));
   return observations;
 }
 
-core::Scan make_scan(double t_s, const std::string& kind, const Matrix& z, const Matrix& R,
-                     const Eigen::Vector3d& mounting, const core::FieldOfView& view) {
+core::Scan make_scan(double t_s, const std::string& kind, const py::object& z, const py::object& R,
+                     const py::object& mounting, const core::FieldOfView& view) {
   core::Scan scan;
-  scan.t_ns = core::nanoseconds_from_seconds(t_s);
-  scan.T_robot_sensor = pose_of(mounting);
+  scan.t_ns = time_from(t_s);
+  scan.T_robot_sensor = Pose2(vector3_from(mounting, "mounting"));
   scan.field_of_view = view;
-  scan.observations = observations_of(kind, z, R);
+  scan.observations = observations_of(kind, numbers_from(z, "z"), numbers_from(R, "R"));
   core::check(scan);
   return scan;
 }
 
-/// Of the first two rows of what was measured; NaN where there is one.
-Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> z_of(const core::Scan& scan) {
-  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> z(static_cast<Eigen::Index>(scan.observations.size()), 2);
+/// NaN in the second column of a bearing or range.
+Rows2 z_of(const core::Scan& scan) {
+  Rows2 z(static_cast<Eigen::Index>(scan.observations.size()), 2);
   z.setConstant(std::numeric_limits<double>::quiet_NaN());
   for (Eigen::Index i = 0; i < z.rows(); ++i) {
     const core::ObsVector& row = scan.observations[static_cast<std::size_t>(i)].z;
     z.row(i).head(row.size()) = row.transpose();
   }
   return z;
+}
+
+/// NaN where a bearing or range has no second row.
+py::array_t<double> R_of(const core::Scan& scan) {
+  py::array_t<double> R({static_cast<py::ssize_t>(scan.observations.size()), py::ssize_t{2}, py::ssize_t{2}});
+  std::fill_n(R.mutable_data(), R.size(), std::numeric_limits<double>::quiet_NaN());
+  double* to = R.mutable_data();
+  for (const core::Observation& observation : scan.observations) {
+    Eigen::Map<Eigen::Matrix2d>(to).topLeftCorner(observation.R.rows(), observation.R.cols()) = observation.R;
+    to += 4;
+  }
+  return R;
 }
 
 std::vector<std::string> kinds_of(const core::Scan& scan) {
@@ -92,7 +107,7 @@ void bind_times(py::class_<Event>& type) {
   type.def_readwrite("t_ns", &Event::t_ns, "Time [ns].");
   type.def_property(
       "t", [](const Event& event) { return core::seconds(event.t_ns); },
-      [](Event& event, double t_s) { event.t_ns = core::nanoseconds_from_seconds(t_s); }, "Time [s].");
+      [](Event& event, double t_s) { event.t_ns = time_from(t_s); }, "Time [s].");
 }
 
 void bind_view(py::module_& module) {
@@ -115,8 +130,9 @@ void bind_odometry(py::module_& module) {
       module, "Odometry",
       "Motion since the odometry before, in the frame of the robot before it moved, with its covariance.");
   odometry
-      .def(py::init([](double t_s, const Eigen::Vector3d& increment, const Eigen::Matrix3d& covariance) {
-             const core::Odometry made{core::nanoseconds_from_seconds(t_s), pose_of(increment), covariance};
+      .def(py::init([](double t_s, const py::object& increment, const py::object& covariance) {
+             const core::Odometry made{time_from(t_s), Pose2(vector3_from(increment, "increment")),
+                                       matrix3_from(covariance, "covariance")};
              core::check(made);
              return made;
            }),
@@ -131,11 +147,12 @@ void bind_odometry(py::module_& module) {
 void bind_scan(py::module_& module) {
   py::class_<core::Scan> scan(module, "Scan", "What one sensor saw at one instant; nothing seen is information, too.");
   scan.def(py::init(&make_scan), py::arg("t"), py::arg("kind"), py::arg("z"), py::arg("R"),
-           py::arg("mounting") = Eigen::Vector3d(0, 0, 0), py::arg("view") = core::FieldOfView(),
+           py::arg("mounting") = py::make_tuple(0.0, 0.0, 0.0), py::arg("view") = core::FieldOfView(),
            "kind: 'range_bearing', 'cartesian', 'bearing' or 'range'; z (N, d) in metres and radians, R (d, d) or (N, "
            "d, d); "
            "mounting (x, y, heading) of the sensor on the robot. PreconditionError for what no sensor measures.")
       .def_property_readonly("z", &z_of, "(N, 2); NaN in the second column of a bearing or range alone.")
+      .def_property_readonly("R", &R_of, "(N, 2, 2); NaN in the second row and column of a bearing or range alone.")
       .def_property_readonly("kinds", &kinds_of)
       .def_property_readonly("mounting", [](const core::Scan& s) { return s.T_robot_sensor.vector(); })
       .def_readonly("view", &core::Scan::field_of_view)
@@ -145,13 +162,13 @@ void bind_scan(py::module_& module) {
 
 void bind_fix(py::module_& module) {
   py::class_<core::AbsoluteFix> fix(module, "AbsoluteFix", "An absolute position in the map frame, as by GPS.");
-  fix.def(py::init([](double t_s, const Eigen::Vector2d& position, const Eigen::Matrix2d& covariance,
-                      const Eigen::Vector2d& antenna) {
-            const core::AbsoluteFix made{core::nanoseconds_from_seconds(t_s), position, covariance, antenna};
+  fix.def(py::init([](double t_s, const py::object& position, const py::object& covariance, const py::object& antenna) {
+            const core::AbsoluteFix made{time_from(t_s), vector2_from(position, "position"),
+                                         matrix2_from(covariance, "covariance"), vector2_from(antenna, "antenna")};
             core::check(made);
             return made;
           }),
-          py::arg("t"), py::arg("position"), py::arg("covariance"), py::arg("antenna") = Eigen::Vector2d(0, 0),
+          py::arg("t"), py::arg("position"), py::arg("covariance"), py::arg("antenna") = py::make_tuple(0.0, 0.0),
           "Of the antenna, which stands there on the robot; covariance 2×2.")
       .def_readonly("position", &core::AbsoluteFix::position_world_m)
       .def_readonly("covariance", &core::AbsoluteFix::covariance_m2)
@@ -159,12 +176,20 @@ void bind_fix(py::module_& module) {
   bind_times(fix);
 }
 
+core::PoseGaussian make_pose(const py::object& mean, const py::object& covariance) {
+  core::PoseGaussian pose;
+  pose.mean = Pose2(vector3_from(mean, "mean"));
+  if (!covariance.is_none()) pose.covariance = matrix3_from(covariance, "covariance");
+  if (!pose.mean.vector().allFinite()) throw core::PreconditionError("pose: the mean is not finite");
+  if (!core::is_symmetric_positive_semidefinite(pose.covariance))
+    throw core::PreconditionError("pose: the covariance is not symmetric positive semidefinite");
+  return pose;
+}
+
 void bind_pose(py::module_& module) {
   py::class_<core::PoseGaussian>(module, "Pose", "A pose (x, y, heading) [m, m, rad] with its covariance.")
-      .def(py::init([](const Eigen::Vector3d& mean, const Eigen::Matrix3d& covariance) {
-             return core::PoseGaussian{pose_of(mean), covariance};
-           }),
-           py::arg("mean") = Eigen::Vector3d(0, 0, 0), py::arg("covariance") = Eigen::Matrix3d(Eigen::Matrix3d::Zero()))
+      .def(py::init(&make_pose), py::arg("mean") = py::make_tuple(0.0, 0.0, 0.0), py::arg("covariance") = py::none(),
+           "Covariance 3×3, zero unless given. PreconditionError for NaN or no covariance.")
       .def_property_readonly("mean", [](const core::PoseGaussian& pose) { return pose.mean.vector(); })
       .def_readonly("covariance", &core::PoseGaussian::covariance)
       .def_property_readonly("x", [](const core::PoseGaussian& pose) { return pose.mean.x_m; })

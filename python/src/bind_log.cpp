@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,8 +54,8 @@ Log fitted(core::Recording recording, const Configuration& configuration) {
   return log;
 }
 
-Log read_log(const fs::path& path, const fs::path& vehicle, const py::dict& options) {
-  Configuration configuration = configuration_of(options, vehicle.string(), path.string());
+Log read_log(const fs::path& path, const std::optional<fs::path>& vehicle, const py::dict& options) {
+  Configuration configuration = configuration_of(options, vehicle.value_or(fs::path()).string(), path.string());
   const py::gil_scoped_release released;
   return fitted(read_as_replay(path.string(), configuration.settings), configuration);
 }
@@ -115,10 +116,10 @@ void bind_log(py::module_& module) {
       .def_readonly("known_association", &Log::known_association)
       .def_readonly("config", &Log::config, "The configuration in force, as helixnav config --dump writes it.")
       .def("__len__", [](const Log& log) { return log.recording.events.size(); });
-  module.def(
-      "read_log", &read_log, py::arg("path"), py::arg("vehicle") = fs::path(), py::arg("options") = py::dict(),
-      "Reads a log as helixnav replay does. Options are keys and values as in a configuration file. InputError names "
-      "file, line and column.");
+  module.def("read_log", &read_log, py::arg("path"), py::arg("vehicle") = py::none(), py::arg("options") = py::dict(),
+             "Reads a log as helixnav replay does; without `vehicle`, by the vehicle.toml beside a log of one's own. "
+             "Options are "
+             "keys and values as in a configuration file. InputError names file, line and column.");
   module.def("simulate", &simulate, py::arg("scenario") = "large-loop", py::arg("seed") = 1,
              py::arg("options") = py::dict(),
              "A drive through a world with known truth; the same seed gives the same drive.");

@@ -3,9 +3,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "bind.hpp"
+#include "arrays.hpp"
 #include "configuration.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
@@ -14,6 +15,7 @@
 #include "helixnav/supervisor/lengths.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
 #include "helixnav/supervisor/navigator.hpp"
+#include "locked.hpp"
 #include "log.hpp"
 #include "map.hpp"
 
@@ -22,7 +24,6 @@ namespace {
 
 using supervisor::NamedNavigator;
 using supervisor::Navigator;
-using Identities = std::vector<std::int64_t>;
 
 /// Options without a log; the navigator fits its lengths to the sensor of the first scan, but for those given.
 supervisor::NavigatorOptions options_of(const py::dict& options) {
@@ -125,6 +126,12 @@ std::vector<std::pair<std::int64_t, std::int64_t>> merged_of(const core::StepRep
   return merged;
 }
 
+std::vector<std::pair<std::int64_t, std::vector<core::AssociationReport>>> revised_of(const core::StepReport& report) {
+  std::vector<std::pair<std::int64_t, std::vector<core::AssociationReport>>> revised;
+  for (const core::RevisedScan& scan : report.revised) revised.emplace_back(scan.step, scan.associations);
+  return revised;
+}
+
 void bind_report(py::module_& module) {
   py::class_<core::StepReport>(module, "StepReport", "What one scan did to the map and the pose.")
       .def_readonly("step", &core::StepReport::step)
@@ -135,6 +142,9 @@ void bind_report(py::module_& module) {
       .def_readonly("associations", &core::StepReport::associations)
       .def_property_readonly("decisions", &decisions_of)
       .def_property_readonly("merged", &merged_of, "(kept, removed) of landmarks that became one.")
+      .def_property_readonly("revised", &revised_of,
+                             "(step, associations) of earlier scans gone through again: these hold, not what their own "
+                             "reports say.")
       .def_readonly("joint_nis", &core::StepReport::joint_nis)
       .def_readonly("joint_dof", &core::StepReport::joint_dof)
       .def_readonly("landmarks", &core::StepReport::mapped_landmarks);
@@ -143,18 +153,45 @@ void bind_report(py::module_& module) {
 using Released = py::call_guard<py::gil_scoped_release>;
 
 template <class AnyNavigator>
-void bind_common(py::class_<AnyNavigator>& type) {
-  type.def(py::init([](const core::PoseGaussian& start, const py::dict& options) {
-             return std::make_unique<AnyNavigator>(start, options_of(options));
-           }),
-           py::arg("start") = core::PoseGaussian(), py::arg("options") = py::dict(),
+std::unique_ptr<Locked<AnyNavigator>> of_log(const Log& log) {
+  return std::make_unique<Locked<AnyNavigator>>(log.recording.start, log.navigator);
+}
+
+template <class AnyNavigator>
+std::unique_ptr<Locked<AnyNavigator>> of_options(const core::PoseGaussian& start, const py::dict& options) {
+  return std::make_unique<Locked<AnyNavigator>>(start, options_of(options));
+}
+
+core::StepReport observe_named(Locked<NamedNavigator>& self, const core::Scan& scan, const py::object& identities) {
+  const std::vector<std::int64_t> names = identities_from(identities);
+  const py::gil_scoped_release released;
+  return locked(&NamedNavigator::observe)(self, scan, names);
+}
+
+std::optional<core::StepReport> take_named(Locked<NamedNavigator>& self, const core::Event& event,
+                                           const py::object& identities) {
+  const std::vector<std::int64_t> names = identities_from(identities);
+  const py::gil_scoped_release released;
+  return locked(&NamedNavigator::take)(self, event, names);
+}
+
+template <class AnyNavigator>
+Map map_of(Locked<AnyNavigator>& self) {
+  return {locked(&AnyNavigator::map)(self)};
+}
+
+template <class AnyNavigator>
+void bind_common(py::class_<Locked<AnyNavigator>>& type) {
+  type.def(py::init(&of_options<AnyNavigator>), py::arg("start") = core::PoseGaussian(),
+           py::arg("options") = py::dict(),
            "Options are keys and values as in a configuration file; lengths follow the sensor of the first scan.")
-      .def(py::init([](const Log& log) { return std::make_unique<AnyNavigator>(log.recording.start, log.navigator); }),
-           py::arg("log"), "With the start and the options of a log.")
-      .def("move", &AnyNavigator::move, py::arg("odometry"), Released(), "Collects motion.")
-      .def("fix", &AnyNavigator::fix, py::arg("fix"), Released(), "True when the fix passed its gate and was used.")
-      .def_property_readonly("pose", &AnyNavigator::pose, "At the last scan or fix.")
-      .def_property_readonly("map", [](const AnyNavigator& navigator) { return Map{navigator.map()}; });
+      .def(py::init(&of_log<AnyNavigator>), py::arg("log"), "With the start and the options of a log.")
+      .def("move", locked(&AnyNavigator::move), py::arg("odometry"), Released(), "Collects motion.")
+      .def("fix", locked(&AnyNavigator::fix), py::arg("fix"), Released(),
+           "True when the fix passed its gate and was used.")
+      .def_property_readonly("pose", py::cpp_function(locked(&AnyNavigator::pose), Released()),
+                             "At the last scan or fix.")
+      .def_property_readonly("map", py::cpp_function(&map_of<AnyNavigator>, Released()), "The landmarks as of now.");
 }
 
 }  // namespace
@@ -163,15 +200,19 @@ void bind_navigator(py::module_& module) {
   bind_map(module);
   bind_report_parts(module);
   bind_report(module);
-  py::class_<Navigator> unnamed(module, "Navigator",
-                                "Navigates with unknown data association; searches and closes loops.");
+  py::class_<Locked<Navigator>> unnamed(module, "Navigator",
+                                        "Navigates with unknown data association; searches and closes loops.");
   bind_common(unnamed);
-  unnamed.def("observe", &Navigator::observe, py::arg("scan"), Released())
-      .def("take", &Navigator::take, py::arg("event"), Released(), "Any event; the report of a scan, None for others.");
-  py::class_<NamedNavigator> named(module, "NamedNavigator", "For observations that are known by an identity.");
+  unnamed.def("observe", locked(&Navigator::observe), py::arg("scan"), Released(), "One scan.")
+      .def("take", locked(&Navigator::take), py::arg("event"), Released(),
+           "Any event; the report of a scan, None for others.");
+  py::class_<Locked<NamedNavigator>> named(module, "NamedNavigator", "For observations that are known by an identity.");
   bind_common(named);
-  named.def("observe", &NamedNavigator::observe, py::arg("scan"), py::arg("identities"), Released())
-      .def("take", &NamedNavigator::take, py::arg("event"), py::arg("identities") = Identities(), Released());
+  named
+      .def("observe", &observe_named, py::arg("scan"), py::arg("identities"),
+           "One scan, with an identity for each observation; a negative one is no landmark.")
+      .def("take", &take_named, py::arg("event"), py::arg("identities") = py::tuple(),
+           "Any event; the report of a scan, None for others.");
 }
 
 }  // namespace helixnav::python

@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 
 #include "bind.hpp"
 #include "common/chosen_navigator.hpp"
@@ -45,28 +44,42 @@ void heed_signals(std::int64_t step) {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 
+/// Feeds all events. What broke of the mathematics, and where; empty when nothing did.
+std::string navigate(const Log& log, apps::ChosenNavigator& navigator, runs::RunWriter* writer,
+                     runs::RunRecorder& recorder) {
+  apps::Timed timed(navigator);
+  core::EventLoop loop(log.recording.events, timed);
+  try {
+    while (const std::optional<core::StepReport> step = loop.next()) {
+      if (writer != nullptr) writer->write(*step, 1e6 * timed.last_s());
+      recorder.add(*step, 1e6 * timed.last_s());
+      heed_signals(step->step);
+    }
+  } catch (const core::NumericalError& error) {
+    const double t_s = core::seconds(core::time_of(log.recording.events[loop.fed() - 1]));
+    return "at step " + std::to_string(loop.steps()) + ", " + std::to_string(t_s) + " s: " + error.what();
+  }
+  return {};
+}
+
 runs::Run replay(const Log& log, const std::optional<fs::path>& out, bool overwrite) {
   if (log.known_association && log.recording.labels.empty()) {
     throw core::InputError(log.recording.name + ": association known needs a labelled log, and this one has no labels");
   }
   using IfNotEmpty = runs::RunWriter::IfNotEmpty;
   const runs::RunManifest manifest = manifest_of(log);
+  const std::string folder = out.value_or(fs::path()).string();
   std::unique_ptr<runs::RunWriter> writer;
   if (out) {
-    writer = std::make_unique<runs::RunWriter>(out->string(), manifest, log.recording,
+    writer = std::make_unique<runs::RunWriter>(folder, manifest, log.recording,
                                                overwrite ? IfNotEmpty::overwrite : IfNotEmpty::refuse);
   }
-  runs::RunRecorder recorder(out.value_or(fs::path()).string(), manifest, log.recording);
+  runs::RunRecorder recorder(folder, manifest, log.recording);
   apps::ChosenNavigator navigator(log.recording, log.navigator, log.known_association);
-  apps::Timed timed(navigator);
-  core::EventLoop loop(log.recording.events, timed);
-  while (const std::optional<core::StepReport> step = loop.next()) {
-    if (writer) writer->write(*step, 1e6 * timed.last_s());
-    recorder.add(*step, 1e6 * timed.last_s());
-    heed_signals(step->step);
-  }
+  const std::string broken = navigate(log, navigator, writer.get(), recorder);
   runs::Run run = recorder.finish(navigator.map());
   if (writer) reports::finish_run(run, *writer);
+  if (!broken.empty()) throw core::NumericalError(broken);
   return run;
 }
 
@@ -79,10 +92,7 @@ py::object evaluation_of(const runs::Run& run) {
   return py::module_::import("json").attr("loads")(text);
 }
 
-py::object evaluate(const std::variant<const runs::Run*, fs::path>& what) {
-  if (const auto* run = std::get_if<const runs::Run*>(&what)) return evaluation_of(**run);
-  return evaluation_of(runs::read_run(std::get<fs::path>(what).string()));
-}
+py::object evaluation_of_folder(const fs::path& path) { return evaluation_of(runs::read_run(path.string())); }
 
 py::array_t<double> trajectory_of(const runs::Run& run) {
   py::array_t<double> rows({static_cast<py::ssize_t>(run.steps.size()), py::ssize_t{4}});
@@ -107,13 +117,16 @@ void bind_run(py::module_& module) {
       .def("evaluate", &evaluation_of, "Errors against the truth of the log, as helixnav evaluate --json.")
       .def("explain", &reports::explain_run, "How many loops were closed, refused or left open, in sentences.")
       .def("__len__", [](const runs::Run& run) { return run.steps.size(); });
-  module.def("replay", &replay, py::arg("log"), py::arg("out") = py::none(), py::arg("overwrite") = false,
-             py::call_guard<py::gil_scoped_release>(),
-             "Navigates along a log. With `out`, a run folder is written as helixnav replay writes it.");
+  module.def(
+      "replay", &replay, py::arg("log"), py::arg("out") = py::none(), py::arg("overwrite") = false,
+      py::call_guard<py::gil_scoped_release>(),
+      "Navigates along a log. With `out`, a run folder is written as helixnav replay writes it. NumericalError names "
+      "step and time; what was navigated until then is in the run folder.");
   module.def(
       "read_run", [](const fs::path& path) { return runs::read_run(path.string()); }, py::arg("path"),
       py::call_guard<py::gil_scoped_release>(), "Reads a run folder, also one whose run was killed.");
-  module.def("evaluate", &evaluate, py::arg("run"), "Of a Run or of the run folder at a path.");
+  module.def("evaluate", &evaluation_of, py::arg("run"), "As Run.evaluate.");
+  module.def("evaluate", &evaluation_of_folder, py::arg("run"), "Of the run folder at a path.");
 }
 
 }  // namespace helixnav::python

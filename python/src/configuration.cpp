@@ -15,8 +15,10 @@ namespace helixnav::python {
 namespace {
 
 std::string text_of(const py::handle& value) {
-  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
-  return py::str(value);
+  const std::string text = py::str(value);
+  if (text == "True") return "true";  // of Python's type or of NumPy's
+  if (text == "False") return "false";
+  return text;
 }
 
 /// "--key=value" of each.
@@ -55,10 +57,10 @@ Configuration configuration_of(const py::dict& options, const std::string& vehic
   std::reverse(words.begin(), words.end());  // as parse wants them
   try {
     app.parse(std::move(words));
+    apps::apply_vehicle(app, vehicle, log, configuration.settings);
   } catch (const CLI::ParseError& error) {
     throw core::InputError(error.what());
   }
-  apps::apply_vehicle(app, vehicle, log, configuration.settings);
   configuration.text = apps::dump_config(app);
   return configuration;
 }

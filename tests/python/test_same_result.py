@@ -53,6 +53,18 @@ def test_program_stream_and_python_agree_to_the_last_digit(program, own_log, lin
     assert np.array_equal(navigator.map.ids, run.map.ids)
 
 
+def test_a_folder_of_tables_is_read_as_the_program_reads_it(program, own_log, tmp_path):
+    program("replay", own_log, "--out", tmp_path / "program", "--quiet", "--search.particles", 500)
+    log = helixnav.read_log(own_log, options={"search.particles": 500})  # with the vehicle.toml in it
+    run = helixnav.replay(log, out=tmp_path / "python")
+    for name in ("trajectory.tum", "map.csv", "associations.csv", "decisions.csv"):
+        assert (tmp_path / "python" / name).read_text() == (tmp_path / "program" / name).read_text(), name
+    assert run.evaluate() == json.loads(program("evaluate", tmp_path / "program", "--json"))
+    with pytest.raises(helixnav.InputError, match="not empty"):
+        helixnav.replay(log, out=tmp_path / "python")
+    helixnav.replay(log, out=tmp_path / "python", overwrite=True)
+
+
 def test_simulate_and_replay_are_those_of_the_program(program, tmp_path):
     program("simulate", "circuit", "--seed", 3, "--out", tmp_path / "program", "--quiet")
     run = helixnav.replay(helixnav.simulate("circuit", seed=3), out=str(tmp_path / "python"))
