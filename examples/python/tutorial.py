@@ -2,9 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """From a drive to a judged map, three times: as a whole, step by step, and with events of one's own.
 
-    PYTHONPATH=build/dev/python examples/python/tutorial.py [PICTURE.png]
-
-The picture needs matplotlib; everything else needs NumPy only.
+    PYTHONPATH=build/dev/python python3 examples/python/tutorial.py [PICTURE.svg]
 """
 import sys
 
@@ -48,18 +46,22 @@ error_m = np.linalg.norm(robot.pose.mean[:2] - truth[:2])
 print(f"own robot: {len(robot.map)} poles, {error_m:.2f} m from the truth")
 assert len(robot.map) == 4 and error_m < 0.2
 
+# 4. A picture, without a library: ways and landmarks, y upwards.
 if len(sys.argv) > 1:
-    try:
-        import matplotlib
-    except ImportError:
-        sys.exit("no picture: matplotlib is missing")
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
+    estimate, truth, landmarks = run.trajectory[:, 1:3], log.true_poses[:, 1:3], run.map.means
+    left, low = np.vstack([estimate, truth, landmarks]).min(axis=0) - 5.0
+    wide, high = np.vstack([estimate, truth, landmarks]).max(axis=0) + 5.0 - [left, low]
 
-    pyplot.plot(*run.trajectory[:, 1:3].T, label="estimate")
-    pyplot.plot(*log.true_poses[:, 1:3].T, label="truth")
-    pyplot.plot(*run.map.means.T, ".", label="landmarks")
-    pyplot.axis("equal")
-    pyplot.legend()
-    pyplot.savefig(sys.argv[1])
+    def way(points, colour, width):
+        places = " ".join(f"{x:.2f},{-y:.2f}" for x, y in points)
+        return f'<polyline points="{places}" fill="none" stroke="{colour}" stroke-width="{width}"/>\n'
+
+    with open(sys.argv[1], "w", encoding="utf-8") as picture:
+        picture.write(f'<svg xmlns="http://www.w3.org/2000/svg" width="800" viewBox="{left:.1f} {-low - high:.1f} '
+                      f'{wide:.1f} {high:.1f}">\n<title>{log.name}: truth grey, estimate blue, landmarks red</title>\n')
+        picture.write('<rect x="-1e5" y="-1e5" width="2e5" height="2e5" fill="white"/>\n')
+        picture.write(way(truth, "#aaaaaa", 0.6) + way(estimate, "#1f5fbf", 0.2))
+        for x, y in landmarks:
+            picture.write(f'<circle cx="{x:.2f}" cy="{-y:.2f}" r="0.5" fill="#c03030"/>\n')
+        picture.write("</svg>\n")
     print("picture:", sys.argv[1])

@@ -61,7 +61,7 @@ py::array_t<double> covariances_of(const Map& map) {
   return covariances;
 }
 
-py::array_t<std::int64_t> observations_of(const Map& map) {
+py::array_t<std::int64_t> counts_of(const Map& map) {
   py::array_t<std::int64_t> counts(static_cast<py::ssize_t>(map.landmarks.size()));
   for (std::size_t i = 0; i < map.landmarks.size(); ++i) counts.mutable_data()[i] = map.landmarks[i].observations;
   return counts;
@@ -80,7 +80,7 @@ void bind_map(py::module_& module) {
       .def_property_readonly("ids", &ids_of, "(N,)")
       .def_property_readonly("means", &means_of, "(N, 2) [m]")
       .def_property_readonly("covariances", &covariances_of, "(N, 2, 2) [m²]")
-      .def_property_readonly("observations", &observations_of, "(N,)")
+      .def_property_readonly("observations", &counts_of, "(N,)")
       .def_property_readonly("states", &states_of, "'tentative' or 'mature' each")
       .def("__len__", [](const Map& map) { return map.landmarks.size(); });
 }
