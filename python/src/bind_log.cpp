@@ -3,19 +3,16 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bind.hpp"
 #include "common/fit_to_recording.hpp"
-#include "common/vehicle_option.hpp"
 #include "configuration.hpp"
-#include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
-#include "helixnav/logs/read_recording.hpp"
 #include "helixnav/sim/simulate.hpp"
 #include "log.hpp"
-#include "replay/estimate_range_scale.hpp"
-#include "replay/fuse_gps.hpp"
+#include "replay/read_to_replay.hpp"
 
 namespace helixnav::python {
 namespace {
@@ -23,27 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// As replay of the program scales them.
-void scale_ranges(core::Recording& recording, const apps::Settings& settings) {
-  double scale = settings.plaza_range_scale;
-  if (scale == 0.0 && !settings.known_association) return;
-  if (scale == 0.0) scale = apps::estimate_range_scale(recording, settings.navigator);
-  apps::divide_ranges(recording, scale);
-}
-
-/// Reads as replay of the program does.
-core::Recording read_as_replay(const std::string& path, apps::Settings& settings) {
-  settings.logs.plaza.range_scale = 1.0;  // see scale_ranges
-  core::Recording recording = logs::read_recording(path, settings.logs);
-  const logs::LogFormat format = logs::recognise(path);
-  if (settings.logs.vehicle && format != logs::LogFormat::own) apps::tell_vehicle(recording, *settings.logs.vehicle);
-  if (format == logs::LogFormat::plaza) scale_ranges(recording, settings);
-  if (settings.gps.fuse) apps::fuse_gps(recording, settings.gps);
-  if (!recording.true_poses.empty()) recording.true_positions.clear();  // the better truth
-  apps::apply_log_settings(recording, settings);
-  return recording;
-}
 
 Log fitted(core::Recording recording, const Configuration& configuration) {
   Log log;
@@ -57,7 +33,9 @@ Log fitted(core::Recording recording, const Configuration& configuration) {
 Log read_log(const fs::path& path, const std::optional<fs::path>& vehicle, const py::dict& options) {
   Configuration configuration = configuration_of(options, vehicle.value_or(fs::path()).string(), path.string());
   const py::gil_scoped_release released;
-  return fitted(read_as_replay(path.string(), configuration.settings), configuration);
+  core::Recording recording = apps::read_to_replay(path.string(), configuration.settings).recording;
+  apps::apply_log_settings(recording, configuration.settings);
+  return fitted(std::move(recording), configuration);
 }
 
 Log simulate(const std::string& scenario, std::uint64_t seed, const py::dict& options) {
