@@ -7,6 +7,7 @@
 
 #include "bind.hpp"
 #include "common/chosen_navigator.hpp"
+#include "common/joint_map_of.hpp"
 #include "common/timed.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/event_loop.hpp"
@@ -78,6 +79,7 @@ runs::Run replay(const Log& log, const std::optional<fs::path>& out, bool overwr
   apps::ChosenNavigator navigator(log.recording, log.navigator, log.known_association);
   const std::string broken = navigate(log, navigator, writer.get(), recorder);
   runs::Run run = recorder.finish(navigator.map());
+  if (writer) run.joint_map = apps::joint_map_of(navigator, log.recording);
   if (writer) reports::finish_run(run, *writer);
   if (!broken.empty()) throw core::NumericalError(broken);
   return run;

@@ -59,6 +59,7 @@ def test_a_folder_of_tables_is_read_as_the_program_reads_it(program, own_log, tm
     run = helixnav.replay(log, out=tmp_path / "python")
     for name in ("trajectory.tum", "map.csv", "associations.csv", "decisions.csv"):
         assert (tmp_path / "python" / name).read_text() == (tmp_path / "program" / name).read_text(), name
+    assert (tmp_path / "python" / "map.bin").read_bytes() == (tmp_path / "program" / "map.bin").read_bytes()
     assert run.evaluate() == json.loads(program("evaluate", tmp_path / "program", "--json"))
     with pytest.raises(helixnav.InputError, match="not empty"):
         helixnav.replay(log, out=tmp_path / "python")
