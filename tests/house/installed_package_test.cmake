@@ -22,9 +22,13 @@ file(REMOVE_RECURSE ${WORK_DIR})
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/first)
 file(RENAME ${WORK_DIR}/first ${WORK_DIR}/prefix)
 
-file(GLOB_RECURSE package_files ${WORK_DIR}/prefix/*.cmake)
+file(GLOB_RECURSE package_files ${WORK_DIR}/prefix/*.cmake ${WORK_DIR}/prefix/*.pc)
 foreach(file IN LISTS package_files)
   file(STRINGS ${file} lines)
+  string(REGEX MATCH "[; \">]/[^; \"]*\\.(a|so)" library "${lines}")
+  if(library)
+    message(FATAL_ERROR "${file} names a library by its path: ${library}")
+  endif()
   foreach(path IN ITEMS ${SOURCE_DIR} ${BUILD_DIR})
     string(FIND "${lines}" "${path}" position)
     if(NOT position EQUAL -1)
@@ -39,6 +43,27 @@ run(${CMAKE_COMMAND} --build ${WORK_DIR}/build --parallel 2)
 run(${WORK_DIR}/build/consumer)
 if(NOT output MATCHES "^[1-9][0-9]* landmarks, robot at ")
   message(FATAL_ERROR "the consumer said: ${output}")
+endif()
+
+# As the consumer without CMake.
+find_program(PKG_CONFIG NAMES pkg-config pkgconf REQUIRED)
+file(GLOB_RECURSE pc ${WORK_DIR}/prefix/helixnav.pc)
+run(${PKG_CONFIG} --cflags --libs ${pc})
+separate_arguments(flags UNIX_COMMAND "${output}")
+run(${CXX_COMPILER} -std=c++17 ${CMAKE_CURRENT_LIST_DIR}/consumer/consumer.cpp -o ${WORK_DIR}/by_pkg_config ${flags})
+run(${WORK_DIR}/by_pkg_config)
+if(NOT output MATCHES "^[1-9][0-9]* landmarks, robot at ")
+  message(FATAL_ERROR "the consumer by pkg-config said: ${output}")
+endif()
+
+# A component that is not there is named, and those that are.
+file(WRITE ${WORK_DIR}/wrong/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(wrong LANGUAGES NONE)\n"
+  "find_package(helixnav REQUIRED COMPONENTS core nonsense)\n")
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${WORK_DIR}/wrong -B ${WORK_DIR}/wrong/build
+  -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE output)
+string(REGEX REPLACE "[ \n]+" " " output "${output}")
+if(NOT status OR NOT output MATCHES "no component 'nonsense' is installed; there are: core association ")
+  message(FATAL_ERROR "asked for a component that is not there, CMake said: ${output}")
 endif()
 
 # Who does not ask for it does not meet MRPT.

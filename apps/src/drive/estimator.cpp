@@ -7,9 +7,8 @@
 #include <variant>
 
 #include "common/chosen_navigator.hpp"
+#include "common/joint_map_of.hpp"
 #include "helixnav/logs/field_of_view.hpp"
-#include "helixnav/runs/joint_map_file.hpp"
-#include "helixnav/supervisor/joint_map.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 #include "localizer_feed.hpp"
 
@@ -38,15 +37,6 @@ struct NavigatorDrive {
 
   explicit NavigatorDrive(const Drive& job) : labels(labels_fed(job)), navigator(begun(job, labels)) {}
 };
-
-/// Nothing where it is too large to be saved.
-std::optional<core::JointMap> joint_map_of(const ChosenNavigator& navigator, const core::Recording& recording) {
-  const std::vector<core::MapLandmark> landmarks = navigator.map();
-  if (landmarks.size() > runs::most_joint_landmarks) return std::nullopt;
-  core::JointMap map = supervisor::joint_map(navigator.filter(), landmarks);
-  map.reach_m = logs::field_of_view_of(recording).reach().value_or(0.0);
-  return map;
-}
 
 }  // namespace
 

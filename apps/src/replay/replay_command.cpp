@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -17,10 +18,8 @@
 #include "common/vehicle_option.hpp"
 #include "drive/drive.hpp"
 #include "drive/start_option.hpp"
-#include "estimate_range_scale.hpp"
-#include "fuse_gps.hpp"
 #include "helixnav/logs/field_of_view.hpp"
-#include "helixnav/logs/read_recording.hpp"
+#include "read_to_replay.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -36,17 +35,6 @@ struct ReplayJob {
   RunOptions run;
   Settings settings;
 };
-
-/// Ranges that read long are made right: by the scale given, or by one estimated from the log itself.
-void scale_ranges(core::Recording& recording, const Settings& settings) {
-  double scale = settings.plaza_range_scale;
-  if (scale == 0.0 && !settings.known_association) return;  // the scale needs names; drive says what is missing
-  if (scale == 0.0) {
-    scale = estimate_range_scale(recording, settings.navigator);
-    std::printf("range scale estimated from the log: %.4f\n", scale);
-  }
-  divide_ranges(recording, scale);
-}
 
 /// To localise in, or to go on in.
 void take_map(const ReplayJob& job, Drive& task) {
@@ -78,15 +66,10 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   const auto begin = std::chrono::steady_clock::now();
   Drive task;
   apply_vehicle(command, job.vehicle, job.path, job.settings);
-  job.settings.logs.plaza.range_scale = 1.0;  // see scale_ranges
-  task.recording = logs::read_recording(job.path, job.settings.logs);
+  LogToReplay log = read_to_replay(job.path, job.settings);
+  task.recording = std::move(log.recording);
   print_remarks(task.recording);
-  const logs::LogFormat format = logs::recognise(job.path);
-  if (job.settings.logs.vehicle && format != logs::LogFormat::own)
-    tell_vehicle(task.recording, *job.settings.logs.vehicle);
-  if (format == logs::LogFormat::plaza) scale_ranges(task.recording, job.settings);
-  if (job.settings.gps.fuse) fuse_gps(task.recording, job.settings.gps);
-  if (!task.recording.true_poses.empty()) task.recording.true_positions.clear();  // the better truth
+  if (log.estimated_range_scale) std::printf("range scale estimated from the log: %.4f\n", *log.estimated_range_scale);
   if (!job.blackouts.empty()) task.withheld = withhold(task.recording, job.blackouts);
   apply_log_settings(task.recording, job.settings);
   task.navigator = fit_to_recording(job.settings, task.recording);

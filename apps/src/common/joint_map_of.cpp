@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "joint_map_of.hpp"
+
+#include <vector>
+
+#include "helixnav/logs/field_of_view.hpp"
+#include "helixnav/runs/joint_map_file.hpp"
+#include "helixnav/supervisor/joint_map.hpp"
+
+namespace helixnav::apps {
+
+std::optional<core::JointMap> joint_map_of(const ChosenNavigator& navigator, const core::Recording& recording) {
+  const std::vector<core::MapLandmark> landmarks = navigator.map();
+  if (landmarks.size() > runs::most_joint_landmarks) return std::nullopt;
+  core::JointMap map = supervisor::joint_map(navigator.filter(), landmarks);
+  map.reach_m = logs::field_of_view_of(recording).reach().value_or(0.0);
+  return map;
+}
+
+}  // namespace helixnav::apps

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bind.hpp"
+#include "common/fit_to_recording.hpp"
+#include "configuration.hpp"
+#include "helixnav/logs/field_of_view.hpp"
+#include "helixnav/sim/simulate.hpp"
+#include "log.hpp"
+#include "replay/read_to_replay.hpp"
+
+namespace helixnav::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+Log fitted(core::Recording recording, const Configuration& configuration) {
+  Log log;
+  log.navigator = apps::fit_to_recording(configuration.settings, recording);
+  log.known_association = configuration.settings.known_association;
+  log.config = configuration.text + apps::lengths_text(log.navigator, logs::field_of_view_of(recording));
+  log.recording = std::move(recording);
+  return log;
+}
+
+Log read_log(const fs::path& path, const std::optional<fs::path>& vehicle, const py::dict& options) {
+  Configuration configuration = configuration_of(options, vehicle.value_or(fs::path()).string(), path.string());
+  const py::gil_scoped_release released;
+  core::Recording recording = apps::read_to_replay(path.string(), configuration.settings).recording;
+  apps::apply_log_settings(recording, configuration.settings);
+  return fitted(std::move(recording), configuration);
+}
+
+Log simulate(const std::string& scenario, std::uint64_t seed, const py::dict& options) {
+  const Configuration configuration = configuration_of(options);
+  const py::gil_scoped_release released;
+  Log log = fitted(sim::simulate(sim::named_scenario(scenario), seed), configuration);
+  log.seed = seed;
+  return log;
+}
+
+Rows true_poses_of(const Log& log) {
+  Rows rows(static_cast<Eigen::Index>(log.recording.true_poses.size()), 4);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const core::TruePose& truth = log.recording.true_poses[static_cast<std::size_t>(i)];
+    rows.row(i) << core::seconds(truth.t_ns), truth.T_world_robot.vector().transpose();
+  }
+  return rows;
+}
+
+Rows true_positions_of(const Log& log) {
+  Rows rows(static_cast<Eigen::Index>(log.recording.true_positions.size()), 3);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const core::TruePosition& truth = log.recording.true_positions[static_cast<std::size_t>(i)];
+    rows.row(i) << core::seconds(truth.t_ns), truth.position_m.transpose();
+  }
+  return rows;
+}
+
+Rows true_landmarks_of(const Log& log) {
+  Rows rows(static_cast<Eigen::Index>(log.recording.true_landmarks.size()), 2);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    rows.row(i) = log.recording.true_landmarks[static_cast<std::size_t>(i)].point_m.transpose();
+  }
+  return rows;
+}
+
+}  // namespace
+
+void bind_log(py::module_& module) {
+  py::class_<Log>(module, "Log",
+                  "A drive as it was recorded or simulated, with the navigator's options for its sensor.")
+      .def_property_readonly("name", [](const Log& log) { return log.recording.name; })
+      .def_property_readonly("start", [](const Log& log) { return log.recording.start; })
+      .def_property_readonly(
+          "events", [](const Log& log) { return log.recording.events; },
+          "Odometry, Scan and AbsoluteFix in order; a copy.")
+      .def_property_readonly(
+          "labels", [](const Log& log) { return log.recording.labels; },
+          "Of each scan, of each observation: the identity, -1 for none; empty when the log has none.")
+      .def_property_readonly("true_poses", &true_poses_of, "(N, 4): t, x, y, heading in the map frame.")
+      .def_property_readonly("true_positions", &true_positions_of, "(N, 3): t, x, y in a frame of their own.")
+      .def_property_readonly("true_landmarks", &true_landmarks_of, "(N, 2).")
+      .def_property_readonly(
+          "remarks", [](const Log& log) { return log.recording.remarks; },
+          "What was mended, left out or is doubtful, a sentence each.")
+      .def_readonly("known_association", &Log::known_association)
+      .def_readonly("config", &Log::config, "The configuration in force, as helixnav config --dump writes it.")
+      .def("__len__", [](const Log& log) { return log.recording.events.size(); });
+  module.def("read_log", &read_log, py::arg("path"), py::arg("vehicle") = py::none(), py::arg("options") = py::dict(),
+             "Reads a log as helixnav replay does; without `vehicle`, by the vehicle.toml beside a log of one's own. "
+             "Options are "
+             "keys and values as in a configuration file. InputError names file, line and column.");
+  module.def("simulate", &simulate, py::arg("scenario") = "large-loop", py::arg("seed") = 1,
+             py::arg("options") = py::dict(),
+             "A drive through a world with known truth; the same seed gives the same drive.");
+}
+
+}  // namespace helixnav::python

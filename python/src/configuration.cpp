@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "configuration.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "common/config_file.hpp"
+#include "common/vehicle_option.hpp"
+#include "helixnav/core/errors.hpp"
+#include "helixnav/core/nearest_name.hpp"
+
+namespace helixnav::python {
+namespace {
+
+std::string text_of(const py::handle& value) {
+  const std::string text = py::str(value);
+  if (text == "True") return "true";  // of Python's type or of NumPy's
+  if (text == "False") return "false";
+  return text;
+}
+
+/// "--key=value" of each.
+void add_words(const py::dict& options, const std::string& section, std::vector<std::string>& words) {
+  for (const auto& [name, value] : options) {
+    const std::string key = section + std::string(py::str(name));
+    if (py::isinstance<py::dict>(value)) {
+      add_words(py::reinterpret_borrow<py::dict>(value), key + ".", words);
+    } else {
+      words.push_back("--" + key + "=" + text_of(value));
+    }
+  }
+}
+
+void refuse_unknown(const CLI::App& app, const std::vector<std::string>& words) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : apps::configurable_options(app)) {
+    for (const std::string& name : option->get_lnames()) known.push_back(name);
+  }
+  for (const std::string& word : words) {
+    const std::string key = word.substr(2, word.find('=') - 2);
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    throw core::InputError("unknown option '" + key + "'; the nearest is '" + core::nearest_name(key, known) + "'");
+  }
+}
+
+}  // namespace
+
+Configuration configuration_of(const py::dict& options, const std::string& vehicle, const std::string& log) {
+  CLI::App app;
+  Configuration configuration;
+  apps::add_settings(app, configuration.settings);
+  std::vector<std::string> words;
+  add_words(options, "", words);
+  refuse_unknown(app, words);
+  std::reverse(words.begin(), words.end());  // as parse wants them
+  try {
+    app.parse(std::move(words));
+    apps::apply_vehicle(app, vehicle, log, configuration.settings);
+  } catch (const CLI::ParseError& error) {
+    throw core::InputError(error.what());
+  }
+  configuration.text = apps::dump_config(app);
+  return configuration;
+}
+
+}  // namespace helixnav::python
