@@ -15,15 +15,16 @@ const unpackScans = (packed) => {
     outcome: new Uint8Array(who.length), x: new Float32Array(who.length), y: new Float32Array(who.length),
   };
   let landmark = 0, point = 0;
-  who.forEach((number, i) => {
-    landmark += number >> 3;
-    const seen = (number & 4) !== 0;
+  for (let i = 0; i < who.length; i++) {
+    const low = who[i] & 7;
+    landmark += (who[i] - low) / 8;
+    const seen = (low & 4) !== 0;
     scans.landmark[i] = landmark;
-    scans.outcome[i] = number & 3;
+    scans.outcome[i] = low & 3;
     scans.x[i] = seen ? px[point] * .01 : NaN;
     scans.y[i] = seen ? py[point] * .01 : NaN;
     if (seen) point++;
-  });
+  }
   return scans;
 };
 

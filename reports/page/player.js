@@ -11,6 +11,7 @@ const makePlayer = (drive) => {
   return {
     drive, closings, leaps, stretches: stretchesOf(drive, leaps),
     lines: { path: line_(drive), final: line_(drive.final), truth: line_(drive.truth) },
+    layers: { ground: makeLayer(), trail: makeLayer() },
     camera: makeCamera(), show: { truth: true, final: false, ids: false }, follow: false, playing: false,
     t: 0, end: drive.t[drive.count - 1], speed: 1,
   };

@@ -10,7 +10,7 @@ function(helixnav_embed_report target)
       "A copy elsewhere is named by -DHELIXNAV_PLOTLY_JS=<file>.")
   endif()
   # In this order: what a script needs at once stands before it.
-  set(scripts text.js unpack.js drive.js camera.js polyline.js charts.js scene.js player.js player_controls.js opening.js
+  set(scripts text.js unpack.js drive.js camera.js polyline.js charts.js scene.js layers.js player.js player_controls.js opening.js
     summary.js decisions.js closures.js main.js)
   list(TRANSFORM scripts PREPEND ${folder}/)
   set(output ${CMAKE_CURRENT_BINARY_DIR}/report_assets.cpp)

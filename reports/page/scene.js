@@ -59,49 +59,55 @@ const drawScaleBar = ({ context, camera, palette }) => {
   context.fillText(length >= 1 ? `${length} m` : `${Math.round(100 * length)} cm`, 12, y - 6);
 };
 
-const strokeLine = ({ context, camera }, polyline, to, colour, width, dash) =>
-  stroke(context, colour, width, () => tracePolyline(context, polyline, camera, 0, to), dash);
-
-// The path so far, in the colour of the mode; what is to come, faint.
-const drawPath = (scene) => {
-  const { context, camera, palette, drive, lines, k } = scene;
+// The path to come, faint under what is drawn of it later.
+const drawComing = ({ context, camera, palette, drive, lines }) => {
   context.globalAlpha = .25;
-  stroke(context, palette.faint, 1, () => tracePolyline(context, lines.path, camera, k, drive.count - 1));
+  stroke(context, palette.faint, 1, () => tracePolyline(context, lines.path, camera, 0, drive.count - 1));
   context.globalAlpha = 1;
+};
+
+// The path from one scan to the present one, in the colour of the mode.
+const drawPath = (scene, first) => {
+  const { context, camera, palette, lines, k } = scene;
   for (const { from, to, mode } of scene.stretches) {
+    if (to < first) continue;
     if (from > k) break;
     stroke(context, mode === 1 ? palette.other : palette.estimate, mode === 1 ? 3 : 2,
-           () => tracePolyline(context, lines.path, camera, from, Math.min(k, to)));
+           () => tracePolyline(context, lines.path, camera, Math.max(first, from), Math.min(k, to)));
   }
-  drawLeaps(scene);
+  drawLeaps(scene, first);
 };
 
 // Where closings moved the vehicle.
-const drawLeaps = ({ context, camera, palette, drive, leaps, k }) => stroke(context, palette.faint, 1, () => {
+const drawLeaps = ({ context, camera, palette, drive, leaps, k }, first) => stroke(context, palette.faint, 1, () => {
   for (const leap of leaps) {
     if (leap > k) break;
+    if (leap < first) continue;
     context.moveTo(toScreenX(camera, drive.x[leap - 1]), toScreenY(camera, drive.y[leap - 1]));
     context.lineTo(toScreenX(camera, drive.x[leap]), toScreenY(camera, drive.y[leap]));
   }
 }, [3, 4]);
 
-const drawTruth = (scene) => {
-  const { context, camera, palette, drive, lines, show, t } = scene;
+const drawTruePath = ({ context, camera, palette, drive, lines, show, t }, first) => {
   if (!drive.truth || !show.truth) return;
-  const to = lastAtMost(drive.truth.t, t);
-  if (to >= 1) strokeLine(scene, lines.truth, to, palette.truth, 1.3);
+  const from = Math.max(0, lastAtMost(drive.truth.t, drive.t[first])), to = lastAtMost(drive.truth.t, t);
+  if (to > from) stroke(context, palette.truth, 1.3, () => tracePolyline(context, lines.truth, camera, from, to));
+};
+
+const drawTrueLandmarks = ({ context, camera, palette, show }) => {
+  if (!show.truth) return;
+  const view = viewOf(camera, 8);
+  const radius = Math.min(6, Math.max(2.5, camera.scale));
   stroke(context, palette.truth, 1, () => {
-    const view = viewOf(camera, 8);
     for (const [, x, y] of data.true_landmarks) {
-      if (inView(view, x, y)) circle(context, toScreenX(camera, x), toScreenY(camera, y), Math.min(6, Math.max(2.5, camera.scale)));
+      if (inView(view, x, y)) circle(context, toScreenX(camera, x), toScreenY(camera, y), radius);
     }
   });
 };
 
-const drawFinal = (scene) => {
-  if (scene.drive.final && scene.show.final) {
-    strokeLine(scene, scene.lines.final, scene.drive.count - 1, scene.palette.landmark, 1.3, [6, 4]);
-  }
+const drawFinal = ({ context, camera, palette, drive, lines, show }) => {
+  if (!drive.final || !show.final) return;
+  stroke(context, palette.landmark, 1.3, () => tracePolyline(context, lines.final, camera, 0, drive.count - 1), [6, 4]);
 };
 
 // Landmarks on the map at scan k that are in view: [index, place].
@@ -120,14 +126,16 @@ const drawLandmarkKind = (scene, chosen, colour, filled) => {
   const radius = Math.min(4, Math.max(1.5, camera.scale * .4));
   stroke(context, colour, 1, () => {
     for (const [, place] of chosen) {
-      if (landmarks.a[place] * sigmas_of_95 * camera.scale > radius) {
+      if (landmarks.a[place] * sigmas_of_95 * camera.scale > Math.max(5, radius)) {
         traceEllipse(context, camera, landmarks.x[place], landmarks.y[place], landmarks, place);
       }
     }
   });
   context.beginPath();
   for (const [, place] of chosen) {
-    circle(context, toScreenX(camera, landmarks.x[place]), toScreenY(camera, landmarks.y[place]), radius);
+    const x = toScreenX(camera, landmarks.x[place]), y = toScreenY(camera, landmarks.y[place]);
+    if (radius > 2) circle(context, x, y, radius);
+    else context.rect(x - radius, y - radius, 2 * radius, 2 * radius);
   }
   if (filled) {
     context.fillStyle = colour;
@@ -294,8 +302,7 @@ const drawScene = (scene) => {
   context.globalAlpha = 1;
   context.fillStyle = palette.paper;
   context.fillRect(0, 0, camera.width, camera.height);
-  for (const draw_ of [drawGrid, drawTruth, drawFinal, drawPath, drawLandmarks_, drawMerges, drawScan, drawCloud,
-                       drawVehicle, drawClosings, drawScaleBar]) {
+  for (const draw_ of [drawWays, drawLandmarks_, drawMerges, drawScan, drawCloud, drawVehicle, drawClosings, drawScaleBar]) {
     draw_(scene);
   }
   context.setLineDash([]);

@@ -6,25 +6,34 @@ const bytesOf = (text) => {
   return bytes;
 };
 
+const countNumbers = (bytes) => {
+  let count_ = 0;
+  for (let i = 0; i < bytes.length; i++) if (bytes[i] < 128) count_++;
+  return count_;
+};
+
+const sumUp = (numbers) => {
+  let sum = 0;
+  for (let i = 0; i < numbers.length; i++) numbers[i] = sum += numbers[i];
+};
+
+// Differences may need more than 32 bits, numbers do not.
 const unpack = (text, order) => {
   const bytes = bytesOf(text);
-  const numbers = new Int32Array(bytes.reduce((sum, byte) => sum + (byte < 128 ? 1 : 0), 0));
-  const before = [0, 0, 0];
-  let filled = 0, value = 0, scale = 1;
-  for (const byte of bytes) {
-    value += (byte & 127) * scale;
-    scale *= 128;
-    if (byte >= 128) continue;
-    let number = value % 2 === 0 ? value / 2 : -(value + 1) / 2;
-    for (let k = order - 1; k >= 0; k--) before[k] = number += before[k];
-    numbers[filled++] = number;
-    value = 0;
-    scale = 1;
+  const numbers = new Float64Array(countNumbers(bytes));
+  for (let i = 0, filled = 0; i < bytes.length; filled++) {
+    let value = bytes[i] & 127;
+    for (let scale = 128; bytes[i++] >= 128; scale *= 128) value += (bytes[i] & 127) * scale;
+    numbers[filled] = value % 2 === 0 ? value / 2 : -(value + 1) / 2;
   }
+  for (let k = 0; k < order; k++) sumUp(numbers);
   return numbers;
 };
 
-const scaled = (numbers, unit) => Float64Array.from(numbers, (number) => number * unit);
+const scaled = (numbers, unit) => {
+  for (let i = 0; i < numbers.length; i++) numbers[i] *= unit;
+  return numbers;
+};
 const unpackMetres = (text, order) => scaled(unpack(text, order), .01);
 
 // Ellipses of one σ: half axes in 24ths of a doubling from 1 mm (0: none), angles in 64ths of half a turn.

@@ -42,8 +42,9 @@ std::string position_text(const evaluation::PositionEvaluation& position) {
 std::string final_position_text(const evaluation::PositionEvaluation& position) {
   const evaluation::ErrorStatistics& e = position.error_m;
   if (e.count == 0) return {};
-  return format("of the final path    RMSE %.3f m, median %.3f m, 95 %% %.3f m, maximum %.3f m (trajectory_final.tum)\n",
-                e.rmse, e.median, e.p95, e.max);
+  return format(
+      "of the final path    RMSE %.3f m, median %.3f m, 95 %% %.3f m, maximum %.3f m (trajectory_final.tum)\n", e.rmse,
+      e.median, e.p95, e.max);
 }
 
 std::string pose_text(const evaluation::PoseEvaluation& pose) {

@@ -48,8 +48,20 @@ void put_changes(const runs::Run& run, Histories& histories) {
   }
 }
 
-/// What the next look at the map no longer found died in between.
+std::map<core::LandmarkId, std::int64_t> last_sightings(const runs::Run& run) {
+  std::map<core::LandmarkId, std::int64_t> last;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::AssociationReport& a : step.associations) {
+      if (a.outcome == core::Outcome::matched || a.outcome == core::Outcome::augmented) last[a.landmark] = step.step;
+    }
+  }
+  return last;
+}
+
+/// What the next look at the map no longer found died in between: it is taken away soon after it was last seen.
 void end_short_lives(const runs::Run& run, Histories& histories) {
+  constexpr std::int64_t soon = 20;
+  const std::map<core::LandmarkId, std::int64_t> last = last_sightings(run);
   std::set<core::LandmarkId> known;
   for (const runs::MapChange& change : run.map_changes) {
     for (const core::MapLandmark& landmark : change.changed) known.insert(landmark.id);
@@ -59,7 +71,10 @@ void end_short_lives(const runs::Run& run, Histories& histories) {
     const std::int64_t born = history.places.front().step;
     const auto next = std::find_if(run.map_changes.begin(), run.map_changes.end(),
                                    [&](const runs::MapChange& change) { return change.step >= born; });
-    history.until = next == run.map_changes.end() ? -1 : std::max(next->step, born + 1);
+    if (next == run.map_changes.end()) continue;
+    const auto seen = last.find(id);
+    const std::int64_t gone = (seen == last.end() ? born : seen->second) + soon;
+    history.until = std::max(std::min(next->step, gone), born + 1);
   }
 }
 
@@ -103,8 +118,9 @@ Json packed_histories(const Histories& histories) {
       ellipses.add(place.point.covariance_m2);
     }
   }
-  Json json = {{"id", packed(ids, 1)}, {"until", packed(until, 1)}, {"count", packed(count, 0)},
-               {"step", packed(step, 1)}, {"x", packed(x, 1)}, {"y", packed(y, 1)}, {"state", packed(state, 0)}};
+  Json json = {{"id", packed(ids, 1)},     {"until", packed(until, 1)}, {"count", packed(count, 0)},
+               {"step", packed(step, 1)},  {"x", packed(x, 1)},         {"y", packed(y, 1)},
+               {"state", packed(state, 0)}};
   json.update(ellipses.json());
   return json;
 }

@@ -21,12 +21,8 @@ Json clouds_data(const runs::Run& run) {
       heading.push_back(quantised(step.cloud[i].heading_rad, 1e-3));
     }
   }
-  return {{"step", packed(at, 1)},
-          {"count", packed(count, 1)},
-          {"x", packed(x, 1)},
-          {"y", packed(y, 1)},
-          {"heading", packed(heading, 1)},
-          {"stride", stride}};
+  return {{"step", packed(at, 1)}, {"count", packed(count, 1)},     {"x", packed(x, 1)},
+          {"y", packed(y, 1)},     {"heading", packed(heading, 1)}, {"stride", stride}};
 }
 
 }  // namespace helixnav::reports

@@ -23,9 +23,8 @@ constexpr Column<core::StepReport> path_columns[] = {
     {"x", [](const core::StepReport& s) { return rounded(s.pose.mean.x_m, 1e-3); }},
     {"y", [](const core::StepReport& s) { return rounded(s.pose.mean.y_m, 1e-3); }}};
 
-constexpr Column<core::Pose2> pose_columns[] = {
-    {"x", [](const core::Pose2& pose) { return rounded(pose.x_m, 1e-3); }},
-    {"y", [](const core::Pose2& pose) { return rounded(pose.y_m, 1e-3); }}};
+constexpr Column<core::Pose2> pose_columns[] = {{"x", [](const core::Pose2& pose) { return rounded(pose.x_m, 1e-3); }},
+                                                {"y", [](const core::Pose2& pose) { return rounded(pose.y_m, 1e-3); }}};
 
 constexpr Column<core::StepReport> health_columns[] = {
     {"t", [](const core::StepReport& s) { return time_of(s.t_ns); }},

@@ -129,8 +129,7 @@ std::vector<std::string> warnings_of_place(const runs::Run& run) {
                        " in a row, from " + short_number(from_s) + " s on: there the pose is that of the odometry");
   }
   if (run.steps.back().mode == core::Mode::searching) {
-    warnings.emplace_back(
-        "a search was still open at the end: where on the map the vehicle then was is not decided");
+    warnings.emplace_back("a search was still open at the end: where on the map the vehicle then was is not decided");
   }
   return warnings;
 }

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include "helixnav/core/random.hpp"
 #include "packed_ellipse.hpp"

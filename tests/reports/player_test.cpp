@@ -133,7 +133,8 @@ TEST(Player, OfAHundredThousandScansStaysUnderFifteenMegabytes) {
     for (int i = 0; i < 10; ++i) {
       const int landmark = static_cast<int>(k / 20 + random.uniform(0.0, 40.0));
       step.associations.push_back({i, core::Outcome::matched, landmark, 1.0, 2, 1.0});
-      points_m.emplace_back(static_cast<float>(random.uniform(-40.0, 40.0)), static_cast<float>(random.uniform(-40.0, 40.0)));
+      points_m.emplace_back(static_cast<float>(random.uniform(-40.0, 40.0)),
+                            static_cast<float>(random.uniform(-40.0, 40.0)));
     }
   }
   EXPECT_LT(render_report(run, evaluation::evaluate(run)).size(), 15'000'000u);

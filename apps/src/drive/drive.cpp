@@ -68,7 +68,7 @@ struct Driven {
   std::size_t steps = 0;
   std::vector<double> step_us;          ///< of each scan that was fed
   std::map<std::string, int> closings;  ///< how many of each verdict
-  std::string broken;  ///< what of the mathematics broke, and where; the run ended there
+  std::string broken;                   ///< what of the mathematics broke, and where; the run ended there
 };
 
 void count_closings(const core::StepReport& report, Driven& driven) {

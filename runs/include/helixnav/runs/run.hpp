@@ -54,7 +54,7 @@ struct Run {
   std::vector<std::pair<std::string, double>> numbers;
   std::vector<std::pair<std::string, double>> timing;  ///< wall clock, into summary.json under "timing"
   std::optional<SmoothedRun> smoothed;
-  std::optional<core::JointMap> joint_map;  ///< into map.bin
+  std::optional<core::JointMap> joint_map;          ///< into map.bin
   std::vector<std::vector<Eigen::Vector2f>> scans;  ///< [step][observation] in the robot's frame [m]; NaN: no point
   std::vector<MapChange> map_changes;
 };
