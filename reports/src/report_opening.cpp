@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <variant>
 
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
@@ -54,6 +55,20 @@ std::string closings_sentence(const runs::Run& run) {
   return text + (undecided > 0 ? "; a search was left undecided " + times(undecided) + "." : ".");
 }
 
+/// Where a session found its place on an earlier map.
+Json placings(const runs::Run& run) {
+  Json sentences = Json::array();
+  for (const core::StepReport& step : run.steps) {
+    for (const core::Decision& decision : step.decisions) {
+      const auto* placed = std::get_if<core::PlacedDecision>(&decision);
+      if (placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted) {
+        sentences.push_back(sentence_of(decision));
+      }
+    }
+  }
+  return sentences;
+}
+
 std::string figures_of(const evaluation::ErrorStatistics& error) {
   return short_number(error.rmse) + " m RMSE, " + short_number(error.median) + " m median, " + short_number(error.max) +
          " m at most";
@@ -101,6 +116,7 @@ Json opening_data(const runs::Run& run, const evaluation::Evaluation& evaluation
   if (run.steps.empty()) return json;
   if (!(run.smoothed && run.smoothed->alone)) {
     json["sentences"] = {drive_sentence(run), closings_sentence(run)};
+    for (const Json& sentence : placings(run)) json["sentences"].push_back(sentence);
     for (const std::string& warning : warnings_of(run, evaluation)) json["warnings"].push_back(warning);
     for (const std::string& warning : warnings_of_place(run)) json["warnings"].push_back(warning);
   }

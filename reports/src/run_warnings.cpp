@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <utility>
+#include <variant>
 
 #include "helixnav/reports/decision_sentence.hpp"
 
@@ -76,6 +77,20 @@ bool has_match(const core::StepReport& step) {
                      [](const core::AssociationReport& a) { return a.outcome == core::Outcome::matched; });
 }
 
+/// A place on an earlier map was sought and never found.
+bool sought_in_vain(const runs::Run& run) {
+  bool sought = false;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::Decision& decision : step.decisions) {
+      const auto* placed = std::get_if<core::PlacedDecision>(&decision);
+      if (placed == nullptr) continue;
+      if (placed->verdict == core::PlacedDecision::Verdict::accepted) return false;
+      sought = true;
+    }
+  }
+  return sought;
+}
+
 /// [begin, end) of the longest stretch of steps without a match.
 std::pair<std::size_t, std::size_t> longest_without_match(const std::vector<core::StepReport>& steps) {
   std::size_t begin = 0, longest_begin = 0, longest_end = 0;
@@ -127,6 +142,10 @@ std::vector<std::string> warnings_of_place(const runs::Run& run) {
     const double from_s = core::seconds(run.steps[begin].t_ns);
     warnings.push_back("no landmark was matched in " + counted(static_cast<double>(end - begin), "scan") +
                        " in a row, from " + short_number(from_s) + " s on: there the pose is that of the odometry");
+  }
+  if (sought_in_vain(run)) {
+    warnings.emplace_back(
+        "the session never found its place on the earlier map: the map is that of this session alone");
   }
   if (run.steps.back().mode == core::Mode::searching) {
     warnings.emplace_back("a search was still open at the end: where on the map the vehicle then was is not decided");

@@ -15,14 +15,15 @@ class MapChanges {
   MapChanges() = default;
   explicit MapChanges(std::size_t scans);
 
-  /// Some hundred times a drive, and after every closing.
-  bool wants(const core::StepReport& step) const;
+  /// Some hundred times a drive, and after every closing or solution of the drive. `report` is as it came.
+  bool wants(const core::StepReport& report) const;
 
   /// What a picture shows to be other than when this was last called: landmarks in order of id.
   MapChange since_last(std::int64_t step, const std::vector<core::MapLandmark>& map);
 
  private:
   std::int64_t every_ = 10;
+  std::size_t told_ = 0;                  ///< landmarks in all changes until now
   std::vector<core::MapLandmark> shown_;  ///< as the changes until now tell it, in order of id
 };
 

@@ -44,6 +44,7 @@ struct RunRecorder::Book {
   CloudChoice cloud_choice;
   std::vector<core::StampedPose> solved;  ///< the last time
   MapChanges map_changes;
+  bool wants_map = false;  ///< after the step last added
 };
 
 RunRecorder::RunRecorder(const std::string& path, const RunManifest& manifest, const core::Recording& recording)
@@ -70,6 +71,7 @@ void RunRecorder::add(const core::StepReport& report, double microseconds) {
     step.cloud = report.drawn;
   }
   step.drawn.clear();
+  book_->wants_map = book_->map_changes.wants(report);
   if (!report.solved.empty()) book_->solved = std::move(step.solved);
   step.solved.clear();
   step.revised.clear();
@@ -80,9 +82,7 @@ void RunRecorder::add(const core::StepReport& report, double microseconds) {
   for (const core::AssociationReport& a : report.associations) put_association(report.step, a, run.steps);
 }
 
-bool RunRecorder::wants_map() const {
-  return !book_->run.steps.empty() && book_->map_changes.wants(book_->run.steps.back());
-}
+bool RunRecorder::wants_map() const { return book_->wants_map; }
 
 void RunRecorder::add_map(const std::vector<core::MapLandmark>& map) {
   book_->run.map_changes.push_back(book_->map_changes.since_last(book_->run.steps.back().step, map));
