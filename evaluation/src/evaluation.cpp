@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "evaluation_map.hpp"
 #include "helixnav/core/chi2.hpp"
@@ -45,14 +46,16 @@ ErrorStatistics statistics_of_used(const std::vector<PositionError>& errors) {
   return error_statistics(std::move(norms));
 }
 
-PositionEvaluation evaluate_positions(const runs::Run& run, const runs::RunTruth& truth, double limit_m) {
+using Steps = std::vector<core::StepReport>;
+
+PositionEvaluation evaluate_positions(const Steps& steps, const runs::RunTruth& truth, double limit_m) {
   PositionEvaluation result;
   result.aligned = true;
   result.limit_m = limit_m;
   std::vector<Eigen::Vector2d> fixes;
   std::vector<Eigen::Vector2d> antennas;
   for (const core::TruePosition& fix : truth.positions) {
-    const auto pose = estimate_at(run.steps, fix.t_ns);
+    const auto pose = estimate_at(steps, fix.t_ns);
     if (!pose) {
       ++result.fixes_outside;
       continue;
@@ -95,12 +98,12 @@ void summarize_poses(PoseEvaluation& result) {
   result.nees_inside_95 = fraction_of(inside, result.nees_count);
 }
 
-void evaluate_poses(const runs::Run& run, const runs::RunTruth& truth, Evaluation& evaluation) {
+std::pair<PositionEvaluation, PoseEvaluation> evaluate_poses(const Steps& steps, const runs::RunTruth& truth) {
   PositionEvaluation position;
   position.limit_m = std::numeric_limits<double>::infinity();
   PoseEvaluation pose;
   for (const core::TruePose& known : truth.poses) {
-    const auto estimate = estimate_at(run.steps, known.t_ns);
+    const auto estimate = estimate_at(steps, known.t_ns);
     if (!estimate) {
       ++position.fixes_outside;
       continue;
@@ -114,8 +117,25 @@ void evaluate_poses(const runs::Run& run, const runs::RunTruth& truth, Evaluatio
   position.fixes_used = position.errors.size();
   position.error_m = statistics_of_used(position.errors);
   summarize_poses(pose);
-  evaluation.pose = std::move(pose);
-  if (!evaluation.position) evaluation.position = std::move(position);
+  return {std::move(position), std::move(pose)};
+}
+
+/// Times and poses of the final path, in the shape of steps.
+Steps final_steps(const runs::Run& run) {
+  Steps steps(run.final_path.size());
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    steps[i].t_ns = run.steps[i].t_ns;
+    steps[i].pose = {run.final_path[i], run.steps[i].pose.covariance};
+  }
+  return steps;
+}
+
+std::optional<PositionEvaluation> evaluate_final(const runs::Run& run, const runs::RunTruth& truth, double limit_m) {
+  if (run.final_path.empty() || run.final_path.size() != run.steps.size()) return std::nullopt;
+  const Steps steps = final_steps(run);
+  if (!truth.positions.empty()) return evaluate_positions(steps, truth, limit_m);
+  if (truth.poses.empty()) return std::nullopt;
+  return evaluate_poses(steps, truth).first;
 }
 
 NisEvaluation evaluate_nis(const std::vector<core::StepReport>& steps) {
@@ -204,8 +224,13 @@ ErrorStatistics error_statistics(std::vector<double> errors) {
 Evaluation evaluate(const runs::Run& run, const runs::RunTruth& truth, const EvaluationOptions& options) {
   Evaluation evaluation;
   evaluation.steps = run.steps.size();
-  if (!truth.positions.empty()) evaluation.position = evaluate_positions(run, truth, options.fix_limit_m);
-  if (!truth.poses.empty()) evaluate_poses(run, truth, evaluation);
+  if (!truth.positions.empty()) evaluation.position = evaluate_positions(run.steps, truth, options.fix_limit_m);
+  if (!truth.poses.empty()) {
+    auto [position, pose] = evaluate_poses(run.steps, truth);
+    evaluation.pose = std::move(pose);
+    if (!evaluation.position) evaluation.position = std::move(position);
+  }
+  evaluation.final_position = evaluate_final(run, truth, options.fix_limit_m);
   const core::Pose2 T_truth_map = evaluation.position ? evaluation.position->T_truth_map : core::Pose2{};
   if (!truth.landmarks.empty()) evaluation.map = evaluate_map(run, truth, T_truth_map, options.landmark_limit_m);
   evaluation.nis = evaluate_nis(run.steps);

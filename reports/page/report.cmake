@@ -9,11 +9,15 @@ function(helixnav_embed_report target)
       "./dev build fetches it; by hand: npm ci --ignore-scripts --prefix ${folder}\n"
       "A copy elsewhere is named by -DHELIXNAV_PLOTLY_JS=<file>.")
   endif()
-  set(inputs ${folder}/report.html.in ${folder}/report.css ${folder}/report.js ${HELIXNAV_PLOTLY_JS})
+  # In this order: what a script needs at once stands before it.
+  set(scripts text.js unpack.js drive.js camera.js polyline.js charts.js particles.js scene.js layers.js player.js player_controls.js
+    opening.js summary.js decisions.js closures.js main.js)
+  list(TRANSFORM scripts PREPEND ${folder}/)
   set(output ${CMAKE_CURRENT_BINARY_DIR}/report_assets.cpp)
   add_custom_command(OUTPUT ${output}
-    COMMAND ${CMAKE_COMMAND} "-DINPUTS=${inputs}" -DOUTPUT=${output} -P ${folder}/embed.cmake
-    DEPENDS ${inputs} ${folder}/embed.cmake
+    COMMAND ${CMAKE_COMMAND} -DPAGE=${folder}/report.html.in -DSTYLE=${folder}/report.css "-DSCRIPTS=${scripts}"
+      -DCHARTS=${HELIXNAV_PLOTLY_JS} -DOUTPUT=${output} -P ${folder}/embed.cmake
+    DEPENDS ${folder}/report.html.in ${folder}/report.css ${scripts} ${HELIXNAV_PLOTLY_JS} ${folder}/embed.cmake
     COMMENT "Embedding the report page" VERBATIM)
   target_sources(${target} PRIVATE ${output})
 endfunction()

@@ -39,6 +39,14 @@ std::string position_text(const evaluation::PositionEvaluation& position) {
   return text;
 }
 
+std::string final_position_text(const evaluation::PositionEvaluation& position) {
+  const evaluation::ErrorStatistics& e = position.error_m;
+  if (e.count == 0) return {};
+  return format(
+      "of the final path    RMSE %.3f m, median %.3f m, 95 %% %.3f m, maximum %.3f m (trajectory_final.tum)\n", e.rmse,
+      e.median, e.p95, e.max);
+}
+
 std::string pose_text(const evaluation::PoseEvaluation& pose) {
   const evaluation::ErrorStatistics& e = pose.heading_error_rad;
   if (e.count == 0) return {};
@@ -119,6 +127,7 @@ Json map_to_json(const evaluation::MapEvaluation& map) {
 std::string evaluation_text(const evaluation::Evaluation& evaluation) {
   std::string text = format("steps                %zu\n", evaluation.steps);
   if (evaluation.position) text += position_text(*evaluation.position);
+  if (evaluation.final_position) text += final_position_text(*evaluation.final_position);
   if (evaluation.pose) text += pose_text(*evaluation.pose);
   if (evaluation.map) text += map_text(*evaluation.map);
   if (!evaluation.position && !evaluation.map) text += "no truth             nothing to compare the run with\n";
@@ -141,6 +150,7 @@ Json evaluation_to_json(const evaluation::Evaluation& evaluation) {
   Json json = Json::object();
   json["steps"] = evaluation.steps;
   if (evaluation.position) json["error"] = position_to_json(*evaluation.position);
+  if (evaluation.final_position) json["error_final"] = position_to_json(*evaluation.final_position);
   if (evaluation.pose) {
     json["heading_error"] = statistics_to_json(evaluation.pose->heading_error_rad, "rad");
     json["nees"] = {{"count", evaluation.pose->nees_count},

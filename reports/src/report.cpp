@@ -5,6 +5,7 @@
 
 #include "report_assets.hpp"
 #include "report_data.hpp"
+#include "report_player.hpp"
 #include "report_smoothing.hpp"
 
 namespace helixnav::reports {
@@ -53,9 +54,11 @@ std::string render_report(const runs::Run& run, const evaluation::Evaluation& ev
   Json json = report_data(run, evaluation);
   if (run.smoothed) json["smoothing"] = smoothing_data(*run.smoothed);
   const std::string data = for_script(json);
+  const std::string player = for_script(player_data(run, evaluation));
   const std::string wall_clock = for_script(report_wall_clock(run));
   return fill(report_page, {{"style", report_style},
                             {"data", data},
+                            {"player_data", player},
                             {"wall_clock", wall_clock},
                             {"charts", report_charts},
                             {"script", report_script}});

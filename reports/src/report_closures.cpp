@@ -37,13 +37,11 @@ Json true_pose_json(const runs::RunTruth& truth, core::Nanoseconds t_ns) {
 }
 
 Json view_json(const runs::Run& run, const core::StepReport& step, std::int64_t scans) {
-  Json cloud = Json::array();
-  for (const core::Pose2& pose : step.cloud) cloud.push_back(pose_json(pose));
   return {{"scans", scans},
+          {"step", step.step},
           {"closing", std::any_of(step.decisions.begin(), step.decisions.end(), core::is_closure)},
           {"estimate", pose_json(step.pose.mean)},
-          {"truth", true_pose_json(run.truth, step.t_ns)},
-          {"cloud", cloud}};
+          {"truth", true_pose_json(run.truth, step.t_ns)}};
 }
 
 /// Points of the landmarks that were kept, as the map at the end has them.

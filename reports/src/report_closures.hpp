@@ -6,7 +6,8 @@
 
 namespace helixnav::reports {
 
-/// What the report shows of each closure: the clouds of the attempt that led to it, the constellation that was matched, and
+/// What the report shows of each closure: where the clouds of the attempt that led to it are (clouds_data, by step), the
+/// constellation that was matched, and
 /// where it would stand at the best rival. Lengths to 1 mm, map frame.
 Json closures_data(const runs::Run& run);
 

@@ -6,9 +6,11 @@
 #include <limits>
 
 #include "helixnav/core/decision_row.hpp"
+#include "helixnav/reports/decision_sentence.hpp"
 #include "helixnav/runs/words.hpp"
 #include "report_closures.hpp"
 #include "report_numbers.hpp"
+#include "report_opening.hpp"
 #include "report_particles.hpp"
 #include "report_series.hpp"
 #include "stride_for.hpp"
@@ -55,16 +57,31 @@ Json decision_json(const core::StepReport& step, const core::Decision& decision)
           {"y", rounded(step.pose.mean.y_m)},
           {"kind", row.kind},
           {"verdict", row.verdict},
-          {"numbers", numbers}};
+          {"numbers", numbers},
+          {"sentence", sentence_of(decision)}};
+}
+
+/// With the error before and after it, as far as known.
+Json closure_json(const runs::Run& run, std::size_t k, const core::Decision& decision,
+                  const evaluation::Evaluation& evaluation) {
+  Json json = decision_json(run.steps[k], decision);
+  const ErrorAround error = error_around(run, k, evaluation);
+  if (error.before_m) json["error_before_m"] = rounded(*error.before_m);
+  if (error.after_m) json["error_after_m"] = rounded(*error.after_m);
+  return json;
 }
 
 // All closures, and of the rest the first most_decisions.
-void put_decisions(Json& json, const std::vector<core::StepReport>& steps) {
+void put_decisions(Json& json, const runs::Run& run, const evaluation::Evaluation& evaluation) {
   Json& list = json["decisions"] = Json::array();
   std::size_t others = 0;
-  for (const core::StepReport& step : steps) {
-    for (const core::Decision& decision : step.decisions) {
-      if (core::is_closure(decision) || others++ < most_decisions) list.push_back(decision_json(step, decision));
+  for (std::size_t k = 0; k < run.steps.size(); ++k) {
+    for (const core::Decision& decision : run.steps[k].decisions) {
+      if (core::is_closure(decision)) {
+        list.push_back(closure_json(run, k, decision, evaluation));
+      } else if (others++ < most_decisions) {
+        list.push_back(decision_json(run.steps[k], decision));
+      }
     }
   }
   json["decisions_left_out"] = others > most_decisions ? others - most_decisions : 0;
@@ -119,12 +136,15 @@ Json report_data(const runs::Run& run, const evaluation::Evaluation& evaluation)
   json["manifest"] = Json::parse(runs::manifest_json(run.manifest));  // as it stands in the file
   json["seed"] = std::to_string(run.manifest.seed);                   // JavaScript's numbers end at 2⁵³
   json["finished"] = run.finished;
+  json["opening"] = opening_data(run, evaluation);
   json["summary"] = summary_to_json(run, evaluation);
   json["duration_s"] = steps.empty() ? 0.0 : core::seconds(steps.back().t_ns - steps.front().t_ns);
+  json["begin_s"] = steps.empty() ? 0.0 : core::seconds(steps.front().t_ns);
   json["length_m"] = rounded(path_length_m(steps));
   json["time_range_s"] = time_range_s(steps);
   json["map_extent"] = map_extent(run, evaluation);
   json["path"] = path_json(steps);
+  json["final_path"] = final_path_json(run);
   json["truth"] = evaluation.position ? truth_json(*evaluation.position) : Json(nullptr);
   json["errors"] = evaluation.position ? errors_json(*evaluation.position) : Json(nullptr);
   json["heading"] = evaluation.pose ? heading_json(evaluation.pose->errors) : Json(nullptr);
@@ -135,7 +155,7 @@ Json report_data(const runs::Run& run, const evaluation::Evaluation& evaluation)
   json["nis"] = nis_json(steps);
   json["observations"] = observations_json(steps);
   json["particles"] = evaluation.particles ? particles_data(run) : Json(nullptr);
-  put_decisions(json, steps);
+  put_decisions(json, run, evaluation);
   json["closures"] = closures_data(run);
   return json;
 }

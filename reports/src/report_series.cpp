@@ -23,6 +23,9 @@ constexpr Column<core::StepReport> path_columns[] = {
     {"x", [](const core::StepReport& s) { return rounded(s.pose.mean.x_m, 1e-3); }},
     {"y", [](const core::StepReport& s) { return rounded(s.pose.mean.y_m, 1e-3); }}};
 
+constexpr Column<core::Pose2> pose_columns[] = {{"x", [](const core::Pose2& pose) { return rounded(pose.x_m, 1e-3); }},
+                                                {"y", [](const core::Pose2& pose) { return rounded(pose.y_m, 1e-3); }}};
+
 constexpr Column<core::StepReport> health_columns[] = {
     {"t", [](const core::StepReport& s) { return time_of(s.t_ns); }},
     {"mapped", [](const core::StepReport& s) -> Json { return s.mapped_landmarks; }},
@@ -75,6 +78,11 @@ Json path_json(const std::vector<core::StepReport>& steps) {
                         rounded(pose.covariance(0, 1), 1e-8), rounded(pose.covariance(1, 1), 1e-8)});
   }
   return json;
+}
+
+Json final_path_json(const runs::Run& run) {
+  if (run.final_path.empty()) return nullptr;
+  return columns(run.final_path, stride_for(run.final_path.size(), most_line_points), pose_columns);
 }
 
 Json truth_json(const evaluation::PositionEvaluation& position) {

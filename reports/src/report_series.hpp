@@ -5,12 +5,15 @@
 
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/evaluation/evaluation.hpp"
+#include "helixnav/runs/run.hpp"
 #include "json.hpp"
 
 namespace helixnav::reports {
 
 /// What the page draws over time or along the path, thinned out to what a screen shows.
 Json path_json(const std::vector<core::StepReport>& steps);
+/// Null where the path was not corrected.
+Json final_path_json(const runs::Run& run);
 Json truth_json(const evaluation::PositionEvaluation& position);
 Json errors_json(const evaluation::PositionEvaluation& position);
 Json heading_json(const std::vector<evaluation::HeadingError>& errors);

@@ -33,6 +33,22 @@ std::optional<std::size_t> step_of_placing(const Run& run) {
   return std::nullopt;
 }
 
+std::optional<core::Pose2> frame_at(const Run& run, core::Nanoseconds t_ns) {
+  const std::optional<std::size_t> placing = step_of_placing(run);
+  if (!placing || !began_unknown(run) || t_ns >= run.steps[*placing].t_ns) return std::nullopt;
+  return placing_in(run.steps[*placing])->T_map_session;
+}
+
+namespace {
+
+void move(const core::Pose2& T_map_session, core::MapLandmark& landmark) {
+  const Eigen::Matrix2d R = core::rotation(T_map_session.heading_rad);
+  landmark.point.mean_m = core::transform(T_map_session, landmark.point.mean_m);
+  landmark.point.covariance_m2 = (R * landmark.point.covariance_m2 * R.transpose()).eval();
+}
+
+}  // namespace
+
 void bring_into_map(Run& run) {
   const std::optional<std::size_t> placing = step_of_placing(run);
   if (!placing || !began_unknown(run)) return;
@@ -45,6 +61,10 @@ void bring_into_map(Run& run) {
     const Eigen::Matrix3d turned = turn * step.pose.covariance * turn.transpose();
     step.pose.covariance = 0.5 * (turned + turned.transpose());
     for (core::Pose2& pose : step.cloud) pose = core::compose(T_map_session, pose);
+  }
+  for (MapChange& change : run.map_changes) {
+    if (change.step >= run.steps[*placing].step) break;
+    for (core::MapLandmark& landmark : change.changed) move(T_map_session, landmark);
   }
 }
 

@@ -17,6 +17,9 @@ std::optional<std::size_t> step_of_placing(const Run& run);
 /// Test: runs/placed_run_test.cpp.
 void bring_into_map(Run& run);
 
+/// What brings a pose told at `t_ns` into the frame of the map: nothing to do where there is none.
+std::optional<core::Pose2> frame_at(const Run& run, core::Nanoseconds t_ns);
+
 /// [step] the poses.
 std::vector<core::Pose2> poses_of(const Run& run);
 

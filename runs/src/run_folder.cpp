@@ -58,7 +58,7 @@ struct HealthRow {
 };
 
 struct RunTables {
-  std::vector<std::pair<core::Nanoseconds, core::Pose2>> trajectory;
+  std::vector<core::StampedPose> trajectory;
   std::vector<AssociationRow> associations;
   std::vector<core::Decision> decisions;
   std::vector<core::MergedLandmarks> merges;
@@ -76,6 +76,10 @@ Eigen::Matrix<double, n, n> symmetric(const RunRow& row, std::size_t column) {
     for (int c = r; c < n; ++c) matrix(r, c) = matrix(c, r) = row.number(column++);
   }
   return matrix;
+}
+
+core::StampedPose read_stamped_pose(const RunRow& row) {
+  return {row.seconds(0), core::Pose2(row.number(1), row.number(2), 2.0 * std::atan2(row.number(6), row.number(7)))};
 }
 
 HealthRow read_health_row(const RunRow& row) {
@@ -145,10 +149,8 @@ RunTables read_tables(const std::string& folder) {
     if (!first && health.report.step <= before.step) row.refuse(0, "more than " + std::to_string(before.step));
     if (!first && health.report.t_ns < before.t_ns) row.refuse(1, "time that does not go backwards");
   });
-  for_each_row(path(trajectory_table), trajectory_table, [&](const RunRow& row) {
-    tables.trajectory.emplace_back(
-        row.seconds(0), core::Pose2(row.number(1), row.number(2), 2.0 * std::atan2(row.number(6), row.number(7))));
-  });
+  for_each_row(path(trajectory_table), trajectory_table,
+               [&](const RunRow& row) { tables.trajectory.push_back(read_stamped_pose(row)); });
   for_each_row(path(associations_table), associations_table,
                [&](const RunRow& row) { tables.associations.push_back(read_association_row(row)); });
   for_each_row(path(decisions_table), decisions_table,
@@ -189,7 +191,7 @@ void assemble(RunTables& tables, Run& run) {
     }
     core::StepReport& step = run.steps.emplace_back(std::move(health.report));
     run.microseconds.push_back(health.microseconds);
-    step.pose.mean = tables.trajectory[k].second;
+    step.pose.mean = tables.trajectory[k].T_world_robot;
     const auto cloud = tables.clouds.find(step.step);
     if (cloud != tables.clouds.end()) step.particles = cloud->second;
     take(tables.decisions, next_decision, health.decision_rows, step.decisions);
@@ -200,6 +202,14 @@ void assemble(RunTables& tables, Run& run) {
       put_association(row.step, row.report, run.steps);
     }
   }
+}
+
+/// Step by step, or not at all.
+void read_final_path(const std::string& path, Run& run) {
+  if (!fs::exists(path)) return;
+  for_each_row(path, final_trajectory_table,
+               [&](const RunRow& row) { run.final_path.push_back(read_stamped_pose(row).T_world_robot); });
+  if (run.final_path.size() != run.steps.size()) run.final_path.clear();
 }
 
 bool has_truth(const std::string& folder) {
@@ -239,6 +249,7 @@ Run read_run(const std::string& path) {
   RunTables tables = read_tables(path);
   assemble(tables, run);
   bring_into_map(run);
+  read_final_path(path + '/' + std::string(final_trajectory_table.file), run);
   if (fs::exists(path + "/map.csv")) run.map = read_map(path + "/map.csv");
   if (has_truth(path)) run.truth = read_truth(path);
   run.finished = fs::exists(path + '/' + summary_file);

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/runs/run_recorder.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
+#include <variant>
 
 #include "bring_into_map.hpp"
 #include "cloud_choice.hpp"
+#include "map_changes.hpp"
+#include "points_of_scan.hpp"
 #include "put_association.hpp"
 
 namespace helixnav::runs {
@@ -23,9 +27,12 @@ void mirror_upper_triangle(Matrix& matrix) {
   }
 }
 
+core::Pose2 as_kept(const core::Pose2& pose) {
+  return core::Pose2(pose.x_m, pose.y_m, heading_by_quaternion(pose.heading_rad));
+}
+
 core::PoseGaussian as_kept(core::PoseGaussian pose) {
-  const core::Pose2& mean = pose.mean;
-  pose.mean = core::Pose2(mean.x_m, mean.y_m, heading_by_quaternion(mean.heading_rad));
+  pose.mean = as_kept(pose.mean);
   mirror_upper_triangle(pose.covariance);
   return pose;
 }
@@ -35,6 +42,9 @@ core::PoseGaussian as_kept(core::PoseGaussian pose) {
 struct RunRecorder::Book {
   Run run;
   CloudChoice cloud_choice;
+  std::vector<core::StampedPose> solved;  ///< the last time
+  MapChanges map_changes;
+  bool wants_map = false;  ///< after the step last added
 };
 
 RunRecorder::RunRecorder(const std::string& path, const RunManifest& manifest, const core::Recording& recording)
@@ -42,6 +52,10 @@ RunRecorder::RunRecorder(const std::string& path, const RunManifest& manifest, c
   book_->run.path = path;
   book_->run.manifest = manifest;
   book_->run.truth = truth_of(recording);
+  for (const core::Event& event : recording.events) {
+    if (const auto* scan = std::get_if<core::Scan>(&event)) book_->run.scans.push_back(points_of_scan(*scan));
+  }
+  book_->map_changes = MapChanges(book_->run.scans.size());
 }
 
 RunRecorder::~RunRecorder() = default;
@@ -57,6 +71,9 @@ void RunRecorder::add(const core::StepReport& report, double microseconds) {
     step.cloud = report.drawn;
   }
   step.drawn.clear();
+  book_->wants_map = book_->map_changes.wants(report);
+  if (!report.solved.empty()) book_->solved = std::move(step.solved);
+  step.solved.clear();
   step.revised.clear();
   step.associations.clear();
   for (const core::RevisedScan& scan : report.revised) {
@@ -65,12 +82,21 @@ void RunRecorder::add(const core::StepReport& report, double microseconds) {
   for (const core::AssociationReport& a : report.associations) put_association(report.step, a, run.steps);
 }
 
+bool RunRecorder::wants_map() const { return book_->wants_map; }
+
+void RunRecorder::add_map(const std::vector<core::MapLandmark>& map) {
+  book_->run.map_changes.push_back(book_->map_changes.since_last(book_->run.steps.back().step, map));
+}
+
 Run RunRecorder::finish(const std::vector<core::MapLandmark>& map) {
   Run run = std::move(book_->run);
+  if (!run.steps.empty()) run.map_changes.push_back(book_->map_changes.since_last(run.steps.back().step, map));
   run.map = map;
   for (core::MapLandmark& landmark : run.map) mirror_upper_triangle(landmark.point.covariance_m2);
   run.finished = true;
   bring_into_map(run);
+  correct_path(run, book_->solved);
+  for (core::Pose2& pose : run.final_path) pose = as_kept(pose);
   return run;
 }
 

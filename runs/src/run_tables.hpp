@@ -15,6 +15,7 @@ struct RunTable {
 };
 
 inline constexpr RunTable trajectory_table{"trajectory.tum", "# t x y z qx qy qz qw", ' '};
+inline constexpr RunTable final_trajectory_table{"trajectory_final.tum", "# t x y z qx qy qz qw", ' '};
 inline constexpr RunTable associations_table{"associations.csv",
                                              "step,observation,landmark,outcome,nis,dof,margin_nats,revision"};
 inline constexpr RunTable decisions_table{"decisions.csv", "step,t_s,kind,verdict,numbers"};

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "append_cells.hpp"
-#include "bring_into_map.hpp"
 #include "cloud_choice.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
@@ -212,10 +211,9 @@ void RunWriter::write(const core::StepReport& report, double microseconds) {
 
 void RunWriter::finish(const Run& run, const std::string& report_page, const std::string& summary) {
   files::write_whole_file(folder_ + "/map.csv", map_text(run.map));
-  if (run.smoothed) {
-    files::write_whole_file(folder_ + "/trajectory_final.tum", final_trajectory_text(run.steps, run.smoothed->poses));
-  } else if (step_of_placing(run)) {
-    files::write_whole_file(folder_ + "/trajectory_final.tum", final_trajectory_text(run.steps, poses_of(run)));
+  if (!run.final_path.empty()) {
+    files::write_whole_file(folder_ + '/' + std::string(final_trajectory_table.file),
+                            final_trajectory_text(run.steps, run.final_path));
   }
   if (run.joint_map && run.joint_map->joint.ids.size() <= most_joint_landmarks) {
     files::write_whole_file(folder_ + '/' + joint_map_file, joint_map_bytes(*run.joint_map));

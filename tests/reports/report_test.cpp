@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/reports/report.hpp"
 
+#include <algorithm>
 #include <regex>
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include "helixnav/core/decision_row.hpp"
 #include "report_assets.hpp"
 #include "run_example.hpp"
+#include "unpacked.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -70,8 +72,12 @@ TEST(Report, HoldsCloudsConstellationAndRivalOfEachClosure) {
   EXPECT_EQ(closure["views"][3]["scans"], 3);
   EXPECT_EQ(closure["views"][3]["closing"], false);
   EXPECT_EQ(closure["views"][6]["closing"], true);
-  EXPECT_EQ(closure["views"][0]["cloud"].size(), 3u);
-  EXPECT_NEAR(closure["views"][0]["cloud"][2][1].get<double>(), -1.0 / 3.0, 5e-4);
+  const nlohmann::json clouds = element(render(run), "player-data")["clouds"];
+  const std::vector<std::int64_t> at = unpacked(clouds["step"], 1);
+  const auto cloud = std::find(at.begin(), at.end(), closure["views"][0]["step"]) - at.begin();
+  ASSERT_LT(cloud, static_cast<std::ptrdiff_t>(at.size()));
+  EXPECT_EQ(unpacked(clouds["count"], 1)[static_cast<std::size_t>(cloud)], 3);
+  EXPECT_EQ(unpacked(clouds["y"], 1)[3 * static_cast<std::size_t>(cloud) + 2], -33);
   EXPECT_NEAR(closure["views"][6]["truth"][0].get<double>(), example_step(17).pose.mean.x_m, 5e-4);
   EXPECT_EQ(closure["winner"], nlohmann::json({1.0, 2.0, 0.5}));
   EXPECT_EQ(closure["rival"], nlohmann::json({7.0, 8.0, -0.5}));

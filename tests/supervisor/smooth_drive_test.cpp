@@ -201,7 +201,7 @@ TEST(SmoothDrive, HasTheCovarianceOfAFilterAlongTheSolution) {
   fix.antenna_robot_m = {0.5, 0.2};
   run.events.insert(run.events.begin() + static_cast<std::ptrdiff_t>(run.events.size() * 3 / 4), fix);
   ToldDrive drive(run, true);
-  smoothing::Problem problem = problem_of(run.start, graph_of(run.start, drive.tape, drive.filter));
+  smoothing::Problem problem = problem_of(run.start, graph_of(run.start, drive.tape, drive.filter).graph);
   drive.filter.remove(drive.trees().begin()->second);
   smoothing::Options options;
   options.first_damping = 1e-8;  // as smooth_drive: by where it converges another run is off by some micrometres
@@ -290,6 +290,21 @@ TEST(SmoothDrive, UsesFixes) {
   ToldDrive drive(run, false);
   ASSERT_TRUE(drive.solve().solved);
   expect_solved(drive, Solved(run));
+}
+
+// Every scan has its place on the path, also where nothing was seen; the last one is where the filter is.
+TEST(SmoothDrive, HasAPoseForEveryScan) {
+  const core::Recording run = circuit(8);
+  ToldDrive drive(run, false);
+  const Smoothing smoothing = drive.solve();
+  ASSERT_EQ(smoothing.path.size(), run.true_poses.size());
+  for (std::size_t k = 0; k < smoothing.path.size(); ++k) {
+    EXPECT_EQ(smoothing.path[k].t_ns, run.true_poses[k].t_ns);
+    const Eigen::Vector2d truth_m = run.true_poses[k].T_world_robot.position_m();
+    EXPECT_LT((smoothing.path[k].T_world_robot.position_m() - truth_m).norm(), 1.0) << k;
+  }
+  const core::Pose2& last = smoothing.path.back().T_world_robot;
+  EXPECT_LT((last.vector() - drive.filter.pose().mean.vector()).norm(), 1e-9);
 }
 
 // A minimum that costs more than what the filter has found is another one: the filter stays as it is.

@@ -68,8 +68,7 @@ struct Driven {
   std::size_t steps = 0;
   std::vector<double> step_us;          ///< of each scan that was fed
   std::map<std::string, int> closings;  ///< how many of each verdict
-  ObservationCounts observations;
-  std::string broken;  ///< what of the mathematics broke, and where; the run ended there
+  std::string broken;                   ///< what of the mathematics broke, and where; the run ended there
 };
 
 void count_closings(const core::StepReport& report, Driven& driven) {
@@ -104,9 +103,9 @@ Driven navigate(const Drive& job, Estimator& estimator, runs::RunWriter& writer,
     const double microseconds = seen.last_scan_was_withheld() ? 0.0 : 1e6 * timed.last_s();
     if (!seen.last_scan_was_withheld()) driven.step_us.push_back(microseconds);
     count_closings(*step, driven);
-    driven.observations.add(*step);
     writer.write(*step, microseconds);
     recorder.add(*step, microseconds);
+    if (recorder.wants_map()) recorder.add_map(estimator.map());
   }
   driven.steps = static_cast<std::size_t>(loop.steps());
   return driven;
@@ -130,7 +129,7 @@ ExitCode verdict(const Drive& job, const Driven& driven, const runs::Run& run, c
                  driven.steps);
     return ExitCode::interrupted;
   }
-  for (const std::string& warning : warnings_of(job, driven.observations, run.map, evaluation)) {
+  for (const std::string& warning : warnings_of(job, run, evaluation)) {
     std::fprintf(stderr, "helixnav: warning: %s\n", warning.c_str());
   }
   return smoothed;

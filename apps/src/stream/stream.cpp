@@ -80,6 +80,7 @@ class Stream {
   void write(const core::StepReport& step, double microseconds) {
     if (!writer_) open_folder();
     writer_->write(step, microseconds);
+    if (!step.solved.empty()) solved_ = step.solved;
   }
 
   void open_folder() {
@@ -104,6 +105,7 @@ class Stream {
     if (!writer_) open_folder();
     runs::Run run = runs::read_run(job_.out);
     run.map = navigator_.map();
+    runs::correct_path(run, solved_);
     run.finished = true;
     reports::finish_run(run, *writer_);
     std::fprintf(stderr, "run folder: %s   report: %s/report.html\n", job_.out.c_str(), job_.out.c_str());
@@ -128,6 +130,7 @@ class Stream {
   LiveNavigator navigator_;
   LineChannel channel_;
   std::unique_ptr<runs::RunWriter> writer_;
+  std::vector<core::StampedPose> solved_;  ///< the last time
   bool reader_is_there_ = true;
   std::int64_t steps_ = 0, refused_ = 0, broken_ = 0;
 };

@@ -38,11 +38,13 @@ StepReport NavigationLoop::roll_back_and_relocalise(StepReport report) {
     for (const core::Decision& decision : report.decisions) through.decisions.emplace_back(decision);
     through.merged.insert(through.merged.end(), report.merged.begin(), report.merged.end());
     through.revised.push_back({report.step, report.associations});
+    if (!report.solved.empty()) through.solved = std::move(report.solved);
   });
   through.revised.pop_back();  // the last one is this scan
   report.decisions = std::move(through.decisions);
   report.merged = std::move(through.merged);
   report.revised = std::move(through.revised);
+  report.solved = std::move(through.solved);
   return report;
 }
 

@@ -82,7 +82,7 @@ class NavigationLoop {
 
   // noise/learn_noise.cpp
   void learn_noise(const core::Scan& scan);
-  void solve_with_learnt_noise();
+  void solve_with_learnt_noise(core::StepReport& report);
 
   // search/search_mode.cpp
   void begin_search();

@@ -131,8 +131,14 @@ std::vector<Stop> stops_of(const Tape& tape) {
     if (!is_stop(entry)) return;
     Stop& stop = stops.emplace_back();
     stop.motion = std::exchange(motion, std::nullopt);
-    if (const auto* fix = std::get_if<Tape::Fix>(&entry)) stop.fix = fix->fix;
-    if (const auto* scan = std::get_if<Tape::Scan>(&entry)) stop.seen = used_observations(*scan);
+    if (const auto* fix = std::get_if<Tape::Fix>(&entry)) {
+      stop.t_ns = fix->fix.t_ns;
+      stop.fix = fix->fix;
+    }
+    if (const auto* scan = std::get_if<Tape::Scan>(&entry)) {
+      stop.t_ns = scan->scan.t_ns;
+      stop.seen = used_observations(*scan);
+    }
   });
   return stops;
 }

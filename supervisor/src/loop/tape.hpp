@@ -104,6 +104,7 @@ core::MergedIds merged_ids(const Tape& tape);
 
 /// A place where something may have been observed, and how the vehicle came there from the one before.
 struct Stop {
+  core::Nanoseconds t_ns = 0;
   std::optional<core::Odometry> motion;
   std::vector<cekf::Match> seen;  ///< used observations
   std::optional<core::AbsoluteFix> fix;

@@ -39,7 +39,7 @@ void NavigationLoop::learn_noise(const core::Scan& scan) {
 
 /// What was processed with another noise before that was known is solved once more, with the noise as it is known now; where
 /// that cannot be solved all stays as it was.
-void NavigationLoop::solve_with_learnt_noise() {
+void NavigationLoop::solve_with_learnt_noise(core::StepReport& report) {
   constexpr double too_little = 1.25;   // overconfident: mended at once
   constexpr double too_much = 1.0 / 3;  // only cautious: worth its cost rarely
   Mapping* mapping = std::get_if<Mapping>(&mode_);
@@ -58,6 +58,7 @@ void NavigationLoop::solve_with_learnt_noise() {
   trusted.filter = smoothing.solved->snapshot();
   std::swap(belief_.filter, *smoothing.solved);
   std::swap(tape_, again);
+  report.solved = std::move(smoothing.path);
   mapping->trust(std::move(trusted));
 }
 

@@ -96,6 +96,7 @@ void NavigationLoop::solve_drive(StepReport& report) {
     std::swap(belief_.filter, *smoothing.solved);
     if (!undo_.filter) undo_.filter.emplace(std::move(*smoothing.solved));
     tape_.append(Tape::Solved{smoothing.chi2});
+    report.solved = std::move(smoothing.path);
   }
   core::SmoothingDecision decision;
   decision.accepted = smoothing.solved.has_value();

@@ -51,17 +51,18 @@ class Builder {
     open_pose();
   }
 
-  LandmarkGraph build() {
+  DriveGraph build() {
     for (const Stop& stop : stops_) {
       drive(stop.motion);
       const std::vector<cekf::Match> seen = worthwhile(stop);
       const bool observed = stop.fix || !seen.empty();
       if (observed && motion_) reach_pose();
       if (observed) observe(stop, seen);
+      places_.push_back({stop.t_ns, last_pose(), motion_ ? motion_->T_before_after : core::Pose2{}});
     }
     drive(last_motion_);
     if (motion_) reach_pose();  // where the vehicle is now, even if nothing is seen from there
-    return std::move(graph_);
+    return {std::move(graph_), std::move(places_)};
   }
 
  private:
@@ -132,12 +133,23 @@ class Builder {
   std::optional<core::Odometry> motion_;  ///< since the last pose
   LandmarkGraph graph_;
   std::map<core::LandmarkId, int> index_of_landmark_;
+  std::vector<StopInGraph> places_;
 };
 
 }  // namespace
 
-LandmarkGraph graph_of(const core::PoseGaussian& start, const Tape& tape, const cekf::CompressedEkf& filter) {
+DriveGraph graph_of(const core::PoseGaussian& start, const Tape& tape, const cekf::CompressedEkf& filter) {
   return Builder(start, tape, filter).build();
+}
+
+std::vector<core::StampedPose> path_of(const LandmarkGraph& graph, const std::vector<StopInGraph>& stops) {
+  std::vector<core::StampedPose> path;
+  path.reserve(stops.size());
+  for (const StopInGraph& stop : stops) {
+    const core::Pose2& T_world_pose = graph.poses[static_cast<std::size_t>(stop.pose)].T_world_robot;
+    path.push_back({stop.t_ns, core::compose(T_world_pose, stop.T_pose_robot)});
+  }
+  return path;
 }
 
 }  // namespace helixnav::supervisor

@@ -60,7 +60,8 @@ Smoothing smooth_drive(const cekf::CompressedEkf& filter, const core::PoseGaussi
   Smoothing result;
   result.limit = drive_cost(tape) + slack();
   try {
-    smoothing::Problem problem = problem_of(start, graph_of(start, tape, filter));
+    DriveGraph drive = graph_of(start, tape, filter);
+    smoothing::Problem problem = problem_of(start, std::move(drive.graph));
     result.poses = static_cast<int>(problem.graph.poses.size());
     const smoothing::Minimum minimum(problem, from_a_good_start());
     const smoothing::Report& report = minimum.report();
@@ -68,6 +69,7 @@ Smoothing smooth_drive(const cekf::CompressedEkf& filter, const core::PoseGaussi
     result.iterations = static_cast<int>(report.iterations.size());
     if (report.reason != smoothing::Reason::converged || !(result.chi2 <= result.limit)) return result;
     result.solved.emplace(filter_at(minimum, problem.graph, filter));
+    result.path = path_of(problem.graph, drive.stops);
   } catch (const core::NumericalError&) {
     result.solved.reset();  // what cannot be solved leaves the filter as it is
   }

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/landmark_graph.hpp"
+#include "helixnav/core/step_report.hpp"
 #include "helixnav/smoothing/problem.hpp"
 #include "loop/tape.hpp"
 
@@ -14,6 +16,7 @@ namespace helixnav::supervisor {
 /// The result of solving the drive as a whole.
 struct Smoothing {
   std::optional<cekf::CompressedEkf> solved;  ///< nothing when not accepted
+  std::vector<core::StampedPose> path;        ///< at the solution, of every scan and fix used
   double chi2 = 0.0;                          ///< least squares' cost at its solution
   double limit = 0.0;                         ///< what it must not exceed
   int poses = 0;

@@ -50,6 +50,12 @@ struct RevisedScan {
   std::vector<AssociationReport> associations;
 };
 
+/// Where the robot was.
+struct StampedPose {
+  Nanoseconds t_ns = 0;
+  Pose2 T_world_robot;
+};
+
 /// Everything one scan did to the map and the pose. Filled by supervisor::Navigator or fastslam::FastSlam, written by
 /// runs::RunWriter.
 struct StepReport {
@@ -66,6 +72,7 @@ struct StepReport {
   std::vector<Decision> decisions;
   std::vector<MergedLandmarks> merged;  ///< by a closure in this step
   std::vector<RevisedScan> revised;     ///< by a rollback
+  std::vector<StampedPose> solved;      ///< where the drive was solved as a whole: the path until now as known since
   std::vector<Pose2> cloud;  ///< T_world_robot of particles of a search, thinned out for pictures; empty without
   std::vector<Pose2> drawn;  ///< same, where an attempt starts: as drawn on helices, before the scan weighed them
   std::optional<CloudReport> particles;  ///< where the estimator is a cloud of particles

@@ -105,6 +105,7 @@ struct ParticleEvaluation {
 struct Evaluation {
   std::size_t steps = 0;
   std::optional<PositionEvaluation> position;
+  std::optional<PositionEvaluation> final_position;  ///< of the path as known at the end, where it was corrected
   std::optional<PoseEvaluation> pose;
   std::optional<MapEvaluation> map;
   NisEvaluation nis;

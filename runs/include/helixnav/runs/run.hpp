@@ -33,6 +33,13 @@ struct ParticleEnd {
   std::vector<core::MixedLandmark> mixture;
 };
 
+/// What of the map was new after a step, for the player of the report.
+struct MapChange {
+  std::int64_t step = 0;
+  std::vector<core::MapLandmark> changed;  ///< began, or moved by what can be seen
+  std::vector<core::LandmarkId> removed;   ///< merged or dead
+};
+
 /// A drive as a value: what an estimator reported step by step, what came of it, and what is known from elsewhere. It is
 /// made by RunRecorder while the drive goes on, or read from a folder by read_run.
 struct Run {
@@ -43,6 +50,8 @@ struct Run {
   std::vector<core::StepReport> steps;
   std::vector<double> microseconds;    ///< [step] wall clock
   std::vector<core::MapLandmark> map;  ///< empty unless the run finished
+  /// [step] as known at the end; empty unless a closing or a smoother corrected it, or a session found its place.
+  std::vector<core::Pose2> final_path;
   RunTruth truth;
   bool finished = false;  ///< the run finished
 
@@ -52,9 +61,15 @@ struct Run {
   std::vector<std::pair<std::string, double>> numbers;
   std::vector<std::pair<std::string, double>> timing;  ///< wall clock, into summary.json under "timing"
   std::optional<SmoothedRun> smoothed;
-  std::optional<core::JointMap> joint_map;  ///< into map.bin
+  std::optional<core::JointMap> joint_map;          ///< into map.bin
+  std::vector<std::vector<Eigen::Vector2f>> scans;  ///< [step][observation] in the robot's frame [m]; NaN: no point
+  std::vector<MapChange> map_changes;
   std::optional<ParticleEnd> particle_end;
 };
+
+/// Makes the final path of what was solved of the drive: between and after the poses given, the motion of the steps stands.
+/// Without poses the path is that of the steps where a session found its place, and none elsewhere. Test: runs/final_path_test.cpp.
+void correct_path(Run& run, const std::vector<core::StampedPose>& solved);
 
 /// Adds what a smoother made of the run. Where it ran alone, its poses are the run's from now on.
 void add_smoothed(Run& run, SmoothedRun smoothed);

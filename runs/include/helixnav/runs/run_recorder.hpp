@@ -23,6 +23,13 @@ class RunRecorder {
 
   void add(const core::StepReport& report, double microseconds);
 
+  /// Whether a picture of the drive needs the map after the step last added: some hundred times a drive, and after every
+  /// closing.
+  bool wants_map() const;
+
+  /// The map after the step last added. Kept is what can be seen to have changed.
+  void add_map(const std::vector<core::MapLandmark>& map);
+
   /// The run with its map, at its end. Nothing may be added afterwards.
   Run finish(const std::vector<core::MapLandmark>& map);
 

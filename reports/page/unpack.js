@@ -1,0 +1,60 @@
+// Reads what reports/src/packed.cpp wrote: zigzag numbers in bytes of seven bits, in base64, `order` times summed up.
+const bytesOf = (text) => {
+  const letters = atob(text);
+  const bytes = new Uint8Array(letters.length);
+  for (let i = 0; i < bytes.length; i++) bytes[i] = letters.charCodeAt(i);
+  return bytes;
+};
+
+const countNumbers = (bytes) => {
+  let count_ = 0;
+  for (let i = 0; i < bytes.length; i++) if (bytes[i] < 128) count_++;
+  return count_;
+};
+
+const sumUp = (numbers) => {
+  let sum = 0;
+  for (let i = 0; i < numbers.length; i++) numbers[i] = sum += numbers[i];
+};
+
+// Differences may need more than 32 bits, numbers do not.
+const unpack = (text, order) => {
+  const bytes = bytesOf(text);
+  const numbers = new Float64Array(countNumbers(bytes));
+  for (let i = 0, filled = 0; i < bytes.length; filled++) {
+    let value = bytes[i] & 127;
+    for (let scale = 128; bytes[i++] >= 128; scale *= 128) value += (bytes[i] & 127) * scale;
+    numbers[filled] = value % 2 === 0 ? value / 2 : -(value + 1) / 2;
+  }
+  for (let k = 0; k < order; k++) sumUp(numbers);
+  return numbers;
+};
+
+const scaled = (numbers, unit) => {
+  for (let i = 0; i < numbers.length; i++) numbers[i] *= unit;
+  return numbers;
+};
+const unpackMetres = (text, order) => scaled(unpack(text, order), .01);
+
+// Ellipses of one σ: half axes in 24ths of a doubling from 1 mm (0: none), angles in 64ths of half a turn.
+const unpackEllipses = (packed) => {
+  const axis = (text) => Float32Array.from(unpack(text, 1), (steps) => (steps > 0 ? .001 * 2 ** (steps / 24) : 0));
+  return { a: axis(packed.a), b: axis(packed.b), angle: scaled(unpack(packed.angle, 1), Math.PI / 64) };
+};
+
+// Where the items of each entry begin; one more than there are entries.
+const offsetsOf = (counts) => {
+  const offsets = new Int32Array(counts.length + 1);
+  for (let i = 0; i < counts.length; i++) offsets[i + 1] = offsets[i] + counts[i];
+  return offsets;
+};
+
+// The last index in [from, to) whose number is at most `value`; from - 1 when there is none.
+const lastAtMost = (numbers, value, from = 0, to = numbers.length) => {
+  while (from < to) {
+    const middle = (from + to) >> 1;
+    if (numbers[middle] <= value) from = middle + 1;
+    else to = middle;
+  }
+  return from - 1;
+};

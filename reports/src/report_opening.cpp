@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report_opening.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <variant>
+
+#include "helixnav/core/decision_row.hpp"
+#include "helixnav/reports/decision_sentence.hpp"
+#include "helixnav/reports/run_warnings.hpp"
+
+namespace helixnav::reports {
+namespace {
+
+std::string length(double value_m) {
+  return value_m < 1000.0 ? short_number(std::round(value_m)) + " m" : short_number(value_m / 1000.0) + " km";
+}
+
+std::string duration(double seconds) {
+  const double minutes = std::floor(seconds / 60.0);
+  return minutes < 3.0 ? short_number(std::round(seconds)) + " s" : short_number(std::round(seconds / 60.0)) + " min";
+}
+
+std::string drive_sentence(const runs::Run& run) {
+  double driven_m = 0.0;
+  for (std::size_t i = 1; i < run.steps.size(); ++i) {
+    driven_m += (run.steps[i].pose.mean.position_m() - run.steps[i - 1].pose.mean.position_m()).norm();
+  }
+  const auto mature = std::count_if(run.map.begin(), run.map.end(), [](const core::MapLandmark& landmark) {
+    return landmark.state == core::LandmarkState::mature;
+  });
+  const double time_s = core::seconds(run.steps.back().t_ns - run.steps.front().t_ns);
+  return "The vehicle drove " + length(driven_m) + " in " + duration(time_s) + ": " +
+         counted(static_cast<double>(run.steps.size()), "scan") + ", and a map of " +
+         counted(static_cast<double>(mature), "landmark") + '.';
+}
+
+std::string closings_sentence(const runs::Run& run) {
+  int accepted = 0, refused = 0, undecided = 0;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::Decision& decision : step.decisions) {
+      if (!core::is_closure(decision)) continue;
+      const std::string verdict = core::row_of(decision).verdict;
+      accepted += verdict == "accepted";
+      refused += verdict == "refused";
+      undecided += verdict == "undecided";
+    }
+  }
+  if (accepted + refused + undecided == 0) return "No search for an old place was made.";
+  const auto times = [](int count) { return count == 1 ? std::string("once") : std::to_string(count) + " times"; };
+  std::string text = accepted > 0 ? "The map was closed " + times(accepted) : "The map was never closed";
+  text += refused > 0 ? "; a closing was refused " + times(refused) : "; no closing was refused";
+  return text + (undecided > 0 ? "; a search was left undecided " + times(undecided) + "." : ".");
+}
+
+/// Where a session found its place on an earlier map.
+Json placings(const runs::Run& run) {
+  Json sentences = Json::array();
+  for (const core::StepReport& step : run.steps) {
+    for (const core::Decision& decision : step.decisions) {
+      const auto* placed = std::get_if<core::PlacedDecision>(&decision);
+      if (placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted) {
+        sentences.push_back(sentence_of(decision));
+      }
+    }
+  }
+  return sentences;
+}
+
+std::string figures_of(const evaluation::ErrorStatistics& error) {
+  return short_number(error.rmse) + " m RMSE, " + short_number(error.median) + " m median, " + short_number(error.max) +
+         " m at most";
+}
+
+std::string error_sentence(const evaluation::Evaluation& evaluation) {
+  if (!evaluation.position || evaluation.position->error_m.count == 0) {
+    return "No truth is known: nothing here says how far from it the estimate is.";
+  }
+  std::string text = "Position error as estimated on the way: " + figures_of(evaluation.position->error_m);
+  if (evaluation.final_position && evaluation.final_position->error_m.count > 0) {
+    text += "; of the path as corrected since: " + figures_of(evaluation.final_position->error_m);
+  }
+  return text + '.';
+}
+
+}  // namespace
+
+ErrorAround error_around(const runs::Run& run, std::size_t k, const evaluation::Evaluation& evaluation) {
+  ErrorAround around;
+  if (!evaluation.position || k == 0) return around;
+  constexpr core::Nanoseconds near_ns = 15'000'000'000;
+  const auto& errors = evaluation.position->errors;
+  const core::Nanoseconds before_ns = run.steps[k - 1].t_ns;
+  const core::Nanoseconds after_ns = run.steps[k].t_ns;
+  const auto by_time = [](const evaluation::PositionError& e, core::Nanoseconds t_ns) { return e.t_ns < t_ns; };
+  for (auto it = std::lower_bound(errors.begin(), errors.end(), before_ns + 1, by_time); it != errors.begin();) {
+    --it;
+    if (before_ns - it->t_ns > near_ns) break;
+    if (!it->used) continue;
+    around.before_m = it->error_m.norm();
+    break;
+  }
+  for (auto it = std::lower_bound(errors.begin(), errors.end(), after_ns, by_time); it != errors.end(); ++it) {
+    if (it->t_ns - after_ns > near_ns) break;
+    if (!it->used) continue;
+    around.after_m = it->error_m.norm();
+    break;
+  }
+  return around;
+}
+
+Json opening_data(const runs::Run& run, const evaluation::Evaluation& evaluation) {
+  Json json = {{"sentences", Json::array()}, {"warnings", Json::array()}};
+  if (run.steps.empty()) return json;
+  if (!(run.smoothed && run.smoothed->alone)) {
+    json["sentences"] = {drive_sentence(run), closings_sentence(run)};
+    for (const Json& sentence : placings(run)) json["sentences"].push_back(sentence);
+    for (const std::string& warning : warnings_of(run, evaluation)) json["warnings"].push_back(warning);
+    for (const std::string& warning : warnings_of_place(run)) json["warnings"].push_back(warning);
+  }
+  json["sentences"].push_back(error_sentence(evaluation));
+  return json;
+}
+
+}  // namespace helixnav::reports

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "helixnav/evaluation/evaluation.hpp"
+#include "helixnav/runs/run.hpp"
+#include "json.hpp"
+
+namespace helixnav::reports {
+
+constexpr std::size_t most_player_observations = 1'000'000;  ///< 7 MB; of longer drives every n-th scan is shown
+
+/// What the player of the page replays: every step's pose, the scans, the landmarks as they were known, the clouds. Packed
+/// columns (packed.hpp), lengths in cm, headings in mrad, times in ms since the first step. Of a run read from its folder
+/// the landmarks stand as known at the end, and scans are lines to landmarks.
+Json player_data(const runs::Run& run, const evaluation::Evaluation& evaluation);
+
+}  // namespace helixnav::reports

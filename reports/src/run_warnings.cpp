@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/reports/run_warnings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+#include <variant>
+
+#include "helixnav/reports/decision_sentence.hpp"
+
+namespace helixnav::reports {
+namespace {
+
+/// What became of the observations of a run.
+struct ObservationCounts {
+  std::size_t seen = 0, matched = 0, began = 0;
+};
+
+ObservationCounts count_observations(const runs::Run& run) {
+  ObservationCounts counts;
+  for (const core::StepReport& step : run.steps) {
+    counts.seen += step.associations.size();
+    for (const core::AssociationReport& a : step.associations) {
+      counts.matched += a.outcome == core::Outcome::matched ? 1 : 0;
+      counts.began += a.outcome == core::Outcome::augmented ? 1 : 0;
+    }
+  }
+  return counts;
+}
+
+template <class... Values>
+std::string warning(const char* format, Values... values) {
+  std::array<char, 400> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, values...);
+  return buffer.data();
+}
+
+double share(std::size_t part, std::size_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+std::string no_landmark_text(const ObservationCounts& counts) {
+  if (counts.seen == 0) return "the log holds no detections: nothing was mapped, and the path is that of the odometry";
+  return warning(
+      "the map has no landmark: of %zu detections %zu were matched and %zu began landmarks that were not seen "
+      "again; are reach, mounting and noise those of this sensor? 'helixnav check' shows what was understood",
+      counts.seen, counts.matched, counts.began);
+}
+
+std::string collapse_text(const ObservationCounts& counts) {
+  return warning(
+      "matching collapsed: of %zu detections %.0f %% were matched, %.0f %% began landmarks; odometry or detections "
+      "are worse than assumed, or mounting, units or times are wrong. 'helixnav check' shows what was understood, "
+      "'helixnav calibrate' estimates the noise from the log",
+      counts.seen, 100.0 * share(counts.matched, counts.seen), 100.0 * share(counts.began, counts.seen));
+}
+
+std::string nis_text(double mean_per_dof) {
+  const double factor = std::sqrt(std::max(mean_per_dof, 1e-6));
+  if (mean_per_dof > 1.0) {
+    return warning(
+        "innovations are %.2g times larger than the assumed noise allows (NIS %.3g per degree of freedom): "
+        "covariances are too small; 'helixnav calibrate' estimates the noise from the log",
+        factor, mean_per_dof);
+  }
+  return warning(
+      "innovations are %.2g times smaller than the assumed noise (NIS %.3g per degree of freedom): the log is better "
+      "than assumed, and returns will be harder to tell apart than they need be; 'helixnav calibrate' estimates "
+      "the noise from the log",
+      1.0 / factor, mean_per_dof);
+}
+
+bool has_match(const core::StepReport& step) {
+  return std::any_of(step.associations.begin(), step.associations.end(),
+                     [](const core::AssociationReport& a) { return a.outcome == core::Outcome::matched; });
+}
+
+/// A place on an earlier map was sought and never found.
+bool sought_in_vain(const runs::Run& run) {
+  bool sought = false;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::Decision& decision : step.decisions) {
+      const auto* placed = std::get_if<core::PlacedDecision>(&decision);
+      if (placed == nullptr) continue;
+      if (placed->verdict == core::PlacedDecision::Verdict::accepted) return false;
+      sought = true;
+    }
+  }
+  return sought;
+}
+
+/// [begin, end) of the longest stretch of steps without a match.
+std::pair<std::size_t, std::size_t> longest_without_match(const std::vector<core::StepReport>& steps) {
+  std::size_t begin = 0, longest_begin = 0, longest_end = 0;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (has_match(steps[i])) begin = i + 1;
+    if (i + 1 - begin > longest_end - longest_begin) {
+      longest_begin = begin;
+      longest_end = i + 1;
+    }
+  }
+  return {longest_begin, longest_end};
+}
+
+}  // namespace
+
+std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Evaluation& evaluation) {
+  std::vector<std::string> warnings;
+  if (run.smoothed && run.smoothed->alone) return warnings;  // nothing was matched step by step
+  const ObservationCounts counts = count_observations(run);
+  const bool mature = std::any_of(run.map.begin(), run.map.end(), [](const core::MapLandmark& landmark) {
+    return landmark.state == core::LandmarkState::mature;
+  });
+  constexpr std::size_t enough = 200;
+  constexpr double least_matched = 0.15;
+  if (!mature) {
+    warnings.push_back(no_landmark_text(counts));
+  } else if (counts.seen >= enough && share(counts.matched, counts.seen) < least_matched) {
+    warnings.push_back(collapse_text(counts));
+  }
+  constexpr double least_nis = 0.25, most_nis = 2.0;
+  const double nis = evaluation.nis.mean_per_dof;
+  if (evaluation.nis.updates >= 50 && (nis < least_nis || nis > most_nis)) warnings.push_back(nis_text(nis));
+  if (evaluation.position && evaluation.position->error_m.count == 0) {
+    warnings.push_back(
+        warning("none of the %zu positions of truth lies within the time of the run; is it of the same clock? "
+                "'helixnav evaluate' takes --truth-offset-s",
+                evaluation.position->fixes_outside));
+  }
+  return warnings;
+}
+
+std::vector<std::string> warnings_of_place(const runs::Run& run) {
+  std::vector<std::string> warnings;
+  if (run.steps.empty() || (run.smoothed && run.smoothed->alone)) return warnings;
+  const auto [begin, end] = longest_without_match(run.steps);
+  constexpr std::size_t many = 100;
+  constexpr double much = 0.1;
+  if (end - begin >= many && static_cast<double>(end - begin) > much * static_cast<double>(run.steps.size())) {
+    const double from_s = core::seconds(run.steps[begin].t_ns);
+    warnings.push_back("no landmark was matched in " + counted(static_cast<double>(end - begin), "scan") +
+                       " in a row, from " + short_number(from_s) + " s on: there the pose is that of the odometry");
+  }
+  if (sought_in_vain(run)) {
+    warnings.emplace_back(
+        "the session never found its place on the earlier map: the map is that of this session alone");
+  }
+  if (run.steps.back().mode == core::Mode::searching) {
+    warnings.emplace_back("a search was still open at the end: where on the map the vehicle then was is not decided");
+  }
+  return warnings;
+}
+
+}  // namespace helixnav::reports

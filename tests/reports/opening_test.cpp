@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "helixnav/core/decision_row.hpp"
+#include "helixnav/reports/run_warnings.hpp"
+#include "report_opening.hpp"
+
+namespace helixnav::reports {
+namespace {
+
+/// Along x with 1 m a second and an error of `drift_m` in y that a closing in scan 60 takes away.
+runs::Run drifting_run(double drift_m) {
+  runs::Run run;
+  for (int k = 0; k < 120; ++k) {
+    core::StepReport& step = run.steps.emplace_back();
+    step.step = k;
+    step.t_ns = k * 1'000'000'000LL;
+    step.pose.mean = {1.0 * k, k < 60 ? drift_m : 0.25, 0.0};
+    step.associations = {{0, core::Outcome::matched, 1, 1.0, 2, 1.0}};
+    run.truth.poses.push_back({step.t_ns, {1.0 * k, 0.0, 0.0}});
+  }
+  core::ClosureDecision closure;
+  closure.accepted = true;
+  run.steps[60].decisions = {closure};
+  core::MapLandmark landmark;
+  landmark.state = core::LandmarkState::mature;
+  run.map = {landmark};
+  return run;
+}
+
+std::string all_of(const Json& texts) {
+  std::string all;
+  for (const Json& text : texts) all += text.get<std::string>() + '\n';
+  return all;
+}
+
+TEST(Opening, SaysWhatWasDrivenAndClosedAndHowWrongItWas) {
+  runs::Run run = drifting_run(4.0);
+  run.final_path.assign(run.steps.size(), {});
+  for (std::size_t k = 0; k < run.final_path.size(); ++k) run.final_path[k] = {1.0 * static_cast<double>(k), 0.5, 0.0};
+  const std::string said = all_of(opening_data(run, evaluation::evaluate(run))["sentences"]);
+  EXPECT_NE(said.find("120 scans, and a map of 1 landmark."), std::string::npos) << said;
+  EXPECT_NE(said.find("The map was closed once; no closing was refused."), std::string::npos) << said;
+  EXPECT_NE(said.find("4 m at most; of the path as corrected since: 0.5 m RMSE"), std::string::npos) << said;
+}
+
+TEST(Opening, KnowsTheErrorBeforeAndAfterAClosing) {
+  const runs::Run run = drifting_run(4.0);
+  const ErrorAround error = error_around(run, 60, evaluation::evaluate(run));
+  EXPECT_DOUBLE_EQ(error.before_m.value(), 4.0);
+  EXPECT_DOUBLE_EQ(error.after_m.value(), 0.25);
+}
+
+TEST(Opening, KnowsNoErrorWithoutTruthNearby) {
+  runs::Run run = drifting_run(4.0);
+  run.truth.poses.resize(20);  // ends 40 s before the closing
+  const ErrorAround error = error_around(run, 60, evaluation::evaluate(run));
+  EXPECT_FALSE(error.before_m);
+  EXPECT_FALSE(error.after_m);
+  run.truth.poses.clear();
+  EXPECT_FALSE(error_around(run, 60, evaluation::evaluate(run)).before_m);
+  EXPECT_NE(all_of(opening_data(run, evaluation::evaluate(run))["sentences"]).find("No truth is known"),
+            std::string::npos);
+}
+
+TEST(Opening, WarnsOfALongDriveWithoutAMatchAndOfASearchLeftOpen) {
+  runs::Run run = drifting_run(0.0);
+  EXPECT_TRUE(warnings_of_place(run).empty());
+  for (std::size_t k = 10; k < 115; ++k) run.steps[k].associations.clear();
+  run.steps.back().mode = core::Mode::searching;
+  const std::vector<std::string> warnings = warnings_of_place(run);
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_NE(warnings[0].find("105 scans in a row, from 10 s on"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[1].find("still open"), std::string::npos) << warnings[1];
+}
+
+TEST(Opening, OfARunWithoutStepsSaysNothing) {
+  const Json opening = opening_data({}, {});
+  EXPECT_TRUE(opening["sentences"].empty());
+  EXPECT_TRUE(opening["warnings"].empty());
+}
+
+}  // namespace
+}  // namespace helixnav::reports
