@@ -57,10 +57,10 @@ if(NOT output MATCHES "^[1-9][0-9]* landmarks, robot at ")
 endif()
 
 # A component that is not there is named, and those that are.
-file(WRITE ${WORK_DIR}/wrong/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(wrong LANGUAGES NONE)\n"
+file(WRITE ${WORK_DIR}/wrong/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(wrong LANGUAGES CXX)\n"
   "find_package(helixnav REQUIRED COMPONENTS core nonsense)\n")
-execute_process(COMMAND ${CMAKE_COMMAND} -S ${WORK_DIR}/wrong -B ${WORK_DIR}/wrong/build
-  -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE output)
+execute_process(COMMAND ${CMAKE_COMMAND} -G ${GENERATOR} -S ${WORK_DIR}/wrong -B ${WORK_DIR}/wrong/build
+  -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE output)
 string(REGEX REPLACE "[ \n]+" " " output "${output}")
 if(NOT status OR NOT output MATCHES "no component 'nonsense' is installed; there are: core association ")
   message(FATAL_ERROR "asked for a component that is not there, CMake said: ${output}")
