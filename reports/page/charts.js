@@ -17,7 +17,15 @@ const layout = (more) => ({
   margin: { l: 70, r: 44, t: 46, b: 56 }, modebar: { orientation: "v" }, hovermode: "closest", autosize: true,
   legend: { orientation: "h", x: 0, xanchor: "left", y: 1.02, yanchor: "bottom", bgcolor: "rgba(0,0,0,0)" }, ...more,
 });
-const draw = (id, traces, more) => Plotly.react(byId(id), traces, layout(more), {
+// The charting library is a megabyte of script: it is run when the first chart is drawn.
+const needCharts = () => {
+  if (window.Plotly) return;
+  const script = element("script");
+  script.textContent = byId("charts").textContent;
+  document.head.append(script);
+};
+
+const draw = (id, traces, more) => needCharts() || Plotly.react(byId(id), traces, layout(more), {
   responsive: true, scrollZoom: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d"],
   toImageButtonOptions: { filename: `helixnav-${id}`, scale: 2 },
 });

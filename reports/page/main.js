@@ -41,6 +41,6 @@ writeHeader();
 writeOpening();
 writeSummary();
 writeDecisions();
-startPlayer();
+requestAnimationFrame(() => setTimeout(startPlayer));  // after the sentences are on the screen
 drawWhenSeen();
 window.addEventListener("beforeprint", drawAll);
