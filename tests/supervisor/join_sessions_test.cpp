@@ -65,7 +65,8 @@ std::vector<core::JointMap> maps_of(const std::vector<MappedSession>& sessions) 
 std::vector<MappedSession> three_and_a_stranger(std::uint64_t seed) {
   const std::vector<Eigen::Vector2d> here_m = grove(seed, 150);
   return {MappedSession(here_m, 0.0, 60.0, 10 * seed + 1), MappedSession(here_m, 35.0, 90.0, 10 * seed + 2),
-          MappedSession(here_m, 65.0, 120.0, 10 * seed + 3), MappedSession(grove(seed + 500, 150), 0.0, 60.0, 10 * seed + 4)};
+          MappedSession(here_m, 65.0, 120.0, 10 * seed + 3),
+          MappedSession(grove(seed + 500, 150), 0.0, 60.0, 10 * seed + 4)};
 }
 
 std::vector<Eigen::Vector2d> points_by_x(const core::JointMap& map) {
