@@ -15,7 +15,7 @@ constexpr double least_share =
 constexpr std::size_t most_paths = 200;
 
 /// Blocks of scans: of the effective size the mean, of the ancestors the least, which is the alarm.
-Json health_json(const std::vector<core::StepReport>& steps) {
+Json particle_health_json(const std::vector<core::StepReport>& steps) {
   std::vector<const core::StepReport*> scans;
   for (const core::StepReport& step : steps) {
     if (step.particles) scans.push_back(&step);
@@ -87,7 +87,7 @@ Json mixture_json(const std::vector<core::MixedLandmark>& mixture) {
 }  // namespace
 
 Json particles_data(const runs::Run& run) {
-  Json json = {{"health", health_json(run.steps)}};
+  Json json = {{"health", particle_health_json(run.steps)}};
   if (run.particle_end) {
     json["paths"] = paths_json(run.particle_end->paths);
     json["mixture"] = mixture_json(run.particle_end->mixture);

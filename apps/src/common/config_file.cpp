@@ -14,8 +14,6 @@
 namespace helixnav::apps {
 namespace {
 
-std::string key_of(const CLI::Option& option) { return option.get_lnames().front(); }
-
 std::string section_of(const std::string& key) { return key.substr(0, key.find('.')); }
 
 /// Line of the file, from 1, that begins with the last part of `key`: CLI11's parser keeps no line numbers.
@@ -80,6 +78,8 @@ void apply_item(const std::vector<CLI::Option*>& options, const CLI::ConfigItem&
 }
 
 }  // namespace
+
+std::string key_of(const CLI::Option& option) { return option.get_lnames().front(); }
 
 std::vector<CLI::Option*> configurable_options(const CLI::App& app) {
   std::vector<CLI::Option*> options;

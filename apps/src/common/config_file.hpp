@@ -12,6 +12,9 @@ class Option;
 
 namespace helixnav::apps {
 
+/// "section.key" of such an option.
+std::string key_of(const CLI::Option& option);
+
 /// The options of `app` that a configuration file may set: those whose name holds a dot, `--section.key`.
 std::vector<CLI::Option*> configurable_options(const CLI::App& app);
 

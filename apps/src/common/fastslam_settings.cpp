@@ -119,8 +119,6 @@ bool is_changed(const CLI::Option& option) {
   return option.count() > 0 && option.results().back() != option.get_default_str();
 }
 
-std::string key_of(const CLI::Option& option) { return option.get_lnames().front(); }
-
 std::string section_of(const CLI::Option& option) { return key_of(option).substr(0, key_of(option).find('.')); }
 
 [[noreturn]] void refuse(const CLI::Option& option, const std::string& why) {
