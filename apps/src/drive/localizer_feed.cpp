@@ -65,8 +65,8 @@ core::PoseGaussian start_of(const Drive& job) {
 
 /// The finder joins its own map with all of this one, with a dense covariance.
 bool can_be_searched(const GivenMap& map) {
-  constexpr std::size_t least_to_be_found = 5;
-  return map.landmarks.size() >= least_to_be_found && map.landmarks.size() <= runs::most_joint_landmarks;
+  constexpr std::size_t least_searched = 5;
+  return map.landmarks.size() >= least_searched && map.landmarks.size() <= runs::most_joint_landmarks;
 }
 
 bool has_found(const core::StepReport& report) {
