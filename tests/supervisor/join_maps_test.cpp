@@ -24,11 +24,11 @@ Eigen::MatrixXd some_covariance(Eigen::Index n, double sigma, core::RandomStream
 }
 
 /// The same eight points twice: as the session knows them, and as the map does. Names 0… and 100….
-struct TwoMaps {
+struct PlacedMaps {
   core::JointGaussian session, earlier;
   relocalize::Place place;
 
-  explicit TwoMaps(std::uint64_t seed) {
+  explicit PlacedMaps(std::uint64_t seed) {
     core::RandomStream random(seed, "two maps");
     session.pose = core::Pose2(1.0, 2.0, 0.3);
     session.covariance = some_covariance(19, 0.03, random);
@@ -53,7 +53,7 @@ struct TwoMaps {
 struct LeastSquares {
   Eigen::VectorXd x;  ///< place (3), session's pose (3), its points (16), the map's (16)
 
-  explicit LeastSquares(const TwoMaps& maps) : x(38) {
+  explicit LeastSquares(const PlacedMaps& maps) : x(38) {
     x << maps.place.T_map_branch.vector(), maps.session.pose.vector(), Eigen::VectorXd::Zero(32);
     for (int i = 0; i < 8; ++i) {
       x.segment<2>(6 + 2 * i) = maps.session.points_m[static_cast<std::size_t>(i)];
@@ -90,14 +90,14 @@ struct LeastSquares {
   }
 };
 
-JoinedMaps join(const TwoMaps& maps, const SearchOptions& options = {}) {
+JoinedMaps join(const PlacedMaps& maps, const SearchOptions& options = {}) {
   const cekf::CompressedEkf session(maps.session, 200);
   return join_maps(session, maps.earlier, maps.place, maps.session.ids, {}, pair_noise_m, options);
 }
 
 TEST(JoinMaps, IsLeastSquaresOverBothMapsWithAFreePlace) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
-    const TwoMaps maps(seed);
+    const PlacedMaps maps(seed);
     const JoinedMaps joined = join(maps);
     ASSERT_TRUE(joined.closing.accepted);
     ASSERT_EQ(joined.closing.merged.size(), 8u);
@@ -115,13 +115,13 @@ TEST(JoinMaps, IsLeastSquaresOverBothMapsWithAFreePlace) {
 }
 
 TEST(JoinMaps, KeepsTheNamesOfTheEarlierMapAndGivesNoneTwice) {
-  const JoinedMaps joined = join(TwoMaps(4));
+  const JoinedMaps joined = join(PlacedMaps(4));
   EXPECT_EQ(joined.filter.landmarks(), (std::vector<core::LandmarkId>{0, 1, 2, 3, 4, 5, 6, 7}));
   EXPECT_EQ(joined.filter.next_name(), 200);
 }
 
 TEST(JoinMaps, PairsThatContradictEachOtherAreRefused) {
-  TwoMaps maps(5);
+  PlacedMaps maps(5);
   for (std::size_t i = 0; i < 4; ++i) maps.earlier.points_m[i].x() += i % 2 == 0 ? 1.0 : -1.0;
   const JoinedMaps joined = join(maps);
   EXPECT_FALSE(joined.closing.accepted);
@@ -130,7 +130,7 @@ TEST(JoinMaps, PairsThatContradictEachOtherAreRefused) {
 }
 
 TEST(JoinMaps, OneWrongPairOfEightIsDropped) {
-  TwoMaps maps(6);
+  PlacedMaps maps(6);
   maps.earlier.points_m[3].y() += 2.0;
   const JoinedMaps joined = join(maps);
   EXPECT_TRUE(joined.closing.accepted);
@@ -140,7 +140,7 @@ TEST(JoinMaps, OneWrongPairOfEightIsDropped) {
 }
 
 TEST(JoinMaps, WhatTheQuestionLeftOutIsMergedAfterwards) {
-  TwoMaps maps(7);
+  PlacedMaps maps(7);
   maps.place.pairs.resize(6);
   EXPECT_EQ(join(maps).closing.merged.size(), 8u);
 }
