@@ -202,7 +202,7 @@ TEST_F(StreamProgram, NavigatesAsReplayOfTheSameLogToTheLastDigit) {
   const Outcome replayed = run(
       {"replay", folder_.path() / "lines.jsonl", "--vehicle", log_ / "vehicle.toml", "--out", of_replay, "--quiet"});
   ASSERT_EQ(replayed.exit_code, 0) << replayed.err;
-  for (const char* name : {"trajectory.tum", "map.csv", "associations.csv", "decisions.csv", "merges.csv"}) {
+  for (const char* name : {"trajectory.tum", "map.csv", "map.bin", "associations.csv", "decisions.csv", "merges.csv"}) {
     EXPECT_EQ(text_of(out_ / name), text_of(of_replay / name)) << name;
   }
   EXPECT_EQ(names_in(out_), names_in(of_replay));

@@ -10,10 +10,14 @@
 namespace helixnav::apps {
 
 std::optional<core::JointMap> joint_map_of(const ChosenNavigator& navigator, const core::Recording& recording) {
-  const std::vector<core::MapLandmark> landmarks = navigator.map();
+  return joint_map_of(navigator.filter(), navigator.map(), logs::field_of_view_of(recording).reach().value_or(0.0));
+}
+
+std::optional<core::JointMap> joint_map_of(const cekf::CompressedEkf& filter,
+                                           const std::vector<core::MapLandmark>& landmarks, double reach_m) {
   if (landmarks.size() > runs::most_joint_landmarks) return std::nullopt;
-  core::JointMap map = supervisor::joint_map(navigator.filter(), landmarks);
-  map.reach_m = logs::field_of_view_of(recording).reach().value_or(0.0);
+  core::JointMap map = supervisor::joint_map(filter, landmarks);
+  map.reach_m = reach_m;
   return map;
 }
 

@@ -2,6 +2,7 @@
 #include "live_navigator.hpp"
 
 #include "common/fit_to_recording.hpp"
+#include "common/joint_map_of.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 
 namespace helixnav::apps {
@@ -12,7 +13,9 @@ void LiveNavigator::prepare(core::Recording& next) {
   scan_ = 0;
   if (navigator_ || next.events.empty()) return;
   const supervisor::NavigatorOptions options = fit_to_recording(settings_, next);
-  lengths_text_ = apps::lengths_text(options, logs::field_of_view_of(next));
+  const core::FieldOfView view = logs::field_of_view_of(next);
+  lengths_text_ = apps::lengths_text(options, view);
+  reach_m_ = view.reach().value_or(0.0);
   if (settings_.known_association) {
     navigator_.emplace(std::in_place_type<supervisor::NamedNavigator>, next.start, options);
   } else {
@@ -31,6 +34,13 @@ std::optional<core::StepReport> LiveNavigator::take(const core::Event& event) {
 std::vector<core::MapLandmark> LiveNavigator::map() const {
   if (!navigator_) return {};
   return std::visit([](const auto& navigator) { return navigator.map(); }, *navigator_);
+}
+
+std::optional<core::JointMap> LiveNavigator::joint_map() const {
+  if (!navigator_) return std::nullopt;
+  return std::visit(
+      [this](const auto& navigator) { return joint_map_of(navigator.filter(), navigator.map(), reach_m_); },
+      *navigator_);
 }
 
 }  // namespace helixnav::apps

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/settings.hpp"
+#include "helixnav/core/joint_map.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
 #include "helixnav/supervisor/navigator.hpp"
@@ -27,6 +28,8 @@ class LiveNavigator {
 
   bool has_begun() const { return navigator_.has_value(); }
   std::vector<core::MapLandmark> map() const;
+  /// What the drive leaves to the next session; nothing before it has begun, or where the map is too large.
+  std::optional<core::JointMap> joint_map() const;
   /// Lengths in force, for the manifest.
   const std::string& lengths_text() const { return lengths_text_; }
 
@@ -36,6 +39,7 @@ class LiveNavigator {
   const Settings& settings_;
   std::optional<Either> navigator_;
   std::string lengths_text_;
+  double reach_m_ = 0.0;  ///< 0: unknown
   const std::vector<std::vector<core::Label>>* labels_ = nullptr;
   std::size_t scan_ = 0;
 };

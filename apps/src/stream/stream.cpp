@@ -105,6 +105,7 @@ class Stream {
     if (!writer_) open_folder();
     runs::Run run = runs::read_run(job_.out);
     run.map = navigator_.map();
+    run.joint_map = navigator_.joint_map();
     runs::correct_path(run, solved_);
     run.finished = true;
     reports::finish_run(run, *writer_);
