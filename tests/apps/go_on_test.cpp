@@ -243,6 +243,10 @@ TEST_F(GoOn, AMapOfOneLandmarkIsTooSmallToBeFoundOn) {
   const Outcome outcome = replay("one.circles", {"--map", folder("one")}, "none");
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_NE(outcome.err.find("1 mature landmark;"), std::string::npos) << outcome.err;
+  const Outcome localized = replay("one.circles", {"--localize", "--map", folder("one"), "--start", "unknown"}, "none");
+  EXPECT_EQ(localized.exit_code, 3);
+  EXPECT_NE(localized.err.find("cannot be searched"), std::string::npos) << localized.err;
+  EXPECT_FALSE(fs::exists(folder("none")));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "helixnav/core/errors.hpp"
+#include "helixnav/runs/joint_map_file.hpp"
 #include "helixnav/runs/run_folder.hpp"
 
 namespace helixnav::apps {
@@ -35,6 +36,11 @@ std::map<core::Label, core::LandmarkId> landmarks_by_label(const runs::Run& run)
     landmark_of[label] = std::max_element(counts.begin(), counts.end(), fewer)->first;
   }
   return landmark_of;
+}
+
+bool can_be_searched(const GivenMap& map) {
+  constexpr std::size_t least_searched = 5;
+  return map.landmarks.size() >= least_searched && map.landmarks.size() <= runs::most_joint_landmarks;
 }
 
 std::string map_file(const std::string& path) {

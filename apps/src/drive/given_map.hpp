@@ -29,6 +29,9 @@ std::map<core::Label, core::LandmarkId> landmarks_by_label(const runs::Run& run)
 /// the landmark that most of its observations were matched with. InputError when there is no map.
 GivenMap read_given_map(const std::string& path);
 
+/// Whether a place on it can be looked for: 5 landmarks at least, and no more than a dense joint covariance may have.
+bool can_be_searched(const GivenMap& map);
+
 /// The map.csv meant by what read_given_map takes.
 std::string map_file(const std::string& path);
 

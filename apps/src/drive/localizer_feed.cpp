@@ -3,13 +3,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <string>
 #include <utility>
 #include <variant>
 
-#include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
-#include "helixnav/runs/joint_map_file.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 
 namespace helixnav::apps {
@@ -63,12 +60,6 @@ core::PoseGaussian start_of(const Drive& job) {
   return {seen.pose, seen.covariance.topLeftCorner<3, 3>()};
 }
 
-/// The finder joins its own map with all of this one, with a dense covariance.
-bool can_be_searched(const GivenMap& map) {
-  constexpr std::size_t least_searched = 5;
-  return map.landmarks.size() >= least_searched && map.landmarks.size() <= runs::most_joint_landmarks;
-}
-
 bool has_found(const core::StepReport& report) {
   return std::any_of(report.decisions.begin(), report.decisions.end(), [](const core::Decision& decision) {
     const auto* placed = std::get_if<core::PlacedDecision>(&decision);
@@ -111,11 +102,6 @@ LocalizerFeed::LocalizerFeed(const Drive& job, std::vector<std::vector<core::Lab
       monitor_(job.given_map->landmarks, reach_of(job)) {
   const std::optional<SessionStart>& start = job.given_map->start;
   const bool unknown = start && start->kind == SessionStart::Kind::unknown;
-  if (unknown && !can_be_searched(*job.given_map)) {
-    throw core::InputError("--start unknown: a map of " + std::to_string(job.given_map->landmarks.size()) +
-                           " landmarks cannot be searched; expected 5 to " +
-                           std::to_string(runs::most_joint_landmarks) + ": give a pose");
-  }
   if (unknown) {
     begin_to_look();
   } else {

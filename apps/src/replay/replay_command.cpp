@@ -18,7 +18,9 @@
 #include "common/vehicle_option.hpp"
 #include "drive/drive.hpp"
 #include "drive/start_option.hpp"
+#include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
+#include "helixnav/runs/joint_map_file.hpp"
 #include "read_to_replay.hpp"
 
 namespace helixnav::apps {
@@ -36,12 +38,21 @@ struct ReplayJob {
   Settings settings;
 };
 
+/// Before anything is written.
+void check_start(const GivenMap& map) {
+  if (!map.start || map.start->kind != SessionStart::Kind::unknown || can_be_searched(map)) return;
+  throw core::InputError("--start unknown: a map of " + std::to_string(map.landmarks.size()) +
+                         " landmarks cannot be searched; expected 5 to " + std::to_string(runs::most_joint_landmarks) +
+                         ": give a pose");
+}
+
 /// To localise in, or to go on in.
 void take_map(const ReplayJob& job, Drive& task) {
   if (job.map.empty()) return;
   if (job.localize) {
     task.given_map = read_given_map(job.map);
     task.given_map->start = job.start;
+    check_start(*task.given_map);
   } else {
     task.earlier = read_earlier_session(job.map, job.start.value_or(SessionStart{}));
   }
