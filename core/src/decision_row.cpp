@@ -139,6 +139,24 @@ void numbers(PlacedDecision& d, Visit&& visit) {
   visit("heading_rad", d.T_map_session.heading_rad);
 }
 
+template <class Visit>
+void numbers(WholeMapDecision& d, Visit&& visit) {
+  visit("old_landmarks", d.old_landmarks);
+  visit("questions", d.questions);
+  visit("landmarks", d.landmarks);
+  visit("pairs", d.pairs);
+  visit("evidence", d.evidence);
+  visit("lead", d.lead);
+  visit("needed", d.needed);
+  visit("cost", d.cost);
+  visit("dof", d.dof);
+  visit("limit", d.limit);
+  visit("odometry_factor", d.odometry_factor);
+  visit("loop_m", d.loop_m);
+  visit("displaced_m", d.displaced_m);
+}
+
+constexpr const char* whole_map_words[] = {"accepted", "ambiguous", "refused", "not-here"};
 constexpr const char* placed_words[] = {"sought", "accepted", "ambiguous", "refused", "not-here"};
 constexpr const char* reason_words[] = {"timed-out", "nothing-here", "abandoned", "outdone"};
 constexpr const char* verification_words[] = {"accepted", "too-few-matches", "ratio-too-low", "rival-too-good"};
@@ -171,6 +189,10 @@ KindAndVerdict words_of(const UndecidedDecision&) { return {"closure", "undecide
 KindAndVerdict words_of(const SmoothingDecision& d) { return {"smoothing", word_of(d.accepted)}; }
 KindAndVerdict words_of(const FixDecision& d) { return {"fix", word_of(d.accepted)}; }
 KindAndVerdict words_of(const PlacedDecision& d) { return {"placed", placed_words[static_cast<int>(d.verdict)]}; }
+
+KindAndVerdict words_of(const WholeMapDecision& d) {
+  return {"whole-map", whole_map_words[static_cast<int>(d.verdict)]};
+}
 
 /// Names that rows of earlier versions have.
 std::string_view former_name(std::string_view name) {
@@ -210,12 +232,13 @@ Decision search_decision(const DecisionRow& row) {
   return fill(ended, row);
 }
 
-Decision placed_decision(const DecisionRow& row) {
-  const int verdict = index_in(placed_words, row.verdict);
+template <class Typed, std::size_t n>
+Decision decision_with(const char* const (&words)[n], const DecisionRow& row) {
+  const int verdict = index_in(words, row.verdict);
   if (verdict < 0) return OtherDecision{row.kind, row.verdict, row.numbers};
-  PlacedDecision placed;
-  placed.verdict = static_cast<PlacedDecision::Verdict>(verdict);
-  return fill(placed, row);
+  Typed decision;
+  decision.verdict = static_cast<typename Typed::Verdict>(verdict);
+  return fill(decision, row);
 }
 
 }  // namespace
@@ -244,16 +267,14 @@ Decision decision_of(const DecisionRow& row) {
   if (row.kind == "trigger" && rolled_back) return fill(RollbackDecision{}, row);
   if (row.kind == "slip" && accepted) return fill(SlipDecision{}, row);
   if (row.kind == "search") return search_decision(row);
-  if (row.kind == "placed") return placed_decision(row);
+  if (row.kind == "placed") return decision_with<PlacedDecision>(placed_words, row);
+  if (row.kind == "whole-map") return decision_with<WholeMapDecision>(whole_map_words, row);
+  if (row.kind == "constellation") return decision_with<VerificationDecision>(verification_words, row);
   if (row.kind == "closure" && row.verdict == "undecided") return fill(UndecidedDecision{}, row);
   if (row.kind == "closure" && judged) return fill(ClosureDecision{}, accepted, row);
   if (row.kind == "smoothing" && judged) return fill(SmoothingDecision{}, accepted, row);
   if (row.kind == "fix" && judged) return fill(FixDecision{}, accepted, row);
-  const int verdict = row.kind == "constellation" ? index_in(verification_words, row.verdict) : -1;
-  if (verdict < 0) return OtherDecision{row.kind, row.verdict, row.numbers};
-  VerificationDecision verification;
-  verification.verdict = static_cast<VerificationDecision::Verdict>(verdict);
-  return fill(verification, row);
+  return OtherDecision{row.kind, row.verdict, row.numbers};
 }
 
 }  // namespace helixnav::core

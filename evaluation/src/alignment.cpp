@@ -7,7 +7,7 @@
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/random.hpp"
-#include "rigid_fit.hpp"
+#include "helixnav/core/rigid_fit.hpp"
 
 namespace helixnav::evaluation {
 
@@ -30,7 +30,7 @@ core::Pose2 fit_used(const Points& a, const Points& b, const std::vector<bool>& 
     used_a.push_back(a[i]);
     used_b.push_back(b[i]);
   }
-  return fit_rigidly(used_a, used_b);
+  return core::fit_rigidly(used_a, used_b);
 }
 
 RigidAlignment within(const Points& a, const Points& b, const core::Pose2& T_a_b, double limit_m) {
@@ -64,7 +64,7 @@ core::Pose2 least_median(const Points& a, const Points& b) {
     const auto i = static_cast<std::size_t>(random.below(a.size()));
     const auto j = static_cast<std::size_t>(random.below(a.size()));
     if (i == j || a[i] == a[j] || b[i] == b[j]) continue;
-    const core::Pose2 candidate = fit_rigidly({a[i], a[j]}, {b[i], b[j]});
+    const core::Pose2 candidate = core::fit_rigidly({a[i], a[j]}, {b[i], b[j]});
     std::vector<double> residuals = residuals_m(a, b, candidate);
     const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
     std::nth_element(residuals.begin(), middle, residuals.end());
@@ -84,7 +84,7 @@ RigidAlignment align_rigidly(const Points& points_a, const Points& points_b, dou
                                   std::to_string(points_b.size()) + " points, expected as many of one as of the other");
   }
   if (points_a.empty()) return {};
-  RigidAlignment from_all = refine(points_a, points_b, fit_rigidly(points_a, points_b), limit_m);
+  RigidAlignment from_all = refine(points_a, points_b, core::fit_rigidly(points_a, points_b), limit_m);
   RigidAlignment from_median = refine(points_a, points_b, least_median(points_a, points_b), limit_m);
   return from_median.used_count > from_all.used_count ? from_median : from_all;
 }

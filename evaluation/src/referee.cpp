@@ -69,15 +69,21 @@ void Referee::watch(const StepReport& report, const Map& map_now) {
   book.drive_on(report, map_now);
   book.look_out(labels);
   book.pose = report.pose;
-  if (book.on_old_ground) book.last_on_old_ground = {report.pose, book.truth()};
   book.note_triggers(report);
   book.note_slips(report);
   book.count_matches(report, labels);
+  if (book.on_old_ground) {
+    book.last_on_old_ground.open = {report.pose, book.truth(), book.recognised};
+  } else {
+    book.judge_if_open(book.last_on_old_ground, map_now);
+  }
+  if (!book.is_associated()) book.judge_if_open(book.last_associated, map_now);
   book.score.refused += count_closings(report, false);
   book.score.undecided += count<core::UndecidedDecision>(report);
   if (count_closings(report, true) == 0) return;
   book.judge_closure(report, map_now());
-  book.last_on_old_ground = {report.pose, book.truth()};  // what was wrong before the closing is no longer believed
+  // What was wrong before the closing is no longer believed.
+  book.last_on_old_ground.open = {report.pose, book.truth(), book.recognised};
 }
 
 RunScore Referee::score(const std::vector<MapLandmark>& map) const {
@@ -85,10 +91,11 @@ RunScore Referee::score(const std::vector<MapLandmark>& map) const {
   if (book_->steps > 0) {
     const Judgeable end{book_->pose, book_->truth()};
     result.end = book_->judge(end, map);
-    result.end_on_old_ground = book_->judge(book_->last_on_old_ground.value_or(end), map);
+    result.end_on_old_ground =
+        book_->last_on_old_ground.is_known() ? book_->judge(book_->last_on_old_ground, map) : result.end;
   }
   if (!result.returns.empty()) result.returns.back().end_on_old_ground = result.end_on_old_ground;
-  if (book_->last_associated) result.returns.back().associated = book_->judge(*book_->last_associated, map);
+  if (book_->last_associated.is_known()) result.returns.back().associated = book_->judge(book_->last_associated, map);
   result.wrong_without_trigger += book_->wrong_so_far;
   result.spacing_m = book_->spacing_m();
   result.trees_seen = static_cast<int>(book_->seen.size());
@@ -104,15 +111,17 @@ void Referee::Book::drive_on(const StepReport& report, const Map& map_now) {
   }
   const std::size_t next = score.returns.size();
   if (next < returns_at_m.size() && driven_m >= returns_at_m[next] - in_sight_m) {
-    if (next > 0 && last_on_old_ground) score.returns.back().end_on_old_ground = judge(*last_on_old_ground, map_now());
-    if (next > 0 && last_associated) score.returns.back().associated = judge(*last_associated, map_now());
+    if (next > 0 && last_on_old_ground.is_known()) {
+      score.returns.back().end_on_old_ground = judge(last_on_old_ground, map_now());
+    }
+    if (next > 0 && last_associated.is_known()) score.returns.back().associated = judge(last_associated, map_now());
     begin_return(report.mode == core::Mode::searching && count<core::TriggerDecision>(report) == 0);
   }
 }
 
 void Referee::Book::begin_return(bool searching) {
   score.returns.emplace_back();
-  last_associated.reset();
+  last_associated = {};
   identities.fix_unseen(driven_m - options.old_ground_left_m);
   old_trees = identities.old_trees();
   seen_until_return.push_back(seen);
@@ -163,7 +172,7 @@ void Referee::Book::look_out(const std::vector<Label>& labels) {
 }
 
 void Referee::Book::count_matches(const StepReport& report, const std::vector<Label>& labels) {
-  const int before = score.old_matches;
+  recognised.clear();
   for (const core::AssociationReport& a : report.associations) {
     const bool matched = a.outcome == core::Outcome::matched;
     if (!matched && a.outcome != core::Outcome::augmented) continue;
@@ -172,6 +181,7 @@ void Referee::Book::count_matches(const StepReport& report, const std::vector<La
     if (matched && identities.is_old(a.landmark)) {
       const int wrong = identities.identity(a.landmark) == label ? 0 : 1;
       ++score.old_matches;
+      recognised.insert(a.landmark);
       score.wrong_old_matches += wrong;
       if (!triggered) wrong_so_far += wrong;
       if (!score.returns.empty()) ++score.returns.back().old_matches;
@@ -179,9 +189,7 @@ void Referee::Book::count_matches(const StepReport& report, const std::vector<La
     }
     identities.add_sighting(a.landmark, label, driven_m);
   }
-  if (!score.returns.empty() && score.old_matches - before >= options.reentry_observations) {
-    last_associated = {pose, truth()};
-  }
+  if (is_associated()) last_associated.open = {pose, truth(), recognised};
 }
 
 /// Landmarks that earlier scans began when they were gone through again; and poses believed in between are no more.
@@ -193,8 +201,8 @@ void Referee::Book::revise(const StepReport& report) {
       if (used) identities.add_sighting(a.landmark, labels.at(static_cast<std::size_t>(a.observation)), driven_m);
     }
   }
-  last_on_old_ground = {report.pose, truth()};
-  last_associated.reset();
+  last_on_old_ground.open = {report.pose, truth()};
+  last_associated = {};
 }
 
 }  // namespace helixnav::evaluation

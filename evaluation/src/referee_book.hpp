@@ -12,14 +12,24 @@
 
 namespace helixnav::evaluation {
 
-/// An estimated pose and the true one.
+/// An estimated pose and the true one, and the old landmarks by which the vehicle was there.
 struct Judgeable {
   core::PoseGaussian estimate;
   core::Pose2 truth;
+  std::set<core::LandmarkId> recognised = {};
 };
 
 /// Absolute values.
 PoseError error_between(const core::Pose2& estimate, const core::Pose2& truth);
+
+/// A pose to be judged by the map of its own time, which a later closing moves: at the first scan for which it does not hold
+/// any more, because listing a map costs.
+struct Judgement {
+  std::optional<Judgeable> open;
+  std::optional<JudgedPose> judged;  ///< when nothing is open
+
+  bool is_known() const { return open || judged; }
+};
 
 /// What was seen so far.
 struct Referee::Book {
@@ -34,13 +44,14 @@ struct Referee::Book {
   double driven_m = 0.0;
   double reentered_at_m = std::numeric_limits<double>::quiet_NaN();  ///< of the present return
   bool triggered = false;                                            ///< since the present return
-  int wrong_so_far = 0;        ///< wrong old matches since the present return, while nothing triggered
-  bool on_old_ground = false;  ///< in the present scan
+  int wrong_so_far = 0;                   ///< wrong old matches since the present return, while nothing triggered
+  bool on_old_ground = false;             ///< in the present scan
+  std::set<core::LandmarkId> recognised;  ///< old landmarks matched in the present scan
   std::size_t steps = 0;
   double last_slip_m = -std::numeric_limits<double>::infinity();  ///< driven until then
   core::PoseGaussian pose;
-  std::optional<Judgeable> last_on_old_ground;  ///< or at a closing behind it
-  std::optional<Judgeable> last_associated;     ///< with old ground, since the present return
+  Judgement last_on_old_ground;  ///< or at a closing behind it
+  Judgement last_associated;     ///< with old ground, since the present return
   RunScore score;
 
   Book(const core::Recording& run, std::vector<double> returns_m, const RefereeOptions& how, double sight_m)
@@ -51,6 +62,10 @@ struct Referee::Book {
         identities(how.old_sightings) {}
 
   const core::Pose2& truth() const { return recording.true_poses[steps - 1].T_world_robot; }
+  /// In the present scan, with old landmarks.
+  bool is_associated() const {
+    return !score.returns.empty() && static_cast<int>(recognised.size()) >= options.reentry_observations;
+  }
   bool is_wrong(const PoseError& error) const {
     return error.position_m > options.wrong_position_m || error.heading_rad > options.wrong_heading_rad;
   }
@@ -67,6 +82,14 @@ struct Referee::Book {
   void revise(const core::StepReport& report);
   void judge_closure(const core::StepReport& report, const std::vector<core::MapLandmark>& map);
   JudgedPose judge(const Judgeable& pose_at, const std::vector<core::MapLandmark>& map) const;
+  JudgedPose judge(const Judgement& judgement, const std::vector<core::MapLandmark>& map) const {
+    return judgement.open ? judge(*judgement.open, map) : *judgement.judged;
+  }
+  void judge_if_open(Judgement& judgement, const Map& map_now) const {
+    if (!judgement.open) return;
+    judgement.judged = judge(*judgement.open, map_now());
+    judgement.open.reset();
+  }
   PoseError relative_error(const Judgeable& pose_at, const std::vector<core::MapLandmark>& map) const;
   double spacing_m() const;
   void score_map(const std::vector<core::MapLandmark>& map, RunScore& result) const;

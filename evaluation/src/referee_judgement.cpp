@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "helixnav/core/angle.hpp"
+#include "helixnav/core/rigid_fit.hpp"
 #include "helixnav/evaluation/nees.hpp"
 #include "referee_book.hpp"
-#include "rigid_fit.hpp"
 
 namespace helixnav::evaluation {
 namespace {
@@ -31,7 +31,7 @@ struct Places {
 /// Root of the mean squared distance after the best rigid motion; NaN with fewer than two.
 double rms_after_fit(const Places& places) {
   if (places.map_m.size() < 2) return no_number;
-  const core::Pose2 T_true_map = fit_rigidly(places.true_m, places.map_m);
+  const core::Pose2 T_true_map = core::fit_rigidly(places.true_m, places.map_m);
   double sum_m2 = 0.0;
   for (std::size_t i = 0; i < places.map_m.size(); ++i) {
     sum_m2 += (core::transform(T_true_map, places.map_m[i]) - places.true_m[i]).squaredNorm();
@@ -66,9 +66,13 @@ void Referee::Book::judge_closure(const StepReport& report, const std::vector<Ma
   for (const core::Decision& decision : report.decisions) {
     if (const auto* test = std::get_if<core::VerificationDecision>(&decision)) closure.rival_share = test->rival_share;
   }
-  closure.pose = judge({pose, truth()}, map);
+  std::set<core::LandmarkId> kept;
+  for (const core::MergedLandmarks& pair : report.merged) kept.insert(pair.kept);
+  closure.pose = judge({pose, truth(), std::move(kept)}, map);
+  // Before the first return there may be something to close all the same: a crossing of a town is old ground from two sides.
+  const bool nothing_to_close = returns_at_m.empty() || (score.returns.empty() && closure.pairs == 0);
   closure.is_false =
-      score.returns.empty() || is_wrong(closure.pose.relative) || too_many_wrong(closure.wrong_pairs, closure.pairs);
+      nothing_to_close || is_wrong(closure.pose.relative) || too_many_wrong(closure.wrong_pairs, closure.pairs);
   if (!score.returns.empty()) score.returns.back().closed = true;
   score.closures.push_back(closure);
 }
@@ -78,11 +82,17 @@ JudgedPose Referee::Book::judge(const Judgeable& pose_at, const std::vector<MapL
           nees(pose_at.estimate, pose_at.truth)};
 }
 
+/// To the old landmarks that were recognised, where three of them are still on the map: others near may stand on another
+/// street of the map, to which no loop is closed yet. Else to the nearest.
 PoseError Referee::Book::relative_error(const Judgeable& pose_at, const std::vector<MapLandmark>& map) const {
   const core::Pose2& estimate = pose_at.estimate.mean;
+  const auto is_recognised = [&](const MapLandmark& landmark) { return pose_at.recognised.count(landmark.id) > 0; };
+  const bool by_recognised =
+      static_cast<std::size_t>(std::count_if(map.begin(), map.end(), is_recognised)) >= least_relative;
   std::vector<std::pair<double, std::pair<Eigen::Vector2d, Eigen::Vector2d>>> near;  // in the map, in truth
   for (const MapLandmark& landmark : map) {
     if (landmark.state != core::LandmarkState::mature || !identities.is_old(landmark.id)) continue;
+    if (by_recognised && !is_recognised(landmark)) continue;
     const auto tree = static_cast<std::size_t>(identities.identity(landmark.id));
     const Eigen::Vector2d& map_m = landmark.point.mean_m;
     near.push_back({(map_m - estimate.position_m()).norm(), {map_m, recording.true_landmarks.at(tree).point_m}});
@@ -97,7 +107,7 @@ PoseError Referee::Book::relative_error(const Judgeable& pose_at, const std::vec
     places.map_m.push_back(place.first);
     places.true_m.push_back(place.second);
   }
-  return error_between(core::compose(fit_rigidly(places.true_m, places.map_m), estimate), pose_at.truth);
+  return error_between(core::compose(core::fit_rigidly(places.true_m, places.map_m), estimate), pose_at.truth);
 }
 
 double Referee::Book::spacing_m() const {

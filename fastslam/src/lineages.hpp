@@ -44,6 +44,20 @@ class Lineages {
   template <class Function>
   void visit(const Eigen::Vector2d& low_m, const Eigen::Vector2d& high_m, double margin_m, Function&& f) const {
     const double grown_m = margin_m + longest_reach_m_;
+    const auto meets = [&](const Lineage& l) {
+      const double beside_x = std::max(std::max(low_m.x() - l.x_m, l.x_m - high_m.x()), 0.0);
+      const double beside_y = std::max(std::max(low_m.y() - l.y_m, l.y_m - high_m.y()), 0.0);
+      const double within_m = margin_m + static_cast<double>(l.reach_m);
+      return beside_x * beside_x + beside_y * beside_y <= within_m * within_m;
+    };
+    const Eigen::Vector2d sides_m = (high_m - low_m).array() + 2.0 * grown_m;
+    const bool is_small = sides_m.prod() < cell_m * cell_m * static_cast<double>(lineages_.size() + most_cells);
+    if (!is_small || !(std::max(low_m.cwiseAbs().maxCoeff(), high_m.cwiseAbs().maxCoeff()) + grown_m < farthest_m)) {
+      for (std::uint32_t id = 0; id < lineages_.size(); ++id) {  // fewer than the cells of the rectangle
+        if (lineages_[id].reach_m >= 0.0F && meets(lineages_[id])) f(id);
+      }
+      return;
+    }
     const std::int32_t c0 = cell(low_m.x() - grown_m), c1 = cell(high_m.x() + grown_m);
     const std::int32_t r0 = cell(low_m.y() - grown_m), r1 = cell(high_m.y() + grown_m);
     for (std::int32_t row = r0; row <= r1; ++row) {
@@ -51,10 +65,7 @@ class Lineages {
         for (std::uint32_t id = buckets_[bucket(column, row)]; id != none; id = lineages_[id].next) {
           const Lineage& l = lineages_[id];
           if (cell(l.x_m) != column || cell(l.y_m) != row) continue;  // of another cell with the same bucket
-          const double beside_x = std::max(std::max(low_m.x() - l.x_m, l.x_m - high_m.x()), 0.0);
-          const double beside_y = std::max(std::max(low_m.y() - l.y_m, l.y_m - high_m.y()), 0.0);
-          const double within_m = margin_m + static_cast<double>(l.reach_m);
-          if (beside_x * beside_x + beside_y * beside_y <= within_m * within_m) f(id);
+          if (meets(l)) f(id);
         }
       }
     }
@@ -72,8 +83,13 @@ class Lineages {
   };
   static constexpr std::uint32_t none = 0xffffffffU;
   static constexpr double cell_m = 8.0;
+  static constexpr std::size_t most_cells = 1024;  ///< looked at, beside as many as there are lineages
+  static constexpr double farthest_m = 1e9;        ///< beyond, and for what is not finite, cells have no numbers
 
-  static std::int32_t cell(double x_m) { return static_cast<std::int32_t>(std::floor(x_m * (1.0 / cell_m))); }
+  static std::int32_t cell(double x_m) {
+    const bool has_number = x_m > -farthest_m && x_m < farthest_m;
+    return has_number ? static_cast<std::int32_t>(std::floor(x_m * (1.0 / cell_m))) : 0;
+  }
   std::size_t bucket(std::int32_t column, std::int32_t row) const {
     const std::uint64_t mixed = static_cast<std::uint32_t>(column) * 0x9e3779b97f4a7c15ULL ^
                                 static_cast<std::uint32_t>(row) * 0xc2b2ae3d27d4eb4fULL;

@@ -114,6 +114,10 @@ std::string sentence(const core::ClosureDecision& d) {
   const std::string cost = "the cost " + short_number(d.cost) + " of " + counted(d.pairs, "pair");
   const std::string dropped = counted(d.dropped, "pair") + " dropped";
   const std::string limit = short_number(d.limit) + ", the limit for " + short_number(d.dof) + " degrees of freedom";
+  if (!d.accepted && d.dof == 0) {
+    return "Refused: the map is too uncertain for the cost of " + counted(d.pairs, "pair") +
+           " to be computed. The map stays as it was.";
+  }
   if (!d.accepted) return refusal(d, cost, limit, dropped);
   const std::string moved =
       "The pose moved by " + short_number(d.moved_m) + " m, " + short_number(d.driven_m) + " m after the trigger.";
@@ -149,7 +153,8 @@ std::string begin_of(const core::PlacedDecision& d) {
          ") m, heading " + degrees(d.T_map_session.heading_rad);
 }
 
-std::string evidence_of(const core::PlacedDecision& d) {
+template <class OfPlace>
+std::string evidence_of(const OfPlace& d) {
   return counted(d.pairs, "landmark") + " of " + short_number(d.landmarks) +
          " about the vehicle stand as on the map, " + short_number(d.evidence) + " nats better than by chance and " +
          short_number(d.lead) + " ahead of any other place (" + short_number(d.needed) + " are needed of each)";
@@ -172,6 +177,34 @@ std::string sentence(const core::PlacedDecision& d) {
              " exceeds " + short_number(d.limit) + ". " + evidence_of(d) + '.';
     case core::PlacedDecision::Verdict::not_here:
       return "Not placed" + after + "no place on the earlier map fits the " + counted(d.landmarks, "landmark") +
+             " about the vehicle better than chance would.";
+  }
+  return {};
+}
+
+/// How odometry was made to agree with the place.
+std::string odometry_of(const core::WholeMapDecision& d) {
+  const std::string apart = "Odometry has the vehicle " + short_number(d.displaced_m) + " m from there";
+  if (d.odometry_factor == 1.0) return apart + ", which is within its noise.";
+  const std::string forbids = apart + ", and the pairs would cost " + short_number(d.cost) + " (limit " +
+                              short_number(d.limit) + "): it was wrong. ";
+  if (d.odometry_factor == 0.0) return forbids + "The drive was cut where the search began.";
+  return forbids + "The noise of the last " + short_number(d.loop_m) + " m is taken to be " +
+         short_number(std::sqrt(d.odometry_factor)) + " times as large.";
+}
+
+std::string sentence(const core::WholeMapDecision& d) {
+  const std::string asked = "The whole map of " + counted(d.old_landmarks, "old landmark") + " was asked (question " +
+                            std::to_string(d.questions) + "): ";
+  switch (d.verdict) {
+    case core::WholeMapDecision::Verdict::accepted:
+      return asked + evidence_of(d) + ". " + odometry_of(d);
+    case core::WholeMapDecision::Verdict::ambiguous:
+      return asked + "a place fits, and others may as well: " + evidence_of(d) + '.';
+    case core::WholeMapDecision::Verdict::refused:
+      return asked + "the pairs of the best place contradict each other. " + evidence_of(d) + '.';
+    case core::WholeMapDecision::Verdict::not_here:
+      return asked + "no place fits the " + counted(d.landmarks, "landmark") +
              " about the vehicle better than chance would.";
   }
   return {};

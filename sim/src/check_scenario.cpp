@@ -81,6 +81,11 @@ void check_slip(const SlipOptions& slip) {
   require("slip.turn_rad", slip.turn_rad, 0.0, core::pi);
 }
 
+void check_carried(const CarryOptions& carried) {
+  require("carried.every_m", carried.every_m, 0.0, unlimited);
+  require("carried.distance_m", carried.distance_m, 0.0, unlimited);
+}
+
 }  // namespace
 
 void check_scenario(const Scenario& scenario) {
@@ -94,6 +99,7 @@ void check_scenario(const Scenario& scenario) {
   require("bias.sigma_speed_scale", scenario.bias.sigma_speed_scale, 0.0, unlimited);
   require("bias.time_constant_s", scenario.bias.time_constant_s, 1e-3, unlimited);
   check_slip(scenario.slip);
+  check_carried(scenario.carried);
 }
 
 }  // namespace helixnav::sim

@@ -162,6 +162,15 @@ Scenario kidnapped_slip() {
   return s;
 }
 
+/// On a grid so small that it is most likely set down where it has been.
+Scenario kidnapped() {
+  Scenario s = town();
+  s.world.blocks_a_side = 2;
+  s.world.tour_m = 3600.0;
+  s.carried.every_m = 1400.0;
+  return s;
+}
+
 Scenario noise_free() {
   Scenario s;
   s.true_noise = {{0.0, 0.0}, 0.0, 0.0};
@@ -176,7 +185,7 @@ struct Entry {
   Scenario (*make)();
 };
 
-constexpr std::array<Entry, 20> entries{{
+constexpr std::array<Entry, 21> entries{{
     {"large-loop", "closed road of 430-820 m, trees 8 m apart, the last 210-270 m bare; drives on for 180 m",
      large_loop},
     {"large-loop-changed", "large-loop with 30 % of the trees felled and as many planted between the laps",
@@ -205,6 +214,8 @@ constexpr std::array<Entry, 20> entries{{
      "tour of 4.8 km on a grid of streets 120 m apart, a tree every 9 m on both sides, 15 % of the streets bare", town},
     {"slip", "town whose vehicle slips by 0.3-0.8 m and 3 deg every 200 m, which its odometry does not know", slip},
     {"kidnapped-slip", "town of 2.8 km whose vehicle is displaced by 1.5 m and 5 deg every 700 m", kidnapped_slip},
+    {"kidnapped", "tour of 3.6 km on two by two blocks of town, whose vehicle is carried on by 100-400 m every 1.4 km",
+     kidnapped},
     {"noise-free", "loop of two-laps, closed once, with exact sensors that miss nothing, under the usual assumed noise",
      noise_free},
 }};

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "carried.hpp"
 #include "odometer.hpp"
 #include "scanner.hpp"
 #include "vehicle.hpp"
@@ -41,9 +42,13 @@ core::Recording simulate_in(const World& world, const Scenario& scenario, std::u
   Odometer odometer(scenario, seed);
   Scanner scanner(scenario, world, seed);
   record(scanner.look({}, 0.0, 0), {}, recording);
+  const std::vector<Stretch> carried = draw_carried(scenario.carried, world.drive_m, seed);
+  auto next = carried.begin();
   int sample = 0;
   for (const DriveStep& step : drive(world.route, world.drive_m, scenario.vehicle)) {
     ++sample;
+    while (next != carried.end() && step.along_m > next->to_m) ++next;
+    if (next != carried.end() && step.along_m > next->from_m) continue;
     const core::Nanoseconds t_ns = core::nanoseconds_from_seconds(sample * scenario.vehicle.odometry_period_s);
     recording.events.emplace_back(odometer.measure(step.sample, t_ns));
     if (sample % scenario.vehicle.samples_per_scan == 0) {

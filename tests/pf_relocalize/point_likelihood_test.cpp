@@ -39,21 +39,30 @@ struct Sample {
   core::PointGaussian landmark;
 };
 
+/// Two draws, y first as when the figures of the table were drawn: the order of arguments is up to the compiler.
+template <class Draw>
+Eigen::Vector2d two(const Draw& draw) {
+  const double y = draw();
+  return {draw(), y};
+}
+
 Sample draw(const Case& row, core::RandomStream& random) {
   Sample sample;
-  sample.pose = core::Pose2(random.uniform(-5.0, 5.0), random.uniform(-5.0, 5.0), random.uniform(-3.0, 3.0));
+  const double heading_rad = random.uniform(-3.0, 3.0);
+  const Eigen::Vector2d at_m = two([&] { return random.uniform(-5.0, 5.0); });
+  sample.pose = core::Pose2(at_m.x(), at_m.y(), heading_rad);
   const Eigen::Matrix2d Q = core::rotation(random.uniform(-3.0, 3.0));
-  const Eigen::Vector2d sigma(random.uniform(row.least_map_sigma_m, row.most_map_sigma_m),
-                              random.uniform(row.least_map_sigma_m, row.most_map_sigma_m));
+  const Eigen::Vector2d sigma = two([&] { return random.uniform(row.least_map_sigma_m, row.most_map_sigma_m); });
   sample.landmark.covariance_m2 = Q * sigma.cwiseAbs2().asDiagonal() * Q.transpose();
   const double range = random.uniform(row.least_range_m, row.most_range_m), bearing = random.uniform(-1.5, 1.5);
   const Eigen::Vector2d seen =
       core::transform(sample.pose, range * Eigen::Vector2d(std::cos(bearing), std::sin(bearing)));
-  const Eigen::Vector2d error(random.normal(), random.normal());
+  const Eigen::Vector2d error = two([&] { return random.normal(); });
   sample.landmark.mean_m = seen + 1.5 * Q * sigma.cwiseProduct(error);
-  sample.observation = core::make_range_bearing(range + random.normal(0.0, row.sigma_range_m),
-                                                bearing + random.normal(0.0, row.sigma_bearing_rad), row.sigma_range_m,
-                                                row.sigma_bearing_rad);
+  const Eigen::Vector2d noise = two([&] { return random.normal(); });
+  sample.observation =
+      core::make_range_bearing(range + row.sigma_range_m * noise.x(), bearing + row.sigma_bearing_rad * noise.y(),
+                               row.sigma_range_m, row.sigma_bearing_rad);
   return sample;
 }
 

@@ -22,7 +22,7 @@ double brute_force(const ReferenceMap& map, const core::Scan& scan, const core::
   const double area = 0.5 * (view.max_bearing_rad - view.min_bearing_rad) *
                       (view.max_range_m * view.max_range_m - view.min_range_m * view.min_range_m);
   std::vector<core::PointGaussian> landmarks = map.landmarks;
-  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+  for (std::size_t i = 0; xi.size() > 0 && i < landmarks.size(); ++i) {
     landmarks[i].mean_m += map.latent.middleRows<2>(2 * static_cast<Eigen::Index>(i)) * xi;
   }
   double sum = 0.0;

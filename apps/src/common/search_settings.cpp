@@ -133,6 +133,15 @@ void add_closing(CLI::App& command, Settings& settings) {
       ->group(settings_group);
   add_length(command, settings, "search.undecided_m", 1e-3, 1e6,
              "A search without a closing is given up after this distance; auto: 11 times the reach");
+  command
+      .add_option_function<std::string>(
+          "--search.whole_map", [&search](const std::string& word) { search.whole_map = word == "true"; },
+          "Before a search ends undecided, and where the motion forbids the closing that it found, the whole map is "
+          "asked "
+          "for the place; false: it is not")
+      ->check(one_of({"true", "false"}))
+      ->default_str("true")
+      ->group(settings_group);
   add_number(command, "--search.smooth_up_to_scans", search.smooth_up_to_scans, 0, 100'000'000,
              "After a closing the whole drive is solved by least squares, unless it has more scans; 0: never");
 }

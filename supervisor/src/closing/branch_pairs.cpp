@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <Eigen/LU>
 
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/chi2.hpp"
+#include "helixnav/core/errors.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -54,6 +56,14 @@ bool may_be_a_neighbours(const Leftover& leftover, double neighbour_m) {
 
 }  // namespace
 
+std::optional<cekf::CostByPart> cost_of(const cekf::CompressedEkf& filter, const KeptRemoved& pairs, double sigma_m) {
+  try {
+    return filter.merge_cost(pairs, sigma_m);
+  } catch (const core::NumericalError&) {
+    return std::nullopt;
+  }
+}
+
 /// Old landmarks that `id` may be, as far as one looks, nearest first.
 std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::LandmarkId id,
                                  const std::vector<core::LandmarkId>& old, double gate, double look_m, double sigma_m) {
@@ -81,13 +91,14 @@ void note(const KeptRemoved& pairs, Closing& closing) {
 bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& options, KeptRemoved& pairs,
                      Closing& closing) {
   while (true) {
-    const cekf::CostByPart cost = filter.merge_cost(pairs, options.merge_sigma_m);
-    closing.cost = cost.cost;
-    closing.dof = cost.dof;
-    closing.limit = core::chi2_quantile(options.closing_probability, cost.dof);
-    if (cost.cost <= closing.limit) return true;
+    const std::optional<cekf::CostByPart> cost = cost_of(filter, pairs, options.merge_sigma_m);
+    closing.cost = cost ? cost->cost : 0.0;
+    closing.dof = cost ? cost->dof : 0;
+    closing.limit = cost ? core::chi2_quantile(options.closing_probability, cost->dof) : 0.0;
+    if (!cost) return false;
+    if (cost->cost <= closing.limit) return true;
     if (closing.dropped == options.most_dropped || pairs.size() <= least_pairs) return false;
-    const auto worst = std::max_element(cost.parts.begin(), cost.parts.end()) - cost.parts.begin();
+    const auto worst = std::max_element(cost->parts.begin(), cost->parts.end()) - cost->parts.begin();
     pairs.erase(pairs.begin() + worst);
     ++closing.dropped;
   }

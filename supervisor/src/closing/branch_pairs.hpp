@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -30,11 +31,15 @@ struct Leftover {
 std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::LandmarkId id,
                                  const std::vector<core::LandmarkId>& old, double gate, double look_m, double sigma_m);
 
+/// The cost of merging them; nothing where the map is so uncertain, by hundreds of metres and tens of degrees, that rounding of
+/// its covariance is larger than what the pairs are known by.
+std::optional<cekf::CostByPart> cost_of(const cekf::CompressedEkf& filter, const KeptRemoved& pairs, double sigma_m);
+
 /// Adds the pairs to what the closing merged.
 void note(const KeptRemoved& pairs, Closing& closing);
 
 /// Drops the worst pair until the cost of merging the rest passes; false when too many would have to go. Sets the
-/// figures of `closing`.
+/// figures of `closing`; false and no degrees of freedom where the cost cannot be computed.
 bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& options, KeptRemoved& pairs,
                      Closing& closing);
 

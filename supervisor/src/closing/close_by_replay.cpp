@@ -66,13 +66,10 @@ bool replay_leftovers(cekf::CompressedEkf& filter, const DuplicateSegment& dupli
 
 }  // namespace
 
-Closing close_by_replay(cekf::CompressedEkf& filter, const BranchRecord& record,
-                        const std::vector<pf_relocalize::ConstellationPair>& pairs, const Branch& branch,
-                        const std::vector<core::LandmarkId>& old, const SearchOptions& options) {
-  Closing closing;
+Closing replay_with_pairs(cekf::CompressedEkf& filter, const BranchRecord& record, KeptRemoved chosen,
+                          const Branch& branch, const std::vector<core::LandmarkId>& old, const SearchOptions& options,
+                          Closing closing) {
   const DuplicateSegment duplicate_segment(filter, branch);
-  KeptRemoved chosen = kept_removed(pairs);
-  if (chosen.size() < least_pairs || !make_compatible(filter, options, chosen, closing)) return closing;
   const cekf::CompressedEkf before = filter;
   if (!replay(filter, record, chosen, options, closing)) {
     filter = before;
@@ -84,6 +81,15 @@ Closing close_by_replay(cekf::CompressedEkf& filter, const BranchRecord& record,
   if (!complete) merge_leftovers(filter, duplicate_segment, branch.confirmed, old, options, closing);
   forget_copies(filter, branch.unconfirmed, old, options, closing);
   return closing;
+}
+
+Closing close_by_replay(cekf::CompressedEkf& filter, const BranchRecord& record,
+                        const std::vector<pf_relocalize::ConstellationPair>& pairs, const Branch& branch,
+                        const std::vector<core::LandmarkId>& old, const SearchOptions& options) {
+  Closing closing;
+  KeptRemoved chosen = kept_removed(pairs);
+  if (chosen.size() < least_pairs || !make_compatible(filter, options, chosen, closing)) return closing;
+  return replay_with_pairs(filter, record, std::move(chosen), branch, old, options, closing);
 }
 
 }  // namespace helixnav::supervisor

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "closing/branch_pairs.hpp"
 #include "closing/closing.hpp"
 #include "closing/replay_branch.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
@@ -21,5 +22,10 @@ namespace helixnav::supervisor {
 Closing close_by_replay(cekf::CompressedEkf& filter, const BranchRecord& record,
                         const std::vector<pf_relocalize::ConstellationPair>& pairs, const Branch& branch,
                         const std::vector<core::LandmarkId>& old, const SearchOptions& options);
+
+/// The same with pairs that were chosen already; `closing` says how many were dropped.
+Closing replay_with_pairs(cekf::CompressedEkf& filter, const BranchRecord& record, KeptRemoved chosen,
+                          const Branch& branch, const std::vector<core::LandmarkId>& old, const SearchOptions& options,
+                          Closing closing);
 
 }  // namespace helixnav::supervisor

@@ -10,6 +10,16 @@
 namespace helixnav::supervisor {
 namespace {
 
+std::vector<core::LandmarkId> mapped_since(double path_m, const association::LandmarkLife& life) {
+  std::vector<core::LandmarkId> since;
+  for (const association::LandmarkRecord& record : life.records()) {
+    if (record.born_path_m > path_m) since.push_back(record.id);
+  }
+  return since;
+}
+
+}  // namespace
+
 Branch branch_of(const ClosingView& view, const SearchOptions& options) {
   Branch branch;
   const double left_old_ground_m = view.search.begun_path_m() - options.old_after_m;
@@ -25,16 +35,6 @@ Branch branch_of(const ClosingView& view, const SearchOptions& options) {
   branch.new_drive.least_views = 2;
   return branch;
 }
-
-std::vector<core::LandmarkId> mapped_since(double path_m, const association::LandmarkLife& life) {
-  std::vector<core::LandmarkId> since;
-  for (const association::LandmarkRecord& record : life.records()) {
-    if (record.born_path_m > path_m) since.push_back(record.id);
-  }
-  return since;
-}
-
-}  // namespace
 
 Closing close_map(cekf::CompressedEkf& filter, const ClosingView& view,
                   const std::vector<pf_relocalize::ConstellationPair>& pairs, const SearchOptions& options) {

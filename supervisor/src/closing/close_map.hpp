@@ -21,6 +21,9 @@ struct ClosingView {
   BranchRecord record;
 };
 
+/// The landmarks mapped since the search began, and the ground that both drives covered.
+Branch branch_of(const ClosingView& view, const SearchOptions& options);
+
 /// Closes the map by the pairs that the search has found, by the method of SearchOptions::closing. A closing whose cost
 /// exceeds its χ² limit is refused (make_compatible in branch_pairs.cpp), and leaves the filter as it was.
 /// Test: supervisor/closing_test.cpp, supervisor/replay_test.cpp, supervisor/lattice_test.cpp.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -105,9 +106,11 @@ class Stretch {
   double nats(const Placing& placing) const {
     const auto matched = static_cast<double>(placing.pairs.size());
     const auto alone = static_cast<double>(count_alone(placing));
-    const cekf::CostByPart merged = filter_.merge_cost(kept_removed(placing.pairs), options_.merge_sigma_m);
+    const std::optional<cekf::CostByPart> merged =
+        cost_of(filter_, kept_removed(placing.pairs), options_.merge_sigma_m);
+    if (!merged) return -std::numeric_limits<double>::infinity();
     return std::lgamma(matched + 1.0) + std::lgamma(alone + 1.0) - std::lgamma(matched + alone + 2.0) -
-           0.5 * (merged.cost - merged.dof);
+           0.5 * (merged->cost - merged->dof);
   }
 
  private:

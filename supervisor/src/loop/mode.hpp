@@ -7,6 +7,7 @@
 
 #include "integrity/integrity_monitor.hpp"
 #include "loop/belief.hpp"
+#include "placing/asked.hpp"
 #include "search/search.hpp"
 
 namespace helixnav::supervisor {
@@ -30,6 +31,7 @@ struct Mapping {
 struct Searching {
   Search search;
   Checkpoint trigger;
+  Asked asked_before = {};  ///< questions to the whole map
 };
 
 using Mode = std::variant<Mapping, Searching>;

@@ -71,6 +71,7 @@ StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* not
     StepReport report = take_as_assumed(scan);
     checkpoint_if_settled();
     if (has_lost_its_place()) return roll_back_and_relocalise(std::move(report));
+    ask_whether_new(scan, report);
     solve_with_learnt_noise(report);
     report.pose = belief_.filter.pose();
     if (sought_in_) find_place(scan.field_of_view, report);

@@ -17,7 +17,10 @@
 #include "loop/mode.hpp"
 #include "loop/tape.hpp"
 #include "noise/noise_learner.hpp"
+#include "placing/asked.hpp"
 #include "placing/place_search.hpp"
+#include "placing/session_question.hpp"
+#include "search/old_ground_index.hpp"
 #include "slip/slip_decision.hpp"
 
 namespace helixnav::supervisor {
@@ -52,6 +55,7 @@ class NavigationLoop {
     std::uint64_t searches;
     std::optional<Mode> mode;
     std::optional<cekf::CompressedEkf> filter;            ///< before the drive was solved
+    std::optional<Tape> tape;                             ///< before odometry on it was found wrong
     std::optional<std::vector<Tape::Entry>> rolled_back;  ///< taken off the tape
   };
 
@@ -89,15 +93,29 @@ class NavigationLoop {
   void search(const core::Scan& scan, core::StepReport& report);
   void close(const core::Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
              core::StepReport& report);
+  void accept(const Closing& closing, const core::FieldOfView& view, core::StepReport& report);
+  void report_closing(const Closing& closing, std::size_t pairs, double driven_m, const core::Pose2& before,
+                      core::StepReport& report) const;
   void end_search(const Closing* closing);
   void merge_left_open(const core::FieldOfView& view, core::StepReport& report);  // merge_left_open.cpp
   void solve_drive(core::StepReport& report);
+
+  // search/whole_map.cpp
+  bool asks_whole_map() const;
+  bool ask_whole_map(const core::Scan& scan, core::StepReport& report);
+  void ask_whether_new(const core::Scan& scan, core::StepReport& report);
+  bool ask_whole_map(LandmarksAbout& about, const Search& search, const Checkpoint& trigger, const core::Scan& scan,
+                     core::StepReport& report);
+  bool close_at(const std::vector<pf_relocalize::ConstellationPair>& pairs, const Search& search,
+                const Checkpoint& trigger, const core::Scan& scan, core::WholeMapDecision& decision,
+                core::StepReport& report);
 
   // integrity/roll_back.cpp
   bool has_lost_its_place() const;
   core::StepReport roll_back_and_relocalise(core::StepReport report);
 
   // placing/find_place.cpp
+  relocalize::IndexOptions index_lengths() const;
   PlaceSearch& place_search();
   void find_place(const core::FieldOfView& view, core::StepReport& report);
   bool join(const relocalize::Place& place, core::PlacedDecision& decision, core::StepReport& report);
@@ -128,8 +146,12 @@ class NavigationLoop {
   Pending pending_;
   Undo undo_;
   std::uint64_t searches_ = 0;
-  std::shared_ptr<const core::JointMap> sought_in_;        ///< an earlier map, as long as the place on it is unknown
-  std::shared_ptr<PlaceSearch> place_search_;              ///< in it, from the first scan on
+  std::optional<OldGroundIndex> old_ground_;         ///< once the whole map was asked
+  Asked asked_;                                      ///< of all searches: they share one probability of a false answer
+  Asked asked_before_;                               ///< this call, for recover()
+  double next_ask_path_m_ = 0.0;                     ///< whether new ground is new
+  std::shared_ptr<const core::JointMap> sought_in_;  ///< an earlier map, as long as the place on it is unknown
+  std::shared_ptr<PlaceSearch> place_search_;        ///< in it, from the first scan on
   std::map<std::int64_t, std::vector<std::size_t>> used_;  ///< [step] observations of the scans that were thinned
 };
 

@@ -31,7 +31,9 @@ void NavigationLoop::recover() {
   Undo undo = std::exchange(undo_, Undo{});
   if (undo.filter) belief_.filter = std::move(*undo.filter);
   if (undo.mode) mode_ = std::move(*undo.mode);
+  if (undo.tape) tape_ = std::move(*undo.tape);
   searches_ = undo.searches;
+  old_ground_.reset();
   const Checkpoint from = checkpoint();
   std::vector<Tape::Entry> since = tape_.cut(from.position);
   if (undo.rolled_back) since = std::move(*undo.rolled_back);
@@ -39,6 +41,7 @@ void NavigationLoop::recover() {
   roll_back(from, belief_);
   if (Searching* open = searching()) {
     open->search = search_from(from);
+    asked_ = open->asked_before;
   } else {
     Mapping& mapping = std::get<Mapping>(mode_);
     mapping.monitor = mapping.monitor_when_trusted;
@@ -47,6 +50,7 @@ void NavigationLoop::recover() {
   process_again(
       since, [](const Tape::Fix&, bool) {}, [](const core::StepReport&) {});
   std::swap(noise_, noise_before_);
+  std::swap(asked_, asked_before_);
   pending_ = std::move(undo.pending);
 }
 

@@ -62,6 +62,23 @@ Tape Tape::rescaled(double observations, double odometry) const {
   return tape;
 }
 
+Tape Tape::with_larger_noise(double odometry, double length_m) const {
+  Tape tape = *this;
+  for (auto entry = tape.entries_.rbegin(); entry != tape.entries_.rend() && length_m > 0.0; ++entry) {
+    auto* motion = std::get_if<Motion>(&*entry);
+    if (motion == nullptr) continue;
+    motion->odometry.covariance *= odometry;
+    length_m -= motion->driven_m;
+  }
+  return tape;
+}
+
+Tape Tape::with_jump(Position position, const core::Odometry& jump) const {
+  Tape tape = *this;
+  tape.entries_.insert(tape.entries_.begin() + static_cast<std::ptrdiff_t>(position - forgotten_), Slip{jump});
+  return tape;
+}
+
 std::vector<Tape::Entry> Tape::cut(Position position) {
   const auto from = entries_.begin() + static_cast<std::ptrdiff_t>(position - forgotten_);
   std::vector<Entry> taken(std::make_move_iterator(from), std::make_move_iterator(entries_.end()));

@@ -24,7 +24,7 @@ class Tape {
     core::Odometry odometry;
     double driven_m = 0.0;
   };
-  /// Motion that odometry did not tell of: none in the mean. Whoever goes through the scans again decides it again.
+  /// Motion that odometry did not measure. Whoever goes through the scans again decides it again.
   struct Slip {
     core::Odometry motion;
   };
@@ -63,6 +63,13 @@ class Tape {
   /// The tape of the same drive, had the covariances of all observations and of all measured motion been this many
   /// times as large. What that would have cost is not known: costs are what it was at least.
   Tape rescaled(double observations, double odometry) const;
+
+  /// The tape, had the covariance of the motion measured over the last `length_m` been this many times as large; costs stay
+  /// what they were, which is what they are at most.
+  Tape with_larger_noise(double odometry, double length_m) const;
+
+  /// The tape with a motion that nothing measured at `position`.
+  Tape with_jump(Position position, const core::Odometry& jump) const;
 
   /// Takes off everything from `position` on and returns it.
   std::vector<Entry> cut(Position position);

@@ -66,14 +66,17 @@ void NavigationLoop::look_for_place_in(const core::JointMap& earlier) {
   std::get<Mapping>(mode_).trust(take_checkpoint(belief_, tape_));
 }
 
-/// The index is made when the sensor is known.
-PlaceSearch& NavigationLoop::place_search() {
-  if (place_search_) return *place_search_;
+relocalize::IndexOptions NavigationLoop::index_lengths() const {
   relocalize::IndexOptions lengths;
   lengths.reach_m = view_.reach().value_or(reference_reach_m);
   constexpr double most_share = 1.0 / 20.0;
   lengths.pair_noise_m = std::min(options_.search.constellation.branch_sigma_m, most_share * lengths.reach_m);
-  place_search_ = std::make_shared<PlaceSearch>(*sought_in_, lengths);
+  return lengths;
+}
+
+/// The index is made when the sensor is known.
+PlaceSearch& NavigationLoop::place_search() {
+  if (!place_search_) place_search_ = std::make_shared<PlaceSearch>(*sought_in_, index_lengths());
   return *place_search_;
 }
 
@@ -94,7 +97,6 @@ void NavigationLoop::find_place(const core::FieldOfView& view, core::StepReport&
   if (question.looked.empty()) return;
   const relocalize::Answer answer = search.ask(question, decision);
   decision.driven_m = belief_.existence.path_m();
-  std::sort(about.ids.begin(), about.ids.end());
   report.decisions.reserve(report.decisions.size() + 1);
   if (answer.verdict == relocalize::Verdict::closed && join(answer.places.front(), decision, report)) return;
   if (search.asked(about.ids, decision.verdict)) report.decisions.emplace_back(decision);

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "placing/place_search.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace helixnav::supervisor {
 namespace {
-
-constexpr double alpha = 1e-5;
-constexpr std::size_t least_to_ask = 8;
 
 core::PlacedDecision::Verdict verdict_of(relocalize::Verdict verdict) {
   if (verdict == relocalize::Verdict::closed) return core::PlacedDecision::Verdict::accepted;
@@ -22,21 +18,16 @@ PlaceSearch::PlaceSearch(const core::JointMap& earlier, const relocalize::IndexO
     : earlier_(earlier), index_(earlier_.index(lengths)) {}
 
 bool PlaceSearch::is_due(const std::vector<core::LandmarkId>& landmarks) const {
-  if (landmarks.size() < least_to_ask || !(index_.looked_at_m2() > 0.0)) return false;
-  const auto fresh = std::count_if(landmarks.begin(), landmarks.end(), [&](core::LandmarkId id) {
-    return !std::binary_search(asked_with_.begin(), asked_with_.end(), id);
-  });
-  return 5 * static_cast<std::size_t>(fresh) >= landmarks.size();
+  return asked_.is_due(landmarks) && index_.looked_at_m2() > 0.0;
 }
 
 relocalize::Answer PlaceSearch::ask(const relocalize::Question& question, core::PlacedDecision& decision) const {
-  const double k = questions_ + 1;
   relocalize::AskOptions options;
-  options.alpha = alpha / (k * (k + 1.0));
+  options.alpha = asked_.next_alpha();
   relocalize::Answer answer = relocalize::ask(index_, question, options);
   decision.verdict = verdict_of(answer.verdict);
   decision.earlier_landmarks = static_cast<int>(earlier_.landmarks().ids.size());
-  decision.questions = questions_ + 1;
+  decision.questions = asked_.questions + 1;
   decision.landmarks = static_cast<int>(question.landmarks.size());
   decision.needed = -std::log(options.alpha);
   decision.lead = answer.gap;
@@ -49,8 +40,7 @@ relocalize::Answer PlaceSearch::ask(const relocalize::Question& question, core::
 }
 
 bool PlaceSearch::asked(std::vector<core::LandmarkId>& landmarks, core::PlacedDecision::Verdict verdict) noexcept {
-  ++questions_;
-  asked_with_.swap(landmarks);
+  asked_.note(landmarks);
   const bool differs = verdict != last_;
   last_ = verdict;
   return differs;

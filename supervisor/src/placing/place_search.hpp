@@ -6,12 +6,12 @@
 
 #include "helixnav/core/decision.hpp"
 #include "helixnav/relocalize/ask.hpp"
+#include "placing/asked.hpp"
 #include "placing/earlier_map.hpp"
 
 namespace helixnav::supervisor {
 
-/// A session that does not know where on an earlier map it is: when it asks, and how sure it wants to be. The k-th question is
-/// asked with α/(k(k+1)), so that α is the probability of a false answer in the whole session, however long.
+/// A session that does not know where on an earlier map it is: when it asks, and how sure it wants to be (Asked).
 class PlaceSearch {
  public:
   PlaceSearch(const core::JointMap& earlier, const relocalize::IndexOptions& lengths);
@@ -19,7 +19,7 @@ class PlaceSearch {
   const EarlierMap& earlier() const { return earlier_; }
   const relocalize::IndexOptions& lengths() const { return index_.options(); }
 
-  /// Enough landmarks to ask with, and enough of them new since the last question: a fifth.
+  /// As Asked, on ground that the earlier map covers.
   bool is_due(const std::vector<core::LandmarkId>& landmarks) const;
 
   /// The answer, and what it says as a decision (nothing merged yet).
@@ -31,8 +31,7 @@ class PlaceSearch {
  private:
   EarlierMap earlier_;
   relocalize::MapIndex index_;
-  int questions_ = 0;
-  std::vector<core::LandmarkId> asked_with_;  ///< ascending
+  Asked asked_;
   core::PlacedDecision::Verdict last_ = core::PlacedDecision::Verdict::sought;
 };
 

@@ -44,12 +44,13 @@ std::vector<relocalize::Disc> looked_at(const Belief& belief, const core::FieldO
 
 }  // namespace
 
-LandmarksAbout landmarks_about(const Belief& belief, double seen_within_m) {
+LandmarksAbout landmarks_about(const Belief& belief, double seen_within_m, double born_after_path_m) {
   const Eigen::Vector2d at_m = belief.filter.pose().mean.position_m();
   std::vector<std::pair<double, core::LandmarkId>> order;
   for (const association::LandmarkRecord& record : belief.existence.records()) {
     if (record.state != core::LandmarkState::mature) continue;
     if (belief.existence.path_m() - record.last_seen_path_m > seen_within_m) continue;
+    if (record.born_path_m <= born_after_path_m) continue;
     order.emplace_back((belief.filter.landmark_mean(record.id) - at_m).norm(), record.id);
   }
   std::sort(order.begin(), order.end());

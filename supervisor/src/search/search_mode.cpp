@@ -25,7 +25,7 @@ void NavigationLoop::begin_search() {
   Checkpoint trigger = take_checkpoint(belief_, tape_);
   Search search = search_from(trigger);
   if (!undo_.mode) undo_.mode.emplace(std::move(mode_));
-  mode_.emplace<Searching>(Searching{std::move(search), std::move(trigger)});
+  mode_.emplace<Searching>(Searching{std::move(search), std::move(trigger), asked_});
 }
 
 void NavigationLoop::search(const Scan& scan, StepReport& report) {
@@ -37,6 +37,7 @@ void NavigationLoop::search(const Scan& scan, StepReport& report) {
   if (pairs) close(scan, *pairs, report);
   const double path_m = belief_.existence.path_m();
   if (searching() == nullptr || !open.is_undecided(path_m)) return;
+  if (ask_whole_map(scan, report)) return;
   report.decisions.emplace_back(core::UndecidedDecision{path_m - open.begun_path_m()});
   belief_.left_open.push_back({open.begun_path_m(), path_m});
   end_search(nullptr);
@@ -46,32 +47,41 @@ void NavigationLoop::close(const Scan& scan, const std::vector<pf_relocalize::Co
                            StepReport& report) {
   const Searching& open = *searching();
   const core::Pose2 before = belief_.filter.pose().mean;
-  const double path_m = belief_.existence.path_m();
   const Closing closing =
       close_map(belief_.filter, {open.search, belief_.existence, belief_.coverage, scan, {open.trigger, tape_}}, pairs,
                 options_.search);
+  report_closing(closing, pairs.size(), belief_.existence.path_m() - open.search.begun_path_m(), before, report);
+  if (closing.accepted) {
+    accept(closing, scan.field_of_view, report);
+  } else if (!ask_whole_map(scan, report)) {
+    searching()->search.refuse(belief_.existence.path_m());
+  }
+}
+
+/// The filter has been closed: so is everything else.
+void NavigationLoop::accept(const Closing& closing, const core::FieldOfView& view, StepReport& report) {
   for (const core::MergedLandmarks& one : closing.merged) belief_.existence.merge(one.kept, one.removed);
   for (const LandmarkId id : closing.forgotten) belief_.existence.remove(id);
   report.merged = closing.merged;
+  tape_.append(Tape::Merge{closing.merged, closing.cost});
+  end_search(&closing);
+  merge_left_open(view, report);
+  solve_drive(report);
+}
+
+void NavigationLoop::report_closing(const Closing& closing, std::size_t pairs, double driven_m,
+                                    const core::Pose2& before, StepReport& report) const {
   core::ClosureDecision decision;
   decision.accepted = closing.accepted;
-  decision.pairs = static_cast<int>(pairs.size());
+  decision.pairs = static_cast<int>(pairs);
   decision.dropped = closing.dropped;
   decision.merged = static_cast<int>(closing.merged.size());
   decision.cost = closing.cost;
   decision.dof = closing.dof;
   decision.limit = closing.limit;
-  decision.driven_m = path_m - open.search.begun_path_m();
+  decision.driven_m = driven_m;
   decision.moved_m = (belief_.filter.pose().mean.position_m() - before.position_m()).norm();
   report.decisions.emplace_back(decision);
-  if (!closing.accepted) {
-    searching()->search.refuse(path_m);
-    return;
-  }
-  tape_.append(Tape::Merge{closing.merged, closing.cost});
-  end_search(&closing);
-  merge_left_open(scan.field_of_view, report);
-  solve_drive(report);
 }
 
 /// Mapping goes on with the whole map; the landmarks that a closing has recognised confirm the pose.

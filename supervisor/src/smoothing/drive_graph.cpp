@@ -42,10 +42,12 @@ std::map<core::LandmarkId, int> sightings(const std::vector<Stop>& stops, const 
 
 class Builder {
  public:
-  Builder(const core::PoseGaussian& start, const Tape& tape, const cekf::CompressedEkf& filter)
+  Builder(const core::PoseGaussian& start, const Tape& tape, const cekf::CompressedEkf& filter,
+          const std::set<core::LandmarkId>& displaced)
       : stops_(present_stops(tape)),
         last_motion_(motion_after_stops(tape)),
         filter_(filter),
+        displaced_(displaced),
         sightings_(sightings(stops_, filter)),
         vehicle_(start) {
     open_pose();
@@ -109,7 +111,7 @@ class Builder {
   std::optional<Eigen::Vector2d> place_of(core::LandmarkId id) const {
     const auto found = index_of_landmark_.find(id);
     if (found != index_of_landmark_.end()) return graph_.landmarks[static_cast<std::size_t>(found->second)].point_m;
-    if (filter_.contains(id)) return filter_.landmark_mean(id);
+    if (filter_.contains(id) && displaced_.count(id) == 0) return filter_.landmark_mean(id);
     return std::nullopt;
   }
 
@@ -128,6 +130,7 @@ class Builder {
   std::vector<Stop> stops_;
   std::optional<core::Odometry> last_motion_;
   const cekf::CompressedEkf& filter_;
+  const std::set<core::LandmarkId>& displaced_;
   std::map<core::LandmarkId, int> sightings_;
   core::PoseOnMap vehicle_;
   std::optional<core::Odometry> motion_;  ///< since the last pose
@@ -138,8 +141,9 @@ class Builder {
 
 }  // namespace
 
-DriveGraph graph_of(const core::PoseGaussian& start, const Tape& tape, const cekf::CompressedEkf& filter) {
-  return Builder(start, tape, filter).build();
+DriveGraph graph_of(const core::PoseGaussian& start, const Tape& tape, const cekf::CompressedEkf& filter,
+                    const std::set<core::LandmarkId>& displaced) {
+  return Builder(start, tape, filter, displaced).build();
 }
 
 std::vector<core::StampedPose> path_of(const LandmarkGraph& graph, const std::vector<StopInGraph>& stops) {

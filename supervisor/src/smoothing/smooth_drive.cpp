@@ -56,11 +56,12 @@ smoothing::Problem problem_of(const core::PoseGaussian& start, core::LandmarkGra
   return problem;
 }
 
-Smoothing smooth_drive(const cekf::CompressedEkf& filter, const core::PoseGaussian& start, const Tape& tape) {
+Smoothing smooth_drive(const cekf::CompressedEkf& filter, const core::PoseGaussian& start, const Tape& tape,
+                       const std::set<core::LandmarkId>& displaced) {
   Smoothing result;
   result.limit = drive_cost(tape) + slack();
   try {
-    DriveGraph drive = graph_of(start, tape, filter);
+    DriveGraph drive = graph_of(start, tape, filter, displaced);
     smoothing::Problem problem = problem_of(start, std::move(drive.graph));
     result.poses = static_cast<int>(problem.graph.poses.size());
     const smoothing::Minimum minimum(problem, from_a_good_start());

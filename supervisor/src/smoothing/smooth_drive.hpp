@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
@@ -30,7 +31,9 @@ struct Smoothing {
 /// own solution, which is then another one. Landmarks keep their ids. Cost: a few sparse factorisations and N² times the
 /// nonzeros of their factor a landmark; ADR 10 has milliseconds. Test: supervisor/smooth_drive_test.cpp (a filter that
 /// drives along the solution).
-Smoothing smooth_drive(const cekf::CompressedEkf& filter, const core::PoseGaussian& start, const Tape& tape);
+/// `displaced`: landmarks that the filter has at a wrong place, from where least squares would not find the right one.
+Smoothing smooth_drive(const cekf::CompressedEkf& filter, const core::PoseGaussian& start, const Tape& tape,
+                       const std::set<core::LandmarkId>& displaced = {});
 
 /// The graph with what holds the start, and with covariances of which every one has an inverse.
 smoothing::Problem problem_of(const core::PoseGaussian& start, core::LandmarkGraph graph);

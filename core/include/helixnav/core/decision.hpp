@@ -101,7 +101,7 @@ struct ClosureDecision {
   int dropped = 0;  ///< pairs dropped because of their cost
   int merged = 0;
   double cost = 0.0;  ///< J, χ² with dof
-  int dof = 0;
+  int dof = 0;        ///< 0 and refused: the map was too uncertain for the cost to be computed
   double limit = 0.0;
   double driven_m = 0.0;  ///< since the search began
   double moved_m = 0.0;   ///< by how much the closing moved the pose
@@ -157,6 +157,32 @@ struct PlacedDecision {
   Pose2 T_map_session;    ///< of the best place
 };
 
+/// A search asked the whole map where the vehicle is, without the prior: where the prior holds no place, or odometry forbids the
+/// one that was found. Figures of the place as in PlacedDecision.
+struct WholeMapDecision {
+  enum class Verdict {
+    accepted,   ///< found, and the map was closed there
+    ambiguous,  ///< a place fits, and so may others
+    refused,    ///< the best place, of which the landmarks contradict each other
+    not_here,   ///< no place fits better than chance would
+  };
+  Verdict verdict = Verdict::not_here;
+  int old_landmarks = 0;
+  int questions = 0;  ///< asked so far
+  int landmarks = 0;  ///< of the question
+  int pairs = 0;
+  double evidence = 0.0;
+  double lead = 0.0;
+  double needed = 0.0;
+  double cost = 0.0;  ///< χ² of the pairs with dof and with the motion as it was measured
+  int dof = 0;
+  double limit = 0.0;
+  double odometry_factor =
+      1.0;              ///< on the covariance of the motion since the old landmarks were left; 0: cut at the trigger
+  double loop_m = 0.0;  ///< length of that motion
+  double displaced_m = 0.0;  ///< from where odometry has the vehicle
+};
+
 /// A row of decisions.csv of a kind that this version does not know: listed as it stands.
 struct OtherDecision {
   std::string kind;
@@ -167,7 +193,7 @@ struct OtherDecision {
 /// A decision of the navigator that is worth a sentence, with the numbers that decided it.
 using Decision = std::variant<TriggerDecision, RollbackDecision, SlipDecision, AttemptStarted, AttemptEnded,
                               ReferenceUnusable, VerificationDecision, ClosureDecision, UndecidedDecision,
-                              SmoothingDecision, FixDecision, PlacedDecision, OtherDecision>;
+                              SmoothingDecision, FixDecision, PlacedDecision, WholeMapDecision, OtherDecision>;
 
 /// True for what ends a search: a closing accepted or refused, or a search given up.
 inline bool is_closure(const Decision& decision) {

@@ -35,8 +35,8 @@ struct PoseError {
 };
 
 /// A pose in the map, judged. Absolute: in the map frame, which is that of the truth. Relative: after the rigid motion
-/// that aligns the nearest old landmarks with their trees, so that errors of the old map itself cancel. Absolute where
-/// fewer than three are within 80 m. NEES = eᵀP⁻¹e of the absolute error in (x, y, heading).
+/// that aligns the old landmarks that were recognised, or the nearest ones where these are fewer than three, with their trees,
+/// so that errors of the old map itself cancel. Absolute where fewer than three are within 80 m. NEES = eᵀP⁻¹e of the absolute error in (x, y, heading).
 struct JudgedPose {
   PoseError absolute;
   PoseError relative;

@@ -51,6 +51,12 @@ struct SlipOptions {
   Interval turn_rad{3.0 * core::pi / 180.0, 3.0 * core::pi / 180.0};  ///< absolute value
 };
 
+/// The vehicle is carried along its route, during a pause in which nothing is measured.
+struct CarryOptions {
+  double every_m = 0.0;  ///< driven between two times: from three to five quarters of it; 0: never
+  Interval distance_m{100.0, 400.0};
+};
+
 /// Everything that a simulated run depends on, beside its seed. True noise is what happens, assumed noise is what the
 /// events claim (covariance of Odometry, R of Observation).
 struct Scenario {
@@ -63,6 +69,7 @@ struct Scenario {
   NoiseLevels assumed_noise;
   OdometryBias bias;
   SlipOptions slip;
+  CarryOptions carried;
 };
 
 /// Names that named_scenario knows, in the order in which to show them.

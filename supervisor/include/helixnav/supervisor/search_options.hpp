@@ -63,6 +63,7 @@ struct SearchOptions {
   double attempt_m = 105.0;      ///< an attempt not accepted by then is started again
   double undecided_m = 330.0;    ///< a search is given up after this distance, or …
   double idle_m = 60.0;          ///< … after this distance with nothing in any old landmark's gate
+  bool whole_map = true;         ///< asked where the search ends undecided or its closing is refused
   pf_relocalize::RelocalizerOptions relocalizer;
   pf_relocalize::ReferenceMapOptions reference;
   pf_relocalize::GateLimits gate;

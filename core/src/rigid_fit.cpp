@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rigid_fit.hpp"
+#include "helixnav/core/rigid_fit.hpp"
 
 #include <cmath>
 
-namespace helixnav::evaluation {
+namespace helixnav::core {
 namespace {
 
 Eigen::Vector2d mean_of(const std::vector<Eigen::Vector2d>& points) {
@@ -14,7 +14,7 @@ Eigen::Vector2d mean_of(const std::vector<Eigen::Vector2d>& points) {
 
 }  // namespace
 
-core::Pose2 fit_rigidly(const std::vector<Eigen::Vector2d>& points_a, const std::vector<Eigen::Vector2d>& points_b) {
+Pose2 fit_rigidly(const std::vector<Eigen::Vector2d>& points_a, const std::vector<Eigen::Vector2d>& points_b) {
   if (points_a.empty()) return {};
   const Eigen::Vector2d mean_a = mean_of(points_a);
   const Eigen::Vector2d mean_b = mean_of(points_b);
@@ -27,8 +27,8 @@ core::Pose2 fit_rigidly(const std::vector<Eigen::Vector2d>& points_a, const std:
     dot += b.dot(a);
   }
   const double heading_rad = std::atan2(cross, dot);
-  const Eigen::Vector2d position = mean_a - core::rotation(heading_rad) * mean_b;
+  const Eigen::Vector2d position = mean_a - rotation(heading_rad) * mean_b;
   return {position.x(), position.y(), heading_rad};
 }
 
-}  // namespace helixnav::evaluation
+}  // namespace helixnav::core

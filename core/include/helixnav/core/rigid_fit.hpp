@@ -7,10 +7,11 @@
 
 #include "helixnav/core/se2.hpp"
 
-namespace helixnav::evaluation {
+namespace helixnav::core {
 
 /// T_a_b of least Σ|a − T_a_b·b|², closed form: heading = atan2(Σ b×a, Σ b·a) over centred points. Heading 0 with fewer
 /// than two distinct points, the identity without any. The lists are equally long.
-core::Pose2 fit_rigidly(const std::vector<Eigen::Vector2d>& points_a, const std::vector<Eigen::Vector2d>& points_b);
+/// Test: evaluation/alignment_test.cpp.
+Pose2 fit_rigidly(const std::vector<Eigen::Vector2d>& points_a, const std::vector<Eigen::Vector2d>& points_b);
 
-}  // namespace helixnav::evaluation
+}  // namespace helixnav::core

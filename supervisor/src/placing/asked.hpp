@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "helixnav/core/landmark_id.hpp"
+
+namespace helixnav::supervisor {
+
+/// Questions to a map about where the vehicle is on it: how many there were, and with which landmarks the last one was asked.
+struct Asked {
+  int questions = 0;
+  std::vector<core::LandmarkId> with;  ///< ascending
+
+  /// Enough landmarks to ask with, and enough of them new since the last question: a fifth.
+  bool is_due(const std::vector<core::LandmarkId>& landmarks) const {
+    constexpr std::size_t least_to_ask = 8;
+    const auto fresh = std::count_if(landmarks.begin(), landmarks.end(), [&](core::LandmarkId id) {
+      return !std::binary_search(with.begin(), with.end(), id);
+    });
+    return landmarks.size() >= least_to_ask && 5 * static_cast<std::size_t>(fresh) >= landmarks.size();
+  }
+
+  /// α/(k(k+1)) for the k-th question, so that α is the probability of a false answer among all of them, however many.
+  double next_alpha() const {
+    constexpr double alpha = 1e-5;
+    const double k = questions + 1;
+    return alpha / (k * (k + 1.0));
+  }
+
+  /// Counts a question asked with these, in any order, which are swapped away. Does not throw.
+  void note(std::vector<core::LandmarkId>& landmarks) noexcept {
+    ++questions;
+    std::sort(landmarks.begin(), landmarks.end());
+    with.swap(landmarks);
+  }
+};
+
+}  // namespace helixnav::supervisor

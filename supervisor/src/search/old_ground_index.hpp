@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/relocalize/map_index.hpp"
+
+namespace helixnav::supervisor {
+
+/// The old landmarks of the present map, ready to be asked for a place. They stand in it where they were when they became old:
+/// a closing moves a part of the map as a whole, and what decides a place are pairs.
+/// Test: supervisor/whole_map_test.cpp.
+class OldGroundIndex {
+ public:
+  explicit OldGroundIndex(const relocalize::IndexOptions& lengths) : index_(lengths) {}
+
+  /// Takes in those of `old` (ascending) that it lacks and drops those that the filter has no more. A joint covariance of a dozen
+  /// neighbours for each new one.
+  void follow(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& old);
+
+  bool contains(core::LandmarkId id) const { return index_.contains(id); }
+  const relocalize::MapIndex& index() const { return index_; }
+
+ private:
+  relocalize::MapIndex index_;
+  std::vector<core::LandmarkId> ids_;  ///< ascending
+};
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where odometry was wrong by more than its noise, no prior holds the place where the vehicle is: the whole map is asked.
+#include <utility>
+#include <vector>
+
+#include "association/revisit_ambiguity.hpp"
+#include "closing/close_against_odometry.hpp"
+#include "helixnav/core/rigid_fit.hpp"
+#include "loop/navigation_loop.hpp"
+#include "placing/question_landmarks.hpp"
+#include "placing/session_question.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+using core::LandmarkId;
+using core::WholeMapDecision;
+
+WholeMapDecision::Verdict verdict_of(relocalize::Verdict verdict) {
+  if (verdict == relocalize::Verdict::closed) return WholeMapDecision::Verdict::refused;  // until it is closed there
+  const bool ambiguous = verdict == relocalize::Verdict::ambiguous;
+  return ambiguous ? WholeMapDecision::Verdict::ambiguous : WholeMapDecision::Verdict::not_here;
+}
+
+WholeMapDecision decision_of(const relocalize::Answer& answer) {
+  WholeMapDecision decision;
+  decision.verdict = verdict_of(answer.verdict);
+  decision.lead = answer.gap;
+  if (answer.places.empty()) return decision;
+  decision.pairs = static_cast<int>(answer.places.front().pairs.size());
+  decision.evidence = answer.places.front().evidence;
+  return decision;
+}
+
+std::vector<pf_relocalize::ConstellationPair> pairs_of(const relocalize::Place& place) {
+  std::vector<pf_relocalize::ConstellationPair> pairs;
+  for (const relocalize::Pair& pair : place.pairs) pairs.push_back({pair.branch, pair.map});
+  return pairs;
+}
+
+/// Where the pairs put the branch, on the map as it is now.
+core::Pose2 branch_on_map(const std::vector<pf_relocalize::ConstellationPair>& pairs,
+                          const cekf::CompressedEkf& filter) {
+  std::vector<Eigen::Vector2d> on_map_m, in_branch_m;
+  for (const pf_relocalize::ConstellationPair& pair : pairs) {
+    on_map_m.push_back(filter.landmark_mean(pair.old_landmark));
+    in_branch_m.push_back(filter.landmark_mean(pair.branch));
+  }
+  return core::fit_rigidly(on_map_m, in_branch_m);
+}
+
+}  // namespace
+
+bool NavigationLoop::asks_whole_map() const {
+  return options_.search.enabled && options_.search.whole_map &&
+         options_.search.acceptance == Acceptance::constellation && !sought_in_;
+}
+
+/// Before a search ends undecided, or where odometry forbids the closing that it found.
+bool NavigationLoop::ask_whole_map(const core::Scan& scan, core::StepReport& report) {
+  const Searching& open = *searching();
+  const double born_after_m = open.search.begun_path_m() - options_.search.old_after_m;
+  LandmarksAbout about = landmarks_about(belief_, options_.search.branch_seen_within_m, born_after_m);
+  return asked_.is_due(about.ids) && ask_whole_map(about, open.search, open.trigger, scan, report);
+}
+
+/// On new ground, where no search has begun: is it new?
+void NavigationLoop::ask_whether_new(const core::Scan& scan, core::StepReport& report) {
+  const double path_m = belief_.existence.path_m();
+  if (!asks_whole_map() || std::get_if<Mapping>(&mode_) == nullptr || path_m < next_ask_path_m_) return;
+  next_ask_path_m_ = path_m + options_.search.ask_again_m;
+  const double within_m = options_.search.branch_seen_within_m;
+  LandmarksAbout about = landmarks_about(belief_, within_m, path_m - within_m);
+  if (!asked_.is_due(about.ids)) return;
+  const Checkpoint now = take_checkpoint(belief_, tape_);
+  ask_whole_map(about, search_from(now), now, scan, report);
+}
+
+/// True when the map was closed, at a place that the landmarks decide for without the prior.
+bool NavigationLoop::ask_whole_map(LandmarksAbout& about, const Search& search, const Checkpoint& trigger,
+                                   const core::Scan& scan, core::StepReport& report) {
+  if (!asks_whole_map()) return false;
+  if (!old_ground_) old_ground_.emplace(index_lengths());
+  old_ground_->follow(belief_.filter, search.old_landmarks());
+  const relocalize::MapIndex& index = old_ground_->index();
+  const relocalize::Question question =
+      session_question(belief_, about, scan.field_of_view, index.options(), options_.search.branch_seen_within_m);
+  if (question.looked.empty() || !(index.looked_at_m2() > 0.0)) return false;
+  relocalize::AskOptions how;
+  how.alpha = asked_.next_alpha();
+  const relocalize::Answer answer = relocalize::ask(index, question, how);
+  WholeMapDecision decision = decision_of(answer);
+  decision.old_landmarks = static_cast<int>(index.size());
+  decision.landmarks = static_cast<int>(question.landmarks.size());
+  decision.questions = asked_.questions + 1;
+  decision.needed = -std::log(how.alpha);
+  asked_.note(about.ids);
+  if (answer.verdict == relocalize::Verdict::closed &&
+      close_at(pairs_of(answer.places.front()), search, trigger, scan, decision, report))
+    return true;
+  const bool is_news = searching() != nullptr || decision.verdict != WholeMapDecision::Verdict::not_here;
+  if (is_news) report.decisions.emplace_back(decision);
+  return false;
+}
+
+/// With the odometry as it was measured if that allows it, else against it.
+bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair>& pairs, const Search& search,
+                              const Checkpoint& trigger, const core::Scan& scan, WholeMapDecision& decision,
+                              core::StepReport& report) {
+  const ClosingView view{search, belief_.existence, belief_.coverage, scan, {trigger, tape_}};
+  const core::Pose2 before = belief_.filter.pose().mean;
+  ForbiddenPlace place{pairs, branch_on_map(pairs, belief_.filter), {}};
+  decision.displaced_m = (core::compose(place.T_map_branch, before).position_m() - before.position_m()).norm();
+  Closing closing = close_map(belief_.filter, view, pairs, options_.search);
+  decision.cost = closing.cost;
+  decision.dof = closing.dof;
+  decision.limit = closing.limit;
+  if (!closing.accepted) {
+    place.as_measured = closing;
+    Reconciled reconciled = close_against_odometry(belief_.filter, start_, view, place, options_.search);
+    if (!reconciled.closing.accepted) return false;
+    decision.odometry_factor = reconciled.odometry_factor;
+    decision.loop_m = reconciled.loop_m;
+    closing = std::move(reconciled.closing);
+    std::swap(belief_.filter, *reconciled.filter);
+    if (!undo_.filter) undo_.filter.emplace(std::move(*reconciled.filter));
+    std::swap(tape_, *reconciled.tape);
+    if (!undo_.tape) undo_.tape.emplace(std::move(*reconciled.tape));
+  }
+  decision.verdict = WholeMapDecision::Verdict::accepted;
+  report.decisions.emplace_back(decision);
+  report_closing(closing, pairs.size(), belief_.existence.path_m() - search.begun_path_m(), before, report);
+  accept(closing, scan.field_of_view, report);
+  return true;
+}
+
+}  // namespace helixnav::supervisor
