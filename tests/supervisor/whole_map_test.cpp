@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Odometry that was wrong by more than its noise allows: the place is found by asking the whole map.
 #include <algorithm>
-#include <optional>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "campaign.hpp"
 #include "circuits.hpp"
-#include "helixnav/evaluation/referee.hpp"
-#include "helixnav/sim/world.hpp"
-#include "judged_drive.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -41,12 +37,11 @@ Drive drive_through(const core::Recording& run, const NavigatorOptions& options)
   return result;
 }
 
-/// A loop whose odometry has a steering error of 0.2 degrees, which its noise, assumed at a fifth, does not hold.
+/// A loop whose odometry has slow errors of steering and speed that its noise, assumed at a tenth, does not hold.
 core::Recording biased(std::uint64_t seed) {
-  sim::Scenario scenario = sim::named_scenario("two-laps");
-  scenario.world.returns = 1;
-  scenario.bias = {0.003, 0.01, 1e4};
-  scenario.assumed_noise = sim::scaled(scenario.true_noise, 0.2, 1.0);
+  sim::Scenario scenario = sim::named_scenario("large-loop-changed");
+  scenario.bias = {0.002, 0.01, 1e4};
+  scenario.assumed_noise = sim::scaled(scenario.true_noise, 0.1, 1.0);
   return sim::simulate(scenario, seed);
 }
 
@@ -57,26 +52,25 @@ NavigatorOptions without_learning() {
   return options;
 }
 
+/// On most seeds the search does it alone; these are the ones of 1 to 16 that it leaves open or closes only in part.
 TEST(WholeMap, ClosesWhatOdometryForbidsByLargerNoiseOnTheLoop) {
-  int helped = 0;
-  for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {
+  for (const std::uint64_t seed : {3u, 5u, 16u}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
     const core::Recording run = biased(seed);
     const Drive drive = drive_through(run, without_learning());
-    NavigatorOptions blind = without_learning();
-    blind.search.whole_map = false;
-    const Drive before = drive_through(run, blind);
-    EXPECT_EQ(drive.undecided, 0) << "seed " << seed;
-    EXPECT_GE(drive.closed, 1) << "seed " << seed;
-    EXPECT_LE(drive.mature, before.mature);
-    helped += before.closed == 0;
-    for (const core::WholeMapDecision& asked : drive.asked) {
-      if (asked.verdict != core::WholeMapDecision::Verdict::accepted) continue;
-      EXPECT_GT(asked.cost, asked.limit);
-      EXPECT_GT(asked.odometry_factor, 1.0);
-      EXPECT_GT(asked.evidence, asked.needed);
-    }
+    NavigatorOptions prior_only = without_learning();
+    prior_only.search.whole_map = false;
+    const Drive before = drive_through(run, prior_only);
+    EXPECT_GE(drive.closed, 1);
+    EXPECT_EQ(drive.undecided, 0);
+    EXPECT_LT(drive.mature, before.mature) << "duplicates";
+    ASSERT_FALSE(drive.asked.empty());
+    const core::WholeMapDecision& last = drive.asked.back();
+    EXPECT_EQ(last.verdict, core::WholeMapDecision::Verdict::accepted);
+    EXPECT_GT(last.cost, last.limit);
+    EXPECT_GT(last.odometry_factor, 1.0);
+    EXPECT_GT(last.evidence, last.needed);
   }
-  EXPECT_GE(helped, 2) << "seeds on which nothing closed without it";
 }
 
 TEST(WholeMap, FindsAVehicleThatWasCarriedAway) {

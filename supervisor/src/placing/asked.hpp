@@ -13,13 +13,15 @@ struct Asked {
   int questions = 0;
   std::vector<core::LandmarkId> with;  ///< ascending
 
-  /// Enough landmarks to ask with, and enough of them new since the last question: a fifth.
-  bool is_due(const std::vector<core::LandmarkId>& landmarks) const {
+  /// Enough landmarks to ask with, and enough of them new since the last question: a fifth where somebody waits for the answer,
+  /// half where nobody does.
+  bool is_due(const std::vector<core::LandmarkId>& landmarks, double least_new = 0.2) const {
     constexpr std::size_t least_to_ask = 8;
     const auto fresh = std::count_if(landmarks.begin(), landmarks.end(), [&](core::LandmarkId id) {
       return !std::binary_search(with.begin(), with.end(), id);
     });
-    return landmarks.size() >= least_to_ask && 5 * static_cast<std::size_t>(fresh) >= landmarks.size();
+    return landmarks.size() >= least_to_ask &&
+           static_cast<double>(fresh) >= least_new * static_cast<double>(landmarks.size());
   }
 
   /// α/(k(k+1)) for the k-th question, so that α is the probability of a false answer among all of them, however many.

@@ -9,30 +9,37 @@
 namespace helixnav::supervisor {
 namespace {
 
+using core::LandmarkId;
+
+constexpr std::size_t most_neighbours = 12;  ///< the landmark itself among them
+constexpr std::size_t at_once = 40;
+
 /// The nearest of `old` within reach, the landmark itself first.
-std::vector<core::LandmarkId> neighbours_of(core::LandmarkId id, const cekf::CompressedEkf& filter,
-                                            const std::vector<core::LandmarkId>& old, double reach_m) {
-  constexpr std::size_t most = 12;
+std::vector<LandmarkId> neighbours_of(LandmarkId id, const cekf::CompressedEkf& filter,
+                                      const std::vector<LandmarkId>& old, double reach_m) {
   const Eigen::Vector2d at_m = filter.landmark_mean(id);
-  std::vector<std::pair<double, core::LandmarkId>> near;
-  for (const core::LandmarkId other : filter.landmarks_within(at_m, reach_m)) {
-    if (other == id || !std::binary_search(old.begin(), old.end(), other)) continue;
-    near.emplace_back((filter.landmark_mean(other) - at_m).norm(), other);
+  std::vector<std::pair<double, LandmarkId>> near;
+  for (const LandmarkId other : filter.landmarks_within(at_m, reach_m)) {
+    if (!std::binary_search(old.begin(), old.end(), other)) continue;
+    near.emplace_back(other == id ? -1.0 : (filter.landmark_mean(other) - at_m).norm(), other);
   }
-  std::sort(near.begin(), near.end());
-  near.resize(std::min(most - 1, near.size()));
-  std::vector<core::LandmarkId> ids{id};
-  for (const auto& [distance_m, other] : near) ids.push_back(other);
+  const std::size_t kept = std::min(most_neighbours, near.size());
+  std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(kept), near.end());
+  std::vector<LandmarkId> ids;
+  for (std::size_t i = 0; i < kept; ++i) ids.push_back(near[i].second);
   return ids;
 }
 
-/// Where it is, as uncertain as it is relative to its neighbours.
-core::PointGaussian point_of(core::LandmarkId id, const cekf::CompressedEkf& filter,
-                             const std::vector<core::LandmarkId>& old, double reach_m) {
-  const core::JointGaussian joint = filter.joint(neighbours_of(id, filter, old, reach_m));
-  const Eigen::Index n = joint.covariance.rows() - 3;
-  return {joint.points_m.front(),
-          relative_covariances(joint.points_m, joint.covariance.bottomRightCorner(n, n)).front()};
+/// Where the first of `ids` is, as uncertain as it is relative to the others.
+core::PointGaussian point_of(const std::vector<LandmarkId>& ids, const core::JointGaussian& joint) {
+  std::vector<Eigen::Vector2d> points_m;
+  std::vector<Eigen::Index> rows;
+  for (const LandmarkId id : ids) {
+    const auto at = std::lower_bound(joint.ids.begin(), joint.ids.end(), id) - joint.ids.begin();
+    points_m.push_back(joint.points_m[static_cast<std::size_t>(at)]);
+    rows.insert(rows.end(), {3 + 2 * at, 4 + 2 * at});
+  }
+  return {points_m.front(), relative_covariances(points_m, joint.covariance(rows, rows)).front()};
 }
 
 }  // namespace
@@ -44,21 +51,42 @@ void OldGroundIndex::follow(const cekf::CompressedEkf& filter, const std::vector
     return true;
   };
   ids_.erase(std::remove_if(ids_.begin(), ids_.end(), gone), ids_.end());
-  const relocalize::IndexOptions& lengths = index_.options();
-  const Eigen::Matrix2d half_m2 = 0.5 * lengths.pair_noise_m * lengths.pair_noise_m * Eigen::Matrix2d::Identity();
-  const std::size_t before = ids_.size();
-  for (const core::LandmarkId id : old) {
-    if (index_.contains(id) || !filter.contains(id)) continue;
-    relocalize::Landmark landmark;
-    landmark.id = id;
-    landmark.point = point_of(id, filter, old, lengths.reach_m);
-    landmark.point.covariance_m2 += half_m2;
-    index_.insert(landmark);
-    ids_.push_back(id);
+  std::vector<LandmarkId> added;
+  for (const LandmarkId id : old) {
+    if (!index_.contains(id) && filter.contains(id)) added.push_back(id);
   }
-  if (ids_.size() == before) return;
+  for (std::size_t i = 0; i < added.size(); i += at_once) {
+    insert({added.begin() + static_cast<std::ptrdiff_t>(i),
+            added.begin() + static_cast<std::ptrdiff_t>(std::min(i + at_once, added.size()))},
+           filter, old);
+  }
+  if (added.empty()) return;
+  ids_.insert(ids_.end(), added.begin(), added.end());
   std::sort(ids_.begin(), ids_.end());
   index_.look_around_landmarks();
+}
+
+/// With one joint covariance for all, which costs little more than for one.
+void OldGroundIndex::insert(const std::vector<LandmarkId>& added, const cekf::CompressedEkf& filter,
+                            const std::vector<LandmarkId>& old) {
+  const relocalize::IndexOptions& lengths = index_.options();
+  std::vector<std::vector<LandmarkId>> neighbours;
+  std::vector<LandmarkId> all;
+  for (const LandmarkId id : added) {
+    neighbours.push_back(neighbours_of(id, filter, old, lengths.reach_m));
+    all.insert(all.end(), neighbours.back().begin(), neighbours.back().end());
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  const core::JointGaussian joint = filter.joint(all);
+  const Eigen::Matrix2d half_m2 = 0.5 * lengths.pair_noise_m * lengths.pair_noise_m * Eigen::Matrix2d::Identity();
+  for (const std::vector<LandmarkId>& one : neighbours) {
+    relocalize::Landmark landmark;
+    landmark.id = one.front();
+    landmark.point = point_of(one, joint);
+    landmark.point.covariance_m2 += half_m2;
+    index_.insert(landmark);
+  }
 }
 
 }  // namespace helixnav::supervisor

@@ -15,14 +15,17 @@ class OldGroundIndex {
  public:
   explicit OldGroundIndex(const relocalize::IndexOptions& lengths) : index_(lengths) {}
 
-  /// Takes in those of `old` (ascending) that it lacks and drops those that the filter has no more. A joint covariance of a dozen
-  /// neighbours for each new one.
+  /// Takes in those of `old` (ascending) that it lacks and drops those that the filter has no more. A joint covariance for
+  /// every forty new ones with their neighbours.
   void follow(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& old);
 
   bool contains(core::LandmarkId id) const { return index_.contains(id); }
   const relocalize::MapIndex& index() const { return index_; }
 
  private:
+  void insert(const std::vector<core::LandmarkId>& added, const cekf::CompressedEkf& filter,
+              const std::vector<core::LandmarkId>& old);
+
   relocalize::MapIndex index_;
   std::vector<core::LandmarkId> ids_;  ///< ascending
 };

@@ -71,7 +71,8 @@ void NavigationLoop::ask_whether_new(const core::Scan& scan, core::StepReport& r
   next_ask_path_m_ = path_m + options_.search.ask_again_m;
   const double within_m = options_.search.branch_seen_within_m;
   LandmarksAbout about = landmarks_about(belief_, within_m, path_m - within_m);
-  if (!asked_.is_due(about.ids)) return;
+  constexpr double least_new = 0.5;
+  if (!asked_.is_due(about.ids, least_new)) return;
   const Checkpoint now = take_checkpoint(belief_, tape_);
   ask_whole_map(about, search_from(now), now, scan, report);
 }
