@@ -26,6 +26,9 @@ std::vector<DecisionRow> all_rows() {
   for (const char* verdict : {"sought", "accepted", "ambiguous", "refused", "not-here"}) {
     rows.push_back(row_of(decision_of({"placed", verdict, {}})));
   }
+  for (const char* verdict : {"accepted", "ambiguous", "refused", "not-here"}) {
+    rows.push_back(row_of(decision_of({"whole-map", verdict, {}})));
+  }
   return rows;
 }
 

@@ -103,6 +103,27 @@ TEST(Slips, LeaveTruthAndScansAsTheyWere) {
   EXPECT_TRUE(without.true_slips_ns.empty());
 }
 
+TEST(Carried, LeavesOutStretchesOfTheDriveAndTheTimeThatTheyTook) {
+  const Scenario scenario = named_scenario("kidnapped");
+  const core::Recording run = simulate(scenario, 7);
+  const double between_scans_m = scenario.vehicle.speed_mps * scenario.vehicle.odometry_period_s * 5;
+  std::vector<double> pauses_s;
+  core::Nanoseconds last_ns = 0;
+  for (const core::Event& event : run.events) {
+    const auto* odometry = std::get_if<core::Odometry>(&event);
+    if (odometry == nullptr) continue;
+    const double pause_s = core::seconds(odometry->t_ns - last_ns);
+    if (pause_s > 1.5 * scenario.vehicle.odometry_period_s) pauses_s.push_back(pause_s);
+    EXPECT_LT(odometry->T_before_after.position_m().norm(), between_scans_m) << "nobody measures it";
+    last_ns = odometry->t_ns;
+  }
+  ASSERT_EQ(pauses_s.size(), 2u) << "3.6 km, every 1.4 km";
+  for (const double pause_s : pauses_s) {
+    EXPECT_GE(scenario.vehicle.speed_mps * pause_s, 95.0);
+    EXPECT_LE(scenario.vehicle.speed_mps * pause_s, 410.0);
+  }
+}
+
 TEST(ScaledNoise, TakesOdometryAndDetectorApart) {
   const NoiseLevels noise = named_scenario("town").true_noise;
   const NoiseLevels scaled_noise = scaled(noise, 2.0, 0.25);

@@ -3,8 +3,28 @@
 
 #include "closing/branch_pairs.hpp"
 #include "closing/duplicate_segment.hpp"
+#include "helixnav/core/errors.hpp"
 
 namespace helixnav::supervisor {
+namespace {
+
+/// False, and the filter as before, where cost_of would give nothing one iteration later.
+bool try_merge(cekf::CompressedEkf& filter, const KeptRemoved& pairs, double sigma_m) {
+  try {
+    filter.merge(pairs, sigma_m);
+    return true;
+  } catch (const core::NumericalError&) {
+    return false;
+  }
+}
+
+Closing refused_for_rounding(Closing closing) {
+  closing.cost = closing.limit = 0.0;
+  closing.dof = 0;
+  return closing;
+}
+
+}  // namespace
 
 void merge_leftovers(cekf::CompressedEkf& filter, const DuplicateSegment& duplicate_segment,
                      const std::vector<core::LandmarkId>& confirmed, const std::vector<core::LandmarkId>& old,
@@ -15,7 +35,7 @@ void merge_leftovers(cekf::CompressedEkf& filter, const DuplicateSegment& duplic
     if (rest.empty()) rest = duplicate_segment.place(filter, old, options);
     Closing rest_closing;
     if (rest.empty() || !make_compatible(filter, options, rest, rest_closing)) return;
-    filter.merge(rest, options.merge_sigma_m);
+    if (!try_merge(filter, rest, options.merge_sigma_m)) return;
     note(rest, closing);
   }
 }
@@ -26,7 +46,7 @@ Closing close_by_merge(cekf::CompressedEkf& filter, const std::vector<pf_relocal
   const DuplicateSegment duplicate_segment(filter, branch);
   KeptRemoved chosen = kept_removed(pairs);
   if (chosen.size() < least_pairs || !make_compatible(filter, options, chosen, closing)) return closing;
-  filter.merge(chosen, options.merge_sigma_m);
+  if (!try_merge(filter, chosen, options.merge_sigma_m)) return refused_for_rounding(closing);
   note(chosen, closing);
   closing.accepted = true;
 
