@@ -3,7 +3,9 @@
 
 #include <cstdlib>  // __GLIBC__
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && defined(__GLIBC__)
+#include "sanitized.hpp"
+
+#if !defined(HELIXNAV_SANITIZED) && defined(__GLIBC__)
 #define HELIXNAV_CAN_FAIL_MALLOC 1
 #endif
 
