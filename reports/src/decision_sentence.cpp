@@ -188,7 +188,7 @@ std::string odometry_of(const core::WholeMapDecision& d) {
   if (d.odometry_factor == 1.0) return apart + ", which is within its noise.";
   const std::string forbids = apart + ", and the pairs would cost " + short_number(d.cost) + " (limit " +
                               short_number(d.limit) + "): it was wrong. ";
-  if (d.odometry_factor == 0.0) return forbids + "The drive was cut where the search began.";
+  if (d.odometry_factor == 0.0) return forbids + "The drive was cut, as if the vehicle had been carried there.";
   return forbids + "The noise of the last " + short_number(d.loop_m) + " m is taken to be " +
          short_number(std::sqrt(d.odometry_factor)) + " times as large.";
 }

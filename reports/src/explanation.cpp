@@ -99,6 +99,16 @@ const core::StepReport& step_numbered(const runs::Run& run, std::int64_t step) {
   throw core::InputError(run.path + ": no step " + std::to_string(step) + "; this run has " + steps);
 }
 
+/// Where the whole map was asked for the place that was closed: how it was found, and what became of the odometry.
+std::string found_by(const Decided& closure) {
+  if (closure.decision == &closure.step->decisions.front()) return {};
+  const core::Decision& before = *(closure.decision - 1);
+  return std::holds_alternative<core::WholeMapDecision>(before) ? sentence_of(before) + ' ' : std::string();
+}
+
+/// A search, or what mapping had come to, was over: with the map closed, or left open.
+bool ends_search(const Decided& decided) { return is_closure(decided) && verdict_of(decided) != "refused"; }
+
 bool is_placing(const Decided& decided) { return std::holds_alternative<core::PlacedDecision>(*decided.decision); }
 
 /// Whether a session found its place on an earlier map, where it looked for one.
@@ -134,7 +144,7 @@ std::string explain_run(const runs::Run& run) {
   const bool nothing_else = std::all_of(decided.begin(), decided.end(), is_placing);
   if (nothing_else) return text + "No return was ambiguous enough for a search: every scan was associated at once.\n";
   for (std::size_t i = 0; i < closures.size(); ++i) {
-    text += "\nClosure " + std::to_string(i + 1) + ", " + when(*closures[i].step) + ". " +
+    text += "\nClosure " + std::to_string(i + 1) + ", " + when(*closures[i].step) + ". " + found_by(closures[i]) +
             sentence_of(*closures[i].decision) + '\n';
   }
   if (!run.steps.empty() && run.steps.back().mode == core::Mode::searching) {
@@ -156,7 +166,7 @@ std::string explain_closure(const runs::Run& run, std::size_t closure) {
                            std::to_string(found));
   }
   auto first = last;
-  while (first != decided.begin() && !is_trigger(*first)) --first;
+  while (first != decided.begin() && !is_trigger(*first) && !ends_search(*(first - 1))) --first;
   std::string text = "Closure " + std::to_string(closure) + " of this run: " + verdict_of(*last) + ".\n";
   for (auto it = first; it != last + 1; ++it) text += line_of(*it);
   text += merges_of(*last->step);

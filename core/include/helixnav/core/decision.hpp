@@ -178,7 +178,7 @@ struct WholeMapDecision {
   int dof = 0;
   double limit = 0.0;
   double odometry_factor =
-      1.0;              ///< on the covariance of the motion since the old landmarks were left; 0: cut at the trigger
+      1.0;              ///< on the covariance of the motion since the old landmarks were left; 0: the drive was cut
   double loop_m = 0.0;  ///< length of that motion
   double displaced_m = 0.0;  ///< from where odometry has the vehicle
 };
