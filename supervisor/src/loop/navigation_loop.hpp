@@ -22,6 +22,7 @@
 #include "placing/session_question.hpp"
 #include "search/old_ground_index.hpp"
 #include "slip/slip_decision.hpp"
+#include "smoothing/smooth_drive.hpp"
 
 namespace helixnav::supervisor {
 
@@ -57,6 +58,7 @@ class NavigationLoop {
     std::optional<cekf::CompressedEkf> filter;            ///< before the drive was solved
     std::optional<Tape> tape;                             ///< before odometry on it was found wrong
     std::optional<std::vector<Tape::Entry>> rolled_back;  ///< taken off the tape
+    std::optional<std::shared_ptr<const DriveMap>> drive = {};
   };
 
   // loop/navigation_loop.cpp
@@ -98,7 +100,12 @@ class NavigationLoop {
                       core::StepReport& report) const;
   void end_search(const Closing* closing);
   void merge_left_open(const core::FieldOfView& view, core::StepReport& report);  // merge_left_open.cpp
+
+  // smoothing/solve_drive.cpp
   void solve_drive(core::StepReport& report);
+  Smoothing solved_drive();
+  bool is_for_atlas() const;
+  void become(std::shared_ptr<const DriveMap> drive);
 
   // search/whole_map.cpp
   bool asks_whole_map() const;

@@ -23,6 +23,7 @@ void NavigationLoop::commit() {
   } catch (const std::bad_alloc&) {
     // The closed phases stay as they are, which is as exact, and are absorbed at the next occasion.
   }
+  if (belief_.drive) tape_.hand_on(belief_.drive->end());
   tape_.settle(checkpoint().position);
 }
 
@@ -30,6 +31,7 @@ void NavigationLoop::commit() {
 void NavigationLoop::recover() {
   Undo undo = std::exchange(undo_, Undo{});
   if (undo.filter) belief_.filter = std::move(*undo.filter);
+  if (undo.drive) belief_.drive = std::move(*undo.drive);
   if (undo.mode) mode_ = std::move(*undo.mode);
   if (undo.tape) tape_ = std::move(*undo.tape);
   searches_ = undo.searches;
