@@ -12,6 +12,7 @@
 #include "loop/tape.hpp"
 #include "slip/slip_record.hpp"
 #include "smoothing/drive_map.hpp"
+#include "window/window.hpp"
 
 namespace helixnav::supervisor {
 
@@ -33,6 +34,8 @@ struct Belief {
   std::vector<LeftOpen> left_open = {};
   /// The drive as an atlas, up to some place before the last checkpoint; null as long as the tape has it all.
   std::shared_ptr<const DriveMap> drive = {};
+  Window window = {};  ///< which part of it the filter holds
+  double handed_over_path_m = 0.0;
 };
 
 /// A belief to come back to, and where the tape was then. A snapshot of O(n_a²) bytes and the landmarks' existence; good as

@@ -2,6 +2,7 @@
 #include "loop/recover.hpp"
 
 #include <new>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -31,7 +32,7 @@ void NavigationLoop::commit() {
 void NavigationLoop::recover() {
   Undo undo = std::exchange(undo_, Undo{});
   if (undo.filter) belief_.filter = std::move(*undo.filter);
-  if (undo.drive) belief_.drive = std::move(*undo.drive);
+  if (undo.drive) std::tie(belief_.drive, belief_.window) = std::move(*undo.drive);
   if (undo.mode) mode_ = std::move(*undo.mode);
   if (undo.tape) tape_ = std::move(*undo.tape);
   searches_ = undo.searches;

@@ -20,6 +20,7 @@ Search NavigationLoop::search_from(const Checkpoint& trigger) const {
 }
 
 void NavigationLoop::begin_search() {
+  widen_for_search();
   ++searches_;
   Checkpoint trigger = take_checkpoint(belief_, tape_);
   Search search = search_from(trigger);

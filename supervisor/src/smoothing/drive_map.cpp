@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <map>
+#include <string>
 #include <utility>
 
 #include "helixnav/atlas/phase_factor.hpp"
+#include "helixnav/core/errors.hpp"
 #include "smoothing/smooth_drive.hpp"
 
 namespace helixnav::supervisor {
@@ -74,6 +76,28 @@ void DriveMap::merge(const Tape& tape, const core::MergedIds& ids) {
 bool DriveMap::has_name(core::LandmarkId id) const {
   const auto at = static_cast<std::size_t>(id);
   return id >= 0 && at < named_.size() && named_[at];
+}
+
+void DriveMap::settle() {
+  atlas_.settle();
+  places_ = std::make_shared<const std::vector<atlas::Place>>(atlas_.landmarks());
+}
+
+void DriveMap::remember(const cekf::CompressedEkf& filter) {
+  covariances_m2_.resize(std::max(covariances_m2_.size(), static_cast<std::size_t>(filter.next_name())),
+                         Eigen::Matrix2d::Zero());
+  for (const core::LandmarkId id : filter.landmarks()) {
+    covariances_m2_[static_cast<std::size_t>(id)] = filter.landmark(id).covariance_m2;
+  }
+}
+
+core::PointGaussian DriveMap::remembered(core::LandmarkId id) const {
+  const auto place = std::lower_bound(places_->begin(), places_->end(), id,
+                                      [](const atlas::Place& one, core::LandmarkId name) { return one.id < name; });
+  if (place == places_->end() || place->id != id) {
+    throw core::PreconditionError("landmark " + std::to_string(id) + " is not in the drive's map");
+  }
+  return {place->point_m, covariances_m2_.at(static_cast<std::size_t>(id))};
 }
 
 std::vector<core::StampedPose> DriveMap::path() const {

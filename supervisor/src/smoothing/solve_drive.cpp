@@ -1,29 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // After a closing: the drive is solved as a whole, over all its poses or, where it is long, on the atlas.
+#include <limits>
 #include <memory>
 #include <utility>
 
 #include "helixnav/core/errors.hpp"
-#include "helixnav/supervisor/lengths.hpp"
 #include "loop/navigation_loop.hpp"
 #include "smoothing/solve_on_atlas.hpp"
 
 namespace helixnav::supervisor {
+namespace {
+
+constexpr WindowNeeds all_landmarks{0.0, std::numeric_limits<int>::max(), std::numeric_limits<int>::max()};
+
+}  // namespace
 
 void NavigationLoop::solve_drive(core::StepReport& report) {
   if (options_.search.closing == ClosingMethod::restart)
     tape_.drop_drive();  // what came before the restart no longer constrains the map
   if (!belief_.drive && !tape_.holds_drive()) return;
   const core::Pose2 before = belief_.filter.pose().mean;
-  Smoothing smoothing = solved_drive();
-  if (smoothing.solved) {
-    std::swap(belief_.filter, *smoothing.solved);
-    if (!undo_.filter) undo_.filter.emplace(std::move(*smoothing.solved));
+  bool accepted = false;
+  Smoothing smoothing = is_for_atlas() ? solve_by_atlas(accepted) : solve_by_poses(accepted);
+  if (accepted) {
     tape_.append(Tape::Solved{smoothing.chi2});
     report.solved = std::move(smoothing.path);
   }
   core::SmoothingDecision decision;
-  decision.accepted = smoothing.solved.has_value();
+  decision.accepted = accepted;
   decision.chi2 = smoothing.chi2;
   decision.limit = smoothing.limit;
   decision.poses = smoothing.poses;
@@ -32,21 +36,29 @@ void NavigationLoop::solve_drive(core::StepReport& report) {
   report.decisions.emplace_back(decision);
 }
 
+Smoothing NavigationLoop::solve_by_poses(bool& accepted) {
+  Smoothing smoothing = smooth_drive(belief_.filter, start_, tape_);
+  accepted = smoothing.solved.has_value();
+  if (!accepted) return smoothing;
+  std::swap(belief_.filter, *smoothing.solved);
+  if (!undo_.filter) undo_.filter.emplace(std::move(*smoothing.solved));
+  return smoothing;
+}
+
 /// Where the atlas cannot be solved, least squares over all poses has the last word as long as the tape holds them.
-Smoothing NavigationLoop::solved_drive() {
-  if (!is_for_atlas()) return smooth_drive(belief_.filter, start_, tape_);
+Smoothing NavigationLoop::solve_by_atlas(bool& accepted) {
   try {
-    constexpr double phase_share = 2.0 / 3.0;  // 20 m where the sensor reaches 30 m
-    auto drive = belief_.drive
-                     ? std::make_shared<DriveMap>(*belief_.drive)
-                     : std::make_shared<DriveMap>(start_, phase_share * view_.reach().value_or(reference_reach_m));
-    Smoothing smoothing = solve_on_atlas(belief_.filter, tape_, *drive);
-    become(std::move(drive));
-    return smoothing;
+    auto drive = belief_.drive ? std::make_shared<DriveMap>(*belief_.drive) : begun_drive();
+    AtlasSolution solution = solve_on_atlas(belief_.filter, tape_, *drive);
+    if (solution.accepted) {
+      begin_window(std::move(drive), sought_in_ ? all_landmarks : window_to_map());
+    } else {
+      become(std::move(drive), belief_.window);
+    }
+    accepted = solution.accepted;
+    return solution.figures;
   } catch (const core::NumericalError&) {
-    if (tape_.holds_drive()) return smooth_drive(belief_.filter, start_, tape_);
-    become(nullptr);
-    tape_.drop_drive();
+    if (tape_.holds_drive()) return solve_by_poses(accepted);
     return {};
   }
 }
@@ -54,11 +66,6 @@ Smoothing NavigationLoop::solved_drive() {
 /// Least squares over all poses is the faster one on small maps and short drives.
 bool NavigationLoop::is_for_atlas() const {
   return belief_.drive || belief_.filter.mapped_count() > options_.map.window;
-}
-
-void NavigationLoop::become(std::shared_ptr<const DriveMap> drive) {
-  std::swap(belief_.drive, drive);
-  if (!undo_.drive) undo_.drive.emplace(std::move(drive));
 }
 
 }  // namespace helixnav::supervisor

@@ -13,7 +13,9 @@ namespace helixnav::supervisor {
 
 /// How a map is kept that is too large for one filter.
 struct MapOptions {
-  int window = 400;  ///< landmarks up to which all are in one filter, and a closing is solved over all poses
+  int window = 400;  ///< landmarks up to which all are in one filter and a closing is solved over all poses; beyond, so
+                     ///< many nearest the vehicle, and more where its drift asks for it, …
+  int most = 1000;   ///< … but not more than this
 };
 
 /// Options of Navigator and NamedNavigator; the latter reads filter, delayed and fix_probability only. Every length here is
