@@ -35,7 +35,6 @@ struct Belief {
   /// The drive as an atlas, up to some place before the last checkpoint; null as long as the tape has it all.
   std::shared_ptr<const DriveMap> drive = {};
   Window window = {};  ///< which part of it the filter holds
-  double handed_over_path_m = 0.0;
 };
 
 /// A belief to come back to, and where the tape was then. A snapshot of O(n_a²) bytes and the landmarks' existence; good as

@@ -92,7 +92,7 @@ void Tape::settle(Position position) {
   for (; settled_ < position; ++settled_) {
     if (auto* scan = std::get_if<Scan>(&entries_[settled_ - forgotten_])) drop_unused(*scan);
   }
-  if (stops_ > most_stops_) most_stops_ = 0;  // from now on
+  if (handed_on_ == 0 && stops_ > most_stops_) most_stops_ = 0;  // from now on
   forget(most_stops_ > 0 ? std::min(position, handed_on_) : position);
 }
 

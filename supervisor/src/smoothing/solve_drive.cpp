@@ -18,7 +18,8 @@ constexpr WindowNeeds all_landmarks{0.0, std::numeric_limits<int>::max(), std::n
 void NavigationLoop::solve_drive(core::StepReport& report) {
   if (options_.search.closing == ClosingMethod::restart)
     tape_.drop_drive();  // what came before the restart no longer constrains the map
-  if (!belief_.drive && !tape_.holds_drive()) return;
+  const bool is_whole = belief_.drive ? tape_.holds_since(belief_.drive->end()) : tape_.holds_drive();
+  if (!is_whole) return;
   const core::Pose2 before = belief_.filter.pose().mean;
   bool accepted = false;
   Smoothing smoothing = is_for_atlas() ? solve_by_atlas(accepted) : solve_by_poses(accepted);
@@ -65,7 +66,7 @@ Smoothing NavigationLoop::solve_by_atlas(bool& accepted) {
 
 /// Least squares over all poses is the faster one on small maps and short drives.
 bool NavigationLoop::is_for_atlas() const {
-  return belief_.drive || belief_.filter.mapped_count() > options_.map.window;
+  return belief_.drive || belief_.filter.mapped_count() > options_.map.solve_over_poses;
 }
 
 }  // namespace helixnav::supervisor

@@ -25,7 +25,7 @@ double drift_m(const cekf::CompressedEkf& filter) {
 
 /// The drive is known from its begin, and no other map is asked for a place in it.
 bool NavigationLoop::may_have_window() const {
-  const bool is_whole = belief_.drive != nullptr || tape_.holds_drive();
+  const bool is_whole = belief_.drive ? tape_.holds_since(belief_.drive->end()) : tape_.holds_drive();
   return is_whole && !sought_in_ && options_.search.closing != ClosingMethod::restart;
 }
 
@@ -59,6 +59,7 @@ void NavigationLoop::begin_window(std::shared_ptr<DriveMap> drive, const WindowN
   const atlas::Atlas& atlas = drive->atlas();
   ChosenWindow chosen = choose_window(drive->places(), belief_.existence, atlas.pose().position_m(), needs);
   cekf::CompressedEkf filter(atlas.joint(chosen.ids), belief_.filter.next_name(), belief_.filter.options());
+  chosen.window.begun_path_m = belief_.existence.path_m();
   drive->remember(belief_.filter);
   std::swap(belief_.filter, filter);
   if (!undo_.filter) undo_.filter.emplace(std::move(filter));
@@ -83,12 +84,19 @@ void NavigationLoop::hand_over_if_due() {
   const bool has_grown = 2 * held > 3 * std::max(options_.map.window, belief_.window.landmarks);
   const double needed_m = view_.reach().value_or(reference_reach_m) + 0.5 * drift_m(belief_.filter);
   const bool at_edge = belief_.window.reach_from(belief_.filter.pose().mean.position_m()) < needed_m;
+  constexpr int most_on_tape = 5000;
+  const bool is_long = belief_.drive && tape_.stops() > most_on_tape;
   constexpr double pause_m = 20.0;
-  const bool is_new = belief_.existence.path_m() - belief_.handed_over_path_m > pause_m;
-  if (!is_new || !(has_grown || at_edge)) return;
+  const bool is_new = belief_.existence.path_m() - belief_.window.begun_path_m > pause_m;
+  if (!is_new || !(has_grown || at_edge || is_long)) return;
   if (!undo_.mode) undo_.mode.emplace(Mode(*mapping));
-  if (hand_over(window_to_map())) mapping->trust(take_checkpoint(belief_, tape_));
-  belief_.handed_over_path_m = belief_.existence.path_m();
+  if (hand_over(window_to_map())) {
+    mapping->trust(take_checkpoint(belief_, tape_));
+    return;
+  }
+  Window tried = belief_.window;
+  tried.begun_path_m = belief_.existence.path_m();
+  become(belief_.drive, tried);
 }
 
 /// Before a search: all that it may ask for has to be in the filter.

@@ -17,7 +17,8 @@ namespace helixnav::supervisor {
 struct Window {
   Eigen::Vector2d center_m = Eigen::Vector2d::Zero();
   double radius_m = std::numeric_limits<double>::infinity();  ///< infinite: the whole map
-  int landmarks = 0;                                          ///< when the filter began
+  int landmarks = 0;                                          ///< when the filter began, and …
+  double begun_path_m = 0.0;                                  ///< … the length of the drive then
 
   /// Around a place, how far every landmark is held.
   double reach_from(const Eigen::Vector2d& point_m) const { return radius_m - (point_m - center_m).norm(); }
