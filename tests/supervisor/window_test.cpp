@@ -57,7 +57,7 @@ TEST(Window, ClosesWhatTheWholeMapCloses) {
   for (const std::uint64_t seed : {5u, 6u}) {
     const sim::Scenario scenario = short_town();
     NavigatorOptions narrow;
-    narrow.map.window = narrow.map.solve_over_poses = 100;
+    narrow.map.whole = narrow.map.window = narrow.map.solve_over_poses = 100;
     const evaluation::RunScore whole = navigate_and_judge(scenario, seed);
     const evaluation::RunScore window = navigate_and_judge(scenario, seed, narrow);
     EXPECT_GE(whole.closures.size(), 2u) << "or it shows nothing";

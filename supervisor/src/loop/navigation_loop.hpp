@@ -43,7 +43,7 @@ class NavigationLoop {
 
   const Belief& belief() const { return belief_; }
 
-  // window/whole_map.cpp
+  // window/whole_estimate.cpp
   std::vector<core::LandmarkId> landmarks() const;
   core::PointGaussian sketched(core::LandmarkId id) const;
   std::vector<core::PointGaussian> marginals() const;
@@ -116,6 +116,7 @@ class NavigationLoop {
 
   // window/hand_over.cpp
   bool may_have_window() const;
+  bool needs_window() const;
   WindowNeeds window_to_map() const;
   WindowNeeds window_to_search() const;
   std::shared_ptr<DriveMap> drive_until_now() const;
@@ -132,6 +133,7 @@ class NavigationLoop {
   void ask_whether_new(const core::Scan& scan, core::StepReport& report);
   bool ask_whole_map(LandmarksAbout& about, const Search& search, const Checkpoint& trigger, const core::Scan& scan,
                      core::StepReport& report);
+  bool begin_drive_anew(const Tape& tape, const cekf::CompressedEkf& filter);
   bool close_at(const std::vector<pf_relocalize::ConstellationPair>& pairs, const Search& search,
                 const Checkpoint& trigger, const core::Scan& scan, core::WholeMapDecision& decision,
                 core::StepReport& report);

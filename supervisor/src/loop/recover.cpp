@@ -24,7 +24,8 @@ void NavigationLoop::commit() {
   } catch (const std::bad_alloc&) {
     // The closed phases stay as they are, which is as exact, and are absorbed at the next occasion.
   }
-  if (belief_.drive) tape_.hand_on(belief_.drive->end());
+  const bool is_long = tape_.stops() > options_.search.smooth_up_to_scans || !tape_.holds_since(0);
+  if (belief_.drive && is_long) tape_.hand_on(belief_.drive->end());
   tape_.settle(checkpoint().position);
 }
 

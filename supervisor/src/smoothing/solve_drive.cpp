@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // After a closing: the drive is solved as a whole, over all its poses or, where it is long, on the atlas.
-#include <limits>
 #include <memory>
 #include <utility>
 
@@ -9,11 +8,6 @@
 #include "smoothing/solve_on_atlas.hpp"
 
 namespace helixnav::supervisor {
-namespace {
-
-constexpr WindowNeeds all_landmarks{0.0, std::numeric_limits<int>::max(), std::numeric_limits<int>::max()};
-
-}  // namespace
 
 void NavigationLoop::solve_drive(core::StepReport& report) {
   if (options_.search.closing == ClosingMethod::restart)
@@ -52,7 +46,7 @@ Smoothing NavigationLoop::solve_by_atlas(bool& accepted) {
     auto drive = belief_.drive ? std::make_shared<DriveMap>(*belief_.drive) : begun_drive();
     AtlasSolution solution = solve_on_atlas(belief_.filter, tape_, *drive);
     if (solution.accepted) {
-      begin_window(std::move(drive), sought_in_ ? all_landmarks : window_to_map());
+      begin_window(std::move(drive), window_to_map());
     } else {
       become(std::move(drive), belief_.window);
     }
@@ -66,7 +60,7 @@ Smoothing NavigationLoop::solve_by_atlas(bool& accepted) {
 
 /// Least squares over all poses is the faster one on small maps and short drives.
 bool NavigationLoop::is_for_atlas() const {
-  return belief_.drive || belief_.filter.mapped_count() > options_.map.solve_over_poses;
+  return belief_.drive != nullptr || belief_.filter.mapped_count() > options_.map.solve_over_poses;
 }
 
 }  // namespace helixnav::supervisor

@@ -2,6 +2,7 @@
 // The filter of a map that is too large for it begins anew where the vehicle is, from the atlas of the drive.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -29,7 +30,13 @@ bool NavigationLoop::may_have_window() const {
   return is_whole && !sought_in_ && options_.search.closing != ClosingMethod::restart;
 }
 
+bool NavigationLoop::needs_window() const {
+  return static_cast<int>(belief_.existence.records().size()) > options_.map.whole;
+}
+
 WindowNeeds NavigationLoop::window_to_map() const {
+  constexpr int all = std::numeric_limits<int>::max();
+  if (sought_in_ || !needs_window()) return {0.0, all, all};
   const double reach_m = view_.reach().value_or(reference_reach_m);
   return {2.0 * reach_m + drift_m(belief_.filter), options_.map.window, options_.map.most};
 }
@@ -79,13 +86,14 @@ bool NavigationLoop::hand_over(const WindowNeeds& needs) {
 void NavigationLoop::hand_over_if_due() {
   Mapping* mapping = std::get_if<Mapping>(&mode_);
   if (mapping == nullptr || mapping->trusted->position != tape_.end() || !may_have_window()) return;
+  const bool is_part = std::isfinite(belief_.window.radius_m);
+  if (!is_part && !needs_window()) return;
   const int held = belief_.filter.mapped_count();
-  if (held <= options_.map.window && !belief_.drive) return;
   const bool has_grown = 2 * held > 3 * std::max(options_.map.window, belief_.window.landmarks);
   const double needed_m = view_.reach().value_or(reference_reach_m) + 0.5 * drift_m(belief_.filter);
   const bool at_edge = belief_.window.reach_from(belief_.filter.pose().mean.position_m()) < needed_m;
-  constexpr int most_on_tape = 5000;
-  const bool is_long = belief_.drive && tape_.stops() > most_on_tape;
+  constexpr Tape::Position most_entries = 20000;
+  const bool is_long = belief_.drive && tape_.end() - belief_.drive->end() > most_entries;
   constexpr double pause_m = 20.0;
   const bool is_new = belief_.existence.path_m() - belief_.window.begun_path_m > pause_m;
   if (!is_new || !(has_grown || at_edge || is_long)) return;
@@ -101,7 +109,7 @@ void NavigationLoop::hand_over_if_due() {
 
 /// Before a search: all that it may ask for has to be in the filter.
 void NavigationLoop::widen_for_search() {
-  if (!belief_.drive || !may_have_window()) return;
+  if (!std::isfinite(belief_.window.radius_m) || !may_have_window()) return;
   const WindowNeeds needs = window_to_search();
   if (belief_.window.reach_from(belief_.filter.pose().mean.position_m()) < needs.least_radius_m) hand_over(needs);
 }
