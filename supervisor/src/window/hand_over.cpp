@@ -38,7 +38,7 @@ WindowNeeds NavigationLoop::window_to_map() const {
   constexpr int all = std::numeric_limits<int>::max();
   if (sought_in_ || !needs_window()) return {0.0, all, all};
   const double reach_m = view_.reach().value_or(reference_reach_m);
-  return {2.0 * reach_m + drift_m(belief_.filter), options_.map.window, options_.map.most};
+  return {5.0 * reach_m + drift_m(belief_.filter), options_.map.window, options_.map.most};
 }
 
 /// A search is decided within one attempt, mostly; the filter is not handed over meanwhile.
@@ -90,7 +90,8 @@ void NavigationLoop::hand_over_if_due() {
   if (!is_part && !needs_window()) return;
   const int held = belief_.filter.mapped_count();
   const bool has_grown = 2 * held > 3 * std::max(options_.map.window, belief_.window.landmarks);
-  const double needed_m = view_.reach().value_or(reference_reach_m) + 0.5 * drift_m(belief_.filter);
+  // Early: where the vehicle sees little, on a street without trees, it may be long before it is trusted again.
+  const double needed_m = 3.0 * view_.reach().value_or(reference_reach_m) + 0.5 * drift_m(belief_.filter);
   const bool at_edge = belief_.window.reach_from(belief_.filter.pose().mean.position_m()) < needed_m;
   constexpr Tape::Position most_entries = 20000;
   const bool is_long = belief_.drive && tape_.end() - belief_.drive->end() > most_entries;

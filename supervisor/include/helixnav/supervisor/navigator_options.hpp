@@ -13,7 +13,7 @@ namespace helixnav::supervisor {
 
 /// How a map is kept that is too large for one filter.
 struct MapOptions {
-  int solve_over_poses = 400;  ///< landmarks up to which a closing is solved over all poses; beyond, on the atlas
+  int solve_over_poses = 650;  ///< landmarks up to which a closing is solved over all poses; beyond, on the atlas
   int whole = 1000;            ///< landmarks up to which the filter holds all of them; …
   int window = 400;            ///< … of more those nearest the vehicle, so many or as its drift asks for, …
   int most = 1000;             ///< … but not more than this
