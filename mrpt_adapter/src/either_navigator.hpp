@@ -46,6 +46,9 @@ class EitherNavigator {
 
   core::PoseGaussian pose() const { return filter().pose(); }
   std::vector<core::MapLandmark> map() const { return unnamed_ ? unnamed_->map() : named_->map(); }
+  core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const {
+    return unnamed_ ? unnamed_->joint(ids) : named_->joint(ids);
+  }
   const cekf::CompressedEkf& filter() const { return unnamed_ ? unnamed_->filter() : named_->filter(); }
 
  private:

@@ -53,7 +53,7 @@ void MapBuilder::getCurrentState(mrpt::poses::CPosePDFGaussian& out_robotPose,
   }
   out_fullState.resize(state.size());
   for (std::size_t i = 0; i < state.size(); ++i) out_fullState[i] = state[i];
-  if (out_fullCovariance != nullptr) copy(impl_->navigator->filter().joint(ids).covariance, *out_fullCovariance);
+  if (out_fullCovariance != nullptr) copy(impl_->navigator->joint(ids).covariance, *out_fullCovariance);
 }
 
 DataAssociation MapBuilder::getLastDataAssociation() const {

@@ -43,9 +43,9 @@ void check_world(const WorldOptions& world) {
   require("world.lattice_pitch_m", world.lattice_pitch_m, nearest_trees_m, unlimited);
   require("world.circuit_landmarks", world.circuit_landmarks, 0.0, 1e6);
   require("world.blackout_length_m", world.blackout_length_m, 0.0, unlimited);
-  require("world.tour_m", world.tour_m, 10.0, 1e5);
+  require("world.tour_m", world.tour_m, 10.0, 1e6);
   require("world.block_side_m", world.block_side_m, 40.0, 1e4);
-  require("world.blocks_a_side", world.blocks_a_side, 1.0, 100.0);
+  require("world.blocks_a_side", world.blocks_a_side, 1.0, 1e3);
   require("world.bare_share", world.bare_share, 0.0, 1.0);
 }
 

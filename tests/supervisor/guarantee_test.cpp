@@ -161,6 +161,16 @@ TEST(Guarantee, AScanThatThrowsLeavesTheNavigatorAsItWasWhereverItBreaks) {
   }
 }
 
+TEST(Guarantee, HoldsWhereTheFilterHoldsAPartOfTheMap) {
+  const core::Recording run = sim::simulate(sim::named_scenario("large-loop-changed"), 3);
+  NavigatorOptions options = single_threaded(3);
+  options.map.whole = options.map.window = options.map.solve_over_poses = 30;
+  const std::set<Kind> broken = break_drive(run, options, 12);
+  for (const Kind kind : {Kind::mapping, Kind::trigger, Kind::searching, Kind::closing}) {
+    EXPECT_EQ(broken.count(kind), 1u) << static_cast<int>(kind);
+  }
+}
+
 TEST(Guarantee, HoldsInARollBack) {
   const core::Recording run = sim::simulate(sim::named_scenario("sparse"), 1786);
   EXPECT_EQ(break_drive(run, single_threaded(1786), 6).count(Kind::rollback), 1u);

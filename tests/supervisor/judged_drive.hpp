@@ -8,16 +8,16 @@
 
 namespace helixnav::supervisor {
 
-/// A navigator as it comes drives the scenario, and the truth judges it.
-inline evaluation::RunScore navigate_and_judge(const sim::Scenario& scenario, std::uint64_t seed) {
+/// A navigator, as it comes or with options, drives the scenario, and the truth judges it.
+inline evaluation::RunScore navigate_and_judge(const sim::Scenario& scenario, std::uint64_t seed,
+                                               NavigatorOptions options = {}) {
   const sim::World world = sim::build_world(scenario.world, seed);
   const core::Recording run = sim::simulate_in(world, scenario, seed);
-  NavigatorOptions options;
   options.search.relocalizer.threads = 1;
   Navigator navigator(run.start, options);
   evaluation::Referee referee(run, world.returns_at_m);
   drive(run, navigator, [&](const core::Scan& scan, std::size_t) {
-    referee.watch(navigator.observe(scan), [&] { return navigator.map(); });
+    referee.watch(navigator.observe(scan), [&] { return navigator.sketch(); });
   });
   return referee.score(navigator.map());
 }

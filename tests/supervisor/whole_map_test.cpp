@@ -11,16 +11,16 @@
 namespace helixnav::supervisor {
 namespace {
 
-struct Drive {
+struct Asking {
   std::vector<core::WholeMapDecision> asked;
   int closed = 0, undecided = 0, refused = 0;
   double error_at_end_m = 0.0;
   std::size_t mature = 0;
 };
 
-Drive drive_through(const core::Recording& run, const NavigatorOptions& options) {
+Asking drive_asking(const core::Recording& run, const NavigatorOptions& options) {
   Navigator navigator(run.start, options);
-  Drive result;
+  Asking result;
   drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
     const core::StepReport report = navigator.observe(scan);
     for (const core::Decision& decision : report.decisions) {
@@ -57,10 +57,10 @@ TEST(WholeMap, ClosesWhatOdometryForbidsByLargerNoiseOnTheLoop) {
   for (const std::uint64_t seed : {3u, 5u, 16u}) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const core::Recording run = biased(seed);
-    const Drive drive = drive_through(run, without_learning());
+    const Asking drive = drive_asking(run, without_learning());
     NavigatorOptions prior_only = without_learning();
     prior_only.search.whole_map = false;
-    const Drive before = drive_through(run, prior_only);
+    const Asking before = drive_asking(run, prior_only);
     EXPECT_GE(drive.closed, 1);
     EXPECT_EQ(drive.undecided, 0);
     EXPECT_LT(drive.mature, before.mature) << "duplicates";
@@ -77,7 +77,7 @@ TEST(WholeMap, FindsAVehicleThatWasCarriedAway) {
   sim::Scenario scenario = sim::named_scenario("kidnapped");
   scenario.world.tour_m = 2600.0;
   const core::Recording run = sim::simulate(scenario, 3001);
-  const Drive drive = drive_through(run, {});
+  const Asking drive = drive_asking(run, {});
   const auto cut = std::count_if(drive.asked.begin(), drive.asked.end(), [](const core::WholeMapDecision& asked) {
     return asked.verdict == core::WholeMapDecision::Verdict::accepted && asked.odometry_factor == 0.0;
   });
@@ -86,7 +86,7 @@ TEST(WholeMap, FindsAVehicleThatWasCarriedAway) {
 }
 
 TEST(WholeMap, IsNotAskedWhereNothingIsAmiss) {
-  const Drive drive = drive_through(sim::simulate(sim::named_scenario("large-loop-changed"), 1), {});
+  const Asking drive = drive_asking(sim::simulate(sim::named_scenario("large-loop-changed"), 1), {});
   EXPECT_EQ(drive.closed, 1);
   EXPECT_TRUE(drive.asked.empty());
 }

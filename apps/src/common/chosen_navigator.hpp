@@ -44,6 +44,12 @@ class ChosenNavigator {
   std::vector<core::MapLandmark> map() const {
     return std::visit([](const auto& navigator) { return navigator.map(); }, navigator_);
   }
+  std::vector<core::MapLandmark> sketch() const {
+    return std::visit([](const auto& navigator) { return navigator.sketch(); }, navigator_);
+  }
+  core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const {
+    return std::visit([&](const auto& navigator) { return navigator.joint(ids); }, navigator_);
+  }
   const cekf::CompressedEkf& filter() const {
     return std::visit([](const auto& navigator) -> const cekf::CompressedEkf& { return navigator.filter(); },
                       navigator_);

@@ -5,17 +5,25 @@
 #include <vector>
 
 #include "chosen_navigator.hpp"
-#include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/joint_map.hpp"
 #include "helixnav/core/recording.hpp"
+#include "helixnav/runs/joint_map_file.hpp"
+#include "helixnav/supervisor/joint_map.hpp"
 
 namespace helixnav::apps {
 
 /// What the drive leaves to the next session; nothing where it is too large to be saved.
 std::optional<core::JointMap> joint_map_of(const ChosenNavigator& navigator, const core::Recording& recording);
 
-/// The same of a filter and the landmarks of its navigator; reach_m of the sensor, 0 where it is unknown.
-std::optional<core::JointMap> joint_map_of(const cekf::CompressedEkf& filter,
-                                           const std::vector<core::MapLandmark>& landmarks, double reach_m);
+/// The same of a navigator of either kind; reach_m of the sensor, 0 where it is unknown.
+template <class Navigator>
+std::optional<core::JointMap> joint_map_of(const Navigator& navigator, double reach_m) {
+  const std::vector<core::MapLandmark> landmarks = navigator.map();
+  if (landmarks.size() > runs::most_joint_landmarks) return std::nullopt;
+  core::JointMap map =
+      supervisor::joint_map(navigator.joint(supervisor::ids_of(landmarks)), navigator.filter().next_name(), landmarks);
+  map.reach_m = reach_m;
+  return map;
+}
 
 }  // namespace helixnav::apps

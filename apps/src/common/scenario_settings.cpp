@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenario_settings.hpp"
 
+#include <cmath>
+
 #include <CLI/CLI.hpp>
 
 #include "helixnav/core/angle.hpp"
@@ -38,7 +40,9 @@ double radians(double angle_deg) { return angle_deg * core::pi / 180.0; }
 }  // namespace
 
 void add_scenario_settings(CLI::App& command, ScenarioSettings& settings) {
-  add_number(command, "--sim.tour_m", settings.tour_m, 10.0, 1e5, "Length of the tour through a town");
+  add_number(command, "--sim.tour_m", settings.tour_m, 10.0, 1e6, "Length of the tour through a town");
+  add_number(command, "--sim.blocks_a_side", settings.blocks_a_side, 1.0, 1e3,
+             "Blocks of a town in each direction, rounded to a whole number");
   add_number(command, "--sim.slip_every_m", settings.slip_every_m, 0.0, 1e6,
              "Mean drive between two slips that odometry does not know; 0: never");
   add_number(command, "--sim.slip_least_m", settings.slip_least_m, 0.0, 1e3, "Least displacement by a slip");
@@ -54,6 +58,7 @@ void add_scenario_settings(CLI::App& command, ScenarioSettings& settings) {
 sim::Scenario scenario_of(const std::string& name, const ScenarioSettings& settings) {
   sim::Scenario scenario = sim::named_scenario(name);
   if (settings.tour_m) scenario.world.tour_m = *settings.tour_m;
+  if (settings.blocks_a_side) scenario.world.blocks_a_side = static_cast<int>(std::lround(*settings.blocks_a_side));
   if (settings.slip_every_m) scenario.slip.every_m = *settings.slip_every_m;
   if (settings.slip_least_m) scenario.slip.distance_m.min = *settings.slip_least_m;
   if (settings.slip_most_m) scenario.slip.distance_m.max = *settings.slip_most_m;

@@ -18,6 +18,7 @@ struct ScenarioSettings {
   std::optional<double> slip_least_m, slip_most_m;
   std::optional<double> slip_least_deg, slip_most_deg;
   std::optional<double> tour_m;
+  std::optional<double> blocks_a_side;
   double assumed_odometry_factor = 1.0;
   double assumed_detector_factor = 1.0;
 };

@@ -105,7 +105,7 @@ Driven navigate(const Drive& job, Estimator& estimator, runs::RunWriter& writer,
     count_closings(*step, driven);
     writer.write(*step, microseconds);
     recorder.add(*step, microseconds);
-    if (recorder.wants_map()) recorder.add_map(estimator.map());
+    if (recorder.wants_map()) recorder.add_map(estimator.sketch ? estimator.sketch() : estimator.map());
   }
   driven.steps = static_cast<std::size_t>(loop.steps());
   return driven;

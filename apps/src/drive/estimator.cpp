@@ -51,8 +51,11 @@ std::vector<std::vector<core::Label>> labels_fed(const Drive& job) {
 Estimator navigator_of(const Drive& job) {
   const auto drive = std::make_shared<NavigatorDrive>(job);
   return {[drive](const core::Event& event) { return drive->navigator.take(event); },
-          [drive] { return drive->navigator.pose(); }, [drive] { return drive->navigator.map(); },
-          [drive, &job] { return joint_map_of(drive->navigator, job.recording); }};
+          [drive] { return drive->navigator.pose(); },
+          [drive] { return drive->navigator.map(); },
+          [drive, &job] { return joint_map_of(drive->navigator, job.recording); },
+          {},
+          [drive] { return drive->navigator.sketch(); }};
 }
 
 Estimator localizer_of(const Drive& job, LabelAgreement& agreement) {

@@ -21,7 +21,8 @@ struct Estimator {
   std::function<std::vector<core::MapLandmark>()> map;
   std::function<std::optional<core::JointMap>()>
       joint_map;  ///< to go on in; nothing of a localizer, or where it is too large
-  std::function<runs::ParticleEnd()> particle_end = {};  ///< of a cloud of particles only
+  std::function<runs::ParticleEnd()> particle_end = {};         ///< of a cloud of particles only
+  std::function<std::vector<core::MapLandmark>()> sketch = {};  ///< map() for a picture, where that is cheaper
 };
 
 Estimator navigator_of(const Drive& job);

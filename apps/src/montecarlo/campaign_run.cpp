@@ -120,7 +120,7 @@ evaluation::RunScore drive_and_judge(const Campaign& campaign, std::uint64_t see
     wall.run_s += seconds;
     if (report->mode == core::Mode::searching) wall.search_s += seconds;
     if (has_closure(*report)) wall.closing_s += seconds;
-    referee.watch(*report, [&navigator] { return navigator.map(); });
+    referee.watch(*report, [&navigator] { return navigator.sketch(); });
   }
   return referee.score(navigator.map());
 }

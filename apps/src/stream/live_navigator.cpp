@@ -38,9 +38,7 @@ std::vector<core::MapLandmark> LiveNavigator::map() const {
 
 std::optional<core::JointMap> LiveNavigator::joint_map() const {
   if (!navigator_) return std::nullopt;
-  return std::visit(
-      [this](const auto& navigator) { return joint_map_of(navigator.filter(), navigator.map(), reach_m_); },
-      *navigator_);
+  return std::visit([this](const auto& navigator) { return joint_map_of(navigator, reach_m_); }, *navigator_);
 }
 
 }  // namespace helixnav::apps

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -71,10 +72,67 @@ int add_variable(State& state, int dim, int name, const Eigen::Vector3d& value) 
   return static_cast<int>(state.variables.size()) - 1;
 }
 
+/// Mean and sum of squared distances of points from it.
+struct Spread {
+  Eigen::Vector2d mean_m = Eigen::Vector2d::Zero();
+  double squared_m2 = 0.0;
+};
+
+Spread spread_of(const std::vector<Eigen::Vector2d>& points_m) {
+  Spread spread;
+  for (const Eigen::Vector2d& point_m : points_m) spread.mean_m += point_m / static_cast<double>(points_m.size());
+  for (const Eigen::Vector2d& point_m : points_m) spread.squared_m2 += (point_m - spread.mean_m).squaredNorm();
+  return spread;
+}
+
+double misfit_m2(const core::Pose2& T_b_a, const std::vector<Eigen::Vector2d>& a_m,
+                 const std::vector<Eigen::Vector2d>& b_m) {
+  double sum_m2 = 0.0;
+  for (std::size_t i = 0; i < a_m.size(); ++i) sum_m2 += (b_m[i] - core::transform(T_b_a, a_m[i])).squaredNorm();
+  return sum_m2 / static_cast<double>(a_m.size());
+}
+
+/// The rigid motion from a to b of least squares.
+core::Pose2 fitted(const std::vector<Eigen::Vector2d>& a_m, const std::vector<Eigen::Vector2d>& b_m) {
+  const Spread a = spread_of(a_m);
+  const Spread b = spread_of(b_m);
+  double along = 0.0;
+  double across = 0.0;
+  for (std::size_t i = 0; i < a_m.size(); ++i) {
+    const Eigen::Vector2d p = a_m[i] - a.mean_m;
+    const Eigen::Vector2d q = b_m[i] - b.mean_m;
+    along += p.dot(q);
+    across += p.x() * q.y() - p.y() * q.x();
+  }
+  const double turn_rad = std::atan2(across, along);
+  const Eigen::Vector2d shift_m = b.mean_m - core::rotation(turn_rad) * a.mean_m;
+  return {shift_m.x(), shift_m.y(), turn_rad};
+}
+
+/// Where the phase begins: at the last clone, or, where a drive comes back to landmarks with an error of more than half a metre,
+/// where these put it. The solution is then looked for from a phase that is in its place and a drive before it that is not.
+core::Pose2 start_of(const State& state, const PhaseFactor& factor, const core::Pose2& T_atlas_entry) {
+  std::vector<Eigen::Vector2d> here_m, known_m;
+  for (std::size_t i = 0; i < factor.shape.ids.size(); ++i) {
+    const int v = variable_of(state, factor.shape.ids[i]);
+    if (v < 0) continue;
+    here_m.emplace_back(factor.gaussian.mean.segment<2>(3 + 2 * static_cast<Index>(i)));
+    known_m.emplace_back(state.value(v).head<2>());
+  }
+  constexpr std::size_t least_known = 3;
+  constexpr double most_off_m = 0.5, least_spread_m = 3.0;
+  if (here_m.size() < least_known) return T_atlas_entry;
+  const double off_m2 = misfit_m2(T_atlas_entry, here_m, known_m);
+  const double least_m2 = least_spread_m * least_spread_m * static_cast<double>(here_m.size());
+  if (off_m2 < most_off_m * most_off_m || spread_of(here_m).squared_m2 < least_m2) return T_atlas_entry;
+  const core::Pose2 T_there = fitted(here_m, known_m);
+  return misfit_m2(T_there, here_m, known_m) < 0.25 * off_m2 ? T_there : T_atlas_entry;
+}
+
 /// Variables of the factor in its order, born where the shape puts them.
 std::vector<int> variables_for(State& state, const PhaseFactor& factor) {
   const int entry = state.variable_of_clone.back();
-  const core::Pose2 T_atlas_entry(Eigen::Vector3d(state.value(entry)));
+  const core::Pose2 T_atlas_entry = start_of(state, factor, core::Pose2(Eigen::Vector3d(state.value(entry))));
   const core::Pose2 T_atlas_exit =
       core::compose(T_atlas_entry, core::Pose2(Eigen::Vector3d(factor.gaussian.mean.head<3>())));
   const int clone = static_cast<int>(state.variable_of_clone.size());

@@ -43,6 +43,28 @@ RigidMotion fit(const State& state, const int* variables, const Eigen::Vector3d*
   return motion;
 }
 
+/// How the angle of the fit moves with what was fitted.
+Eigen::VectorXd gradient_of_turn(const State& state, const int* variables, const Eigen::Vector3d* was,
+                                 const Values& now, const RigidMotion& motion, Eigen::Index rows) {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(rows);
+  double weight = 0.0;
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const int dim = state.variable(variables[i]).dim;
+    if (now.size() == 1 || variables[i] != state.world) {
+      const Eigen::Vector2d p = motion.R * (was[i].head<2>() - motion.from_m);
+      gradient.segment<2>(row) << -p.y(), p.x();
+      weight += p.dot(now[i].head<2>() - motion.to_m);
+      if (dim == 3) {
+        gradient[row + 2] = std::cos(now[i].z() - was[i].z() - motion.turn_rad);
+        weight += gradient[row + 2];
+      }
+    }
+    row += dim;
+  }
+  return gradient / weight;
+}
+
 }  // namespace
 
 Eigen::Vector2d RigidMotion::point(const Eigen::Vector2d& p) const {
@@ -87,6 +109,7 @@ Motion motion_of(const State& state, const FrontShape& shape, int begin, const E
     motion.bend_m = std::max(motion.bend_m, rest_m * rest_m / own_span_m);
     row += dim;
   }
+  motion.turning = gradient_of_turn(state, variables, was, now, motion.rigid, motion.rest.size());
   return motion;
 }
 

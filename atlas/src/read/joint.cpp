@@ -39,8 +39,10 @@ class PathSolve {
       const auto found = std::lower_bound(column_of_.begin(), column_of_.end(), std::make_pair(v, Index{-1}));
       for (int i = 0; i < state_.variable(v).dim; ++i) rows.push_back(found->second + i);
     }
-    P_.triangularView<Eigen::StrictlyUpper>() = P_.transpose().eval();
-    return P_(rows, rows);
+    for (Index j = 1; j < columns_; ++j) P_.col(j).head(j) = P_.row(j).head(j).transpose();
+    MatrixXd picked = P_(rows, rows);
+    P_.resize(0, 0);  // of a large map there is room for two
+    return picked;
   }
 
  private:
@@ -153,15 +155,20 @@ void turn(MatrixXd& P, const Eigen::Matrix2d& R) {
 }
 
 /// Covariance of what is seen from the map frame: errors δ − G·δ_world, turned.
-MatrixXd seen_from_world(const MatrixXd& P, const Eigen::Vector3d& world, const Values& values, double turn_rad) {
+MatrixXd seen_from_world(MatrixXd P, const Eigen::Vector3d& world, const Values& values, double turn_rad) {
   const Index n = P.rows() - 3;
   const auto G = carried(world, values);
-  MatrixXd rest = P.bottomRightCorner(n, n);
   const MatrixXd cross = P.bottomLeftCorner(n, 3) - 0.5 * G * P.topLeftCorner<3, 3>();
+  MatrixXd rest = P.bottomRightCorner(n, n);
+  P.resize(0, 0);
   rest.noalias() -= cross * G.transpose();
   rest.noalias() -= G * cross.transpose();
   turn(rest, core::rotation(turn_rad));
-  return 0.5 * (rest + rest.transpose());
+  for (Index j = 1; j < n; ++j) {
+    rest.col(j).head(j) = 0.5 * (rest.col(j).head(j) + rest.row(j).head(j).transpose());
+    rest.row(j).head(j) = rest.col(j).head(j).transpose();
+  }
+  return rest;
 }
 
 }  // namespace
@@ -190,8 +197,7 @@ core::JointGaussian Atlas::joint(const std::vector<core::LandmarkId>& ids) const
   }
   std::vector<int> distinct = variables;
   distinct.insert(distinct.begin(), state.world);
-  const MatrixXd P = covariance_of(state, distinct);
-  joint.covariance = seen_from_world(P, estimates(state.world), values, T_map.heading_rad);
+  joint.covariance = seen_from_world(covariance_of(state, distinct), estimates(state.world), values, T_map.heading_rad);
   return joint;
 }
 

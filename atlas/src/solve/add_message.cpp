@@ -38,6 +38,28 @@ struct Rows {
   std::vector<Index> dim;
 };
 
+/// rest turned by a right angle: how it moves in the frame linearised in, against the turn of that frame.
+Eigen::VectorXd turned_rest(const Eigen::VectorXd& rest, const Rows& rows) {
+  Eigen::VectorXd turned = Eigen::VectorXd::Zero(rest.size());
+  for (const Index row : rows.from) turned.segment<2>(row) << -rest[row + 1], rest[row];
+  return turned;
+}
+
+/// What is not rigid turns with the frame that it is measured in. That term of the Jacobian, E = Dᵀ − (J·rest)·fᵀ with f the gradient
+/// of the fit's angle, makes a rigid motion from where the part now is a null vector of EᵀΛE exactly; without it every bent part
+/// would hold the heading of the whole a little, and thousands of them held it more firmly than the drive knew it.
+void let_turn(const Eigen::VectorXd& f, const Eigen::VectorXd& turned_pull, double weight, const std::vector<Index>& to,
+              Eigen::Map<Eigen::MatrixXd> F) {
+  for (std::size_t j = 0; j < to.size(); ++j) {
+    const auto at_j = static_cast<Index>(j);
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      if (to[i] < to[j]) continue;
+      const auto at_i = static_cast<Index>(i);
+      F(to[i], to[j]) -= turned_pull[at_i] * f[at_j] + f[at_i] * (turned_pull[at_j] - weight * f[at_j]);
+    }
+  }
+}
+
 void turn_pairs(Eigen::Ref<Eigen::MatrixXd> block, const Eigen::Matrix2d& R, const Rows& rows, std::size_t first) {
   for (Index j = 0; j < block.cols(); ++j) {
     double* column = &block(0, j);
@@ -87,6 +109,19 @@ double add_message(const State& state, int child, const std::vector<int>& offset
     rows.dim.push_back(state.variable(shape.variables[k]).dim);
   }
   const Eigen::Matrix2d& R = motion.rigid.R;
+  if (motion.rest.size() > 0) {
+    const Eigen::VectorXd turned = turned_rest(motion.rest, rows);
+    Eigen::VectorXd pull = message.product(turned);
+    const double weight = turned.dot(pull);
+    std::vector<Index> to;
+    for (std::size_t c = 0; c < offsets.size(); ++c) {
+      pull.segment<2>(rows.from[c]) = R * pull.segment<2>(rows.from[c]).eval();
+      for (Index i = 0; i < rows.dim[c]; ++i) to.push_back(offsets[c] + i);
+    }
+    let_turn(motion.turning, pull, weight, to, F);
+    const double turn_pull = turned.dot(rhs);
+    for (std::size_t i = 0; i < to.size(); ++i) F(last, to[i]) -= motion.turning[static_cast<Index>(i)] * turn_pull;
+  }
   Eigen::MatrixXd block;
   for (std::size_t c = 0; c < offsets.size(); ++c) {
     copy_columns(message, rows.from[c], rows.dim[c], n, block);

@@ -61,6 +61,12 @@ double CompressedEkf::landmark_sigma_bound_m(core::LandmarkId id) const {
   return margin * std::sqrt(std::max(0.0, own(0, 0) + own(1, 1)));
 }
 
+Eigen::Matrix<double, 2, 3> CompressedEkf::covariance_with_pose(core::LandmarkId id) const {
+  const Place& place = place_of(id, "covariance_with_pose");
+  if (place.where == Whereabouts::active) return active_.P.view().block<2, 3>(ActivePart::column(place.index), 0);
+  return phases_.back().basis.view().middleRows<2>(2 * place.index) * active_.A.view().leftCols<3>();
+}
+
 core::JointGaussian CompressedEkf::joint(const std::vector<core::LandmarkId>& ids) const {
   core::JointGaussian result;
   result.pose = active_.pose;

@@ -62,6 +62,39 @@ std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, cons
   return chosen;
 }
 
+namespace {
+
+/// Whether any observation may be of the landmark: sigma_m is that of the landmark's place, cross its covariance with the pose.
+bool is_near(const std::vector<SeenPoint>& seen, const core::Pose2& pose, const Eigen::Vector2d& mean_m, double sigma_m,
+             const Eigen::Matrix<double, 2, 3>& cross, double sigmas) {
+  return std::any_of(seen.begin(), seen.end(), [&](const SeenPoint& s) {
+    const Eigen::Vector2d arm_m = s.point_m - pose.position_m();
+    const double common_m2 = cross(0, 0) + cross(1, 1) - cross(0, 2) * arm_m.y() + cross(1, 2) * arm_m.x();
+    const double relative_m2 = std::max(0.0, s.sigma_m * s.sigma_m + sigma_m * sigma_m - 2.0 * common_m2);
+    return (s.point_m - mean_m).squaredNorm() < sigmas * sigmas * relative_m2;
+  });
+}
+
+}  // namespace
+
+std::vector<core::LandmarkId> near_by_correlation(const cekf::CompressedEkf& filter, const core::Scan& scan,
+                                                  std::vector<core::LandmarkId> candidates, double sigmas) {
+  if (!fixes_points(scan)) return candidates;
+  const core::PoseGaussian pose = filter.pose();
+  const std::vector<SeenPoint> seen = seen_points(pose, scan);
+  constexpr double wider = 1.5;
+  const auto is_far = [&](core::LandmarkId id) {
+    const Eigen::Vector2d mean_m = filter.landmark_mean(id);
+    const Eigen::Matrix<double, 2, 3> cross = filter.covariance_with_pose(id);
+    const auto near_with = [&](double sigma_m) {
+      return is_near(seen, pose.mean, mean_m, sigma_m, cross, wider * sigmas);
+    };
+    return !near_with(filter.landmark_sigma_bound_m(id)) || !near_with(sigma_bound(filter.landmark(id).covariance_m2));
+  };
+  candidates.erase(std::remove_if(candidates.begin(), candidates.end(), is_far), candidates.end());
+  return candidates;
+}
+
 std::vector<core::LandmarkId> expected_in_view(const cekf::CompressedEkf& filter, const core::Scan& scan,
                                                double margin_m) {
   const core::FieldOfView& view = scan.field_of_view;

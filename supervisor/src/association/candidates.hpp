@@ -15,6 +15,13 @@ namespace helixnav::supervisor {
 /// row) take every landmark within the range of the field of view.
 std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, const core::Scan& scan, double sigmas);
 
+/// Those of the candidates that are near by what is known of their place relative to the vehicle: within one and a half times
+/// `sigmas` standard deviations of the difference, correlations included. Far from the start the deviations of pose and landmark are
+/// large and nearly the same error; their sum takes in hundreds of landmarks then, and a joint covariance of these costs
+/// more than all else. O(q²) a landmark. Test: supervisor/candidates_test.cpp.
+std::vector<core::LandmarkId> near_by_correlation(const cekf::CompressedEkf& filter, const core::Scan& scan,
+                                                  std::vector<core::LandmarkId> candidates, double sigmas);
+
 /// Landmarks whose estimated position lies inside the field of view, at least `margin_m` from its edge: those that
 /// should have been seen.
 std::vector<core::LandmarkId> expected_in_view(const cekf::CompressedEkf& filter, const core::Scan& scan,

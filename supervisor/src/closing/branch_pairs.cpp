@@ -130,6 +130,7 @@ KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core:
 void forget_copies(cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& unconfirmed,
                    const std::vector<core::LandmarkId>& old, const SearchOptions& options, Closing& closing) {
   for (const core::LandmarkId id : unconfirmed) {
+    if (!filter.contains(id)) continue;
     const std::vector<Leftover> here =
         compatible(filter, id, old, options.leftover_gate, options.leftover_least_m, options.duplicate_sigma_m);
     if (here.empty()) continue;

@@ -168,6 +168,10 @@ std::vector<core::Pose2> near(std::vector<core::Pose2> poses, const Eigen::Vecto
 
 DuplicateSegment::DuplicateSegment(const cekf::CompressedEkf& filter, const Branch& branch)
     : confirmed_(branch.confirmed), old_drive_(branch.old_drive), new_drive_(branch.new_drive) {
+  const auto is_elsewhere = [&](LandmarkId id) {
+    return !filter.contains(id);
+  };  // in a part that the filter leaves out
+  confirmed_.erase(std::remove_if(confirmed_.begin(), confirmed_.end(), is_elsewhere), confirmed_.end());
   for (const LandmarkId id : confirmed_) before_m_[id] = filter.landmark_mean(id);
 }
 

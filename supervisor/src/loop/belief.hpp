@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "association/confirmation.hpp"
@@ -10,6 +11,8 @@
 #include "loop/coverage_trace.hpp"
 #include "loop/tape.hpp"
 #include "slip/slip_record.hpp"
+#include "smoothing/drive_map.hpp"
+#include "window/window.hpp"
 
 namespace helixnav::supervisor {
 
@@ -29,6 +32,9 @@ struct Belief {
   std::int64_t step = 0;
   SlipRecord slips = {};
   std::vector<LeftOpen> left_open = {};
+  /// The drive as an atlas, up to some place before the last checkpoint; null as long as the tape has it all.
+  std::shared_ptr<const DriveMap> drive = {};
+  Window window = {};  ///< which part of it the filter holds
 };
 
 /// A belief to come back to, and where the tape was then. A snapshot of O(n_a²) bytes and the landmarks' existence; good as

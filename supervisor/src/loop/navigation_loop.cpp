@@ -70,6 +70,7 @@ StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* not
     learn_noise(scan);
     StepReport report = take_as_assumed(scan);
     checkpoint_if_settled();
+    hand_over_if_due();
     if (has_lost_its_place()) return roll_back_and_relocalise(std::move(report));
     ask_whether_new(scan, report);
     solve_with_learnt_noise(report);
@@ -138,6 +139,9 @@ bool NavigationLoop::use_fix(const core::AbsoluteFix& fix) {
 GatedScan NavigationLoop::gate(const Scan& scan) const {
   const Searching* open = searching();
   std::vector<LandmarkId> ids = candidates(belief_.filter, scan, options_.candidate_sigmas);
+  if (belief_.filter.mapped_count() > options_.map.solve_over_poses) {
+    ids = near_by_correlation(belief_.filter, scan, std::move(ids), options_.candidate_sigmas);
+  }
   if (open != nullptr) {
     const auto excluded = [&](LandmarkId id) { return open->search.excludes(id); };
     ids.erase(std::remove_if(ids.begin(), ids.end(), excluded), ids.end());
@@ -182,7 +186,9 @@ std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const
                              seen, expected);
   const core::Pose2 T_world_sensor = core::compose(belief_.filter.pose().mean, scan.T_robot_sensor);
   const association::LifeChanges changes = belief_.existence.observe(T_world_sensor.position_m(), seen, born, expected);
-  for (const LandmarkId id : changes.died) belief_.filter.remove(id);
+  for (const LandmarkId id : changes.died) {
+    if (belief_.filter.contains(id)) belief_.filter.remove(id);
+  }
   belief_.coverage.pass(belief_.existence.path_m(), T_world_sensor);
   return changes.died;
 }
@@ -192,7 +198,7 @@ StepReport NavigationLoop::finish(const Scan& scan, StepReport report) {
   report.t_ns = scan.t_ns;
   report.pose = belief_.filter.pose();
   report.active_landmarks = belief_.filter.active_count();
-  report.mapped_landmarks = belief_.filter.mapped_count();
+  report.mapped_landmarks = static_cast<int>(belief_.existence.records().size());
   std::vector<core::Decision> decisions = std::exchange(pending_.decisions, {});
   for (core::Decision& decision : report.decisions) decisions.push_back(std::move(decision));
   report.decisions = std::move(decisions);

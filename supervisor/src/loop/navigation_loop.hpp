@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "association/gated_scan.hpp"
@@ -22,6 +23,7 @@
 #include "placing/session_question.hpp"
 #include "search/old_ground_index.hpp"
 #include "slip/slip_decision.hpp"
+#include "smoothing/smooth_drive.hpp"
 
 namespace helixnav::supervisor {
 
@@ -41,6 +43,12 @@ class NavigationLoop {
 
   const Belief& belief() const { return belief_; }
 
+  // window/whole_estimate.cpp
+  std::vector<core::LandmarkId> landmarks() const;
+  core::PointGaussian sketched(core::LandmarkId id) const;
+  std::vector<core::PointGaussian> marginals() const;
+  core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;
+
  private:
   /// What came in since the last scan.
   struct Pending {
@@ -57,6 +65,7 @@ class NavigationLoop {
     std::optional<cekf::CompressedEkf> filter;            ///< before the drive was solved
     std::optional<Tape> tape;                             ///< before odometry on it was found wrong
     std::optional<std::vector<Tape::Entry>> rolled_back;  ///< taken off the tape
+    std::optional<std::pair<std::shared_ptr<const DriveMap>, Window>> drive = {};
   };
 
   // loop/navigation_loop.cpp
@@ -98,7 +107,25 @@ class NavigationLoop {
                       core::StepReport& report) const;
   void end_search(const Closing* closing);
   void merge_left_open(const core::FieldOfView& view, core::StepReport& report);  // merge_left_open.cpp
+
+  // smoothing/solve_drive.cpp
   void solve_drive(core::StepReport& report);
+  Smoothing solve_by_poses(bool& accepted);
+  Smoothing solve_by_atlas(bool& accepted);
+  bool is_for_atlas() const;
+
+  // window/hand_over.cpp
+  bool may_have_window() const;
+  bool needs_window() const;
+  WindowNeeds window_to_map() const;
+  WindowNeeds window_to_search() const;
+  std::shared_ptr<DriveMap> drive_until_now() const;
+  std::shared_ptr<DriveMap> begun_drive() const;
+  void begin_window(std::shared_ptr<DriveMap> drive, const WindowNeeds& needs);
+  bool hand_over(const WindowNeeds& needs);
+  void hand_over_if_due();
+  void widen_for_search();
+  void become(std::shared_ptr<const DriveMap> drive, const Window& window);
 
   // search/whole_map.cpp
   bool asks_whole_map() const;
@@ -106,6 +133,7 @@ class NavigationLoop {
   void ask_whether_new(const core::Scan& scan, core::StepReport& report);
   bool ask_whole_map(LandmarksAbout& about, const Search& search, const Checkpoint& trigger, const core::Scan& scan,
                      core::StepReport& report);
+  bool begin_drive_anew(const Tape& tape, const cekf::CompressedEkf& filter);
   bool close_at(const std::vector<pf_relocalize::ConstellationPair>& pairs, const Search& search,
                 const Checkpoint& trigger, const core::Scan& scan, core::WholeMapDecision& decision,
                 core::StepReport& report);

@@ -49,17 +49,27 @@ void Navigator::look_for_place_in(const core::JointMap& earlier) { loop_->look_f
 core::PoseGaussian Navigator::pose() const { return filter().pose(); }
 const cekf::CompressedEkf& Navigator::filter() const { return loop_->belief().filter; }
 
-std::vector<core::MapLandmark> Navigator::map() const {
+core::JointGaussian Navigator::joint(const std::vector<core::LandmarkId>& ids) const { return loop_->joint(ids); }
+
+std::vector<core::MapLandmark> Navigator::sketch() const {
   const Belief& belief = loop_->belief();
   std::vector<core::MapLandmark> landmarks;
-  for (const core::LandmarkId id : belief.filter.landmarks()) {
+  for (const core::LandmarkId id : loop_->landmarks()) {
     core::MapLandmark landmark;
     landmark.id = id;
-    landmark.point = belief.filter.landmark(id);
+    landmark.point = loop_->sketched(id);
     landmark.observations = belief.existence.record(id).observations;
     landmark.state = belief.existence.state(id);
     landmarks.push_back(landmark);
   }
+  return landmarks;
+}
+
+std::vector<core::MapLandmark> Navigator::map() const {
+  std::vector<core::MapLandmark> landmarks = sketch();
+  if (static_cast<int>(landmarks.size()) == filter().mapped_count()) return landmarks;
+  const std::vector<core::PointGaussian> points = loop_->marginals();
+  for (std::size_t i = 0; i < landmarks.size(); ++i) landmarks[i].point = points[i];
   return landmarks;
 }
 

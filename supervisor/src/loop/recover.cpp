@@ -2,6 +2,7 @@
 #include "loop/recover.hpp"
 
 #include <new>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -23,6 +24,8 @@ void NavigationLoop::commit() {
   } catch (const std::bad_alloc&) {
     // The closed phases stay as they are, which is as exact, and are absorbed at the next occasion.
   }
+  const bool is_long = tape_.stops() > options_.search.smooth_up_to_scans || !tape_.holds_since(0);
+  if (belief_.drive && is_long) tape_.hand_on(belief_.drive->end());
   tape_.settle(checkpoint().position);
 }
 
@@ -30,6 +33,7 @@ void NavigationLoop::commit() {
 void NavigationLoop::recover() {
   Undo undo = std::exchange(undo_, Undo{});
   if (undo.filter) belief_.filter = std::move(*undo.filter);
+  if (undo.drive) std::tie(belief_.drive, belief_.window) = std::move(*undo.drive);
   if (undo.mode) mode_ = std::move(*undo.mode);
   if (undo.tape) tape_ = std::move(*undo.tape);
   searches_ = undo.searches;

@@ -92,10 +92,19 @@ void Tape::settle(Position position) {
   for (; settled_ < position; ++settled_) {
     if (auto* scan = std::get_if<Scan>(&entries_[settled_ - forgotten_])) drop_unused(*scan);
   }
-  if (stops_ > most_stops_) most_stops_ = 0;  // from now on
-  if (most_stops_ > 0 || position == forgotten_) return;
+  if (handed_on_ == 0 && stops_ > most_stops_) most_stops_ = 0;  // from now on
+  forget(most_stops_ > 0 ? std::min(position, handed_on_) : position);
+}
+
+void Tape::forget(Position position) {
+  if (position <= forgotten_) return;
   entries_.erase(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(position - forgotten_));
   forgotten_ = position;
+}
+
+void Tape::hand_on(Position position) {
+  for (Position i = std::max(handed_on_, forgotten_); i < position; ++i) stops_ -= is_stop(entries_[i - forgotten_]);
+  handed_on_ = std::max(handed_on_, position);
 }
 
 std::vector<cekf::Match> used_observations(const Tape::Scan& scan) {
@@ -119,9 +128,9 @@ cekf::UpdateResult innovation_cost(const Tape& tape, Tape::Position position) {
   return cost;
 }
 
-double drive_cost(const Tape& tape) {
-  double cost = 0.0;
-  tape.read_from(0, [&](const Tape::Entry& entry) {
+double drive_cost(const Tape& tape, Tape::Position position, double before) {
+  double cost = before;
+  tape.read_from(position, [&](const Tape::Entry& entry) {
     if (const auto* scan = std::get_if<Tape::Scan>(&entry)) cost += scan->nis;
     if (const auto* fix = std::get_if<Tape::Fix>(&entry)) cost += fix->accepted ? fix->nis : 0.0;
     if (const auto* merge = std::get_if<Tape::Merge>(&entry)) cost += merge->cost;
@@ -130,9 +139,9 @@ double drive_cost(const Tape& tape) {
   return cost;
 }
 
-core::MergedIds merged_ids(const Tape& tape) {
+core::MergedIds merged_ids(const Tape& tape, Tape::Position position) {
   core::MergedIds ids;
-  tape.read_from(0, [&](const Tape::Entry& entry) {
+  tape.read_from(position, [&](const Tape::Entry& entry) {
     const auto* merge = std::get_if<Tape::Merge>(&entry);
     if (merge == nullptr) return;
     for (const core::MergedLandmarks& one : merge->merged) ids.merge(one);
@@ -140,10 +149,10 @@ core::MergedIds merged_ids(const Tape& tape) {
   return ids;
 }
 
-std::vector<Stop> stops_of(const Tape& tape) {
+std::vector<Stop> stops_of(const Tape& tape, Tape::Position position) {
   std::vector<Stop> stops;
   std::optional<core::Odometry> motion;
-  tape.read_from(0, [&](const Tape::Entry& entry) {
+  tape.read_from(position, [&](const Tape::Entry& entry) {
     if (const core::Odometry* moved = motion_of(entry)) motion = motion ? core::chain(*motion, *moved) : *moved;
     if (!is_stop(entry)) return;
     Stop& stop = stops.emplace_back();
@@ -160,9 +169,9 @@ std::vector<Stop> stops_of(const Tape& tape) {
   return stops;
 }
 
-std::optional<core::Odometry> motion_after_stops(const Tape& tape) {
+std::optional<core::Odometry> motion_after_stops(const Tape& tape, Tape::Position position) {
   std::optional<core::Odometry> motion;
-  tape.read_from(0, [&](const Tape::Entry& entry) {
+  tape.read_from(position, [&](const Tape::Entry& entry) {
     if (const core::Odometry* moved = motion_of(entry)) motion = motion ? core::chain(*motion, *moved) : *moved;
     if (is_stop(entry)) motion.reset();
   });

@@ -78,9 +78,16 @@ class Tape {
   /// drive is not kept. Amortised O(1) an entry.
   void settle(Position position);
 
+  /// The drive before `position` is kept elsewhere (DriveMap): its entries are forgotten as soon as nothing rolls back
+  /// behind them.
+  void hand_on(Position position);
+  bool holds_since(Position position) const { return forgotten_ <= position; }
+  /// Scans and fixes used since the drive was handed on.
+  int stops() const { return stops_; }
+
   /// Keeps only what is needed since the last checkpoint from now on; the drive can no longer be solved as a whole.
   void drop_drive() { most_stops_ = 0; }
-  bool holds_drive() const { return stops_ <= most_stops_ && stops_ > 0; }
+  bool holds_drive() const { return handed_on_ == 0 && stops_ <= most_stops_ && stops_ > 0; }
 
   /// Calls read(entry) for every entry from `position` on.
   template <class Read>
@@ -90,11 +97,14 @@ class Tape {
   }
 
  private:
+  void forget(Position position);
+
   std::vector<Entry> entries_;
   Position forgotten_ = 0;
   Position settled_ = 0;
+  Position handed_on_ = 0;
   int most_stops_;
-  int stops_ = 0;  ///< scans and fixes used since the begin of the drive
+  int stops_ = 0;  ///< scans and fixes used since the begin of the drive, or since it was handed on
 };
 
 /// Observations that a scan's update and augmentation used: the matched ones, then those that began landmarks.
@@ -103,11 +113,12 @@ std::vector<cekf::Match> used_observations(const Tape::Scan& scan);
 /// νᵀS⁻¹ν of all scans from `position` on.
 cekf::UpdateResult innovation_cost(const Tape& tape, Tape::Position position);
 
-/// Cost of all measurements and closings of the drive: for a linear filter the minimum over all drives and maps.
-double drive_cost(const Tape& tape);
+/// Cost of all measurements and closings of the drive: for a linear filter the minimum over all drives and maps. `before`:
+/// that of what is before `position`.
+double drive_cost(const Tape& tape, Tape::Position position = 0, double before = 0.0);
 
-/// The present id of every landmark merged by a closing.
-core::MergedIds merged_ids(const Tape& tape);
+/// The present id of every landmark merged by a closing since `position`.
+core::MergedIds merged_ids(const Tape& tape, Tape::Position position = 0);
 
 /// A place where something may have been observed, and how the vehicle came there from the one before.
 struct Stop {
@@ -117,9 +128,9 @@ struct Stop {
   std::optional<core::AbsoluteFix> fix;
 };
 
-/// The scans and accepted fixes of the drive, motion chained in between.
-std::vector<Stop> stops_of(const Tape& tape);
-/// Motion since the last stop.
-std::optional<core::Odometry> motion_after_stops(const Tape& tape);
+/// The scans and accepted fixes of the drive since `position`, motion chained in between.
+std::vector<Stop> stops_of(const Tape& tape, Tape::Position position = 0);
+/// Motion since the last stop, or since `position`.
+std::optional<core::Odometry> motion_after_stops(const Tape& tape, Tape::Position position = 0);
 
 }  // namespace helixnav::supervisor

@@ -1,19 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/supervisor/joint_map.hpp"
 
+#include <utility>
+
 namespace helixnav::supervisor {
 
-core::JointMap joint_map(const cekf::CompressedEkf& filter, const std::vector<core::MapLandmark>& landmarks) {
-  core::JointMap map;
+std::vector<core::LandmarkId> ids_of(const std::vector<core::MapLandmark>& landmarks) {
   std::vector<core::LandmarkId> ids;
+  for (const core::MapLandmark& landmark : landmarks) ids.push_back(landmark.id);
+  return ids;
+}
+
+core::JointMap joint_map(core::JointGaussian joint, core::LandmarkId next_name,
+                         const std::vector<core::MapLandmark>& landmarks) {
+  core::JointMap map;
   for (const core::MapLandmark& landmark : landmarks) {
-    ids.push_back(landmark.id);
     map.states.push_back(landmark.state);
     map.observations.push_back(landmark.observations);
   }
-  map.joint = filter.joint(ids);
-  map.next_name = filter.next_name();
+  map.joint = std::move(joint);
+  map.next_name = next_name;
   return map;
+}
+
+core::JointMap joint_map(const cekf::CompressedEkf& filter, const std::vector<core::MapLandmark>& landmarks) {
+  return joint_map(filter.joint(ids_of(landmarks)), filter.next_name(), landmarks);
 }
 
 }  // namespace helixnav::supervisor

@@ -50,7 +50,7 @@ LandmarksAbout landmarks_about(const Belief& belief, double seen_within_m, doubl
   for (const association::LandmarkRecord& record : belief.existence.records()) {
     if (record.state != core::LandmarkState::mature) continue;
     if (belief.existence.path_m() - record.last_seen_path_m > seen_within_m) continue;
-    if (record.born_path_m <= born_after_path_m) continue;
+    if (record.born_path_m <= born_after_path_m || !belief.filter.contains(record.id)) continue;
     order.emplace_back((belief.filter.landmark_mean(record.id) - at_m).norm(), record.id);
   }
   std::sort(order.begin(), order.end());

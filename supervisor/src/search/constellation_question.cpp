@@ -119,7 +119,7 @@ std::vector<pf_relocalize::BranchLandmark> branch_landmarks(const SearchView& vi
   std::vector<pf_relocalize::BranchLandmark> branch;
   for (const association::LandmarkRecord& record : view.life.records()) {
     if (view.life.path_m() - record.last_seen_path_m > options.branch_seen_within_m) continue;
-    if (contains(old, record.id)) continue;
+    if (contains(old, record.id) || !view.filter.contains(record.id)) continue;
     if (3.0 * sigma_from_vehicle_m(view.filter, record.id) > options.constellation.most_tolerance_m) continue;
     branch.push_back({record.id, core::transform(T_robot_world, view.filter.landmark_mean(record.id)), record.hits});
   }

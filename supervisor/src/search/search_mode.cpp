@@ -6,7 +6,6 @@
 #include "closing/close_map.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 #include "loop/navigation_loop.hpp"
-#include "smoothing/smooth_drive.hpp"
 
 namespace helixnav::supervisor {
 
@@ -21,6 +20,7 @@ Search NavigationLoop::search_from(const Checkpoint& trigger) const {
 }
 
 void NavigationLoop::begin_search() {
+  widen_for_search();
   ++searches_;
   Checkpoint trigger = take_checkpoint(belief_, tape_);
   Search search = search_from(trigger);
@@ -94,28 +94,6 @@ void NavigationLoop::end_search(const Closing* closing) {
   }
   if (!undo_.mode) undo_.mode.emplace(std::move(mode_));
   mode_.emplace<Mapping>(std::move(mapping));
-}
-
-void NavigationLoop::solve_drive(StepReport& report) {
-  if (options_.search.closing == ClosingMethod::restart)
-    tape_.drop_drive();  // what came before the restart no longer constrains the map
-  if (!tape_.holds_drive()) return;
-  const core::Pose2 before = belief_.filter.pose().mean;
-  Smoothing smoothing = smooth_drive(belief_.filter, start_, tape_);
-  if (smoothing.solved) {
-    std::swap(belief_.filter, *smoothing.solved);
-    if (!undo_.filter) undo_.filter.emplace(std::move(*smoothing.solved));
-    tape_.append(Tape::Solved{smoothing.chi2});
-    report.solved = std::move(smoothing.path);
-  }
-  core::SmoothingDecision decision;
-  decision.accepted = smoothing.solved.has_value();
-  decision.chi2 = smoothing.chi2;
-  decision.limit = smoothing.limit;
-  decision.poses = smoothing.poses;
-  decision.iterations = smoothing.iterations;
-  decision.moved_m = (belief_.filter.pose().mean.position_m() - before.position_m()).norm();
-  report.decisions.emplace_back(decision);
 }
 
 }  // namespace helixnav::supervisor

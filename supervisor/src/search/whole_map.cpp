@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where odometry was wrong by more than its noise, no prior holds the place where the vehicle is: the whole map is asked.
+#include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "association/revisit_ambiguity.hpp"
 #include "closing/close_against_odometry.hpp"
+#include "helixnav/core/errors.hpp"
 #include "helixnav/core/rigid_fit.hpp"
 #include "loop/navigation_loop.hpp"
 #include "placing/question_landmarks.hpp"
@@ -53,7 +56,8 @@ core::Pose2 branch_on_map(const std::vector<pf_relocalize::ConstellationPair>& p
 
 bool NavigationLoop::asks_whole_map() const {
   return options_.search.enabled && options_.search.whole_map &&
-         options_.search.acceptance == Acceptance::constellation && !sought_in_;
+         options_.search.acceptance == Acceptance::constellation && !sought_in_ &&
+         std::isinf(belief_.window.radius_m);  // else it is not in the filter
 }
 
 /// Before a search ends undecided, or where odometry forbids the closing that it found.
@@ -104,6 +108,19 @@ bool NavigationLoop::ask_whole_map(LandmarksAbout& about, const Search& search, 
   return false;
 }
 
+/// The atlas of a drive whose odometry is believed less than it was. False when it cannot be solved.
+bool NavigationLoop::begin_drive_anew(const Tape& tape, const cekf::CompressedEkf& filter) {
+  try {
+    auto drive = begun_drive();
+    drive->take(tape, filter);
+    drive->settle();
+    become(std::move(drive), belief_.window);
+    return true;
+  } catch (const core::NumericalError&) {
+    return false;
+  }
+}
+
 /// With the odometry as it was measured if that allows it, else against it.
 bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair>& pairs, const Search& search,
                               const Checkpoint& trigger, const core::Scan& scan, WholeMapDecision& decision,
@@ -120,6 +137,8 @@ bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair
     place.as_measured = closing;
     Reconciled reconciled = close_against_odometry(belief_.filter, start_, view, place, options_.search);
     if (!reconciled.closing.accepted) return false;
+    const bool changes_drive = belief_.drive && tape_.holds_drive();  // else only what came after the trigger
+    if (changes_drive && !begin_drive_anew(*reconciled.tape, *reconciled.filter)) return false;
     decision.odometry_factor = reconciled.odometry_factor;
     decision.loop_m = reconciled.loop_m;
     closing = std::move(reconciled.closing);

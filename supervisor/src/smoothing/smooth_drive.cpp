@@ -30,10 +30,6 @@ cekf::CompressedEkf filter_at(const smoothing::Minimum& minimum, const core::Lan
   return {joint, before.next_name(), before.options()};
 }
 
-/// χ² of three more degrees of freedom, exceeded once in a million times: by less the two costs differ that would be one
-/// if everything were linear. Measured: −12 to 17 (docs/adr/0010-solving-the-drive.md).
-double slack() { return core::chi2_quantile(0.999999, 3); }
-
 smoothing::Options from_a_good_start() {
   smoothing::Options options;
   options.first_damping = 1e-8;
@@ -43,15 +39,20 @@ smoothing::Options from_a_good_start() {
 
 }  // namespace
 
+/// χ² of three more degrees of freedom, exceeded once in a million times: by less the two costs differ that would be one
+/// if everything were linear. Measured: −12 to 17 (docs/adr/0010-solving-the-drive.md).
+double slack() { return core::chi2_quantile(0.999999, 3); }
+
+// Odometry of rank two, a certain start and an exact fix have no inverse; so much is added to them, a few ten-thousandths of
+// what the simulated truck drifts.
+Eigen::Vector3d softening() { return {2e-5, 2e-5, 2e-6}; }
+
 smoothing::Problem problem_of(const core::PoseGaussian& start, core::LandmarkGraph graph) {
-  // x, y, heading [m, m, rad]. Odometry of rank two, a certain start and an exact fix have no inverse; so much is added to
-  // them, a few ten-thousandths of what the simulated truck drifts.
-  const Eigen::Vector3d softening(2e-5, 2e-5, 2e-6);
   smoothing::Problem problem;
   problem.graph = std::move(graph);
-  const Eigen::Matrix3d certain = softening.cwiseAbs2().asDiagonal();
+  const Eigen::Matrix3d certain = softening().cwiseAbs2().asDiagonal();
   problem.pose_priors.push_back({0, start.mean, start.covariance + certain});
-  smoothing::soften_odometry(problem, softening);
+  smoothing::soften_odometry(problem, softening());
   for (auto& edge : problem.graph.fix_edges) edge.fix.covariance_m2 += certain.topLeftCorner<2, 2>();
   return problem;
 }

@@ -35,6 +35,12 @@ struct Smoothing {
 Smoothing smooth_drive(const cekf::CompressedEkf& filter, const core::PoseGaussian& start, const Tape& tape,
                        const std::set<core::LandmarkId>& displaced = {});
 
+/// χ² by which the cost of a solution may exceed the filter's.
+double slack();
+
+/// What is added to standard deviations in (x, y, heading) so that every covariance has an inverse [m, m, rad].
+Eigen::Vector3d softening();
+
 /// The graph with what holds the start, and with covariances of which every one has an inverse.
 smoothing::Problem problem_of(const core::PoseGaussian& start, core::LandmarkGraph graph);
 

@@ -114,6 +114,8 @@ class CompressedEkf {
   /// A passive landmark's is that of the phase's begin times 1.5: it shrinks with every update of the phase, and only the
   /// right-invariant transport may turn it. O(1). Test: cekf/law_test.cpp.
   double landmark_sigma_bound_m(core::LandmarkId id) const;
+  /// Covariance of a landmark, active or passive, with the pose. O(q). Test: cekf/law_test.cpp.
+  Eigen::Matrix<double, 2, 3> covariance_with_pose(core::LandmarkId id) const;
   /// Pose and the landmarks in the order given, active or passive, read-only.
   core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;
 

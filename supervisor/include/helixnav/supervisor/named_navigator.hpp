@@ -50,6 +50,9 @@ class NamedNavigator {
 
   /// All landmarks, in order of id.
   std::vector<core::MapLandmark> map() const;
+  /// As Navigator's.
+  std::vector<core::MapLandmark> sketch() const { return map(); }
+  core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const { return filter_.joint(ids); }
 
   const cekf::CompressedEkf& filter() const { return filter_; }
 

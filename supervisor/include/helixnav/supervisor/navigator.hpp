@@ -64,9 +64,19 @@ class Navigator {
   /// Pose at the last scan or fix.
   core::PoseGaussian pose() const;
 
-  /// All landmarks with their state, in order of id. O(landmarks · q²): for the end of a run, not for every step.
+  /// All landmarks with their state, in order of id. O(landmarks · q²): for the end of a run, not for every step. Of a map that
+  /// is larger than the filter the atlas is solved first.
   std::vector<core::MapLandmark> map() const;
 
+  /// The same for a picture: landmarks that the filter has left out are where they were solved last, with the covariance
+  /// that they had when they were left. O(landmarks).
+  std::vector<core::MapLandmark> sketch() const;
+
+  /// Joint estimate of the pose and of landmarks of the map in the order given, wherever they are. O(n²) times the largest
+  /// separator of the map.
+  core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;
+
+  /// The filter; it holds the landmarks near the vehicle, all of them up to MapOptions::window.
   const cekf::CompressedEkf& filter() const;
 
  private:

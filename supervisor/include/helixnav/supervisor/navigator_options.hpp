@@ -11,6 +11,14 @@
 
 namespace helixnav::supervisor {
 
+/// How a map is kept that is too large for one filter.
+struct MapOptions {
+  int solve_over_poses = 650;  ///< landmarks up to which a closing is solved over all poses; beyond, on the atlas
+  int whole = 1000;            ///< landmarks up to which the filter holds all of them; …
+  int window = 400;            ///< … of more those nearest the vehicle, so many or as its drift asks for, …
+  int most = 1000;             ///< … but not more than this
+};
+
 /// Options of Navigator and NamedNavigator; the latter reads filter, delayed and fix_probability only. Every length here is
 /// for a sensor with a reach of reference_reach_m; the navigator scales it to the sensor of the first scan (lengths.hpp).
 struct NavigatorOptions {
@@ -23,6 +31,7 @@ struct NavigatorOptions {
   SearchOptions search;
   SlipOptions slip;
   NoiseOptions noise;
+  MapOptions map;
   DelayedOptions delayed;            ///< of landmarks known by name and seen as a range or a bearing only
   double fix_probability = 0.999;    ///< χ² gate of an absolute fix
   double extraneous_per_scan = 1.0;  ///< observations of no mapped landmark: clutter and new ones together

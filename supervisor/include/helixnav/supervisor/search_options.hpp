@@ -89,9 +89,10 @@ struct SearchOptions {
   double leftover_least_m = 1.0;      ///< always near enough to an old landmark to be its duplicate; …
   double leftover_most_m = 2.5;       ///< … never farther off, however sparse the neighbours
   double stretch_m = 40.0;            ///< length of the segment aligned as a whole; 25 and 60 m work as well
-  double stretch_rim_m = 3.0;      ///< rim of the segment: landmarks there may be matched, but do not count as missing
-  double stretch_rigid_m = 0.7;    ///< tolerance on the distance of two duplicates against that of their partners
-  int smooth_up_to_scans = 20000;  ///< and fixes; a longer drive is not solved as a whole after a closing
+  double stretch_rim_m = 3.0;    ///< rim of the segment: landmarks there may be matched, but do not count as missing
+  double stretch_rigid_m = 0.7;  ///< tolerance on the distance of two duplicates against that of their partners
+  int smooth_up_to_scans =
+      20000;  ///< and fixes: a drive is solved over all its poses after a closing; a longer one on the atlas, 0: none
 };
 
 }  // namespace helixnav::supervisor

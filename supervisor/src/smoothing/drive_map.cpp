@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "smoothing/drive_map.hpp"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "helixnav/atlas/phase_factor.hpp"
+#include "helixnav/core/errors.hpp"
+#include "smoothing/smooth_drive.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+/// A start that is known exactly stands for the map frame itself; any other needs a covariance with an inverse.
+core::PoseGaussian softened(core::PoseGaussian start) {
+  if (!start.covariance.isZero(0.0)) start.covariance.diagonal() += softening().cwiseAbs2();
+  return start;
+}
+
+std::map<core::LandmarkId, int> sightings(const std::vector<Stop>& stops, const core::MergedIds& ids) {
+  std::map<core::LandmarkId, int> count;
+  for (const Stop& stop : stops) {
+    for (const cekf::Match& match : stop.seen) ++count[ids.now(match.landmark)];
+  }
+  return count;
+}
+
+}  // namespace
+
+DriveMap::DriveMap(const core::PoseGaussian& start, double phase_m) : phase_m_(phase_m), atlas_(softened(start)) {}
+
+void DriveMap::take(const Tape& tape, const cekf::CompressedEkf& filter) {
+  const std::vector<Stop> stops = stops_of(tape, end_);
+  const core::MergedIds ids = merged_ids(tape, end_);
+  const std::map<core::LandmarkId, int> seen = sightings(stops, ids);
+  PhaseNames names;
+  names.now = [&](core::LandmarkId id) { return ids.now(id); };
+  names.is_worth_it = [&](core::LandmarkId id) { return seen.at(id) > 1 || filter.contains(id) || has_name(id); };
+  for (const DrivePhase& phase : phases_of(stops, motion_after_stops(tape, end_), phase_m_, stops_.empty(), names)) {
+    add(phase);
+  }
+  merge(tape, ids);
+  cost_ = drive_cost(tape, end_, cost_);
+  end_ = tape.end();
+}
+
+/// Over the length of a phase dead reckoning is a start that three steps of Gauss and Newton bring to its minimum.
+void DriveMap::add(const DrivePhase& phase) {
+  atlas::PhaseFactor factor = atlas::derive_factor(*phase.log, atlas::dead_reckon(*phase.log));
+  for (const core::LandmarkId id : factor.shape.ids) {
+    const auto at = static_cast<std::size_t>(id);
+    if (at >= named_.size()) named_.resize(at + 1, false);
+    named_[at] = true;
+  }
+  stops_.push_back(std::make_shared<const std::vector<StopInPhase>>(phase.stops));
+  const int clone = atlas_.add(std::move(factor), phase.log) + 1;
+  if (phase.fix) atlas_.fix(clone, *phase.fix);
+}
+
+/// Landmarks that had both names before; the observations since have the present ones already.
+void DriveMap::merge(const Tape& tape, const core::MergedIds& ids) {
+  tape.read_from(end_, [&](const Tape::Entry& entry) {
+    const auto* merged = std::get_if<Tape::Merge>(&entry);
+    if (merged == nullptr) return;
+    for (const core::MergedLandmarks& one : merged->merged) {
+      const core::LandmarkId kept = ids.now(one.kept);
+      if (!has_name(one.removed) || !has_name(kept) || one.removed == kept) continue;
+      atlas_.merge({{one.removed, kept}});
+      named_[static_cast<std::size_t>(one.removed)] = false;
+    }
+  });
+}
+
+bool DriveMap::has_name(core::LandmarkId id) const {
+  const auto at = static_cast<std::size_t>(id);
+  return id >= 0 && at < named_.size() && named_[at];
+}
+
+void DriveMap::settle() {
+  atlas_.settle();
+  places_ = std::make_shared<const std::vector<atlas::Place>>(atlas_.landmarks());
+}
+
+void DriveMap::remember(const cekf::CompressedEkf& filter) {
+  covariances_m2_.resize(std::max(covariances_m2_.size(), static_cast<std::size_t>(filter.next_name())),
+                         Eigen::Matrix2d::Zero());
+  for (const core::LandmarkId id : filter.landmarks()) {
+    covariances_m2_[static_cast<std::size_t>(id)] = filter.landmark(id).covariance_m2;
+  }
+}
+
+core::PointGaussian DriveMap::remembered(core::LandmarkId id) const {
+  const auto place = std::lower_bound(places_->begin(), places_->end(), id,
+                                      [](const atlas::Place& one, core::LandmarkId name) { return one.id < name; });
+  if (place == places_->end() || place->id != id) {
+    throw core::PreconditionError("landmark " + std::to_string(id) + " is not in the drive's map");
+  }
+  return {place->point_m, covariances_m2_.at(static_cast<std::size_t>(id))};
+}
+
+std::vector<core::StampedPose> DriveMap::path() const {
+  std::vector<core::StampedPose> path;
+  for (std::size_t phase = 0; phase < stops_.size(); ++phase) {
+    const std::vector<core::Pose2> poses = atlas_.poses_of(static_cast<int>(phase));
+    for (const StopInPhase& stop : *stops_[phase]) {
+      const bool at_entry = stop.step < 0;
+      path.push_back(
+          {stop.t_ns, at_entry ? atlas_.clone(static_cast<int>(phase)) : poses[static_cast<std::size_t>(stop.step)]});
+    }
+  }
+  return path;
+}
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "helixnav/atlas/atlas.hpp"
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/step_report.hpp"
+#include "loop/tape.hpp"
+#include "smoothing/drive_phases.hpp"
+
+namespace helixnav::supervisor {
+
+/// The drive up to a position on its tape as an atlas: what was measured until there is in its phases, and the tape need not keep
+/// it. A copy costs O(phases). Errors: core::NumericalError where mathematics breaks; the map is then to be thrown away.
+/// Test: supervisor/drive_map_test.cpp (least squares over all poses of the same tape).
+class DriveMap {
+ public:
+  /// `phase_m`: length of a phase.
+  DriveMap(const core::PoseGaussian& start, double phase_m);
+
+  /// Takes in what the tape holds from end() on: scans, fixes, motion and merges. Landmarks lost again after a single look,
+  /// which `filter` no longer has, are left out.
+  void take(const Tape& tape, const cekf::CompressedEkf& filter);
+
+  /// Solves what was taken in since it was last solved.
+  void settle();
+
+  /// All landmarks where they were solved last, by increasing name.
+  const std::vector<atlas::Place>& places() const { return *places_; }
+
+  /// Keeps the covariances of the landmarks of a filter that leaves some of them out.
+  void remember(const cekf::CompressedEkf& filter);
+  /// Where a landmark was solved last, with the covariance that was remembered of it last. O(log N).
+  core::PointGaussian remembered(core::LandmarkId id) const;
+
+  const atlas::Atlas& atlas() const { return atlas_; }
+  Tape::Position end() const { return end_; }
+  /// What the filter paid for the measurements until there, see drive_cost.
+  double cost() const { return cost_; }
+
+  /// Poses of all stops as they are solved.
+  std::vector<core::StampedPose> path() const;
+
+ private:
+  void add(const DrivePhase& phase);
+  void merge(const Tape& tape, const core::MergedIds& ids);
+  bool has_name(core::LandmarkId id) const;
+
+  double phase_m_;
+  atlas::Atlas atlas_;
+  std::vector<std::shared_ptr<const std::vector<StopInPhase>>> stops_;  ///< of every phase
+  std::vector<bool> named_;                                             ///< by id: known to the atlas
+  std::shared_ptr<const std::vector<atlas::Place>> places_ = std::make_shared<const std::vector<atlas::Place>>();
+  std::vector<Eigen::Matrix2d> covariances_m2_;  ///< by id
+  Tape::Position end_ = 0;
+  double cost_ = 0.0;
+};
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/association/landmark_life.hpp"
+#include "helixnav/atlas/atlas.hpp"
+#include "helixnav/core/landmark_id.hpp"
+
+namespace helixnav::supervisor {
+
+/// Which landmarks the filter holds of a map that is too large for it: all within radius_m of center_m as that was when the filter
+/// began, and those begun since.
+struct Window {
+  Eigen::Vector2d center_m = Eigen::Vector2d::Zero();
+  double radius_m = std::numeric_limits<double>::infinity();  ///< infinite: the whole map
+  int landmarks = 0;                                          ///< when the filter began, and …
+  double begun_path_m = 0.0;                                  ///< … the length of the drive then
+
+  /// Around a place, how far every landmark is held.
+  double reach_from(const Eigen::Vector2d& point_m) const { return radius_m - (point_m - center_m).norm(); }
+};
+
+/// What a window has to hold: everything within least_radius_m, more as long as it has less than `landmarks`; of more than `most`
+/// the nearest.
+struct WindowNeeds {
+  double least_radius_m = 0.0;
+  int landmarks = 0;
+  int most = 0;
+};
+
+struct ChosenWindow {
+  Window window;
+  std::vector<core::LandmarkId> ids;  ///< increasing
+};
+
+/// The window around a place, of the landmarks of `places` that exist. O(N). Test: supervisor/window_test.cpp.
+ChosenWindow choose_window(const std::vector<atlas::Place>& places, const association::LandmarkLife& existence,
+                           const Eigen::Vector2d& center_m, const WindowNeeds& needs);
+
+}  // namespace helixnav::supervisor

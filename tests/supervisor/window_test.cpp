@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "window/window.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "judged_drive.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+association::LandmarkLife existence_of(const std::vector<core::LandmarkId>& ids) {
+  association::LandmarkLife existence;
+  for (const core::LandmarkId id : ids) {
+    association::LandmarkRecord record;
+    record.id = id;
+    existence.adopt(record);
+  }
+  return existence;
+}
+
+/// Landmark i stands i metres from the origin.
+std::vector<atlas::Place> row_of(int count) {
+  std::vector<atlas::Place> places;
+  for (int i = 0; i < count; ++i) places.push_back({i, {static_cast<double>(i), 0.0}});
+  return places;
+}
+
+TEST(ChooseWindow, HoldsEverythingNearAndTheNearestOfTheRest) {
+  const auto existence = existence_of({0, 1, 2, 3, 5, 6, 7, 8, 9});
+  const ChosenWindow few = choose_window(row_of(10), existence, {0.0, 0.0}, {6.5, 2, 100});
+  EXPECT_EQ(few.ids, (std::vector<core::LandmarkId>{0, 1, 2, 3, 5, 6}));  // 4 does not exist
+  EXPECT_DOUBLE_EQ(few.window.radius_m, 7.0);
+  EXPECT_DOUBLE_EQ(few.window.reach_from({3.0, 4.0}), 2.0);
+  EXPECT_EQ(choose_window(row_of(10), existence, {0.0, 0.0}, {6.5, 7, 100}).ids.size(), 7u);
+  EXPECT_EQ(choose_window(row_of(10), existence, {9.0, 0.0}, {6.5, 2, 3}).ids,
+            (std::vector<core::LandmarkId>{7, 8, 9}));
+  const ChosenWindow all = choose_window(row_of(10), existence, {0.0, 0.0}, {6.5, 50, 100});
+  EXPECT_EQ(all.ids.size(), 9u);
+  EXPECT_TRUE(std::isinf(all.window.radius_m));
+}
+
+sim::Scenario town_of_3_km() {
+  sim::Scenario scenario = sim::named_scenario("town");
+  scenario.world.tour_m = 3000.0;
+  return scenario;
+}
+
+long closed(const evaluation::RunScore& score) {
+  return std::count_if(score.returns.begin(), score.returns.end(), [](const auto& one) { return one.closed; });
+}
+
+// A window far below what a town of this size needs, so that there are many hand-overs and every search widens it.
+TEST(Window, ClosesWhatTheWholeMapCloses) {
+  constexpr std::uint64_t seed = 5;
+  NavigatorOptions narrow;
+  narrow.map.whole = narrow.map.window = narrow.map.solve_over_poses = 200;
+  const evaluation::RunScore whole = navigate_and_judge(town_of_3_km(), seed);
+  const evaluation::RunScore window = navigate_and_judge(town_of_3_km(), seed, narrow);
+  EXPECT_GE(whole.closures.size(), 2u) << "or it shows nothing";
+  EXPECT_NE(window.verdict, evaluation::RunVerdict::false_closure);
+  for (const evaluation::ClosureScore& closure : window.closures) EXPECT_EQ(closure.wrong_pairs, 0);
+  EXPECT_GE(closed(window), closed(whole));
+  EXPECT_LE(window.duplicates, whole.duplicates + 2);
+  EXPECT_LT(window.map_rms_m, whole.map_rms_m + 0.1);
+}
+
+}  // namespace
+}  // namespace helixnav::supervisor
