@@ -19,15 +19,15 @@ namespace {
 using core::LandmarkId;
 using core::WholeMapDecision;
 
-WholeMapDecision::Verdict verdict_of(relocalize::Verdict verdict) {
+WholeMapDecision::Verdict whole_map_verdict(relocalize::Verdict verdict) {
   if (verdict == relocalize::Verdict::closed) return WholeMapDecision::Verdict::refused;  // until it is closed there
   const bool ambiguous = verdict == relocalize::Verdict::ambiguous;
   return ambiguous ? WholeMapDecision::Verdict::ambiguous : WholeMapDecision::Verdict::not_here;
 }
 
-WholeMapDecision decision_of(const relocalize::Answer& answer) {
+WholeMapDecision figures_of(const relocalize::Answer& answer) {
   WholeMapDecision decision;
-  decision.verdict = verdict_of(answer.verdict);
+  decision.verdict = whole_map_verdict(answer.verdict);
   decision.lead = answer.gap;
   if (answer.places.empty()) return decision;
   decision.pairs = static_cast<int>(answer.places.front().pairs.size());
@@ -35,7 +35,7 @@ WholeMapDecision decision_of(const relocalize::Answer& answer) {
   return decision;
 }
 
-std::vector<pf_relocalize::ConstellationPair> pairs_of(const relocalize::Place& place) {
+std::vector<pf_relocalize::ConstellationPair> constellation_of(const relocalize::Place& place) {
   std::vector<pf_relocalize::ConstellationPair> pairs;
   for (const relocalize::Pair& pair : place.pairs) pairs.push_back({pair.branch, pair.map});
   return pairs;
@@ -94,14 +94,14 @@ bool NavigationLoop::ask_whole_map(LandmarksAbout& about, const Search& search, 
   relocalize::AskOptions how;
   how.alpha = asked_.next_alpha();
   const relocalize::Answer answer = relocalize::ask(index, question, how);
-  WholeMapDecision decision = decision_of(answer);
+  WholeMapDecision decision = figures_of(answer);
   decision.old_landmarks = static_cast<int>(index.size());
   decision.landmarks = static_cast<int>(question.landmarks.size());
   decision.questions = asked_.questions + 1;
   decision.needed = -std::log(how.alpha);
   asked_.note(about.ids);
   if (answer.verdict == relocalize::Verdict::closed &&
-      close_at(pairs_of(answer.places.front()), search, trigger, scan, decision, report))
+      close_at(constellation_of(answer.places.front()), search, trigger, scan, decision, report))
     return true;
   const bool is_news = searching() != nullptr || decision.verdict != WholeMapDecision::Verdict::not_here;
   if (is_news) report.decisions.emplace_back(decision);
