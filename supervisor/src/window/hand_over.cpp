@@ -91,7 +91,10 @@ void NavigationLoop::hand_over_if_due() {
   const int held = belief_.filter.mapped_count();
   const bool has_grown = 2 * held > 3 * std::max(options_.map.window, belief_.window.landmarks);
   // Early: where the vehicle sees little, on a street without trees, it may be long before it is trusted again.
-  const double needed_m = 3.0 * view_.reach().value_or(reference_reach_m) + 0.5 * drift_m(belief_.filter);
+  // No farther than that of a window that does not reach so far, or it would be handed over all the time.
+  constexpr double most_share = 0.6;
+  const double needed_m = std::min(3.0 * view_.reach().value_or(reference_reach_m) + 0.5 * drift_m(belief_.filter),
+                                   most_share * belief_.window.radius_m);
   const bool at_edge = belief_.window.reach_from(belief_.filter.pose().mean.position_m()) < needed_m;
   constexpr Tape::Position most_entries = 20000;
   const bool is_long = belief_.drive && tape_.end() - belief_.drive->end() > most_entries;
