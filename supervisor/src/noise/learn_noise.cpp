@@ -53,6 +53,7 @@ void NavigationLoop::solve_with_learnt_noise(core::StepReport& report) {
   Tape again = tape_.rescaled(observations, odometry);
   Smoothing smoothing = smooth_drive(belief_.filter, start_, again);
   if (!smoothing.solved) return;
+  if (belief_.drive && !begin_drive_anew(again, *smoothing.solved)) return;
   again.append(Tape::Solved{smoothing.chi2});
   Checkpoint trusted = take_checkpoint(belief_, again);
   trusted.filter = smoothing.solved->snapshot();
