@@ -94,14 +94,18 @@ core::Observation observation_of(const MrclamTables::Sighting& sighting, const M
                                   settings.sigma_bearing_rad);
 }
 
-/// All sightings of one instant.
+/// All sightings of one instant in one scan. Where nothing was seen for a while, an empty one lets a run tell where the
+/// robot is.
 class Weaver {
  public:
   Weaver(const std::vector<int>& chosen, const MrclamSettings& settings, core::TeamRecording& team)
       : chosen_(chosen), settings_(settings), team_(team) {}
 
   void add(const Robot& robot, core::Nanoseconds t_ns, core::TeamMember& member) {
-    if (next_ == robot.sightings.size() || robot.sightings[next_].t_ns != t_ns) return;
+    const bool sees = next_ < robot.sightings.size() && robot.sightings[next_].t_ns == t_ns;
+    constexpr core::Nanoseconds blind_ns = 400'000'000;
+    if (!sees && t_ns - last_ns_ < blind_ns) return;
+    last_ns_ = t_ns;
     core::Scan scan;
     scan.t_ns = t_ns;
     std::vector<core::Label> labels;
@@ -114,6 +118,7 @@ class Weaver {
 
   /// Sightings before the first command.
   void pass_over(const Robot& robot, core::Nanoseconds begin_ns) {
+    last_ns_ = begin_ns;
     while (next_ < robot.sightings.size() && robot.sightings[next_].t_ns <= begin_ns) ++next_;
   }
 
@@ -139,6 +144,7 @@ class Weaver {
   const MrclamSettings& settings_;
   core::TeamRecording& team_;
   std::size_t next_ = 0;
+  core::Nanoseconds last_ns_ = 0;  ///< of the last scan
 };
 
 /// The true pose at t_ns, on the straight line between those around it, half a second apart at most.
