@@ -101,9 +101,9 @@ void Team::Book::solve_all(core::Nanoseconds t_ns) {
   find_joins(t_ns, options, refused, state);
 }
 
-/// To a checkpoint that rests on none of the entries from `entries_kept` on.
+/// To a checkpoint that rests on none of the entries from `entries_kept` on, nor was taken because of one of them.
 void Team::Book::rewind(std::size_t entries_kept) {
-  while (!checkpoints.empty() && checkpoints.back().entries > entries_kept) checkpoints.pop_back();
+  while (!checkpoints.empty() && checkpoints.back().entries >= entries_kept) checkpoints.pop_back();
   const Checkpoint& from = checkpoints.empty() ? first : checkpoints.back();
   state = from.state;
   done = from.entries;
@@ -171,6 +171,21 @@ void Team::Book::check_robot(int robot) const {
   throw core::PreconditionError("team: there is no robot " + std::to_string(robot));
 }
 
+namespace {
+
+void check_names(const core::Scan& scan, const std::vector<std::int64_t>& names) {
+  if (names.size() != scan.observations.size()) {
+    throw core::PreconditionError("team: " + std::to_string(names.size()) + " names for " +
+                                  std::to_string(scan.observations.size()) + " observations");
+  }
+  for (const core::Observation& observation : scan.observations) {
+    if (core::dimension(observation.kind) == 2) continue;
+    throw core::PreconditionError("team: a range or a bearing alone does not fix a landmark");
+  }
+}
+
+}  // namespace
+
 Team::Team(const std::vector<std::optional<core::PoseGaussian>>& starts, const TeamOptions& options)
     : book_(std::make_unique<Book>(starts, options)) {}
 Team::~Team() = default;
@@ -182,7 +197,10 @@ std::optional<core::StepReport> Team::take(int robot, const core::Event& event,
   book_->check_robot(robot);
   core::check(event);
   const auto r = static_cast<std::size_t>(robot);
-  if (const auto* scan = std::get_if<core::Scan>(&event)) return book_->enter({r, NamedScan{*scan, names}});
+  if (const auto* scan = std::get_if<core::Scan>(&event)) {
+    check_names(*scan, names);
+    return book_->enter({r, NamedScan{*scan, names}});
+  }
   if (const auto* motion = std::get_if<core::Odometry>(&event)) book_->move(r, *motion);
   return std::nullopt;
 }

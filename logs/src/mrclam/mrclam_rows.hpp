@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 
+#include "helixnav/files/number_text.hpp"
 #include "mrclam/mrclam_tables.hpp"
 #include "plausible.hpp"
 #include "text_cursor.hpp"
@@ -12,10 +14,15 @@ namespace helixnav::logs {
 
 // The fields that both forms of the files have, in the same order.
 
-/// Of the log's own origin, or of Unix.
+/// Of the log's own origin, or of Unix; exact, because a double of Unix time is not.
 inline core::Nanoseconds read_time(TextCursor& cursor) {
-  constexpr double most_s = 4e9;
-  return core::nanoseconds_from_seconds(cursor.number_between(-most_s, most_s, "a time [s]"));
+  constexpr core::Nanoseconds most_ns = 4'000'000'000'000'000'000;
+  const std::string_view word = cursor.word();
+  const std::optional<core::Nanoseconds> t_ns = files::parse_seconds(word);
+  if (!t_ns || *t_ns > most_ns || *t_ns < -most_ns) {
+    cursor.fail("expected a time [s], found '" + std::string(word) + "'");
+  }
+  return *t_ns;
 }
 
 inline MrclamTables::Command read_command(TextCursor& cursor) {
