@@ -10,8 +10,8 @@ namespace helixnav::logs {
 
 /// What the log does not say of its own noise. Derived in docs/team.md from residuals of run 9, whose robots have no truth.
 struct MrclamSettings {
-  double sigma_range_m = 0.15;
-  double sigma_bearing_rad = 0.03;
+  double sigma_range_m = 0.40;
+  double sigma_bearing_rad = 0.05;
   double sigma_speed_m_per_sqrt_s = 0.04;   ///< along, while commanded to move
   double sigma_side_m_per_sqrt_s = 0.01;    ///< across, likewise
   double sigma_turn_rad_per_sqrt_s = 0.10;  ///< heading, likewise
