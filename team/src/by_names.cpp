@@ -68,7 +68,6 @@ core::Pose2 rigid_fit(const Points& a, const Points& b) {
 struct Fit {
   core::PoseGaussian T;
   double chi2 = 0.0;
-  double sigma_m = 0.0;  ///< of the middle of the points
 };
 
 /// min νᵀS⁻¹ν over T, ν = a − T∘b, S = P_a + R P_b Rᵀ.
@@ -82,14 +81,12 @@ Fit fit_of(const Points& a, const Points& b) {
     Eigen::MatrixXd turn = Eigen::MatrixXd::Zero(n, n);
     Eigen::MatrixXd J(n, 3);
     Eigen::VectorXd nu(n);
-    Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
     for (Eigen::Index i = 0; i < n; i += 2) {
       const auto point = static_cast<std::size_t>(i / 2);
       const Eigen::Vector2d arm_m = R * b.at_m[point];
       turn.block<2, 2>(i, i) = R;
       J.middleRows<2>(i) << 1.0, 0.0, -arm_m.y(), 0.0, 1.0, arm_m.x();
       nu.segment<2>(i) = a.at_m[point] - core::transform(fit.T.mean, b.at_m[point]);
-      middle_m += arm_m / static_cast<double>(a.at_m.size());
     }
     const Eigen::LLT<Eigen::MatrixXd> S(a.covariance + turn * b.covariance * turn.transpose());
     const Eigen::MatrixXd W = S.solve(J);
@@ -98,9 +95,6 @@ Fit fit_of(const Points& a, const Points& b) {
     fit.T.mean = core::Pose2(fit.T.mean.vector() + step);
     fit.T.covariance = H.inverse();
     fit.chi2 = nu.dot(S.solve(nu)) - step.dot(H * step);
-    Eigen::Matrix<double, 2, 3> of_middle;
-    of_middle << 1.0, 0.0, -middle_m.y(), 0.0, 1.0, middle_m.x();
-    fit.sigma_m = std::sqrt((of_middle * fit.T.covariance * of_middle.transpose()).trace());
   }
   return fit;
 }
@@ -123,8 +117,7 @@ std::optional<Candidate> by_names(std::size_t into, std::size_t from, const Join
   const Fit fit = fit_of(points_of(state.components[into].filter, a), points_of(state.components[from].filter, b));
   candidate.T_into_from = fit.T;
   const double limit = core::chi2_quantile(options.probability, 2 * static_cast<int>(a.size()) - 3);
-  const bool known = fit.sigma_m <= options.max_sigma_m && std::sqrt(fit.T.covariance(2, 2)) <= options.max_sigma_rad;
-  if (!(fit.chi2 <= limit) || !known) return std::nullopt;
+  if (!(fit.chi2 <= limit)) return std::nullopt;
   return candidate;
 }
 

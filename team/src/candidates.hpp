@@ -10,7 +10,7 @@
 namespace helixnav::team {
 
 /// Where component `from` stands in `into` by landmarks that both call by the same name, two or more: generalised least
-/// squares over both maps' covariances. Nothing while χ² objects or the pose is not yet known well enough.
+/// squares over both maps' covariances. Nothing while χ² objects.
 std::optional<Candidate> by_names(std::size_t into, std::size_t from, const JoinOptions& options, const State& state);
 
 /// By the last two sightings, one each way, of a robot of each.

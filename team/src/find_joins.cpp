@@ -8,13 +8,18 @@
 namespace helixnav::team {
 namespace {
 
-/// A constellation is asked for again when the two maps have more landmarks than at the last question.
+/// A constellation is asked for again when the two maps rest on twice as many observations as at the last question: so
+/// there are few questions, and each may be answered falsely with its α.
 bool has_grown(std::size_t into, std::size_t from, State& state) {
-  const auto landmarks =
-      static_cast<int>(state.components[into].filter.ids().size() + state.components[from].filter.ids().size());
-  int& asked = state.landmarks_asked[{into, from}];
-  if (landmarks <= asked) return false;
-  asked = landmarks;
+  int observations = 0;
+  for (const std::size_t component : {into, from}) {
+    for (const core::LandmarkId id : state.components[component].filter.ids()) {
+      observations += state.observations[static_cast<std::size_t>(id)];
+    }
+  }
+  int& asked = state.observations_asked[{into, from}];
+  if (observations < 2 * asked || observations == 0) return false;
+  asked = observations;
   return true;
 }
 

@@ -2,6 +2,7 @@
 #include "join_components.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
@@ -94,6 +95,28 @@ bool passes(double apart_chi2, int rows, const State& state, const TeamOptions& 
   return join.cost <= join.limit;
 }
 
+/// Whether the first robots of both are known well enough, each seen from the other: two names say little of a heading.
+bool is_placed(const TeamJoin& join, const State& state, const JoinOptions& options) {
+  const Robot& a = state.robots[static_cast<std::size_t>(join.robot)];
+  const Robot& b = state.robots[static_cast<std::size_t>(join.other)];
+  const JointFilter& filter = state.components[a.component].filter;
+  const core::Pose2 T_world_a = filter.pose(a.slot).mean;
+  const core::Pose2 T_a_b = core::between(T_world_a, filter.pose(b.slot).mean);
+  const Eigen::Matrix2d R = core::rotation(T_world_a.heading_rad).transpose();
+  Eigen::Matrix<double, 3, 6> J = Eigen::Matrix<double, 3, 6>::Zero();
+  J.topLeftCorner<2, 2>() = -R;
+  J.col(2) << T_a_b.y_m, -T_a_b.x_m, -1.0;
+  J.block<2, 2>(0, 3) = R;
+  J(2, 5) = 1.0;
+  const auto at = [](const Robot& robot) { return static_cast<Eigen::Index>(3 * robot.slot); };
+  Eigen::Matrix<double, 6, 6> P;
+  P << filter.covariance().block<3, 3>(at(a), at(a)), filter.covariance().block<3, 3>(at(a), at(b)),
+      filter.covariance().block<3, 3>(at(b), at(a)), filter.covariance().block<3, 3>(at(b), at(b));
+  const Eigen::Matrix3d relative = J * P * J.transpose();
+  return std::sqrt(relative.topLeftCorner<2, 2>().trace()) <= options.max_sigma_m &&
+         std::sqrt(relative(2, 2)) <= options.max_sigma_rad;
+}
+
 }  // namespace
 
 bool join_components(Candidate candidate, core::Nanoseconds t_ns, const TeamOptions& options, State& state) {
@@ -116,6 +139,7 @@ bool join_components(Candidate candidate, core::Nanoseconds t_ns, const TeamOpti
   try {
     if (!solve(candidate.into, trial)) return false;
     if (!passes(apart_chi2, 2 * (join.merged + join.sightings), trial, options, join)) return false;
+    if (join.by == TeamJoin::By::names && !is_placed(join, trial, options.join)) return false;
     const int more = use_sightings(candidate.into, options.gate_probability, trial);
     if (more > 0 && !solve(candidate.into, trial)) return false;
   } catch (const core::NumericalError&) {

@@ -63,10 +63,10 @@ LandmarkId new_id(std::size_t robot, std::int64_t name, State& state) {
   return id;
 }
 
-void note_reach(const core::Observation& observation, const core::Pose2& T_robot_sensor, State& state) {
+void note_reach(const core::Observation& observation, State& state) {
   const core::Pose2 at_sensor;
   const double range_m = core::locate_landmark(observation, at_sensor, at_sensor).point_world_m.norm();
-  state.reach_m = std::max(state.reach_m, range_m + 0.0 * T_robot_sensor.x_m);
+  state.reach_m = std::max(state.reach_m, range_m);
 }
 
 /// One observation into filter and graph.
@@ -95,7 +95,7 @@ core::AssociationReport observe(std::size_t robot, const core::Pose2& T_robot_se
   }
   state.landmark_rows.push_back(row_of(robot, place, report.landmark, T_robot_sensor, observation));
   ++state.observations[static_cast<std::size_t>(report.landmark)];
-  note_reach(observation, T_robot_sensor, state);
+  note_reach(observation, state);
   state.of(robot).news = true;
   return report;
 }

@@ -73,9 +73,10 @@ struct State {
   std::vector<int> observations;                                                ///< [id]
   double reach_m = 0.0;                                                         ///< farthest landmark seen
   std::vector<TeamJoin> joins;
-  std::map<std::pair<std::size_t, std::size_t>, int> landmarks_asked;  ///< at the last question, by pair of components
-  std::vector<std::pair<std::size_t, std::size_t>> placed;             ///< (robot, join) not yet reported
-  std::vector<core::MergedLandmarks> merged;                           ///< not yet reported
+  std::map<std::pair<std::size_t, std::size_t>, int>
+      observations_asked;                                   ///< at the last question, by pair of components
+  std::vector<std::pair<std::size_t, std::size_t>> placed;  ///< (robot, join) not yet reported
+  std::vector<core::MergedLandmarks> merged;                ///< not yet reported
 
   Component& of(std::size_t robot) { return components[robots[robot].component]; }
   core::LandmarkId resolve(core::LandmarkId id) const {
