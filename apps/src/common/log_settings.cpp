@@ -34,6 +34,17 @@ void add_plaza(CLI::App& command, Settings& settings) {
   add_number(command, "--plaza.sigma_range_m", settings.logs.plaza.sigma_range_m, 1e-3, 100.0, "Noise of a range");
 }
 
+void add_mrclam(CLI::App& command, logs::MrclamSettings& mrclam) {
+  add_number(command, "--mrclam.sigma_range_m", mrclam.sigma_range_m, 1e-3, 100.0, "Noise of a range");
+  add_number(command, "--mrclam.sigma_bearing_rad", mrclam.sigma_bearing_rad, 1e-4, 1.0, "Noise of a bearing");
+  add_number(command, "--mrclam.sigma_speed", mrclam.sigma_speed_m_per_sqrt_s, 1e-4, 10.0,
+             "Noise along the way of a second under command [m]");
+  add_number(command, "--mrclam.sigma_side", mrclam.sigma_side_m_per_sqrt_s, 1e-4, 10.0,
+             "Noise across the way of a second under command [m]");
+  add_number(command, "--mrclam.sigma_turn", mrclam.sigma_turn_rad_per_sqrt_s, 1e-4, 10.0,
+             "Noise of the heading of a second under command [rad]");
+}
+
 void add_gps(CLI::App& command, Settings& settings) {
   GpsSettings& gps = settings.gps;
   command
@@ -72,6 +83,7 @@ void add_log_settings(CLI::App& command, Settings& settings) {
   add_truck(command, "victoria_park", settings.logs.victoria_park);
   add_truck(command, "car_park", settings.logs.car_park);
   add_plaza(command, settings);
+  add_mrclam(command, settings.logs.mrclam);
   add_gps(command, settings);
 }
 

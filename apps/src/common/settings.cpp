@@ -14,6 +14,7 @@ namespace {
 
 void choose_method(const std::string& chosen, Settings& settings) {
   settings.known_association = chosen == "known";
+  settings.unknown_association = chosen == "unknown";
   for (const association::Method method : association_methods()) {
     if (association::name(method) == chosen) settings.navigator.method = method;
   }
@@ -56,10 +57,12 @@ void add_filter(CLI::App& command, Settings& settings) {
 void add_association(CLI::App& command, Settings& settings) {
   std::vector<std::string> names{"known"};
   for (const association::Method method : association_methods()) names.emplace_back(association::name(method));
+  if (command.get_name() == "replay") names.emplace_back("unknown");
   command
       .add_option_function<std::string>(
           "--association.method,--association", [&settings](const std::string& word) { choose_method(word, settings); },
-          "Which observation belongs to which landmark; known: by the log's labels")
+          "Which observation belongs to which landmark; known: by the log's labels. Of a log of several robots "
+          "known or unknown")
       ->check(one_of(names))
       ->default_str(std::string(association::name(settings.navigator.method)))
       ->group(settings_group);

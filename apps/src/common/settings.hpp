@@ -21,8 +21,9 @@ namespace helixnav::apps {
 /// Everything that a configuration file may set, bound to the options --section.key of a command.
 struct Settings {
   supervisor::NavigatorOptions navigator;
-  FastSlamSettings fastslam;       ///< in place of the navigator, where it is chosen
-  bool known_association = false;  ///< association.method is "known": the log's labels are the identities
+  FastSlamSettings fastslam;         ///< in place of the navigator, where it is chosen
+  bool known_association = false;    ///< association.method is "known": the log's labels are the identities
+  bool unknown_association = false;  ///< it is "unknown": of a team log, whose identities replay uses otherwise
   logs::RecordingSettings logs;
   std::map<std::string, double> given_lengths_m;  ///< by their names in supervisor/lengths.cpp; all others by the reach
   logs::GivenFieldOfView field_of_view;

@@ -20,8 +20,10 @@
 #include "drive/start_option.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
+#include "helixnav/logs/mrclam.hpp"
 #include "helixnav/runs/joint_map_file.hpp"
 #include "read_to_replay.hpp"
+#include "team/replay_team.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -36,6 +38,7 @@ struct ReplayJob {
   std::vector<Blackout> blackouts;
   RunOptions run;
   Settings settings;
+  TeamChoice team;
 };
 
 /// Before anything is written.
@@ -69,9 +72,37 @@ void refuse_contradictions(const ReplayJob& job) {
   if (job.smooth) throw CLI::ValidationError("--smooth", "needs the associations of one map; fastslam has many");
 }
 
+/// Options that a log of several robots does not have, and those that only it has.
+void refuse_for_team(const CLI::App& command, const ReplayJob& job, const GivenOptions& given) {
+  for (const char* name : {"--smooth", "--map", "--localize", "--blackout", "--vehicle", "--start"}) {
+    if (command.get_option(name)->count() > 0) throw CLI::ValidationError(name, "is not for a log of several robots");
+  }
+  for (const CLI::Option* option : given) {
+    const std::string key = key_of(*option);
+    const bool association =
+        key == "association.method" && (job.settings.known_association || job.settings.unknown_association);
+    if (association || key.rfind("mrclam.", 0) == 0) continue;
+    throw CLI::ValidationError("--" + key, "is not for a log of several robots (--association known or unknown is)");
+  }
+}
+
+void refuse_without_team(const CLI::App& command, const ReplayJob& job) {
+  for (const char* name : {"--robots", "--unknown-starts"}) {
+    if (command.get_option(name)->count() > 0) throw CLI::ValidationError(name, "is for a log of several robots");
+  }
+  if (job.settings.unknown_association) {
+    throw CLI::ValidationError("--association unknown", "is for a log of several robots");
+  }
+}
+
 ExitCode replay(CLI::App& command, ReplayJob& job) {
   const GivenOptions given = options_given(command);
   prepare_run(command, job.run);
+  if (logs::is_mrclam(job.path)) {
+    refuse_for_team(command, job, given);
+    return replay_team(job.path, job.team, job.run, job.settings, dump_config(command));
+  }
+  refuse_without_team(command, job);
   check_filter(command, given, job.settings.fastslam);
   refuse_contradictions(job);
   const auto begin = std::chrono::steady_clock::now();
@@ -137,17 +168,24 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
       command->add_flag("--localize", job->localize, "Estimate the pose alone, in the map given, which stays as it is");
   localize->needs(map);
   add_blackouts(*command, *job);
+  command->add_option("--robots", job->team.robots, "Of a log of several robots: those with these numbers alone")
+      ->delimiter(',')
+      ->type_name("N,N");
+  command->add_flag("--unknown-starts", job->team.unknown_starts,
+                    "Of a log of several robots: where they start is not taken from the truth");
   add_run_options(*command, job->run);
   add_settings(*command, job->settings);
   command->footer(
       "Formats: ACFR text release (folder, zip) and .mat, iSAM/GTSAM and g2o landmark graphs, 2D-I-SLSJF .mat,\n"
-      "DLR text, Plaza; your own as CSV or JSON Lines with a vehicle.toml (helixnav new-vehicle DIR writes an "
+      "DLR text, Plaza; MRCLAM (several robots); your own as CSV or JSON Lines with a vehicle.toml (helixnav "
+      "new-vehicle DIR writes an "
       "example).\n\n"
       "Examples:\n"
       "  helixnav replay my_drive --out runs/mine\n"
       "  helixnav replay victoria_park_ascii.zip --out runs/vp\n"
       "  helixnav replay isam_victoriaPark.txt --association known --out runs/graph\n"
       "  helixnav replay data_set.mat --out runs/carpark --config mine.toml\n"
+      "  helixnav replay MRCLAM_Dataset6 --robots 1,3 --unknown-starts --out runs/team\n"
       "  helixnav replay tuesday --map runs/monday --out runs/tuesday\n"
       "  helixnav replay data_set.mat --filter fastslam --fastslam.detection_probability 0.5 --out runs/particles\n"
       "  helixnav replay map.circles --localize --map runs/optimum --out runs/located\n"

@@ -8,6 +8,7 @@
 #include "helixnav/core/recording.hpp"
 #include "helixnav/logs/acfr_recording.hpp"
 #include "helixnav/logs/dlr.hpp"
+#include "helixnav/logs/mrclam.hpp"
 #include "helixnav/logs/plaza.hpp"
 #include "helixnav/logs/pose_landmark_text.hpp"
 #include "helixnav/logs/vehicle.hpp"
@@ -39,6 +40,7 @@ struct RecordingSettings {
   PlazaSettings plaza;
   NoiseColumns noise_columns = NoiseColumns::recognise;
   DlrOptions dlr;
+  MrclamSettings mrclam;           ///< of logs of several robots (read_mrclam)
   std::optional<Vehicle> vehicle;  ///< of a log of the user's own; nothing: the vehicle.toml beside it
 };
 

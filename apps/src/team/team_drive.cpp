@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "team/team_drive.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <variant>
+
+#include "common/progress_bar.hpp"
+#include "team/own_names.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+/// One event of one robot, in the order in which Team wants them: motions, sightings of robots, scans.
+struct Fed {
+  enum Kind { motion, sighting, scan };
+  core::Nanoseconds t_ns;
+  Kind kind;
+  int robot;
+  std::size_t index;  ///< of the event, or of the sighting
+  std::size_t step;   ///< of a scan
+};
+
+std::vector<Fed> in_order(const core::TeamRecording& recording) {
+  std::vector<Fed> all;
+  for (std::size_t r = 0; r < recording.robots.size(); ++r) {
+    const core::TeamMember& member = recording.robots[r];
+    const int robot = static_cast<int>(r);
+    std::size_t step = 0;
+    for (std::size_t i = 0; i < member.recording.events.size(); ++i) {
+      const core::Event& event = member.recording.events[i];
+      const bool is_scan = std::holds_alternative<core::Scan>(event);
+      all.push_back({core::time_of(event), is_scan ? Fed::scan : Fed::motion, robot, i, is_scan ? step++ : 0});
+    }
+    for (std::size_t i = 0; i < member.sightings.size(); ++i) {
+      all.push_back({member.sightings[i].t_ns, Fed::sighting, robot, i, 0});
+    }
+  }
+  const auto key = [](const Fed& fed) { return std::make_tuple(fed.t_ns, fed.kind, fed.robot); };
+  std::stable_sort(all.begin(), all.end(), [&](const Fed& a, const Fed& b) { return key(a) < key(b); });
+  return all;
+}
+
+team::Team make_team(const TeamTask& task) {
+  std::vector<std::optional<core::PoseGaussian>> starts;
+  for (const core::TeamMember& member : task.recording.robots) {
+    starts.push_back(task.unknown_starts ? std::nullopt : std::optional(member.recording.start));
+  }
+  return team::Team(starts, task.options);
+}
+
+/// T_end_then: brings what a robot told at t_ns into the frame that its component has at the end.
+core::Pose2 frame_since(const team::Team& team, const std::vector<int>& first_component, int robot,
+                        core::Nanoseconds t_ns) {
+  std::vector<int> component = first_component;
+  core::Pose2 T;
+  for (const team::TeamJoin& join : team.joins()) {
+    const auto r = static_cast<std::size_t>(robot);
+    const int from = component[static_cast<std::size_t>(join.other)];
+    const int into = component[static_cast<std::size_t>(join.robot)];
+    if (component[r] == from && join.t_ns > t_ns) T = core::compose(join.T_component_other.mean, T);
+    std::replace(component.begin(), component.end(), from, into);
+  }
+  return T;
+}
+
+void bring_into_last_frames(const std::vector<int>& first_component, TeamDrive& drive) {
+  for (std::size_t r = 0; r < drive.robots.size(); ++r) {
+    for (core::StepReport& step : drive.robots[r].steps) {
+      const core::Pose2 T = frame_since(drive.team, first_component, static_cast<int>(r), step.t_ns);
+      Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+      turn.topLeftCorner<2, 2>() = core::rotation(T.heading_rad);
+      step.pose.mean = core::compose(T, step.pose.mean);
+      const Eigen::Matrix3d turned = turn * step.pose.covariance * turn.transpose();
+      step.pose.covariance = 0.5 * (turned + turned.transpose());
+    }
+    drive.robots[r].component = drive.team.component(static_cast<int>(r));
+  }
+}
+
+}  // namespace
+
+TeamDrive drive_team(const TeamTask& task) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  const auto since = [](Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); };
+  const std::vector<core::TeamMember>& members = task.recording.robots;
+  TeamDrive drive{std::vector<TeamDrive::Robot>(members.size()), make_team(task), 0.0};
+  std::vector<int> first_component;
+  for (std::size_t r = 0; r < members.size(); ++r) first_component.push_back(drive.team.component(static_cast<int>(r)));
+  std::vector<OwnNames> own(task.known_association ? 0 : members.size());
+  std::vector<core::Nanoseconds> last_sighting_ns(members.size(), -1);
+  const std::vector<Fed> all = in_order(task.recording);
+  ProgressBar progress("navigating", all.size(), task.quiet);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Fed& fed = all[k];
+    const auto r = static_cast<std::size_t>(fed.robot);
+    const core::TeamMember& member = members[r];
+    const Clock::time_point began = Clock::now();
+    if (fed.kind == Fed::sighting) {
+      drive.team.sight(fed.robot, member.sightings[fed.index]);
+      last_sighting_ns[r] = fed.t_ns;
+      continue;
+    }
+    const core::Event& event = member.recording.events[fed.index];
+    std::vector<std::int64_t> names;
+    if (!task.known_association) names = own[r].take(event);
+    if (task.known_association && fed.kind == Fed::scan) names = member.recording.labels[fed.step];
+    std::optional<core::StepReport> report = drive.team.take(fed.robot, event, names);
+    progress.advance_to(k);
+    if (!report) continue;
+    drive.robots[r].at.push_back(!report->associations.empty() || last_sighting_ns[r] == fed.t_ns ? 1 : 0);
+    drive.robots[r].steps.push_back(std::move(*report));
+    drive.robots[r].microseconds.push_back(1e6 * since(began));
+  }
+  drive.team.solve();
+  bring_into_last_frames(first_component, drive);
+  drive.seconds = since(begin);
+  return drive;
+}
+
+}  // namespace helixnav::apps

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "helixnav/core/step_report.hpp"
+#include "helixnav/core/team_recording.hpp"
+#include "helixnav/team/team.hpp"
+
+namespace helixnav::apps {
+
+/// What a team made of its drive.
+struct TeamDrive {
+  struct Robot {
+    std::vector<core::StepReport> steps;  ///< as estimated then; poses in the frame of the component at the end
+    std::vector<double> microseconds;     ///< [step]
+    std::vector<std::int64_t> at;  ///< [step] 1 where the log has a sighting, 0 where nothing was seen for a while
+    int component = 0;             ///< at the end: number of its first robot
+  };
+  std::vector<Robot> robots;
+  team::Team team;
+  double seconds = 0.0;  ///< wall clock
+};
+
+struct TeamTask {
+  core::TeamRecording recording;
+  bool unknown_starts = false;
+  bool known_association = true;
+  team::TeamOptions options;
+  bool quiet = false;
+};
+
+/// Feeds all robots' events in order of time.
+TeamDrive drive_team(const TeamTask& task);
+
+}  // namespace helixnav::apps

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "team/team_folder.hpp"
+
+#include <filesystem>
+#include <initializer_list>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "helixnav/files/file.hpp"
+#include "helixnav/files/number_text.hpp"
+#include "helixnav/reports/finish_run.hpp"
+#include "helixnav/runs/run_recorder.hpp"
+#include "helixnav/runs/run_writer.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void append(std::string& text, std::initializer_list<double> numbers) {
+  for (const double number : numbers) {
+    text += ',';
+    files::append_number(text, number);
+  }
+}
+
+int number_of(const TeamTask& task, int robot) { return task.recording.robots[static_cast<std::size_t>(robot)].number; }
+
+std::string joins_table(const TeamTask& task, const TeamDrive& drive) {
+  std::string text = "t_s,by,robot,other,x,y,heading,merged,sightings,cost,dof,limit\n";
+  for (const team::TeamJoin& join : drive.team.joins()) {
+    const core::Pose2& T = join.T_component_other.mean;
+    files::append_seconds(text, join.t_ns);
+    text += std::string(",") + team::name_of(join.by) + ',' + std::to_string(number_of(task, join.robot)) + ',' +
+            std::to_string(number_of(task, join.other));
+    append(text, {T.x_m, T.y_m, T.heading_rad, static_cast<double>(join.merged), static_cast<double>(join.sightings),
+                  join.cost, static_cast<double>(join.dof), join.limit});
+    text += '\n';
+  }
+  return text;
+}
+
+std::string sightings_table(const TeamTask& task, const TeamDrive& drive) {
+  std::string text = "t_s,robot,seen,used,residual_0,residual_1\n";
+  for (const team::JudgedSighting& sighting : drive.team.sightings()) {
+    files::append_seconds(text, sighting.t_ns);
+    text += ',' + std::to_string(number_of(task, sighting.robot)) + ',' +
+            std::to_string(number_of(task, sighting.seen)) + ',' + (sighting.used ? '1' : '0');
+    if (sighting.residual) {
+      append(text, {sighting.residual->x(), sighting.residual->y()});
+    } else {
+      text += ",,";
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string map_table(const TeamTask& task, const TeamDrive& drive) {
+  std::string text = "component,landmark,x,y,xx,xy,yy,observations\n";
+  std::set<int> components;
+  for (const TeamDrive::Robot& robot : drive.robots) components.insert(robot.component);
+  for (const int component : components) {
+    for (const core::MapLandmark& landmark : drive.team.map(component)) {
+      const Eigen::Matrix2d& P = landmark.point.covariance_m2;
+      text += std::to_string(number_of(task, component)) + ',' + std::to_string(landmark.id);
+      append(text, {landmark.point.mean_m.x(), landmark.point.mean_m.y(), P(0, 0), P(0, 1), P(1, 1),
+                    static_cast<double>(landmark.observations)});
+      text += '\n';
+    }
+  }
+  return text;
+}
+
+Json json_of(const evaluation::ErrorStatistics& errors) {
+  return {{"count", errors.count},
+          {"rmse", errors.rmse},
+          {"median", errors.median},
+          {"p95", errors.p95},
+          {"max", errors.max}};
+}
+
+std::string summary(const TeamTask& task, const TeamDrive& drive, const TeamEvaluation& evaluation) {
+  Json json;
+  int used = 0;
+  const std::vector<team::JudgedSighting> sightings = drive.team.sightings();
+  for (const team::JudgedSighting& sighting : sightings) used += sighting.used ? 1 : 0;
+  json["misread"] = task.recording.misread;
+  json["joins"] = drive.team.joins().size();
+  json["sightings"] = {{"count", sightings.size()}, {"used", used}};
+  for (std::size_t r = 0; r < drive.robots.size(); ++r) {
+    Json robot{{"robot", task.recording.robots[r].number},
+               {"component", number_of(task, drive.robots[r].component)},
+               {"scans", drive.robots[r].steps.size()}};
+    if (evaluation.robots[r]) {
+      robot["position_error_m"] = json_of(evaluation.robots[r]->raw_m);
+      robot["aligned_position_error_m"] = json_of(evaluation.robots[r]->aligned_m);
+      robot["nees_mean"] = evaluation.robots[r]->nees_mean;
+    }
+    json["robots"].push_back(robot);
+  }
+  for (const LandmarkErrors& errors : evaluation.landmarks) {
+    json["landmarks"].push_back({{"component", number_of(task, errors.component)},
+                                 {"count", errors.landmarks},
+                                 {"rmse_m", errors.raw_rmse_m},
+                                 {"aligned_rmse_m", errors.aligned_rmse_m}});
+  }
+  json["timing"] = {{"navigating_s", drive.seconds}};
+  return json.dump(2) + '\n';
+}
+
+/// The robot's truth in the frame of its component.
+core::Recording with_truth_moved(const TeamTask& task, const core::Recording& recording, int component) {
+  core::Recording moved = recording;
+  moved.events.clear();
+  const std::optional<core::Pose2> T = frame_of_truth(task, component);
+  if (!T) {
+    moved.true_poses.clear();
+    moved.true_landmarks.clear();
+    return moved;
+  }
+  for (core::TruePose& pose : moved.true_poses) pose.T_world_robot = core::compose(*T, pose.T_world_robot);
+  for (core::TrueLandmark& landmark : moved.true_landmarks) landmark.point_m = core::transform(*T, landmark.point_m);
+  return moved;
+}
+
+void write_robot(const std::string& folder, bool overwrite, runs::RunManifest manifest, const TeamTask& task,
+                 const TeamDrive& drive, std::size_t r) {
+  const TeamDrive::Robot& robot = drive.robots[r];
+  const core::Recording recording = with_truth_moved(task, task.recording.robots[r].recording, robot.component);
+  manifest.recording = recording.name;
+  using IfNotEmpty = runs::RunWriter::IfNotEmpty;
+  runs::RunWriter writer(folder, manifest, recording, overwrite ? IfNotEmpty::overwrite : IfNotEmpty::refuse);
+  runs::RunRecorder recorder(folder, manifest, recording);
+  for (std::size_t k = 0; k < robot.steps.size(); ++k) {
+    writer.write(robot.steps[k], robot.microseconds[k]);
+    recorder.add(robot.steps[k], robot.microseconds[k]);
+  }
+  const runs::Run run = recorder.finish(drive.team.map(static_cast<int>(r)));
+  reports::finish_run(run, writer);
+}
+
+}  // namespace
+
+void write_team(const std::string& folder, bool overwrite, const runs::RunManifest& manifest, const TeamTask& task,
+                const TeamDrive& drive, const TeamEvaluation& evaluation) {
+  for (std::size_t r = 0; r < drive.robots.size(); ++r) {
+    const std::string name = "/robot_" + std::to_string(task.recording.robots[r].number);
+    write_robot(folder + name, overwrite, manifest, task, drive, r);
+  }
+  files::write_whole_file(folder + "/map.csv", map_table(task, drive));
+  files::write_whole_file(folder + "/joins.csv", joins_table(task, drive));
+  files::write_whole_file(folder + "/sightings.csv", sightings_table(task, drive));
+  files::write_whole_file(folder + "/report.html", team_page(manifest.command, task, drive, evaluation));
+  files::write_whole_file(folder + "/summary.json", summary(task, drive, evaluation));
+}
+
+std::string team_text(const TeamTask& task, const TeamDrive& drive, const TeamEvaluation& evaluation) {
+  std::string text;
+  char line[200];
+  double mean = 0.0;
+  int with_truth = 0;
+  for (std::size_t r = 0; r < drive.robots.size(); ++r) {
+    const TeamDrive::Robot& robot = drive.robots[r];
+    std::snprintf(line, sizeof line, "robot %d: %zu scans, in the frame of %s %d", task.recording.robots[r].number,
+                  robot.steps.size(), "robot", number_of(task, robot.component));
+    text += line;
+    if (evaluation.robots[r]) {
+      const RobotErrors& errors = *evaluation.robots[r];
+      std::snprintf(line, sizeof line, "; position RMSE %.3f m, aligned %.3f m, NEES %.1f (3)", errors.raw_m.rmse,
+                    errors.aligned_m.rmse, errors.nees_mean);
+      text += line;
+      mean += errors.raw_m.rmse;
+      ++with_truth;
+    }
+    text += '\n';
+  }
+  if (with_truth > 0) {
+    std::snprintf(line, sizeof line, "mean position RMSE %.3f m\n", mean / with_truth);
+    text += line;
+  }
+  for (const LandmarkErrors& errors : evaluation.landmarks) {
+    std::snprintf(line, sizeof line, "frame of robot %d: %zu landmarks, RMSE %.3f m, aligned %.3f m\n",
+                  number_of(task, errors.component), errors.landmarks, errors.raw_rmse_m, errors.aligned_rmse_m);
+    text += line;
+  }
+  for (const team::TeamJoin& join : drive.team.joins()) {
+    std::snprintf(line, sizeof line,
+                  "at %.1f s robot %d came into the frame of robot %d by %s (chi2 %.1f of at most %.1f)\n",
+                  core::seconds(join.t_ns), number_of(task, join.other), number_of(task, join.robot),
+                  team::name_of(join.by), join.cost, join.limit);
+    text += line;
+  }
+  return text;
+}
+
+}  // namespace helixnav::apps

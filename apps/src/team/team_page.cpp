@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <set>
+
+#include "helixnav/files/number_text.hpp"
+#include "team/team_folder.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+constexpr std::array<const char*, 8> colours{"#1f77b4", "#d62728", "#2ca02c", "#9467bd",
+                                             "#ff7f0e", "#8c564b", "#17becf", "#e377c2"};
+
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char c : text) safe += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return safe;
+}
+
+std::string shortened(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", value);
+  return text;
+}
+
+/// A picture of one frame: x to the right, y up, metres.
+class Picture {
+ public:
+  void polyline(const std::vector<Eigen::Vector2d>& points_m, const std::string& style) {
+    if (points_m.empty()) return;
+    body_ += "<polyline fill=\"none\" " + style + " points=\"";
+    for (const Eigen::Vector2d& point_m : points_m) body_ += place(point_m) + ' ';
+    body_ += "\"/>\n";
+  }
+
+  void dot(const Eigen::Vector2d& at_m, const std::string& title) {
+    place(at_m);
+    body_ += "<circle cx=\"" + shortened(at_m.x()) + "\" cy=\"" + shortened(-at_m.y()) +
+             "\" r=\"0.08\" fill=\"#333\"><title>" + title + "</title></circle>\n";
+  }
+
+  std::string svg() const {
+    const Eigen::Vector2d size = (high_ - low_).cwiseMax(1e-3);
+    const Eigen::Vector2d margin = 0.05 * size;
+    return "<svg viewBox=\"" + shortened(low_.x() - margin.x()) + ' ' + shortened(low_.y() - margin.y()) + ' ' +
+           shortened(1.1 * size.x()) + ' ' + shortened(1.1 * size.y()) + "\">\n" + body_ + "</svg>\n";
+  }
+
+ private:
+  std::string place(const Eigen::Vector2d& point_m) {
+    const Eigen::Vector2d on_page(point_m.x(), -point_m.y());
+    low_ = empty_ ? on_page : Eigen::Vector2d(low_.cwiseMin(on_page));
+    high_ = empty_ ? on_page : Eigen::Vector2d(high_.cwiseMax(on_page));
+    empty_ = false;
+    return shortened(on_page.x()) + ',' + shortened(on_page.y());
+  }
+
+  bool empty_ = true;
+  Eigen::Vector2d low_ = Eigen::Vector2d::Zero();
+  Eigen::Vector2d high_ = Eigen::Vector2d::Zero();
+  std::string body_;
+};
+
+std::string picture_of(const TeamTask& task, const TeamDrive& drive, int component) {
+  Picture picture;
+  const std::optional<core::Pose2> T = frame_of_truth(task, component);
+  for (std::size_t r = 0; r < drive.robots.size(); ++r) {
+    if (drive.robots[r].component != component) continue;
+    std::vector<Eigen::Vector2d> truth_m, then_m, now_m;
+    core::Nanoseconds last_ns = 0;
+    constexpr core::Nanoseconds every_ns = 200'000'000;
+    for (const core::TruePose& pose : task.recording.robots[r].recording.true_poses) {
+      if (!T || (!truth_m.empty() && pose.t_ns - last_ns < every_ns)) continue;
+      truth_m.push_back(core::compose(*T, pose.T_world_robot).position_m());
+      last_ns = pose.t_ns;
+    }
+    for (const core::StepReport& step : drive.robots[r].steps) then_m.push_back(step.pose.mean.position_m());
+    for (const core::StampedPose& pose : drive.team.path(static_cast<int>(r))) {
+      now_m.push_back(pose.T_world_robot.position_m());
+    }
+    const std::string stroke =
+        std::string("stroke=\"") + colours[r % colours.size()] + "\" vector-effect=\"non-scaling-stroke\" ";
+    picture.polyline(truth_m, "stroke=\"#bbb\" stroke-width=\"3\" vector-effect=\"non-scaling-stroke\"");
+    picture.polyline(then_m, stroke + "stroke-width=\"0.7\" stroke-dasharray=\"3 2\"");
+    picture.polyline(now_m, stroke + "stroke-width=\"1.3\"");
+  }
+  for (const core::MapLandmark& landmark : drive.team.map(component)) {
+    picture.dot(landmark.point.mean_m, "landmark " + std::to_string(landmark.id) + ", " +
+                                           std::to_string(landmark.observations) + " observations");
+  }
+  return picture.svg();
+}
+
+std::string legend(const TeamTask& task, const TeamDrive& drive, int component) {
+  std::string text = "<p>";
+  for (std::size_t r = 0; r < drive.robots.size(); ++r) {
+    if (drive.robots[r].component != component) continue;
+    const std::string number = std::to_string(task.recording.robots[r].number);
+    text += std::string("<span style=\"color:") + colours[r % colours.size()] + "\">■</span> <a href=\"robot_" +
+            number + "/report.html\">robot " + number + "</a> ";
+  }
+  return text + "</p>\n";
+}
+
+}  // namespace
+
+std::string team_page(const std::string& command, const TeamTask& task, const TeamDrive& drive,
+                      const TeamEvaluation& evaluation) {
+  std::string page =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>HelixNav team</title>\n<style>"
+      "body{font:15px/1.4 sans-serif;max-width:70em;margin:2em auto;padding:0 1em}svg{width:100%;max-height:80vh;"
+      "border:1px solid #ddd}pre{background:#f6f6f6;padding:1em;overflow:auto}</style></head><body>\n<h1>" +
+      escaped(task.recording.name) + "</h1>\n<p><code>" + escaped(command) + "</code></p>\n<pre>" +
+      escaped(team_text(task, drive, evaluation)) + "</pre>\n";
+  std::set<int> components;
+  for (const TeamDrive::Robot& robot : drive.robots) components.insert(robot.component);
+  for (const int component : components) {
+    const int number = task.recording.robots[static_cast<std::size_t>(component)].number;
+    page += "<h2>" + (task.unknown_starts ? "Frame of robot " + std::to_string(number) : "Common frame") + "</h2>\n";
+    page += legend(task, drive, component) + picture_of(task, drive, component);
+  }
+  page +=
+      "<p>Dashed: as estimated then. Solid: as known at the end. Grey: the truth, where there is one. Dots: "
+      "landmarks.</p>\n</body></html>\n";
+  return page;
+}
+
+}  // namespace helixnav::apps

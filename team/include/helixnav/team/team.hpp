@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "helixnav/core/events.hpp"
+#include "helixnav/core/robot_sighting.hpp"
+#include "helixnav/core/step_report.hpp"
+#include "helixnav/team/team_join.hpp"
+#include "helixnav/team/team_options.hpp"
+
+namespace helixnav::team {
+
+/// A robot that was seen by another, and what came of it.
+struct JudgedSighting {
+  core::Nanoseconds t_ns = 0;
+  int robot = 0;
+  int seen = 0;
+  bool used = false;
+  std::optional<Eigen::Vector2d> residual;  ///< z − ẑ at the last solution (range [m], bearing [rad], or x, y [m]);
+                                            ///< nothing between robots that have no common frame
+};
+
+/// Several robots in one map. Each robot leaves poses where it saw something or was seen; landmarks, motions and sightings
+/// of robots by one another tie them into one sparse least-squares problem, solved again every few seconds from where it
+/// was. Between two solutions an EKF over the robots' present poses and the landmarks, begun at the solution, takes in
+/// what comes. A robot that is seen is a clone of its pose at that time, interpolated along its motion, never a landmark.
+/// Robots whose start is known share a frame; every other robot is a component of its own until common names, sightings one
+/// each way or a constellation of landmarks place it in another's frame, and χ² of the joint solution does not object.
+///
+/// The estimate is a function of the events in order of time: what comes late is put in its place, and everything since is
+/// gone through again from the checkpoint before it, so that late messages give the same bytes. A sighting waits until the
+/// motion of the robot seen has reached its time.
+/// Cost: O(N²) an observation, N = 3 robots + 2 landmarks of the component; a solution is a few sparse factorisations.
+/// Errors: PreconditionError for events that core::check refuses, robots that are not there, landmarks observed by range or
+/// bearing alone; NumericalError for broken mathematics. Test: team/team_test.cpp.
+class Team {
+ public:
+  /// [robot] its start in the common frame, nothing where it is unknown.
+  explicit Team(const std::vector<std::optional<core::PoseGaussian>>& starts, const TeamOptions& options = {});
+  ~Team();
+  Team(Team&&) noexcept;
+  Team& operator=(Team&&) noexcept;
+
+  /// Motion, or a scan with a name for each observation, below 0: none. With JoinOptions::by_names a name means the same
+  /// landmark to all robots, else to this one. The report of a scan, nothing for motion and for a scan that came late.
+  std::optional<core::StepReport> take(int robot, const core::Event& event,
+                                       const std::vector<std::int64_t>& names = {});
+
+  /// `robot` sees another one.
+  void sight(int robot, const core::RobotSighting& sighting);
+
+  /// Solves the graph with all that has come; at the end of a drive, or before something rests on the answer.
+  void solve();
+
+  /// T_component_robot after the last event.
+  core::PoseGaussian pose(int robot) const;
+  /// Number of the robot's component: the least of its robots.
+  int component(int robot) const;
+  /// Landmarks of the robot's component.
+  std::vector<core::MapLandmark> map(int robot) const;
+  /// Where the robot was when it saw something or was seen, as known at the last solution, in its component's frame.
+  std::vector<core::StampedPose> path(int robot) const;
+  /// The landmark that a robot's name means now; no_landmark where the robot has not seen it.
+  core::LandmarkId landmark_of(int robot, std::int64_t name) const;
+  const std::vector<TeamJoin>& joins() const;
+  std::vector<JudgedSighting> sightings() const;
+
+  /// Takes a join back, and everything that came of it; the same two are not joined by the same kind of evidence again.
+  void remove_join(std::size_t join);
+
+ private:
+  struct Book;
+  std::unique_ptr<Book> book_;
+};
+
+}  // namespace helixnav::team

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/time.hpp"
+
+namespace helixnav::team {
+
+/// Two components became one.
+struct TeamJoin {
+  enum class By { names, sightings, constellation };
+  By by = By::names;
+  core::Nanoseconds t_ns = 0;
+  int robot = 0;                         ///< of the component that kept its frame: the first of its robots
+  int other = 0;                         ///< of the component that came into it
+  core::PoseGaussian T_component_other;  ///< frame of the one that came, as first seen
+  int merged = 0;                        ///< landmarks that were two
+  int sightings = 0;                     ///< of robots by one another that it rests on
+  double cost = 0.0;                     ///< by how much the joint least squares exceeds both apart: χ² with dof
+  int dof = 0;
+  double limit = 0.0;
+};
+
+/// "names", "sightings", "constellation".
+const char* name_of(TeamJoin::By by);
+
+}  // namespace helixnav::team

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <set>
+#include <tuple>
+
+#include "helixnav/team/team_options.hpp"
+#include "state.hpp"
+
+namespace helixnav::team {
+
+/// Joins taken back: by which evidence, which two robots.
+using RefusedJoins = std::set<std::tuple<TeamJoin::By, int, int>>;
+
+/// Looks at all pairs of components for what places one in the other's frame, and joins those of which χ² of the joint
+/// solution does not object. Components are solved when this is called.
+void find_joins(core::Nanoseconds t_ns, const TeamOptions& options, const RefusedJoins& refused, State& state);
+
+}  // namespace helixnav::team

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "joint_filter.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include <Eigen/Cholesky>
+
+#include "helixnav/core/errors.hpp"
+
+namespace helixnav::team {
+
+JointFilter::JointFilter(std::vector<core::Pose2> poses, std::vector<core::LandmarkId> ids,
+                         std::vector<Eigen::Vector2d> points_m, Eigen::MatrixXd covariance)
+    : poses_(std::move(poses)),
+      ids_(std::move(ids)),
+      points_m_(std::move(points_m)),
+      covariance_(std::move(covariance)) {
+  const auto columns = static_cast<Eigen::Index>(3 * poses_.size() + 2 * ids_.size());
+  if (points_m_.size() != ids_.size() || covariance_.rows() != columns || covariance_.cols() != columns) {
+    throw core::PreconditionError("team: the parts of a joint estimate do not fit each other");
+  }
+}
+
+std::size_t JointFilter::index_of(core::LandmarkId id) const {
+  return static_cast<std::size_t>(std::find(ids_.begin(), ids_.end(), id) - ids_.begin());
+}
+
+Eigen::Index JointFilter::column_of(std::size_t landmark) const {
+  return static_cast<Eigen::Index>(3 * poses_.size() + 2 * landmark);
+}
+
+bool JointFilter::contains(core::LandmarkId id) const { return index_of(id) < ids_.size(); }
+
+void JointFilter::predict(std::size_t robot, const core::Odometry& motion) {
+  const auto column = static_cast<Eigen::Index>(3 * robot);
+  const core::ComposeJacobians J = core::compose_jacobians(poses_[robot], motion.T_before_after);
+  poses_[robot] = core::compose(poses_[robot], motion.T_before_after);
+  covariance_.middleRows<3>(column) = (J.J_first * covariance_.middleRows<3>(column)).eval();
+  covariance_.middleCols<3>(column) = (covariance_.middleCols<3>(column) * J.J_first.transpose()).eval();
+  covariance_.block<3, 3>(column, column) += J.J_second * motion.covariance * J.J_second.transpose();
+}
+
+JointFilter::Judged JointFilter::observe(std::size_t robot, core::LandmarkId id, const core::Pose2& T_robot_sensor,
+                                         const core::Observation& observation, double gate) {
+  const std::size_t landmark = index_of(id);
+  if (landmark == ids_.size()) throw core::PreconditionError("team: there is no landmark " + std::to_string(id));
+  return update(robot, {column_of(landmark), points_m_[landmark]}, T_robot_sensor, observation, gate);
+}
+
+JointFilter::Judged JointFilter::sight(std::size_t robot, std::size_t seen, const core::Pose2& T_robot_sensor,
+                                       const core::Observation& observation, double gate) {
+  return update(robot, {static_cast<Eigen::Index>(3 * seen), poses_[seen].position_m()}, T_robot_sensor, observation,
+                gate);
+}
+
+JointFilter::Judged JointFilter::update(std::size_t robot, const Point& point, const core::Pose2& T_robot_sensor,
+                                        const core::Observation& observation, double gate) {
+  const auto pose = static_cast<Eigen::Index>(3 * robot);
+  const core::PredictedObservation predicted =
+      core::predict_observation(observation.kind, poses_[robot], T_robot_sensor, point.at_m);
+  const core::ObsVector nu = core::innovation(observation.kind, observation.z, predicted.z_hat);
+  const Eigen::MatrixXd PHt = covariance_.middleCols<3>(pose) * predicted.H_pose.transpose() +
+                              covariance_.middleCols<2>(point.column) * predicted.H_landmark.transpose();
+  core::ObsMatrix S = predicted.H_pose * PHt.middleRows<3>(pose) +
+                      predicted.H_landmark * PHt.middleRows<2>(point.column) + observation.R;
+  S = (0.5 * (S + S.transpose())).eval();
+  const Eigen::LLT<core::ObsMatrix> llt(S);
+  if (llt.info() != Eigen::Success) throw core::NumericalError("team: innovation covariance is not positive definite");
+  Judged judged{nu.dot(llt.solve(nu)), static_cast<int>(nu.size()), false};
+  judged.accepted = judged.nis <= gate;
+  if (!judged.accepted) return judged;
+  const Eigen::MatrixXd W = llt.matrixL().solve(PHt.transpose()).transpose();
+  const Eigen::VectorXd step = PHt * llt.solve(nu);
+  covariance_.noalias() -= W * W.transpose();
+  for (std::size_t r = 0; r < poses_.size(); ++r) {
+    poses_[r] = core::Pose2(poses_[r].vector() + step.segment<3>(static_cast<Eigen::Index>(3 * r)));
+  }
+  for (std::size_t i = 0; i < points_m_.size(); ++i) points_m_[i] += step.segment<2>(column_of(i));
+  return judged;
+}
+
+void JointFilter::augment(std::size_t robot, core::LandmarkId id, const core::Pose2& T_robot_sensor,
+                          const core::Observation& observation) {
+  const core::LocatedLandmark located = core::locate_landmark(observation, poses_[robot], T_robot_sensor);
+  const auto pose = static_cast<Eigen::Index>(3 * robot);
+  const Eigen::Index n = covariance_.rows();
+  const Eigen::MatrixXd rows = located.G_pose * covariance_.middleRows<3>(pose);
+  covariance_.conservativeResize(n + 2, n + 2);
+  covariance_.bottomLeftCorner(2, n) = rows;
+  covariance_.topRightCorner(n, 2) = rows.transpose();
+  covariance_.bottomRightCorner<2, 2>() =
+      rows.middleCols<3>(pose) * located.G_pose.transpose() + located.G_z * observation.R * located.G_z.transpose();
+  ids_.push_back(id);
+  points_m_.push_back(located.point_world_m);
+}
+
+core::PoseGaussian JointFilter::pose(std::size_t robot) const {
+  const auto column = static_cast<Eigen::Index>(3 * robot);
+  const Eigen::Matrix3d P = covariance_.block<3, 3>(column, column);
+  return {poses_[robot], 0.5 * (P + P.transpose())};
+}
+
+core::PointGaussian JointFilter::landmark(core::LandmarkId id) const {
+  const std::size_t landmark = index_of(id);
+  if (landmark == ids_.size()) throw core::PreconditionError("team: there is no landmark " + std::to_string(id));
+  const Eigen::Index column = column_of(landmark);
+  const Eigen::Matrix2d P = covariance_.block<2, 2>(column, column);
+  return {points_m_[landmark], 0.5 * (P + P.transpose())};
+}
+
+}  // namespace helixnav::team

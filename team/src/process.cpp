@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "process.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "helixnav/core/chi2.hpp"
+
+namespace helixnav::team {
+namespace {
+
+using core::LandmarkId;
+
+/// What stands between a robot's last clone and the robot.
+struct Place {
+  std::size_t clone = 0;
+  core::Odometry since;
+};
+
+bool is_uncertain(const core::Odometry& since, const TeamOptions& options) {
+  const double sigma_m = std::sqrt(since.covariance.topLeftCorner<2, 2>().trace());
+  return sigma_m > options.clone_sigma_m || std::sqrt(since.covariance(2, 2)) > options.clone_sigma_rad;
+}
+
+Place place_of(std::size_t robot, const TeamOptions& options, State& state) {
+  if (is_uncertain(state.robots[robot].since, options)) clone_now(robot, state);
+  return {state.robots[robot].clones.size() - 1, state.robots[robot].since};
+}
+
+/// The observation as made from the clone: the motion since then adds its noise.
+LandmarkRow row_of(std::size_t robot, const Place& place, LandmarkId landmark, const core::Pose2& T_robot_sensor,
+                   const core::Observation& observation) {
+  LandmarkRow row{robot, place.clone, landmark, core::compose(place.since.T_before_after, T_robot_sensor), observation};
+  const Eigen::Vector2d at_m =
+      core::locate_landmark(observation, place.since.T_before_after, T_robot_sensor).point_world_m;
+  const core::PredictedObservation predicted =
+      core::predict_observation(observation.kind, place.since.T_before_after, T_robot_sensor, at_m);
+  const core::ObsMatrix added = predicted.H_pose * place.since.covariance * predicted.H_pose.transpose();
+  row.observation.R += 0.5 * (added + added.transpose());
+  return row;
+}
+
+LandmarkId known_id(std::size_t robot, std::int64_t name, const TeamOptions& options, State& state) {
+  const auto own = state.id_of_name.find({robot, name});
+  if (own != state.id_of_name.end()) return state.resolve(own->second);
+  if (!options.join.by_names) return core::no_landmark;
+  for (const std::size_t other : state.of(robot).robots) {
+    const auto theirs = state.id_of_name.find({other, name});
+    if (theirs == state.id_of_name.end()) continue;
+    state.id_of_name[{robot, name}] = theirs->second;
+    return state.resolve(theirs->second);
+  }
+  return core::no_landmark;
+}
+
+LandmarkId new_id(std::size_t robot, std::int64_t name, State& state) {
+  const auto id = static_cast<LandmarkId>(state.merged_into.size());
+  state.merged_into.push_back(id);
+  state.observations.push_back(0);
+  state.id_of_name[{robot, name}] = id;
+  return id;
+}
+
+void note_reach(const core::Observation& observation, State& state) {
+  const core::Pose2 at_sensor;
+  const double range_m = core::locate_landmark(observation, at_sensor, at_sensor).point_world_m.norm();
+  state.reach_m = std::max(state.reach_m, range_m);
+}
+
+/// One observation into filter and graph.
+core::AssociationReport observe(std::size_t robot, const core::Pose2& T_robot_sensor,
+                                const core::Observation& observation, std::int64_t name, const TeamOptions& options,
+                                State& state) {
+  core::AssociationReport report;
+  report.outcome = core::Outcome::matched;
+  report.landmark = known_id(robot, name, options, state);
+  JointFilter& filter = state.of(robot).filter;
+  const std::size_t slot = state.robots[robot].slot;
+  const Place place = place_of(robot, options, state);
+  if (report.landmark == core::no_landmark) {
+    report.landmark = new_id(robot, name, state);
+    report.outcome = core::Outcome::augmented;
+    filter.augment(slot, report.landmark, T_robot_sensor, observation);
+  } else {
+    const double gate = core::chi2_quantile(options.gate_probability, static_cast<int>(observation.z.size()));
+    const JointFilter::Judged judged = filter.observe(slot, report.landmark, T_robot_sensor, observation, gate);
+    report.nis = judged.nis;
+    report.dof = judged.dof;
+    if (!judged.accepted) {
+      report.outcome = core::Outcome::rejected;
+      return report;
+    }
+  }
+  state.landmark_rows.push_back(row_of(robot, place, report.landmark, T_robot_sensor, observation));
+  ++state.observations[static_cast<std::size_t>(report.landmark)];
+  note_reach(observation, state);
+  state.of(robot).news = true;
+  return report;
+}
+
+core::AssociationReport nothing_matched() {
+  core::AssociationReport report;
+  report.outcome = core::Outcome::rejected;
+  return report;
+}
+
+core::StepReport take(std::size_t robot, const NamedScan& named, const TeamOptions& options, State& state) {
+  core::StepReport report;
+  std::set<std::int64_t> seen;
+  for (std::size_t i = 0; i < named.names.size(); ++i) {
+    const bool is_landmark = named.names[i] >= 0 && seen.insert(named.names[i]).second;
+    report.associations.push_back(is_landmark ? observe(robot, named.scan.T_robot_sensor, named.scan.observations[i],
+                                                        named.names[i], options, state)
+                                              : nothing_matched());
+    core::AssociationReport& association = report.associations.back();
+    association.observation = static_cast<int>(i);
+    if (association.outcome != core::Outcome::matched) continue;
+    report.joint_nis += association.nis;
+    report.joint_dof += association.dof;
+  }
+  const JointFilter& filter = state.of(robot).filter;
+  report.step = state.robots[robot].scans++;
+  report.t_ns = named.scan.t_ns;
+  report.pose = filter.pose(state.robots[robot].slot);
+  report.active_landmarks = report.mapped_landmarks = static_cast<int>(filter.ids().size());
+  return report;
+}
+
+void take(std::size_t robot, const core::RobotSighting& sighting, const TeamOptions& options, State& state) {
+  SightingRow row;
+  row.robot = robot;
+  row.seen = static_cast<std::size_t>(sighting.seen);
+  row.clone = clone_now(row.robot, state);
+  row.seen_clone = clone_now(row.seen, state);
+  row.T_robot_sensor = sighting.T_robot_sensor;
+  row.observation = sighting.observation;
+  if (state.robots[row.robot].component == state.robots[row.seen].component) {
+    Component& component = state.of(row.robot);
+    const double gate = core::chi2_quantile(options.gate_probability, static_cast<int>(row.observation.z.size()));
+    const JointFilter::Judged judged = component.filter.sight(state.robots[row.robot].slot, state.robots[row.seen].slot,
+                                                              row.T_robot_sensor, row.observation, gate);
+    row.nis = judged.nis;
+    row.use = judged.accepted ? SightingRow::Use::used : SightingRow::Use::refused;
+    component.news = component.news || judged.accepted;
+  }
+  state.sighting_rows.push_back(row);
+}
+
+void take(std::size_t robot, const core::Odometry& motion, State& state) {
+  Robot& moved = state.robots[robot];
+  moved.since = core::chain(moved.since, motion);
+  moved.since.t_ns = motion.t_ns;
+  state.of(robot).filter.predict(moved.slot, motion);
+}
+
+int rank_of(const Entry& entry) { return static_cast<int>(entry.what.index()); }
+
+}  // namespace
+
+core::Nanoseconds Entry::t_ns() const {
+  if (const auto* motion = std::get_if<core::Odometry>(&what)) return motion->t_ns;
+  if (const auto* sighting = std::get_if<core::RobotSighting>(&what)) return sighting->t_ns;
+  return std::get<NamedScan>(what).scan.t_ns;
+}
+
+bool before(const Entry& a, const Entry& b) {
+  const auto key = [](const Entry& entry) { return std::make_tuple(entry.t_ns(), rank_of(entry), entry.robot); };
+  return key(a) < key(b);
+}
+
+State begin(const std::vector<std::optional<core::PoseGaussian>>& starts) {
+  State state;
+  std::optional<std::size_t> common;
+  for (std::size_t r = 0; r < starts.size(); ++r) {
+    Robot& robot = state.robots.emplace_back();
+    robot.start = starts[r];
+    Clone& clone = robot.clones.emplace_back();
+    if (starts[r]) clone.T_component_robot = starts[r]->mean;
+    if (starts[r] && common) {
+      robot.component = *common;
+    } else {
+      robot.component = state.components.size();
+      state.components.emplace_back();
+      if (starts[r]) common = robot.component;
+    }
+    robot.slot = state.of(r).robots.size();
+    state.of(r).robots.push_back(r);
+  }
+  for (Component& component : state.components) {
+    std::vector<core::Pose2> poses;
+    Eigen::MatrixXd P = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(3 * component.robots.size()),
+                                              static_cast<Eigen::Index>(3 * component.robots.size()));
+    for (const std::size_t r : component.robots) {
+      const auto column = static_cast<Eigen::Index>(3 * poses.size());
+      if (starts[r]) P.block<3, 3>(column, column) = starts[r]->covariance;
+      poses.push_back(state.robots[r].clones.front().T_component_robot);
+    }
+    component.filter = JointFilter(poses, {}, {}, P);
+  }
+  return state;
+}
+
+std::size_t clone_now(std::size_t robot, State& state) {
+  Robot& moved = state.robots[robot];
+  const bool stood = moved.since.T_before_after.vector().isZero(0.0) && moved.since.covariance.isZero(0.0);
+  if (!stood) {
+    moved.clones.push_back({moved.since.t_ns, state.of(robot).filter.pose(moved.slot).mean, moved.since});
+    moved.since = core::no_motion(moved.since.t_ns);
+  }
+  return moved.clones.size() - 1;
+}
+
+std::optional<core::StepReport> process(const Entry& entry, const TeamOptions& options, State& state) {
+  if (const auto* motion = std::get_if<core::Odometry>(&entry.what)) {
+    take(entry.robot, *motion, state);
+  } else if (const auto* sighting = std::get_if<core::RobotSighting>(&entry.what)) {
+    take(entry.robot, *sighting, options, state);
+  } else {
+    return take(entry.robot, std::get<NamedScan>(entry.what), options, state);
+  }
+  return std::nullopt;
+}
+
+}  // namespace helixnav::team

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "helixnav/core/events.hpp"
+#include "helixnav/core/robot_sighting.hpp"
+#include "helixnav/core/step_report.hpp"
+#include "helixnav/team/team_options.hpp"
+#include "state.hpp"
+
+namespace helixnav::team {
+
+/// The observations of a robot with their names.
+struct NamedScan {
+  core::Scan scan;
+  std::vector<std::int64_t> names;
+};
+
+/// Something that came in, by a robot.
+struct Entry {
+  std::size_t robot = 0;
+  std::variant<core::Odometry, core::RobotSighting, NamedScan> what;
+
+  core::Nanoseconds t_ns() const;
+};
+
+/// The order of processing: by time; at one time motions, then sightings of robots, then scans; then by robot.
+bool before(const Entry& a, const Entry& b);
+
+/// Robots at their starts.
+State begin(const std::vector<std::optional<core::PoseGaussian>>& starts);
+
+/// Takes one entry in; the report of a scan.
+std::optional<core::StepReport> process(const Entry& entry, const TeamOptions& options, State& state);
+
+/// The robot's present pose as a pose of the graph, a new one unless it has not moved since the last.
+std::size_t clone_now(std::size_t robot, State& state);
+
+}  // namespace helixnav::team

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "helixnav/core/events.hpp"
+#include "helixnav/core/odometry.hpp"
+#include "helixnav/core/robot_sighting.hpp"
+#include "helixnav/core/step_report.hpp"
+#include "helixnav/team/team_join.hpp"
+#include "joint_filter.hpp"
+
+namespace helixnav::team {
+
+/// A pose of a robot that the graph holds.
+struct Clone {
+  core::Nanoseconds t_ns = 0;
+  core::Pose2 T_component_robot;
+  core::Odometry motion;  ///< from the clone before
+};
+
+/// A robot: poses of the graph, and the motion since the last.
+struct Robot {
+  std::optional<core::PoseGaussian> start;  ///< in the common frame, where it is known
+  std::vector<Clone> clones;
+  core::Odometry since = core::no_motion(0);
+  std::size_t component = 0;
+  std::size_t slot = 0;  ///< in the filter of the component
+  std::int64_t scans = 0;
+};
+
+/// A landmark seen from a clone.
+struct LandmarkRow {
+  std::size_t robot = 0;
+  std::size_t clone = 0;
+  core::LandmarkId landmark = core::no_landmark;
+  core::Pose2 T_clone_sensor;
+  core::Observation observation;
+};
+
+/// A robot seen from a clone of another.
+struct SightingRow {
+  enum class Use { used, apart, refused };
+  std::size_t robot = 0, clone = 0;
+  std::size_t seen = 0, seen_clone = 0;
+  core::Pose2 T_robot_sensor;
+  core::Observation observation;
+  Use use = Use::apart;  ///< apart: between two components
+  double nis = 0.0;      ///< of the innovation, where it was in one component
+};
+
+/// Robots in one frame, that of the first of them or the one where starts are known.
+struct Component {
+  std::vector<std::size_t> robots;  ///< empty: went into another
+  JointFilter filter;
+  double chi2 = 0.0;  ///< of the graph at the last solution
+  bool news = false;  ///< since then
+};
+
+/// Everything that follows from the events so far. A value: a copy is a checkpoint.
+struct State {
+  core::Nanoseconds begin_ns = 0;
+  std::optional<core::Nanoseconds> next_solve_ns;
+  std::vector<Robot> robots;
+  std::vector<Component> components;
+  std::vector<LandmarkRow> landmark_rows;
+  std::vector<SightingRow> sighting_rows;
+  std::map<std::pair<std::size_t, std::int64_t>, core::LandmarkId> id_of_name;  ///< by (robot, name)
+  std::vector<core::LandmarkId> merged_into;                                    ///< [id] itself, or the one it became
+  std::vector<int> observations;                                                ///< [id]
+  double reach_m = 0.0;                                                         ///< farthest landmark seen
+  std::vector<TeamJoin> joins;
+  std::map<std::pair<std::size_t, std::size_t>, int>
+      observations_asked;                                   ///< at the last question, by pair of components
+  std::vector<std::pair<std::size_t, std::size_t>> placed;  ///< (robot, join) not yet reported
+  std::vector<core::MergedLandmarks> merged;                ///< not yet reported
+
+  Component& of(std::size_t robot) { return components[robots[robot].component]; }
+  core::LandmarkId resolve(core::LandmarkId id) const {
+    while (merged_into[static_cast<std::size_t>(id)] != id) id = merged_into[static_cast<std::size_t>(id)];
+    return id;
+  }
+};
+
+}  // namespace helixnav::team

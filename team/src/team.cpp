@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/team/team.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "find_joins.hpp"
+#include "helixnav/core/check_event.hpp"
+#include "helixnav/core/errors.hpp"
+#include "process.hpp"
+#include "solve.hpp"
+#include "split_motion.hpp"
+
+namespace helixnav::team {
+
+/// The events in the order of processing, and checkpoints of what followed from them.
+struct Team::Book {
+  struct Checkpoint {
+    std::size_t entries = 0;  ///< that the state rests on
+    State state;
+  };
+  static constexpr std::size_t most_checkpoints = 8;
+
+  explicit Book(const std::vector<std::optional<core::PoseGaussian>>& starts, const TeamOptions& given)
+      : options(given),
+        state(begin(starts)),
+        first{0, state},
+        moved_until_ns(starts.size(), std::numeric_limits<core::Nanoseconds>::min()) {}
+
+  std::optional<core::StepReport> enter(Entry entry);
+  std::optional<core::StepReport> step(const Entry& entry);
+  void solve_if_due(core::Nanoseconds t_ns);
+  void solve_all(core::Nanoseconds t_ns);
+  void rewind(std::size_t entries);
+  void replay();
+  void move(std::size_t robot, const core::Odometry& motion);
+  void sight(std::size_t robot, const core::RobotSighting& sighting);
+  void end_motion_at(std::size_t robot, core::Nanoseconds t_ns);
+  void check_robot(int robot) const;
+
+  TeamOptions options;
+  State state;
+  std::vector<Entry> entries;
+  std::size_t done = 0;  ///< of the entries, in the state
+  Checkpoint first;
+  std::vector<Checkpoint> checkpoints;
+  std::vector<core::Nanoseconds> moved_until_ns;  ///< [robot]
+  std::vector<Entry> waiting;                     ///< sightings of robots that have not yet moved until then
+  RefusedJoins refused;
+};
+
+std::optional<core::StepReport> Team::Book::enter(Entry entry) {
+  const auto place = std::upper_bound(entries.begin(), entries.end(), entry, before);
+  const auto index = static_cast<std::size_t>(place - entries.begin());
+  const bool late = index < done;
+  entries.insert(place, std::move(entry));
+  try {
+    if (!late) {
+      done = index + 1;
+      return step(entries[index]);
+    }
+    rewind(index);
+    replay();
+  } catch (...) {
+    entries.erase(entries.begin() + static_cast<std::ptrdiff_t>(index));
+    rewind(index);
+    replay();
+    throw;
+  }
+  return std::nullopt;
+}
+
+std::optional<core::StepReport> Team::Book::step(const Entry& entry) {
+  solve_if_due(entry.t_ns());
+  std::optional<core::StepReport> report = process(entry, options, state);
+  if (report) report->merged = std::exchange(state.merged, {});
+  return report;
+}
+
+void Team::Book::solve_if_due(core::Nanoseconds t_ns) {
+  if (!state.next_solve_ns) {
+    state.begin_ns = t_ns;
+    state.next_solve_ns = t_ns + core::nanoseconds_from_seconds(options.solve_every_s);
+  }
+  if (t_ns < *state.next_solve_ns) return;
+  solve_all(t_ns);
+  const double so_far_s = core::seconds(t_ns - state.begin_ns);
+  state.next_solve_ns =
+      t_ns + core::nanoseconds_from_seconds(std::max(options.solve_every_s, options.solve_share * so_far_s));
+  checkpoints.push_back({done - 1, state});
+  if (checkpoints.size() > most_checkpoints) checkpoints.erase(checkpoints.begin());
+}
+
+void Team::Book::solve_all(core::Nanoseconds t_ns) {
+  for (std::size_t c = 0; c < state.components.size(); ++c) {
+    if (state.components[c].news) helixnav::team::solve(c, state);
+  }
+  find_joins(t_ns, options, refused, state);
+}
+
+/// To a checkpoint that rests on none of the entries from `entries_kept` on, nor was taken because of one of them.
+void Team::Book::rewind(std::size_t entries_kept) {
+  while (!checkpoints.empty() && checkpoints.back().entries >= entries_kept) checkpoints.pop_back();
+  const Checkpoint& from = checkpoints.empty() ? first : checkpoints.back();
+  state = from.state;
+  done = from.entries;
+}
+
+void Team::Book::replay() {
+  while (done < entries.size()) {
+    ++done;
+    step(entries[done - 1]);
+  }
+}
+
+/// Motion, and the sightings that waited for it.
+void Team::Book::move(std::size_t robot, const core::Odometry& motion) {
+  enter({robot, motion});
+  moved_until_ns[robot] = std::max(moved_until_ns[robot], motion.t_ns);
+  std::vector<Entry> still;
+  std::vector<Entry> due;
+  for (Entry& entry : waiting) {
+    const auto& sighting = std::get<core::RobotSighting>(entry.what);
+    const bool reached = static_cast<std::size_t>(sighting.seen) != robot || sighting.t_ns > motion.t_ns;
+    (reached ? still : due).push_back(std::move(entry));
+  }
+  waiting = std::move(still);
+  for (const Entry& entry : due) sight(entry.robot, std::get<core::RobotSighting>(entry.what));
+}
+
+void Team::Book::sight(std::size_t robot, const core::RobotSighting& sighting) {
+  const auto seen = static_cast<std::size_t>(sighting.seen);
+  if (moved_until_ns[seen] < sighting.t_ns) {
+    waiting.push_back({robot, sighting});
+    return;
+  }
+  end_motion_at(seen, sighting.t_ns);
+  enter({robot, sighting});
+}
+
+/// Cuts the increment that the robot was in the midst of; before its first there is nothing to cut.
+void Team::Book::end_motion_at(std::size_t robot, core::Nanoseconds t_ns) {
+  const auto is_motion = [&](const Entry& entry) {
+    return entry.robot == robot && std::holds_alternative<core::Odometry>(entry.what);
+  };
+  const auto from = std::lower_bound(entries.begin(), entries.end(), t_ns,
+                                     [](const Entry& entry, core::Nanoseconds t) { return entry.t_ns() < t; });
+  const auto over = std::find_if(from, entries.end(), is_motion);
+  if (over == entries.end() || over->t_ns() == t_ns) return;
+  const auto before_it = std::find_if(std::make_reverse_iterator(over), entries.rend(), is_motion);
+  if (before_it == entries.rend() || before_it->t_ns() >= t_ns) return;
+  const auto whole = std::get<core::Odometry>(over->what);
+  const double share = core::seconds(t_ns - before_it->t_ns()) / core::seconds(whole.t_ns - before_it->t_ns());
+  const auto [first_part, second_part] = split_motion(whole, share, t_ns);
+  over->what = second_part;
+  const auto index = static_cast<std::size_t>(over - entries.begin());
+  const Entry begun{robot, first_part};
+  entries.insert(std::upper_bound(entries.begin(), entries.end(), begun, before), begun);
+  if (index >= done) return;
+  const auto place = std::find_if(entries.begin(), entries.end(),
+                                  [&](const Entry& entry) { return entry.t_ns() == t_ns && is_motion(entry); });
+  rewind(static_cast<std::size_t>(place - entries.begin()));
+  replay();
+}
+
+void Team::Book::check_robot(int robot) const {
+  if (robot >= 0 && static_cast<std::size_t>(robot) < state.robots.size()) return;
+  throw core::PreconditionError("team: there is no robot " + std::to_string(robot));
+}
+
+namespace {
+
+void check_names(const core::Scan& scan, const std::vector<std::int64_t>& names) {
+  if (names.size() != scan.observations.size()) {
+    throw core::PreconditionError("team: " + std::to_string(names.size()) + " names for " +
+                                  std::to_string(scan.observations.size()) + " observations");
+  }
+  for (const core::Observation& observation : scan.observations) {
+    if (core::dimension(observation.kind) == 2) continue;
+    throw core::PreconditionError("team: a range or a bearing alone does not fix a landmark");
+  }
+}
+
+}  // namespace
+
+Team::Team(const std::vector<std::optional<core::PoseGaussian>>& starts, const TeamOptions& options)
+    : book_(std::make_unique<Book>(starts, options)) {}
+Team::~Team() = default;
+Team::Team(Team&&) noexcept = default;
+Team& Team::operator=(Team&&) noexcept = default;
+
+std::optional<core::StepReport> Team::take(int robot, const core::Event& event,
+                                           const std::vector<std::int64_t>& names) {
+  book_->check_robot(robot);
+  core::check(event);
+  const auto r = static_cast<std::size_t>(robot);
+  if (const auto* scan = std::get_if<core::Scan>(&event)) {
+    check_names(*scan, names);
+    return book_->enter({r, NamedScan{*scan, names}});
+  }
+  if (const auto* motion = std::get_if<core::Odometry>(&event)) book_->move(r, *motion);
+  return std::nullopt;
+}
+
+void Team::sight(int robot, const core::RobotSighting& sighting) {
+  book_->check_robot(robot);
+  book_->check_robot(sighting.seen);
+  core::check_observation(sighting.observation);
+  book_->sight(static_cast<std::size_t>(robot), sighting);
+}
+
+void Team::solve() { book_->solve_all(book_->entries.empty() ? 0 : book_->entries.back().t_ns()); }
+
+core::PoseGaussian Team::pose(int robot) const {
+  book_->check_robot(robot);
+  State& state = book_->state;
+  const auto r = static_cast<std::size_t>(robot);
+  return state.of(r).filter.pose(state.robots[r].slot);
+}
+
+int Team::component(int robot) const {
+  book_->check_robot(robot);
+  const auto& robots = book_->state.of(static_cast<std::size_t>(robot)).robots;
+  return static_cast<int>(*std::min_element(robots.begin(), robots.end()));
+}
+
+std::vector<core::MapLandmark> Team::map(int robot) const {
+  book_->check_robot(robot);
+  const JointFilter& filter = book_->state.of(static_cast<std::size_t>(robot)).filter;
+  std::vector<core::LandmarkId> ids = filter.ids();
+  std::sort(ids.begin(), ids.end());
+  std::vector<core::MapLandmark> map;
+  for (const core::LandmarkId id : ids) {
+    core::MapLandmark& landmark = map.emplace_back();
+    landmark.id = id;
+    landmark.point = filter.landmark(id);
+    landmark.observations = book_->state.observations[static_cast<std::size_t>(id)];
+    landmark.state = core::LandmarkState::mature;
+  }
+  return map;
+}
+
+std::vector<core::StampedPose> Team::path(int robot) const {
+  book_->check_robot(robot);
+  std::vector<core::StampedPose> path;
+  for (const Clone& clone : book_->state.robots[static_cast<std::size_t>(robot)].clones) {
+    path.push_back({clone.t_ns, clone.T_component_robot});
+  }
+  return path;
+}
+
+core::LandmarkId Team::landmark_of(int robot, std::int64_t name) const {
+  const auto id = book_->state.id_of_name.find({static_cast<std::size_t>(robot), name});
+  return id == book_->state.id_of_name.end() ? core::no_landmark : book_->state.resolve(id->second);
+}
+
+const std::vector<TeamJoin>& Team::joins() const { return book_->state.joins; }
+
+std::vector<JudgedSighting> Team::sightings() const {
+  const State& state = book_->state;
+  std::vector<JudgedSighting> judged;
+  for (const SightingRow& row : state.sighting_rows) {
+    const Clone& from = state.robots[row.robot].clones[row.clone];
+    const Clone& to = state.robots[row.seen].clones[row.seen_clone];
+    JudgedSighting& one = judged.emplace_back();
+    one.t_ns = from.t_ns;
+    one.robot = static_cast<int>(row.robot);
+    one.seen = static_cast<int>(row.seen);
+    one.used = row.use == SightingRow::Use::used;
+    if (state.robots[row.robot].component != state.robots[row.seen].component) continue;
+    const core::PredictedObservation predicted = core::predict_observation(
+        row.observation.kind, from.T_component_robot, row.T_robot_sensor, to.T_component_robot.position_m());
+    one.residual = core::innovation(row.observation.kind, row.observation.z, predicted.z_hat);
+  }
+  return judged;
+}
+
+void Team::remove_join(std::size_t join) {
+  const TeamJoin removed = joins().at(join);
+  book_->refused.insert({removed.by, removed.robot, removed.other});
+  book_->checkpoints.clear();
+  book_->rewind(0);
+  book_->replay();
+}
+
+}  // namespace helixnav::team
