@@ -15,7 +15,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-core::Recording circuit(std::uint64_t seed) {
+core::Recording circuit_of(std::uint64_t seed) {
   sim::Scenario scenario = wide_circuit();
   scenario.scanner.clutter_per_scan = 0.5;
   return sim::simulate(scenario, seed);
@@ -36,7 +36,7 @@ void expect_same(const core::JointGaussian& atlas, const core::JointGaussian& le
 TEST(DriveMap, EqualsLeastSquaresOverAllPoses) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     for (const bool strangers : {false, true}) {
-      const core::Recording run = circuit(seed);
+      const core::Recording run = circuit_of(seed);
       ToldDrive drive(run, strangers);
       DriveMap map(drive.start(), 20.0);
       const AtlasSolution solution = solve_on_atlas(drive.filter, drive.tape, map);
@@ -60,7 +60,7 @@ TEST(DriveMap, EqualsLeastSquaresOverAllPoses) {
 
 // The tape is handed on piece by piece, and forgets what was taken in.
 TEST(DriveMap, IsTheSameTakenInByPieces) {
-  const core::Recording run = circuit(4);
+  const core::Recording run = circuit_of(4);
   ToldDrive drive(run, true);
   DriveMap whole(drive.start(), 20.0);
   whole.take(drive.tape, drive.filter);
