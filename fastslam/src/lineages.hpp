@@ -18,6 +18,9 @@ namespace helixnav::fastslam {
 /// Test: fastslam/lineages_test.cpp (against brute force).
 class Lineages {
  public:
+  /// Beyond, and for what is not finite, cells have no numbers and single precision no metres.
+  static constexpr double farthest_m = 1e9;
+
   Lineages() : buckets_(64, none) {}
 
   /// A new lineage, anchored where it was born as near as single precision has it.
@@ -84,7 +87,6 @@ class Lineages {
   static constexpr std::uint32_t none = 0xffffffffU;
   static constexpr double cell_m = 8.0;
   static constexpr std::size_t most_cells = 1024;  ///< looked at, beside as many as there are lineages
-  static constexpr double farthest_m = 1e9;        ///< beyond, and for what is not finite, cells have no numbers
 
   static std::int32_t cell(double x_m) {
     const bool has_number = x_m > -farthest_m && x_m < farthest_m;

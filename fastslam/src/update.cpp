@@ -15,11 +15,20 @@ Eigen::Matrix3d root(const Eigen::Matrix3d& covariance) {
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
+/// A landmark begun beyond would make every weight after it NaN.
+void refuse_out_of_bounds(const PreparedScan& scan) {
+  for (const PreparedObservation& z : scan.observations) {
+    if (z.point_robot_m.norm() < Lineages::farthest_m) continue;
+    throw core::NumericalError("fastslam: an observation beyond what a map can hold");
+  }
+}
+
 core::StepReport FastSlam::Impl::update(const core::Scan& scan, const std::vector<KnownName>* names,
                                         std::size_t robot) {
   const core::RandomStream random_before = random;
   const PreparedScan prepared = prepare(scan);
   const core::Odometry motion = motion_of(robots[robot], scan.t_ns);
+  refuse_out_of_bounds(prepared);
   const Associator associator(options, prepared, lineages, maps);
   try {
     propose(robots[robot], motion, scan.observations.size());

@@ -48,15 +48,18 @@ inline SmallTeam small_team(const SmallTeamOptions& options = {}) {
   core::RandomStream random(options.seed, "small_team");
   const double k = options.noise;
   SmallTeam team;
-  for (int i = 0; i < 12; ++i) team.landmarks.emplace_back(random.uniform(-8.0, 8.0), random.uniform(-6.0, 6.0));
+  for (int i = 0; i < 12; ++i) {
+    const double y_m = random.uniform(-6.0, 6.0);  // one after the other: the order of arguments is up to the compiler
+    team.landmarks.emplace_back(random.uniform(-8.0, 8.0), y_m);
+  }
   for (int r = 0; r < options.robots; ++r) team.starts.emplace_back(2.5 * r, -1.0 * r, 0.7 * r);
   team.last = team.starts;
   const auto observed = [&](const core::Pose2& from, const Eigen::Vector2d& point_m) {
     const core::ObsVector z =
         core::predict_observation(core::ObservationKind::range_bearing, from, core::Pose2(), point_m).z_hat;
-    return core::make_range_bearing(z[0] + k * random.normal(0.0, sigma_range_m),
-                                    z[1] + k * random.normal(0.0, sigma_bearing_rad), k * sigma_range_m,
-                                    k * sigma_bearing_rad);
+    const double bearing_rad = z[1] + k * random.normal(0.0, sigma_bearing_rad);
+    const double range_m = z[0] + k * random.normal(0.0, sigma_range_m);
+    return core::make_range_bearing(range_m, bearing_rad, k * sigma_range_m, k * sigma_bearing_rad);
   };
   for (int step = 1; step <= options.steps; ++step) {
     const core::Nanoseconds t_ns = 1'000'000'000LL * step;
