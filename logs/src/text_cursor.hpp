@@ -63,4 +63,17 @@ class TextCursor {
   std::size_t line_ = 1;
 };
 
+/// Calls read_row(cursor) on each line that is neither empty nor a comment; `columns` as for end_line().
+template <class ReadRow>
+void for_each_row(TextCursor& cursor, std::string_view columns, const ReadRow& read_row) {
+  while (!cursor.at_end()) {
+    if (cursor.peek() == '#') {
+      cursor.skip_line();
+      continue;
+    }
+    read_row(cursor);
+    cursor.end_line(columns);
+  }
+}
+
 }  // namespace helixnav::logs

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "carried.hpp"
 
-#include <cmath>
-
 #include "helixnav/core/random.hpp"
 
 namespace helixnav::sim {

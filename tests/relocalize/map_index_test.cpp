@@ -90,6 +90,15 @@ TEST(MapIndex, IsThatOfWhatIsLeftAfterAThousandInsertionsRemovalsAndMoves) {
   EXPECT_EQ(index.list_triangles(), brute_force(map));
 }
 
+TEST(MapIndex, IsCopiedWithAllThatItHolds) {
+  const auto map = scattered(300, 2);
+  MapIndex original(index_options, map);
+  const MapIndex copy = original;
+  for (const Landmark& landmark : map) original.erase(landmark.id);
+  EXPECT_EQ(copy.list_triangles(), brute_force(map));
+  EXPECT_TRUE(original.list_triangles().empty());
+}
+
 TEST(MapIndex, CanBeEmptiedAndFilledAgain) {
   const auto map = scattered(100, 4);
   MapIndex index(index_options, map);

@@ -9,8 +9,8 @@
 
 #include "circuits.hpp"
 #include "helixnav/core/chi2.hpp"
+#include "labelled_drive.hpp"
 #include "smoothing/solve_on_atlas.hpp"
-#include "told_drive.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -37,7 +37,7 @@ TEST(DriveMap, EqualsLeastSquaresOverAllPoses) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     for (const bool strangers : {false, true}) {
       const core::Recording run = circuit_of(seed);
-      ToldDrive drive(run, strangers);
+      LabelledDrive drive(run, strangers);
       DriveMap map(drive.start(), 20.0);
       const AtlasSolution solution = solve_on_atlas(drive.filter, drive.tape, map);
       EXPECT_TRUE(solution.accepted);
@@ -61,7 +61,7 @@ TEST(DriveMap, EqualsLeastSquaresOverAllPoses) {
 // The tape is handed on piece by piece, and forgets what was taken in.
 TEST(DriveMap, IsTheSameTakenInByPieces) {
   const core::Recording run = circuit_of(4);
-  ToldDrive drive(run, true);
+  LabelledDrive drive(run, true);
   DriveMap whole(drive.start(), 20.0);
   whole.take(drive.tape, drive.filter);
   whole.settle();

@@ -20,8 +20,8 @@
 #include "helixnav/core/landmark_graph.hpp"
 #include "helixnav/smoothing/marginals.hpp"
 #include "helixnav/smoothing/optimize.hpp"
+#include "labelled_drive.hpp"
 #include "smoothing/drive_graph.hpp"
-#include "told_drive.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -50,7 +50,7 @@ core::Recording circuit(std::uint64_t seed, double odometry_noise = 1.0) {
   return sim::simulate(scenario, seed);
 }
 
-void expect_solved(const ToldDrive& drive, const Solved& solved) {
+void expect_solved(const LabelledDrive& drive, const Solved& solved) {
   std::vector<LandmarkId> ids;
   std::vector<int> indices;
   const core::LandmarkGraph& graph = solved.problem.graph;
@@ -73,7 +73,7 @@ void expect_solved(const ToldDrive& drive, const Solved& solved) {
 TEST(SmoothDrive, IsLeastSquaresOverTheDrive) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     const core::Recording run = circuit(seed, 2.0);
-    ToldDrive drive(run, false);
+    LabelledDrive drive(run, false);
     const core::Pose2 before = drive.filter.pose().mean;
     const Smoothing smoothing = drive.solve();
     ASSERT_TRUE(smoothing.solved) << smoothing.chi2 << " > " << smoothing.limit;
@@ -96,7 +96,7 @@ TEST(SmoothDrive, HasTheCovarianceOfAFilterAlongTheSolution) {
   fix.covariance_m2 = Eigen::Matrix2d::Identity();
   fix.antenna_robot_m = {0.5, 0.2};
   run.events.insert(run.events.begin() + static_cast<std::ptrdiff_t>(run.events.size() * 3 / 4), fix);
-  ToldDrive drive(run, true);
+  LabelledDrive drive(run, true);
   smoothing::Problem problem = problem_of(run.start, graph_of(run.start, drive.tape, drive.filter).graph);
   drive.filter.remove(drive.trees().begin()->second);
   smoothing::Options options;
@@ -121,7 +121,7 @@ TEST(SmoothDrive, HasTheCovarianceOfAFilterAlongTheSolution) {
 
 TEST(SmoothDrive, CountsObservationsOfBothNamesForTheOneLandmark) {
   const core::Recording run = circuit(4);
-  ToldDrive drive(run, true);
+  LabelledDrive drive(run, true);
   ASSERT_TRUE(drive.solve().solved);
   expect_solved(drive, Solved(run));
 }
@@ -129,14 +129,14 @@ TEST(SmoothDrive, CountsObservationsOfBothNamesForTheOneLandmark) {
 // A branch landmark may be older than the old one that it is.
 TEST(SmoothDrive, KeepsTheYoungerNameWhereTheClosingDid) {
   const core::Recording run = circuit(4);
-  ToldDrive drive(run, true, ToldDrive::Kept::second_name);
+  LabelledDrive drive(run, true, LabelledDrive::Kept::second_name);
   ASSERT_TRUE(drive.solve().solved);
   expect_solved(drive, Solved(run));
 }
 
 TEST(SmoothDrive, KeepsNamesAndDoesNotBringBackWhatIsLost) {
   const core::Recording run = circuit(5);
-  ToldDrive drive(run, true);
+  LabelledDrive drive(run, true);
   const LandmarkId lost = drive.trees().begin()->second;
   drive.filter.remove(lost);
   std::vector<LandmarkId> before = drive.filter.landmarks();
@@ -152,8 +152,8 @@ TEST(SmoothDrive, KeepsNamesAndDoesNotBringBackWhatIsLost) {
 // What a lost landmark said of the drive while it stood stays said.
 TEST(SmoothDrive, LosesNothingWithALandmarkThatIsLost) {
   const core::Recording run = circuit(6);
-  ToldDrive drive(run, false);
-  ToldDrive poorer(run, false);
+  LabelledDrive drive(run, false);
+  LabelledDrive poorer(run, false);
   poorer.filter.remove(poorer.trees().begin()->second);
   ASSERT_TRUE(drive.solve().solved);
   ASSERT_TRUE(poorer.solve().solved);
@@ -166,7 +166,7 @@ TEST(SmoothDrive, LosesNothingWithALandmarkThatIsLost) {
 TEST(SmoothDrive, EndsWhereTheVehicleIs) {
   core::Recording run = circuit(10);
   core::Odometry motion = std::get<core::Odometry>(run.events[1]);
-  ToldDrive drive(run, false);
+  LabelledDrive drive(run, false);
   drive.filter.predict(motion);
   drive.tape.append(Tape::Motion{motion, 0.0});
   const CompressedEkf before = drive.filter;
@@ -183,7 +183,7 @@ TEST(SmoothDrive, UsesFixes) {
   fix.covariance_m2 = 0.01 * Eigen::Matrix2d::Identity();
   fix.antenna_robot_m = {0.0, 0.0};
   run.events.emplace_back(fix);
-  ToldDrive drive(run, false);
+  LabelledDrive drive(run, false);
   ASSERT_TRUE(drive.solve().solved);
   expect_solved(drive, Solved(run));
 }
@@ -191,7 +191,7 @@ TEST(SmoothDrive, UsesFixes) {
 // Every scan has its place on the path, also where nothing was seen; the last one is where the filter is.
 TEST(SmoothDrive, HasAPoseForEveryScan) {
   const core::Recording run = circuit(8);
-  ToldDrive drive(run, false);
+  LabelledDrive drive(run, false);
   const Smoothing smoothing = drive.solve();
   ASSERT_EQ(smoothing.path.size(), run.true_poses.size());
   for (std::size_t k = 0; k < smoothing.path.size(); ++k) {
@@ -206,7 +206,7 @@ TEST(SmoothDrive, HasAPoseForEveryScan) {
 // A minimum that costs more than what the filter has found is another one: the filter stays as it is.
 TEST(SmoothDrive, RefusesWhatCostsMoreThanTheFilter) {
   const core::Recording run = circuit(8);
-  ToldDrive drive(run, false);
+  LabelledDrive drive(run, false);
   const core::PoseGaussian before = drive.filter.pose();
   drive.tape.append(Tape::Solved{drive_cost(drive.tape) - 100.0});
   const Smoothing smoothing = drive.solve();
@@ -220,7 +220,7 @@ TEST(SmoothDrive, RefusesWhatCostsMoreThanTheFilter) {
 TEST(SmoothDrive, CostsWhatTheInnovationsOfTheFilterCost) {
   for (const std::uint64_t seed : {11u, 12u, 13u}) {
     const core::Recording run = circuit(seed, 0.2);
-    ToldDrive drive(run, false);
+    LabelledDrive drive(run, false);
     const Smoothing smoothing = drive.solve();
     EXPECT_NEAR(smoothing.chi2, drive_cost(drive.tape), 2.0);
   }
@@ -248,7 +248,7 @@ core::Recording figure_of_eight_to_the_second_lobe(std::uint64_t seed) {
 
 double nees_at_end_of_figure_of_eight(std::uint64_t seed, bool smoothed) {
   const core::Recording run = figure_of_eight_to_the_second_lobe(seed);
-  ToldDrive drive(run, false);
+  LabelledDrive drive(run, false);
   if (smoothed) {
     EXPECT_TRUE(drive.solve().solved) << "seed " << seed;
   }

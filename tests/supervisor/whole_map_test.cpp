@@ -85,7 +85,7 @@ TEST(WholeMap, FindsAVehicleThatWasCarriedAway) {
   EXPECT_LT(drive.error_at_end_m, 5.0);
 }
 
-TEST(WholeMap, IsNotAskedWhereNothingIsAmiss) {
+TEST(WholeMap, HasNoNewsWhereNothingIsAmiss) {
   const Asking drive = drive_asking(sim::simulate(sim::named_scenario("large-loop-changed"), 1), {});
   EXPECT_EQ(drive.closed, 1);
   EXPECT_TRUE(drive.asked.empty());

@@ -45,19 +45,12 @@ fs::path required(const fs::path& folder, const std::string& name) {
   return path;
 }
 
-/// Calls read_row(cursor) on each line that is neither empty nor a comment.
+/// Of a comma-separated file, packed or not.
 template <class ReadRow>
 void for_each_row(const fs::path& path, std::string_view columns, const ReadRow& read_row) {
   const std::string text = read_packed(path);
   TextCursor cursor(text, path.string(), ',');
-  while (!cursor.at_end()) {
-    if (cursor.peek() == '#') {
-      cursor.skip_line();
-      continue;
-    }
-    read_row(cursor);
-    cursor.end_line(columns);
-  }
+  for_each_row(cursor, columns, read_row);
 }
 
 int read_robot(TextCursor& cursor) {

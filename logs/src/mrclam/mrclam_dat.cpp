@@ -46,20 +46,12 @@ class DatFiles {
   std::string full_name(const std::string& name) const { return (path_ / name).string(); }
   bool has(const std::string& name) const { return texts_.count(name) != 0; }
 
-  /// Calls read_row(cursor) on each line that is neither empty nor a comment.
   template <class ReadRow>
   void for_each_row(const std::string& name, std::string_view columns, const ReadRow& read_row) const {
     const auto text = texts_.find(name);
     if (text == texts_.end()) throw core::InputError(full_name(name) + ": expected this file, found none");
     TextCursor cursor(text->second, full_name(name));
-    while (!cursor.at_end()) {
-      if (cursor.peek() == '#') {
-        cursor.skip_line();
-        continue;
-      }
-      read_row(cursor);
-      cursor.end_line(columns);
-    }
+    logs::for_each_row(cursor, columns, read_row);
   }
 
  private:

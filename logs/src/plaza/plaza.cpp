@@ -52,19 +52,12 @@ std::string run_prefix(const std::filesystem::path& folder_or_odometry) {
   return found.substr(0, found.size() - odometry_ending.size());
 }
 
-/// Calls read_row(cursor) on each line of a comma-separated file that is neither empty nor a comment.
+/// Of a comma-separated file.
 template <class ReadRow>
-void for_each_row(const std::string& path, std::string_view columns, ReadRow&& read_row) {
+void for_each_row(const std::string& path, std::string_view columns, const ReadRow& read_row) {
   const std::string text = read_file(path);
   TextCursor cursor(text, path, ',');
-  while (!cursor.at_end()) {
-    if (cursor.peek() == '#') {
-      cursor.skip_line();
-      continue;
-    }
-    read_row(cursor);
-    cursor.end_line(columns);
-  }
+  for_each_row(cursor, columns, read_row);
 }
 
 std::vector<Increment> read_increments(const std::string& path) {

@@ -28,6 +28,8 @@ void shrink_tiles_when_crowded(MapIndex::Parts& parts) {
 }  // namespace
 
 MapIndex::MapIndex(const IndexOptions& options) : parts_(std::make_unique<Parts>(options)) {}
+MapIndex::MapIndex(const MapIndex& other) : parts_(std::make_unique<Parts>(*other.parts_)) {}
+MapIndex& MapIndex::operator=(const MapIndex& other) { return *this = MapIndex(other); }
 MapIndex::MapIndex(MapIndex&&) noexcept = default;
 MapIndex& MapIndex::operator=(MapIndex&&) noexcept = default;
 MapIndex::~MapIndex() = default;

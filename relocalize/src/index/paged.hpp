@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 namespace helixnav::relocalize {
@@ -20,15 +18,17 @@ class Paged {
   std::size_t size() const { return size_; }
 
   std::uint32_t push_back(const T& value) {
-    if (size_ == pages_.size() * page_size) pages_.push_back(std::make_unique<T[]>(page_size));
+    if (size_ == pages_.size() * page_size) pages_.emplace_back(page_size);
     (*this)[size_] = value;
     return static_cast<std::uint32_t>(size_++);
   }
 
-  std::size_t memory_bytes() const { return pages_.size() * page_size * sizeof(T) + pages_.capacity() * sizeof(void*); }
+  std::size_t memory_bytes() const {
+    return pages_.size() * page_size * sizeof(T) + pages_.capacity() * sizeof(pages_[0]);
+  }
 
  private:
-  std::vector<std::unique_ptr<T[]>> pages_;
+  std::vector<std::vector<T>> pages_;  ///< of page_size each
   std::size_t size_ = 0;
 };
 
@@ -40,24 +40,23 @@ class SparsePages {
 
   const T& operator[](std::size_t i) const {
     const std::size_t page = i / page_size;
-    return page < pages_.size() && pages_[page] ? (*pages_[page])[i % page_size] : otherwise_;
+    return page < pages_.size() && !pages_[page].empty() ? pages_[page][i % page_size] : otherwise_;
   }
   void set(std::size_t i, const T& value) {
     const std::size_t page = i / page_size;
     if (page >= pages_.size()) pages_.resize(page + 1);
-    if (!pages_[page]) {
-      pages_[page] = std::make_unique<std::array<T, page_size>>();
-      pages_[page]->fill(otherwise_);
+    if (pages_[page].empty()) {
+      pages_[page].assign(page_size, otherwise_);
       ++used_;
     }
-    (*pages_[page])[i % page_size] = value;
+    pages_[page][i % page_size] = value;
   }
-  std::size_t memory_bytes() const { return used_ * page_size * sizeof(T) + pages_.capacity() * sizeof(void*); }
+  std::size_t memory_bytes() const { return used_ * page_size * sizeof(T) + pages_.capacity() * sizeof(pages_[0]); }
 
  private:
   static constexpr std::size_t page_size = 256;
   T otherwise_;
-  std::vector<std::unique_ptr<std::array<T, page_size>>> pages_;
+  std::vector<std::vector<T>> pages_;  ///< of page_size each, or empty
   std::size_t used_ = 0;
 };
 

@@ -7,8 +7,8 @@
 
 #include "integrity/integrity_monitor.hpp"
 #include "loop/belief.hpp"
-#include "placing/asked.hpp"
 #include "search/search.hpp"
+#include "search/whole_map_questions.hpp"
 
 namespace helixnav::supervisor {
 
@@ -26,12 +26,18 @@ struct Mapping {
   }
 };
 
+/// What was trusted before.
+struct Trusted {
+  Checkpoint checkpoint;
+  IntegrityMonitor monitor;
+};
+
 /// A search is open: mapping goes on with the old landmarks excluded. The checkpoint is that of the trigger, after the
 /// prediction and before its scan was used.
 struct Searching {
   Search search;
   Checkpoint trigger;
-  Asked asked_before = {};  ///< questions to the whole map
+  WholeMapQuestions questions_before = {};
 };
 
 using Mode = std::variant<Mapping, Searching>;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
+#include <variant>
 
 #include "association/association_report.hpp"
 #include "association/candidates.hpp"
@@ -203,8 +205,17 @@ StepReport NavigationLoop::finish(const Scan& scan, StepReport report) {
   for (core::Decision& decision : report.decisions) decisions.push_back(std::move(decision));
   report.decisions = std::move(decisions);
   Mapping* mapping = std::get_if<Mapping>(&mode_);
-  if (mapping != nullptr && !mapping->trusted) mapping->trust(take_checkpoint(belief_, tape_));
+  if (mapping != nullptr && !mapping->trusted) trust(take_checkpoint(belief_, tape_));
   return report;
+}
+
+/// From here on, while mapping; the call can still be undone.
+void NavigationLoop::trust(Checkpoint checkpoint) {
+  Mapping& mapping = std::get<Mapping>(mode_);
+  if (mapping.trusted && !undo_.mode && !undo_.trusted) {
+    undo_.trusted = Trusted{*std::move(mapping.trusted), std::move(mapping.monitor_when_trusted)};
+  }
+  mapping.trust(std::move(checkpoint));
 }
 
 bool NavigationLoop::is_monitored() const { return options_.search.enabled && options_.search.integrity.enabled; }
@@ -220,7 +231,7 @@ void NavigationLoop::checkpoint_if_settled() {
   if (is_monitored() && !mapping->monitor.is_clear()) return;
   const bool first_scan = mapping->trusted->step == 0;
   if (!first_scan && scans < stride && belief_.filter.phase() == mapping->trusted->filter.phase) return;
-  mapping->trust(take_checkpoint(belief_, tape_));
+  trust(take_checkpoint(belief_, tape_));
 }
 
 }  // namespace helixnav::supervisor

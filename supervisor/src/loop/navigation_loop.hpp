@@ -18,10 +18,9 @@
 #include "loop/mode.hpp"
 #include "loop/tape.hpp"
 #include "noise/noise_learner.hpp"
-#include "placing/asked.hpp"
 #include "placing/place_search.hpp"
 #include "placing/session_question.hpp"
-#include "search/old_ground_index.hpp"
+#include "search/whole_map_questions.hpp"
 #include "slip/slip_decision.hpp"
 #include "smoothing/smooth_drive.hpp"
 
@@ -62,6 +61,7 @@ class NavigationLoop {
     Tape::Position tape_end;
     std::uint64_t searches;
     std::optional<Mode> mode;
+    std::optional<Trusted> trusted;                       ///< in that mode
     std::optional<cekf::CompressedEkf> filter;            ///< before the drive was solved
     std::optional<Tape> tape;                             ///< before odometry on it was found wrong
     std::optional<std::vector<Tape::Entry>> rolled_back;  ///< taken off the tape
@@ -80,6 +80,7 @@ class NavigationLoop {
   void augment(const core::Scan& scan, core::StepReport& report);
   std::vector<core::LandmarkId> update_existence(const core::Scan& scan, const core::StepReport& report);
   core::StepReport finish(const core::Scan& scan, core::StepReport report);
+  void trust(Checkpoint checkpoint);
   void checkpoint_if_settled();
   bool is_monitored() const;
 
@@ -133,6 +134,7 @@ class NavigationLoop {
   void ask_whether_new(const core::Scan& scan, core::StepReport& report);
   bool ask_whole_map(LandmarksAbout& about, const Search& search, const Checkpoint& trigger, const core::Scan& scan,
                      core::StepReport& report);
+  const relocalize::MapIndex& follow_old_ground(const Search& search);
   bool begin_drive_anew(const Tape& tape, const cekf::CompressedEkf& filter);
   bool close_at(const std::vector<pf_relocalize::ConstellationPair>& pairs, const Search& search,
                 const Checkpoint& trigger, const core::Scan& scan, core::WholeMapDecision& decision,
@@ -174,12 +176,10 @@ class NavigationLoop {
   Pending pending_;
   Undo undo_;
   std::uint64_t searches_ = 0;
-  std::optional<OldGroundIndex> old_ground_;         ///< once the whole map was asked
-  Asked asked_;                                      ///< of all searches: they share one probability of a false answer
-  Asked asked_before_;                               ///< this call, for recover()
-  double next_ask_path_m_ = 0.0;                     ///< whether new ground is new
-  std::shared_ptr<const core::JointMap> sought_in_;  ///< an earlier map, as long as the place on it is unknown
-  std::shared_ptr<PlaceSearch> place_search_;        ///< in it, from the first scan on
+  WholeMapQuestions questions_;
+  WholeMapQuestions questions_before_;                     ///< this call, for recover()
+  std::shared_ptr<const core::JointMap> sought_in_;        ///< an earlier map, as long as the place on it is unknown
+  std::shared_ptr<PlaceSearch> place_search_;              ///< in it, from the first scan on
   std::map<std::int64_t, std::vector<std::size_t>> used_;  ///< [step] observations of the scans that were thinned
 };
 

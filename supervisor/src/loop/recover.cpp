@@ -35,9 +35,13 @@ void NavigationLoop::recover() {
   if (undo.filter) belief_.filter = std::move(*undo.filter);
   if (undo.drive) std::tie(belief_.drive, belief_.window) = std::move(*undo.drive);
   if (undo.mode) mode_ = std::move(*undo.mode);
+  if (undo.trusted) {
+    Mapping& mapping = std::get<Mapping>(mode_);
+    mapping.trusted = std::move(undo.trusted->checkpoint);
+    mapping.monitor_when_trusted = std::move(undo.trusted->monitor);
+  }
   if (undo.tape) tape_ = std::move(*undo.tape);
   searches_ = undo.searches;
-  old_ground_.reset();
   const Checkpoint from = checkpoint();
   std::vector<Tape::Entry> since = tape_.cut(from.position);
   if (undo.rolled_back) since = std::move(*undo.rolled_back);
@@ -45,7 +49,7 @@ void NavigationLoop::recover() {
   roll_back(from, belief_);
   if (Searching* open = searching()) {
     open->search = search_from(from);
-    asked_ = open->asked_before;
+    questions_ = open->questions_before;
   } else {
     Mapping& mapping = std::get<Mapping>(mode_);
     mapping.monitor = mapping.monitor_when_trusted;
@@ -54,7 +58,7 @@ void NavigationLoop::recover() {
   process_again(
       since, [](const Tape::Fix&, bool) {}, [](const core::StepReport&) {});
   std::swap(noise_, noise_before_);
-  std::swap(asked_, asked_before_);
+  std::swap(questions_, questions_before_);
   pending_ = std::move(undo.pending);
 }
 

@@ -10,8 +10,8 @@ namespace helixnav::supervisor {
 /// The strong guarantee: the call takes effect as a whole, or not at all.
 template <class Call>
 auto NavigationLoop::all_or_nothing(const Call& call) {
-  undo_ = Undo{pending_, tape_.end(), searches_, {}, {}, {}, {}};
-  asked_before_ = asked_;
+  undo_ = Undo{pending_, tape_.end(), searches_, {}, {}, {}, {}, {}};
+  questions_before_ = questions_;
   noise_before_ = noise_;
   try {
     auto result = call();

@@ -2,6 +2,7 @@
 #include "loop/tape.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <utility>
 
@@ -27,17 +28,18 @@ bool is_used(const core::AssociationReport& association) {
   return association.outcome == core::Outcome::matched || association.outcome == core::Outcome::augmented;
 }
 
+/// In place: what frees memory must not fail for want of it. (shrink_to_fit then leaves the vector as it is.)
 void drop_unused(Tape::Scan& entry) {
-  std::vector<core::AssociationReport> fate;
-  std::vector<core::Observation> observations;
-  for (core::AssociationReport association : entry.fate) {
-    if (!is_used(association)) continue;
-    observations.push_back(entry.scan.observations[static_cast<std::size_t>(association.observation)]);
-    association.observation = static_cast<int>(fate.size());
-    fate.push_back(association);
+  std::vector<core::Observation>& observations = entry.scan.observations;
+  std::size_t used = 0;
+  entry.fate.erase(std::remove_if(entry.fate.begin(), entry.fate.end(), std::not_fn(is_used)), entry.fate.end());
+  for (core::AssociationReport& association : entry.fate) {
+    observations[used] = observations[static_cast<std::size_t>(association.observation)];
+    association.observation = static_cast<int>(used++);
   }
-  entry.fate = std::move(fate);
-  entry.scan.observations = std::move(observations);
+  observations.erase(observations.begin() + static_cast<std::ptrdiff_t>(used), observations.end());
+  entry.fate.shrink_to_fit();
+  observations.shrink_to_fit();
 }
 
 }  // namespace

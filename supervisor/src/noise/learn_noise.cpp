@@ -42,11 +42,10 @@ void NavigationLoop::learn_noise(const core::Scan& scan) {
 void NavigationLoop::solve_with_learnt_noise(core::StepReport& report) {
   constexpr double too_little = 1.25;   // overconfident: mended at once
   constexpr double too_much = 1.0 / 3;  // only cautious: worth its cost rarely
-  Mapping* mapping = std::get_if<Mapping>(&mode_);
   const double observations = noise_.scale.observations() / noise_.scale.applied_observations;
   const double odometry = noise_.scale.odometry() / noise_.scale.applied_odometry;
   const auto is_worth_it = [&](double change) { return change > too_little || change < too_much; };
-  if (mapping == nullptr || !(is_worth_it(observations) || is_worth_it(odometry))) return;
+  if (searching() != nullptr || !(is_worth_it(observations) || is_worth_it(odometry))) return;
   noise_.scale.applied_observations = noise_.scale.observations();
   noise_.scale.applied_odometry = noise_.scale.odometry();
   if (!tape_.holds_drive()) return;
@@ -58,9 +57,11 @@ void NavigationLoop::solve_with_learnt_noise(core::StepReport& report) {
   Checkpoint trusted = take_checkpoint(belief_, again);
   trusted.filter = smoothing.solved->snapshot();
   std::swap(belief_.filter, *smoothing.solved);
+  if (!undo_.filter) undo_.filter = std::move(smoothing.solved);
   std::swap(tape_, again);
+  if (!undo_.tape) undo_.tape = std::move(again);
   report.solved = std::move(smoothing.path);
-  mapping->trust(std::move(trusted));
+  trust(std::move(trusted));
 }
 
 }  // namespace helixnav::supervisor

@@ -25,7 +25,7 @@ void NavigationLoop::begin_search() {
   Checkpoint trigger = take_checkpoint(belief_, tape_);
   Search search = search_from(trigger);
   if (!undo_.mode) undo_.mode.emplace(std::move(mode_));
-  mode_.emplace<Searching>(Searching{std::move(search), std::move(trigger), asked_});
+  mode_.emplace<Searching>(Searching{std::move(search), std::move(trigger), questions_});
 }
 
 void NavigationLoop::search(const Scan& scan, StepReport& report) {

@@ -65,41 +65,51 @@ bool NavigationLoop::ask_whole_map(const core::Scan& scan, core::StepReport& rep
   const Searching& open = *searching();
   const double born_after_m = open.search.begun_path_m() - options_.search.old_after_m;
   LandmarksAbout about = landmarks_about(belief_, options_.search.branch_seen_within_m, born_after_m);
-  return asked_.is_due(about.ids) && ask_whole_map(about, open.search, open.trigger, scan, report);
+  return questions_.asked.is_due(about.ids) && ask_whole_map(about, open.search, open.trigger, scan, report);
 }
 
 /// On new ground, where no search has begun: is it new?
 void NavigationLoop::ask_whether_new(const core::Scan& scan, core::StepReport& report) {
   const double path_m = belief_.existence.path_m();
-  if (!asks_whole_map() || std::get_if<Mapping>(&mode_) == nullptr || path_m < next_ask_path_m_) return;
-  next_ask_path_m_ = path_m + options_.search.ask_again_m;
+  if (!asks_whole_map() || std::get_if<Mapping>(&mode_) == nullptr || path_m < questions_.next_path_m) return;
+  questions_.next_path_m = path_m + options_.search.ask_again_m;
   const double within_m = options_.search.branch_seen_within_m;
   LandmarksAbout about = landmarks_about(belief_, within_m, path_m - within_m);
   constexpr double least_new = 0.5;
-  if (!asked_.is_due(about.ids, least_new)) return;
+  if (!questions_.asked.is_due(about.ids, least_new)) return;
   const Checkpoint now = take_checkpoint(belief_, tape_);
-  ask_whole_map(about, search_from(now), now, scan, report);
+  if (!ask_whole_map(about, search_from(now), now, scan, report)) return;
+  trust(take_checkpoint(belief_, tape_));
+  report.active_landmarks = belief_.filter.active_count();
+  report.mapped_landmarks = static_cast<int>(belief_.existence.records().size());
+}
+
+/// A copy, since a call that fails goes on with the one before it.
+const relocalize::MapIndex& NavigationLoop::follow_old_ground(const Search& search) {
+  const auto& before = questions_.old_ground;
+  auto old_ground = std::make_shared<OldGroundIndex>(before ? *before : OldGroundIndex(index_lengths()));
+  old_ground->follow(belief_.filter, search.old_landmarks());
+  questions_.old_ground = std::move(old_ground);
+  return questions_.old_ground->index();
 }
 
 /// True when the map was closed, at a place that the landmarks decide for without the prior.
 bool NavigationLoop::ask_whole_map(LandmarksAbout& about, const Search& search, const Checkpoint& trigger,
                                    const core::Scan& scan, core::StepReport& report) {
   if (!asks_whole_map()) return false;
-  if (!old_ground_) old_ground_.emplace(index_lengths());
-  old_ground_->follow(belief_.filter, search.old_landmarks());
-  const relocalize::MapIndex& index = old_ground_->index();
+  const relocalize::MapIndex& index = follow_old_ground(search);
   const relocalize::Question question =
       session_question(belief_, about, scan.field_of_view, index.options(), options_.search.branch_seen_within_m);
   if (question.looked.empty() || !(index.looked_at_m2() > 0.0)) return false;
   relocalize::AskOptions how;
-  how.alpha = asked_.next_alpha();
+  how.alpha = questions_.asked.next_alpha();
   const relocalize::Answer answer = relocalize::ask(index, question, how);
   WholeMapDecision decision = figures_of(answer);
   decision.old_landmarks = static_cast<int>(index.size());
   decision.landmarks = static_cast<int>(question.landmarks.size());
-  decision.questions = asked_.questions + 1;
+  decision.questions = questions_.asked.questions + 1;
   decision.needed = -std::log(how.alpha);
-  asked_.note(about.ids);
+  questions_.asked.note(about.ids);
   if (answer.verdict == relocalize::Verdict::closed &&
       close_at(constellation_of(answer.places.front()), search, trigger, scan, decision, report))
     return true;

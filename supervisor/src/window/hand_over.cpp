@@ -103,7 +103,7 @@ void NavigationLoop::hand_over_if_due() {
   if (!is_new || !(has_grown || at_edge || is_long)) return;
   if (!undo_.mode) undo_.mode.emplace(Mode(*mapping));
   if (hand_over(window_to_map())) {
-    mapping->trust(take_checkpoint(belief_, tape_));
+    trust(take_checkpoint(belief_, tape_));
     return;
   }
   Window tried = belief_.window;

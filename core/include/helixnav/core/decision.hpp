@@ -157,8 +157,8 @@ struct PlacedDecision {
   Pose2 T_map_session;    ///< of the best place
 };
 
-/// A search asked the whole map where the vehicle is, without the prior: where the prior holds no place, or odometry forbids the
-/// one that was found. Figures of the place as in PlacedDecision.
+/// The whole map was asked where the vehicle is, without the prior: by a search whose prior holds no place or whose odometry
+/// forbids the one that was found, or on ground that seems new. Figures of the place as in PlacedDecision.
 struct WholeMapDecision {
   enum class Verdict {
     accepted,   ///< found, and the map was closed there

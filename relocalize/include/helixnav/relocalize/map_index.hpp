@@ -32,6 +32,8 @@ class MapIndex {
   /// The index of many landmarks at once, about five times as quick as inserting them.
   MapIndex(const IndexOptions& options, const std::vector<Landmark>& landmarks);
 
+  MapIndex(const MapIndex& other);  ///< as much to do as there is memory
+  MapIndex& operator=(const MapIndex& other);
   MapIndex(MapIndex&&) noexcept;
   MapIndex& operator=(MapIndex&&) noexcept;
   ~MapIndex();

@@ -16,11 +16,11 @@ namespace helixnav::supervisor {
 
 /// A filter that is told which tree it sees, and its log. Trees of the second half of the drive can be made strangers: they
 /// get second ids, which are merged at the end, as after a search. Observations of nothing are mapped and lost again.
-class ToldDrive {
+class LabelledDrive {
  public:
   enum class Kept { first_name, second_name };
 
-  ToldDrive(const core::Recording& run, bool strangers, Kept kept = Kept::first_name)
+  LabelledDrive(const core::Recording& run, bool strangers, Kept kept = Kept::first_name)
       : run_(run), strangers_(strangers), kept_(kept), filter(run.start), tape(100000) {
     for (const core::Event& event : run.events) {
       if (const auto* odometry = std::get_if<core::Odometry>(&event)) {
