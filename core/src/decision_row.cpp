@@ -103,6 +103,12 @@ void numbers(UndecidedDecision& d, Visit&& visit) {
 }
 
 template <class Visit>
+void numbers(NewGroundDecision& d, Visit&& visit) {
+  visit("driven_m", d.driven_m);
+  visit("landmarks", d.landmarks);
+}
+
+template <class Visit>
 void numbers(SmoothingDecision& d, Visit&& visit) {
   visit("chi2", d.chi2);
   visit("limit", d.limit);
@@ -186,6 +192,7 @@ KindAndVerdict words_of(const VerificationDecision& d) {
 }
 KindAndVerdict words_of(const ClosureDecision& d) { return {"closure", word_of(d.accepted)}; }
 KindAndVerdict words_of(const UndecidedDecision&) { return {"closure", "undecided"}; }
+KindAndVerdict words_of(const NewGroundDecision&) { return {"closure", "new-ground"}; }
 KindAndVerdict words_of(const SmoothingDecision& d) { return {"smoothing", word_of(d.accepted)}; }
 KindAndVerdict words_of(const FixDecision& d) { return {"fix", word_of(d.accepted)}; }
 KindAndVerdict words_of(const PlacedDecision& d) { return {"placed", placed_words[static_cast<int>(d.verdict)]}; }
@@ -271,6 +278,7 @@ Decision decision_of(const DecisionRow& row) {
   if (row.kind == "whole-map") return decision_with<WholeMapDecision>(whole_map_words, row);
   if (row.kind == "constellation") return decision_with<VerificationDecision>(verification_words, row);
   if (row.kind == "closure" && row.verdict == "undecided") return fill(UndecidedDecision{}, row);
+  if (row.kind == "closure" && row.verdict == "new-ground") return fill(NewGroundDecision{}, row);
   if (row.kind == "closure" && judged) return fill(ClosureDecision{}, accepted, row);
   if (row.kind == "smoothing" && judged) return fill(SmoothingDecision{}, accepted, row);
   if (row.kind == "fix" && judged) return fill(FixDecision{}, accepted, row);

@@ -80,6 +80,9 @@ void Referee::watch(const StepReport& report, const Map& map_now) {
   if (!book.is_associated()) book.judge_if_open(book.last_associated, map_now);
   book.score.refused += count_closings(report, false);
   book.score.undecided += count<core::UndecidedDecision>(report);
+  const int new_ground = count<core::NewGroundDecision>(report);
+  book.score.new_ground += new_ground;
+  if (book.on_old_ground) book.score.new_ground_wrong += new_ground;
   if (count_closings(report, true) == 0) return;
   book.judge_closure(report, map_now());
   // What was wrong before the closing is no longer believed.

@@ -93,12 +93,14 @@ const truthTraces = () => {
 
 const closureTrace = () => {
   const closures = data.decisions.filter((decision) => decision.kind === "closure");
-  const looks = { accepted: ["star", c.landmark, 14], refused: ["x", c.bad, 11], undecided: ["circle-open", c.faint, 12] };
+  const looks = {
+    accepted: ["star", c.landmark, 14], refused: ["x", c.bad, 11], undecided: ["circle-open", c.faint, 12],
+    "new-ground": ["diamond-open", c.faint, 12] };
   return Object.entries(looks).flatMap(([verdict, [symbol, colour, size]]) => {
     const chosen = closures.filter((d) => d.verdict === verdict);
     if (chosen.length === 0) return [];
-    return [dots(`closings ${verdict}`, chosen.map((d) => d.x), chosen.map((d) => d.y), colour,
-      { marker: { color: colour, size, symbol, line: { color: symbol === "circle-open" ? colour : c.paper, width: 1.5 } },
+    return [dots(verdict === "new-ground" ? "new ground" : `closings ${verdict}`, chosen.map((d) => d.x), chosen.map((d) => d.y), colour,
+      { marker: { color: colour, size, symbol, line: { color: symbol.endsWith("-open") ? colour : c.paper, width: 1.5 } },
         hovertemplate: "%{text}<extra></extra>", text: chosen.map((d) => `${d.verdict} at step ${d.step}`) })];
   });
 };

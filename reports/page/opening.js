@@ -1,5 +1,5 @@
 // The sentences that the page opens with; a closing is a row with a mark, and a click on it shows it in the player.
-const marks = { accepted: "✓", refused: "✗", undecided: "○" };
+const marks = { accepted: "✓", refused: "✗", undecided: "○", "new-ground": "◇" };
 
 const errorText = (closure) => {
   if (!known(closure.error_before_m) || !known(closure.error_after_m)) return "";

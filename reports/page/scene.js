@@ -280,7 +280,7 @@ const drawVehicle = ({ context, camera, palette, drive, pose, k, t, show }) => {
          () => circle(context, toScreenX(camera, truth[0]), toScreenY(camera, truth[1]), Math.max(5, .6 * size)));
 };
 
-// Closings made so far, where the vehicle then was: accepted a tick, refused a cross, undecided a ring.
+// Closings made so far, where the vehicle then was: accepted a tick, refused a cross, undecided a ring, new ground a diamond.
 const drawClosings = ({ context, camera, palette, closings, k, drive }) => {
   const colour = { accepted: palette.landmark, refused: palette.bad, undecided: palette.faint };
   for (const closing of closings) {
@@ -292,6 +292,9 @@ const drawClosings = ({ context, camera, palette, closings, k, drive }) => {
         context.moveTo(x - 6, y);
         context.lineTo(x - 1, y + 5);
         context.lineTo(x + 7, y - 6);
+      } else if (closing.verdict === "new-ground") {
+        context.moveTo(x, y - 7);
+        for (const [dx, dy] of [[7, 0], [0, 7], [-7, 0], [0, -7]]) context.lineTo(x + dx, y + dy);
       } else circle(context, x, y, 6);
     });
   }

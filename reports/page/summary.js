@@ -78,8 +78,8 @@ const writeSummary = () => {
          "ancestors of all particles a loop ago, mean / least");
   } else if (filtered) {
     const closures = summary.closures;
-    card(`${closures.accepted} / ${closures.refused} / ${closures.undecided}`,
-         "closures accepted / refused / undecided");
+    card(`${closures.accepted} / ${closures.refused} / ${closures.new_ground || 0} / ${closures.undecided}`,
+         "closures accepted / refused / new ground / undecided");
   }
   card(count(summary.steps), filtered ? `scans in ${duration(data.duration_s)}` : "scans");
   card(`${count(Math.round(data.length_m))} m`, "path");

@@ -103,6 +103,11 @@ std::string sentence(const core::UndecidedDecision& d) {
          " m. Mapping goes on as on new ground; the next ambiguous return begins a new search.";
 }
 
+std::string sentence(const core::NewGroundDecision& d) {
+  return "New ground: after " + short_number(d.driven_m) + " m, " + counted(d.landmarks, "landmark") +
+         " mapped lately fit nowhere on the old ground, and so many would. Mapping goes on.";
+}
+
 std::string refusal(const core::ClosureDecision& d, const std::string& cost, const std::string& limit,
                     const std::string& dropped) {
   const bool too_costly = d.cost > d.limit;

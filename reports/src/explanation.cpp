@@ -139,6 +139,7 @@ std::string explain_run(const runs::Run& run) {
   std::string text = std::to_string(run.steps.size()) +
                      " steps; closings: " + std::to_string(count_of(closures, "accepted")) + " accepted, " +
                      std::to_string(count_of(closures, "refused")) + " refused, " +
+                     std::to_string(count_of(closures, "new-ground")) + " on new ground, " +
                      std::to_string(count_of(closures, "undecided")) + " left undecided.\n";
   text += places_of(decided);
   const bool nothing_else = std::all_of(decided.begin(), decided.end(), is_placing);

@@ -38,7 +38,7 @@ std::string drive_sentence(const runs::Run& run) {
 }
 
 std::string closings_sentence(const runs::Run& run) {
-  int accepted = 0, refused = 0, undecided = 0;
+  int accepted = 0, refused = 0, undecided = 0, new_ground = 0;
   for (const core::StepReport& step : run.steps) {
     for (const core::Decision& decision : step.decisions) {
       if (!core::is_closure(decision)) continue;
@@ -46,12 +46,14 @@ std::string closings_sentence(const runs::Run& run) {
       accepted += verdict == "accepted";
       refused += verdict == "refused";
       undecided += verdict == "undecided";
+      new_ground += verdict == "new-ground";
     }
   }
-  if (accepted + refused + undecided == 0) return "No search for an old place was made.";
+  if (accepted + refused + undecided + new_ground == 0) return "No search for an old place was made.";
   const auto times = [](int count) { return count == 1 ? std::string("once") : std::to_string(count) + " times"; };
   std::string text = accepted > 0 ? "The map was closed " + times(accepted) : "The map was never closed";
   text += refused > 0 ? "; a closing was refused " + times(refused) : "; no closing was refused";
+  text += new_ground > 0 ? "; a search ended on new ground " + times(new_ground) : "";
   return text + (undecided > 0 ? "; a search was left undecided " + times(undecided) + "." : ".");
 }
 

@@ -26,16 +26,17 @@ void put(Json& object, const std::string& dotted_key, double value) {
 }
 
 Json closures_to_json(const runs::Run& run) {
-  std::int64_t accepted = 0, refused = 0, undecided = 0;
+  std::int64_t accepted = 0, refused = 0, undecided = 0, new_ground = 0;
   for (const core::StepReport& step : run.steps) {
     for (const core::Decision& decision : step.decisions) {
       const auto* closure = std::get_if<core::ClosureDecision>(&decision);
       accepted += closure != nullptr && closure->accepted;
       refused += closure != nullptr && !closure->accepted;
       undecided += std::holds_alternative<core::UndecidedDecision>(decision);
+      new_ground += std::holds_alternative<core::NewGroundDecision>(decision);
     }
   }
-  return {{"accepted", accepted}, {"refused", refused}, {"undecided", undecided}};
+  return {{"accepted", accepted}, {"refused", refused}, {"new_ground", new_ground}, {"undecided", undecided}};
 }
 
 /// What a session that looked for its place on an earlier map said of it last.

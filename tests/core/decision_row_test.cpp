@@ -11,7 +11,7 @@ std::vector<DecisionRow> all_rows() {
   std::vector<DecisionRow> rows;
   for (const Decision& decision :
        {Decision(TriggerDecision{}), Decision(RollbackDecision{}), Decision(SlipDecision{}), Decision(AttemptStarted{}),
-        Decision(ReferenceUnusable{}), Decision(UndecidedDecision{})}) {
+        Decision(ReferenceUnusable{}), Decision(UndecidedDecision{}), Decision(NewGroundDecision{})}) {
     rows.push_back(row_of(decision));
   }
   for (const char* reason : {"timed-out", "nothing-here", "abandoned", "outdone"}) {

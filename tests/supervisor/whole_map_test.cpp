@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Odometry that was wrong by more than its noise allows: the place is found by asking the whole map.
 #include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -83,6 +84,42 @@ TEST(WholeMap, FindsAVehicleThatWasCarriedAway) {
   });
   EXPECT_EQ(cut, 1);
   EXPECT_LT(drive.error_at_end_m, 5.0);
+}
+
+/// Trees of labels seen from the begin of the search on, that had been seen before and out of sight for a while.
+int old_trees_seen(const core::Recording& run, std::size_t trigger, std::size_t end) {
+  constexpr std::size_t lately = 130;  // scans: 65 m
+  const std::size_t left = trigger > lately ? trigger - lately : 0;
+  std::set<core::Label> before, recent, seen;
+  for (std::size_t i = 0; i <= end; ++i) {
+    std::set<core::Label>& trees = i < left ? before : i < trigger ? recent : seen;
+    for (const core::Label label : run.labels[i]) {
+      if (label >= 0) trees.insert(label);
+    }
+  }
+  return static_cast<int>(std::count_if(seen.begin(), seen.end(), [&](core::Label label) {
+    return before.count(label) > 0 && recent.count(label) == 0;
+  }));
+}
+
+TEST(WholeMap, EndsASearchOnNewGround) {
+  const core::Recording run = sim::simulate(sim::named_scenario("slip"), 3105);
+  constexpr std::size_t scans = 1400;  // the first such search ends at 1366
+  NavigatorOptions options;
+  options.search.relocalizer.threads = 1;
+  Navigator navigator(run.start, options);
+  std::size_t trigger = 0;
+  int new_ground = 0;
+  drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
+    if (i >= scans) return;
+    for (const core::Decision& decision : navigator.observe(scan).decisions) {
+      if (core::is_trigger(decision)) trigger = i;
+      if (!std::holds_alternative<core::NewGroundDecision>(decision)) continue;
+      ++new_ground;
+      EXPECT_EQ(old_trees_seen(run, trigger, i), 0) << "search of scans " << trigger << " to " << i;
+    }
+  });
+  EXPECT_GE(new_ground, 1);
 }
 
 TEST(WholeMap, HasNoNewsWhereNothingIsAmiss) {

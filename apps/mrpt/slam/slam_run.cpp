@@ -152,8 +152,8 @@ class Run {
   }
 
   void print_summary() {
-    std::printf("closings             %d accepted, %d refused, %d left undecided\n", closings_["accepted"],
-                closings_["refused"], closings_["undecided"]);
+    std::printf("closings             %d accepted, %d refused, %d on new ground, %d left undecided\n",
+                closings_["accepted"], closings_["refused"], closings_["new-ground"], closings_["undecided"]);
     std::printf("landmarks            %zu\n", RunAccess::map(builder_).size());
     if (!recording_.true_landmarks.empty()) {
       const LandmarkErrors errors = landmark_errors(builder_, recording_.true_landmarks);

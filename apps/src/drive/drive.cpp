@@ -170,8 +170,9 @@ ExitCode drive(const Drive& job) {
   std::fputs(reports::evaluation_text(evaluation).c_str(), stdout);
   std::fputs(text_of(agreement).c_str(), stdout);
   if (!job.given_map && !job.fastslam.chosen) {
-    std::printf("closings             %d accepted, %d refused, %d left undecided\n", driven.closings["accepted"],
-                driven.closings["refused"], driven.closings["undecided"]);
+    std::printf("closings             %d accepted, %d refused, %d on new ground, %d left undecided\n",
+                driven.closings["accepted"], driven.closings["refused"], driven.closings["new-ground"],
+                driven.closings["undecided"]);
   }
   std::printf("run folder: %s   report: %s/report.html\n", job.out.c_str(), job.out.c_str());
   return verdict(job, driven, run, evaluation, smoothed);

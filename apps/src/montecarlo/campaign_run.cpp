@@ -86,6 +86,8 @@ Json json_of(const evaluation::RunScore& score) {
           {"rolled_back", score.rolled_back},
           {"refused", score.refused},
           {"left_open", score.undecided},
+          {"new_ground", score.new_ground},
+          {"new_ground_wrong", score.new_ground_wrong},
           {"old_matches", score.old_matches},
           {"wrong_old_matches", score.wrong_old_matches},
           {"wrong_before_trigger", score.wrong_before_trigger},

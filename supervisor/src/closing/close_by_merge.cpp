@@ -36,6 +36,7 @@ void merge_leftovers(cekf::CompressedEkf& filter, const DuplicateSegment& duplic
     Closing rest_closing;
     if (rest.empty() || !make_compatible(filter, options, rest, rest_closing)) return;
     if (!try_merge(filter, rest, options.merge_sigma_m)) return;
+    closing.limit_of_leftovers += rest_closing.limit;
     note(rest, closing);
   }
 }

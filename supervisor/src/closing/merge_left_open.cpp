@@ -46,7 +46,7 @@ void NavigationLoop::merge_left_open(const core::FieldOfView& view, core::StepRe
     if (closing.merged.empty()) continue;
     for (const core::MergedLandmarks& one : closing.merged) belief_.existence.merge(one.kept, one.removed);
     report.merged.insert(report.merged.end(), closing.merged.begin(), closing.merged.end());
-    tape_.append(Tape::Merge{std::move(closing.merged), closing.cost});
+    tape_.append(Tape::Merge{std::move(closing.merged), closing.limit_of_leftovers});
   }
 }
 

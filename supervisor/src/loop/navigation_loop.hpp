@@ -103,6 +103,8 @@ class NavigationLoop {
   void search(const core::Scan& scan, core::StepReport& report);
   void close(const core::Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
              core::StepReport& report);
+  bool close_as_measured(const core::Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
+                         core::StepReport& report);
   void accept(const Closing& closing, const core::FieldOfView& view, core::StepReport& report);
   void report_closing(const Closing& closing, std::size_t pairs, double driven_m, const core::Pose2& before,
                       core::StepReport& report) const;
@@ -130,10 +132,11 @@ class NavigationLoop {
 
   // search/whole_map.cpp
   bool asks_whole_map() const;
-  bool ask_whole_map(const core::Scan& scan, core::StepReport& report);
+  AskedWholeMap ask_whole_map(const core::Scan& scan, core::StepReport& report);
   void ask_whether_new(const core::Scan& scan, core::StepReport& report);
-  bool ask_whole_map(LandmarksAbout& about, const Search& search, const Checkpoint& trigger, const core::Scan& scan,
-                     core::StepReport& report);
+  LandmarksAbout branch_about() const;
+  AskedWholeMap ask_about_place(const core::Scan& scan);
+  AskedWholeMap ask(LandmarksAbout& about, const Search& search, const core::Scan& scan);
   const relocalize::MapIndex& follow_old_ground(const Search& search);
   bool begin_drive_anew(const Tape& tape, const cekf::CompressedEkf& filter);
   bool close_at(const std::vector<pf_relocalize::ConstellationPair>& pairs, const Search& search,

@@ -41,7 +41,8 @@ class Tape {
     std::vector<core::LandmarkId> died;  ///< removed after it
     bool slipped = false;                ///< updated by update_after_slip
   };
-  /// Landmarks merged by a closing, at cost J.
+  /// Landmarks merged by a closing, and the χ² that it may cost: its J is that of a filter linearised elsewhere, by tens too
+  /// small where the pose was uncertain by a radian, and any solution of the drive within the limit would have been accepted.
   struct Merge {
     std::vector<core::MergedLandmarks> merged;
     double cost = 0.0;

@@ -10,13 +10,14 @@ namespace helixnav::supervisor {
 
 /// Questions to a map about where the vehicle is on it: how many there were, and with which landmarks the last one was asked.
 struct Asked {
+  static constexpr std::size_t least_to_ask = 8;  ///< landmarks
+
   int questions = 0;
   std::vector<core::LandmarkId> with;  ///< ascending
 
   /// Enough landmarks to ask with, and enough of them new since the last question: a fifth where somebody waits for the answer,
   /// half where nobody does.
   bool is_due(const std::vector<core::LandmarkId>& landmarks, double least_new = 0.2) const {
-    constexpr std::size_t least_to_ask = 8;
     const auto fresh = std::count_if(landmarks.begin(), landmarks.end(), [&](core::LandmarkId id) {
       return !std::binary_search(with.begin(), with.end(), id);
     });

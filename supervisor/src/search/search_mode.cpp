@@ -37,25 +37,39 @@ void NavigationLoop::search(const Scan& scan, StepReport& report) {
   if (pairs) close(scan, *pairs, report);
   const double path_m = belief_.existence.path_m();
   if (searching() == nullptr || !open.is_undecided(path_m)) return;
-  if (ask_whole_map(scan, report)) return;
-  report.decisions.emplace_back(core::UndecidedDecision{path_m - open.begun_path_m()});
+  const AskedWholeMap asked = ask_whole_map(scan, report);
+  if (searching() == nullptr) return;
+  const double driven_m = path_m - open.begun_path_m();
+  if (asked.is_nowhere()) {
+    report.decisions.emplace_back(core::NewGroundDecision{driven_m, asked.decision.landmarks});
+  } else {
+    report.decisions.emplace_back(core::UndecidedDecision{driven_m});
+  }
   belief_.left_open.push_back({open.begun_path_m(), path_m});
   end_search(nullptr);
 }
 
+/// Where the landmarks, asked without the prior, decide for another place, that is believed and not the search.
 void NavigationLoop::close(const Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
                            StepReport& report) {
+  const Searching& open = *searching();
+  AskedWholeMap asked = ask_about_place(scan);
+  if (!asked.is_closed_elsewhere(pairs) && close_as_measured(scan, pairs, report)) return;
+  if (asked.is_closed() && close_at(asked.pairs, open.search, open.trigger, scan, asked.decision, report)) return;
+  if (asked.is_asked()) report.decisions.emplace_back(asked.decision);
+  searching()->search.refuse(belief_.existence.path_m());
+}
+
+bool NavigationLoop::close_as_measured(const Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
+                                       StepReport& report) {
   const Searching& open = *searching();
   const core::Pose2 before = belief_.filter.pose().mean;
   const Closing closing =
       close_map(belief_.filter, {open.search, belief_.existence, belief_.coverage, scan, {open.trigger, tape_}}, pairs,
                 options_.search);
   report_closing(closing, pairs.size(), belief_.existence.path_m() - open.search.begun_path_m(), before, report);
-  if (closing.accepted) {
-    accept(closing, scan.field_of_view, report);
-  } else if (!ask_whole_map(scan, report)) {
-    searching()->search.refuse(belief_.existence.path_m());
-  }
+  if (closing.accepted) accept(closing, scan.field_of_view, report);
+  return closing.accepted;
 }
 
 /// The filter has been closed: so is everything else.
@@ -63,7 +77,7 @@ void NavigationLoop::accept(const Closing& closing, const core::FieldOfView& vie
   for (const core::MergedLandmarks& one : closing.merged) belief_.existence.merge(one.kept, one.removed);
   for (const LandmarkId id : closing.forgotten) belief_.existence.remove(id);
   report.merged = closing.merged;
-  tape_.append(Tape::Merge{closing.merged, closing.cost});
+  tape_.append(Tape::Merge{closing.merged, closing.limit + closing.limit_of_leftovers});
   end_search(&closing);
   merge_left_open(view, report);
   solve_drive(report);

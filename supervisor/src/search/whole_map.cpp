@@ -60,12 +60,27 @@ bool NavigationLoop::asks_whole_map() const {
          std::isinf(belief_.window.radius_m);  // else it is not in the filter
 }
 
-/// Before a search ends undecided, or where odometry forbids the closing that it found.
-bool NavigationLoop::ask_whole_map(const core::Scan& scan, core::StepReport& report) {
+LandmarksAbout NavigationLoop::branch_about() const {
+  const double born_after_m = searching()->search.begun_path_m() - options_.search.old_after_m;
+  return landmarks_about(belief_, options_.search.branch_seen_within_m, born_after_m);
+}
+
+/// Before a search ends undecided: closes the map where the answer allows it.
+AskedWholeMap NavigationLoop::ask_whole_map(const core::Scan& scan, core::StepReport& report) {
+  LandmarksAbout about = branch_about();
+  if (!asks_whole_map() || !questions_.asked.is_due(about.ids)) return {};
   const Searching& open = *searching();
-  const double born_after_m = open.search.begun_path_m() - options_.search.old_after_m;
-  LandmarksAbout about = landmarks_about(belief_, options_.search.branch_seen_within_m, born_after_m);
-  return questions_.asked.is_due(about.ids) && ask_whole_map(about, open.search, open.trigger, scan, report);
+  AskedWholeMap asked = ask(about, open.search, scan);
+  if (asked.is_closed() && close_at(asked.pairs, open.search, open.trigger, scan, asked.decision, report)) return asked;
+  if (asked.is_asked()) report.decisions.emplace_back(asked.decision);
+  return asked;
+}
+
+/// Of a place that a search has found with these pairs: what the landmarks say without the prior that it was found with.
+AskedWholeMap NavigationLoop::ask_about_place(const core::Scan& scan) {
+  LandmarksAbout about = branch_about();
+  if (!asks_whole_map() || about.ids.size() < Asked::least_to_ask) return {};
+  return ask(about, searching()->search, scan);
 }
 
 /// On new ground, where no search has begun: is it new?
@@ -78,7 +93,13 @@ void NavigationLoop::ask_whether_new(const core::Scan& scan, core::StepReport& r
   constexpr double least_new = 0.5;
   if (!questions_.asked.is_due(about.ids, least_new)) return;
   const Checkpoint now = take_checkpoint(belief_, tape_);
-  if (!ask_whole_map(about, search_from(now), now, scan, report)) return;
+  const Search search = search_from(now);
+  AskedWholeMap asked = ask(about, search, scan);
+  if (!asked.is_closed() || !close_at(asked.pairs, search, now, scan, asked.decision, report)) {
+    const bool is_news = asked.decision.verdict != WholeMapDecision::Verdict::not_here;
+    if (is_news) report.decisions.emplace_back(asked.decision);
+    return;
+  }
   trust(take_checkpoint(belief_, tape_));
   report.active_landmarks = belief_.filter.active_count();
   report.mapped_landmarks = static_cast<int>(belief_.existence.records().size());
@@ -93,29 +114,23 @@ const relocalize::MapIndex& NavigationLoop::follow_old_ground(const Search& sear
   return questions_.old_ground->index();
 }
 
-/// True when the map was closed, at a place that the landmarks decide for without the prior.
-bool NavigationLoop::ask_whole_map(LandmarksAbout& about, const Search& search, const Checkpoint& trigger,
-                                   const core::Scan& scan, core::StepReport& report) {
-  if (!asks_whole_map()) return false;
+/// Counts as a question, unless there is nothing to ask.
+AskedWholeMap NavigationLoop::ask(LandmarksAbout& about, const Search& search, const core::Scan& scan) {
   const relocalize::MapIndex& index = follow_old_ground(search);
   const relocalize::Question question =
       session_question(belief_, about, scan.field_of_view, index.options(), options_.search.branch_seen_within_m);
-  if (question.looked.empty() || !(index.looked_at_m2() > 0.0)) return false;
+  if (question.looked.empty() || !(index.looked_at_m2() > 0.0)) return {};
   relocalize::AskOptions how;
   how.alpha = questions_.asked.next_alpha();
   const relocalize::Answer answer = relocalize::ask(index, question, how);
-  WholeMapDecision decision = figures_of(answer);
-  decision.old_landmarks = static_cast<int>(index.size());
-  decision.landmarks = static_cast<int>(question.landmarks.size());
-  decision.questions = questions_.asked.questions + 1;
-  decision.needed = -std::log(how.alpha);
+  AskedWholeMap asked{figures_of(answer), {}};
+  asked.decision.old_landmarks = static_cast<int>(index.size());
+  asked.decision.landmarks = static_cast<int>(question.landmarks.size());
+  asked.decision.questions = questions_.asked.questions + 1;
+  asked.decision.needed = -std::log(how.alpha);
+  if (answer.verdict == relocalize::Verdict::closed) asked.pairs = constellation_of(answer.places.front());
   questions_.asked.note(about.ids);
-  if (answer.verdict == relocalize::Verdict::closed &&
-      close_at(constellation_of(answer.places.front()), search, trigger, scan, decision, report))
-    return true;
-  const bool is_news = searching() != nullptr || decision.verdict != WholeMapDecision::Verdict::not_here;
-  if (is_news) report.decisions.emplace_back(decision);
-  return false;
+  return asked;
 }
 
 /// The atlas of a drive whose odometry is believed less than it was. False when it cannot be solved.

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <memory>
+#include <vector>
 
+#include "helixnav/core/decision.hpp"
+#include "helixnav/pf_relocalize/constellation.hpp"
 #include "placing/asked.hpp"
 #include "search/old_ground_index.hpp"
 
@@ -13,6 +17,31 @@ struct WholeMapQuestions {
   Asked asked;
   double next_path_m = 0.0;  ///< length of the drive when it is asked next whether ground is new
   std::shared_ptr<const OldGroundIndex> old_ground;  ///< null before the first question
+};
+
+/// An answer of the whole map.
+struct AskedWholeMap {
+  core::WholeMapDecision decision;                      ///< refused where it is closed, until the map is closed there
+  std::vector<pf_relocalize::ConstellationPair> pairs;  ///< of the one place that is left; else empty
+
+  bool is_asked() const { return decision.questions > 0; }
+  bool is_closed() const { return !pairs.empty(); }
+  /// No place fits better than chance, and of as many landmarks one would: with twenty 0.998 of the places that are on the map
+  /// are found where 30 % have changed (docs/relocalize.md).
+  bool is_nowhere() const {
+    constexpr int enough = 20;
+    return is_asked() && decision.verdict == core::WholeMapDecision::Verdict::not_here &&
+           decision.landmarks >= enough && decision.evidence < 0.0;
+  }
+  /// At another place than these pairs have: none is the same.
+  bool is_closed_elsewhere(const std::vector<pf_relocalize::ConstellationPair>& found) const {
+    const auto is_found = [&](const pf_relocalize::ConstellationPair& pair) {
+      return std::any_of(found.begin(), found.end(), [&](const pf_relocalize::ConstellationPair& other) {
+        return other.branch == pair.branch && other.old_landmark == pair.old_landmark;
+      });
+    };
+    return is_closed() && std::none_of(pairs.begin(), pairs.end(), is_found);
+  }
 };
 
 }  // namespace helixnav::supervisor

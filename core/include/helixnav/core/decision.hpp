@@ -112,6 +112,13 @@ struct UndecidedDecision {
   double driven_m = 0.0;  ///< since the search began
 };
 
+/// A search found that the vehicle is not on old ground: the landmarks mapped lately fit nowhere on it, and they are so many
+/// that they would.
+struct NewGroundDecision {
+  double driven_m = 0.0;  ///< since the search began
+  int landmarks = 0;      ///< asked with
+};
+
 /// The whole drive was solved by least squares after a closing.
 struct SmoothingDecision {
   bool accepted = false;
@@ -191,13 +198,15 @@ struct OtherDecision {
 };
 
 /// A decision of the navigator that is worth a sentence, with the numbers that decided it.
-using Decision = std::variant<TriggerDecision, RollbackDecision, SlipDecision, AttemptStarted, AttemptEnded,
-                              ReferenceUnusable, VerificationDecision, ClosureDecision, UndecidedDecision,
-                              SmoothingDecision, FixDecision, PlacedDecision, WholeMapDecision, OtherDecision>;
+using Decision =
+    std::variant<TriggerDecision, RollbackDecision, SlipDecision, AttemptStarted, AttemptEnded, ReferenceUnusable,
+                 VerificationDecision, ClosureDecision, UndecidedDecision, NewGroundDecision, SmoothingDecision,
+                 FixDecision, PlacedDecision, WholeMapDecision, OtherDecision>;
 
-/// True for what ends a search: a closing accepted or refused, or a search given up.
+/// True for what ends a search: a closing accepted or refused, new ground, or a search given up.
 inline bool is_closure(const Decision& decision) {
-  return std::holds_alternative<ClosureDecision>(decision) || std::holds_alternative<UndecidedDecision>(decision);
+  return std::holds_alternative<ClosureDecision>(decision) || std::holds_alternative<UndecidedDecision>(decision) ||
+         std::holds_alternative<NewGroundDecision>(decision);
 }
 
 /// True for what begins a search.

@@ -79,9 +79,11 @@ struct RunScore {
   std::vector<ReturnScore> returns;
   std::vector<ClosureScore> closures;
   int triggers = 0;
-  int rolled_back = 0;  ///< searches begun after a rollback
-  int refused = 0;      ///< closures
-  int undecided = 0;    ///< closures
+  int rolled_back = 0;       ///< searches begun after a rollback
+  int refused = 0;           ///< closures
+  int undecided = 0;         ///< closures
+  int new_ground = 0;        ///< searches that ended there, and …
+  int new_ground_wrong = 0;  ///< … on old ground in truth
   int old_matches = 0;
   int wrong_old_matches = 0;
   int wrong_before_trigger = 0;   ///< wrong old matches before the first trigger of a return, rollbacks included
