@@ -109,6 +109,7 @@ TeamDrive drive_team(const TeamTask& task) {
     std::vector<std::int64_t> names;
     if (!task.known_association) names = own[r].take(event);
     if (task.known_association && fed.kind == Fed::scan) names = member.recording.labels[fed.step];
+    if (fed.kind == Fed::scan) drive.robots[r].names.push_back(names);
     std::optional<core::StepReport> report = drive.team.take(fed.robot, event, names);
     progress.advance_to(k);
     if (!report) continue;
