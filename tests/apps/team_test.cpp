@@ -91,6 +91,36 @@ TEST(TeamOptions, AreRefusedForALogOfOneRobot) {
   }
 }
 
+TEST(TeamSimulation, BringsFourRobotsOfUnknownStartIntoOneFrame) {
+  const testing::TemporaryFolder folder;
+  const fs::path out = folder.path() / "four";
+  const Outcome outcome =
+      run({"simulate", "team", "--robots", "4", "--unknown-starts", "--quiet", "--out", out.string()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json figures = json::parse(text_of(out / "summary.json"));
+  EXPECT_EQ(figures["joins"], 3);
+  ASSERT_EQ(figures["robots"].size(), 4u);
+  for (const json& robot : figures["robots"]) {
+    EXPECT_EQ(robot["component"], 1);
+    EXPECT_EQ(robot["alone"], false);
+  }
+  EXPECT_LT(figures["landmarks"][0]["aligned_rmse_m"], 0.2);
+}
+
+TEST(TeamSimulation, RefusesOptionsOfOneRobotAndOthersThoseOfATeam) {
+  const testing::TemporaryFolder folder;
+  const std::string out = (folder.path() / "out").string();
+  for (const Words& options :
+       {Words{"team", "--day", "3"}, Words{"team", "--filter", "fastslam"}, Words{"team", "--robots", "1"},
+        Words{"large-loop", "--robots", "3"}, Words{"large-loop", "--association", "unknown"}}) {
+    Words words{"simulate", "--quiet", "--out", out};
+    words.insert(words.end(), options.begin(), options.end());
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.exit_code, 2) << options[1] << outcome.err;
+    EXPECT_FALSE(fs::exists(out));
+  }
+}
+
 TEST(TeamCampaign, JoinsWhatIsSharedAndNothingElse) {
   const testing::TemporaryFolder folder;
   const std::string out = (folder.path() / "campaign").string();

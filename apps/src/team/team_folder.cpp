@@ -31,7 +31,7 @@ int number_of(const TeamTask& task, int robot) { return task.recording.robots[st
 std::string joins_table(const TeamTask& task, const TeamDrive& drive) {
   std::string text = "t_s,by,robot,other,x,y,heading,merged,sightings,cost,dof,limit\n";
   for (const team::TeamJoin& join : drive.team.joins()) {
-    const core::Pose2& T = join.T_component_other.mean;
+    const core::Pose2& T = join.T_component_other;
     files::append_seconds(text, join.t_ns);
     text += std::string(",") + team::name_of(join.by) + ',' + std::to_string(number_of(task, join.robot)) + ',' +
             std::to_string(number_of(task, join.other));
