@@ -25,9 +25,12 @@ struct World {
   TeamVerdict verdict;
 };
 
-std::string table_of(const std::vector<World>& worlds) {
-  std::string text = "seed,world,pitch_m,jitter_m,joined,wrong,t_s,merged,merged_wrong,error_m,error_rad\n";
-  for (const World& world : worlds) {
+constexpr const char* columns = "seed,world,pitch_m,jitter_m,joined,wrong,t_s,merged,merged_wrong,error_m,error_rad\n";
+
+std::string rows_of(const std::vector<World>& worlds, std::size_t from, std::size_t count) {
+  std::string text;
+  for (std::size_t i = from; i < from + count; ++i) {
+    const World& world = worlds[i];
     const TeamVerdict& verdict = world.verdict;
     const bool lattice = world.trial.world.kind == sim::TeamWorldKind::orchard;
     text += std::to_string(world.seed) + ',' + world.trial.name + ',';
@@ -128,15 +131,19 @@ ExitCode run_team_campaign(const TeamCampaign& campaign) {
   core::WorkerPool workers(campaign.jobs);
   ProgressBar progress("driving", worlds.size(), campaign.quiet);
   const std::size_t batch = std::size_t{4} * campaign.jobs;
+  std::filesystem::remove(campaign.out + "/runs.csv");
+  files::AppendFile table(campaign.out + "/runs.csv");
+  table.append(columns);
   for (std::size_t done = 0; done < worlds.size(); done += batch) {
-    workers.for_each(std::min(batch, worlds.size() - done), [&](std::size_t i) {
+    const std::size_t count = std::min(batch, worlds.size() - done);
+    workers.for_each(count, [&](std::size_t i) {
       World& world = worlds[done + i];
       world.verdict = judge_world(world.trial, world.seed);
     });
-    progress.advance_to(std::min(done + batch, worlds.size()));
+    table.append(rows_of(worlds, done, count));
+    progress.advance_to(done + count);
   }
   const nlohmann::ordered_json summary = summary_of(worlds);
-  files::write_whole_file(campaign.out + "/runs.csv", table_of(worlds));
   files::write_whole_file(campaign.out + "/summary.json", summary.dump(2) + '\n');
   print(summary);
   return ExitCode::ok;

@@ -19,7 +19,7 @@ struct TeamCampaign {
   bool quiet = false;
 };
 
-/// Writes runs.csv, a row a world, and summary.json with Clopper and Pearson's 95 % intervals; prints the summary.
+/// Writes runs.csv, a row a world as they end, and summary.json with Clopper and Pearson's 95 % intervals; prints the summary.
 ExitCode run_team_campaign(const TeamCampaign& campaign);
 
 }  // namespace helixnav::apps
