@@ -131,7 +131,6 @@ bool join_components(Candidate candidate, core::Nanoseconds t_ns, const TeamOpti
   join.robot = static_cast<int>(into.robots.front());
   join.other = static_cast<int>(from.robots.front());
   join.merged = static_cast<int>(candidate.same.size());
-  join.T_component_other = candidate.T_into_from;
   for (const std::size_t r : from.robots) trial.placed.push_back({r, trial.joins.size()});
   lay_together(candidate, trial);
   for (const std::size_t row : candidate.sightings) trial.sighting_rows[row].use = Use::used;
@@ -145,6 +144,9 @@ bool join_components(Candidate candidate, core::Nanoseconds t_ns, const TeamOpti
   } catch (const core::NumericalError&) {
     return false;
   }
+  const core::Pose2 T_from = state.robots[from.robots.front()].clones.front().T_component_robot;
+  const core::Pose2 T_into = trial.robots[from.robots.front()].clones.front().T_component_robot;
+  join.T_component_other = core::compose(T_into, core::inverse(T_from));
   trial.joins.push_back(join);
   state = std::move(trial);
   return true;

@@ -157,6 +157,12 @@ void take(std::size_t robot, const core::Odometry& motion, State& state) {
 
 int rank_of(const Entry& entry) { return static_cast<int>(entry.what.index()); }
 
+/// Of two sightings by one robot at one time the one may wait longer than the other.
+int seen_by(const Entry& entry) {
+  const auto* sighting = std::get_if<core::RobotSighting>(&entry.what);
+  return sighting == nullptr ? 0 : sighting->seen;
+}
+
 }  // namespace
 
 core::Nanoseconds Entry::t_ns() const {
@@ -166,7 +172,9 @@ core::Nanoseconds Entry::t_ns() const {
 }
 
 bool before(const Entry& a, const Entry& b) {
-  const auto key = [](const Entry& entry) { return std::make_tuple(entry.t_ns(), rank_of(entry), entry.robot); };
+  const auto key = [](const Entry& entry) {
+    return std::make_tuple(entry.t_ns(), rank_of(entry), entry.robot, seen_by(entry));
+  };
   return key(a) < key(b);
 }
 

@@ -28,7 +28,8 @@ struct Entry {
   core::Nanoseconds t_ns() const;
 };
 
-/// The order of processing: by time; at one time motions, then sightings of robots, then scans; then by robot.
+/// The order of processing: by time; at one time motions, then sightings of robots, then scans; then by robot, then by the
+/// robot seen.
 bool before(const Entry& a, const Entry& b);
 
 /// Robots at their starts.

@@ -33,6 +33,7 @@ struct SmallTeamOptions {
   int robots = 2;
   int steps = 60;      ///< of a second
   double noise = 1.0;  ///< on all sigmas below
+  double drawn = 1.0;  ///< what is drawn of them; 0: measurements are exact and do not say so
   double reach_m = 8.0;
   bool see_each_other = true;
   std::uint64_t seed = 1;
@@ -57,8 +58,8 @@ inline SmallTeam small_team(const SmallTeamOptions& options = {}) {
   const auto observed = [&](const core::Pose2& from, const Eigen::Vector2d& point_m) {
     const core::ObsVector z =
         core::predict_observation(core::ObservationKind::range_bearing, from, core::Pose2(), point_m).z_hat;
-    const double bearing_rad = z[1] + k * random.normal(0.0, sigma_bearing_rad);
-    const double range_m = z[0] + k * random.normal(0.0, sigma_range_m);
+    const double bearing_rad = z[1] + k * options.drawn * random.normal(0.0, sigma_bearing_rad);
+    const double range_m = z[0] + k * options.drawn * random.normal(0.0, sigma_range_m);
     return core::make_range_bearing(range_m, bearing_rad, k * sigma_range_m, k * sigma_bearing_rad);
   };
   for (int step = 1; step <= options.steps; ++step) {
@@ -69,7 +70,8 @@ inline SmallTeam small_team(const SmallTeamOptions& options = {}) {
       odometry.t_ns = t_ns;
       odometry.covariance =
           (k * k * Eigen::Vector3d(sigma_way_m, 0.2 * sigma_way_m, sigma_turn_rad).cwiseAbs2()).asDiagonal();
-      odometry.T_before_after = core::Pose2(Eigen::Vector3d(true_way.vector() + random.normal3(odometry.covariance)));
+      odometry.T_before_after =
+          core::Pose2(Eigen::Vector3d(true_way.vector() + options.drawn * random.normal3(odometry.covariance)));
       team.last[static_cast<std::size_t>(r)] = core::compose(team.last[static_cast<std::size_t>(r)], true_way);
       team.messages.push_back({t_ns, r, odometry, {}});
     }

@@ -196,6 +196,48 @@ TEST(Team, AJoinTakenBackLeavesNoTrace) {
   for (int r = 0; r < 2; ++r) EXPECT_EQ(team.pose(r).mean.vector(), never.pose(r).mean.vector());
 }
 
+TEST(Team, AJoinOfThreeTakenBackLeavesTheOtherTwoTogether) {
+  SmallTeamOptions three;
+  three.robots = 3;
+  three.see_each_other = false;
+  const SmallTeam small = small_team(three);
+  Team team = testing::run(small, unknown_starts(small));
+  team.solve();
+  ASSERT_EQ(team.joins().size(), 2u);
+  const TeamJoin last = team.joins()[1];
+  team.remove_join(1);
+  team.solve();
+  ASSERT_EQ(team.joins().size(), 1u);
+  EXPECT_NE(team.component(last.robot), team.component(last.other));
+  EXPECT_EQ(team.component(team.joins()[0].other), team.component(team.joins()[0].robot));
+}
+
+TEST(Team, JoinsComeOutTheSameOfMessagesOutOfOrder) {
+  SmallTeamOptions three;
+  three.robots = 3;
+  const SmallTeam small = small_team(three);
+  const Team in_time = testing::run(small, unknown_starts(small));
+  // Robot 1 is heard 7 s late, robot 2 after 3 s: joins are found, taken back with the rewind and found again.
+  std::vector<Message> behind = small.messages;
+  const auto heard_ns = [](const Message& m) {
+    return m.t_ns + (m.robot == 1 ? 7'300'000'000LL : m.robot == 2 ? 3'100'000'000LL : 0);
+  };
+  std::stable_sort(behind.begin(), behind.end(),
+                   [&](const Message& a, const Message& b) { return heard_ns(a) < heard_ns(b); });
+  Team team(unknown_starts(small));
+  for (const Message& message : behind) testing::give(team, message);
+  ASSERT_EQ(in_time.joins().size(), 2u);
+  ASSERT_EQ(team.joins().size(), 2u);
+  for (std::size_t j = 0; j < 2; ++j) {
+    EXPECT_EQ(team.joins()[j].t_ns, in_time.joins()[j].t_ns);
+    EXPECT_EQ(team.joins()[j].cost, in_time.joins()[j].cost);
+  }
+  for (int r = 0; r < 3; ++r) {
+    EXPECT_EQ(team.pose(r).mean.vector(), in_time.pose(r).mean.vector());
+    EXPECT_EQ(team.pose(r).covariance, in_time.pose(r).covariance);
+  }
+}
+
 TEST(Team, AFalseSightingIsGatedOut) {
   SmallTeam small = small_team();
   Team team = testing::run(small, known_starts(small));

@@ -57,7 +57,7 @@ void add_filter(CLI::App& command, Settings& settings) {
 void add_association(CLI::App& command, Settings& settings) {
   std::vector<std::string> names{"known"};
   for (const association::Method method : association_methods()) names.emplace_back(association::name(method));
-  if (command.get_name() == "replay") names.emplace_back("unknown");
+  if (command.get_name() == "replay" || command.get_name() == "simulate") names.emplace_back("unknown");
   command
       .add_option_function<std::string>(
           "--association.method,--association", [&settings](const std::string& word) { choose_method(word, settings); },

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -16,6 +17,7 @@
 #include "common/settings.hpp"
 #include "common/validators.hpp"
 #include "helixnav/sim/scenario.hpp"
+#include "team_campaign.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -28,8 +30,29 @@ struct MonteCarloJob {
   Settings settings;
 };
 
+/// The worlds of several robots; they have no settings.
+ExitCode run_team(const GivenOptions& given, const MonteCarloJob& job) {
+  if (!given.empty()) throw CLI::ValidationError("--" + key_of(**given.begin()), "has no part in montecarlo team");
+  if (!job.config.empty()) throw CLI::ValidationError("--config", "has no part in montecarlo team");
+  TeamCampaign team;
+  team.runs = job.campaign.runs;
+  team.first_seed = job.campaign.first_seed;
+  team.jobs = job.campaign.jobs;
+  team.out = job.campaign.out;
+  team.overwrite = job.campaign.overwrite;
+  team.quiet = job.campaign.quiet;
+  return run_team_campaign(team);
+}
+
+std::vector<std::string> names_of_campaigns() {
+  std::vector<std::string> names = sim::scenario_names();
+  names.emplace_back("team");
+  return names;
+}
+
 ExitCode run(CLI::App& command, MonteCarloJob& job) {
   const GivenOptions given = options_given(command);
+  if (job.scenario == "team") return run_team(given, job);
   if (!job.config.empty()) apply_config_file(command, job.config);
   require_compressed_ekf(command, given, job.settings.fastslam,
                          "campaigns are of the compressed EKF; simulate takes it");
@@ -44,7 +67,11 @@ ExitCode run(CLI::App& command, MonteCarloJob& job) {
 }
 
 void add_options(CLI::App& command, MonteCarloJob& job) {
-  command.add_option("SCENARIO", job.scenario, "As for simulate")->required()->check(one_of(sim::scenario_names()));
+  command
+      .add_option("SCENARIO", job.scenario,
+                  "As for simulate; team: robots of unknown start without names (docs/team.md)")
+      ->required()
+      ->check(one_of(names_of_campaigns()));
   command.add_option("--runs", job.campaign.runs, "How many seeds")
       ->capture_default_str()
       ->check(number_between(std::uint64_t{1}, std::uint64_t{10'000'000}));

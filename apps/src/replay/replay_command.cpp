@@ -72,27 +72,12 @@ void refuse_contradictions(const ReplayJob& job) {
   if (job.smooth) throw CLI::ValidationError("--smooth", "needs the associations of one map; fastslam has many");
 }
 
-/// Options that a log of several robots does not have, and those that only it has.
+/// Options that a log of several robots does not have.
 void refuse_for_team(const CLI::App& command, const ReplayJob& job, const GivenOptions& given) {
   for (const char* name : {"--smooth", "--map", "--localize", "--blackout", "--vehicle", "--start"}) {
-    if (command.get_option(name)->count() > 0) throw CLI::ValidationError(name, "is not for a log of several robots");
+    if (command.get_option(name)->count() > 0) throw CLI::ValidationError(name, "is not for several robots");
   }
-  for (const CLI::Option* option : given) {
-    const std::string key = key_of(*option);
-    const bool association =
-        key == "association.method" && (job.settings.known_association || job.settings.unknown_association);
-    if (association || key.rfind("mrclam.", 0) == 0) continue;
-    throw CLI::ValidationError("--" + key, "is not for a log of several robots (--association known or unknown is)");
-  }
-}
-
-void refuse_without_team(const CLI::App& command, const ReplayJob& job) {
-  for (const char* name : {"--robots", "--unknown-starts"}) {
-    if (command.get_option(name)->count() > 0) throw CLI::ValidationError(name, "is for a log of several robots");
-  }
-  if (job.settings.unknown_association) {
-    throw CLI::ValidationError("--association unknown", "is for a log of several robots");
-  }
+  refuse_settings_of_one_robot(given, job.settings);
 }
 
 ExitCode replay(CLI::App& command, ReplayJob& job) {
@@ -102,7 +87,7 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
     refuse_for_team(command, job, given);
     return replay_team(job.path, job.team, job.run, job.settings, dump_config(command));
   }
-  refuse_without_team(command, job);
+  refuse_options_of_a_team(command, {"--robots", "--unknown-starts"}, job.settings);
   check_filter(command, given, job.settings.fastslam);
   refuse_contradictions(job);
   const auto begin = std::chrono::steady_clock::now();

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -20,6 +21,7 @@
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/sim/part_of.hpp"
 #include "helixnav/sim/simulate.hpp"
+#include "team/replay_team.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -33,9 +35,19 @@ struct SimulateJob {
   std::string map;
   std::optional<SessionStart> start;
   RunOptions run;
+  int robots = 2;
+  bool unknown_starts = false;
   ScenarioSettings scenario_settings;
   Settings settings;
 };
+
+constexpr const char* team_scenario = "team";
+
+std::vector<std::string> names_of_scenarios() {
+  std::vector<std::string> names = sim::scenario_names();
+  names.emplace_back(team_scenario);
+  return names;
+}
 
 std::string scenario_list() {
   std::string list = "Scenarios:\n";
@@ -43,7 +55,8 @@ std::string scenario_list() {
     list += "  " + name + std::string(name.size() < 22 ? 22 - name.size() : 1, ' ') +
             sim::named_scenario(name).description + '\n';
   }
-  return list;
+  return list +
+         "  team                  robots side by side that see each other and ten landmarks of each neighbour's\n";
 }
 
 /// Another day is another drive through the same world: other noise, other detections.
@@ -70,9 +83,19 @@ void add_sessions(CLI::App& command, SimulateJob& job) {
   add_start_option(command, job.start)->needs(map);
 }
 
+ExitCode simulate_robots(const CLI::App& command, const SimulateJob& job, const GivenOptions& given) {
+  for (const char* name : {"--day", "--from", "--until", "--map", "--start"}) {
+    if (command.get_option(name)->count() > 0) throw CLI::ValidationError(name, "is not for several robots");
+  }
+  refuse_settings_of_one_robot(given, job.settings);
+  return simulate_team(job.robots, job.seed, job.unknown_starts, job.run, job.settings, dump_config(command));
+}
+
 ExitCode simulate(CLI::App& command, SimulateJob& job) {
   const GivenOptions given = options_given(command);
   prepare_run(command, job.run);
+  if (job.scenario == team_scenario) return simulate_robots(command, job, given);
+  refuse_options_of_a_team(command, {"--robots", "--unknown-starts"}, job.settings);
   check_filter(command, given, job.settings.fastslam);
   if (job.settings.fastslam.chosen && !job.map.empty())
     throw CLI::ValidationError("--map", "--filter fastslam begins a map of its own");
@@ -96,11 +119,13 @@ void add_simulate_command(CLI::App& app, ExitCode& code) {
   const auto job = std::make_shared<SimulateJob>();
   command->add_option("SCENARIO", job->scenario, "One of the scenarios below")
       ->capture_default_str()
-      ->check(one_of(sim::scenario_names()));
+      ->check(one_of(names_of_scenarios()));
   command->add_option("--seed", job->seed, "Seed of every random stream")
       ->capture_default_str()
       ->check(number_between(std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max()));
   add_sessions(*command, *job);
+  command->add_option("--robots", job->robots, "Of team: how many")->check(number_between(2, 9))->type_name("N");
+  command->add_flag("--unknown-starts", job->unknown_starts, "Of team: where the robots start is not told");
   add_run_options(*command, job->run);
   add_scenario_settings(*command, job->scenario_settings);
   add_settings(*command, job->settings);
@@ -108,6 +133,7 @@ void add_simulate_command(CLI::App& app, ExitCode& code) {
                   "\nExamples:\n  helixnav simulate large-loop --seed 1 --out runs/loop\n"
                   "  helixnav simulate town --seed 1 --until 700 --out runs/monday\n"
                   "  helixnav simulate town --seed 1 --day 2 --from 300 --map runs/monday --out runs/tuesday\n"
+                  "  helixnav simulate team --robots 4 --unknown-starts --out runs/four\n"
                   "  helixnav simulate circuit --filter fastslam --out runs/particles\n");
   command->callback([command, job, &code] { code = simulate(*command, *job); });
 }

@@ -2,15 +2,63 @@
 #include "team/replay_team.hpp"
 
 #include <cstdio>
+#include <utility>
 
+#include <CLI/CLI.hpp>
+
+#include "common/config_file.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
 #include "helixnav/logs/mrclam.hpp"
+#include "helixnav/sim/team_world.hpp"
 #include "team/team_drive.hpp"
 #include "team/team_evaluation.hpp"
 #include "team/team_folder.hpp"
 
 namespace helixnav::apps {
+namespace {
+
+void choose(bool unknown_starts, const RunOptions& run, const Settings& settings, TeamTask& task) {
+  task.unknown_starts = unknown_starts;
+  task.known_association = !settings.unknown_association;
+  task.quiet = run.quiet;
+  task.options.join.by_names = task.known_association;
+  task.options.join.by_constellation = !task.known_association;
+}
+
+ExitCode navigate(const TeamTask& task, runs::RunManifest manifest, const RunOptions& run, const std::string& config) {
+  manifest.version = core::version();
+  manifest.commit = core::commit();
+  manifest.command = command_line_text();
+  manifest.config = config;
+  const TeamDrive drive = drive_team(task);
+  const TeamEvaluation evaluation = evaluate_team(task, drive);
+  write_team(run.out, run.overwrite, manifest, task, drive, evaluation);
+  std::fputs(team_text(task, drive, evaluation).c_str(), stdout);
+  std::printf("navigated in %.1f s; run folder: %s   report: %s/report.html\n", drive.seconds, run.out.c_str(),
+              run.out.c_str());
+  return ExitCode::ok;
+}
+
+}  // namespace
+
+void refuse_settings_of_one_robot(const GivenOptions& given, const Settings& settings) {
+  for (const CLI::Option* option : given) {
+    const std::string key = key_of(*option);
+    const bool association =
+        key == "association.method" && (settings.known_association || settings.unknown_association);
+    if (association || key.rfind("mrclam.", 0) == 0) continue;
+    throw CLI::ValidationError("--" + key, "is not for several robots (--association known or unknown is)");
+  }
+}
+
+void refuse_options_of_a_team(const CLI::App& command, const std::vector<std::string>& options,
+                              const Settings& settings) {
+  for (const std::string& name : options) {
+    if (command.get_option(name)->count() > 0) throw CLI::ValidationError(name, "is for several robots");
+  }
+  if (settings.unknown_association) throw CLI::ValidationError("--association unknown", "is for several robots");
+}
 
 ExitCode replay_team(const std::string& path, const TeamChoice& choice, const RunOptions& run, const Settings& settings,
                      const std::string& config) {
@@ -19,26 +67,25 @@ ExitCode replay_team(const std::string& path, const TeamChoice& choice, const Ru
   if (!choice.unknown_starts && !task.recording.starts_known) {
     throw core::InputError(path + ": not all robots have a true pose at their first command: give --unknown-starts");
   }
-  task.unknown_starts = choice.unknown_starts;
-  task.known_association = !settings.unknown_association;
-  task.quiet = run.quiet;
-  task.options.join.by_names = task.known_association;
-  task.options.join.by_constellation = !task.known_association;
+  choose(choice.unknown_starts, run, settings, task);
   for (const std::string& remark : task.recording.remarks) std::fprintf(stderr, "helixnav: %s\n", remark.c_str());
   if (task.recording.misread > 0) std::printf("%d misread barcodes left out\n", task.recording.misread);
   runs::RunManifest manifest;
-  manifest.version = core::version();
-  manifest.commit = core::commit();
-  manifest.command = command_line_text();
-  manifest.config = config;
   manifest.inputs = input_files(path);
-  const TeamDrive drive = drive_team(task);
-  const TeamEvaluation evaluation = evaluate_team(task, drive);
-  write_team(run.out, run.overwrite, manifest, task, drive, evaluation);
-  std::fputs(team_text(task, drive, evaluation).c_str(), stdout);
-  std::printf("navigated in %.1f s; run folder: %s   report: %s/report.html\n", drive.seconds, run.out.c_str(),
-              run.out.c_str());
-  return ExitCode::ok;
+  return navigate(task, std::move(manifest), run, config);
+}
+
+ExitCode simulate_team(int robots, std::uint64_t seed, bool unknown_starts, const RunOptions& run,
+                       const Settings& settings, const std::string& config) {
+  sim::TeamWorldOptions world;
+  world.robots = robots;
+  world.see_each_other = true;
+  TeamTask task;
+  task.recording = sim::simulate_team(world, seed);
+  choose(unknown_starts, run, settings, task);
+  runs::RunManifest manifest;
+  manifest.seed = seed;
+  return navigate(task, std::move(manifest), run, config);
 }
 
 }  // namespace helixnav::apps

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -8,16 +9,31 @@
 #include "common/run_options.hpp"
 #include "common/settings.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace helixnav::apps {
 
-/// Options of replay that only a log of several robots has.
+/// Options of a command that only several robots have.
 struct TeamChoice {
-  std::vector<int> robots;  ///< by number; empty: all
+  std::vector<int> robots;  ///< of a log, by number; empty: all
   bool unknown_starts = false;
 };
+
+/// Of the options and settings given, refuses those that several robots do not have.
+void refuse_settings_of_one_robot(const GivenOptions& given, const Settings& settings);
+
+/// Of `options` of the command and of the settings, refuses those that only several robots have.
+void refuse_options_of_a_team(const CLI::App& command, const std::vector<std::string>& options,
+                              const Settings& settings);
 
 /// Navigates all robots of a log in one map and writes the run folder of the team.
 ExitCode replay_team(const std::string& path, const TeamChoice& choice, const RunOptions& run, const Settings& settings,
                      const std::string& config);
+
+/// The same for robots that are simulated, each of which sees the others (sim::simulate_team).
+ExitCode simulate_team(int robots, std::uint64_t seed, bool unknown_starts, const RunOptions& run,
+                       const Settings& settings, const std::string& config);
 
 }  // namespace helixnav::apps

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -52,6 +53,18 @@ team::Team make_team(const TeamTask& task) {
   return team::Team(starts, task.options);
 }
 
+/// When the robot came into the frame that its component has at the end.
+core::Nanoseconds in_last_frame_since(const team::Team& team, const std::vector<int>& first_component, int robot) {
+  std::vector<int> component = first_component;
+  core::Nanoseconds since_ns = std::numeric_limits<core::Nanoseconds>::min();
+  for (const team::TeamJoin& join : team.joins()) {
+    const int from = component[static_cast<std::size_t>(join.other)];
+    if (component[static_cast<std::size_t>(robot)] == from) since_ns = join.t_ns;
+    std::replace(component.begin(), component.end(), from, component[static_cast<std::size_t>(join.robot)]);
+  }
+  return since_ns;
+}
+
 /// T_end_then: brings what a robot told at t_ns into the frame that its component has at the end.
 core::Pose2 frame_since(const team::Team& team, const std::vector<int>& first_component, int robot,
                         core::Nanoseconds t_ns) {
@@ -61,7 +74,7 @@ core::Pose2 frame_since(const team::Team& team, const std::vector<int>& first_co
     const auto r = static_cast<std::size_t>(robot);
     const int from = component[static_cast<std::size_t>(join.other)];
     const int into = component[static_cast<std::size_t>(join.robot)];
-    if (component[r] == from && join.t_ns > t_ns) T = core::compose(join.T_component_other.mean, T);
+    if (component[r] == from && join.t_ns > t_ns) T = core::compose(join.T_component_other, T);
     std::replace(component.begin(), component.end(), from, into);
   }
   return T;
@@ -78,6 +91,7 @@ void bring_into_last_frames(const std::vector<int>& first_component, TeamDrive& 
       step.pose.covariance = 0.5 * (turned + turned.transpose());
     }
     drive.robots[r].component = drive.team.component(static_cast<int>(r));
+    drive.robots[r].in_frame_since_ns = in_last_frame_since(drive.team, first_component, static_cast<int>(r));
   }
 }
 
@@ -109,6 +123,7 @@ TeamDrive drive_team(const TeamTask& task) {
     std::vector<std::int64_t> names;
     if (!task.known_association) names = own[r].take(event);
     if (task.known_association && fed.kind == Fed::scan) names = member.recording.labels[fed.step];
+    if (fed.kind == Fed::scan) drive.robots[r].names.push_back(names);
     std::optional<core::StepReport> report = drive.team.take(fed.robot, event, names);
     progress.advance_to(k);
     if (!report) continue;

@@ -19,9 +19,10 @@ std::optional<core::Pose2> true_pose_at(const std::vector<core::TruePose>& truth
   constexpr core::Nanoseconds most_ns = 500'000'000;
   const auto after = std::upper_bound(truth.begin(), truth.end(), t_ns,
                                       [](core::Nanoseconds t, const core::TruePose& pose) { return t < pose.t_ns; });
-  if (after == truth.begin() || after == truth.end()) return std::nullopt;
+  if (after == truth.begin()) return std::nullopt;
   const core::TruePose& before = *std::prev(after);
-  if (after->t_ns - before.t_ns > most_ns) return std::nullopt;
+  if (before.t_ns == t_ns) return before.T_world_robot;
+  if (after == truth.end() || after->t_ns - before.t_ns > most_ns) return std::nullopt;
   const double share = core::seconds(t_ns - before.t_ns) / core::seconds(after->t_ns - before.t_ns);
   const Eigen::Vector3d way = core::between(before.T_world_robot, after->T_world_robot).vector();
   return core::compose(before.T_world_robot, core::Pose2(Eigen::Vector3d(share * way)));
@@ -49,6 +50,7 @@ std::optional<RobotErrors> errors_of(const TeamTask& task, const TeamDrive::Robo
   if (!T_component_truth || recording.true_poses.empty()) return std::nullopt;
   std::vector<Eigen::Vector2d> truth_m, at_m;
   std::vector<double> raw;
+  int in_frame = 0;
   RobotErrors errors;
   for (std::size_t k = 0; k < robot.steps.size(); ++k) {
     const std::optional<core::Pose2> truth = true_pose_at(recording.true_poses, robot.steps[k].t_ns);
@@ -58,13 +60,15 @@ std::optional<RobotErrors> errors_of(const TeamTask& task, const TeamDrive::Robo
     truth_m.push_back(T.position_m());
     at_m.push_back(pose.mean.position_m());
     raw.push_back((at_m.back() - truth_m.back()).norm());
+    if (robot.steps[k].t_ns < robot.in_frame_since_ns) continue;
+    ++in_frame;
     Eigen::Vector3d e = pose.mean.vector() - T.vector();
     e[2] = core::wrap_to_pi(e[2]);
     constexpr double floor = 1e-8;  // m², rad²
     errors.nees_mean += e.dot((pose.covariance + floor * Eigen::Matrix3d::Identity()).ldlt().solve(e));
   }
   if (raw.empty()) return std::nullopt;
-  errors.nees_mean /= static_cast<double>(raw.size());
+  errors.nees_mean /= std::max(1, in_frame);
   errors.raw_m = evaluation::error_statistics(raw);
   errors.aligned_m = evaluation::error_statistics(aligned_errors(truth_m, at_m));
   return errors;

@@ -14,7 +14,7 @@ namespace helixnav::apps {
 struct RobotErrors {
   evaluation::ErrorStatistics raw_m;
   evaluation::ErrorStatistics aligned_m;
-  double nees_mean = 0.0;  ///< of (x, y, heading); 3 when consistent
+  double nees_mean = 0.0;  ///< of (x, y, heading), since the robot is in that frame; 3 when consistent
 };
 
 /// Landmarks of one component by their labels.

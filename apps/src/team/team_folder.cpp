@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "team/team_folder.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <initializer_list>
 #include <set>
@@ -30,7 +31,7 @@ int number_of(const TeamTask& task, int robot) { return task.recording.robots[st
 std::string joins_table(const TeamTask& task, const TeamDrive& drive) {
   std::string text = "t_s,by,robot,other,x,y,heading,merged,sightings,cost,dof,limit\n";
   for (const team::TeamJoin& join : drive.team.joins()) {
-    const core::Pose2& T = join.T_component_other.mean;
+    const core::Pose2& T = join.T_component_other;
     files::append_seconds(text, join.t_ns);
     text += std::string(",") + team::name_of(join.by) + ',' + std::to_string(number_of(task, join.robot)) + ',' +
             std::to_string(number_of(task, join.other));
@@ -73,6 +74,14 @@ std::string map_table(const TeamTask& task, const TeamDrive& drive) {
   return text;
 }
 
+/// Whether the robot has a frame to itself at the end, in a team.
+bool is_alone(const TeamDrive& drive, std::size_t r) {
+  const auto mates = std::count_if(drive.robots.begin(), drive.robots.end(), [&](const TeamDrive::Robot& robot) {
+    return robot.component == drive.robots[r].component;
+  });
+  return drive.robots.size() > 1 && mates == 1;
+}
+
 Json json_of(const evaluation::ErrorStatistics& errors) {
   return {{"count", errors.count},
           {"rmse", errors.rmse},
@@ -92,6 +101,7 @@ std::string summary(const TeamTask& task, const TeamDrive& drive, const TeamEval
   for (std::size_t r = 0; r < drive.robots.size(); ++r) {
     Json robot{{"robot", task.recording.robots[r].number},
                {"component", number_of(task, drive.robots[r].component)},
+               {"alone", is_alone(drive, r)},
                {"scans", drive.robots[r].steps.size()}};
     if (evaluation.robots[r]) {
       robot["position_error_m"] = json_of(evaluation.robots[r]->raw_m);
@@ -163,9 +173,10 @@ std::string team_text(const TeamTask& task, const TeamDrive& drive, const TeamEv
   int with_truth = 0;
   for (std::size_t r = 0; r < drive.robots.size(); ++r) {
     const TeamDrive::Robot& robot = drive.robots[r];
-    std::snprintf(line, sizeof line, "robot %d: %zu scans, in the frame of %s %d", task.recording.robots[r].number,
-                  robot.steps.size(), "robot", number_of(task, robot.component));
+    std::snprintf(line, sizeof line, "robot %d: %zu scans, in the frame of robot %d", task.recording.robots[r].number,
+                  robot.steps.size(), number_of(task, robot.component));
     text += line;
+    if (is_alone(drive, r)) text += ", which it has to itself: nothing joined it to another";
     if (evaluation.robots[r]) {
       const RobotErrors& errors = *evaluation.robots[r];
       std::snprintf(line, sizeof line, "; position RMSE %.3f m, aligned %.3f m, NEES %.1f (3)", errors.raw_m.rmse,

@@ -201,7 +201,8 @@ bool is_mrclam(const fs::path& path) {
     return std::any_of(names.begin(), names.end(), is_commands);
   }
   const bool own = fs::exists(path / "vehicle.toml") || fs::exists(path / "detections.csv");
-  if (!own && fs::exists(path / "measurements.csv") && !plain_or_packed(path, "odometry.csv").empty()) return true;
+  const auto has = [&](const char* name) { return !plain_or_packed(path, name).empty(); };
+  if (!own && (has("measurements.csv") || (has("odometry.csv") && has("landmarks_true.csv")))) return true;
   for (const auto& entry : fs::directory_iterator(path)) {
     if (is_commands(entry.path().filename().string())) return true;
   }

@@ -66,7 +66,7 @@ void read_commands(const fs::path& path, MrclamTables& tables) {
       cursor.fail("robot " + std::to_string(number) + " is here a second time: expected all its commands in one place");
     }
     last = number;
-    robot.file = path.string();
+    if (robot.commands.empty()) robot.file = path.string() + ':' + std::to_string(cursor.line());
     robot.commands.push_back(read_command(cursor));
   });
   if (tables.robots.empty()) throw core::InputError(path.string() + ": expected commands of robots, found none");

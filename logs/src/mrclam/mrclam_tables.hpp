@@ -30,8 +30,9 @@ struct MrclamTables {
     std::vector<Command> commands;    ///< in time order
     std::vector<Sighting> sightings;  ///< in time order
     std::vector<core::TruePose> truth;
-    std::string file;  ///< that its commands stand in, for messages
-    int swapped = 0;   ///< commands that stood after a later one
+    std::string
+        file;         ///< that its commands stand in, with the line of the first in a table of all robots; for messages
+    int swapped = 0;  ///< commands that stood after a later one
   };
   std::map<int, Robot> robots;
   std::vector<core::TrueLandmark> landmarks;

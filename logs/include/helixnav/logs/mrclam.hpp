@@ -18,8 +18,8 @@ struct MrclamSettings {
   double standing = 0.01;                   ///< of these, while commanded to stand
 };
 
-/// True for a folder of MRCLAM tables (measurements.csv and odometry.csv[.gz]), for one of the original files
-/// (Robot1_Odometry.dat …), and for an archive of these.
+/// True for a folder of MRCLAM tables (measurements.csv, or odometry.csv and landmarks_true.csv; .gz or not: that the rest is
+/// missing is for the reader to say), for one of the original files (Robot1_Odometry.dat …), and for an archive of these.
 bool is_mrclam(const std::filesystem::path& path);
 
 /// Reads the robots chosen by number (empty: all) from the UTIAS Multi-Robot Cooperative Localization and Mapping data set:

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/se2.hpp"
 #include "helixnav/core/time.hpp"
 
 namespace helixnav::team {
@@ -13,12 +13,12 @@ struct TeamJoin {
   enum class By { names, sightings, constellation };
   By by = By::names;
   core::Nanoseconds t_ns = 0;
-  int robot = 0;                         ///< of the component that kept its frame: the first of its robots
-  int other = 0;                         ///< of the component that came into it
-  core::PoseGaussian T_component_other;  ///< frame of the one that came, as first seen
-  int merged = 0;                        ///< landmarks that were two
-  int sightings = 0;                     ///< of robots by one another that it rests on
-  double cost = 0.0;                     ///< by how much the joint least squares exceeds both apart: χ² with dof
+  int robot = 0;                  ///< of the component that kept its frame: the first of its robots
+  int other = 0;                  ///< of the component that came into it
+  core::Pose2 T_component_other;  ///< frame of the one that came, by the joint solution then
+  int merged = 0;                 ///< landmarks that were two
+  int sightings = 0;              ///< of robots by one another that it rests on
+  double cost = 0.0;              ///< by how much the joint least squares exceeds both apart: χ² with dof
   int dof = 0;
   double limit = 0.0;
 };

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/exit_code.hpp"
+
+namespace helixnav::apps {
+
+/// Worlds of robots whose starts are unknown and who have no names in common: how often their maps are joined, and how
+/// often falsely. Each seed drives one world of each kind.
+struct TeamCampaign {
+  std::uint64_t runs = 100;
+  std::uint64_t first_seed = 1;
+  unsigned jobs = 1;
+  std::string out;
+  bool overwrite = false;
+  bool quiet = false;
+};
+
+/// Writes runs.csv, a row a world as they end, and summary.json with Clopper and Pearson's 95 % intervals; prints the summary.
+ExitCode run_team_campaign(const TeamCampaign& campaign);
+
+}  // namespace helixnav::apps

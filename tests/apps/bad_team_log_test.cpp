@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+/// Two robots that stand 4 m apart, see each other three times each, and landmarks 6 and 7.
+std::string odometry_table() { return "# robot,t,v,w\n1,0.0,0.0,0.0\n1,4.0,0.0,0.0\n2,0.0,0.0,0.0\n2,4.0,0.0,0.0\n"; }
+
+std::string measurements_table(bool see_each_other = true) {
+  std::string text = "# robot,t,barcode,subject,range,bearing\n";
+  for (const char* t : {"1.0", "2.0", "3.0"}) {
+    text += std::string("1,") + t + ",63,6,2.0,0.1\n";
+    if (see_each_other) text += std::string("1,") + t + ",14,2,4.0,0.0\n";
+    text += std::string("2,") + t + ",25,7,1.5,0.3\n";
+    if (see_each_other) text += std::string("2,") + t + ",5,1,4.0,3.0\n";
+  }
+  return text;
+}
+
+class TeamLog : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    write("odometry.csv", odometry_table());
+    write("measurements.csv", measurements_table());
+    write("landmarks_true.csv", "# s,x,y,sx,sy\n6,1.0,2.0,1e-4,1e-4\n7,3.0,2.0,1e-4,1e-4\n");
+  }
+  void write(const std::string& name, const std::string& text) { folder_.write("log/" + name, text); }
+
+  Outcome replay(const Words& options = {}) const {
+    Words words{"replay", (folder_.path() / "log").string(), "--unknown-starts", "--quiet", "--out", out().string()};
+    words.insert(words.end(), options.begin(), options.end());
+    return run(words);
+  }
+  fs::path out() const { return folder_.path() / "out"; }
+
+  void is_refused_with(const std::string& message, const Words& options = {}) const {
+    const Outcome outcome = replay(options);
+    EXPECT_EQ(outcome.exit_code, 3) << message;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << "expected " << message << "\nfound " << outcome.err;
+    EXPECT_FALSE(fs::exists(out())) << message;
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+TEST_F(TeamLog, IsNavigatedWhereNothingIsWrong) {
+  const Outcome outcome = replay();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(names_in(out()), (std::set<std::string>{"joins.csv", "map.csv", "report.html", "robot_1", "robot_2",
+                                                    "sightings.csv", "summary.json"}));
+  EXPECT_EQ(outcome.out.find("to itself"), std::string::npos) << outcome.out;
+}
+
+TEST_F(TeamLog, WithATableMissingIsRefused) {
+  for (const std::string name : {"measurements.csv", "odometry.csv"}) {
+    const std::string text = text_of(folder_.path() / "log" / name);
+    fs::remove(folder_.path() / "log" / name);
+    is_refused_with(name + ": expected this file");
+    write(name, text);
+  }
+}
+
+TEST_F(TeamLog, OfClocksApartIsRefused) {
+  write("measurements.csv", "1,100.5,63,6,2.0,0.1\n2,3.0,63,6,2.0,0.0\n");
+  is_refused_with(
+      "odometry.csv:2: the commands of robot 1 last from 0.000000 to 4.000000 s, and its sightings from 100.5");
+}
+
+TEST_F(TeamLog, WithASubjectOfNobodyIsRefused) {
+  write("measurements.csv", measurements_table() + "2,3.5,77,21,1.0,0.0\n");
+  is_refused_with("measurements.csv:14: subject 21 is neither");
+}
+
+TEST_F(TeamLog, WithARobotThatSeesNothingIsRefused) {
+  write("measurements.csv", "1,0.5,63,6,2.0,0.1\n");
+  is_refused_with("odometry.csv:4: robot 2 has no sightings");
+}
+
+TEST_F(TeamLog, WithARobotTwiceIsRefused) {
+  write("odometry.csv", odometry_table() + "1,5.0,0.0,0.0\n");
+  is_refused_with("odometry.csv:6: robot 1 is here a second time");
+}
+
+TEST_F(TeamLog, IsRefusedToWhoAsksForRobotsTwiceOrForOneThatIsNotThere) {
+  is_refused_with("twice", {"--robots", "1,1"});
+  is_refused_with("no robot 4", {"--robots", "4"});
+}
+
+TEST_F(TeamLog, WithoutTrueStartsAsksForUnknownOnes) {
+  const Outcome outcome = run({"replay", (folder_.path() / "log").string(), "--quiet", "--out", out().string()});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.err.find("--unknown-starts"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(out()));
+}
+
+TEST_F(TeamLog, OfRobotsThatNothingTiesLeavesEachItsFrameAndSaysSo) {
+  write("measurements.csv", measurements_table(false));
+  const Outcome outcome = replay();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("in the frame of robot 2, which it has to itself"), std::string::npos) << outcome.out;
+  const auto summary = nlohmann::json::parse(text_of(out() / "summary.json"));
+  EXPECT_EQ(summary["joins"], 0);
+  for (const auto& robot : summary["robots"]) {
+    EXPECT_EQ(robot["component"], robot["robot"]);
+    EXPECT_EQ(robot["alone"], true);
+  }
+  EXPECT_NE(text_of(out() / "report.html").find("to itself"), std::string::npos);
+  EXPECT_EQ(complete_lines(out() / "joins.csv"), 1u);
+}
+
+}  // namespace
+}  // namespace helixnav::apps

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+#include "real_data.hpp"
+#include "sanitized.hpp"
+#include "small_logs.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using Words = std::vector<std::string>;
+
+class TeamReplay : public testing::RealDataTest {
+ protected:
+  void SetUp() override { find_real_data("mrclam/dataset6"); }
+  Outcome replay(const Words& options, const std::string& name = "team") const {
+    Words words{"replay", path_.string(), "--quiet", "--out", (folder_.path() / name).string()};
+    words.insert(words.end(), options.begin(), options.end());
+    return run(words);
+  }
+  json summary() const { return json::parse(text_of(folder_.path() / "team" / "summary.json")); }
+
+  testing::TemporaryFolder folder_;
+};
+
+TEST_F(TeamReplay, KeepsFiveRobotsWithin15CentimetresOfTheirTruth) {
+  if (support::sanitized) GTEST_SKIP() << "a whole drive: a minute and more under the sanitizers";
+  const Outcome outcome = replay({});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json figures = summary();
+  double sum_m = 0.0;
+  for (const json& robot : figures["robots"]) {
+    const double rmse_m = robot["position_error_m"]["rmse"];
+    EXPECT_LT(rmse_m, 0.20) << robot["robot"];
+    sum_m += rmse_m;
+  }
+  EXPECT_LT(sum_m / 5.0, 0.15);
+  EXPECT_LT(figures["landmarks"][0]["aligned_rmse_m"], 0.09);
+  EXPECT_EQ(figures["misread"], 6);
+  EXPECT_EQ(names_in(folder_.path() / "team"),
+            (std::set<std::string>{"joins.csv", "map.csv", "report.html", "robot_1", "robot_2", "robot_3", "robot_4",
+                                   "robot_5", "sightings.csv", "summary.json"}));
+  const Outcome robot = run({"evaluate", (folder_.path() / "team" / "robot_3").string()});
+  EXPECT_EQ(robot.exit_code, 0) << robot.err;
+}
+
+TEST_F(TeamReplay, FindsOneFrameFromUnknownStarts) {
+  const Outcome outcome = replay({"--robots", "1,3", "--unknown-starts"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json figures = summary();
+  EXPECT_EQ(figures["joins"], 1);
+  EXPECT_EQ(figures["robots"][0]["component"], 1);
+  EXPECT_EQ(figures["robots"][1]["component"], 1);
+  EXPECT_EQ(complete_lines(folder_.path() / "team" / "joins.csv"), 2u);
+}
+
+TEST_F(TeamReplay, RefusesOptionsOfOneRobotBeforeAnythingIsWritten) {
+  for (const Words& options : {Words{"--smooth"}, Words{"--association", "jcbb"}, Words{"--filter", "fastslam"},
+                               Words{"--landmarks.mature_looks", "3"}}) {
+    const Outcome outcome = replay(options);
+    EXPECT_EQ(outcome.exit_code, 2) << options.front() << outcome.err;
+    EXPECT_NE(outcome.err.find("several robots"), std::string::npos) << outcome.err;
+    EXPECT_FALSE(fs::exists(folder_.path() / "team"));
+  }
+  for (const Words& options : {Words{"--robots", "1,1"}, Words{"--robots", "9"}}) {
+    const Outcome outcome = replay(options);
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+    EXPECT_FALSE(fs::exists(folder_.path() / "team"));
+  }
+}
+
+TEST(TeamOptions, AreRefusedForALogOfOneRobot) {
+  const testing::TemporaryFolder folder;
+  const fs::path log = folder.write("circle.txt", circle_graph(20));
+  for (const Words& options : {Words{"--robots", "1"}, Words{"--unknown-starts"}, Words{"--association", "unknown"}}) {
+    Words words{"replay", log.string(), "--quiet", "--out", (folder.path() / "out").string()};
+    words.insert(words.end(), options.begin(), options.end());
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_NE(outcome.err.find("several robots"), std::string::npos) << outcome.err;
+    EXPECT_FALSE(fs::exists(folder.path() / "out"));
+  }
+}
+
+TEST(TeamSimulation, BringsFourRobotsOfUnknownStartIntoOneFrame) {
+  const testing::TemporaryFolder folder;
+  const fs::path out = folder.path() / "four";
+  const Outcome outcome =
+      run({"simulate", "team", "--robots", "4", "--unknown-starts", "--quiet", "--out", out.string()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json figures = json::parse(text_of(out / "summary.json"));
+  EXPECT_EQ(figures["joins"], 3);
+  ASSERT_EQ(figures["robots"].size(), 4u);
+  for (const json& robot : figures["robots"]) {
+    EXPECT_EQ(robot["component"], 1);
+    EXPECT_EQ(robot["alone"], false);
+  }
+  EXPECT_LT(figures["landmarks"][0]["aligned_rmse_m"], 0.2);
+}
+
+TEST(TeamSimulation, RefusesOptionsOfOneRobotAndOthersThoseOfATeam) {
+  const testing::TemporaryFolder folder;
+  const std::string out = (folder.path() / "out").string();
+  for (const Words& options :
+       {Words{"team", "--day", "3"}, Words{"team", "--filter", "fastslam"}, Words{"team", "--robots", "1"},
+        Words{"large-loop", "--robots", "3"}, Words{"large-loop", "--association", "unknown"}}) {
+    Words words{"simulate", "--quiet", "--out", out};
+    words.insert(words.end(), options.begin(), options.end());
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.exit_code, 2) << options[1] << outcome.err;
+    EXPECT_FALSE(fs::exists(out));
+  }
+}
+
+TEST(TeamCampaign, JoinsWhatIsSharedAndNothingElse) {
+  const testing::TemporaryFolder folder;
+  const std::string out = (folder.path() / "campaign").string();
+  const Outcome outcome = run({"montecarlo", "team", "--runs", "1", "--jobs", "1", "--quiet", "--out", out});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json figures = json::parse(text_of(folder.path() / "campaign" / "summary.json"));
+  for (const char* kind : {"shared", "apart", "chain", "orchard"})
+    EXPECT_EQ(figures[kind]["false"]["count"], 0) << kind;
+  EXPECT_GE(figures["shared"]["joined"]["count"], 1);
+  EXPECT_EQ(complete_lines(folder.path() / "campaign" / "runs.csv"), 5u);
+}
+
+}  // namespace
+}  // namespace helixnav::apps
