@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -84,65 +85,121 @@ core::Odometry jump_from(const core::PoseGaussian& pose, const core::Pose2& T_ma
   return jump;
 }
 
-/// One who is carried away sees no more of what he has mapped. The last such place of the tape before the branch: nothing
-/// that was begun before it was matched after it.
+/// When each landmark of a tape, as it is called now, was seen.
+class Sightings {
+ public:
+  explicit Sightings(const Tape& tape) {
+    const core::MergedIds ids = merged_ids(tape);
+    tape.read_from(0, [&](const Tape::Entry& entry) {
+      driven_m_.push_back(driven_m_.back());
+      if (const auto* motion = std::get_if<Tape::Motion>(&entry)) driven_m_.back() += motion->driven_m;
+      const auto* scan = std::get_if<Tape::Scan>(&entry);
+      if (scan == nullptr) return;
+      for (const cekf::Match& match : used_observations(*scan)) at_[ids.now(match.landmark)].push_back(end());
+    });
+  }
+
+  const std::map<core::LandmarkId, std::vector<Tape::Position>>& at() const { return at_; }
+  Tape::Position end() const { return driven_m_.size() - 1; }
+  double driven_m(Tape::Position from, Tape::Position until) const { return driven_m_[until] - driven_m_[from]; }
+
+  /// Of any of the branch's landmarks that are paired.
+  Tape::Position first_of(const std::vector<pf_relocalize::ConstellationPair>& pairs) const {
+    Tape::Position first = end();
+    for (const pf_relocalize::ConstellationPair& pair : pairs) {
+      const auto found = at_.find(pair.branch);
+      if (found != at_.end()) first = std::min(first, found->second.front());
+    }
+    return first;
+  }
+
+  /// [position] how often a landmark begun until there was seen after it.
+  std::vector<int> across() const {
+    std::vector<int> count(driven_m_.size(), 0);
+    for (const auto& [id, positions] : at_) {
+      for (std::size_t i = 1; i < positions.size(); ++i) {
+        ++count[positions.front()];
+        --count[positions[i]];
+      }
+    }
+    std::partial_sum(count.begin(), count.end(), count.begin());
+    return count;
+  }
+
+ private:
+  std::map<core::LandmarkId, std::vector<Tape::Position>> at_;
+  std::vector<double> driven_m_{0.0};
+};
+
 struct Cut {
   Tape::Position position = 0;
   core::Odometry odometry_since;         ///< up to now
   std::set<core::LandmarkId> displaced;  ///< begun after it
 };
 
-std::optional<Cut> last_cut(const Tape& tape, const std::vector<pf_relocalize::ConstellationPair>& pairs) {
-  struct Seen {
-    Tape::Position first, last;
-  };
-  std::map<core::LandmarkId, Seen> seen;
-  const core::MergedIds ids = merged_ids(tape);
-  Tape::Position position = 0;
-  tape.read_from(0, [&](const Tape::Entry& entry) {
-    ++position;
-    if (const auto* scan = std::get_if<Tape::Scan>(&entry)) {
-      for (const cekf::Match& match : used_observations(*scan)) {
-        seen.emplace(ids.now(match.landmark), Seen{position, position}).first->second.last = position;
-      }
-    }
-  });
-  Tape::Position at = position;
-  for (const pf_relocalize::ConstellationPair& pair : pairs) {
-    const auto found = seen.find(pair.branch);
-    if (found != seen.end()) at = std::min(at, found->second.first);
-  }
-  // Whoever was begun before and matched after it moves the cut back to where that one was begun.
+Cut cut_at(Tape::Position position, const Sightings& sightings, const Tape& tape) {
   Cut cut;
-  for (bool moved = true; moved;) {
-    moved = false;
-    for (const auto& [id, one] : seen) {
-      if (one.first >= at || one.last < at) continue;
-      at = one.first;
-      moved = true;
-    }
+  cut.position = position;
+  for (const auto& [id, positions] : sightings.at()) {
+    if (positions.front() > position) cut.displaced.insert(id);
   }
-  for (const auto& [id, one] : seen) {
-    if (one.first < at) cut.position = std::max(cut.position, one.last);
-    if (one.first >= at) cut.displaced.insert(id);
-  }
-  if (cut.position == 0) return std::nullopt;
   cut.odometry_since = core::no_motion(0);
-  position = cut.position;
-  tape.read_from(cut.position, [&](const Tape::Entry& entry) {
+  tape.read_from(position, [&](const Tape::Entry& entry) {
     const auto* motion = std::get_if<Tape::Motion>(&entry);
     if (motion != nullptr) cut.odometry_since = core::chain(cut.odometry_since, motion->odometry);
   });
   return cut;
 }
 
-bool close_after_cut(const Input& in, Reconciled& result) {
-  const std::optional<Cut> cut = last_cut(in.view.record.tape, in.place.pairs);
-  if (!cut) return false;
+/// One who is carried away sees no more of what he has mapped: the last such place before the branch.
+std::optional<Tape::Position> last_place_without_view_across(const Sightings& sightings, Tape::Position branch) {
+  const std::vector<int> across = sightings.across();
+  Tape::Position last_seen = branch;
+  while (last_seen > 0 && across[last_seen - 1] > 0) --last_seen;
+  if (last_seen > 0) --last_seen;
+  // From there back to the scan that saw something last.
+  Tape::Position position = 0;
+  for (const auto& [id, positions] : sightings.at()) {
+    for (const Tape::Position at : positions) position = at <= last_seen ? std::max(position, at) : position;
+  }
+  return position > 0 ? std::optional(position) : std::nullopt;
+}
+
+/// He who stands among trees that fit those he expects matches some of them all the same: of the last `within_m` before the
+/// branch the place with the fewest such matches, where they are few among all matches since.
+std::optional<Tape::Position> place_with_fewest_across(const Sightings& sightings, Tape::Position branch,
+                                                       double within_m) {
+  const std::vector<int> across = sightings.across();
+  Tape::Position best = branch - 1;
+  for (Tape::Position at = branch; at-- > 1 && sightings.driven_m(at, branch) <= within_m;) {
+    if (across[at] < across[best]) best = at;
+  }
+  std::ptrdiff_t since = 0;
+  for (const auto& [id, positions] : sightings.at()) {
+    since += std::count_if(positions.begin(), positions.end(), [&](Tape::Position at) { return at > best; });
+  }
+  constexpr int few = 3;  // at most one in three
+  return few * across[best] <= since ? std::optional(best) : std::nullopt;
+}
+
+bool close_at_cut(const Input& in, const Cut& cut, const Tape& tape, Reconciled& result) {
   core::PoseGaussian there = in.filter.pose();
-  there.mean = core::compose(there.mean, core::inverse(cut->odometry_since.T_before_after));
+  there.mean = core::compose(there.mean, core::inverse(cut.odometry_since.T_before_after));
   const core::Odometry jump = jump_from(there, in.place.T_map_branch);
-  return solve_and_merge(in, in.view.record.tape.with_jump(cut->position, jump), cut->displaced, result);
+  return solve_and_merge(in, tape.with_jump(cut.position, jump), cut.displaced, result);
+}
+
+bool close_after_cut(const Input& in, Reconciled& result) {
+  const Tape& tape = in.view.record.tape;
+  const Sightings sightings(tape);
+  const Tape::Position branch = sightings.first_of(in.place.pairs);
+  if (branch == 0) return false;
+  const auto unseen = last_place_without_view_across(sightings, branch);
+  if (unseen && close_at_cut(in, cut_at(*unseen, sightings, tape), tape, result)) return true;
+  const auto fewest = place_with_fewest_across(sightings, branch, in.options.branch_seen_within_m);
+  if (!fewest || fewest == unseen) return false;
+  const Cut cut = cut_at(*fewest, sightings, tape);
+  return close_at_cut(in, cut, tape.without_matches_since(*fewest, cut.displaced), result);
 }
 
 /// Where the drive as a whole is not known any more.

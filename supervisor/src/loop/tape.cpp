@@ -81,6 +81,21 @@ Tape Tape::with_jump(Position position, const core::Odometry& jump) const {
   return tape;
 }
 
+Tape Tape::without_matches_since(Position position, const std::set<core::LandmarkId>& but_with) const {
+  const core::MergedIds ids = merged_ids(*this);
+  Tape tape = *this;
+  for (std::size_t i = position - std::min(position, forgotten_); i < tape.entries_.size(); ++i) {
+    auto* scan = std::get_if<Scan>(&tape.entries_[i]);
+    if (scan == nullptr) continue;
+    for (core::AssociationReport& association : scan->fate) {
+      const bool is_wrong =
+          association.outcome == core::Outcome::matched && but_with.count(ids.now(association.landmark)) == 0;
+      if (is_wrong) association.outcome = core::Outcome::ambiguous;
+    }
+  }
+  return tape;
+}
+
 std::vector<Tape::Entry> Tape::cut(Position position) {
   const auto from = entries_.begin() + static_cast<std::ptrdiff_t>(position - forgotten_);
   std::vector<Entry> taken(std::make_move_iterator(from), std::make_move_iterator(entries_.end()));

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <variant>
 #include <vector>
 
@@ -71,6 +72,10 @@ class Tape {
 
   /// The tape with a motion that nothing measured at `position`.
   Tape with_jump(Position position, const core::Odometry& jump) const;
+
+  /// The tape without matches after `position` but with these landmarks (ids as they are now); costs stay what they were, which
+  /// is what they are at most.
+  Tape without_matches_since(Position position, const std::set<core::LandmarkId>& but_with) const;
 
   /// Takes off everything from `position` on and returns it.
   std::vector<Entry> cut(Position position);
