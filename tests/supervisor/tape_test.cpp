@@ -68,6 +68,29 @@ struct Driver {
   }
 };
 
+TEST(Tape, LeavesOutMatchesByTheNamesThatLandmarksHaveNow) {
+  const auto matched = [](core::LandmarkId id) {
+    core::AssociationReport association;
+    association.outcome = core::Outcome::matched;
+    association.landmark = id;
+    return association;
+  };
+  Tape tape(100);
+  tape.append(Tape::Scan{{}, {matched(1), matched(2)}, 0.0, 0, {}});
+  tape.append(Tape::Scan{{}, {matched(1), matched(2), matched(4)}, 0.0, 0, {}});
+  tape.append(Tape::Merge{{{3, 4}}, 0.0});
+  std::vector<std::vector<core::LandmarkId>> left;
+  tape.without_matches_since(1, {2, 3}).read_from(0, [&](const Tape::Entry& entry) {
+    const auto* scan = std::get_if<Tape::Scan>(&entry);
+    if (scan == nullptr) return;
+    left.emplace_back();
+    for (const core::AssociationReport& one : scan->fate) {
+      if (one.outcome == core::Outcome::matched) left.back().push_back(one.landmark);
+    }
+  });
+  EXPECT_EQ(left, (std::vector<std::vector<core::LandmarkId>>{{1, 2}, {2, 4}}));
+}
+
 TEST(Checkpoint, GoingThroughTheTapeAgainEndsWhereItEnded) {
   const core::Recording run = sim::simulate(wide_circuit(), 3);
   constexpr std::int64_t moment = 150;

@@ -86,6 +86,17 @@ TEST(WholeMap, FindsAVehicleThatWasCarriedAway) {
   EXPECT_LT(drive.error_at_end_m, 5.0);
 }
 
+/// Where it was put down it matched trees that stand like those that it expected.
+TEST(WholeMap, LeavesOutMatchesThatContradictThePlace) {
+  const core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3019);
+  std::set<core::Label> trees;
+  for (const std::vector<core::Label>& scan : run.labels) trees.insert(scan.begin(), scan.end());
+  trees.erase(core::no_label);
+  const Asking drive = drive_asking(run, {});
+  EXPECT_LE(drive.mature, trees.size()) << "duplicates; 155 of them as long as these matches were believed";
+  EXPECT_LT(drive.error_at_end_m, 5.0);
+}
+
 /// Trees of labels seen from the begin of the search on, that had been seen before and out of sight for a while.
 int old_trees_seen(const core::Recording& run, std::size_t trigger, std::size_t end) {
   constexpr std::size_t lately = 130;  // scans: 65 m
