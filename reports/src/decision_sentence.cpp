@@ -105,7 +105,7 @@ std::string sentence(const core::UndecidedDecision& d) {
 
 std::string sentence(const core::NewGroundDecision& d) {
   return "New ground: after " + short_number(d.driven_m) + " m, " + counted(d.landmarks, "landmark") +
-         " mapped lately fit nowhere on the old ground, and so many would. Mapping goes on.";
+         " mapped lately fit nowhere on the old ground, where so many would. Mapping goes on.";
 }
 
 std::string refusal(const core::ClosureDecision& d, const std::string& cost, const std::string& limit,
