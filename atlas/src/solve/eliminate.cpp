@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Holds the gauge where it is. The measurements leave the atlas' own frame free, so that any weight gives the same map.
+/// The measurements leave the atlas' own frame free, so that any weight gives the same map.
 constexpr double gauge_weight = 1e8;
 
 int row_of(const FrontShape& shape, int variable) {
@@ -49,8 +49,7 @@ void add_part(const State& state, const Part& part, const FrontShape& shape, Eig
 }
 
 void hold_gauge(const State& state, const FrontShape& shape, Eigen::Map<Eigen::MatrixXd> F) {
-  const Index row = row_of(shape, state.gauge);
-  F.diagonal().segment<3>(row).array() += gauge_weight;
+  F.diagonal().segment<3>(row_of(shape, gauge_of(state))).array() += gauge_weight;
 }
 
 /// The smallest disk around two.
@@ -111,6 +110,13 @@ Eigen::Map<Eigen::MatrixXd> Workspace::zero_square(Index rows) {
   if (buffer_.size() < size) buffer_.resize(size);
   std::fill_n(buffer_.begin(), size, 0.0);
   return {buffer_.data(), rows, rows};
+}
+
+int gauge_of(const State& state) {
+  const FrontShape& shape = *state.node(state.root).shape;
+  int i = shape.eliminated - 1;
+  while (i > 0 && state.variable(shape.variables[State::index(i)]).dim != 3) --i;
+  return shape.variables[State::index(i)];
 }
 
 void eliminate(State& state, int id, Workspace& workspace) {

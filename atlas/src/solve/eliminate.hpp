@@ -19,6 +19,10 @@ class Workspace {
   std::vector<double> buffer_;
 };
 
+/// The variable that stays where it is: the last pose that the root eliminates. Any pose would give the same map; one that both
+/// halves of the drive share is tied best to either.
+int gauge_of(const State& state);
+
 /// Forms the front of a node at the present values, from its leaf or its children's messages, eliminates, and stores
 /// the result; the node is clean and fresh. NumericalError, naming a variable, when it is not positive definite.
 void eliminate(State& state, int node, Workspace& workspace);

@@ -25,7 +25,6 @@ struct Variable {
   int name = -1;      ///< of a landmark or a clone; −1: none, or forgotten
   int leaves = 0;     ///< that hold it
   int at = -1;        ///< node that eliminates it
-  bool held = false;  ///< kept for the root
 };
 
 /// A factor with its variables: the reference pose, the pose, the points.
@@ -95,7 +94,6 @@ struct State {
   PersistentVector<TreeNode> nodes;
   int root = -1;
   int world = -1;  ///< variable that stands for the map frame
-  int gauge = -1;  ///< variable that stays where it is
 
   bool descending = false;   ///< settle is in its way down
   std::vector<int> to_open;  ///< a stack
