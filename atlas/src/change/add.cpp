@@ -275,10 +275,10 @@ int Atlas::add(PhaseFactor factor, std::shared_ptr<const PhaseLog> log) {
   const bool is_first = state.phases.empty();
   bring_along(state, factor.shape.ids);
   Leaf leaf;
-  leaf.parts.push_back(
-      {variables_for(state, factor), std::make_shared<const RelativeGaussian>(factor.gaussian), nullptr});
-  if (is_first && state.world != state.variable_of_clone[0]) leaf.parts.push_back(start_part(state));
+  std::vector<int> variables = variables_for(state, factor);
   leaf.phase = std::make_shared<const PhaseFactor>(std::move(factor));
+  leaf.parts.push_back({std::move(variables), gaussian_of(leaf.phase), nullptr});
+  if (is_first && state.world != state.variable_of_clone[0]) leaf.parts.push_back(start_part(state));
   leaf.log = std::move(log);
   insert(state, std::move(leaf));
   return static_cast<int>(state.phases.size()) - 1;

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "phase/rigid_fit.hpp"
 #include "tree/state.hpp"
 
 namespace helixnav::atlas {
@@ -27,8 +28,9 @@ int gauge_of(const State& state);
 /// the result; the node is clean and fresh. NumericalError, naming a variable, when it is not positive definite.
 void eliminate(State& state, int node, Workspace& workspace);
 
-/// Adds a child's message to its parent's front where the present values have it. `offsets`: row there of each boundary
-/// variable. Returns by how much it was turned [rad].
-double add_message(const State& state, int child, const std::vector<int>& offsets, Eigen::Map<Eigen::MatrixXd> F);
+/// Adds a child's message to its parent's front where the present values have it, `motion` away from where it was linearised.
+/// `offsets`: row there of each boundary variable.
+void add_message(const State& state, int child, const Motion& motion, const std::vector<int>& offsets,
+                 Eigen::Map<Eigen::MatrixXd> F);
 
 }  // namespace helixnav::atlas

@@ -21,10 +21,10 @@ namespace helixnav::atlas {
 using Values = std::vector<Eigen::Vector3d>;
 
 struct Variable {
-  int dim = 0;        ///< 3: pose, 2: point
-  int name = -1;      ///< of a landmark or a clone; −1: none, or forgotten
-  int leaves = 0;     ///< that hold it
-  int at = -1;        ///< node that eliminates it
+  int dim = 0;     ///< 3: pose, 2: point
+  int name = -1;   ///< of a landmark or a clone; −1: none, or forgotten
+  int leaves = 0;  ///< that hold it
+  int at = -1;     ///< node that eliminates it
 };
 
 /// A factor with its variables: the reference pose, the pose, the points.
@@ -39,6 +39,11 @@ struct Leaf {
   std::shared_ptr<const PhaseFactor> phase;  ///< the first part
   std::vector<Part> parts;
 };
+
+/// The Gaussian of a phase, which lives as long as either.
+inline std::shared_ptr<const RelativeGaussian> gaussian_of(const std::shared_ptr<const PhaseFactor>& phase) {
+  return {phase, &phase->gaussian};
+}
 
 /// What a node eliminates and what it passes on, without numbers.
 struct FrontShape {
