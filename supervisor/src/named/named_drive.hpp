@@ -10,6 +10,7 @@
 #include "helixnav/atlas/phase_factor.hpp"
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/landmark_id.hpp"
 #include "loop/tape.hpp"
 #include "smoothing/drive_phases.hpp"
 
@@ -53,12 +54,16 @@ class NamedDrive {
 
  private:
   std::size_t stops_of_phase(double length_m) const;
+  bool comes_back(const std::vector<core::LandmarkId>& seen) const;
+  static void settle_closing(atlas::Atlas& atlas);
   void add(const std::vector<DrivePhase>& phases, const atlas::PointPrior* known, atlas::Atlas& atlas) const;
 
   int most_stops_;
   bool kept_;
   atlas::Atlas atlas_;
-  bool begins_ = true;  ///< the atlas has no phase yet
+  bool begins_ = true;                       ///< the atlas has no phase yet
+  bool on_old_ground_ = false;               ///< the last phase came back to known landmarks, …
+  std::vector<core::LandmarkId> seen_last_;  ///< … and what it saw
   std::deque<Stop> stops_;
   std::optional<core::Odometry> motion_;  ///< since the last stop
 };

@@ -37,6 +37,7 @@ auto NamedNavigator::all_or_nothing(const Call& call) {
   const std::size_t events = taken_.size();
   Pending before = pending_;
   const NamedDrive::Mark mark = drive_->mark();
+  const std::int64_t next_try = next_try_;
   try {
     auto result = call();
     constexpr std::int64_t stride = 10;
@@ -47,6 +48,7 @@ auto NamedNavigator::all_or_nothing(const Call& call) {
   } catch (...) {
     take_back_hand_over();
     drive_->back_to(mark);
+    next_try_ = next_try;
     recover(events, std::move(before));
     throw;
   }

@@ -16,10 +16,17 @@ namespace {
 
 using core::LandmarkId;
 
+/// With names nothing is looked for far away, and a region switch costs the square of what the filter holds: on a road of 4000
+/// landmarks 99 % of the steps take less than 3.6 ms with 400, less than 0.9 ms with 150 (bench named_scaling).
+int landmarks_wanted(const MapOptions& map) {
+  constexpr int enough = 150;
+  return std::min(map.window, enough);
+}
+
 /// Everything within three times the sensor's reach of the last clone, more as long as there are few.
 std::vector<LandmarkId> landmarks_about(const atlas::Atlas& atlas, double reach_m, int mapped, const MapOptions& map) {
-  const WindowNeeds needs{3.0 * reach_m, map.window, map.most};
-  const auto wanted = static_cast<std::size_t>(std::min(map.window, mapped));
+  const WindowNeeds needs{3.0 * reach_m, landmarks_wanted(map), map.most};
+  const auto wanted = static_cast<std::size_t>(std::min(needs.landmarks, mapped));
   const Eigen::Vector2d center_m = atlas.pose().position_m();
   double radius_m = needs.least_radius_m;
   std::vector<atlas::Place> places = atlas.near(center_m, radius_m);
@@ -119,17 +126,20 @@ void NamedNavigator::go_on_with_drive() {
     drive_->close_phase(length_m, names_.is_part ? &known : nullptr);
   }
   const int held = filter_.mapped_count();
-  const bool is_too_large = names_.is_part ? 2 * held > 3 * std::max(options_.map.window, begun_with_)
+  const bool is_too_large = names_.is_part ? 2 * held > 3 * std::max(landmarks_wanted(options_.map), begun_with_)
                                            : mapped > options_.map.whole && 2 * held > 3 * begun_with_;
   if (is_too_large && !hand_over({})) begun_with_ = held;
 }
 
 bool NamedNavigator::hand_over(const std::vector<LandmarkId>& wanted) {
+  if (step_ < next_try_) return false;
   try {
     begin_window(wanted);
     return true;
-  } catch (const core::NumericalError&) {
-    return false;  // what cannot be solved leaves the filter as it is
+  } catch (const core::NumericalError&) {  // what cannot be solved leaves the filter as it is
+    constexpr std::int64_t pause = 50;     // a solution that is not found costs more than one that is
+    next_try_ = step_ + pause;
+    return false;
   }
 }
 

@@ -165,6 +165,7 @@ class NamedNavigator {
   OwnDrive drive_;
   FilterNames names_;
   int begun_with_ = 0;                          ///< landmarks, when the filter began or was to begin anew
+  std::int64_t next_try_ = 0;                   ///< step before which no hand-over is tried, after one that failed
   std::optional<BeforeHandOver> before_;        ///< this call
   std::vector<Eigen::Matrix2d> remembered_m2_;  ///< covariances, by id, of landmarks when the filter left them
 };
