@@ -8,11 +8,10 @@
 namespace helixnav::atlas {
 namespace {
 
-int add_held_pose(State& state, const core::Pose2& T_atlas_pose, int name) {
+int add_pose(State& state, const core::Pose2& T_atlas_pose, int name) {
   Variable variable;
   variable.dim = 3;
   variable.name = name;
-  variable.held = true;
   state.variables.push_back(variable);
   state.values.push_back(T_atlas_pose.vector());
   state.phases_of.push_back(std::make_shared<const std::vector<int>>());
@@ -31,13 +30,12 @@ Atlas::Atlas(const core::PoseGaussian& start, const Options& options)
   state.options = options;
   state.start = start;
   if (is_certain) {
-    state.world = add_held_pose(state, start.mean, 0);
+    state.world = add_pose(state, start.mean, 0);
     state.variable_of_clone.push_back(state.world);
   } else {
-    state.world = add_held_pose(state, core::Pose2(), -1);
-    state.variable_of_clone.push_back(add_held_pose(state, start.mean, 0));
+    state.world = add_pose(state, core::Pose2(), -1);
+    state.variable_of_clone.push_back(add_pose(state, start.mean, 0));
   }
-  state.gauge = state.variable_of_clone[0];
   *settled_ = state;
 }
 

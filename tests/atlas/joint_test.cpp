@@ -10,6 +10,7 @@
 #include "helixnav/smoothing/marginals.hpp"
 #include "phase/world_form.hpp"
 #include "read/joint.hpp"
+#include "solve/eliminate.hpp"
 #include "small_drive.hpp"
 
 namespace helixnav::atlas {
@@ -56,9 +57,9 @@ TEST(Joint, AlongThePathsEqualsTheDenseInverseOfAllFactors) {
       H(rows, rows) += A.topLeftCorner(A.rows() - 1, A.rows() - 1);
     }
   }
-  H.diagonal().segment<3>(first[State::index(state.gauge)]).array() += 1e8;
+  H.diagonal().segment<3>(first[State::index(gauge_of(state))]).array() += 1e8;
   const Eigen::MatrixXd S = H.inverse();
-  const std::vector<int> wanted{0, 3, static_cast<int>(state.variables.size()) - 1, 7, state.gauge, 12, 30};
+  const std::vector<int> wanted{0, 3, static_cast<int>(state.variables.size()) - 1, 7, gauge_of(state), 12, 30};
   std::vector<Eigen::Index> rows;
   for (const int v : wanted) {
     for (int i = 0; i < state.variable(v).dim; ++i) rows.push_back(first[State::index(v)] + i);

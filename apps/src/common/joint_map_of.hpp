@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -20,8 +21,10 @@ template <class Navigator>
 std::optional<core::JointMap> joint_map_of(const Navigator& navigator, double reach_m) {
   const std::vector<core::MapLandmark> landmarks = navigator.map();
   if (landmarks.size() > runs::most_joint_landmarks) return std::nullopt;
-  core::JointMap map =
-      supervisor::joint_map(navigator.joint(supervisor::ids_of(landmarks)), navigator.filter().next_name(), landmarks);
+  // A filter that holds a part of the map may have names of its own.
+  const core::LandmarkId after_last = landmarks.empty() ? 0 : landmarks.back().id + 1;
+  const core::LandmarkId next_name = std::max(navigator.filter().next_name(), after_last);
+  core::JointMap map = supervisor::joint_map(navigator.joint(supervisor::ids_of(landmarks)), next_name, landmarks);
   map.reach_m = reach_m;
   return map;
 }

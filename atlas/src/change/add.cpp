@@ -221,12 +221,6 @@ void hang_beside(State& state, int leaf, int beside) {
   }
 }
 
-void move_gauge(State& state, int to) {
-  if (state.gauge != state.world) state.variables.write(State::index(state.gauge)).held = false;
-  state.gauge = to;
-  state.variables.write(State::index(to)).held = true;
-}
-
 void insert(State& state, Leaf leaf) {
   const std::vector<int> variables = variables_of(leaf);
   const int phase = static_cast<int>(state.phases.size());
@@ -251,7 +245,6 @@ void insert(State& state, Leaf leaf) {
   } else {
     hang_beside(state, id, beside);
     touched.push_back(beside);
-    touched.push_back(state.leaf_of_phase[State::index(phase - 1)]);  // its exit is no longer held
   }
   touched.push_back(id);
   shape_paths(state, touched);
@@ -282,12 +275,11 @@ int Atlas::add(PhaseFactor factor, std::shared_ptr<const PhaseLog> log) {
   const bool is_first = state.phases.empty();
   bring_along(state, factor.shape.ids);
   Leaf leaf;
-  leaf.parts.push_back(
-      {variables_for(state, factor), std::make_shared<const RelativeGaussian>(factor.gaussian), nullptr});
-  if (is_first && state.world != state.variable_of_clone[0]) leaf.parts.push_back(start_part(state));
+  std::vector<int> variables = variables_for(state, factor);
   leaf.phase = std::make_shared<const PhaseFactor>(std::move(factor));
+  leaf.parts.push_back({std::move(variables), gaussian_of(leaf.phase), nullptr});
+  if (is_first && state.world != state.variable_of_clone[0]) leaf.parts.push_back(start_part(state));
   leaf.log = std::move(log);
-  move_gauge(state, state.variable_of_clone.back());
   insert(state, std::move(leaf));
   return static_cast<int>(state.phases.size()) - 1;
 }

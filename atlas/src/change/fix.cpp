@@ -45,7 +45,7 @@ void Atlas::fix(int clone, const core::AbsoluteFix& fix) {
   const int node = state.leaf_of_phase[State::index(phase)];
   Estimates estimates(state);
   estimates.reach(node);
-  estimates.reach(state.root);
+  estimates.reach(state.variable(state.world).at);
   estimates.store(state);
   auto own = fix;
   if (state.world == state.variable_of_clone[0]) {  // the map frame has that clone at the start's mean
@@ -68,7 +68,7 @@ void Atlas::fix(int clone, const core::AbsoluteFix& fix) {
     phases->insert(std::lower_bound(phases->begin(), phases->end(), phase), phase);
     state.phases_of.write(State::index(state.world)) = std::move(phases);
   }
-  shape_paths(state, {node});
+  shape_paths(state, {node, state.variable(state.world).at});
 }
 
 }  // namespace helixnav::atlas

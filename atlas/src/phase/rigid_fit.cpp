@@ -43,28 +43,6 @@ RigidMotion fit(const State& state, const int* variables, const Eigen::Vector3d*
   return motion;
 }
 
-/// How the angle of the fit moves with what was fitted.
-Eigen::VectorXd gradient_of_turn(const State& state, const int* variables, const Eigen::Vector3d* was,
-                                 const Values& now, const RigidMotion& motion, Eigen::Index rows) {
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(rows);
-  double weight = 0.0;
-  Eigen::Index row = 0;
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    const int dim = state.variable(variables[i]).dim;
-    if (now.size() == 1 || variables[i] != state.world) {
-      const Eigen::Vector2d p = motion.R * (was[i].head<2>() - motion.from_m);
-      gradient.segment<2>(row) << -p.y(), p.x();
-      weight += p.dot(now[i].head<2>() - motion.to_m);
-      if (dim == 3) {
-        gradient[row + 2] = std::cos(now[i].z() - was[i].z() - motion.turn_rad);
-        weight += gradient[row + 2];
-      }
-    }
-    row += dim;
-  }
-  return gradient / weight;
-}
-
 }  // namespace
 
 Eigen::Vector2d RigidMotion::point(const Eigen::Vector2d& p) const {
@@ -109,8 +87,37 @@ Motion motion_of(const State& state, const FrontShape& shape, int begin, const E
     motion.bend_m = std::max(motion.bend_m, rest_m * rest_m / own_span_m);
     row += dim;
   }
-  motion.turning = gradient_of_turn(state, variables, was, now, motion.rigid, motion.rest.size());
   return motion;
+}
+
+Motion motion_of_boundary(const State& state, int node) {
+  const FrontShape& shape = *state.node(node).shape;
+  return motion_of(state, shape, shape.eliminated, state.node(node).front->linearised_at.data() + shape.eliminated,
+                   values_of(state, shape, shape.eliminated, static_cast<int>(shape.variables.size())));
+}
+
+Eigen::VectorXd gradient_of_turn(const State& state, int node, const Motion& motion) {
+  const FrontShape& shape = *state.node(node).shape;
+  const Values& linearised_at = state.node(node).front->linearised_at;
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(motion.rest.size());
+  double weight = 0.0;
+  Eigen::Index row = 0;
+  for (std::size_t i = State::index(shape.eliminated); i < shape.variables.size(); ++i) {
+    const int dim = state.variable(shape.variables[i]).dim;
+    const Eigen::Vector3d& was = linearised_at[i];
+    const Eigen::Vector3d& now = state.value(shape.variables[i]);
+    if (shape.boundary() == 1 || shape.variables[i] != state.world) {
+      const Eigen::Vector2d p = motion.rigid.R * (was.head<2>() - motion.rigid.from_m);
+      gradient.segment<2>(row) << -p.y(), p.x();
+      weight += p.dot(now.head<2>() - motion.rigid.to_m);
+      if (dim == 3) {
+        gradient[row + 2] = std::cos(now.z() - was.z() - motion.rigid.turn_rad);
+        weight += gradient[row + 2];
+      }
+    }
+    row += dim;
+  }
+  return gradient / weight;
 }
 
 }  // namespace helixnav::atlas

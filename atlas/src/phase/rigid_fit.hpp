@@ -22,16 +22,20 @@ struct RigidMotion {
 /// How far some variables have moved since they were linearised: the rigid motion that explains most of it, and the rest.
 struct Motion {
   RigidMotion rigid;
-  Eigen::VectorXd rest;     ///< in the frame linearised in; empty when nothing moved
-  Eigen::VectorXd turning;  ///< gradient of rigid.turn_rad by the present values; as many rows as rest
-  double rest_m = 0.0;      ///< largest |rest|, headings weighed by the span
-  double bend_m = 0.0;      ///< second-order error of linearising there: max |rest|² / span
-  double reach_m = 0.0;     ///< farthest variable from the centre
+  Eigen::VectorXd rest;  ///< in the frame linearised in; empty when nothing moved
+  double rest_m = 0.0;   ///< largest |rest|, headings weighed by the span
+  double bend_m = 0.0;   ///< second-order error of linearising there: max |rest|² / span
+  double reach_m = 0.0;  ///< farthest variable from the centre
 };
 
 /// Motion of the variables `shape.variables[begin …)` from `was` to `now`, both from `begin` on. The fit is least squares over
 /// positions, and headings at an arm of one metre; the variable of the map frame, which may be far away, does not
 /// take part while there are others. Equal values give the identity, exactly. Cost linear.
 Motion motion_of(const State& state, const FrontShape& shape, int begin, const Eigen::Vector3d* was, const Values& now);
+
+/// That of a node's boundary since the node was linearised, and the gradient of its rigid.turn_rad by the present values, as many
+/// rows as `rest`.
+Motion motion_of_boundary(const State& state, int node);
+Eigen::VectorXd gradient_of_turn(const State& state, int node, const Motion& motion);
 
 }  // namespace helixnav::atlas

@@ -75,7 +75,6 @@ void turn_pairs(Eigen::Ref<Eigen::MatrixXd> block, const Eigen::Matrix2d& R, con
 
 /// Columns of one variable, from its diagonal down, diagonal block filled on both sides.
 void copy_columns(const Message& message, Index from, Index dim, Index n, Eigen::MatrixXd& block) {
-  block.resize(n - from, dim);
   for (Index j = 0; j < dim; ++j) {
     const double* column = message.column(from + j);
     for (Index i = j; i < n - from; ++i) block(i, j) = column[from + i];
@@ -87,14 +86,13 @@ void copy_columns(const Message& message, Index from, Index dim, Index n, Eigen:
 
 }  // namespace
 
-double add_message(const State& state, int child, const std::vector<int>& offsets, Eigen::Map<Eigen::MatrixXd> F) {
+void add_message(const State& state, int child, const Motion& motion, const std::vector<int>& offsets,
+                 Eigen::Map<Eigen::MatrixXd> F) {
   const TreeNode& node = state.node(child);
   const FrontShape& shape = *node.shape;
   const Index n = shape.nb;
   const Index last = F.rows() - 1;
   const Message message(node.front->message, n + 1);
-  const Motion motion = motion_of(state, shape, shape.eliminated, node.front->linearised_at.data() + shape.eliminated,
-                                  values_of(state, shape, shape.eliminated, static_cast<int>(shape.variables.size())));
   Eigen::VectorXd rhs(n);
   for (Index j = 0; j < n; ++j) rhs[j] = message.column(j)[n];
   double chi2 = message.column(n)[n];
@@ -118,16 +116,18 @@ double add_message(const State& state, int child, const std::vector<int>& offset
       pull.segment<2>(rows.from[c]) = R * pull.segment<2>(rows.from[c]).eval();
       for (Index i = 0; i < rows.dim[c]; ++i) to.push_back(offsets[c] + i);
     }
-    let_turn(motion.turning, pull, weight, to, F);
+    const Eigen::VectorXd turning = gradient_of_turn(state, child, motion);
+    let_turn(turning, pull, weight, to, F);
     const double turn_pull = turned.dot(rhs);
-    for (std::size_t i = 0; i < to.size(); ++i) F(last, to[i]) -= motion.turning[static_cast<Index>(i)] * turn_pull;
+    for (std::size_t i = 0; i < to.size(); ++i) F(last, to[i]) -= turning[static_cast<Index>(i)] * turn_pull;
   }
-  Eigen::MatrixXd block;
+  Eigen::MatrixXd block(n, 3);
   for (std::size_t c = 0; c < offsets.size(); ++c) {
     copy_columns(message, rows.from[c], rows.dim[c], n, block);
     if (!motion.rigid.is_identity) {
-      block.leftCols<2>() *= R.transpose();
-      turn_pairs(block, R, rows, c);
+      auto columns = block.topLeftCorner(n - rows.from[c], rows.dim[c]);
+      columns.leftCols<2>() *= R.transpose();
+      turn_pairs(columns, R, rows, c);
       rhs.segment<2>(rows.from[c]) = R * rhs.segment<2>(rows.from[c]).eval();
     }
     for (Index j = 0; j < rows.dim[c]; ++j) {
@@ -145,7 +145,6 @@ double add_message(const State& state, int child, const std::vector<int>& offset
     }
   }
   F(last, last) += chi2;
-  return motion.rigid.turn_rad;
 }
 
 }  // namespace helixnav::atlas

@@ -9,7 +9,6 @@
 #include <Eigen/Geometry>
 
 #include "helixnav/core/errors.hpp"
-#include "phase/rigid_fit.hpp"
 #include "phase/world_form.hpp"
 #include "solve/partial_cholesky.hpp"
 
@@ -18,7 +17,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Holds the gauge where it is. The measurements leave the atlas' own frame free, so that any weight gives the same map.
+/// The measurements leave the atlas' own frame free, so that any weight gives the same map.
 constexpr double gauge_weight = 1e8;
 
 int row_of(const FrontShape& shape, int variable) {
@@ -49,8 +48,7 @@ void add_part(const State& state, const Part& part, const FrontShape& shape, Eig
 }
 
 void hold_gauge(const State& state, const FrontShape& shape, Eigen::Map<Eigen::MatrixXd> F) {
-  const Index row = row_of(shape, state.gauge);
-  F.diagonal().segment<3>(row).array() += gauge_weight;
+  F.diagonal().segment<3>(row_of(shape, gauge_of(state))).array() += gauge_weight;
 }
 
 /// The smallest disk around two.
@@ -67,30 +65,21 @@ Disk join(const Disk& a, const Disk& b) {
   return both;
 }
 
-Disk disk_of(const State& state, int id, const Front& front) {
-  const TreeNode& node = state.node(id);
+Disk disk_of_eliminated(const State& state, const FrontShape& shape, const Front& front) {
   Eigen::AlignedBox2d box;
-  for (int i = 0; i < node.shape->eliminated; ++i) {
-    if (state.variable(node.shape->variables[State::index(i)]).dim == 2) {
+  for (int i = 0; i < shape.eliminated; ++i) {
+    if (state.variable(shape.variables[State::index(i)]).dim == 2) {
       box.extend(front.linearised_at[State::index(i)].head<2>());
     }
   }
-  Disk disk;
-  if (!box.isEmpty()) disk = {box.center(), 0.5 * box.diagonal().norm()};
-  if (node.phase >= 0) return disk;
-  for (const int c : node.child) {
-    const TreeNode& child = state.node(c);
-    const FrontShape& shape = *child.shape;
-    const Motion motion =
-        motion_of(state, shape, shape.eliminated, child.front->linearised_at.data() + shape.eliminated,
-                  values_of(state, shape, shape.eliminated, static_cast<int>(shape.variables.size())));
-    Disk moved = child.front->landmarks;
-    if (moved.radius_m >= 0.0) {
-      moved.center_m = motion.rigid.point(moved.center_m);
-      moved.radius_m += motion.rest_m;
-    }
-    disk = join(disk, moved);
-  }
+  if (box.isEmpty()) return {};
+  return {box.center(), 0.5 * box.diagonal().norm()};
+}
+
+Disk moved(Disk disk, const Motion& motion) {
+  if (disk.radius_m < 0.0) return disk;
+  disk.center_m = motion.rigid.point(disk.center_m);
+  disk.radius_m += motion.rest_m;
   return disk;
 }
 
@@ -113,6 +102,13 @@ Eigen::Map<Eigen::MatrixXd> Workspace::zero_square(Index rows) {
   return {buffer_.data(), rows, rows};
 }
 
+int gauge_of(const State& state) {
+  const FrontShape& shape = *state.node(state.root).shape;
+  int i = shape.eliminated - 1;
+  while (i > 0 && state.variable(shape.variables[State::index(i)]).dim != 3) --i;
+  return shape.variables[State::index(i)];
+}
+
 void eliminate(State& state, int id, Workspace& workspace) {
   const TreeNode& node = state.node(id);
   const FrontShape& shape = *node.shape;
@@ -120,12 +116,16 @@ void eliminate(State& state, int id, Workspace& workspace) {
   const Index nb = shape.nb;
   auto front = std::make_shared<Front>();
   front->linearised_at = values_of(state, shape, 0, static_cast<int>(shape.variables.size()));
+  front->landmarks = disk_of_eliminated(state, shape, *front);
   Eigen::Map<Eigen::MatrixXd> F = workspace.zero_square(ne + nb + 1);
   if (node.phase >= 0) {
     for (const Part& part : state.leaf(node.phase).parts) add_part(state, part, shape, F);
   } else {
     for (std::size_t c = 0; c < 2; ++c) {
-      front->child_turn_rad[c] = add_message(state, node.child[c], shape.from_child[c], F);
+      const Motion motion = motion_of_boundary(state, node.child[c]);
+      add_message(state, node.child[c], motion, shape.from_child[c], F);
+      front->child_turn_rad[c] = motion.rigid.turn_rad;
+      front->landmarks = join(front->landmarks, moved(state.node(node.child[c]).front->landmarks, motion));
     }
   }
   if (id == state.root) hold_gauge(state, shape, F);
@@ -136,7 +136,6 @@ void eliminate(State& state, int id, Workspace& workspace) {
     const double* column = &F(ne + j, ne + j);
     front->message.insert(front->message.end(), column, column + (nb + 1 - j));
   }
-  front->landmarks = disk_of(state, id, *front);
   TreeNode& written = state.nodes.write(State::index(id));
   written.front = std::move(front);
   written.opened_at = nullptr;

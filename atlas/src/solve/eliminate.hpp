@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "phase/rigid_fit.hpp"
 #include "tree/state.hpp"
 
 namespace helixnav::atlas {
@@ -19,12 +20,17 @@ class Workspace {
   std::vector<double> buffer_;
 };
 
+/// The variable that stays where it is: the last pose that the root eliminates. Any pose would give the same map; one that both
+/// halves of the drive share is tied best to either.
+int gauge_of(const State& state);
+
 /// Forms the front of a node at the present values, from its leaf or its children's messages, eliminates, and stores
 /// the result; the node is clean and fresh. NumericalError, naming a variable, when it is not positive definite.
 void eliminate(State& state, int node, Workspace& workspace);
 
-/// Adds a child's message to its parent's front where the present values have it. `offsets`: row there of each boundary
-/// variable. Returns by how much it was turned [rad].
-double add_message(const State& state, int child, const std::vector<int>& offsets, Eigen::Map<Eigen::MatrixXd> F);
+/// Adds a child's message to its parent's front where the present values have it, `motion` away from where it was linearised.
+/// `offsets`: row there of each boundary variable.
+void add_message(const State& state, int child, const Motion& motion, const std::vector<int>& offsets,
+                 Eigen::Map<Eigen::MatrixXd> F);
 
 }  // namespace helixnav::atlas

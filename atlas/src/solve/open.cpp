@@ -50,8 +50,8 @@ bool rederive_if_moved(State& state, int phase) {
   }
   Leaf changed = leaf;
   PhaseFactor factor = rederive_factor(*leaf.log, *leaf.phase, core::Pose2(Eigen::Vector3d(u.head<3>())), points_of(u));
-  changed.parts.front().gaussian = std::make_shared<const RelativeGaussian>(factor.gaussian);
   changed.phase = std::make_shared<const PhaseFactor>(std::move(factor));
+  changed.parts.front().gaussian = gaussian_of(changed.phase);
   state.phases.write(State::index(phase)) = std::make_shared<const Leaf>(std::move(changed));
   return true;
 }
@@ -88,10 +88,7 @@ void open_children(State& state, int id) {
   const std::array<int, 2> children = state.node(id).child;
   for (std::size_t c = 2; c-- > 0;) {
     const TreeNode& child = state.node(children[c]);
-    const FrontShape& shape = *child.shape;
-    const Motion motion =
-        motion_of(state, shape, shape.eliminated, child.front->linearised_at.data() + shape.eliminated,
-                  values_of(state, shape, shape.eliminated, static_cast<int>(shape.variables.size())));
+    const Motion motion = motion_of_boundary(state, children[c]);
     const bool bent = is_bent(state, motion);
     const bool follows = bent || child.fresh;
     if (bent) mark_dirty(state, children[c]);

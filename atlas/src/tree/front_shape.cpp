@@ -79,7 +79,7 @@ void shape_front(State& state, int id) {
   std::vector<Counted> all = incoming(state, id);
   const auto is_complete = [&state, id](const Counted& c) {
     const Variable& v = state.variable(c.variable);
-    return id == state.root || (c.leaves == v.leaves && !v.held);
+    return id == state.root || c.leaves == v.leaves;
   };
   const auto boundary = std::stable_partition(all.begin(), all.end(), is_complete);
   shape->eliminated = static_cast<int>(boundary - all.begin());

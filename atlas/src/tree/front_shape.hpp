@@ -8,7 +8,7 @@
 namespace helixnav::atlas {
 
 /// Decides again what a node eliminates, from its children or its leaf: a variable goes where the last leaf that holds it has
-/// come together, held ones at the root. The node is marked as without front.
+/// come together. The node is marked as without front.
 void shape_front(State& state, int node);
 
 /// The same for all nodes given and all above them, children first, and marks them dirty.

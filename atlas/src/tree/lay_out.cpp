@@ -71,7 +71,7 @@ class Layout {
     return best;
   }
 
-  /// States shared by both sides, weighed by imbalance, at each place from 30 to 70 % of the order; held ones are in any cut.
+  /// States shared by both sides, weighed by imbalance, at each place from 30 to 70 % of the order.
   Cut best_cut(const Order& order) {
     const std::size_t n = order.size();
     first_.clear();
@@ -120,11 +120,7 @@ std::vector<Item> items_of(const State& state, const std::vector<int>& leaves) {
   for (const int leaf : leaves) {
     const Leaf& content = state.leaf(state.node(leaf).phase);
     const std::vector<int>& phase = content.parts.front().variables;
-    Item item{leaf, 0.5 * (state.value(phase[0]) + state.value(phase[1])).head<2>(), {}};
-    for (const int v : variables_of(content)) {
-      if (!state.variable(v).held) item.variables.push_back(v);
-    }
-    items.push_back(std::move(item));
+    items.push_back({leaf, 0.5 * (state.value(phase[0]) + state.value(phase[1])).head<2>(), variables_of(content)});
   }
   return items;
 }

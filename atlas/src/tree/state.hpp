@@ -21,11 +21,10 @@ namespace helixnav::atlas {
 using Values = std::vector<Eigen::Vector3d>;
 
 struct Variable {
-  int dim = 0;        ///< 3: pose, 2: point
-  int name = -1;      ///< of a landmark or a clone; −1: none, or forgotten
-  int leaves = 0;     ///< that hold it
-  int at = -1;        ///< node that eliminates it
-  bool held = false;  ///< kept for the root
+  int dim = 0;     ///< 3: pose, 2: point
+  int name = -1;   ///< of a landmark or a clone; −1: none, or forgotten
+  int leaves = 0;  ///< that hold it
+  int at = -1;     ///< node that eliminates it
 };
 
 /// A factor with its variables: the reference pose, the pose, the points.
@@ -40,6 +39,11 @@ struct Leaf {
   std::shared_ptr<const PhaseFactor> phase;  ///< the first part
   std::vector<Part> parts;
 };
+
+/// The Gaussian of a phase, which lives as long as either.
+inline std::shared_ptr<const RelativeGaussian> gaussian_of(const std::shared_ptr<const PhaseFactor>& phase) {
+  return {phase, &phase->gaussian};
+}
 
 /// What a node eliminates and what it passes on, without numbers.
 struct FrontShape {
@@ -95,7 +99,6 @@ struct State {
   PersistentVector<TreeNode> nodes;
   int root = -1;
   int world = -1;  ///< variable that stands for the map frame
-  int gauge = -1;  ///< variable that stays where it is
 
   bool descending = false;   ///< settle is in its way down
   std::vector<int> to_open;  ///< a stack

@@ -11,8 +11,10 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "helixnav/core/thin_scan.hpp"
+#include "helixnav/supervisor/lengths.hpp"
 #include "loop/fit_to_sensor.hpp"
 #include "loop/judge_fix.hpp"
+#include "named/named_drive.hpp"
 
 namespace helixnav::supervisor {
 
@@ -22,7 +24,11 @@ using core::Outcome;
 using core::StepReport;
 
 NamedNavigator::NamedNavigator(const core::PoseGaussian& start, const NavigatorOptions& options)
-    : options_(options), filter_(start, options.filter), delayed_(options.delayed) {}
+    : options_(options),
+      reach_m_(reference_reach_m),
+      filter_(start, options.filter),
+      delayed_(options.delayed),
+      drive_(NamedDrive(start, options.search.smooth_up_to_scans)) {}
 
 /// The strong guarantee: the call takes effect as a whole, or what was before is made again from the checkpoint.
 template <class Call>
@@ -30,13 +36,19 @@ auto NamedNavigator::all_or_nothing(const Call& call) {
   if (!checkpoint_) checkpoint();
   const std::size_t events = taken_.size();
   Pending before = pending_;
+  const NamedDrive::Mark mark = drive_->mark();
+  const std::int64_t next_try = next_try_;
   try {
     auto result = call();
     constexpr std::int64_t stride = 10;
-    const bool due = step_ - checkpoint_->step >= stride || filter_.phase() != checkpoint_->filter.phase;
+    const bool due = before_ || step_ - checkpoint_->step >= stride || filter_.phase() != checkpoint_->filter.phase;
     if (due) checkpoint_.reset();  // taken by the next call, before it changes anything
+    before_.reset();
     return result;
   } catch (...) {
+    take_back_hand_over();
+    drive_->back_to(mark);
+    next_try_ = next_try;
     recover(events, std::move(before));
     throw;
   }
@@ -84,6 +96,7 @@ void NamedNavigator::fit_to(const core::FieldOfView& view) {
   if (fitted_ || !view.reach()) return;
   if (fit_to_sensor(view, step_ == 0, options_, filter_)) checkpoint_.reset();
   delayed_.set_lengths(options_.delayed);
+  reach_m_ = *view.reach();
   fitted_ = true;
 }
 
@@ -95,6 +108,7 @@ bool NamedNavigator::fix(const core::AbsoluteFix& fix) {
 StepReport NamedNavigator::step(const NamedScan& named) {
   StepReport report;
   report.associations = associate(named);
+  bring_into_filter(report.associations);
   predict();
   update(named.scan, report);
   augment(named, report);
@@ -104,8 +118,10 @@ StepReport NamedNavigator::step(const NamedScan& named) {
   report.t_ns = named.scan.t_ns;
   report.pose = filter_.pose();
   report.active_landmarks = filter_.active_count();
-  report.mapped_landmarks = filter_.mapped_count() - delayed_.clones();
+  report.mapped_landmarks = static_cast<int>(observations_.size());
   report.decisions = std::exchange(pending_.decisions, {});
+  record(named.scan, report);
+  go_on_with_drive();
   return report;
 }
 
@@ -113,13 +129,16 @@ bool NamedNavigator::use_fix(const core::AbsoluteFix& fix) {
   predict();
   taken_.emplace_back(fix);
   pending_.decisions.emplace_back(judge_fix(filter_, fix, options_.fix_probability));
-  return std::get<core::FixDecision>(pending_.decisions.back()).accepted;
+  const bool accepted = std::get<core::FixDecision>(pending_.decisions.back()).accepted;
+  if (accepted) record(fix);
+  return accepted;
 }
 
 void NamedNavigator::predict() {
   if (!pending_.motion) return;
   filter_.predict(*pending_.motion);
   taken_.emplace_back(*pending_.motion);
+  if (!recovering_) drive_->move(*pending_.motion);
   pending_.motion.reset();
 }
 
@@ -143,8 +162,9 @@ std::vector<AssociationReport> NamedNavigator::associate(const NamedScan& named)
 }
 
 void NamedNavigator::update(const core::Scan& scan, StepReport& report) {
-  const std::vector<cekf::Match> matched = matches(scan, report.associations);
+  std::vector<cekf::Match> matched = matches(scan, report.associations);
   if (matched.empty()) return;
+  for (cekf::Match& match : matched) match.landmark = names_.in_filter(match.landmark);
   const cekf::UpdateResult result = filter_.update(matched);
   report.joint_nis = result.nis;
   report.joint_dof = result.dof;
@@ -156,7 +176,11 @@ void NamedNavigator::augment(const NamedScan& named, StepReport& report) {
     const auto index = static_cast<std::size_t>(association.observation);
     const core::Observation& observation = named.scan.observations[index];
     if (core::dimension(observation.kind) == 2) {
-      association.landmark = filter_.augment(observation, named.scan.T_robot_sensor);
+      association.landmark = names_.in_map(filter_.augment(observation, named.scan.T_robot_sensor));
+      continue;
+    }
+    if (names_.is_part) {
+      association.outcome = Outcome::ambiguous;
       continue;
     }
     const auto entered = delayed_.sight(filter_, named.identities[index], observation, named.scan.T_robot_sensor);
@@ -195,7 +219,7 @@ void NamedNavigator::forget_names() {
       if (--observations_[id] == 0) observations_.erase(id);
     }
   }
-  const LandmarkId first = checkpoint_->filter.active.next_id;
+  const LandmarkId first = names_.in_map(checkpoint_->filter.active.next_id);
   for (auto name = landmark_of_identity_.begin(); name != landmark_of_identity_.end();) {
     name = name->second >= first ? landmark_of_identity_.erase(name) : std::next(name);
   }
@@ -209,26 +233,14 @@ void NamedNavigator::recover(std::size_t events, Pending pending) {
   delayed_ = checkpoint_->delayed;
   step_ = checkpoint_->step;
   pending_ = {};
+  recovering_ = true;
   for (const Taken& taken : again) {
     if (const auto* motion = std::get_if<core::Odometry>(&taken)) pending_.motion = *motion;
     if (const auto* scan = std::get_if<NamedScan>(&taken)) step({scan->scan, scan->identities, {}});
     if (const auto* fix = std::get_if<core::AbsoluteFix>(&taken)) use_fix(*fix);
   }
+  recovering_ = false;
   pending_ = std::move(pending);
-}
-
-std::vector<core::MapLandmark> NamedNavigator::map() const {
-  std::vector<core::MapLandmark> landmarks;
-  for (const LandmarkId id : filter_.landmarks()) {
-    if (delayed_.is_clone(id)) continue;
-    core::MapLandmark landmark;
-    landmark.id = id;
-    landmark.point = filter_.landmark(id);
-    landmark.observations = observations_.at(id);
-    landmark.state = core::LandmarkState::mature;
-    landmarks.push_back(landmark);
-  }
-  return landmarks;
 }
 
 }  // namespace helixnav::supervisor

@@ -8,16 +8,9 @@
 
 #include "helixnav/atlas/phase_factor.hpp"
 #include "helixnav/core/errors.hpp"
-#include "smoothing/smooth_drive.hpp"
 
 namespace helixnav::supervisor {
 namespace {
-
-/// A start that is known exactly stands for the map frame itself; any other needs a covariance with an inverse.
-core::PoseGaussian softened(core::PoseGaussian start) {
-  if (!start.covariance.isZero(0.0)) start.covariance.diagonal() += softening().cwiseAbs2();
-  return start;
-}
 
 std::map<core::LandmarkId, int> sightings(const std::vector<Stop>& stops, const core::MergedIds& ids) {
   std::map<core::LandmarkId, int> count;
@@ -29,7 +22,8 @@ std::map<core::LandmarkId, int> sightings(const std::vector<Stop>& stops, const 
 
 }  // namespace
 
-DriveMap::DriveMap(const core::PoseGaussian& start, double phase_m) : phase_m_(phase_m), atlas_(softened(start)) {}
+DriveMap::DriveMap(const core::PoseGaussian& start, double phase_m)
+    : phase_m_(phase_m), atlas_(softened_start(start)) {}
 
 void DriveMap::take(const Tape& tape, const cekf::CompressedEkf& filter) {
   const std::vector<Stop> stops = stops_of(tape, end_);

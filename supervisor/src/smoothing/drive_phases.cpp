@@ -85,4 +85,14 @@ std::vector<DrivePhase> phases_of(const std::vector<Stop>& stops, const std::opt
   return std::move(cutter).phases();
 }
 
+core::PoseGaussian softened_start(core::PoseGaussian start) {
+  if (!start.covariance.isZero(0.0)) start.covariance.diagonal() += softening().cwiseAbs2();
+  return start;
+}
+
+double phase_length_m(double reach_m) {
+  constexpr double phase_share = 2.0 / 3.0;
+  return phase_share * reach_m;
+}
+
 }  // namespace helixnav::supervisor

@@ -8,6 +8,7 @@
 
 #include "helixnav/atlas/phase_log.hpp"
 #include "helixnav/core/events.hpp"
+#include "helixnav/core/gaussian.hpp"
 #include "loop/tape.hpp"
 
 namespace helixnav::supervisor {
@@ -37,5 +38,11 @@ struct PhaseNames {
 /// like that of problem_of, so that every covariance has an inverse. Test: supervisor/drive_map_test.cpp.
 std::vector<DrivePhase> phases_of(const std::vector<Stop>& stops, const std::optional<core::Odometry>& motion,
                                   double length_m, bool begins_drive, const PhaseNames& names);
+
+/// The start of an atlas: one that is known exactly stands for the map frame itself, any other gets a covariance with an inverse.
+core::PoseGaussian softened_start(core::PoseGaussian start);
+
+/// How long a phase is for a sensor of this reach: 20 m for one of 30 m.
+double phase_length_m(double reach_m);
 
 }  // namespace helixnav::supervisor

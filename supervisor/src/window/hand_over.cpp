@@ -56,8 +56,7 @@ std::shared_ptr<DriveMap> NavigationLoop::drive_until_now() const {
 }
 
 std::shared_ptr<DriveMap> NavigationLoop::begun_drive() const {
-  constexpr double phase_share = 2.0 / 3.0;  // 20 m where the sensor reaches 30 m
-  return std::make_shared<DriveMap>(start_, phase_share * view_.reach().value_or(reference_reach_m));
+  return std::make_shared<DriveMap>(start_, phase_length_m(view_.reach().value_or(reference_reach_m)));
 }
 
 /// The filter becomes the joint estimate of the pose and of the landmarks of the window; covariances of those that are left out

@@ -2,16 +2,23 @@
 #include "window/window.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace helixnav::supervisor {
 
 ChosenWindow choose_window(const std::vector<atlas::Place>& places, const association::LandmarkLife& existence,
                            const Eigen::Vector2d& center_m, const WindowNeeds& needs) {
+  std::vector<atlas::Place> existing;
+  std::copy_if(places.begin(), places.end(), std::back_inserter(existing),
+               [&](const atlas::Place& place) { return existence.contains(place.id); });
+  return choose_window(existing, center_m, needs);
+}
+
+ChosenWindow choose_window(const std::vector<atlas::Place>& places, const Eigen::Vector2d& center_m,
+                           const WindowNeeds& needs) {
   std::vector<std::pair<double, core::LandmarkId>> by_distance;
-  for (const atlas::Place& place : places) {
-    if (existence.contains(place.id)) by_distance.emplace_back((place.point_m - center_m).norm(), place.id);
-  }
+  for (const atlas::Place& place : places) by_distance.emplace_back((place.point_m - center_m).norm(), place.id);
   std::sort(by_distance.begin(), by_distance.end());
   const auto within = std::lower_bound(by_distance.begin(), by_distance.end(),
                                        std::make_pair(needs.least_radius_m, core::no_landmark)) -

@@ -37,7 +37,10 @@ struct ChosenWindow {
   std::vector<core::LandmarkId> ids;  ///< increasing
 };
 
-/// The window around a place, of the landmarks of `places` that exist. O(N). Test: supervisor/window_test.cpp.
+/// The window around a place, of the landmarks of `places`. O(places). Test: supervisor/window_test.cpp.
+ChosenWindow choose_window(const std::vector<atlas::Place>& places, const Eigen::Vector2d& center_m,
+                           const WindowNeeds& needs);
+/// The same of those that exist.
 ChosenWindow choose_window(const std::vector<atlas::Place>& places, const association::LandmarkLife& existence,
                            const Eigen::Vector2d& center_m, const WindowNeeds& needs);
 

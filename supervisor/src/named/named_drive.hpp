@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "helixnav/atlas/atlas.hpp"
+#include "helixnav/atlas/phase_factor.hpp"
+#include "helixnav/core/events.hpp"
+#include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/landmark_id.hpp"
+#include "loop/tape.hpp"
+#include "smoothing/drive_phases.hpp"
+
+namespace helixnav::supervisor {
+
+/// The drive of a NamedNavigator since its begin: closed phases in an atlas, and the stops since the last of them. Nothing of it
+/// is ever decided otherwise, so that a phase goes into the atlas as soon as it was driven. Memory: 250 bytes an observation
+/// and 30 kB a phase. Test: supervisor/named_window_test.cpp.
+class NamedDrive {
+ public:
+  /// `most_stops`: how many may wait for the atlas; of a longer drive that nobody puts into it nothing is kept.
+  NamedDrive(const core::PoseGaussian& start, int most_stops);
+
+  /// Where the drive was, to come back to. Good until a phase is closed.
+  struct Mark {
+    std::size_t stops = 0;
+    std::optional<core::Odometry> motion;
+  };
+  Mark mark() const { return {stops_.size(), motion_}; }
+  void back_to(const Mark& mark) noexcept;
+
+  void move(const core::Odometry& motion);
+  /// A scan or a fix after the motion so far; strong guarantee.
+  void stop(Stop stop);
+
+  /// The drive is no longer of use: forgets it and whatever comes.
+  void drop() noexcept;
+  bool is_kept() const { return kept_; }
+
+  /// The stops since the last phase are a whole one.
+  bool has_phase(double length_m) const;
+  /// Puts one into the atlas. `known`: landmarks in the frame of its entry, where it is looked for. Strong guarantee.
+  void close_phase(double length_m, const atlas::PointPrior* known);
+  /// Motion by odometry over the stops that close_phase would take, or over all as long as they are no whole phase.
+  core::Pose2 T_entry_exit(double length_m) const;
+
+  /// Puts all stops into the atlas and settles it; `known` as above, of the first phase. After an error the drive is to be thrown
+  /// away.
+  void settle(double length_m, const atlas::PointPrior* known);
+  const atlas::Atlas& atlas() const { return atlas_; }
+
+ private:
+  std::size_t stops_of_phase(double length_m) const;
+  bool comes_back(const std::vector<core::LandmarkId>& seen) const;
+  static void settle_closing(atlas::Atlas& atlas);
+  void add(const std::vector<DrivePhase>& phases, const atlas::PointPrior* known, atlas::Atlas& atlas) const;
+
+  int most_stops_;
+  bool kept_;
+  atlas::Atlas atlas_;
+  bool begins_ = true;                       ///< the atlas has no phase yet
+  bool on_old_ground_ = false;               ///< the last phase came back to known landmarks, …
+  std::vector<core::LandmarkId> seen_last_;  ///< … and what it saw
+  std::deque<Stop> stops_;
+  std::optional<core::Odometry> motion_;  ///< since the last stop
+};
+
+}  // namespace helixnav::supervisor
