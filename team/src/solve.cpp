@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "helixnav/core/errors.hpp"
 #include "helixnav/smoothing/minimum.hpp"
 #include "process.hpp"
 
@@ -127,9 +128,9 @@ SeenPosition seen_position(const core::Pose2& T_robot_sensor, const core::Observ
   return {located.point_world_m, 0.5 * (covariance + covariance.transpose())};
 }
 
-bool solve(std::size_t component, State& state) {
-  Component& solved = state.components[component];
-  for (const std::size_t r : solved.robots) clone_now(r, state);
+namespace {
+
+bool minimise(Component& solved, State& state) {
   ComponentGraph graph(solved, state);
   const smoothing::Minimum minimum(graph.problem, from_a_good_start());
   if (minimum.report().reason != smoothing::Reason::converged) return false;
@@ -143,6 +144,18 @@ bool solve(std::size_t component, State& state) {
     }
   }
   return true;
+}
+
+}  // namespace
+
+bool solve(std::size_t component, State& state) {
+  Component& solved = state.components[component];
+  for (const std::size_t r : solved.robots) clone_now(r, state);
+  try {
+    return minimise(solved, state);
+  } catch (const core::NumericalError&) {
+    return false;  // e.g. an iterate that puts a landmark into the sensor: the filter goes on, and the next solution may succeed
+  }
 }
 
 }  // namespace helixnav::team

@@ -8,7 +8,7 @@
 namespace helixnav::team {
 
 /// Solves the graph of one component from where it is, and begins its filter anew at the solution. False, and no change but
-/// a clone where each robot is, where least squares does not converge.
+/// a clone where each robot is, where least squares does not converge or breaks down.
 bool solve(std::size_t component, State& state);
 
 /// The observed position of the robot seen, in the frame of the robot that sees.

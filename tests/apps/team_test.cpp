@@ -121,14 +121,17 @@ TEST(TeamSimulation, RefusesOptionsOfOneRobotAndOthersThoseOfATeam) {
   }
 }
 
+// In a world of seed 1840 a step of the least squares puts a landmark into a sensor.
 TEST(TeamCampaign, JoinsWhatIsSharedAndNothingElse) {
   const testing::TemporaryFolder folder;
   const std::string out = (folder.path() / "campaign").string();
-  const Outcome outcome = run({"montecarlo", "team", "--runs", "1", "--jobs", "1", "--quiet", "--out", out});
+  const Outcome outcome =
+      run({"montecarlo", "team", "--first-seed", "1840", "--runs", "1", "--jobs", "1", "--quiet", "--out", out});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const json figures = json::parse(text_of(folder.path() / "campaign" / "summary.json"));
   for (const char* kind : {"shared", "apart", "chain", "orchard"})
     EXPECT_EQ(figures[kind]["false"]["count"], 0) << kind;
+  for (const char* kind : {"shared", "apart", "chain", "orchard"}) EXPECT_EQ(figures[kind]["failed"], 0) << kind;
   EXPECT_GE(figures["shared"]["joined"]["count"], 1);
   EXPECT_EQ(complete_lines(folder.path() / "campaign" / "runs.csv"), 5u);
 }

@@ -25,7 +25,8 @@ struct World {
   TeamVerdict verdict;
 };
 
-constexpr const char* columns = "seed,world,pitch_m,jitter_m,joined,wrong,t_s,merged,merged_wrong,error_m,error_rad\n";
+constexpr const char* columns =
+    "seed,world,pitch_m,jitter_m,failed,joined,wrong,t_s,merged,merged_wrong,error_m,error_rad\n";
 
 std::string rows_of(const std::vector<World>& worlds, std::size_t from, std::size_t count) {
   std::string text;
@@ -37,7 +38,8 @@ std::string rows_of(const std::vector<World>& worlds, std::size_t from, std::siz
     if (lattice) files::append_number(text, world.trial.world.pitch_m);
     text += ',';
     if (lattice) files::append_number(text, world.trial.world.jitter_m);
-    text += std::string(verdict.joined ? ",1" : ",0") + (verdict.wrong ? ",1," : ",0,");
+    text +=
+        std::string(verdict.failed ? ",1" : ",0") + (verdict.joined ? ",1" : ",0") + (verdict.wrong ? ",1," : ",0,");
     files::append_number(text, verdict.t_s);
     text += ',' + std::to_string(verdict.merged) + ',' + std::to_string(verdict.merged_wrong) + ',';
     files::append_number(text, verdict.error_m);
@@ -63,12 +65,13 @@ nlohmann::ordered_json share_of(std::size_t hits, std::size_t trials) {
 nlohmann::ordered_json summary_of(const std::vector<World>& worlds) {
   nlohmann::ordered_json json;
   for (const TeamTrial& trial : trials_of(0)) {
-    std::size_t count = 0, joined = 0, wrong = 0;
+    std::size_t count = 0, failed = 0, joined = 0, wrong = 0;
     int merged = 0, merged_wrong = 0;
     std::vector<double> errors_m;
     for (const World& world : worlds) {
       if (world.trial.name != trial.name) continue;
       ++count;
+      failed += world.verdict.failed ? 1 : 0;
       joined += world.verdict.joined ? 1 : 0;
       wrong += world.verdict.wrong ? 1 : 0;
       merged += world.verdict.merged;
@@ -76,6 +79,7 @@ nlohmann::ordered_json summary_of(const std::vector<World>& worlds) {
       if (world.verdict.joined && !world.verdict.wrong) errors_m.push_back(world.verdict.error_m);
     }
     nlohmann::ordered_json& one = json[trial.name];
+    one["failed"] = failed;
     one["joined"] = share_of(joined, count);
     one["false"] = share_of(wrong, count);
     one["landmarks_merged"] = merged;
@@ -100,6 +104,7 @@ void print(const nlohmann::ordered_json& summary) {
       std::printf("; error median %.3f m, max %.3f m", figures["median_error_m"].get<double>(),
                   figures["max_error_m"].get<double>());
     }
+    if (figures["failed"] > 0) std::printf("; failed %zu", figures["failed"].get<std::size_t>());
     std::printf("; landmarks merged %d, of them wrongly %d\n", figures["landmarks_merged"].get<int>(),
                 figures["landmarks_merged_wrong"].get<int>());
   }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "helixnav/core/angle.hpp"
+#include "helixnav/core/errors.hpp"
 #include "team/team_drive.hpp"
 
 namespace helixnav::apps {
@@ -62,6 +63,22 @@ void judge_merged(const TeamTask& task, const TeamDrive& drive, TeamVerdict& ver
   verdict.wrong = verdict.wrong || 2 * verdict.merged_wrong > verdict.merged;
 }
 
+TeamVerdict judge(const TeamTrial& trial, const TeamTask& task, const TeamDrive& drive) {
+  TeamVerdict verdict;
+  verdict.joined = true;
+  for (std::size_t a = 0; a < drive.robots.size(); ++a) {
+    verdict.joined = verdict.joined && drive.robots[a].component == 0;
+    for (std::size_t b = a + 1; b < drive.robots.size(); ++b) {
+      if (drive.robots[a].component == drive.robots[b].component) judge_pair(task, drive, a, b, verdict);
+    }
+  }
+  judge_merged(task, drive, verdict);
+  for (const team::TeamJoin& join : drive.team.joins()) verdict.t_s = core::seconds(join.t_ns);
+  // Nothing is common there: no place is right.
+  if (trial.world.kind == sim::TeamWorldKind::apart) verdict.wrong = !drive.team.joins().empty();
+  return verdict;
+}
+
 }  // namespace
 
 std::vector<TeamTrial> trials_of(std::uint64_t seed) {
@@ -89,20 +106,13 @@ TeamVerdict judge_world(const TeamTrial& trial, std::uint64_t seed) {
   task.options.join.by_names = false;
   task.options.join.by_sightings = false;
   task.options.join.by_constellation = true;
-  const TeamDrive drive = drive_team(task);
-  TeamVerdict verdict;
-  verdict.joined = true;
-  for (std::size_t a = 0; a < drive.robots.size(); ++a) {
-    verdict.joined = verdict.joined && drive.robots[a].component == 0;
-    for (std::size_t b = a + 1; b < drive.robots.size(); ++b) {
-      if (drive.robots[a].component == drive.robots[b].component) judge_pair(task, drive, a, b, verdict);
-    }
+  try {
+    return judge(trial, task, drive_team(task));
+  } catch (const core::NumericalError&) {
+    TeamVerdict verdict;
+    verdict.failed = true;
+    return verdict;
   }
-  judge_merged(task, drive, verdict);
-  for (const team::TeamJoin& join : drive.team.joins()) verdict.t_s = core::seconds(join.t_ns);
-  // Nothing is common there: no place is right.
-  if (trial.world.kind == sim::TeamWorldKind::apart) verdict.wrong = !drive.team.joins().empty();
-  return verdict;
 }
 
 }  // namespace helixnav::apps

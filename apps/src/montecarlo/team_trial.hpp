@@ -21,6 +21,7 @@ std::vector<TeamTrial> trials_of(std::uint64_t seed);
 
 /// What became of a world, judged by the truth alone.
 struct TeamVerdict {
+  bool failed = false;  ///< the mathematics broke down; nothing else holds then
   bool joined = false;  ///< all robots are in one frame
   bool wrong =
       false;       ///< two robots are in one frame that are not where they stand to each other, or in whose frame most

@@ -62,7 +62,7 @@ std::string scenario_list() {
 /// Another day is another drive through the same world: other noise, other detections.
 core::Recording recording_of(const SimulateJob& job) {
   const sim::Scenario scenario = scenario_of(job.scenario, job.scenario_settings);
-  const core::Recording whole =
+  core::Recording whole =
       sim::simulate_in(sim::build_world(scenario.world, job.seed), scenario, job.day.value_or(job.seed));
   if (job.from_s == 0.0 && job.until_s == 1e9) return whole;
   core::Recording part =
