@@ -39,7 +39,7 @@ class CircleRoad {
 
   explicit CircleRoad(int landmarks) : landmarks_(landmarks), radius_m_(4.0 * landmarks / (2.0 * core::pi)) {}
 
-  int steps_a_lap() const { return 2 * landmarks_; }
+  long steps_a_lap() const { return 2 * landmarks_; }
 
   core::Odometry motion(long k) {
     core::Odometry odometry;

@@ -10,8 +10,8 @@
 #include "helixnav/smoothing/marginals.hpp"
 #include "phase/world_form.hpp"
 #include "read/joint.hpp"
-#include "solve/eliminate.hpp"
 #include "small_drive.hpp"
+#include "solve/eliminate.hpp"
 
 namespace helixnav::atlas {
 namespace {
