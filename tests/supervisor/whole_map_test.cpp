@@ -89,11 +89,11 @@ TEST(WholeMap, FindsAVehicleThatWasCarriedAway) {
 /// Where it was put down it matched trees that stand like those that it expected.
 TEST(WholeMap, LeavesOutMatchesThatContradictThePlace) {
   const core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3019);
-  std::set<core::Label> trees;
-  for (const std::vector<core::Label>& scan : run.labels) trees.insert(scan.begin(), scan.end());
-  trees.erase(core::no_label);
+  std::set<core::Label> standing;
+  for (const std::vector<core::Label>& scan : run.labels) standing.insert(scan.begin(), scan.end());
+  standing.erase(core::no_label);
   const Asking drive = drive_asking(run, {});
-  EXPECT_LE(drive.mature, trees.size()) << "duplicates; 155 of them as long as these matches were believed";
+  EXPECT_LE(drive.mature, standing.size()) << "duplicates; 155 of them as long as these matches were believed";
   EXPECT_LT(drive.error_at_end_m, 5.0);
 }
 
@@ -103,9 +103,9 @@ int old_trees_seen(const core::Recording& run, std::size_t trigger, std::size_t 
   const std::size_t left = trigger > lately ? trigger - lately : 0;
   std::set<core::Label> before, recent, seen;
   for (std::size_t i = 0; i <= end; ++i) {
-    std::set<core::Label>& trees = i < left ? before : i < trigger ? recent : seen;
+    std::set<core::Label>& when = i < left ? before : i < trigger ? recent : seen;
     for (const core::Label label : run.labels[i]) {
-      if (label >= 0) trees.insert(label);
+      if (label >= 0) when.insert(label);
     }
   }
   return static_cast<int>(std::count_if(seen.begin(), seen.end(), [&](core::Label label) {
