@@ -179,7 +179,8 @@ std::optional<Tape::Position> place_with_fewest_across(const Sightings& sighting
     since += std::count_if(positions.begin(), positions.end(), [&](Tape::Position at) { return at > best; });
   }
   constexpr int few = 3;  // at most one in three
-  return few * across[best] <= since ? std::optional(best) : std::nullopt;
+  const bool is_cut = best > 0 && few * across[best] <= since;
+  return is_cut ? std::optional(best) : std::nullopt;
 }
 
 bool close_at_cut(const Input& in, const Cut& cut, const Tape& tape, Reconciled& result) {
