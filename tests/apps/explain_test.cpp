@@ -133,9 +133,10 @@ class Explain : public ::testing::Test {
 };
 
 TEST_F(Explain, TellsEveryClosureOfARunInASentence) {
-  expect_said({}, {"6 steps; closings: 1 accepted, 1 refused, 0 on new ground, 0 left undecided", "Closure 1, step 4 (2 s). Refused",
-                   "cost 45.5 of 6 pairs exceeds 32.9", "1 pair dropped", "Closure 2, step 5 (2.5 s). Accepted",
-                   "cost 11.5 of 6 pairs is within 32.9", "moved by 8.25 m, 27 m after the trigger"});
+  expect_said({}, {"6 steps; closings: 1 accepted, 1 refused, 0 on new ground, 0 left undecided",
+                   "Closure 1, step 4 (2 s). Refused", "cost 45.5 of 6 pairs exceeds 32.9", "1 pair dropped",
+                   "Closure 2, step 5 (2.5 s). Accepted", "cost 11.5 of 6 pairs is within 32.9",
+                   "moved by 8.25 m, 27 m after the trigger"});
 }
 
 TEST_F(Explain, TellsOfAClosureAllSinceItsTrigger) {
