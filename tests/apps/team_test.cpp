@@ -9,7 +9,6 @@
 
 #include "program.hpp"
 #include "real_data.hpp"
-#include "sanitized.hpp"
 #include "small_logs.hpp"
 
 namespace helixnav::apps {
@@ -32,8 +31,10 @@ class TeamReplay : public testing::RealDataTest {
   testing::TemporaryFolder folder_;
 };
 
-TEST_F(TeamReplay, KeepsFiveRobotsWithin15CentimetresOfTheirTruth) {
-  if (support::sanitized) GTEST_SKIP() << "a whole drive: a minute and more under the sanitizers";
+/// A suite of its own, which the sanitizers leave out: a minute and more with them.
+class TeamWholeReplay : public TeamReplay {};
+
+TEST_F(TeamWholeReplay, KeepsFiveRobotsWithin15CentimetresOfTheirTruth) {
   const Outcome outcome = replay({});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const json figures = summary();
