@@ -85,7 +85,7 @@ core::Odometry jump_from(const core::PoseGaussian& pose, const core::Pose2& T_ma
   return jump;
 }
 
-/// When each landmark of a tape, as it is called now, was seen.
+/// When each landmark, as it is called now, was seen. Of a tape that holds the drive from its begin: its positions count from there.
 class Sightings {
  public:
   explicit Sightings(const Tape& tape) {
@@ -154,19 +154,19 @@ Cut cut_at(Tape::Position position, const Sightings& sightings, const Tape& tape
 /// One who is carried away sees no more of what he has mapped: the last such place before the branch.
 std::optional<Tape::Position> last_place_without_view_across(const Sightings& sightings, Tape::Position branch) {
   const std::vector<int> across = sightings.across();
-  Tape::Position last_seen = branch;
-  while (last_seen > 0 && across[last_seen - 1] > 0) --last_seen;
-  if (last_seen > 0) --last_seen;
+  Tape::Position unseen = branch;
+  while (unseen > 0 && across[unseen - 1] > 0) --unseen;
+  if (unseen > 0) --unseen;
   // From there back to the scan that saw something last.
   Tape::Position position = 0;
   for (const auto& [id, positions] : sightings.at()) {
-    for (const Tape::Position at : positions) position = at <= last_seen ? std::max(position, at) : position;
+    for (const Tape::Position at : positions) position = at <= unseen ? std::max(position, at) : position;
   }
   return position > 0 ? std::optional(position) : std::nullopt;
 }
 
-/// He who stands among trees that fit those he expects matches some of them all the same: of the last `within_m` before the
-/// branch the place with the fewest such matches, where they are few among all matches since.
+/// A vehicle that is put down among trees that fit those it expects matches some of them all the same: of the last `within_m`
+/// before the branch the place with the fewest such matches, where they are few among all matches since.
 std::optional<Tape::Position> place_with_fewest_across(const Sightings& sightings, Tape::Position branch,
                                                        double within_m) {
   const std::vector<int> across = sightings.across();

@@ -14,7 +14,7 @@ struct Closing {
   double cost = 0.0;  ///< J of the pairs kept, χ² with dof
   int dof = 0;
   double limit = 0.0;
-  double limit_of_leftovers = 0.0;            ///< likewise of what was merged then
+  double limit_of_leftovers = 0.0;            ///< sum, of what was merged after the pairs
   int dropped = 0;                            ///< pairs dropped because of their cost
   std::vector<core::MergedLandmarks> merged;  ///< empty unless accepted
   std::vector<core::LandmarkId> forgotten;    ///< unconfirmed ones that coincided with an old landmark
