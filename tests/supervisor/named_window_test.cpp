@@ -116,7 +116,9 @@ TEST(NamedWindow, IsTheFilterOfTheWholeMapWhereAllIsLinear) {
     const int held = window.filter().mapped_count();
     for (NamedNavigator* navigator : {&window, &whole}) {
       if (k > 0) navigator->move(odometry);
-      if (k % 200 == 150) EXPECT_TRUE(navigator->fix(fix));
+      if (k % 200 == 150) {
+        EXPECT_TRUE(navigator->fix(fix));
+      }
     }
     const core::StepReport a = window.observe(scan, identities);
     const core::StepReport b = whole.observe(scan, identities);
@@ -124,7 +126,9 @@ TEST(NamedWindow, IsTheFilterOfTheWholeMapWhereAllIsLinear) {
     ASSERT_LT((a.pose.mean.vector() - b.pose.mean.vector()).norm(), 1e-7) << k;
     ASSERT_LE((a.pose.covariance - b.pose.covariance).norm(), 1e-4 * b.pose.covariance.norm()) << k;
     ASSERT_EQ(a.mapped_landmarks, b.mapped_landmarks);
-    if (a.joint_dof > 0) EXPECT_NEAR(a.joint_nis, b.joint_nis, 1e-3 * b.joint_nis);
+    if (a.joint_dof > 0) {
+      EXPECT_NEAR(a.joint_nis, b.joint_nis, 1e-3 * b.joint_nis);
+    }
     ASSERT_EQ(a.associations.size(), b.associations.size());
     for (std::size_t i = 0; i < a.associations.size(); ++i) {
       ASSERT_EQ(a.associations[i].outcome, b.associations[i].outcome);
