@@ -51,14 +51,19 @@ Eigen::Vector2d CompressedEkf::landmark_mean(core::LandmarkId id) const {
 }
 
 double CompressedEkf::landmark_sigma_bound_m(core::LandmarkId id) const {
-  constexpr double margin = 1.5;
   const Place& place = place_of(id, "landmark_sigma_bound_m");
   if (place.where == Whereabouts::active) {
     const int column = ActivePart::column(place.index);
     return std::sqrt(std::max(0.0, active_.P.view().block<2, 2>(column, column).trace()));
   }
-  const auto own = phases_.back().own_covariance_m2.middleRows<2>(2 * place.index);
-  return margin * std::sqrt(std::max(0.0, own(0, 0) + own(1, 1)));
+  const Phase& phase = phases_.back();
+  const auto own = phase.own_covariance_m2.middleRows<2>(2 * place.index);
+  const double start_m = std::sqrt(std::max(0.0, own(0, 0) + own(1, 1)));
+  if (options_.retraction == Retraction::standard) return start_m;
+  constexpr double there_and_back = 2.0;  // the way of a mean over all updates is longer than what is left of it
+  const double heading_rad = std::sqrt(std::max(phase.start_heading_variance_rad2, active_.P.view()(2, 2)));
+  const double moved_m = (phase.basis.view().middleRows<2>(2 * place.index) * active_.theta).norm();
+  return start_m + there_and_back * moved_m * heading_rad;
 }
 
 Eigen::Matrix<double, 2, 3> CompressedEkf::covariance_with_pose(core::LandmarkId id) const {

@@ -43,6 +43,7 @@ CompressedEkf::CompressedEkf(const core::PoseGaussian& start, const FilterOption
   begin_at(start);
   Phase first;
   first.start_m = start.mean.position_m();
+  first.start_heading_variance_rad2 = start.covariance(2, 2);
   first.cell = cell_of(first.start_m);
   open_phase(std::move(first), Eigen::MatrixXd(0, 3), {});
 }
@@ -54,6 +55,7 @@ CompressedEkf::CompressedEkf(const core::JointGaussian& start, core::LandmarkId 
   begin_at({start.pose, start.covariance.topLeftCorner<3, 3>()});
   Phase first;
   first.start_m = start.pose.position_m();
+  first.start_heading_variance_rad2 = start.covariance(2, 2);
   first.cell = cell_of(first.start_m);
   name_from(next_name);
   take_in_passive(start, first);

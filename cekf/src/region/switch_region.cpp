@@ -44,6 +44,7 @@ void CompressedEkf::switch_region(const std::vector<core::LandmarkId>& active) {
   try {
     Phase next;
     next.start_m = active_.pose.position_m();
+    next.start_heading_variance_rad2 = active_.P.view()(2, 2);
     next.cell = cell_of(next.start_m);
     const Eigen::MatrixXd columns = close_phase(next);
     open_phase(std::move(next), columns, wanted);

@@ -111,8 +111,9 @@ class CompressedEkf {
   /// Mean of any landmark. O(1) active, O(q) passive.
   Eigen::Vector2d landmark_mean(core::LandmarkId id) const;
   /// At least the standard deviation in any direction (root of the trace), for searches that must not cost a marginal.
-  /// A passive landmark's is that of the phase's begin times 1.5: it shrinks with every update of the phase, and only the
-  /// right-invariant transport may turn it. O(1). Test: cekf/law_test.cpp.
+  /// A passive landmark's is that of the phase's begin, which shrinks with every update of the phase; the right-invariant
+  /// transport P' = N·P·Nᵀ, N = I + J·Δ·e_θᵀ, adds at most |Δ|·σ_θ where an update moves the mean by Δ (THEORY §1b): twice
+  /// that of the whole way since. O(1) active, O(q) passive. Test: cekf/law_test.cpp.
   double landmark_sigma_bound_m(core::LandmarkId id) const;
   /// Covariance of a landmark, active or passive, with the pose. O(q). Test: cekf/law_test.cpp.
   Eigen::Matrix<double, 2, 3> covariance_with_pose(core::LandmarkId id) const;

@@ -17,6 +17,7 @@ struct Phase {
   long number = 0;
   Eigen::Vector2i cell = Eigen::Vector2i::Zero();     ///< of the vehicle when the phase began
   Eigen::Vector2d start_m = Eigen::Vector2d::Zero();  ///< of the vehicle then
+  double start_heading_variance_rad2 = 0.0;           ///< of the vehicle then
   int slots = 0;                                      ///< known when the phase began
   std::vector<int> slot_of_id;                        ///< slot of each landmark that was passive then, else −1
   Eigen::VectorXd mean_m;                             ///< 2·slots
