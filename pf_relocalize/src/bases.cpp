@@ -36,8 +36,12 @@ int landmark_count(const core::JointGaussian& joint) { return static_cast<int>(j
 std::vector<int> best_origins(const core::JointGaussian& joint) {
   const int n = landmark_count(joint);
   std::vector<double> cost(static_cast<std::size_t>(n), 0.0);
+  double own = 0.0;
+  for (int i = 0; i < n; ++i) own += cross(joint, i, i).trace();
   for (int a = 0; a < n; ++a) {
-    for (int i = 0; i < n; ++i) cost[static_cast<std::size_t>(a)] += relative_cross(joint, i, i, a).trace();
+    double shared = 0.0;
+    for (int i = 0; i < n; ++i) shared += cross(joint, i, a).trace();
+    cost[static_cast<std::size_t>(a)] = own - 2.0 * shared + n * cross(joint, a, a).trace();
   }
   std::vector<int> order(static_cast<std::size_t>(n));
   std::iota(order.begin(), order.end(), 0);
@@ -52,6 +56,40 @@ Vector2d heading_lever(const core::JointGaussian& joint, const Bases& bases) {
   const Vector2d d = point(joint, bases.b) - point(joint, bases.a);
   return turned_left(d) / d.squaredNorm();
 }
+
+/// mean_relative_variance_m2 of all bases with one origin: the sums over the landmarks that do not depend on the second base
+/// are formed once, O(n²), and each base costs O(1).
+class SharedOrigin {
+ public:
+  SharedOrigin(const core::JointGaussian& joint, int a) : joint_(joint), a_(a) {
+    const int n = landmark_count(joint);
+    Eigen::RowVectorXd swings(2 * n);
+    for (int i = 0; i < n; ++i) {
+      const Vector2d swing = turned_left(point(joint, i) - point(joint, a));
+      swings.segment<2>(2 * i) = swing;
+      sum_ += swing;
+      squares_ += swing.squaredNorm();
+      own_ += relative_cross(joint, i, i, a).trace();
+    }
+    with_all_ = swings * joint.covariance.bottomRightCorner(2 * n, 2 * n);
+  }
+
+  double mean_variance_m2(int b) const {
+    const Vector2d lever = heading_lever(joint_, {a_, b});
+    const double heading_variance = lever.dot(relative_cross(joint_, b, b, a_) * lever);
+    const Eigen::RowVector2d with_base = with_all_.segment<2>(2 * b) - with_all_.segment<2>(2 * a_) -
+                                         sum_.transpose() * (cross(joint_, a_, b) - cross(joint_, a_, a_));
+    return (own_ - 2.0 * with_base.dot(lever) + squares_ * heading_variance) / landmark_count(joint_);
+  }
+
+ private:
+  const core::JointGaussian& joint_;
+  int a_;
+  double own_ = 0.0;                 ///< Σ tr Cov(δm_i − δm_A)
+  double squares_ = 0.0;             ///< Σ |s_i|², s_i the direction in which a landmark swings about A
+  Vector2d sum_ = Vector2d::Zero();  ///< Σ s_i
+  Eigen::RowVectorXd with_all_;      ///< Σ s_iᵀ·P_ij for each j
+};
 
 void check(const core::JointGaussian& joint, const Bases& bases) {
   const int n = landmark_count(joint);
@@ -105,9 +143,10 @@ Bases choose_bases(const core::JointGaussian& joint) {
   Bases best;
   double least = std::numeric_limits<double>::infinity();
   for (const int a : best_origins(joint)) {
+    const SharedOrigin origin(joint, a);
     for (int b = 0; b < landmark_count(joint); ++b) {
       if (b == a || (point(joint, a) - point(joint, b)).norm() < 1e-6) continue;
-      const double variance = mean_relative_variance_m2(joint, {a, b});
+      const double variance = origin.mean_variance_m2(b);
       if (variance < least) {
         least = variance;
         best = {a, b};

@@ -2,6 +2,7 @@
 #include "helixnav/sim/route.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -45,8 +46,11 @@ double Route::nearest_along_m(const Eigen::Vector2d& point_m, const Stretch& str
   double best_m = stretch.from_m;
   double best_distance_m2 = std::numeric_limits<double>::infinity();
   const std::size_t last = segment_of(stretch.to_m);
+  double beyond_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = segment_of(stretch.from_m); i <= last; ++i) {
     const double length_m = along_m_[i + 1] - along_m_[i];
+    const double reach_m = beyond_m + length_m;
+    if ((points_m_[i] - point_m).squaredNorm() > reach_m * reach_m) continue;
     const Eigen::Vector2d forward = (points_m_[i + 1] - points_m_[i]) / length_m;
     const double first_m = std::max(stretch.from_m - along_m_[i], 0.0);
     const double last_m = std::min(stretch.to_m - along_m_[i], length_m);
@@ -54,6 +58,7 @@ double Route::nearest_along_m(const Eigen::Vector2d& point_m, const Stretch& str
     const double distance_m2 = (points_m_[i] + step_m * forward - point_m).squaredNorm();
     if (distance_m2 < best_distance_m2) {
       best_distance_m2 = distance_m2;
+      beyond_m = std::sqrt(distance_m2) + 1e-6;
       best_m = along_m_[i] + step_m;
     }
   }

@@ -45,8 +45,10 @@ LabelledScan Scanner::look(const core::Pose2& T_world_robot, double along_m, cor
 std::vector<Scanner::Sighting> Scanner::visible_trees(const core::Pose2& T_world_sensor, double along_m) const {
   std::vector<Sighting> visible;
   const core::Pose2 T_sensor_world = core::inverse(T_world_sensor);
+  const double beyond_m2 = 1.01 * options_.field_of_view.max_range_m * options_.field_of_view.max_range_m;
   for (std::size_t i = 0; i < world_.trees.size(); ++i) {
-    if (!contains(world_.trees[i].present, along_m)) continue;
+    const Eigen::Vector2d away_m = world_.trees[i].point_m - T_world_sensor.position_m();
+    if (away_m.squaredNorm() > beyond_m2 || !contains(world_.trees[i].present, along_m)) continue;
     const Eigen::Vector2d point_m = core::transform(T_sensor_world, world_.trees[i].point_m);
     const Sighting sighting{point_m.norm(), std::atan2(point_m.y(), point_m.x()), static_cast<core::Label>(i)};
     if (contains(options_.field_of_view, sighting.range_m, sighting.bearing_rad)) visible.push_back(sighting);

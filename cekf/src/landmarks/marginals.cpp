@@ -28,6 +28,20 @@ Eigen::MatrixXd both_sides(const Eigen::MatrixXd& e, const Eigen::MatrixXd& M) {
   return product.view();
 }
 
+/// e·M·eᵀ for one landmark's rows e, from the lower triangle of M, by columns: O(q²), no matrix formed.
+Eigen::Matrix2d both_sides(const Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>& e,
+                           const Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& M) {
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (Eigen::Index k = 0; k < M.cols(); ++k) {
+    const Eigen::Index below = M.cols() - k - 1;
+    const auto column = M.col(k).tail(below);
+    const Eigen::Vector2d reached(e.row(0).tail(below).dot(column), e.row(1).tail(below).dot(column));
+    const Eigen::Matrix2d once = (reached + 0.5 * M(k, k) * e.col(k)) * e.col(k).transpose();
+    sum += once + once.transpose();
+  }
+  return sum;
+}
+
 }  // namespace
 
 core::PoseGaussian CompressedEkf::pose() const { return {active_.pose, active_.P.view().topLeftCorner<3, 3>()}; }
@@ -38,9 +52,10 @@ core::PointGaussian CompressedEkf::landmark(core::LandmarkId id) const {
     const int column = ActivePart::column(place.index);
     return {active_.points_m[static_cast<std::size_t>(place.index)], active_.P.view().block<2, 2>(column, column)};
   }
-  const Eigen::MatrixXd e = basis_rows({place.index});
-  const Eigen::Matrix2d own = phases_.back().own_covariance_m2.middleRows<2>(2 * place.index) +
-                              e * (active_.M.view().selfadjointView<Eigen::Lower>() * e.transpose());
+  const Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor> e =
+      phases_.back().basis.view().middleRows<2>(2 * place.index);
+  const Eigen::Matrix2d own =
+      phases_.back().own_covariance_m2.middleRows<2>(2 * place.index) + both_sides(e, active_.M.view());
   return {passive_mean(place.index), 0.5 * (own + own.transpose())};
 }
 
