@@ -155,7 +155,8 @@ std::string joint_map_bytes(const core::JointMap& map) {
   for (Eigen::Index i = 0; i < rows; ++i) {
     for (Eigen::Index j = 0; j <= i; ++j) put(bytes, 0.5 * (joint.covariance(i, j) + joint.covariance(j, i)));
   }
-  return bytes + digest_of(bytes);
+  bytes += digest_of(bytes);
+  return bytes;
 }
 
 core::JointMap read_joint_map(const std::string& path) {

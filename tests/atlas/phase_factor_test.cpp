@@ -90,6 +90,22 @@ TEST(PhaseFactor, IsTheSchurComplementOfTheInteriorPoses) {
   }
 }
 
+TEST(PhaseFactor, OfOneStepThatSeesManyLandmarksHasNothingToEliminate) {
+  core::RandomStream random(5);
+  PhaseLog log;
+  log.steps.push_back({core::Pose2(5.0, 0.0, 0.1), 0.01 * Eigen::Matrix3d::Identity(), {}});
+  for (core::LandmarkId id = 0; id < 60; ++id) {  // as in a forest: Eigen blocks products of this size
+    const Eigen::Vector2d point_m(random.uniform(-20.0, 20.0), random.uniform(-20.0, 20.0));
+    const Eigen::Matrix2d R = 0.01 * Eigen::Matrix2d::Identity();
+    log.seen_at_entry.push_back({id, {}, core::make_cartesian(point_m, R)});
+    const Eigen::Vector2d later_m = core::transform(core::inverse(log.steps[0].T_before_after), point_m);
+    log.steps[0].seen.push_back({id, {}, core::make_cartesian(later_m, R)});
+  }
+  const PhaseFactor factor = derive_factor(log, dead_reckon(log));
+  const Dense dense = dense_equations(log, factor.shape);
+  EXPECT_LT((factor.gaussian.information - dense.H).cwiseAbs().maxCoeff(), 1e-9 * dense.H.cwiseAbs().maxCoeff());
+}
+
 TEST(PhaseFactor, SaysTheSameAtAnyRigidMotion) {
   const testing::SmallDrive drive = testing::make_small_drive(2);
   const PhaseLog& log = *drive.logs[2];

@@ -68,6 +68,22 @@ TEST_P(Law, TheCheapMeanIsTheMarginalsAndTheSigmaBoundHolds) {
   EXPECT_GT(passive, 1000);
 }
 
+TEST_P(Law, TheOutlooksAreWhatIsToldOfEachLandmark) {
+  RandomProgram program(44, {GetParam(), 220, 30, false});
+  for (int k = 0; k < 250; ++k) {
+    program.step();
+    const CompressedEkf& filter = program.filter;
+    const std::vector<core::LandmarkId> ids = filter.landmarks();
+    const std::vector<Outlook> outlooks = filter.outlooks(ids);
+    ASSERT_EQ(outlooks.size(), ids.size());
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      EXPECT_LT((outlooks[i].mean_m - filter.landmark_mean(ids[i])).norm(), 1e-9) << ids[i];
+      EXPECT_NEAR(outlooks[i].sigma_bound_m, filter.landmark_sigma_bound_m(ids[i]), 1e-9) << ids[i];
+      EXPECT_LT((outlooks[i].with_pose - filter.covariance_with_pose(ids[i])).cwiseAbs().maxCoeff(), 1e-9) << ids[i];
+    }
+  }
+}
+
 TEST_P(Law, ARegionHoldsTheNeighbourhoodAndNoMoreThanAllowed) {
   FilterOptions options;
   options.retraction = GetParam();

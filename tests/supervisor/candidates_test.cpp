@@ -55,8 +55,7 @@ TEST(Candidates, LoseNoLandmarkInsideTheGateOfAnyObservation) {
   int mapped = 0;
   for (const double noise : {1.0, 4.0}) {
     on_a_drive(noise, [&](const cekf::CompressedEkf& filter, const core::Scan& scan) {
-      const std::vector<core::LandmarkId> chosen =
-          near_by_correlation(filter, scan, candidates(filter, scan, sigmas), sigmas);
+      const std::vector<core::LandmarkId> chosen = candidates(filter, scan, sigmas);
       EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));
       const core::JointGaussian joint = filter.joint(filter.landmarks());
       const auto all = association::make_innovation_problem(joint, scan, gates);

@@ -88,5 +88,22 @@ TEST(DriveMap, IsTheSameTakenInByPieces) {
   expect_same(map.atlas().joint(ids), whole.atlas().joint(ids));
 }
 
+// A drive that is solved anew, because its noise is known better, has a map of its own.
+TEST(DriveMap, GoesOnWithWhatAnotherOfTheDriveRemembers) {
+  const core::Recording run = circuit_of(5);
+  LabelledDrive drive(run, false);
+  DriveMap before(drive.start(), 20.0);
+  before.take(drive.tape, drive.filter);
+  before.settle();
+  before.remember(drive.filter);
+  DriveMap anew(drive.start(), 20.0);
+  anew.remember(before);
+  anew.take(drive.tape, drive.filter);
+  anew.settle();
+  for (const core::LandmarkId id : drive.filter.landmarks()) {
+    EXPECT_EQ(anew.remembered(id).covariance_m2, drive.filter.landmark(id).covariance_m2) << id;
+  }
+}
+
 }  // namespace
 }  // namespace helixnav::supervisor

@@ -132,6 +132,7 @@ void eliminate_chain(PhaseEquations& equations) {
     equations.diagonal[k + 1] -= E.transpose() * E;
     equations.to_kept.middleRows<3>(3 * static_cast<Index>(k) + 3) -= E.transpose() * rows;
   }
+  if (poses == 0) return;  // one step: nothing between entry and exit; a product of no depth divides by zero in Eigen
   equations.kept.selfadjointView<Eigen::Lower>().rankUpdate(equations.to_kept.transpose(), -1.0);
 }
 

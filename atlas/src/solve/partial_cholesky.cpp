@@ -23,6 +23,7 @@ void solve_lower(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>
 }
 
 void add_gram(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& Y, Square P) {
+  if (Y.rows() == 0) return;  // a product of no depth divides by zero in Eigen
   P.selfadjointView<Eigen::Lower>().rankUpdate(Y.transpose());
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -8,6 +9,10 @@
 #include "helixnav/core/errors.hpp"
 
 namespace helixnav::cekf {
+
+// Whoever exchanges filters relies on it: half a move that throws would leave neither.
+static_assert(std::is_nothrow_move_constructible_v<CompressedEkf> && std::is_nothrow_move_assignable_v<CompressedEkf>);
+
 namespace {
 
 void check_pose(const core::PoseGaussian& start) {

@@ -145,7 +145,7 @@ void CompressedEkf::absorb_closed_phases(long until) {
     absorbed_->add_symmetric_product(response, basis);
     absorbed_->overwrite(phase.written, phase.written_covariance);
     free_slots_.insert(free_slots_.end(), phase.dead.begin(), phase.dead.end());
-    phases_.pop_front();
+    phases_.erase(phases_.begin());
   }
 }
 

@@ -34,6 +34,32 @@ bool fixes_points(const core::Scan& scan) {
                      [](const core::Observation& o) { return core::dimension(o.kind) == 2; });
 }
 
+/// Whether any observation may be of the landmark if their errors were anything at all to each other.
+bool is_near(const std::vector<SeenPoint>& seen, const cekf::Outlook& landmark, double sigmas) {
+  return std::any_of(seen.begin(), seen.end(), [&](const SeenPoint& s) {
+    return (s.point_m - landmark.mean_m).norm() < sigmas * (s.sigma_m + landmark.sigma_bound_m);
+  });
+}
+
+/// Whether any may be of it as their errors are correlated: sigma_m is that of the landmark's place.
+bool is_near(const std::vector<SeenPoint>& seen, const core::Pose2& pose, const cekf::Outlook& landmark, double sigma_m,
+             double sigmas) {
+  const Eigen::Matrix<double, 2, 3>& cross = landmark.with_pose;
+  return std::any_of(seen.begin(), seen.end(), [&](const SeenPoint& s) {
+    const Eigen::Vector2d arm_m = s.point_m - pose.position_m();
+    const double common_m2 = cross(0, 0) + cross(1, 1) - cross(0, 2) * arm_m.y() + cross(1, 2) * arm_m.x();
+    const double relative_m2 = std::max(0.0, s.sigma_m * s.sigma_m + sigma_m * sigma_m - 2.0 * common_m2);
+    return (s.point_m - landmark.mean_m).squaredNorm() < sigmas * sigmas * relative_m2;
+  });
+}
+
+/// How far from the sensor a landmark may be that any observation is of, if its own deviation is no larger.
+double reach_of(const std::vector<SeenPoint>& seen, const Eigen::Vector2d& sensor_m, double sigmas) {
+  double reach_m = 0.0;
+  for (const SeenPoint& s : seen) reach_m = std::max(reach_m, (s.point_m - sensor_m).norm() + 2.0 * sigmas * s.sigma_m);
+  return reach_m;
+}
+
 }  // namespace
 
 std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, const core::Scan& scan, double sigmas) {
@@ -46,53 +72,18 @@ std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, cons
     return filter.landmarks_within(sensor_m, is_known ? reach_m : std::numeric_limits<double>::infinity());
   }
 
+  constexpr double wider = 1.5;  // the gate is by the Mahalanobis distance, this by the trace and a linear step
   const std::vector<SeenPoint> seen = seen_points(pose, scan);
-  double reach_m = 0.0;
-  for (const SeenPoint& s : seen) reach_m = std::max(reach_m, (s.point_m - sensor_m).norm() + 2.0 * sigmas * s.sigma_m);
-
+  const std::vector<core::LandmarkId> about = filter.landmarks_within(sensor_m, reach_of(seen, sensor_m, sigmas));
+  const std::vector<cekf::Outlook> outlooks = filter.outlooks(about);
   std::vector<core::LandmarkId> chosen;
-  for (const core::LandmarkId id : filter.landmarks_within(sensor_m, reach_m)) {
-    const Eigen::Vector2d mean_m = filter.landmark_mean(id);
-    const double sigma_m = filter.landmark_sigma_bound_m(id);
-    const bool near = std::any_of(seen.begin(), seen.end(), [&](const SeenPoint& s) {
-      return (s.point_m - mean_m).norm() < sigmas * (s.sigma_m + sigma_m);
-    });
-    if (near) chosen.push_back(id);
+  for (std::size_t i = 0; i < about.size(); ++i) {
+    const cekf::Outlook& landmark = outlooks[i];
+    const auto near_with = [&](double sigma_m) { return is_near(seen, pose.mean, landmark, sigma_m, wider * sigmas); };
+    if (!is_near(seen, landmark, sigmas) || !near_with(landmark.sigma_bound_m)) continue;
+    if (near_with(sigma_bound(filter.landmark(about[i]).covariance_m2))) chosen.push_back(about[i]);
   }
   return chosen;
-}
-
-namespace {
-
-/// Whether any observation may be of the landmark: sigma_m is that of the landmark's place, cross its covariance with the pose.
-bool is_near(const std::vector<SeenPoint>& seen, const core::Pose2& pose, const Eigen::Vector2d& mean_m, double sigma_m,
-             const Eigen::Matrix<double, 2, 3>& cross, double sigmas) {
-  return std::any_of(seen.begin(), seen.end(), [&](const SeenPoint& s) {
-    const Eigen::Vector2d arm_m = s.point_m - pose.position_m();
-    const double common_m2 = cross(0, 0) + cross(1, 1) - cross(0, 2) * arm_m.y() + cross(1, 2) * arm_m.x();
-    const double relative_m2 = std::max(0.0, s.sigma_m * s.sigma_m + sigma_m * sigma_m - 2.0 * common_m2);
-    return (s.point_m - mean_m).squaredNorm() < sigmas * sigmas * relative_m2;
-  });
-}
-
-}  // namespace
-
-std::vector<core::LandmarkId> near_by_correlation(const cekf::CompressedEkf& filter, const core::Scan& scan,
-                                                  std::vector<core::LandmarkId> candidates, double sigmas) {
-  if (!fixes_points(scan)) return candidates;
-  const core::PoseGaussian pose = filter.pose();
-  const std::vector<SeenPoint> seen = seen_points(pose, scan);
-  constexpr double wider = 1.5;
-  const auto is_far = [&](core::LandmarkId id) {
-    const Eigen::Vector2d mean_m = filter.landmark_mean(id);
-    const Eigen::Matrix<double, 2, 3> cross = filter.covariance_with_pose(id);
-    const auto near_with = [&](double sigma_m) {
-      return is_near(seen, pose.mean, mean_m, sigma_m, cross, wider * sigmas);
-    };
-    return !near_with(filter.landmark_sigma_bound_m(id)) || !near_with(sigma_bound(filter.landmark(id).covariance_m2));
-  };
-  candidates.erase(std::remove_if(candidates.begin(), candidates.end(), is_far), candidates.end());
-  return candidates;
 }
 
 std::vector<core::LandmarkId> expected_in_view(const cekf::CompressedEkf& filter, const core::Scan& scan,

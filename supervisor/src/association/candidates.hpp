@@ -9,18 +9,14 @@
 
 namespace helixnav::supervisor {
 
-/// Landmarks that any observation of the scan may belong to: those whose distance from where the observation puts them
-/// is less than `sigmas` standard deviations of pose and landmark together. The sum of deviations bounds the relative
-/// one whatever their correlation, so that nothing inside the exact gate is lost. Observations that fix no point (one
-/// row) take every landmark within the range of the field of view.
+/// Landmarks that any observation of the scan may belong to: those whose distance from where the observation puts them is less
+/// than `sigmas` standard deviations of pose and landmark together, and less than one and a half times as many of the
+/// difference, correlations included. The first bounds the second whatever the correlation; but far from the start the
+/// deviations of pose and landmark are large and nearly the same error, their sum takes in hundreds of landmarks, and a joint
+/// covariance of these would cost more than all else. Nothing inside the exact gate is lost. Observations that fix no point
+/// (one row) take every landmark within the range of the field of view. O(landmarks about · q), and O(q²) for each chosen.
+/// Test: supervisor/candidates_test.cpp.
 std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, const core::Scan& scan, double sigmas);
-
-/// Those of the candidates that are near by what is known of their place relative to the vehicle: within one and a half times
-/// `sigmas` standard deviations of the difference, correlations included. Far from the start the deviations of pose and landmark are
-/// large and nearly the same error; their sum takes in hundreds of landmarks then, and a joint covariance of these costs
-/// more than all else. O(q²) a landmark. Test: supervisor/candidates_test.cpp.
-std::vector<core::LandmarkId> near_by_correlation(const cekf::CompressedEkf& filter, const core::Scan& scan,
-                                                  std::vector<core::LandmarkId> candidates, double sigmas);
 
 /// Landmarks whose estimated position lies inside the field of view, at least `margin_m` from its edge: those that
 /// should have been seen.

@@ -141,7 +141,6 @@ bool NavigationLoop::use_fix(const core::AbsoluteFix& fix) {
 GatedScan NavigationLoop::gate(const Scan& scan) const {
   const Searching* open = searching();
   std::vector<LandmarkId> ids = candidates(belief_.filter, scan, options_.candidate_sigmas);
-  ids = near_by_correlation(belief_.filter, scan, std::move(ids), options_.candidate_sigmas);
   if (open != nullptr) {
     const auto excluded = [&](LandmarkId id) { return open->search.excludes(id); };
     ids.erase(std::remove_if(ids.begin(), ids.end(), excluded), ids.end());

@@ -137,6 +137,7 @@ AskedWholeMap NavigationLoop::ask(LandmarksAbout& about, const Search& search, c
 bool NavigationLoop::begin_drive_anew(const Tape& tape, const cekf::CompressedEkf& filter) {
   try {
     auto drive = begun_drive();
+    if (belief_.drive) drive->remember(*belief_.drive);
     drive->take(tape, filter);
     drive->settle();
     become(std::move(drive), belief_.window);

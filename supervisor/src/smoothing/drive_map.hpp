@@ -33,6 +33,8 @@ class DriveMap {
 
   /// Keeps the covariances of the landmarks of a filter that leaves some of them out.
   void remember(const cekf::CompressedEkf& filter);
+  /// The covariances that another map of the same drive has kept.
+  void remember(const DriveMap& other) { covariances_m2_ = other.covariances_m2_; }
   /// Where a landmark was solved last, with the covariance that was remembered of it last. O(log N).
   core::PointGaussian remembered(core::LandmarkId id) const;
 

@@ -161,9 +161,14 @@ void NamedNavigator::begin_window(const std::vector<LandmarkId>& wanted) {
   for (int name = 0; name < count; ++name) joint.ids[static_cast<std::size_t>(name)] = name;
   cekf::CompressedEkf filter(joint, count, filter_.options());
   remember_covariances();
-  if (!before_) before_.emplace(BeforeHandOver{std::move(filter), names_, std::move(drive), begun_with_});
-  std::swap(before_->filter, filter_);
-  std::swap(before_->drive, drive_);
+  if (before_) {  // a second one in this call: what was before the call stays what was before the first
+    std::swap(filter, filter_);
+    std::swap(drive, drive_);
+  } else {
+    before_.emplace(BeforeHandOver{std::move(filter), names_, std::move(drive), begun_with_});
+    std::swap(before_->filter, filter_);
+    std::swap(before_->drive, drive_);
+  }
   names_ = std::move(names);
   begun_with_ = count;
 }
