@@ -29,7 +29,7 @@ void CompressedEkf::augment(const core::Observation& observation, const core::Po
   const Eigen::Matrix2d own = located.G_pose * active_.P.view().topLeftCorner<3, 3>() * G +
                               located.G_z * Eigen::Matrix2d(observation.R) * located.G_z.transpose();
   check_newest(located.point_world_m, own);
-  make_room_for_newest(name);
+  make_room_for_newest();
 
   // Nothing below allocates or throws.
   const int n = active_.dimension();
@@ -51,7 +51,7 @@ core::LandmarkId CompressedEkf::augment(const DerivedPoint& point) {
   BeforeActivations before = before_activations(false);
   try {
     for (const core::LandmarkId id : point.ids) activate(id);
-    make_room_for_newest(name);
+    make_room_for_newest();
     derive_newest(point);
   } catch (...) {
     undo_activations(before);
@@ -97,10 +97,9 @@ void CompressedEkf::check_newest(const Eigen::Vector2d& point_m, const Eigen::Ma
   throw core::NumericalError(problem.str());
 }
 
-void CompressedEkf::make_room_for_newest(core::LandmarkId name) {
+void CompressedEkf::make_room_for_newest() {
   make_room_for_landmark(active_.weights());
-  const auto named = static_cast<std::size_t>(name) + 1;
-  if (named > places_.size()) make_room(places_, named - places_.size());
+  make_room(places_, 1);
 }
 
 void CompressedEkf::check_derived_point(const DerivedPoint& point) const {
@@ -114,11 +113,10 @@ void CompressedEkf::check_derived_point(const DerivedPoint& point) const {
 
 void CompressedEkf::name_newest(const Eigen::Vector2d& point_m, core::LandmarkId id) {
   name_from(id + 1);
-  places_[static_cast<std::size_t>(id)] = {Whereabouts::active, active_count()};
+  set_place(id, {Whereabouts::active, active_count()});
   active_.ids.push_back(id);
   active_.slots.push_back(-1);
   active_.points_m.push_back(point_m);
-  ++mapped_;
 }
 
 }  // namespace helixnav::cekf

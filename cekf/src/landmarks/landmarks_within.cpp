@@ -22,8 +22,8 @@ std::vector<core::LandmarkId> CompressedEkf::passive_in_cells(const Eigen::Vecto
       entry = std::lower_bound(entry, by_cell.end(), std::pair(next, before_all));
       continue;
     }
-    const Place& place = places_[static_cast<std::size_t>(entry->second)];
-    if (place.where == Whereabouts::passive) ids.push_back(entry->second);
+    const Place* place = find_place(entry->second);
+    if (place != nullptr && place->where == Whereabouts::passive) ids.push_back(entry->second);
     ++entry;
   }
   return ids;
@@ -38,7 +38,7 @@ std::vector<core::LandmarkId> CompressedEkf::landmarks_within(const Eigen::Vecto
     found.clear();
     double moved_m = 0.0;
     for (const core::LandmarkId id : passive_in_cells(point_m, radius_m + slack_m)) {
-      const int slot = places_[static_cast<std::size_t>(id)].index;
+      const int slot = find_place(id)->index;
       const Eigen::Vector2d mean_m = passive_mean(slot);
       moved_m = std::max(moved_m, (mean_m - phases_.back().mean_m.segment<2>(2 * slot)).norm());
       if ((mean_m - point_m).norm() <= radius_m) found.push_back(id);

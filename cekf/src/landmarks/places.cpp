@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which landmark is where: active, passive, or nowhere.
+#include <algorithm>
 #include <string>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
@@ -7,45 +8,64 @@
 
 namespace helixnav::cekf {
 
+std::vector<CompressedEkf::NamedPlace>::const_iterator CompressedEkf::from_name(core::LandmarkId id) const {
+  const auto before = [](const NamedPlace& named, core::LandmarkId name) { return named.id < name; };
+  return std::lower_bound(places_.begin(), places_.end(), id, before);
+}
+
+/// Null for a landmark that is not there.
+const CompressedEkf::Place* CompressedEkf::find_place(core::LandmarkId id) const {
+  const auto found = from_name(id);
+  return found != places_.end() && found->id == id ? &found->place : nullptr;
+}
+
+/// Of a landmark that is there, or for which there is room.
+void CompressedEkf::set_place(core::LandmarkId id, const Place& place) {
+  const auto at = places_.begin() + (from_name(id) - places_.begin());
+  if (at != places_.end() && at->id == id) {
+    at->place = place;
+  } else {
+    places_.insert(at, {id, place});
+  }
+}
+
 const CompressedEkf::Place& CompressedEkf::place_of(core::LandmarkId id, const char* verb) const {
   if (id < 0 || id >= active_.next_id) {
     throw core::PreconditionError(std::string(verb) + ": landmark " + std::to_string(id) + " is unknown");
   }
-  const Place& place = places_[static_cast<std::size_t>(id)];
-  if (place.where == Whereabouts::nowhere) {
+  const Place* place = find_place(id);
+  if (place == nullptr) {
     throw core::PreconditionError(std::string(verb) + ": landmark " + std::to_string(id) + " has been removed");
   }
-  return place;
+  return *place;
 }
 
+/// Allocates nothing where there is room for the passive landmarks of the phase and the active ones.
 void CompressedEkf::rebuild_places() {
-  const Phase& phase = phases_.back();
-  places_.assign(static_cast<std::size_t>(active_.next_id), {});
-  for (std::size_t id = 0; id < phase.slot_of_id.size(); ++id) {
-    if (phase.slot_of_id[id] >= 0) places_[id] = {Whereabouts::passive, phase.slot_of_id[id]};
+  places_.clear();
+  for (const auto& [id, slot] : phases_.back().passive_slots) places_.push_back({id, {Whereabouts::passive, slot}});
+  for (const core::LandmarkId id : active_.left_passive) {
+    if (find_place(id) != nullptr) set_place(id, {});
   }
-  for (const core::LandmarkId id : active_.left_passive) places_[static_cast<std::size_t>(id)] = {};
+  const auto has_left = [](const NamedPlace& named) { return named.place.where == Whereabouts::nowhere; };
+  places_.erase(std::remove_if(places_.begin(), places_.end(), has_left), places_.end());
   for (std::size_t i = 0; i < active_.ids.size(); ++i) {
-    places_[static_cast<std::size_t>(active_.ids[i])] = {Whereabouts::active, static_cast<int>(i)};
+    places_.push_back({active_.ids[i], {Whereabouts::active, static_cast<int>(i)}});
   }
-  mapped_ = 0;
-  for (const Place& place : places_) mapped_ += place.where != Whereabouts::nowhere;
+  std::sort(places_.begin(), places_.end(), [](const NamedPlace& a, const NamedPlace& b) { return a.id < b.id; });
 }
 
-bool CompressedEkf::contains(core::LandmarkId id) const {
-  return id >= 0 && id < active_.next_id && places_[static_cast<std::size_t>(id)].where != Whereabouts::nowhere;
-}
+bool CompressedEkf::contains(core::LandmarkId id) const { return find_place(id) != nullptr; }
 
 bool CompressedEkf::is_active(core::LandmarkId id) const {
-  return contains(id) && places_[static_cast<std::size_t>(id)].where == Whereabouts::active;
+  const Place* place = find_place(id);
+  return place != nullptr && place->where == Whereabouts::active;
 }
 
 std::vector<core::LandmarkId> CompressedEkf::landmarks() const {
   std::vector<core::LandmarkId> ids;
-  ids.reserve(static_cast<std::size_t>(mapped_));
-  for (core::LandmarkId id = 0; id < active_.next_id; ++id) {
-    if (contains(id)) ids.push_back(id);
-  }
+  ids.reserve(places_.size());
+  for (const NamedPlace& named : places_) ids.push_back(named.id);
   return ids;
 }
 

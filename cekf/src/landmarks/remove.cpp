@@ -14,8 +14,7 @@ void CompressedEkf::remove(core::LandmarkId id) {
   } else {
     remove_active(place.index);
   }
-  places_[static_cast<std::size_t>(id)] = {};
-  --mapped_;
+  places_.erase(from_name(id));
 }
 
 /// The last active landmark takes the place of the removed one. Its weights stay: they are history of the passive part.
@@ -33,7 +32,7 @@ void CompressedEkf::remove_active(int index) {
     active_.ids[i] = active_.ids.back();
     active_.slots[i] = active_.slots.back();
     active_.points_m[i] = active_.points_m.back();
-    places_[static_cast<std::size_t>(active_.ids[i])].index = index;
+    set_place(active_.ids[i], {Whereabouts::active, index});
   }
   active_.ids.pop_back();
   active_.slots.pop_back();

@@ -89,7 +89,7 @@ void CompressedEkf::take_in_passive(const core::JointGaussian& start, Phase& fir
   first.own_covariance_m2.resize(2 * first.slots, 2);
   for (int slot = 0; slot < first.slots; ++slot) {
     const core::LandmarkId id = start.ids[static_cast<std::size_t>(slot)];
-    places_[static_cast<std::size_t>(id)] = {Whereabouts::passive, slot};
+    set_place(id, {Whereabouts::passive, slot});
     first.mean_m.segment<2>(2 * slot) = start.points_m[static_cast<std::size_t>(slot)];
     first.own_covariance_m2.middleRows<2>(2 * slot) = start.covariance.block<2, 2>(3 + 2 * slot, 3 + 2 * slot);
   }

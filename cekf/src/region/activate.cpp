@@ -36,7 +36,7 @@ void CompressedEkf::activate(core::LandmarkId id) {
   active_.A.resize(q, n + 2);
   active_.A.view().rightCols<2>() = Me;
 
-  places_[static_cast<std::size_t>(id)] = {Whereabouts::active, active_count()};
+  set_place(id, {Whereabouts::active, active_count()});
   active_.ids.push_back(id);
   active_.slots.push_back(slot);
   active_.points_m.push_back(mean_m);
@@ -73,7 +73,7 @@ void CompressedEkf::undo_activations(BeforeActivations& before) {
   const int undone = active_count() - before.active;
   for (int i = before.active; i < active_count(); ++i) {
     const std::size_t k = static_cast<std::size_t>(i);
-    places_[static_cast<std::size_t>(active_.ids[k])] = {Whereabouts::passive, active_.slots[k]};
+    set_place(active_.ids[k], {Whereabouts::passive, active_.slots[k]});
   }
   const std::size_t n = static_cast<std::size_t>(before.active);
   const std::size_t late = phase.late_anchors.size() - static_cast<std::size_t>(undone);

@@ -75,9 +75,7 @@ Eigen::MatrixXd CompressedEkf::end_columns(const Panels& basis, int slots) const
 
 /// An own variance that has become negative or is not finite: nothing of such a phase may be written down.
 void CompressedEkf::check_own_covariances(const Phase& next) const {
-  for (std::size_t id = 0; id < places_.size(); ++id) {
-    const Place& place = places_[id];
-    if (place.where == Whereabouts::nowhere) continue;
+  for (const auto& [id, place] : places_) {
     const bool is_active = place.where == Whereabouts::active;
     const int slot = is_active ? active_.slots[static_cast<std::size_t>(place.index)] : place.index;
     const auto own = next.own_covariance_m2.middleRows<2>(2 * static_cast<Eigen::Index>(slot));

@@ -46,7 +46,7 @@ void CompressedEkf::restore(const Snapshot& snapshot) {
   std::size_t taken = 0;
   for (std::size_t p = at; p < phases_.size(); ++p) taken += phases_[p].taken.size();
   make_room(free_slots_, taken);
-  places_.reserve(static_cast<std::size_t>(active.next_id));
+  places_.reserve(phases_[at].passive_slots.size() + active.ids.size());
   phases_[at].basis.make_room(phases_[at].basis.rows(), active.weights());
 
   // Nothing below allocates or throws.
@@ -73,17 +73,13 @@ void CompressedEkf::open_again(Phase& phase) {
   phase.dead.clear();
 }
 
-void CompressedEkf::name_from(core::LandmarkId id) {
-  if (id <= active_.next_id) return;
-  places_.resize(static_cast<std::size_t>(id));
-  active_.next_id = id;
-}
+void CompressedEkf::name_from(core::LandmarkId id) { active_.next_id = std::max(active_.next_id, id); }
 
 std::size_t CompressedEkf::kept_bytes() const {
   std::size_t bytes = 0;
   for (std::size_t p = 0; p + 1 < phases_.size(); ++p) {
     const Phase& phase = phases_[p];
-    bytes += phase.basis.bytes() + phase.slot_of_id.size() * sizeof(int) +
+    bytes += phase.basis.bytes() + phase.passive_slots.size() * sizeof(phase.passive_slots[0]) +
              static_cast<std::size_t>(phase.response.size() + phase.written_covariance.size() + phase.mean_m.size() +
                                       phase.own_covariance_m2.size()) *
                  sizeof(double);

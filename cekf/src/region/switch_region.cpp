@@ -70,8 +70,7 @@ std::vector<core::LandmarkId> CompressedEkf::region_around_vehicle() const {
   const Phase& phase = phases_.back();
   const Eigen::VectorXd passive_m = phase.mean_m + phase.basis.view() * active_.theta;
   std::vector<std::pair<double, core::LandmarkId>> near;
-  for (const core::LandmarkId id : landmarks()) {
-    const Place& place = places_[static_cast<std::size_t>(id)];
+  for (const auto& [id, place] : places_) {
     const bool is_active = place.where == Whereabouts::active;
     const Eigen::Vector2d mean_m =
         is_active ? active_.points_m[static_cast<std::size_t>(place.index)]
@@ -98,7 +97,7 @@ void CompressedEkf::open_phase(Phase&& next, const Eigen::MatrixXd& columns,
   std::vector<int> slots;
   std::vector<int> entering;
   for (const core::LandmarkId id : active) {
-    const Place& place = places_[static_cast<std::size_t>(id)];
+    const Place& place = *find_place(id);
     const bool was_active = place.where == Whereabouts::active;
     slots.push_back(was_active ? active_.slots[static_cast<std::size_t>(place.index)] : place.index);
     if (!was_active) entering.push_back(place.index);
@@ -118,7 +117,7 @@ void CompressedEkf::open_phase(Phase&& next, const Eigen::MatrixXd& columns,
   anchors.leftCols<3>() = columns.leftCols<3>();
   Eigen::Index entered = 0;
   for (std::size_t i = 0; i < active.size(); ++i) {
-    const Place& place = places_[static_cast<std::size_t>(active[i])];
+    const Place& place = *find_place(active[i]);
     auto own = anchors.middleCols<2>(ActivePart::column(static_cast<int>(i)));
     if (place.where == Whereabouts::active) {
       own = columns.middleCols<2>(ActivePart::column(place.index));
@@ -134,19 +133,17 @@ void CompressedEkf::open_phase(Phase&& next, const Eigen::MatrixXd& columns,
 
 /// Slots of the landmarks that the phase leaves passive.
 void CompressedEkf::freeze_slots(Phase& phase, const std::vector<core::LandmarkId>& active) const {
-  phase.slot_of_id.assign(places_.size(), -1);
-  for (std::size_t id = 0; id < places_.size(); ++id) {
-    const Place& place = places_[id];
-    if (place.where == Whereabouts::passive) phase.slot_of_id[id] = place.index;
-    if (place.where == Whereabouts::active) phase.slot_of_id[id] = active_.slots[static_cast<std::size_t>(place.index)];
-  }
-  for (const core::LandmarkId id : active) phase.slot_of_id[static_cast<std::size_t>(id)] = -1;
+  std::vector<core::LandmarkId> left_out = active;
+  std::sort(left_out.begin(), left_out.end());
+  phase.passive_slots.clear();
   phase.by_cell.clear();
-  for (std::size_t id = 0; id < places_.size(); ++id) {
-    const int slot = phase.slot_of_id[id];
-    if (slot < 0) continue;
+  for (const auto& [id, place] : places_) {
+    if (std::binary_search(left_out.begin(), left_out.end(), id)) continue;
+    const bool was_active = place.where == Whereabouts::active;
+    const int slot = was_active ? active_.slots[static_cast<std::size_t>(place.index)] : place.index;
     const Eigen::Vector2i cell = cell_of(phase.mean_m.segment<2>(2 * slot));
-    phase.by_cell.push_back({{cell.x(), cell.y()}, static_cast<core::LandmarkId>(id)});
+    phase.passive_slots.emplace_back(id, slot);
+    phase.by_cell.push_back({{cell.x(), cell.y()}, id});
   }
   std::sort(phase.by_cell.begin(), phase.by_cell.end());
 }

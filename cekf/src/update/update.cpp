@@ -42,7 +42,7 @@ void CompressedEkf::gather_involved(UpdateWorkspace& w) const {
   w.involved.assign({0, 1, 2});
   w.points_m.clear();
   for (const core::LandmarkId id : w.ids) {
-    const int index = places_[static_cast<std::size_t>(id)].index;
+    const int index = find_place(id)->index;
     w.involved.push_back(ActivePart::column(index));
     w.involved.push_back(ActivePart::column(index) + 1);
     w.points_m.push_back(active_.points_m[static_cast<std::size_t>(index)]);

@@ -131,7 +131,7 @@ class CompressedEkf {
   /// when the phase began, widened by how far those found there have moved since: cost O(landmarks near · q).
   std::vector<core::LandmarkId> landmarks_within(const Eigen::Vector2d& point_m, double radius_m) const;
   int active_count() const { return static_cast<int>(active_.ids.size()); }
-  int mapped_count() const { return mapped_; }
+  int mapped_count() const { return static_cast<int>(places_.size()); }
 
   /// O((n + q)²) bytes, without the passive part.
   Snapshot snapshot() const;
@@ -158,7 +158,14 @@ class CompressedEkf {
     Whereabouts where = Whereabouts::nowhere;
     int index = -1;  ///< in active_.ids, or the slot
   };
+  struct NamedPlace {
+    core::LandmarkId id = core::no_landmark;
+    Place place;
+  };
 
+  std::vector<NamedPlace>::const_iterator from_name(core::LandmarkId id) const;
+  const Place* find_place(core::LandmarkId id) const;
+  void set_place(core::LandmarkId id, const Place& place);
   const Place& place_of(core::LandmarkId id, const char* verb) const;
   int weights_per_anchor() const { return options_.retraction == Retraction::right_invariant ? 2 : 1; }
 
@@ -171,7 +178,7 @@ class CompressedEkf {
   void name_newest(const Eigen::Vector2d& point_m, core::LandmarkId id);
   void derive_newest(const DerivedPoint& point);
   void check_newest(const Eigen::Vector2d& point_m, const Eigen::Matrix2d& covariance_m2) const;
-  void make_room_for_newest(core::LandmarkId name);
+  void make_room_for_newest();
   void check_derived_point(const DerivedPoint& point) const;
 
   // update.cpp, update_iterated.cpp, merge.cpp, apply_correction.cpp
@@ -240,10 +247,9 @@ class CompressedEkf {
   std::shared_ptr<PassiveCovariance> absorbed_ =
       std::make_shared<PassiveCovariance>();  ///< copies share it, until one writes
   std::vector<int> free_slots_;
-  std::vector<Place> places_;  ///< by landmark id
-  long last_phase_ = 0;        ///< numbers are never used twice, not even after a restore
+  std::vector<NamedPlace> places_;  ///< of the landmarks that there are, ascending by id
+  long last_phase_ = 0;             ///< numbers are never used twice, not even after a restore
   long keep_since_;
-  int mapped_ = 0;
   UpdateWorkspace workspace_;
 };
 

@@ -15,12 +15,12 @@ namespace helixnav::cekf {
 /// passive has a slot s: rows 2s and 2s+1 below.
 struct Phase {
   long number = 0;
-  Eigen::Vector2i cell = Eigen::Vector2i::Zero();     ///< of the vehicle when the phase began
-  Eigen::Vector2d start_m = Eigen::Vector2d::Zero();  ///< of the vehicle then
-  double start_heading_variance_rad2 = 0.0;           ///< of the vehicle then
-  int slots = 0;                                      ///< known when the phase began
-  std::vector<int> slot_of_id;                        ///< slot of each landmark that was passive then, else −1
-  Eigen::VectorXd mean_m;                             ///< 2·slots
+  Eigen::Vector2i cell = Eigen::Vector2i::Zero();               ///< of the vehicle when the phase began
+  Eigen::Vector2d start_m = Eigen::Vector2d::Zero();            ///< of the vehicle then
+  double start_heading_variance_rad2 = 0.0;                     ///< of the vehicle then
+  int slots = 0;                                                ///< known when the phase began
+  std::vector<std::pair<core::LandmarkId, int>> passive_slots;  ///< of the landmarks that were passive then, by name
+  Eigen::VectorXd mean_m;                                       ///< 2·slots
   Eigen::MatrixXd own_covariance_m2 = Eigen::MatrixXd::Zero(0, 2);  ///< 2·slots × 2: the 2×2 diagonal blocks of P_bb0
   ReservedMatrix basis;                                             ///< E, 2·slots × q; activation appends columns
   std::vector<std::pair<std::pair<int, int>, core::LandmarkId>> by_cell;  ///< passive landmarks by cell, sorted
