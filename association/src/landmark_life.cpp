@@ -46,6 +46,18 @@ void LandmarkLife::set_lengths(double look_distance_m, double tentative_patience
   options_.tentative_patience_m = tentative_patience_m;
 }
 
+void LandmarkLife::pass(const std::vector<LandmarkId>& unseen_at_rim) {
+  for (const LandmarkId id : unseen_at_rim) record(id);
+  for (const LandmarkId id : unseen_at_rim) {
+    LandmarkRecord& one = *find(id);
+    const double last_m = std::max(one.last_seen_path_m, one.last_passed_path_m);
+    if (one.state != LandmarkState::mature || path_m_ - last_m < options_.tentative_patience_m) continue;
+    ++one.misses;
+    one.last_passed_path_m = path_m_;
+    one.log_odds += miss_nats_;
+  }
+}
+
 LifeChanges LandmarkLife::observe(const Eigen::Vector2d& sensor_m, const std::vector<LandmarkId>& seen,
                                   const std::vector<LandmarkId>& born, const std::vector<LandmarkId>& expected) {
   check_scan(seen, born, expected);

@@ -75,6 +75,33 @@ TEST(LandmarkLife, MatureOnesDieOfStrongEvidenceOnly) {
   EXPECT_EQ(misses, 13);  // (8 + 6) / ln(0.9/0.3)
 }
 
+TEST(LandmarkLife, OneThatIsSeenFromAfarOnlyDiesWhenDrivenPastOftenUnseen) {
+  LandmarkLife life = with_a_mature_landmark({});
+  int passes = 0;
+  for (; life.contains(4) && passes < 100; ++passes) {
+    for (int k = 0; k < 40; ++k) {  // many scans on the way past are one look
+      life.drive(1.0);
+      life.pass({4});
+      life.observe(at(k), {}, {}, {});
+      if (!life.contains(4)) break;
+    }
+  }
+  EXPECT_GE(passes, 8);
+  EXPECT_LE(passes, 14);
+}
+
+TEST(LandmarkLife, OneThatIsSeenNowAndThenFromAfarLives) {
+  LandmarkLife life = with_a_mature_landmark({});
+  for (int lap = 0; lap < 1000; ++lap) {
+    life.drive(100.0);
+    const bool seen = lap % 2 == 0;
+    life.pass(seen ? std::vector<core::LandmarkId>{} : std::vector<core::LandmarkId>{4});
+    life.observe(at(seen ? lap : 0.0), seen ? std::vector<core::LandmarkId>{4} : std::vector<core::LandmarkId>{}, {},
+                 {});
+  }
+  EXPECT_TRUE(life.contains(4));
+}
+
 TEST(LandmarkLife, MatureOnesLiveForEverWhenToldSo) {
   LifeOptions options;
   options.mature_may_die = false;

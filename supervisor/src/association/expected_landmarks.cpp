@@ -22,6 +22,17 @@ std::vector<LandmarkId> expected_unseen(const cekf::CompressedEkf& filter, const
   return expected;
 }
 
+std::vector<LandmarkId> unseen_at_rim(const cekf::CompressedEkf& filter, const core::Scan& scan,
+                                      const std::vector<core::AssociationReport>& associations,
+                                      const std::vector<LandmarkId>& expected) {
+  std::vector<LandmarkId> unseen = expected_unseen(filter, scan, 0.0, associations);
+  const std::vector<LandmarkId> seen = landmarks_with(Outcome::matched, associations);
+  for (const std::vector<LandmarkId>* others : {&expected, &seen}) {
+    for (const LandmarkId id : *others) unseen.erase(std::remove(unseen.begin(), unseen.end(), id), unseen.end());
+  }
+  return unseen;
+}
+
 void drop_what_may_be_elsewhere(const association::LandmarkLife& existence, const Search* open, double old_after_m,
                                 const std::vector<LandmarkId>& seen, std::vector<LandmarkId>& expected) {
   const double old_before_m = existence.path_m() - old_after_m;

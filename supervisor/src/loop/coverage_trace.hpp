@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "helixnav/core/se2.hpp"
@@ -20,6 +22,14 @@ class CoverageTrace {
   /// Forgets what was passed after `path_m`.
   void back_to(double path_m);
 
+  /// Of the poses passed before `path_m`, drops those from which nothing was seen that an older one did not see: less than
+  /// three quarters of the spacing away from it and turned by less than 0.3 rad. Those that `needed(path_m)` are kept. Does nothing before there are
+  /// twice as many poses as it left last time, and never below 4096, so that it costs O(log n) a pose and poses are as many
+  /// as the ground is large, however long the drive. Throws nothing but std::bad_alloc, with nothing changed.
+  /// Test: supervisor/coverage_trace_test.cpp.
+  void thin_before(double path_m, const std::function<bool(double)>& needed);
+  std::size_t size() const { return points_.size(); }
+
   /// Everything so far was told in another frame.
   void change_frame(const core::Pose2& T_new_old);
 
@@ -33,6 +43,7 @@ class CoverageTrace {
   };
   double spacing_m_;
   std::vector<Point> points_;
+  std::size_t thin_from_ = 4096;  ///< points
 };
 
 }  // namespace helixnav::supervisor

@@ -61,6 +61,7 @@ StepReport NavigationLoop::observe(const Scan& scan) {
   const bool is_thinned = scan.observations.size() > core::most_observations_used;
   StepReport report = is_thinned ? observe_thinned(scan) : take_step(scan, nullptr);
   name_revised(report);
+  used_.erase(used_.begin(), used_.lower_bound(checkpoint().step));  // nothing revises them any more
   return report;
 }
 
@@ -180,9 +181,13 @@ std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const
   if (Mapping* mapping = std::get_if<Mapping>(&mode_)) {
     mapping->monitor.observe(belief_.existence, expected, seen, options_.search.old_after_m);
   }
+  std::vector<LandmarkId> at_rim = unseen_at_rim(belief_.filter, scan, report.associations, expected);
   const Searching* open = searching();
-  drop_what_may_be_elsewhere(belief_.existence, open != nullptr ? &open->search : nullptr, options_.search.old_after_m,
-                             seen, expected);
+  for (std::vector<LandmarkId>* ids : {&expected, &at_rim}) {
+    drop_what_may_be_elsewhere(belief_.existence, open != nullptr ? &open->search : nullptr,
+                               options_.search.old_after_m, seen, *ids);
+  }
+  belief_.existence.pass(at_rim);
   const core::Pose2 T_world_sensor = core::compose(belief_.filter.pose().mean, scan.T_robot_sensor);
   const association::LifeChanges changes = belief_.existence.observe(T_world_sensor.position_m(), seen, born, expected);
   for (const LandmarkId id : changes.died) {

@@ -161,6 +161,7 @@ class NavigationLoop {
   template <class Call>
   auto all_or_nothing(const Call& call);
   void commit();
+  void thin_coverage();
   void recover();
   Search search_from(const Checkpoint& trigger) const;
 
@@ -180,10 +181,11 @@ class NavigationLoop {
   Undo undo_;
   std::uint64_t searches_ = 0;
   WholeMapQuestions questions_;
-  WholeMapQuestions questions_before_;                     ///< this call, for recover()
-  std::shared_ptr<const core::JointMap> sought_in_;        ///< an earlier map, as long as the place on it is unknown
-  std::shared_ptr<PlaceSearch> place_search_;              ///< in it, from the first scan on
-  std::map<std::int64_t, std::vector<std::size_t>> used_;  ///< [step] observations of the scans that were thinned
+  WholeMapQuestions questions_before_;               ///< this call, for recover()
+  std::shared_ptr<const core::JointMap> sought_in_;  ///< an earlier map, as long as the place on it is unknown
+  std::shared_ptr<PlaceSearch> place_search_;        ///< in it, from the first scan on
+  std::map<std::int64_t, std::vector<std::size_t>>
+      used_;  ///< [step] observations of scans that were thinned since the checkpoint
 };
 
 }  // namespace helixnav::supervisor

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "loop/recover.hpp"
 
+#include <algorithm>
 #include <new>
 #include <tuple>
 #include <utility>
@@ -27,6 +28,23 @@ void NavigationLoop::commit() {
   const bool is_long = tape_.stops() > options_.search.smooth_up_to_scans || !tape_.holds_since(0);
   if (belief_.drive && is_long) tape_.hand_on(belief_.drive->end());
   tape_.settle(checkpoint().position);
+  thin_coverage();
+}
+
+/// Poses on ground that was covered before, where nothing goes back to any more.
+void NavigationLoop::thin_coverage() {
+  if (searching() != nullptr || sought_in_) return;
+  const auto left_open = [this](double path_m) {
+    return std::any_of(belief_.left_open.begin(), belief_.left_open.end(), [&](const LeftOpen& open) {
+      return open.begun_path_m <= path_m && path_m <= open.ended_path_m;
+    });
+  };
+  const double asked_about_m = options_.search.old_after_m + options_.search.undecided_m;
+  try {
+    belief_.coverage.thin_before(checkpoint().existence.path_m() - asked_about_m, left_open);
+  } catch (const std::bad_alloc&) {
+    // Stays as it is until the next call.
+  }
 }
 
 /// Back to the checkpoint, and through what came since again: everything is as before the call, its motion pending again.

@@ -40,6 +40,7 @@ struct LandmarkRecord {
   Eigen::Vector2d last_miss_at_m = Eigen::Vector2d::Zero();
   double born_path_m = 0.0;  ///< length of the drive then
   double last_seen_path_m = 0.0;
+  double last_passed_path_m = 0.0;  ///< see LandmarkLife::pass
 };
 
 /// What one scan changed. The owner of the filter removes the dead ones from it.
@@ -58,6 +59,12 @@ class LandmarkLife {
 
   /// The vehicle has driven on. What is driven without scans counts, and what a correction moves the estimate does not.
   void drive(double length_m) { path_m_ += length_m; }
+
+  /// Landmarks at the rim of what the sensor sees that the next scan to be observed did not see; whether it should have is
+  /// uncertain. Of a mature one a whole drive past it is one miss, and a drive past ends after tentative_patience_m: where
+  /// landmarks that are gone were seen from afar only, nothing else refutes them. PreconditionError, with nothing changed,
+  /// for an id that is not recorded.
+  void pass(const std::vector<core::LandmarkId>& unseen_at_rim);
 
   /// One scan taken with the sensor at `sensor_m`, world frame. `seen`: matched landmarks. `born`: those that it began.
   /// `expected`: those it should have seen, with a margin inside the field of view; seen ones may be among them. A
