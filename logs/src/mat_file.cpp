@@ -9,7 +9,7 @@
 
 #include "helixnav/core/errors.hpp"
 #include "input_files.hpp"
-#include "mat_nesting.hpp"
+#include "mat_bounds.hpp"
 
 namespace helixnav::logs {
 namespace {
@@ -82,8 +82,9 @@ void MatFile::check_extent() const {
     if (left < tag_bytes || length > left - tag_bytes) {
       fail("byte " + std::to_string(at) + ": expected a variable that ends before the end of the file");
     }
-    if (nests_too_deep(std::string_view(content).substr(at, tag_bytes + length), mark == "IM")) {
-      fail("byte " + std::to_string(at) + ": expected cells and structures at most 8 deep and not longer than 64 MiB");
+    const std::string_view element = std::string_view(content).substr(at, tag_bytes + length);
+    if (const std::string_view bound = broken_bound(element, mark == "IM"); !bound.empty()) {
+      fail("byte " + std::to_string(at) + ": expected " + std::string(bound));
     }
     at += tag_bytes + length;
   }

@@ -92,6 +92,27 @@ TEST(HostileMatlabFile, MatricesBeyondAllMeasureAreRefused) {
   }
 }
 
+/// matio allocates them all before it reads the first: 12 GB for 112 bytes.
+TEST(HostileMatlabFile, MoreCellsThanThereAreBytesForAreRefused) {
+  const std::string cells = matrix(1, 1, 0x5b000001, "cells", matrix(6, 1, 1, "", element(9, std::string(8, '\0'))));
+  const std::string fields =
+      matrix(2, 1, 1000, "cells", word32(4 << 16 | 5) + word32(1) + element(1, std::string(100'000, 'a')));
+  for (const std::string& elements : {cells, compressed(cells), fields, compressed(fields)}) {
+    EXPECT_NE(error_of(elements).find("hostile.mat: byte 128: expected no more cells and fields than there are bytes"),
+              std::string::npos)
+        << error_of(elements);
+  }
+}
+
+TEST(HostileMatlabFile, MoreDimensionsThanAnyMatrixHasAreRefused) {
+  std::string matrix_of_many = matrix(6, 1, 1, "VicPark_clean_data", element(9, std::string(8, '\0')));
+  matrix_of_many.replace(28, 4, word32(0xac000008));  // bytes of the dimensions
+  for (const std::string& elements : {matrix_of_many, compressed(matrix_of_many)}) {
+    EXPECT_NE(error_of(elements).find("hostile.mat: byte 128: expected at most 32 dimensions"), std::string::npos)
+        << error_of(elements);
+  }
+}
+
 /// 600 MiB of line ends in 0.6 MiB of zip.
 TEST(HostileZip, ThatHoldsMoreThanAnyLogIsRefused) {
   const testing::TemporaryFolder folder;
