@@ -208,14 +208,16 @@ class Soak {
   int closures_ = 0;
 };
 
-/// Says what is broken.
-int judge(const Row& first, const Row& last) {
+/// Says what is broken. A filter that is as sure as it may be has its NEES inside the band 95 times of 100; over one drive, in
+/// which the error of the first lap stays, there is no saying whether it is above.
+int judge(const Row& first, const Row& last, double least_inside) {
   const double growth = last.resident_mb / first.resident_mb - 1.0;
   const double slower = last.p99_us / first.p99_us;
   std::printf(
       "memory after the first tenth grew by %.2f %% (bound 1), p99 of the last tenth is %.3f of the first (1.1)\n",
       100.0 * growth, slower);
-  return growth <= 0.01 && slower <= 1.1 ? 0 : 1;
+  std::printf("NEES inside its 95 %% band in %.3f of the scans of the worst tenth (0.90)\n", least_inside);
+  return growth <= 0.01 && slower <= 1.1 && least_inside >= 0.9 ? 0 : 1;
 }
 
 }  // namespace
@@ -226,10 +228,12 @@ int main(int argc, char** argv) {
   std::printf(
       "    scans    RSS MB   held MB   p50 us   p99 us    max us    map    NEES inside   error m opened ended\n");
   Row first, last;
+  double least_inside = 1.0;
   for (int i = 0; i < 10; ++i) {
     last = soak.tenth();
     if (i == 0) first = last;
     soak.print(last);
+    least_inside = std::min(least_inside, last.inside_band);
   }
-  return judge(first, last);
+  return judge(first, last, least_inside);
 }
