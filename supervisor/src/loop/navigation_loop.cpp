@@ -181,7 +181,9 @@ std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const
   if (Mapping* mapping = std::get_if<Mapping>(&mode_)) {
     mapping->monitor.observe(belief_.existence, expected, seen, options_.search.old_after_m);
   }
-  std::vector<LandmarkId> at_rim = unseen_at_rim(belief_.filter, scan, report.associations, expected);
+  std::vector<LandmarkId> at_rim;
+  constexpr std::int64_t rim_stride = 4;  // a whole drive past is one miss: not every scan need look
+  if (belief_.step % rim_stride == 0) at_rim = unseen_at_rim(belief_.filter, scan, report.associations, expected);
   const Searching* open = searching();
   for (std::vector<LandmarkId>* ids : {&expected, &at_rim}) {
     drop_what_may_be_elsewhere(belief_.existence, open != nullptr ? &open->search : nullptr,
