@@ -59,6 +59,9 @@ std::vector<Part> parts_of(std::string_view matrix, std::size_t most, bool littl
 /// The dimensions are the second part, of four bytes each.
 bool has_few_dimensions(const std::vector<Part>& parts) { return parts.size() < 2 || parts[1].length <= 4 * 32; }
 
+/// The name is the third part.
+bool has_short_name(const std::vector<Part>& parts) { return parts.size() < 3 || parts[2].length <= 1024; }
+
 /// Every cell, and every field of a structure, is a matrix with a tag of its own. The fourth part of a structure is the
 /// length of a field's name, the fifth the names.
 bool has_room_for_cells(const std::vector<Part>& parts, std::size_t bytes, std::size_t array_class,
@@ -81,6 +84,7 @@ std::string_view broken_bound_of_matrix(std::string_view matrix, int levels, boo
   constexpr std::size_t head = 5;
   const std::vector<Part> first = parts_of(matrix, head, little_endian);
   if (!has_few_dimensions(first)) return "at most 32 dimensions";
+  if (!has_short_name(first)) return "a name of at most 1024 bytes";
   if (!is_container(matrix, little_endian)) return {};
   if (levels == 0) return "cells and structures at most 8 deep";
   if (!has_room_for_cells(first, matrix.size(), class_of(matrix, little_endian), little_endian)) {

@@ -113,6 +113,16 @@ TEST(HostileMatlabFile, MoreDimensionsThanAnyMatrixHasAreRefused) {
   }
 }
 
+TEST(HostileMatlabFile, ANameAsLongAsTheFileIsNotIsRefused) {
+  std::string long_name = matrix(6, 1, 1, "VicPark_clean_data", element(9, std::string(8, '\0')));
+  long_name.replace(44, 4, word32(0xa0000001));  // bytes of the name
+  for (const std::string& elements : {long_name, compressed(long_name)}) {
+    EXPECT_NE(error_of(elements).find("hostile.mat: byte 128: expected a name of at most 1024 bytes"),
+              std::string::npos)
+        << error_of(elements);
+  }
+}
+
 /// 600 MiB of line ends in 0.6 MiB of zip.
 TEST(HostileZip, ThatHoldsMoreThanAnyLogIsRefused) {
   const testing::TemporaryFolder folder;
