@@ -2,6 +2,7 @@
 #include "association/gated_scan.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "association/association_report.hpp"
 #include "helixnav/association/likelihood_ratio.hpp"
@@ -32,12 +33,45 @@ void defer_isolated_match(const std::vector<RevisitAmbiguity>& returns, const Se
   if (ambiguous || (informative && !met_again)) isolated->outcome = core::Outcome::ambiguous;
 }
 
+/// Pose and one landmark: all that its own gate needs.
+core::JointGaussian with_pose(const cekf::CompressedEkf& filter, core::LandmarkId id) {
+  const core::PoseGaussian pose = filter.pose();
+  const core::PointGaussian point = filter.landmark(id);
+  core::JointGaussian joint;
+  joint.pose = pose.mean;
+  joint.ids = {id};
+  joint.points_m = {point.mean_m};
+  joint.covariance.resize(5, 5);
+  joint.covariance.topLeftCorner<3, 3>() = pose.covariance;
+  joint.covariance.bottomLeftCorner<2, 3>() = filter.covariance_with_pose(id);
+  joint.covariance.topRightCorner<3, 2>() = joint.covariance.bottomLeftCorner<2, 3>().transpose();
+  joint.covariance.bottomRightCorner<2, 2>() = point.covariance_m2;
+  return joint;
+}
+
+/// Of many candidates those that keep some observation from being a new landmark's: the joint covariance of the others is not asked for,
+/// O(candidates²·q), hundreds where the vehicle does not know where it is.
+std::vector<core::LandmarkId> inside_gates(const cekf::CompressedEkf& filter, std::vector<core::LandmarkId> candidates,
+                                           const core::Scan& scan, const association::Gates& gates) {
+  constexpr std::size_t few = 48;
+  if (candidates.size() <= few) return candidates;
+  const auto is_outside = [&](core::LandmarkId id) {
+    const core::JointGaussian joint = with_pose(filter, id);
+    const association::InnovationProblem own = association::make_innovation_problem(joint, scan, gates);
+    return std::none_of(own.observations.begin(), own.observations.end(),
+                        [](const association::GatedObservation& one) { return std::isfinite(one.nearest_nis); });
+  };
+  candidates.erase(std::remove_if(candidates.begin(), candidates.end(), is_outside), candidates.end());
+  return candidates;
+}
+
 }  // namespace
 
 GatedScan gate_scan(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& candidates,
                     const core::Scan& scan, const NavigatorOptions& options) {
   GatedScan gated;
-  gated.gating = std::make_unique<Gating>(filter, candidates, scan, options.gates);
+  gated.gating =
+      std::make_unique<Gating>(filter, inside_gates(filter, candidates, scan, options.gates), scan, options.gates);
   association::Options how = options.association;
   how.extraneous = association::density_in_view(scan, options.extraneous_per_scan, how.extraneous);
   gated.assignment = association::associate(options.method, gated.gating->problem, how);
