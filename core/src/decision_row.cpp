@@ -127,6 +127,16 @@ void numbers(FixDecision& d, Visit&& visit) {
 }
 
 template <class Visit>
+void numbers(CarriedDecision& d, Visit&& visit) {
+  visit("part", d.part);
+  visit("from_part", d.from_part);
+  visit("landmarks", d.landmarks);
+  visit("dropped", d.dropped);
+  visit("apart", d.apart);
+  visit("driven_m", d.driven_m);
+}
+
+template <class Visit>
 void numbers(PlacedDecision& d, Visit&& visit) {
   visit("earlier_landmarks", d.earlier_landmarks);
   visit("questions", d.questions);
@@ -143,6 +153,7 @@ void numbers(PlacedDecision& d, Visit&& visit) {
   visit("x_m", d.T_map_session.x_m);
   visit("y_m", d.T_map_session.y_m);
   visit("heading_rad", d.T_map_session.heading_rad);
+  visit("part", d.part);
 }
 
 template <class Visit>
@@ -195,6 +206,7 @@ KindAndVerdict words_of(const UndecidedDecision&) { return {"closure", "undecide
 KindAndVerdict words_of(const NewGroundDecision&) { return {"closure", "new-ground"}; }
 KindAndVerdict words_of(const SmoothingDecision& d) { return {"smoothing", word_of(d.accepted)}; }
 KindAndVerdict words_of(const FixDecision& d) { return {"fix", word_of(d.accepted)}; }
+KindAndVerdict words_of(const CarriedDecision&) { return {"carried", "told"}; }
 KindAndVerdict words_of(const PlacedDecision& d) { return {"placed", placed_words[static_cast<int>(d.verdict)]}; }
 
 KindAndVerdict words_of(const WholeMapDecision& d) {
@@ -274,6 +286,7 @@ Decision decision_of(const DecisionRow& row) {
   if (row.kind == "trigger" && rolled_back) return fill(RollbackDecision{}, row);
   if (row.kind == "slip" && accepted) return fill(SlipDecision{}, row);
   if (row.kind == "search") return search_decision(row);
+  if (row.kind == "carried" && row.verdict == "told") return fill(CarriedDecision{}, row);
   if (row.kind == "placed") return decision_with<PlacedDecision>(placed_words, row);
   if (row.kind == "whole-map") return decision_with<WholeMapDecision>(whole_map_words, row);
   if (row.kind == "constellation") return decision_with<VerificationDecision>(verification_words, row);

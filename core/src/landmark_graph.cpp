@@ -25,6 +25,11 @@ class GraphBuilder {
 
   void add(const AbsoluteFix& fix) { result_.graph.fix_edges.push_back({pose_here(), fix}); }
 
+  [[noreturn]] void add(const Lost& lost) const {
+    throw InputError("the vehicle was carried at t = " + std::to_string(seconds(lost.t_ns)) +
+                     " s: no motion ties the poses before to those after, as a graph needs it");
+  }
+
   void add(const Scan& scan) {
     const std::size_t index = result_.pose_of_scan.size();
     const std::size_t labelled = index < ids_.size() ? ids_[index].size() : 0;

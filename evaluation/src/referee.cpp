@@ -46,6 +46,14 @@ int count_closings(const StepReport& report, bool accepted) {
       }));
 }
 
+/// The vehicle was carried and has found its place again.
+bool has_found_place(const StepReport& report) {
+  return std::any_of(report.decisions.begin(), report.decisions.end(), [](const core::Decision& decision) {
+    const auto* placed = std::get_if<core::PlacedDecision>(&decision);
+    return placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted;
+  });
+}
+
 }  // namespace
 
 Referee::Referee(const core::Recording& recording, std::vector<double> returns_at_m, const RefereeOptions& options)
@@ -67,6 +75,7 @@ void Referee::watch(const StepReport& report, const Map& map_now) {
   }
   const std::vector<Label>& labels = book.recording.labels[book.steps];
   book.drive_on(report, map_now);
+  book.note_carried(report);
   book.look_out(labels);
   book.pose = report.pose;
   book.note_triggers(report);
@@ -83,10 +92,14 @@ void Referee::watch(const StepReport& report, const Map& map_now) {
   const int new_ground = count<core::NewGroundDecision>(report);
   book.score.new_ground += new_ground;
   if (book.on_old_ground) book.score.new_ground_wrong += new_ground;
-  if (count_closings(report, true) == 0) return;
-  book.judge_closure(report, map_now());
-  // What was wrong before the closing is no longer believed.
-  book.last_on_old_ground.open = {report.pose, book.truth(), book.recognised};
+  if (count_closings(report, true) > 0 || has_found_place(report)) {
+    book.judge_closure(report, map_now());
+    // What was wrong before the closing is no longer believed.
+    book.last_on_old_ground.open = {report.pose, book.truth(), book.recognised};
+  }
+  if (!book.judges_at_once) return;
+  book.judge_if_open(book.last_on_old_ground, map_now);
+  book.judge_if_open(book.last_associated, map_now);
 }
 
 RunScore Referee::score(const std::vector<MapLandmark>& map) const {
@@ -105,6 +118,16 @@ RunScore Referee::score(const std::vector<MapLandmark>& map) const {
   book_->score_map(map, result);
   book_->pass_verdict(result);
   return result;
+}
+
+bool Referee::Book::is_carried(const core::Recording& recording) {
+  return std::any_of(recording.events.begin(), recording.events.end(),
+                     [](const core::Event& event) { return std::holds_alternative<core::Lost>(event); });
+}
+
+void Referee::Book::note_carried(const StepReport& report) {
+  if (count<core::CarriedDecision>(report) > 0) is_apart = true;
+  if (has_found_place(report)) is_apart = false;
 }
 
 void Referee::Book::drive_on(const StepReport& report, const Map& map_now) {
@@ -163,7 +186,7 @@ void Referee::Book::look_out(const std::vector<Label>& labels) {
     seen.insert(label);
     old += old_trees.count(label) > 0 ? 1 : 0;
   }
-  on_old_ground = old >= options.reentry_observations;
+  on_old_ground = !is_apart && old >= options.reentry_observations;
   if (score.returns.empty() || old == 0) return;
   ReturnScore& now = score.returns.back();
   if (std::isnan(now.error_before_m) && steps > 1) {

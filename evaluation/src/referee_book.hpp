@@ -47,6 +47,8 @@ struct Referee::Book {
   int wrong_so_far = 0;                   ///< wrong old matches since the present return, while nothing triggered
   bool on_old_ground = false;             ///< in the present scan
   std::set<core::LandmarkId> recognised;  ///< old landmarks matched in the present scan
+  bool judges_at_once;                    ///< a vehicle that is said to be carried leaves the map of that time
+  bool is_apart = false;                  ///< it was carried, and how its map lies to the one before is unknown
   std::size_t steps = 0;
   double last_slip_m = -std::numeric_limits<double>::infinity();  ///< driven until then
   core::PoseGaussian pose;
@@ -59,12 +61,13 @@ struct Referee::Book {
         returns_at_m(std::move(returns_m)),
         options(how),
         in_sight_m(sight_m),
-        identities(how.old_sightings) {}
+        identities(how.old_sightings),
+        judges_at_once(is_carried(run)) {}
 
   const core::Pose2& truth() const { return recording.true_poses[steps - 1].T_world_robot; }
   /// In the present scan, with old landmarks.
   bool is_associated() const {
-    return !score.returns.empty() && static_cast<int>(recognised.size()) >= options.reentry_observations;
+    return !is_apart && !score.returns.empty() && static_cast<int>(recognised.size()) >= options.reentry_observations;
   }
   bool is_wrong(const PoseError& error) const {
     return error.position_m > options.wrong_position_m || error.heading_rad > options.wrong_heading_rad;
@@ -73,6 +76,8 @@ struct Referee::Book {
     return wrong >= options.least_wrong_pairs && wrong > options.most_wrong_share * all;
   }
 
+  static bool is_carried(const core::Recording& recording);
+  void note_carried(const core::StepReport& report);
   void drive_on(const core::StepReport& report, const Map& map_now);
   void begin_return(bool searching);
   void note_triggers(const core::StepReport& report);

@@ -176,6 +176,14 @@ void bind_fix(py::module_& module) {
   bind_times(fix);
 }
 
+void bind_lost(py::module_& module) {
+  py::class_<core::Lost> lost(module, "Lost",
+                              "The vehicle was moved by something else than its wheels, and nobody "
+                              "measured how.");
+  lost.def(py::init([](double t_s) { return core::Lost{time_from(t_s)}; }), py::arg("t"));
+  bind_times(lost);
+}
+
 core::PoseGaussian make_pose(const py::object& mean, const py::object& covariance) {
   core::PoseGaussian pose;
   pose.mean = Pose2(vector3_from(mean, "mean"));
@@ -210,6 +218,7 @@ void bind_events(py::module_& module) {
   bind_odometry(module);
   bind_scan(module);
   bind_fix(module);
+  bind_lost(module);
 }
 
 }  // namespace helixnav::python

@@ -81,7 +81,7 @@ void bind_log(py::module_& module) {
       .def_property_readonly("start", [](const Log& log) { return log.recording.start; })
       .def_property_readonly(
           "events", [](const Log& log) { return log.recording.events; },
-          "Odometry, Scan and AbsoluteFix in order; a copy.")
+          "Odometry, Scan, AbsoluteFix and Lost in order; a copy.")
       .def_property_readonly(
           "labels", [](const Log& log) { return log.recording.labels; },
           "Of each scan, of each observation: the identity, -1 for none; empty when the log has none.")

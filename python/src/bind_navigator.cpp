@@ -204,6 +204,8 @@ void bind_navigator(py::module_& module) {
                                         "Navigates with unknown data association; searches and closes loops.");
   bind_common(unnamed);
   unnamed.def("observe", locked(&Navigator::observe), py::arg("scan"), Released(), "One scan.")
+      .def("lose", locked(&Navigator::lose), py::arg("lost"), Released(),
+           "The vehicle was carried: its place is sought on what was mapped so far.")
       .def("take", locked(&Navigator::take), py::arg("event"), Released(),
            "Any event; the report of a scan, None for others.");
   py::class_<Locked<NamedNavigator>> named(module, "NamedNavigator", "For observations that are known by an identity.");

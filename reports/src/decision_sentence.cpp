@@ -152,6 +152,21 @@ std::string sentence(const core::FixDecision& d) {
          (d.accepted ? " within the gate " : " beyond the gate ") + short_number(d.gate) + ".";
 }
 
+std::string sentence(const core::CarriedDecision& d) {
+  const std::string ended = "The vehicle was carried, as it was told. Part " + std::to_string(d.from_part) +
+                            " of the drive ends after " + short_number(d.driven_m) + " m";
+  const std::string kept = d.landmarks > 0 ? ": " + counted(d.landmarks, "landmark") + " of it " +
+                                                 (d.landmarks == 1 ? "is" : "are") + " kept as a map of its own"
+                                           : ", with too few landmarks to be found again: they are dropped";
+  return ended + kept + ". Part " + std::to_string(d.part) +
+         " begins where the vehicle was set down, maps on its own and asks " + counted(d.apart, "map") +
+         " where that is.";
+}
+
+std::string map_of(const core::PlacedDecision& d) {
+  return d.part == 0 ? std::string("the earlier map") : "the map of part " + std::to_string(d.part);
+}
+
 /// Where the session was on the earlier map when it began.
 std::string begin_of(const core::PlacedDecision& d) {
   return "it began at (" + short_number(d.T_map_session.x_m) + ", " + short_number(d.T_map_session.y_m) +
@@ -172,8 +187,8 @@ std::string sentence(const core::PlacedDecision& d) {
       return "This session does not know where it is on a map of " + counted(d.earlier_landmarks, "landmark") +
              " from an earlier one: it maps on its own and asks.";
     case core::PlacedDecision::Verdict::accepted:
-      return "Found its place on the earlier map" + after + evidence_of(d) + "; their joint cost " +
-             short_number(d.cost) + " is within " + short_number(d.limit) + ". From here on both are one map (" +
+      return "Found its place on " + map_of(d) + after + evidence_of(d) + "; their joint cost " + short_number(d.cost) +
+             " is within " + short_number(d.limit) + ". From here on both are one map (" +
              counted(d.merged, "landmark") + " merged); " + begin_of(d) + " of it.";
     case core::PlacedDecision::Verdict::ambiguous:
       return "Not placed" + after + "a place fits, and others may as well: " + evidence_of(d) + '.';
@@ -181,7 +196,7 @@ std::string sentence(const core::PlacedDecision& d) {
       return "Not placed" + after + "the pairs contradict each other, their joint cost " + short_number(d.cost) +
              " exceeds " + short_number(d.limit) + ". " + evidence_of(d) + '.';
     case core::PlacedDecision::Verdict::not_here:
-      return "Not placed" + after + "no place on the earlier map fits the " + counted(d.landmarks, "landmark") +
+      return "Not placed" + after + "no place on " + map_of(d) + " fits the " + counted(d.landmarks, "landmark") +
              " about the vehicle better than chance would.";
   }
   return {};

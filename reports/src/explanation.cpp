@@ -109,20 +109,26 @@ std::string found_by(const Decided& closure) {
 /// A search, or what mapping had come to, was over: with the map closed, or left open.
 bool ends_search(const Decided& decided) { return is_closure(decided) && verdict_of(decided) != "refused"; }
 
-bool is_placing(const Decided& decided) { return std::holds_alternative<core::PlacedDecision>(*decided.decision); }
+bool is_carried(const Decided& decided) { return std::holds_alternative<core::CarriedDecision>(*decided.decision); }
+bool is_placing(const Decided& decided) {
+  return is_carried(decided) || std::holds_alternative<core::PlacedDecision>(*decided.decision);
+}
 
 /// Whether a session found its place on an earlier map, where it looked for one.
 std::string places_of(const std::vector<Decided>& decided) {
   std::string text;
-  bool accepted = false;
+  bool accepted = false, carried = false;
   for (const Decided& one : decided) {
     if (!is_placing(one)) continue;
     text += line_of(one);
-    accepted = accepted || verdict_of(one) == "accepted";
+    accepted = !is_carried(one) && (accepted || verdict_of(one) == "accepted");
+    carried = carried || is_carried(one);
   }
   if (text.empty()) return {};
-  const char* const end = accepted ? "" : "  It never found its place: the map is that of this session alone.\n";
-  return "\nThe earlier map:\n" + text + end + '\n';
+  const char* const alone = carried ? "  It did not find its place since: the map is that of the last part alone.\n"
+                                    : "  It never found its place: the map is that of this session alone.\n";
+  return std::string(carried ? "\nWhere the vehicle is:\n" : "\nThe earlier map:\n") + text + (accepted ? "" : alone) +
+         '\n';
 }
 
 }  // namespace

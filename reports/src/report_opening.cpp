@@ -57,13 +57,14 @@ std::string closings_sentence(const runs::Run& run) {
   return text + (undecided > 0 ? "; a search was left undecided " + times(undecided) + "." : ".");
 }
 
-/// Where a session found its place on an earlier map.
+/// Where a session found its place on an earlier map, and where the vehicle was carried.
 Json placings(const runs::Run& run) {
   Json sentences = Json::array();
   for (const core::StepReport& step : run.steps) {
     for (const core::Decision& decision : step.decisions) {
       const auto* placed = std::get_if<core::PlacedDecision>(&decision);
-      if (placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted) {
+      const bool is_carried = std::holds_alternative<core::CarriedDecision>(decision);
+      if (is_carried || (placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted)) {
         sentences.push_back(sentence_of(decision));
       }
     }

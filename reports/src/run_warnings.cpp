@@ -77,18 +77,19 @@ bool has_match(const core::StepReport& step) {
                      [](const core::AssociationReport& a) { return a.outcome == core::Outcome::matched; });
 }
 
-/// A place on an earlier map was sought and never found.
+/// A place on an earlier map was sought and never found, or not after the vehicle was carried last.
 bool sought_in_vain(const runs::Run& run) {
   bool sought = false;
+  bool found = false;
   for (const core::StepReport& step : run.steps) {
     for (const core::Decision& decision : step.decisions) {
+      if (std::holds_alternative<core::CarriedDecision>(decision)) found = false;
       const auto* placed = std::get_if<core::PlacedDecision>(&decision);
-      if (placed == nullptr) continue;
-      if (placed->verdict == core::PlacedDecision::Verdict::accepted) return false;
-      sought = true;
+      sought = sought || placed != nullptr || std::holds_alternative<core::CarriedDecision>(decision);
+      found = found || (placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted);
     }
   }
-  return sought;
+  return sought && !found;
 }
 
 /// [begin, end) of the longest stretch of steps without a match.
@@ -145,7 +146,9 @@ std::vector<std::string> warnings_of_place(const runs::Run& run) {
   }
   if (sought_in_vain(run)) {
     warnings.emplace_back(
-        "the session never found its place on the earlier map: the map is that of this session alone");
+        "the vehicle never found its place on the earlier map: the map is that of this session, or of the drive since "
+        "it "
+        "was carried, alone");
   }
   if (run.steps.back().mode == core::Mode::searching) {
     warnings.emplace_back("a search was still open at the end: where on the map the vehicle then was is not decided");

@@ -57,6 +57,24 @@ Json placed_to_json(const core::PlacedDecision& last) {
   return json;
 }
 
+/// How often the vehicle was carried, as it was told; nothing where it was not.
+std::optional<Json> carried_to_json(const runs::Run& run) {
+  int times = 0;
+  bool is_placed = true;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::Decision& decision : step.decisions) {
+      if (std::holds_alternative<core::CarriedDecision>(decision)) {
+        ++times;
+        is_placed = false;
+      }
+      const auto* placed = std::get_if<core::PlacedDecision>(&decision);
+      is_placed = is_placed || (placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted);
+    }
+  }
+  if (times == 0) return std::nullopt;
+  return Json{{"times", times}, {"found_since", is_placed}};
+}
+
 std::int64_t count_landmarks(const runs::Run& run, core::LandmarkState state) {
   return std::count_if(run.map.begin(), run.map.end(),
                        [&](const core::MapLandmark& landmark) { return landmark.state == state; });
@@ -96,6 +114,7 @@ Json summary_to_json(const runs::Run& run, const evaluation::Evaluation& evaluat
                        {"tentative", count_landmarks(run, core::LandmarkState::tentative)}};
   json["closures"] = closures_to_json(run);
   if (const auto placed = last_placing(run)) json["placed"] = placed_to_json(*placed);
+  if (const auto carried = carried_to_json(run)) json["carried"] = *carried;
   json["observations"] = observations_to_json(run);
   json.update(evaluation_to_json(evaluation));
   return json;

@@ -7,12 +7,9 @@
 namespace helixnav::runs {
 namespace {
 
-const core::PlacedDecision* placing_in(const core::StepReport& step) {
-  for (const core::Decision& decision : step.decisions) {
-    const auto* placed = std::get_if<core::PlacedDecision>(&decision);
-    if (placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted) return placed;
-  }
-  return nullptr;
+const core::PlacedDecision* placing_in(const core::Decision& decision) {
+  const auto* placed = std::get_if<core::PlacedDecision>(&decision);
+  return placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted ? placed : nullptr;
 }
 
 /// Otherwise the frame was known from the begin, or since it was found before.
@@ -24,47 +21,69 @@ bool began_unknown(const Run& run) {
   });
 }
 
-}  // namespace
-
-std::optional<std::size_t> step_of_placing(const Run& run) {
-  for (std::size_t k = 0; k < run.steps.size(); ++k) {
-    if (placing_in(run.steps[k]) != nullptr) return k;
-  }
-  return std::nullopt;
-}
-
-std::optional<core::Pose2> frame_at(const Run& run, core::Nanoseconds t_ns) {
-  const std::optional<std::size_t> placing = step_of_placing(run);
-  if (!placing || !began_unknown(run) || t_ns >= run.steps[*placing].t_ns) return std::nullopt;
-  return placing_in(run.steps[*placing])->T_map_session;
-}
-
-namespace {
-
-void move(const core::Pose2& T_map_session, core::MapLandmark& landmark) {
-  const Eigen::Matrix2d R = core::rotation(T_map_session.heading_rad);
-  landmark.point.mean_m = core::transform(T_map_session, landmark.point.mean_m);
+void move(const core::Pose2& T_final_told, core::MapLandmark& landmark) {
+  const Eigen::Matrix2d R = core::rotation(T_final_told.heading_rad);
+  landmark.point.mean_m = core::transform(T_final_told, landmark.point.mean_m);
   landmark.point.covariance_m2 = (R * landmark.point.covariance_m2 * R.transpose()).eval();
 }
 
+void move(const core::Pose2& T_final_told, core::StepReport& step) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = core::rotation(T_final_told.heading_rad);
+  step.pose.mean = core::compose(T_final_told, step.pose.mean);
+  const Eigen::Matrix3d turned = turn * step.pose.covariance * turn.transpose();
+  step.pose.covariance = 0.5 * (turned + turned.transpose());
+  for (core::Pose2& pose : step.cloud) pose = core::compose(T_final_told, pose);
+}
+
 }  // namespace
 
-void bring_into_map(Run& run) {
-  const std::optional<std::size_t> placing = step_of_placing(run);
-  if (!placing || !began_unknown(run)) return;
-  const core::Pose2 T_map_session = placing_in(run.steps[*placing])->T_map_session;
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = core::rotation(T_map_session.heading_rad);
-  for (std::size_t k = 0; k < *placing; ++k) {
-    core::StepReport& step = run.steps[k];
-    step.pose.mean = core::compose(T_map_session, step.pose.mean);
-    const Eigen::Matrix3d turned = turn * step.pose.covariance * turn.transpose();
-    step.pose.covariance = 0.5 * (turned + turned.transpose());
-    for (core::Pose2& pose : step.cloud) pose = core::compose(T_map_session, pose);
+bool has_found_place(const Run& run) {
+  return std::any_of(run.steps.begin(), run.steps.end(), [](const core::StepReport& step) {
+    return std::any_of(step.decisions.begin(), step.decisions.end(),
+                       [](const core::Decision& decision) { return placing_in(decision) != nullptr; });
+  });
+}
+
+std::vector<FrameOfStep> frames_of(const Run& run) {
+  std::vector<FrameOfStep> frames;
+  if (run.steps.empty()) return frames;
+  std::vector<int> part_of;  // [step] whose frame it is in by now
+  int part = began_unknown(run) ? 1 : 0;
+  int times_carried = 0;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::Decision& decision : step.decisions) {
+      if (const auto* carried = std::get_if<core::CarriedDecision>(&decision)) {
+        part = carried->part;
+        ++times_carried;
+      }
+      const core::PlacedDecision* placing = placing_in(decision);
+      if (placing == nullptr || placing->part == part) continue;
+      for (std::size_t k = 0; k < frames.size(); ++k) {
+        if (part_of[k] != part) continue;
+        part_of[k] = placing->part;
+        frames[k].T_final_told = core::compose(placing->T_map_session, frames[k].T_final_told);
+      }
+      part = placing->part;
+    }
+    frames.push_back({times_carried, {}});
+    part_of.push_back(part);
   }
-  for (MapChange& change : run.map_changes) {
-    if (change.step >= run.steps[*placing].step) break;
-    for (core::MapLandmark& landmark : change.changed) move(T_map_session, landmark);
+  return frames;
+}
+
+void bring_into_map(Run& run) {
+  if (!has_found_place(run)) return;
+  const std::vector<FrameOfStep> frames = frames_of(run);
+  const auto stays = [](const FrameOfStep& frame) { return frame.T_final_told.vector().isZero(0.0); };
+  auto change = run.map_changes.begin();
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const core::Pose2& T_final_told = frames[k].T_final_told;
+    for (; change != run.map_changes.end() && change->step <= run.steps[k].step; ++change) {
+      if (stays(frames[k])) continue;
+      for (core::MapLandmark& landmark : change->changed) move(T_final_told, landmark);
+    }
+    if (!stays(frames[k])) move(T_final_told, run.steps[k]);
   }
 }
 

@@ -9,16 +9,23 @@
 
 namespace helixnav::runs {
 
-/// The step in which a session found its place on an earlier map, if it did.
-std::optional<std::size_t> step_of_placing(const Run& run);
+/// The frame in which a step was told. A session that looks for its place on an earlier map tells its steps in a frame of its
+/// own until that is found, and so does each part of a drive after the vehicle was carried.
+struct FrameOfStep {
+  int times_carried = 0;     ///< until then
+  core::Pose2 T_final_told;  ///< from that frame into the one in which it is known at last
+};
 
-/// Steps before it were told in the session's own frame: moves them into that of the map, by the pose that the decision
-/// names, so that a run has one frame. Covariances are turned; that of the pose itself is left out.
+/// [step]
+std::vector<FrameOfStep> frames_of(const Run& run);
+
+/// Whether it was found in some step how the frame of steps before lies to another.
+bool has_found_place(const Run& run);
+
+/// Moves what was told in another frame into the one in which it is known at last, so that a run has one frame, or as many as it
+/// has parts of which nobody knows how they lie to each other. Covariances are turned; that of the pose itself is left out.
 /// Test: runs/placed_run_test.cpp.
 void bring_into_map(Run& run);
-
-/// What brings a pose told at `t_ns` into the frame of the map: nothing to do where there is none.
-std::optional<core::Pose2> frame_at(const Run& run, core::Nanoseconds t_ns);
 
 /// [step] the poses.
 std::vector<core::Pose2> poses_of(const Run& run);

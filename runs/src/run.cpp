@@ -21,20 +21,28 @@ RunTruth truth_of(const core::Recording& recording) {
 
 void correct_path(Run& run, const std::vector<core::StampedPose>& solved) {
   if (solved.empty()) {
-    if (step_of_placing(run)) run.final_path = poses_of(run);
+    if (has_found_place(run)) run.final_path = poses_of(run);
     return;
   }
-  const core::Pose2 T_map_told = frame_at(run, solved.back().t_ns).value_or(core::Pose2{});
+  const std::vector<FrameOfStep> frames = frames_of(run);
+  const auto frame_at = [&](core::Nanoseconds t_ns) {
+    const auto later = [](const core::StepReport& step, core::Nanoseconds at_ns) { return step.t_ns < at_ns; };
+    const auto step = std::lower_bound(run.steps.begin(), run.steps.end(), t_ns, later);
+    if (step == run.steps.end()) return FrameOfStep{frames.back().times_carried, {}};
+    return frames[static_cast<std::size_t>(step - run.steps.begin())];
+  };
   run.final_path.clear();
   run.final_path.reserve(run.steps.size());
   auto next = solved.begin();
   for (std::size_t k = 0; k < run.steps.size(); ++k) {
     const core::StepReport& step = run.steps[k];
     while (next != solved.end() && next->t_ns < step.t_ns) ++next;
-    if (next == solved.end()) {
+    const FrameOfStep frame = next == solved.end() ? FrameOfStep{} : frame_at(next->t_ns);
+    const bool begins = k == 0 || frames[k].times_carried != frames[k - 1].times_carried;
+    if (next == solved.end() || frame.times_carried != frames[k].times_carried) {
       run.final_path.push_back(step.pose.mean);
-    } else if (next->t_ns == step.t_ns || k == 0) {
-      run.final_path.push_back(core::compose(T_map_told, next->T_world_robot));
+    } else if (next->t_ns == step.t_ns || begins) {
+      run.final_path.push_back(core::compose(frame.T_final_told, next->T_world_robot));
     } else {
       const core::Pose2 motion = core::between(run.steps[k - 1].pose.mean, step.pose.mean);
       run.final_path.push_back(core::compose(run.final_path.back(), motion));

@@ -42,7 +42,8 @@ core::PoseGaussian as_kept(core::PoseGaussian pose) {
 struct RunRecorder::Book {
   Run run;
   CloudChoice cloud_choice;
-  std::vector<core::StampedPose> solved;  ///< the last time
+  std::vector<core::StampedPose> solved;         ///< the last time
+  std::vector<core::StampedPose> solved_before;  ///< of the parts of the drive before the vehicle was carried
   MapChanges map_changes;
   bool wants_map = false;  ///< after the step last added
 };
@@ -72,6 +73,10 @@ void RunRecorder::add(const core::StepReport& report, double microseconds) {
   }
   step.drawn.clear();
   book_->wants_map = book_->map_changes.wants(report);
+  if (std::any_of(report.decisions.begin(), report.decisions.end(), core::begins_part)) {
+    book_->solved_before.insert(book_->solved_before.end(), book_->solved.begin(), book_->solved.end());
+    book_->solved.clear();
+  }
   if (!report.solved.empty()) book_->solved = std::move(step.solved);
   step.solved.clear();
   step.revised.clear();
@@ -95,7 +100,9 @@ Run RunRecorder::finish(const std::vector<core::MapLandmark>& map) {
   for (core::MapLandmark& landmark : run.map) mirror_upper_triangle(landmark.point.covariance_m2);
   run.finished = true;
   bring_into_map(run);
-  correct_path(run, book_->solved);
+  std::vector<core::StampedPose>& solved = book_->solved_before;
+  solved.insert(solved.end(), book_->solved.begin(), book_->solved.end());
+  correct_path(run, solved);
   for (core::Pose2& pose : run.final_path) pose = as_kept(pose);
   return run;
 }

@@ -13,6 +13,7 @@
 #include "helixnav/files/file.hpp"
 #include "helixnav/files/number_text.hpp"
 #include "helixnav/runs/joint_map_file.hpp"
+#include "helixnav/runs/map_folder.hpp"
 #include "helixnav/runs/words.hpp"
 #include "map_text.hpp"
 #include "particle_tables.hpp"
@@ -36,6 +37,18 @@ void make_folder(const std::string& folder, RunWriter::IfNotEmpty if_not_empty) 
     throw core::InputError(folder + ": the folder is not empty; expected an empty or new one, or leave to overwrite");
   }
   for (const char* name : run_files) fs::remove(fs::path(folder) / name, error);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().filename().string().rfind("part_", 0) != 0) continue;
+    for (const char* name : {"map.csv", joint_map_file}) fs::remove(entry.path() / name, error);
+    fs::remove(entry.path(), error);  // unless something else is in it
+  }
+}
+
+void write_part(const std::string& folder, const core::JointMap& map) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw core::InputError(folder + ": cannot make the folder: " + error.message());
+  write_map(folder, map);
 }
 
 void append_step_and_time(std::string& text, const core::StepReport& report) {
@@ -218,6 +231,7 @@ void RunWriter::finish(const Run& run, const std::string& report_page, const std
   if (run.joint_map && run.joint_map->joint.ids.size() <= most_joint_landmarks) {
     files::write_whole_file(folder_ + '/' + joint_map_file, joint_map_bytes(*run.joint_map));
   }
+  for (const auto& [part, map] : run.parts_apart) write_part(folder_ + "/part_" + std::to_string(part), map);
   if (run.particle_end) {
     files::write_whole_file(folder_ + '/' + std::string(paths_table.file), paths_text(run.particle_end->paths));
     files::write_whole_file(folder_ + '/' + std::string(mixture_table.file), mixture_text(run.particle_end->mixture));

@@ -45,11 +45,14 @@ core::Recording simulate_in(const World& world, const Scenario& scenario, std::u
   const std::vector<Stretch> carried = draw_carried(scenario.carried, world.drive_m, seed);
   auto next = carried.begin();
   int sample = 0;
+  bool is_carried = false;
   for (const DriveStep& step : drive(world.route, world.drive_m, scenario.vehicle)) {
     ++sample;
     while (next != carried.end() && step.along_m > next->to_m) ++next;
-    if (next != carried.end() && step.along_m > next->from_m) continue;
     const core::Nanoseconds t_ns = core::nanoseconds_from_seconds(sample * scenario.vehicle.odometry_period_s);
+    const bool was_carried = std::exchange(is_carried, next != carried.end() && step.along_m > next->from_m);
+    if (is_carried) continue;
+    if (was_carried && scenario.carried.announced) recording.events.emplace_back(core::Lost{t_ns});
     recording.events.emplace_back(odometer.measure(step.sample, t_ns));
     if (sample % scenario.vehicle.samples_per_scan == 0) {
       record(scanner.look(step.T_world_robot, step.along_m, t_ns), step.T_world_robot, recording);

@@ -202,6 +202,9 @@ std::optional<core::StepReport> Team::take(int robot, const core::Event& event,
     return book_->enter({r, NamedScan{*scan, names}});
   }
   if (const auto* motion = std::get_if<core::Odometry>(&event)) book_->move(r, *motion);
+  if (std::holds_alternative<core::Lost>(event)) {
+    throw core::PreconditionError("take: a robot that was carried is not found again by names");
+  }
   return std::nullopt;
 }
 

@@ -11,7 +11,8 @@ std::vector<DecisionRow> all_rows() {
   std::vector<DecisionRow> rows;
   for (const Decision& decision :
        {Decision(TriggerDecision{}), Decision(RollbackDecision{}), Decision(SlipDecision{}), Decision(AttemptStarted{}),
-        Decision(ReferenceUnusable{}), Decision(UndecidedDecision{}), Decision(NewGroundDecision{})}) {
+        Decision(ReferenceUnusable{}), Decision(UndecidedDecision{}), Decision(NewGroundDecision{}),
+        Decision(CarriedDecision{})}) {
     rows.push_back(row_of(decision));
   }
   for (const char* reason : {"timed-out", "nothing-here", "abandoned", "outdone"}) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/logs/own_stream.hpp"
 
+#include <algorithm>
 #include <random>
 #include <sstream>
 #include <string>
@@ -88,6 +89,7 @@ void expect_same(const core::Event& a, const core::Event& b) {
     EXPECT_EQ(odometry->covariance, other.covariance);
     return;
   }
+  if (std::holds_alternative<core::Lost>(a)) return;
   const auto& scan = std::get<core::Scan>(a);
   const auto& other = std::get<core::Scan>(b);
   EXPECT_EQ(scan.T_robot_sensor.vector(), other.T_robot_sensor.vector());
@@ -123,6 +125,42 @@ TEST_P(OwnStreamOf, EachKindOfOdometryGivesTheEventsOfTheLogToTheLastBit) {
     for (std::size_t i = 0; i < whole.events.size(); ++i) expect_same(live.recording.events[i], whole.events[i]);
     EXPECT_EQ(live.recording.labels, whole.labels);
   }
+}
+
+TEST_P(OwnStreamOf, AVehicleThatWasCarriedIsInBothBeforeTheNextScan) {
+  const testing::TemporaryFolder folder;
+  const Vehicle vehicle = read_vehicle(folder.write("vehicle.toml", vehicle_text));
+  Lines lines = lines_of_drive(GetParam(), 7);
+  const std::size_t middle = lines.size() / 2;
+  const std::size_t at = lines[middle].find("\"t\": ");
+  const double t = std::stod(lines[middle].substr(at + 5)) + 0.01;
+  lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(middle) + 1,
+               R"({"lost": {"t": )" + std::to_string(t) + "}}");
+  const core::Recording whole = make_recording(read_own_log(folder.write("log.jsonl", text_of(lines))), vehicle);
+  OwnStream stream(vehicle);
+  const StreamedEvents live = streamed(stream, lines);
+  ASSERT_TRUE(live.refused.empty()) << live.refused.front().why;
+  const auto is_lost = [](const core::Event& event) { return std::holds_alternative<core::Lost>(event); };
+  EXPECT_EQ(std::count_if(live.recording.events.begin(), live.recording.events.end(), is_lost), 1);
+  ASSERT_LE(live.recording.events.size(), whole.events.size());
+  for (std::size_t i = 0; i < live.recording.events.size(); ++i) {
+    expect_same(live.recording.events[i], whole.events[i]);
+  }
+}
+
+TEST(OwnStream, RefusesThatItWasCarriedBeforeAScanThatWasAnsweredOrWhereLandmarksAreKnownByName) {
+  const testing::TemporaryFolder folder;
+  const Vehicle vehicle = read_vehicle(folder.write("vehicle.toml", vehicle_text));
+  Lines lines = lines_of_drive("velocities", 7);
+  lines.emplace_back(R"({"lost": {"t": 0.001}})");
+  OwnStream stream(vehicle);
+  const StreamedEvents late = streamed(stream, lines);
+  ASSERT_EQ(late.refused.size(), 1u);
+  EXPECT_EQ(late.refused.front().key, "t");
+  OwnStream by_name(vehicle, true);
+  const StreamedEvents named = by_name.take(R"({"lost": {"t": 0.001}})", 1);
+  ASSERT_EQ(named.refused.size(), 1u);
+  EXPECT_EQ(named.refused.front().key, "lost");
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, OwnStreamOf,

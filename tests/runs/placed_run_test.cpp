@@ -69,6 +69,40 @@ TEST(PlacedRun, HasOneFrameInMemoryAndInItsFolder) {
   EXPECT_TRUE(read_joint_map(path + "/map.bin").joint.ids.empty());
 }
 
+/// Carried before step 2 and before step 4; the third part finds the second in step 6, and both the first in step 8.
+TEST(PlacedRun, OfSeveralPartsHasOneFrameOnceTheyAreFound) {
+  const core::Pose2 T_second_third(3.0, 1.0, -0.5);
+  const core::Pose2 T_first_second(10.0, -5.0, 1.0);
+  const auto truth = [](int k) { return core::Pose2(0.5 * k, 0.1 * k, 0.02 * k); };
+  RunRecorder recorder("run", {}, {});
+  for (int k = 0; k < 10; ++k) {
+    core::StepReport step = step_at(k, false);
+    const core::Pose2 T_first_now = k < 2 || k >= 8 ? core::Pose2() : T_first_second;
+    step.pose.mean = core::compose(core::inverse(T_first_now), truth(k));
+    if (k == 4 || k == 5) step.pose.mean = core::compose(core::inverse(T_second_third), step.pose.mean);
+    if (k == 2 || k == 4) {
+      core::CarriedDecision carried;
+      carried.part = k / 2;
+      step.decisions.emplace_back(carried);
+    }
+    if (k == 6 || k == 8) {
+      core::PlacedDecision found = placed(core::PlacedDecision::Verdict::accepted);
+      found.part = k == 6 ? 1 : 0;
+      found.T_map_session = k == 6 ? T_second_third : T_first_second;
+      step.decisions.emplace_back(found);
+    }
+    if (k == 1) step.solved = {{0, {0.0, 0.0, 0.3}}, {step.t_ns, {0.5, 0.25, 0.3}}};
+    recorder.add(step, 0.0);
+  }
+  const runs::Run run = recorder.finish({});
+  for (int k = 0; k < 10; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    EXPECT_LT((run.steps[i].pose.mean.vector() - truth(k).vector()).norm(), 1e-12) << k;
+    if (k >= 2) EXPECT_LT((run.final_path[i].vector() - truth(k).vector()).norm(), 1e-12) << k;
+  }
+  EXPECT_NEAR(run.final_path[1].y_m, 0.25, 1e-12) << "what was solved of the first part";
+}
+
 TEST(PlacedRun, WhatWasKnownBeforeItWasLostStaysWhereItIs) {
   const testing::TemporaryFolder folder;
   const runs::Run run = write_run((folder.path() / "run").string(), false);

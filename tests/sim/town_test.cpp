@@ -124,6 +124,21 @@ TEST(Carried, LeavesOutStretchesOfTheDriveAndTheTimeThatTheyTook) {
   }
 }
 
+TEST(Carried, IsSaidWhereTheScenarioSaysSoAndNothingElseChanges) {
+  Scenario scenario = named_scenario("kidnapped");
+  const core::Recording silent = simulate(scenario, 7);
+  scenario.carried.announced = true;
+  core::Recording told = simulate(scenario, 7);
+  const auto is_lost = [](const core::Event& event) { return std::holds_alternative<core::Lost>(event); };
+  EXPECT_EQ(std::count_if(told.events.begin(), told.events.end(), is_lost), 2);
+  told.events.erase(std::remove_if(told.events.begin(), told.events.end(), is_lost), told.events.end());
+  ASSERT_EQ(told.events.size(), silent.events.size());
+  for (std::size_t i = 0; i < told.events.size(); ++i) {
+    EXPECT_EQ(core::time_of(told.events[i]), core::time_of(silent.events[i]));
+  }
+  EXPECT_EQ(told.labels, silent.labels);
+}
+
 TEST(ScaledNoise, TakesOdometryAndDetectorApart) {
   const NoiseLevels noise = named_scenario("town").true_noise;
   const NoiseLevels scaled_noise = scaled(noise, 2.0, 0.25);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A call that throws leaves everything as before it: broken by failing allocations at many places of scans of every kind.
+#include <algorithm>
 #include <cstdlib>
 #include <limits>
 #include <new>
@@ -211,6 +212,45 @@ TEST(Guarantee, HoldsForFixes) {
   }
   EXPECT_GT(at, 0);
   EXPECT_GT((navigator.pose().mean.vector() - before.mean.vector()).norm(), 0.01) << "the motion was not lost";
+}
+
+TEST(Guarantee, HoldsWhereTheVehicleIsSaidToHaveBeenCarried) {
+  const core::Recording run = sim::simulate(wide_circuit(), 3);
+  Navigator twin(run.start);
+  Navigator navigator(run.start);
+  std::size_t scans = 0;
+  bool found = false;
+  for (const core::Event& event : run.events) {
+    const bool is_scan = std::holds_alternative<core::Scan>(event);
+    if (is_scan && ++scans == 230) {
+      twin.lose({});
+      const core::PoseGaussian before = navigator.pose();
+      const std::vector<core::MapLandmark> map_before = navigator.map();
+      long at = 0;
+      for (; fails_at(at, [&] { navigator.lose({}); }); ++at) {
+        EXPECT_EQ(navigator.pose().mean.vector(), before.mean.vector());
+        expect_same_map(navigator.map(), map_before);
+        EXPECT_TRUE(navigator.maps_apart().empty());
+      }
+      EXPECT_GT(at, 20);
+      EXPECT_EQ(navigator.maps_apart().size(), 1u);
+    }
+    const auto expected = twin.take(event);
+    if (!is_scan || found || scans < 230) {
+      const auto report = navigator.take(event);
+      if (report) expect_same_report(*report, *expected);
+      continue;
+    }
+    const auto& placed = expected->decisions;
+    found = std::any_of(placed.begin(), placed.end(), [](const core::Decision& decision) {
+      const auto* place = std::get_if<core::PlacedDecision>(&decision);
+      return place != nullptr && place->verdict == core::PlacedDecision::Verdict::accepted;
+    });
+    for (long at = 0; fails_at(at, [&] { expect_same_report(*navigator.take(event), *expected); }); at += 1 + at) {
+    }
+  }
+  EXPECT_TRUE(found);
+  expect_same_map(navigator.map(), twin.map());
 }
 
 /// How many calls of a drive by name were broken, and how many of those began a window.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -49,6 +50,11 @@ class ChosenNavigator {
   }
   core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const {
     return std::visit([&](const auto& navigator) { return navigator.joint(ids); }, navigator_);
+  }
+  /// [part] of the drive before the vehicle was carried, or the earlier map.
+  std::map<int, core::JointMap> maps_apart() const {
+    const auto* unnamed = std::get_if<supervisor::Navigator>(&navigator_);
+    return unnamed != nullptr ? unnamed->maps_apart() : std::map<int, core::JointMap>();
   }
   const cekf::CompressedEkf& filter() const {
     return std::visit([](const auto& navigator) -> const cekf::CompressedEkf& { return navigator.filter(); },

@@ -49,6 +49,11 @@ void add_scenario_settings(CLI::App& command, ScenarioSettings& settings) {
   add_number(command, "--sim.slip_most_m", settings.slip_most_m, 0.0, 1e3, "Most displacement by a slip");
   add_number(command, "--sim.slip_least_deg", settings.slip_least_deg, 0.0, 180.0, "Least turn by a slip");
   add_number(command, "--sim.slip_most_deg", settings.slip_most_deg, 0.0, 180.0, "Most turn by a slip");
+  command
+      .add_option("--sim.announce_carried", settings.announce_carried,
+                  "Whether an event says that the vehicle was carried (kidnapped)")
+      ->capture_default_str()
+      ->group("Scenario (auto: as it is by its name)");
   add_factor(command, "--sim.assumed_odometry_factor", settings.assumed_odometry_factor,
              "Standard deviations that odometry claims are multiplied by this");
   add_factor(command, "--sim.assumed_detector_factor", settings.assumed_detector_factor,
@@ -64,6 +69,7 @@ sim::Scenario scenario_of(const std::string& name, const ScenarioSettings& setti
   if (settings.slip_most_m) scenario.slip.distance_m.max = *settings.slip_most_m;
   if (settings.slip_least_deg) scenario.slip.turn_rad.min = radians(*settings.slip_least_deg);
   if (settings.slip_most_deg) scenario.slip.turn_rad.max = radians(*settings.slip_most_deg);
+  scenario.carried.announced = settings.announce_carried;
   scenario.assumed_noise =
       sim::scaled(scenario.assumed_noise, settings.assumed_odometry_factor, settings.assumed_detector_factor);
   sim::check_scenario(scenario);

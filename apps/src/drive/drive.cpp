@@ -51,6 +51,26 @@ void check_earlier_labels(const EarlierSession& earlier) {
   }
 }
 
+/// Who is carried is found again by what stands about him, in the maps of the navigator and of the localizer.
+void check_carried(const Drive& job) {
+  const std::vector<core::Event>& events = job.recording.events;
+  const bool is_carried = std::any_of(events.begin(), events.end(),
+                                      [](const auto& event) { return std::holds_alternative<core::Lost>(event); });
+  if (!is_carried) return;
+  if (job.given_map && !can_be_searched(*job.given_map)) {
+    throw core::InputError(job.recording.name +
+                           ": the vehicle was carried (lost), and the map has too few landmarks, or "
+                           "too many, to look for it there");
+  }
+  const char* const refusing = job.known_association ? "--association known"
+                               : job.fastslam.chosen ? "--filter fastslam"
+                               : job.smooth          ? "--smooth"
+                                                     : nullptr;
+  if (refusing == nullptr) return;
+  throw core::InputError(job.recording.name + ": the vehicle was carried (lost), which " + refusing +
+                         " does not go with");
+}
+
 void check_labels(const Drive& job) {
   if (job.known_association && job.earlier) check_earlier_labels(*job.earlier);
   const std::string option = job.fastslam.chosen ? "--fastslam.association known" : "--association known";
@@ -139,6 +159,7 @@ ExitCode verdict(const Drive& job, const Driven& driven, const runs::Run& run, c
 
 ExitCode drive(const Drive& job) {
   check_labels(job);
+  check_carried(job);
   check_observable(job);
   catch_interrupts();
   const Clock::time_point begin = Clock::now();
@@ -153,6 +174,7 @@ ExitCode drive(const Drive& job) {
 
   runs::Run run = recorder.finish(estimator.map());
   run.joint_map = estimator.joint_map();
+  if (estimator.parts_apart) run.parts_apart = estimator.parts_apart();
   run.timing = {{"median_us", quantile(step_us, 0.5)},
                 {"p99_us", quantile(step_us, 0.99)},
                 {"max_us", quantile(step_us, 1.0)},

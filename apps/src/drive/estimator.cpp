@@ -55,6 +55,11 @@ Estimator navigator_of(const Drive& job) {
           [drive] { return drive->navigator.map(); },
           [drive, &job] { return joint_map_of(drive->navigator, job.recording); },
           {},
+          [drive, &job] {
+            std::map<int, core::JointMap> maps = drive->navigator.maps_apart();
+            if (job.earlier) maps.erase(0);  // the earlier session has it
+            return maps;
+          },
           [drive] { return drive->navigator.sketch(); }};
 }
 

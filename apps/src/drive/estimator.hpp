@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -21,7 +22,9 @@ struct Estimator {
   std::function<std::vector<core::MapLandmark>()> map;
   std::function<std::optional<core::JointMap>()>
       joint_map;  ///< to go on in; nothing of a localizer, or where it is too large
-  std::function<runs::ParticleEnd()> particle_end = {};         ///< of a cloud of particles only
+  std::function<runs::ParticleEnd()> particle_end = {};  ///< of a cloud of particles only
+  std::function<std::map<int, core::JointMap>()> parts_apart =
+      {};                                                       ///< of the drive, from before the vehicle was carried
   std::function<std::vector<core::MapLandmark>()> sketch = {};  ///< map() for a picture, where that is cheaper
 };
 

@@ -103,6 +103,8 @@ LocalizerFeed::LocalizerFeed(const Drive& job, std::vector<std::vector<core::Lab
   const std::optional<SessionStart>& start = job.given_map->start;
   const bool unknown = start && start->kind == SessionStart::Kind::unknown;
   if (unknown) {
+    part_ = 1;
+    next_part_ = 2;
     begin_to_look();
   } else {
     localizer_.emplace(start_of(job), job.given_map->landmarks, options_of(job.navigator));
@@ -118,11 +120,27 @@ std::optional<core::StepReport> LocalizerFeed::take(const core::Event& event) {
   if (const auto* odometry = std::get_if<core::Odometry>(&event)) {
     if (localizer_) localizer_->move(*odometry);
     if (finder_) finder_->move(*odometry);
+    driven_in_part_m_ += odometry->T_before_after.position_m().norm();
     driven_m_ += odometry->T_before_after.position_m().norm();
   }
+  if (std::holds_alternative<core::Lost>(event)) lose();
   const auto* scan = std::get_if<core::Scan>(&event);
   if (scan == nullptr) return std::nullopt;
   return observe(*scan, scans_++);
+}
+
+/// The place on the map is sought as at the begin of a session that does not know it.
+void LocalizerFeed::lose() {
+  core::CarriedDecision carried;
+  carried.from_part = part_;
+  carried.part = part_ = next_part_++;
+  carried.apart = 1;
+  carried.driven_m = driven_in_part_m_;
+  carried_.push_back(carried);
+  driven_in_part_m_ = 0.0;
+  localizer_.reset();
+  monitor_.reset();
+  begin_to_look();
 }
 
 core::StepReport LocalizerFeed::observe(const core::Scan& scan, std::size_t i) {
@@ -135,6 +153,8 @@ core::StepReport LocalizerFeed::observe(const core::Scan& scan, std::size_t i) {
   }
   if (localizer_ && !job_.known_association) watch(scan, report);
   driven_m_ = 0.0;
+  report.decisions.insert(report.decisions.begin(), carried_.begin(), carried_.end());
+  carried_.clear();
   return report;
 }
 
@@ -160,6 +180,7 @@ void LocalizerFeed::take_place(core::StepReport&& found, core::StepReport& repor
   const core::PoseGaussian pose = found.pose;
   add_placings(std::move(found), report);
   if (!has_place) return;
+  part_ = 0;
   report.pose = pose;
   report.mode = core::Mode::mapping;
   localizer_.emplace(pose, job_.given_map->landmarks, options_of(job_.navigator));

@@ -24,6 +24,7 @@ class LocalizerFeed {
 
  private:
   void begin_to_look();
+  void lose();
   core::StepReport observe(const core::Scan& scan, std::size_t i);
   core::StepReport localize(const core::Scan& scan, std::size_t i);
   void watch(const core::Scan& scan, core::StepReport& report);
@@ -36,7 +37,10 @@ class LocalizerFeed {
   std::optional<localization::Localizer> localizer_;  ///< none before the place was known at all
   std::optional<supervisor::Navigator> finder_;       ///< while it is not
   std::size_t scans_ = 0;
-  double driven_m_ = 0.0;  ///< since the last scan
+  double driven_m_ = 0.0;                       ///< since the last scan
+  std::vector<core::CarriedDecision> carried_;  ///< since the last scan
+  double driven_in_part_m_ = 0.0;
+  int part_ = 0, next_part_ = 1;  ///< of the drive, as of core::CarriedDecision
 };
 
 }  // namespace helixnav::apps

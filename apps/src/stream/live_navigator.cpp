@@ -36,6 +36,11 @@ std::vector<core::MapLandmark> LiveNavigator::map() const {
   return std::visit([](const auto& navigator) { return navigator.map(); }, *navigator_);
 }
 
+std::map<int, core::JointMap> LiveNavigator::maps_apart() const {
+  const auto* unnamed = navigator_ ? std::get_if<supervisor::Navigator>(&*navigator_) : nullptr;
+  return unnamed != nullptr ? unnamed->maps_apart() : std::map<int, core::JointMap>();
+}
+
 std::optional<core::JointMap> LiveNavigator::joint_map() const {
   if (!navigator_) return std::nullopt;
   return std::visit([this](const auto& navigator) { return joint_map_of(navigator, reach_m_); }, *navigator_);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -30,6 +31,8 @@ class LiveNavigator {
   std::vector<core::MapLandmark> map() const;
   /// What the drive leaves to the next session; nothing before it has begun, or where the map is too large.
   std::optional<core::JointMap> joint_map() const;
+  /// [part] of the drive before the vehicle was carried.
+  std::map<int, core::JointMap> maps_apart() const;
   /// Lengths in force, for the manifest.
   const std::string& lengths_text() const { return lengths_text_; }
 

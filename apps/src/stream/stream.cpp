@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stream.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -80,6 +81,10 @@ class Stream {
   void write(const core::StepReport& step, double microseconds) {
     if (!writer_) open_folder();
     writer_->write(step, microseconds);
+    if (std::any_of(step.decisions.begin(), step.decisions.end(), core::begins_part)) {
+      solved_before_.insert(solved_before_.end(), solved_.begin(), solved_.end());
+      solved_.clear();
+    }
     if (!step.solved.empty()) solved_ = step.solved;
   }
 
@@ -106,7 +111,9 @@ class Stream {
     runs::Run run = runs::read_run(job_.out);
     run.map = navigator_.map();
     run.joint_map = navigator_.joint_map();
-    runs::correct_path(run, solved_);
+    run.parts_apart = navigator_.maps_apart();
+    solved_before_.insert(solved_before_.end(), solved_.begin(), solved_.end());
+    runs::correct_path(run, solved_before_);
     run.finished = true;
     reports::finish_run(run, *writer_);
     std::fprintf(stderr, "run folder: %s   report: %s/report.html\n", job_.out.c_str(), job_.out.c_str());
@@ -131,7 +138,8 @@ class Stream {
   LiveNavigator navigator_;
   LineChannel channel_;
   std::unique_ptr<runs::RunWriter> writer_;
-  std::vector<core::StampedPose> solved_;  ///< the last time
+  std::vector<core::StampedPose> solved_;         ///< the last time
+  std::vector<core::StampedPose> solved_before_;  ///< of parts of the drive before the vehicle was carried
   bool reader_is_there_ = true;
   std::int64_t steps_ = 0, refused_ = 0, broken_ = 0;
 };

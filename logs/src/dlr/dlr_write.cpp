@@ -50,6 +50,7 @@ class DlrWriter {
   }
 
   void add(const core::AbsoluteFix&) { fail("absolute fixes"); }
+  void add(const core::Lost&) { fail("a vehicle that was carried"); }
 
   void add(const core::Scan& scan) {
     if (!moved_) fail("a scan without motion before it");

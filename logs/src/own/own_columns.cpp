@@ -12,7 +12,8 @@ const ColumnKind heading_column{"heading", Measure::angle, {"yaw", "theta"}};
 }  // namespace
 
 std::string_view OwnTables::name_of(Table table) {
-  constexpr std::string_view names[table_count] = {"odometry", "detections", "fixes", "truth_poses", "truth_landmarks"};
+  constexpr std::string_view names[table_count] = {"odometry",    "detections",      "fixes",
+                                                   "truth_poses", "truth_landmarks", "lost"};
   return names[static_cast<std::size_t>(table)];
 }
 
@@ -64,6 +65,7 @@ const std::vector<ColumnKind>& OwnTables::columns_of(Table table) {
       {time_column, {"x", M::length}, {"y", M::length}, {"sigma", M::length}},
       {time_column, {"x", M::length}, {"y", M::length}, heading_column},
       {{"id", M::text, {"label", "landmark"}}, {"x", M::length}, {"y", M::length}},
+      {time_column},
   };
   return of[static_cast<std::size_t>(table)];
 }

@@ -65,5 +65,8 @@ enum Column : std::size_t { t, x, y, heading };
 namespace true_landmark_columns {
 enum Column : std::size_t { id, x, y };
 }
+namespace lost_columns {
+enum Column : std::size_t { t };
+}
 
 }  // namespace helixnav::logs

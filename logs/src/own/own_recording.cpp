@@ -92,29 +92,38 @@ void check_clocks(const OwnLog& log, const std::vector<LabelledScan>& scans) {
   fail(log, text);
 }
 
-/// Lets motion and scans of the whole log come in. When the first motion begins.
+/// Lets motion and scans of the whole log come in; that the vehicle was carried, before the first scan after it. When the first
+/// motion begins.
 core::Nanoseconds weave(const OwnLog& log, const Vehicle& vehicle, std::vector<LabelledScan>& scans,
                         core::Recording& recording) {
   const Motions motions(log, vehicle);
   Weaver weaver(vehicle.odometry.T_vehicle_odometry, recording.events);
-  const auto add = [&](LabelledScan& scan) {
+  auto lost = log.lost_ns.begin();
+  std::size_t next = 0;
+  const auto add_next = [&](const Motion* motion) {
+    LabelledScan& scan = scans[next++];
+    for (; lost != log.lost_ns.end() && *lost < scan.scan.t_ns; ++lost) {
+      if (motion != nullptr) weaver.move(*motion, *lost);
+      weaver.lose(*lost);
+    }
+    if (motion != nullptr) weaver.move(*motion, scan.scan.t_ns);
     weaver.add(std::move(scan.scan));
     if (log.has_labels) recording.labels.push_back(std::move(scan.labels));
   };
   const core::Nanoseconds last_ns = scans.back().scan.t_ns;
   core::Nanoseconds first_ns = last_ns;
-  std::size_t next = 0;
   for (std::size_t row = 0; row < log.odometry.size(); ++row) {
     const std::optional<Motion> motion = motions.of_row(row, last_ns);
     if (!motion) continue;
     first_ns = std::min(first_ns, motion->begin_ns);
-    for (; next < scans.size() && scans[next].scan.t_ns < motion->end_ns; ++next) {
-      weaver.move(*motion, scans[next].scan.t_ns);
-      add(scans[next]);
+    while (next < scans.size() && scans[next].scan.t_ns < motion->end_ns) add_next(&*motion);
+    for (; next < scans.size() && lost != log.lost_ns.end() && *lost < motion->end_ns; ++lost) {
+      weaver.move(*motion, *lost);
+      weaver.lose(*lost);
     }
     weaver.move(*motion, motion->end_ns);
   }
-  for (; next < scans.size(); ++next) add(scans[next]);
+  while (next < scans.size()) add_next(nullptr);
   weaver.flush();
   return first_ns;
 }

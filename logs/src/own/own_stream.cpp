@@ -42,6 +42,7 @@ struct OwnStream::State {
       : vehicle(given),
         motion(vehicle, late_s),
         scans(vehicle, by_identity),
+        by_name(by_identity),
         rows(std::make_unique<JsonRows>("stream")) {}
 
   void read(std::string_view line, std::size_t number);
@@ -50,12 +51,16 @@ struct OwnStream::State {
   }
   void check_times(const OwnLog& log);
   void check_jump(core::Nanoseconds t_ns);
+  void check_lost(const std::vector<core::Nanoseconds>& rows_ns) const;
+  void weave_lost(core::Nanoseconds before_ns);
   void remark_once(const std::string& text);
   void weave(bool at_end);
 
   Vehicle vehicle;
   LiveMotion motion;
   LiveScans scans;
+  bool by_name;
+  std::vector<core::Nanoseconds> lost_ns;  ///< ascending; for the first scan after each
   std::unique_ptr<JsonRows> rows;
   OwnTables tables{true};
   core::Nanoseconds newest_ns = nothing_yet_ns;
@@ -90,6 +95,7 @@ void OwnStream::State::check_times(const OwnLog& log) {
   core::Nanoseconds latest_ns = nothing_yet_ns;
   for (const OwnOdometry& row : log.odometry) latest_ns = std::max(latest_ns, row.t_ns);
   for (const OwnDetection& row : log.detections) latest_ns = std::max(latest_ns, row.t_ns);
+  for (const core::Nanoseconds row_ns : log.lost_ns) latest_ns = std::max(latest_ns, row_ns);
   if (latest_ns != nothing_yet_ns) check_jump(latest_ns);
 }
 
@@ -103,9 +109,12 @@ void OwnStream::State::read(std::string_view line, std::size_t number) {
     }
     check_times(log);
     motion.check(log);
+    check_lost(log.lost_ns);
     const std::vector<LiveScans::Seen> seen = scans.check(log, motion.woven_ns());
     motion.add(log);
     scans.add(seen, rows->last_was_list(), number);
+    lost_ns.insert(lost_ns.end(), log.lost_ns.begin(), log.lost_ns.end());
+    std::sort(lost_ns.begin(), lost_ns.end());
     return;
   } catch (const PlacedInputError& error) {
     refuse(number, key_at(line, error.column()), error.message());
@@ -119,6 +128,24 @@ void OwnStream::State::read(std::string_view line, std::size_t number) {
   rows = std::make_unique<JsonRows>("stream");
 }
 
+void OwnStream::State::check_lost(const std::vector<core::Nanoseconds>& rows_ns) const {
+  for (const core::Nanoseconds row_ns : rows_ns) {
+    if (by_name) throw StreamRefusal("lost", "a vehicle that was carried is not found again by identities");
+    if (row_ns >= motion.woven_ns() && lost_ns.size() < most_waiting) continue;
+    throw StreamRefusal("t", "the time " + LiveScans::text_of(row_ns) + " s lies before a scan that was answered");
+  }
+}
+
+/// The vehicle was carried before a scan of that time.
+void OwnStream::State::weave_lost(core::Nanoseconds before_ns) {
+  auto lost = lost_ns.begin();
+  for (; lost != lost_ns.end() && *lost < before_ns; ++lost) {
+    motion.weave_to(*lost, out.recording.events);
+    out.recording.events.emplace_back(core::Lost{*lost});
+  }
+  lost_ns.erase(lost_ns.begin(), lost);
+}
+
 void OwnStream::State::weave(bool at_end) {
   if (at_end) {
     scans.close_all();
@@ -127,12 +154,15 @@ void OwnStream::State::weave(bool at_end) {
   std::vector<core::Event>& events = out.recording.events;
   while (scans.first_is_closed() && (at_end || motion.covers(scans.first_ns()))) {
     LiveScan scan = scans.pop();
+    weave_lost(scan.scan.t_ns);
     motion.weave_to(scan.scan.t_ns, events);
     events.emplace_back(std::move(scan.scan));
     out.recording.labels.push_back(std::move(scan.labels));
     out.lines.push_back(scan.line);
   }
-  motion.weave_old(scans.empty() ? nothing_yet_ns : scans.first_ns());
+  core::Nanoseconds next_ns = scans.empty() ? nothing_yet_ns : scans.first_ns();
+  if (!lost_ns.empty()) next_ns = scans.empty() ? lost_ns.front() : std::min(next_ns, lost_ns.front());
+  motion.weave_old(next_ns);
   while (scans.size() > most_waiting) {
     const LiveScan scan = scans.pop();
     refuse(scan.line, "t",

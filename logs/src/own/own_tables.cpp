@@ -85,6 +85,9 @@ void OwnTables::begin(Table table, const TableColumns& columns) {
       return;
     case Table::truth_landmarks:
       for (const std::size_t column : {true_landmark_columns::x, true_landmark_columns::y}) columns.require(column);
+      return;
+    case Table::lost:
+      columns.require(lost_columns::t);
   }
 }
 
@@ -104,6 +107,8 @@ void OwnTables::add(Table table, const Row& row) {
       return add_true_pose(row);
     case Table::truth_landmarks:
       return add_true_landmark(row);
+    case Table::lost:
+      log_.lost_ns.push_back(times_[5].take(row, lost_columns::t));
   }
 }
 
@@ -155,6 +160,7 @@ void OwnTables::sort_all() {
   if (!std::is_sorted(log_.detections.begin(), log_.detections.end(), earlier)) {
     std::stable_sort(log_.detections.begin(), log_.detections.end(), earlier);
   }
+  std::sort(log_.lost_ns.begin(), log_.lost_ns.end());
   sort_by_time(log_.fixes);
   sort_by_time(log_.true_poses);
   sort_by_time(log_.true_positions);

@@ -46,9 +46,9 @@ std::optional<std::int64_t> whole_number(const std::string& word);
 /// they change, as in JSON Lines), add() for each row. finish() sorts, numbers identities and says what was done.
 class OwnTables {
  public:
-  enum class Table { odometry, detections, fixes, truth_poses, truth_landmarks };
-  static constexpr std::array all{Table::odometry, Table::detections, Table::fixes, Table::truth_poses,
-                                  Table::truth_landmarks};
+  enum class Table { odometry, detections, fixes, truth_poses, truth_landmarks, lost };
+  static constexpr std::array all{Table::odometry,    Table::detections,      Table::fixes,
+                                  Table::truth_poses, Table::truth_landmarks, Table::lost};
   static constexpr std::size_t table_count = all.size();
   static std::string_view name_of(Table table);
   static const std::vector<ColumnKind>& columns_of(Table table);

@@ -25,6 +25,11 @@ void Weaver::add(core::Scan scan) {
   events_.emplace_back(std::move(scan));
 }
 
+void Weaver::lose(core::Nanoseconds t_ns) {
+  flush();
+  events_.emplace_back(core::Lost{t_ns});
+}
+
 void Weaver::flush() {
   if (pending_) events_.emplace_back(*pending_);
   pending_.reset();

@@ -22,6 +22,9 @@ class Weaver {
   /// The motion so far, then the scan.
   void add(core::Scan scan);
 
+  /// The motion so far, then that the vehicle was carried.
+  void lose(core::Nanoseconds t_ns);
+
   /// The motion so far.
   void flush();
 

@@ -78,7 +78,7 @@ StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* not
     ask_whether_new(scan, report);
     solve_with_learnt_noise(report);
     report.pose = belief_.filter.pose();
-    if (sought_in_) find_place(scan.field_of_view, report);
+    if (apart_.any()) find_place(scan.field_of_view, report);
     return report;
   });
 }
@@ -92,6 +92,7 @@ StepReport NavigationLoop::take_as_assumed(const Scan& scan) {
 }
 
 bool NavigationLoop::fix(const core::AbsoluteFix& fix) {
+  if (apart_.part != 0) return false;  // nobody knows where its frame is
   return all_or_nothing([&] { return use_fix(fix); });
 }
 

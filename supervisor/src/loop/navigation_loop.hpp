@@ -18,7 +18,7 @@
 #include "loop/mode.hpp"
 #include "loop/tape.hpp"
 #include "noise/noise_learner.hpp"
-#include "placing/place_search.hpp"
+#include "placing/maps_apart.hpp"
 #include "placing/session_question.hpp"
 #include "search/whole_map_questions.hpp"
 #include "slip/slip_decision.hpp"
@@ -39,6 +39,8 @@ class NavigationLoop {
   core::StepReport observe(const core::Scan& scan);
   bool fix(const core::AbsoluteFix& fix);
   void look_for_place_in(const core::JointMap& earlier);  // placing/find_place.cpp
+  void lose(const core::Lost& lost);                      // placing/carried.cpp
+  const MapsApart& maps_apart() const { return apart_; }
 
   const Belief& belief() const { return belief_; }
 
@@ -149,9 +151,15 @@ class NavigationLoop {
 
   // placing/find_place.cpp
   relocalize::IndexOptions index_lengths() const;
-  PlaceSearch& place_search();
+  void index_maps_apart(core::StepReport& report);
   void find_place(const core::FieldOfView& view, core::StepReport& report);
-  bool join(const relocalize::Place& place, core::PlacedDecision& decision, core::StepReport& report);
+  void note_answers(const std::vector<core::PlacedDecision>& answers, core::StepReport& report) noexcept;
+  bool join(const MapApart& apart, const relocalize::Place& place, core::PlacedDecision& decision,
+            core::StepReport& report);
+
+  // placing/carried.cpp
+  core::JointMap map_to_keep(core::CarriedDecision& decision) const;
+  Belief belief_elsewhere() const;
 
   // loop/process_again.hpp
   template <class AfterFix, class AfterScan>
@@ -181,9 +189,8 @@ class NavigationLoop {
   Undo undo_;
   std::uint64_t searches_ = 0;
   WholeMapQuestions questions_;
-  WholeMapQuestions questions_before_;               ///< this call, for recover()
-  std::shared_ptr<const core::JointMap> sought_in_;  ///< an earlier map, as long as the place on it is unknown
-  std::shared_ptr<PlaceSearch> place_search_;        ///< in it, from the first scan on
+  WholeMapQuestions questions_before_;  ///< this call, for recover()
+  MapsApart apart_;                     ///< maps on which a place is sought
   std::map<std::int64_t, std::vector<std::size_t>>
       used_;  ///< [step] observations of scans that were thinned since the checkpoint
 };

@@ -26,6 +26,7 @@ std::optional<core::StepReport> Navigator::take(const core::Event& event) {
   if (const auto* scan = std::get_if<core::Scan>(&event)) return observe(*scan);
   if (const auto* odometry = std::get_if<core::Odometry>(&event)) move(*odometry);
   if (const auto* absolute = std::get_if<core::AbsoluteFix>(&event)) fix(*absolute);
+  if (const auto* lost = std::get_if<core::Lost>(&event)) lose(*lost);
   return std::nullopt;
 }
 
@@ -42,6 +43,14 @@ core::StepReport Navigator::observe(const core::Scan& scan) {
 bool Navigator::fix(const core::AbsoluteFix& fix) {
   core::check(fix);
   return loop_->fix(fix);
+}
+
+void Navigator::lose(const core::Lost& lost) { loop_->lose(lost); }
+
+std::map<int, core::JointMap> Navigator::maps_apart() const {
+  std::map<int, core::JointMap> maps;
+  for (const MapApart& apart : loop_->maps_apart().maps) maps.emplace(apart.part, *apart.map);
+  return maps;
 }
 
 void Navigator::look_for_place_in(const core::JointMap& earlier) { loop_->look_for_place_in(earlier); }

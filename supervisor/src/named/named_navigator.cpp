@@ -58,6 +58,9 @@ std::optional<StepReport> NamedNavigator::take(const core::Event& event, const s
   if (const auto* scan = std::get_if<core::Scan>(&event)) return observe(*scan, identities);
   if (const auto* odometry = std::get_if<core::Odometry>(&event)) move(*odometry);
   if (const auto* absolute = std::get_if<core::AbsoluteFix>(&event)) fix(*absolute);
+  if (std::holds_alternative<core::Lost>(event)) {
+    throw core::PreconditionError("take: a vehicle that was carried is not found again by identities");
+  }
   return std::nullopt;
 }
 

@@ -61,7 +61,9 @@ void NavigationLoop::look_for_place_in(const core::JointMap& earlier) {
   EarlierMap checked(earlier);
   if (checked.landmarks().ids.empty())
     throw core::PreconditionError("look_for_place_in: no mature landmark in the map");
-  sought_in_ = std::make_shared<const core::JointMap>(earlier);
+  apart_.maps = {{0, std::make_shared<const core::JointMap>(earlier)}};
+  apart_.part = 1;
+  apart_.next_part = 2;
   belief_.filter.name_from(earlier.next_name);
   std::get<Mapping>(mode_).trust(take_checkpoint(belief_, tape_));
 }
@@ -74,38 +76,55 @@ relocalize::IndexOptions NavigationLoop::index_lengths() const {
   return lengths;
 }
 
-/// The index is made when the sensor is known.
-PlaceSearch& NavigationLoop::place_search() {
-  if (!place_search_) place_search_ = std::make_shared<PlaceSearch>(*sought_in_, index_lengths());
-  return *place_search_;
-}
-
-/// After a scan, while the place is unknown.
-void NavigationLoop::find_place(const core::FieldOfView& view, core::StepReport& report) {
-  if (searching() != nullptr) return;
-  const bool is_first = place_search_ == nullptr;
-  PlaceSearch& search = place_search();
-  PlacedDecision decision;
-  if (is_first) {
-    decision.earlier_landmarks = static_cast<int>(search.earlier().landmarks().ids.size());
+/// The indices are made when the sensor is known. Of an earlier session's map the first scan says that it is sought.
+void NavigationLoop::index_maps_apart(core::StepReport& report) {
+  for (MapApart& apart : apart_.maps) {
+    if (apart.search) continue;
+    apart.search = std::make_shared<const PlaceSearch>(*apart.map, index_lengths());
+    if (belief_.step > 1 || apart.part > 0) continue;
+    PlacedDecision decision;
+    decision.earlier_landmarks = static_cast<int>(apart.search->earlier().landmarks().ids.size());
     report.decisions.emplace_back(decision);
   }
+}
+
+/// After a scan, while there are maps of which it is not known how this one lies to them.
+void NavigationLoop::find_place(const core::FieldOfView& view, core::StepReport& report) {
+  if (searching() != nullptr) return;
+  index_maps_apart(report);
   const double seen_within_m = options_.search.branch_seen_within_m;
   LandmarksAbout about = landmarks_about(belief_, seen_within_m);
-  if (!search.is_due(about.ids)) return;
-  const relocalize::Question question = session_question(belief_, about, view, search.lengths(), seen_within_m);
+  if (!apart_.asked.is_due(about.ids)) return;
+  const relocalize::Question question = session_question(belief_, about, view, index_lengths(), seen_within_m);
   if (question.looked.empty()) return;
-  const relocalize::Answer answer = search.ask(question, decision);
-  decision.driven_m = belief_.existence.path_m();
-  report.decisions.reserve(report.decisions.size() + 1);
-  if (answer.verdict == relocalize::Verdict::closed && join(answer.places.front(), decision, report)) return;
-  if (search.asked(about.ids, decision.verdict)) report.decisions.emplace_back(decision);
+  std::vector<PlacedDecision> answers;
+  for (const MapApart& apart : apart_.maps) {
+    PlacedDecision& decision = answers.emplace_back();
+    decision.part = apart.part;
+    if (!apart.search->can_be_asked()) continue;
+    const relocalize::Answer answer = apart.search->ask(question, apart_.asked, decision);
+    decision.driven_m = belief_.existence.path_m();
+    if (answer.verdict == relocalize::Verdict::closed && join(apart, answer.places.front(), decision, report)) return;
+  }
+  report.decisions.reserve(report.decisions.size() + answers.size());
+  note_answers(answers, report);
+  apart_.asked.note(about.ids);
+}
+
+/// Those that say something else than the one before. Room for them has been made: does not throw.
+void NavigationLoop::note_answers(const std::vector<PlacedDecision>& answers, core::StepReport& report) noexcept {
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (std::exchange(apart_.maps[i].last, answers[i].verdict) != answers[i].verdict) {
+      report.decisions.emplace_back(answers[i]);
+    }
+  }
 }
 
 /// From here on one map, in the frame of the earlier one, or everything as before. What lies behind can no longer be solved
 /// as a whole, since it says nothing of how the earlier map was made.
-bool NavigationLoop::join(const relocalize::Place& place, PlacedDecision& decision, core::StepReport& report) {
-  const PlaceSearch& search = *place_search_;
+bool NavigationLoop::join(const MapApart& apart, const relocalize::Place& place, PlacedDecision& decision,
+                          core::StepReport& report) {
+  const PlaceSearch& search = *apart.search;
   const Seen seen = seen_landmarks(belief_.existence, options_.search.constellation.least_hits);
   JoinedMaps joined = join_maps(belief_.filter, search.earlier().landmarks(), place, seen.confirmed, seen.unconfirmed,
                                 search.lengths().pair_noise_m, options_.search);
@@ -137,13 +156,16 @@ bool NavigationLoop::join(const relocalize::Place& place, PlacedDecision& decisi
   report.active_landmarks = both.filter.active_count();
   report.mapped_landmarks = both.filter.mapped_count();
   report.decisions.emplace_back(decision);
+  MapsApart left = apart_;
+  left.part = apart.part;
+  const auto is_joined = [&](const MapApart& one) { return one.part == apart.part; };
+  left.maps.erase(std::remove_if(left.maps.begin(), left.maps.end(), is_joined), left.maps.end());
 
   // Nothing below throws.
   belief_ = std::move(both);
   mode_ = std::move(mapping);
   tape_.drop_drive();
-  sought_in_.reset();
-  place_search_.reset();
+  apart_ = std::move(left);
   return true;
 }
 

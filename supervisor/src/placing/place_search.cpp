@@ -17,17 +17,14 @@ core::PlacedDecision::Verdict verdict_of(relocalize::Verdict verdict) {
 PlaceSearch::PlaceSearch(const core::JointMap& earlier, const relocalize::IndexOptions& lengths)
     : earlier_(earlier), index_(earlier_.index(lengths)) {}
 
-bool PlaceSearch::is_due(const std::vector<core::LandmarkId>& landmarks) const {
-  return asked_.is_due(landmarks) && index_.looked_at_m2() > 0.0;
-}
-
-relocalize::Answer PlaceSearch::ask(const relocalize::Question& question, core::PlacedDecision& decision) const {
+relocalize::Answer PlaceSearch::ask(const relocalize::Question& question, const Asked& before,
+                                    core::PlacedDecision& decision) const {
   relocalize::AskOptions options;
-  options.alpha = asked_.next_alpha();
+  options.alpha = before.next_alpha();
   relocalize::Answer answer = relocalize::ask(index_, question, options);
   decision.verdict = verdict_of(answer.verdict);
   decision.earlier_landmarks = static_cast<int>(earlier_.landmarks().ids.size());
-  decision.questions = asked_.questions + 1;
+  decision.questions = before.questions + 1;
   decision.landmarks = static_cast<int>(question.landmarks.size());
   decision.needed = -std::log(options.alpha);
   decision.lead = answer.gap;
@@ -37,13 +34,6 @@ relocalize::Answer PlaceSearch::ask(const relocalize::Question& question, core::
   decision.evidence = best.evidence;
   decision.T_map_session = best.T_map_branch;
   return answer;
-}
-
-bool PlaceSearch::asked(std::vector<core::LandmarkId>& landmarks, core::PlacedDecision::Verdict verdict) noexcept {
-  asked_.note(landmarks);
-  const bool differs = verdict != last_;
-  last_ = verdict;
-  return differs;
 }
 
 }  // namespace helixnav::supervisor

@@ -56,7 +56,7 @@ core::Pose2 branch_on_map(const std::vector<pf_relocalize::ConstellationPair>& p
 
 bool NavigationLoop::asks_whole_map() const {
   return options_.search.enabled && options_.search.whole_map &&
-         options_.search.acceptance == Acceptance::constellation && !sought_in_ &&
+         options_.search.acceptance == Acceptance::constellation && !apart_.any() &&
          std::isinf(belief_.window.radius_m);  // else it is not in the filter
 }
 

@@ -27,7 +27,7 @@ double drift_m(const cekf::CompressedEkf& filter) {
 /// The drive is known from its begin, and no other map is asked for a place in it.
 bool NavigationLoop::may_have_window() const {
   const bool is_whole = belief_.drive ? tape_.holds_since(belief_.drive->end()) : tape_.holds_drive();
-  return is_whole && !sought_in_ && options_.search.closing != ClosingMethod::restart;
+  return is_whole && !apart_.any() && options_.search.closing != ClosingMethod::restart;
 }
 
 bool NavigationLoop::needs_window() const {
@@ -36,7 +36,7 @@ bool NavigationLoop::needs_window() const {
 
 WindowNeeds NavigationLoop::window_to_map() const {
   constexpr int all = std::numeric_limits<int>::max();
-  if (sought_in_ || !needs_window()) return {0.0, all, all};
+  if (apart_.any() || !needs_window()) return {0.0, all, all};
   const double reach_m = view_.reach().value_or(reference_reach_m);
   return {5.0 * reach_m + drift_m(belief_.filter), options_.map.window, options_.map.most};
 }

@@ -15,6 +15,8 @@ void check(const Odometry& odometry);
 void check(const Scan& scan);
 /// Fix: finite position and antenna, covariance symmetric positive definite.
 void check(const AbsoluteFix& fix);
+/// Nothing about it can be wrong.
+inline void check(const Lost&) {}
 /// Whichever it is.
 void check(const Event& event);
 

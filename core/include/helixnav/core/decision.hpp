@@ -138,6 +138,18 @@ struct FixDecision {
   double pose_sigma_m = 0.0;  ///< after it
 };
 
+/// The vehicle was told to have been carried (core::Lost). The drive goes on as a new part, with a map of its own, and its
+/// place on the parts before is sought (PlacedDecision). Part 0 is what the drive began on; where that was sought on an
+/// earlier map, part 0 is that map and the drive began as part 1.
+struct CarriedDecision {
+  int part = 0;           ///< that begins
+  int from_part = 0;      ///< that ends
+  int landmarks = 0;      ///< kept of that one
+  int dropped = 0;        ///< of it: tentative ones, and those of a map that is too small or too large to be kept
+  int apart = 0;          ///< parts of which it is not known how they lie to the one that begins
+  double driven_m = 0.0;  ///< in the part that ends
+};
+
 /// The session and the map of an earlier one: whether, where and by which evidence the one was found in the other. Rows where
 /// nothing changed since the row before are left out.
 struct PlacedDecision {
@@ -162,6 +174,7 @@ struct PlacedDecision {
   double limit = 0.0;
   double driven_m = 0.0;  ///< by this session
   Pose2 T_map_session;    ///< of the best place
+  int part = 0;           ///< of the drive on which it is, see CarriedDecision
 };
 
 /// The whole map was asked where the vehicle is, without the prior: by a search whose prior holds no place or whose odometry
@@ -201,13 +214,16 @@ struct OtherDecision {
 using Decision =
     std::variant<TriggerDecision, RollbackDecision, SlipDecision, AttemptStarted, AttemptEnded, ReferenceUnusable,
                  VerificationDecision, ClosureDecision, UndecidedDecision, NewGroundDecision, SmoothingDecision,
-                 FixDecision, PlacedDecision, WholeMapDecision, OtherDecision>;
+                 FixDecision, CarriedDecision, PlacedDecision, WholeMapDecision, OtherDecision>;
 
 /// True for what ends a search: a closing accepted or refused, new ground, or a search given up.
 inline bool is_closure(const Decision& decision) {
   return std::holds_alternative<ClosureDecision>(decision) || std::holds_alternative<UndecidedDecision>(decision) ||
          std::holds_alternative<NewGroundDecision>(decision);
 }
+
+/// True for what begins a part of the drive.
+inline bool begins_part(const Decision& decision) { return std::holds_alternative<CarriedDecision>(decision); }
 
 /// True for what begins a search.
 inline bool is_trigger(const Decision& decision) {

@@ -59,6 +59,7 @@ struct OwnLog {
   std::vector<std::string> class_names;
   std::vector<std::string> id_names;  ///< [label] where identities are names; empty where they are numbers
   bool has_labels = false;
+  std::vector<core::Nanoseconds> lost_ns;  ///< the vehicle was carried after each of them, before the next scan
   std::vector<OwnFix> fixes;
   std::vector<core::TruePose> true_poses;
   std::vector<core::TruePosition> true_positions;
@@ -72,8 +73,8 @@ bool is_own_log(const std::filesystem::path& path);
 /// The vehicle.toml of a log: in the folder, or beside the file of JSON Lines. Empty when there is none.
 std::filesystem::path vehicle_beside(const std::filesystem::path& log);
 
-/// Reads a folder with odometry.csv and detections.csv, and fixes.csv, truth_poses.csv, truth_landmarks.csv where they are
-/// there, or a file of JSON Lines. Columns are known by their names, with units at their ends (docs/your_own_log.md). Rows
+/// Reads a folder with odometry.csv and detections.csv, and lost.csv, fixes.csv, truth_poses.csv, truth_landmarks.csv where they
+/// are there, or a file of JSON Lines. Columns are known by their names, with units at their ends (docs/your_own_log.md). Rows
 /// out of order by less than a second are sorted. Throws core::InputError naming file:line:column for anything else that
 /// cannot be used. Test: logs/own_log_test.cpp, logs/own_log_refusals_test.cpp.
 OwnLog read_own_log(const std::filesystem::path& path);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -62,12 +63,14 @@ struct Run {
   std::vector<std::pair<std::string, double>> timing;  ///< wall clock, into summary.json under "timing"
   std::optional<SmoothedRun> smoothed;
   std::optional<core::JointMap> joint_map;          ///< into map.bin
+  std::map<int, core::JointMap> parts_apart;        ///< [part] into part_0/map.csv …, see core::CarriedDecision
   std::vector<std::vector<Eigen::Vector2f>> scans;  ///< [step][observation] in the robot's frame [m]; NaN: no point
   std::vector<MapChange> map_changes;
   std::optional<ParticleEnd> particle_end;
 };
 
-/// Makes the final path of what was solved of the drive: between and after the poses given, the motion of the steps stands.
+/// Makes the final path of what was solved of the drive, or of each of its parts: between the poses given the motion of the
+/// steps stands, after the last one of a part the steps.
 /// Without poses the path is that of the steps where a session found its place, and none elsewhere. Test: runs/final_path_test.cpp.
 void correct_path(Run& run, const std::vector<core::StampedPose>& solved);
 

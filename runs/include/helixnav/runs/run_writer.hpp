@@ -36,7 +36,8 @@ class RunWriter {
   /// Cost: about 5 µs.
   void write(const core::StepReport& report, double microseconds);
 
-  /// Writes what there is at the end of a run: map.csv, map.bin unless the map is too large, trajectory_final.tum where the
+  /// Writes what there is at the end of a run: map.csv, map.bin unless the map is too large, both of parts apart in
+  /// folders part_0 …, trajectory_final.tum where the
   /// path was corrected or the session found its place on an earlier map, and the texts of
   /// report.html and, last of all, summary.json. Each appears whole or not at all.
   void finish(const Run& run, const std::string& report_page, const std::string& summary);

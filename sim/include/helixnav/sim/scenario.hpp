@@ -55,6 +55,7 @@ struct SlipOptions {
 struct CarryOptions {
   double every_m = 0.0;  ///< driven between two times: from three to five quarters of it; 0: never
   Interval distance_m{100.0, 400.0};
+  bool announced = false;  ///< by a core::Lost event
 };
 
 /// Everything that a simulated run depends on, beside its seed. True noise is what happens, assumed noise is what the

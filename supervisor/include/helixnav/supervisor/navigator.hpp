@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -48,7 +49,7 @@ class Navigator {
   /// with at least one mature landmark: PreconditionError. Test: supervisor/find_place_test.cpp.
   void look_for_place_in(const core::JointMap& earlier);
 
-  /// Any event: move, observe or fix. The report of a scan, nothing for others.
+  /// Any event: move, observe, fix or lose. The report of a scan, nothing for others.
   std::optional<core::StepReport> take(const core::Event& event);
 
   /// Collects motion; it reaches the filter with the next scan or fix (exact, see core::chain).
@@ -58,8 +59,21 @@ class Navigator {
   core::StepReport observe(const core::Scan& scan);
 
   /// A position fix in the map frame: motion pending is predicted, then the fix updates the pose when its NIS passes the
-  /// gate. The decision goes into the report of the next scan. True when it was used.
+  /// gate. The decision goes into the report of the next scan. True when it was used. Not used where the vehicle was carried
+  /// (lose()) or looks for its place on an earlier map, until that is found.
   bool fix(const core::AbsoluteFix& fix);
+
+  /// The vehicle was moved by something else than its wheels since the event before. What was mapped so far, its mature
+  /// landmarks with all correlations, is kept apart, and the drive goes on as a part of its own, whose frame is where it begins;
+  /// the landmarks mapped before are not matched. Its place is sought on all parts kept apart as look_for_place_in() does;
+  /// where it is found, the two become one map in the frame of the earlier one. A search that is open ends undecided. Decisions
+  /// go into the report of the next scan (core::CarriedDecision). A part of fewer than five landmarks could never be found
+  /// and is dropped; of more than 3000 the nearest are kept. O(N²). Test: supervisor/carried_test.cpp.
+  void lose(const core::Lost& lost);
+
+  /// [part] the maps of which it is not known how the present one lies to them: parts of the drive from before the vehicle
+  /// was carried, and as part 0 the earlier map of look_for_place_in().
+  std::map<int, core::JointMap> maps_apart() const;
 
   /// Pose at the last scan or fix.
   core::PoseGaussian pose() const;

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "helixnav/core/decision.hpp"
+#include "helixnav/core/joint_map.hpp"
+#include "placing/asked.hpp"
+#include "placing/place_search.hpp"
+
+namespace helixnav::supervisor {
+
+/// A map of which it is not known how the present one lies to it: that of an earlier session, or of a part of the drive before
+/// the vehicle was carried.
+struct MapApart {
+  int part = 0;  ///< of the drive, see core::CarriedDecision
+  std::shared_ptr<const core::JointMap> map;
+  std::shared_ptr<const PlaceSearch> search = {};  ///< in it, from the first scan on
+  core::PlacedDecision::Verdict last = core::PlacedDecision::Verdict::sought;
+};
+
+/// All of those, in order of part, and what was asked of them: every question goes to each.
+struct MapsApart {
+  std::vector<MapApart> maps;
+  Asked asked;
+  int part = 0;  ///< of the drive in which the vehicle is
+  int next_part = 1;
+
+  bool any() const { return !maps.empty(); }
+};
+
+}  // namespace helixnav::supervisor
