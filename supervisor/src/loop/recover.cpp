@@ -33,7 +33,7 @@ void NavigationLoop::commit() {
 
 /// Poses on ground that was covered before, where nothing goes back to any more.
 void NavigationLoop::thin_coverage() {
-  if (searching() != nullptr || sought_in_) return;
+  if (searching() != nullptr || apart_.any()) return;
   const auto left_open = [this](double path_m) {
     return std::any_of(belief_.left_open.begin(), belief_.left_open.end(), [&](const LeftOpen& open) {
       return open.begun_path_m <= path_m && path_m <= open.ended_path_m;
