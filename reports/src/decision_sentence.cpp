@@ -153,7 +153,7 @@ std::string sentence(const core::FixDecision& d) {
 }
 
 std::string sentence(const core::CarriedDecision& d) {
-  const std::string ended = "The vehicle was carried, as it was told. Part " + std::to_string(d.from_part) +
+  const std::string ended = "The vehicle was carried (event lost). Part " + std::to_string(d.from_part) +
                             " of the drive ends after " + short_number(d.driven_m) + " m";
   const std::string kept = d.landmarks > 0 ? ": " + counted(d.landmarks, "landmark") + " of it " +
                                                  (d.landmarks == 1 ? "is" : "are") + " kept as a map of its own"

@@ -57,7 +57,7 @@ Json placed_to_json(const core::PlacedDecision& last) {
   return json;
 }
 
-/// How often the vehicle was carried, as it was told; nothing where it was not.
+/// How often the vehicle was carried (event lost); nothing where it was not.
 std::optional<Json> carried_to_json(const runs::Run& run) {
   int times = 0;
   bool is_placed = true;
