@@ -49,8 +49,9 @@ core::JointGaussian with_pose(const cekf::CompressedEkf& filter, core::LandmarkI
   return joint;
 }
 
-/// Of many candidates those that keep some observation from being a new landmark's: the joint covariance of the others is not asked for,
-/// O(candidates²·q), hundreds where the vehicle does not know where it is.
+/// Of many candidates those that keep some observation from being a new landmark's, each gated by itself, O(q²): where the
+/// vehicle does not know where it is there are hundreds, and their joint covariance costs O(candidates²·q). Of few it costs
+/// no more than gating them one by one.
 std::vector<core::LandmarkId> inside_gates(const cekf::CompressedEkf& filter, std::vector<core::LandmarkId> candidates,
                                            const core::Scan& scan, const association::Gates& gates) {
   constexpr std::size_t few = 48;

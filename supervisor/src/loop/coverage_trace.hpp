@@ -23,9 +23,9 @@ class CoverageTrace {
   void back_to(double path_m);
 
   /// Of the poses passed before `path_m`, drops those from which nothing was seen that an older one did not see: less than
-  /// three quarters of the spacing away from it and turned by less than 0.3 rad. Those that `needed(path_m)` are kept. Does nothing before there are
-  /// twice as many poses as it left last time, and never below 4096, so that it costs O(log n) a pose and poses are as many
-  /// as the ground is large, however long the drive. Throws nothing but std::bad_alloc, with nothing changed.
+  /// three quarters of the spacing away from it and turned by less than 0.3 rad. Those that `needed(path_m)` are kept. Does
+  /// nothing before there are twice as many poses as it left last time, and never below 4096, so that it costs O(log n) a
+  /// pose and poses are as many as the ground is large, however long the drive. Throws nothing but std::bad_alloc, with nothing changed.
   /// Test: supervisor/coverage_trace_test.cpp.
   void thin_before(double path_m, const std::function<bool(double)>& needed);
   std::size_t size() const { return points_.size(); }
