@@ -13,6 +13,7 @@
 #include "helixnav/association/associate.hpp"
 #include "helixnav/association/joint_innovation.hpp"
 #include "helixnav/association/k_best.hpp"
+#include "measures.hpp"
 #include "scenes.hpp"
 
 namespace {
@@ -21,17 +22,10 @@ using namespace helixnav;
 using association::InnovationProblem;
 using association::Method;
 
-/// Processor time of this thread: what other programs take from it does not count.
-double thread_us() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
-
 double microseconds(const std::function<void()>& work) {
-  const double start_us = thread_us();
+  const double start_s = bench::seconds_of_this_thread();
   work();
-  return thread_us() - start_us;
+  return 1e6 * (bench::seconds_of_this_thread() - start_s);
 }
 
 void print(const std::string& what, std::vector<double> times_us) {

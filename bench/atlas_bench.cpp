@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <string>
 #include <vector>
 
@@ -18,17 +17,12 @@
 #include "helixnav/logs/pose_landmark_text.hpp"
 #include "helixnav/smoothing/grow_start.hpp"
 #include "helixnav/smoothing/optimize.hpp"
+#include "measures.hpp"
 #include "phases_of_graph.hpp"
 
 namespace {
 
 using namespace helixnav;
-
-double seconds_of_this_thread() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 double rms(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b, bool align) {
   Eigen::Vector2d ca = Eigen::Vector2d::Zero(), cb = ca;
@@ -55,24 +49,24 @@ void park(const char* path, double length_m, double bend_m, double rederive) {
   options.rederive_m = rederive;
   options.rederive_rad = 0.1 * rederive;
   atlas::Atlas map({}, options);
-  double derive_s = 0, joint_s = 0, settle_s = 0, add_s = 0, worst = 0, begin = seconds_of_this_thread();
+  double derive_s = 0, joint_s = 0, settle_s = 0, add_s = 0, worst = 0, begin = bench::seconds_of_this_thread();
   for (const auto& log : phases) {
-    const double t0 = seconds_of_this_thread();
+    const double t0 = bench::seconds_of_this_thread();
     std::vector<core::LandmarkId> known;
     for (auto id : atlas::landmarks_of(*log))
       if (map.knows(id)) known.push_back(id);
     atlas::PointPrior prior;
     if (!known.empty()) prior = atlas::relative_to_pose(map.joint(known));
-    const double t1 = seconds_of_this_thread();
+    const double t1 = bench::seconds_of_this_thread();
     auto factor = atlas::derive_factor(*log, atlas::dead_reckon(*log, &prior), known.empty() ? nullptr : &prior);
-    const double t2 = seconds_of_this_thread();
+    const double t2 = bench::seconds_of_this_thread();
     map.add(std::move(factor), log);
-    const double t3 = seconds_of_this_thread();
+    const double t3 = bench::seconds_of_this_thread();
     map.settle();
-    const double t4 = seconds_of_this_thread();
+    const double t4 = bench::seconds_of_this_thread();
     joint_s += t1 - t0, derive_s += t2 - t1, add_s += t3 - t2, settle_s += t4 - t3, worst = std::max(worst, t4 - t3);
   }
-  const double total = seconds_of_this_thread() - begin;
+  const double total = bench::seconds_of_this_thread() - begin;
   std::printf(
       "%5.0f m: %zu phases, %.3f s: joint %.3f, derive %.3f, add %.3f, settle %.3f (worst %.1f ms), %d fronts; chi2 "
       "%.4f\n",
@@ -144,15 +138,15 @@ void go_on(atlas::Atlas& map, bench::RoadWorld& world) {
   for (std::size_t k = 0; k < logs.size(); ++k) {
     atlas::PhaseFactor factor = atlas::derive_factor(*logs[k], shapes[k], nullptr, 0);
     const int before = map.nodes_redone();
-    const double t0 = seconds_of_this_thread();
+    const double t0 = bench::seconds_of_this_thread();
     map.add(std::move(factor), logs[k]);
-    const double t1 = seconds_of_this_thread();
+    const double t1 = bench::seconds_of_this_thread();
     map.settle();
-    const double t2 = seconds_of_this_thread();
+    const double t2 = bench::seconds_of_this_thread();
     const auto ids = closest(map, map.pose().position_m(), 60);
-    const double t3 = seconds_of_this_thread();
+    const double t3 = bench::seconds_of_this_thread();
     map.joint(ids);
-    const double t4 = seconds_of_this_thread();
+    const double t4 = bench::seconds_of_this_thread();
     fronts.push_back(map.nodes_redone() - before);
     add_ms.push_back(1e3 * (t1 - t0));
     settle_ms.push_back(1e3 * (t2 - t1));
@@ -171,11 +165,11 @@ void go_on(atlas::Atlas& map, bench::RoadWorld& world) {
 }
 
 void settle_all(atlas::Atlas& map, int landmarks) {
-  const double t0 = seconds_of_this_thread();
+  const double t0 = bench::seconds_of_this_thread();
   map.reshape();
-  const double t1 = seconds_of_this_thread();
+  const double t1 = bench::seconds_of_this_thread();
   map.settle();
-  const double t2 = seconds_of_this_thread();
+  const double t2 = bench::seconds_of_this_thread();
   print_size(map, landmarks);
   std::printf("  laid out in %.3f s, settled in %.3f s: %d fronts, %.0f us each\n", t1 - t0, t2 - t1,
               map.nodes_redone(), 1e6 * (t2 - t1) / map.nodes_redone());
@@ -230,11 +224,11 @@ void close_loop(double kilometres, double bend_m) {
   map.settle();
   atlas::Atlas closed = map;
   double gap_m = 0.0;
-  const double t0 = seconds_of_this_thread();
+  const double t0 = bench::seconds_of_this_thread();
   for (std::size_t k = before; k < factors.size(); ++k) closed.add(factors[k], logs[k]);
-  const double t1 = seconds_of_this_thread();
+  const double t1 = bench::seconds_of_this_thread();
   closed.settle();
-  const double t2 = seconds_of_this_thread();
+  const double t2 = bench::seconds_of_this_thread();
   for (const atlas::Place& p : closed.landmarks()) {
     if (map.knows(p.id)) gap_m = std::max(gap_m, (p.point_m - map.landmark(p.id)).norm());
   }

@@ -6,11 +6,11 @@
 // Times are processor time of one thread.
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <memory>
 #include <vector>
 
 #include "cekf_world.hpp"
+#include "measures.hpp"
 
 #ifdef HELIXNAV_BENCH_BLAS
 extern "C" void dsyrk_(const char* uplo, const char* trans, const int* n, const int* k, const double* alpha,
@@ -23,12 +23,6 @@ namespace {
 using namespace helixnav;
 
 constexpr int active = 40;
-
-double seconds_of_this_thread() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// Of values given; orders them.
 double quantile(std::vector<double>& values, double share) {
@@ -48,10 +42,10 @@ struct Row {
 void time_steps(Row& row, int steps) {
   for (int k = 0; k < steps; ++k) {
     const std::vector<cekf::Match>& matches = row.world.look();
-    const double start = seconds_of_this_thread();
+    const double start = bench::seconds_of_this_thread();
     row.world.filter.predict(row.world.odometry());
     row.world.filter.update(matches);
-    row.step_us.push_back(1e6 * (seconds_of_this_thread() - start));
+    row.step_us.push_back(1e6 * (bench::seconds_of_this_thread() - start));
   }
 }
 
@@ -68,9 +62,9 @@ Size size_of(const cekf::CompressedEkf& filter) {
 
 void time_switch(Row& row) {
   const Size size = size_of(row.world.filter);
-  const double start = seconds_of_this_thread();
+  const double start = bench::seconds_of_this_thread();
   row.world.filter.global_update();
-  const double switch_s = seconds_of_this_thread() - start;
+  const double switch_s = bench::seconds_of_this_thread() - start;
   const double n = size.n;
   const double q = size.q;
   const double flops = n * n * q + 2 * n * q * q + 2 * n * q * (3 + 2 * active);  // P_bb, response, P_ab
@@ -89,9 +83,9 @@ class PlainUpdate {
   double gflops() {
     const double minus = -1.0;
     const double one = 1.0;
-    const double start = seconds_of_this_thread();
+    const double start = bench::seconds_of_this_thread();
     dsyrk_("L", "N", &size_.n, &size_.q, &minus, A_.data(), &size_.n, &one, C_.data(), &size_.n);
-    return 1e-9 * size_.n * size_.n * size_.q / (seconds_of_this_thread() - start);
+    return 1e-9 * size_.n * size_.n * size_.q / (bench::seconds_of_this_thread() - start);
   }
 
  private:

@@ -6,32 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
-#include <fstream>
-#include <string>
 #include <vector>
 
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/random.hpp"
 #include "helixnav/supervisor/navigator.hpp"
+#include "measures.hpp"
 
 namespace {
 
 using namespace helixnav;
-
-double seconds_of_this_thread() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double peak_mb() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.rfind("VmHWM:", 0) == 0) return 1e-3 * std::stod(line.substr(6));
-  }
-  return 0.0;
-}
 
 constexpr double reach_m = 80.0;
 
@@ -64,17 +48,17 @@ bool drive(std::size_t observations, bool one_place) {
     still.t_ns = i * 100'000'000;
     still.covariance = 1e-6 * Eigen::Matrix3d::Identity();
     const core::Scan scan = scan_of(observations, one_place, still.t_ns, noise);
-    const double begin_s = seconds_of_this_thread();
+    const double begin_s = bench::seconds_of_this_thread();
     navigator.move(still);
     const core::StepReport report = navigator.observe(scan);
-    const double took_s = seconds_of_this_thread() - begin_s;
+    const double took_s = bench::seconds_of_this_thread() - begin_s;
     most_s = std::max(most_s, took_s);
     used = 0;
     for (const core::AssociationReport& one : report.associations) used += one.outcome != core::Outcome::ambiguous;
     std::printf(" %8.1f", 1e3 * took_s);
     std::fflush(stdout);
   }
-  std::printf(" %6zu %8.1f\n", used, peak_mb());
+  std::printf(" %6zu %8.1f\n", used, bench::peak_mb());
   return most_s <= 1.0;
 }
 
@@ -86,7 +70,7 @@ int main() {
   for (const std::size_t observations : {10, 100, 256, 1000, 10'000}) {
     for (const bool one_place : {false, true}) good = drive(observations, one_place) && good;
   }
-  good = good && peak_mb() <= 200.0;
+  good = good && bench::peak_mb() <= 200.0;
   drive(50'000, false);
   return good ? 0 : 1;
 }

@@ -15,6 +15,7 @@
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "helixnav/core/step_report.hpp"
+#include "measures.hpp"
 
 namespace helixnav::bench {
 
@@ -37,13 +38,6 @@ struct MappingRun {
 
 /// Called with the problem of each scan before it is solved.
 using SeesProblem = std::function<void(const association::InnovationProblem&)>;
-
-/// Processor time of this thread: what other programs take from it does not count.
-inline double thread_us() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
 
 class MappingLoop {
  public:
@@ -75,9 +69,9 @@ class MappingLoop {
     if (std::isfinite(scan.field_of_view.max_range_m)) {
       how.extraneous = association::uniform_density(scan.field_of_view, options_.extraneous_per_scan);
     }
-    const double begin_us = thread_us();
+    const double begin_s = seconds_of_this_thread();
     const association::Assignment assignment = association::associate(options_.method, problem, how);
-    run_.association_us.push_back(thread_us() - begin_us);
+    run_.association_us.push_back(1e6 * (seconds_of_this_thread() - begin_s));
     apply(scan, assignment);
   }
 

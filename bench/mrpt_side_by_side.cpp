@@ -20,7 +20,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -37,6 +36,7 @@
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/random.hpp"
 #include "kf_slam.hpp"
+#include "measures.hpp"
 
 namespace {
 
@@ -62,12 +62,6 @@ struct Noise {
   double sigma_range_m;
   double sigma_bearing_rad;
 };
-
-double seconds_of_this_thread() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 struct Sighting {
   int landmark;
@@ -180,13 +174,13 @@ class Compressed : public Contestant {
         matches.push_back({ids_[i], z, {}});
       }
     }
-    const double start = seconds_of_this_thread();
+    const double start = bench::seconds_of_this_thread();
     filter_.predict(step.odometry);
     if (!matches.empty()) filter_.update(matches);
-    const double updated = seconds_of_this_thread();
+    const double updated = bench::seconds_of_this_thread();
     for (const auto& [i, z] : fresh) ids_[i] = filter_.augment(z, {});
     filter_.switch_region_if_due();
-    note(updated - start, seconds_of_this_thread() - updated, kind);
+    note(updated - start, bench::seconds_of_this_thread() - updated, kind);
   }
 
   std::vector<Eigen::Vector2d> map_m(std::size_t landmarks) const override {
@@ -214,9 +208,9 @@ class Mrpt : public Contestant {
   void take(const Step& step, Kind kind) override {
     auto action = action_of(step.odometry);
     auto frame = frame_of(step.sightings);
-    const double start = seconds_of_this_thread();
+    const double start = bench::seconds_of_this_thread();
     filter_.take(action, frame);
-    note(seconds_of_this_thread() - start, 0.0, kind);
+    note(bench::seconds_of_this_thread() - start, 0.0, kind);
   }
 
   std::vector<Eigen::Vector2d> map_m(std::size_t landmarks) const override {

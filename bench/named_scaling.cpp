@@ -5,32 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
-#include <fstream>
-#include <string>
 #include <vector>
 
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/random.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
+#include "measures.hpp"
 
 namespace {
 
 using namespace helixnav;
-
-double seconds_of_this_thread() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double peak_gb() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.rfind("VmHWM:", 0) == 0) return 1e-6 * std::stod(line.substr(6));
-  }
-  return 0.0;
-}
 
 /// A landmark each 8 m on both sides of a road in a circle, seen up to 25 m away from scans each 2 m, a fix of 1 m each 5 km.
 class CircleRoad {
@@ -108,7 +92,7 @@ struct Steps {
     for (const double one : us) sum += one;
     std::printf("%8d  %-10s  %6.1f  %6.1f  %8.1f  %8.1f  %5d  %6.2f\n", mapped, where,
                 sum / static_cast<double>(us.size()), quantile(0.5), quantile(0.99), sorted.back(), hand_overs,
-                peak_gb());
+                1e-3 * bench::peak_mb());
     std::fflush(stdout);
   }
 };
@@ -124,10 +108,10 @@ class Drive {
       const core::Scan scan = road_.look(k_, identities_);
       if (k_ % 2500 == 2499) navigator_.fix(road_.fix(k_ - 1));
       const long phase = navigator_.filter().phase();
-      const double begin = seconds_of_this_thread();
+      const double begin = bench::seconds_of_this_thread();
       if (k_ > 0) navigator_.move(motion);
       mapped_ = navigator_.observe(scan, identities_).mapped_landmarks;
-      steps.us.push_back(1e6 * (seconds_of_this_thread() - begin));
+      steps.us.push_back(1e6 * (bench::seconds_of_this_thread() - begin));
       steps.hand_overs += navigator_.filter().phase() < phase ? 1 : 0;  // a filter that has just begun
     }
     return steps;

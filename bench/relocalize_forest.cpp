@@ -26,6 +26,7 @@
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/random.hpp"
 #include "helixnav/relocalize/ask.hpp"
+#include "measures.hpp"
 
 namespace {
 
@@ -315,12 +316,6 @@ struct Sum {
   std::vector<double> error_m, error_deg;
 };
 
-double processor_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 struct Study {
   std::vector<Scan> scans;
   std::vector<Eigen::Vector2d> trees_m;
@@ -336,9 +331,9 @@ void ask_at(const Study& study, std::size_t s, const MapState& state, const relo
     if (old.driven_m <= state.driven_m)
       nearest_m = std::min(nearest_m, (old.truth.position_m() - scan.truth.position_m()).norm());
   const Branch branch = branch_at(study.scans, s, study.most_landmarks);
-  const double begun_s = processor_s();
+  const double begun_s = bench::seconds_of_this_thread();
   const relocalize::Answer answer = relocalize::ask(index, branch.question);
-  const double took_s = processor_s() - begun_s;
+  const double took_s = bench::seconds_of_this_thread() - begun_s;
   double off_m = 999.0;
   double off_deg = 999.0;
   if (!answer.places.empty()) {

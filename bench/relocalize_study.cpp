@@ -11,12 +11,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <exception>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "measures.hpp"
 #include "relocalize_worlds.hpp"
 
 namespace {
@@ -32,12 +32,6 @@ struct Cell {
   int worlds = 1;
   std::optional<double> prior_off_m = std::nullopt;  ///< a prior of 2 m and 3 degrees whose mean is wrong by this much
 };
-
-double processor_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 struct Tally {
   int asked = 0, closed = 0, ambiguous = 0, wrong = 0, best_right = 0, capped = 0;
@@ -91,18 +85,18 @@ Tally run(const Cell& cell, std::uint64_t seed) {
     test::WorldKind smaller = cell.kind;
     smaller.landmarks = std::min<std::size_t>(smaller.landmarks, 20000);
     const test::Points& from = cell.absent ? test::world_of(smaller, other) : world;
-    const double begun_s = processor_s();
+    const double begun_s = bench::seconds_of_this_thread();
     const MapIndex index = test::index_of(world, {30.0, cell.asking.noise_m}, cell.asking.kinds);
-    tally.build_s += processor_s() - begun_s;
+    tally.build_s += bench::seconds_of_this_thread() - begun_s;
     tally.bytes += index.memory_bytes();
     tally.landmarks += index.size();
     for (int q = w; q < cell.questions; q += cell.worlds) {
       core::RandomStream stream(seed, "question " + std::to_string(q));
       test::Asked asked = test::ask_somewhere(from, cell.asking, stream);
       if (cell.prior_off_m) believe(asked, *cell.prior_off_m);
-      const double asked_s = processor_s();
+      const double asked_s = bench::seconds_of_this_thread();
       const Answer answer = ask(index, asked.question);
-      const double took_s = processor_s() - asked_s;
+      const double took_s = bench::seconds_of_this_thread() - asked_s;
       tally.seconds += took_s;
       tally.longest_s = std::max(tally.longest_s, took_s);
       take(asked, answer, cell.absent, tally);

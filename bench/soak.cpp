@@ -10,9 +10,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
-#include <fstream>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -20,6 +17,7 @@
 #include "helixnav/evaluation/nees.hpp"
 #include "helixnav/sim/world.hpp"
 #include "helixnav/supervisor/navigator.hpp"
+#include "measures.hpp"
 #include "odometer.hpp"
 #include "scanner.hpp"
 
@@ -110,20 +108,6 @@ class ChangingCircuit {
   long step_ = 0;
 };
 
-double seconds_of_this_thread() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double resident_mb() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.rfind("VmRSS:", 0) == 0) return 1e-3 * std::stod(line.substr(6));
-  }
-  return 0.0;
-}
-
 /// What the navigator and its surroundings hold, whatever the allocator keeps for later.
 double held_mb() {
   const struct mallinfo2 info = mallinfo2();
@@ -156,7 +140,7 @@ class Soak {
     row.most_us = us_.back();
     row.mean_nees /= static_cast<double>(tenth_);
     row.inside_band /= static_cast<double>(tenth_);
-    row.resident_mb = resident_mb();
+    row.resident_mb = bench::resident_mb();
     row.held_mb = held_mb();
     return row;
   }
@@ -178,10 +162,10 @@ class Soak {
   void scan(double& us, Row& row) {
     const core::Odometry odometry = world_.move();
     const core::Scan scan = world_.look();
-    const double begin = seconds_of_this_thread();
+    const double begin = bench::seconds_of_this_thread();
     navigator_.move(odometry);
     const core::StepReport report = navigator_.observe(scan);
-    us = 1e6 * (seconds_of_this_thread() - begin);
+    us = 1e6 * (bench::seconds_of_this_thread() - begin);
     judge_pose(report.pose, row);
     row.landmarks = report.mapped_landmarks;
     for (const core::Decision& decision : report.decisions) {
