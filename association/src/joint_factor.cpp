@@ -2,10 +2,9 @@
 #include "joint_factor.hpp"
 
 #include <cmath>
-#include <string>
 
 #include "helixnav/association/joint_innovation.hpp"
-#include "helixnav/core/errors.hpp"
+#include "not_positive_definite.hpp"
 
 namespace helixnav::association {
 
@@ -57,17 +56,16 @@ Increment JointFactor::weigh(int p) {
   const double l00 = std::sqrt(D(0, 0));
   const double l10 = D(1, 0) / l00;
   const double l11 = std::sqrt(D(1, 1) - l10 * l10);
-  if (!(l00 > 0.0) || !(l11 > 0.0)) throw_not_positive_definite(p);
+  if (!(l00 > 0.0) || !(l11 > 0.0)) throw_with(p);
   last[n] << l00, 0.0, l10, l11;
   whitened_[n] << e[0] / l00, (e[1] - l10 * e[0] / l00) / l11;
   return {whitened_[n].squaredNorm(), 2.0 * std::log(l00 * l11)};
 }
 
-void JointFactor::throw_not_positive_definite(int pair) const {
-  std::string landmarks;
-  for (const int p : pairs_) landmarks += " " + std::to_string(problem_.ids[problem_.pairs[p].candidate]);
-  landmarks += " " + std::to_string(problem_.ids[problem_.pairs[pair].candidate]);
-  throw core::NumericalError("joint innovation covariance is not positive definite for landmarks" + landmarks);
+void JointFactor::throw_with(int pair) const {
+  std::vector<int> pairs = pairs_;
+  pairs.push_back(pair);
+  throw_not_positive_definite(problem_, pairs);
 }
 
 }  // namespace helixnav::association

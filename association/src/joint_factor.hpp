@@ -34,7 +34,7 @@ class JointFactor {
 
  private:
   Eigen::Matrix2d* row(std::size_t index) { return rows_.data() + index * (index + 1) / 2; }
-  [[noreturn]] void throw_not_positive_definite(int pair) const;
+  [[noreturn]] void throw_with(int pair) const;
 
   const InnovationProblem& problem_;
   std::vector<int> slot_of_prediction_;

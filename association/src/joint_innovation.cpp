@@ -2,24 +2,13 @@
 #include "helixnav/association/joint_innovation.hpp"
 
 #include <cmath>
-#include <string>
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 
 #include "costs.hpp"
-#include "helixnav/core/errors.hpp"
+#include "not_positive_definite.hpp"
 
 namespace helixnav::association {
-namespace {
-
-[[noreturn]] void throw_not_positive_definite(const InnovationProblem& problem, const std::vector<int>& pairs) {
-  std::string landmarks;
-  for (const int p : pairs) landmarks += " " + std::to_string(problem.ids[problem.pairs[p].candidate]);
-  throw core::NumericalError("joint innovation covariance is not positive definite for landmarks" + landmarks);
-}
-
-}  // namespace
 
 Eigen::Matrix2d innovation_cross_covariance(const InnovationProblem& problem, const GatedPair& a, const GatedPair& b) {
   if (a.observation == b.observation && a.candidate == b.candidate) return a.S;
@@ -68,23 +57,6 @@ JointNis joint_nis(const InnovationProblem& problem, const std::vector<int>& pai
   result.log_likelihood = -0.5 * (result.nis + log_determinant + joint.dof * ln_2pi);
   if (!std::isfinite(result.log_likelihood)) throw_not_positive_definite(problem, pairs);
   return result;
-}
-
-std::vector<double> joint_nis_shares(const InnovationProblem& problem, const std::vector<int>& pairs) {
-  std::vector<double> shares;
-  if (pairs.empty()) return shares;
-  const JointInnovation joint = joint_innovation(problem, pairs);
-  const Eigen::LLT<Eigen::MatrixXd> llt(joint.S);
-  if (llt.info() != Eigen::Success) throw_not_positive_definite(problem, pairs);
-  const Eigen::MatrixXd S_inverse = llt.solve(Eigen::MatrixXd::Identity(joint.S.rows(), joint.S.cols()));
-  const Eigen::VectorXd r = S_inverse * joint.nu;
-  shares.reserve(pairs.size());
-  for (Eigen::Index row = 0; row < joint.nu.size(); row += 2) {
-    const Eigen::Matrix2d M = S_inverse.block<2, 2>(row, row);
-    const Eigen::Vector2d r_i = r.segment<2>(row);
-    shares.push_back(r_i.dot(M.inverse() * r_i));
-  }
-  return shares;
 }
 
 }  // namespace helixnav::association

@@ -3,8 +3,11 @@
 #include <optional>
 
 #include "chi2_table.hpp"
+#include "costs.hpp"
 #include "helixnav/association/joint_innovation.hpp"
 #include "helixnav/association/k_best.hpp"
+#include "joint_factor.hpp"
+#include "joint_shares.hpp"
 #include "matching.hpp"
 
 namespace helixnav::association {
@@ -35,15 +38,65 @@ struct Passing {
   double cost;
 };
 
+/// Pairs that all assignments have.
+std::vector<int> common_pairs(const std::vector<AssignmentSolution>& solutions) {
+  std::vector<int> common = solutions.front().entry;
+  for (const AssignmentSolution& one : solutions) {
+    for (std::size_t i = 0; i < common.size(); ++i) {
+      if (one.entry[i] != common[i]) common[i] = unmatched;
+    }
+  }
+  return common;
+}
+
+/// Joint NIS of assignments that differ in few pairs: what they have in common is factored once, O(n³), and each costs O(n²) for
+/// each pair beyond.
+class NeighbouringNis {
+ public:
+  NeighbouringNis(const InnovationProblem& problem, const std::vector<AssignmentSolution>& solutions)
+      : problem_(problem), common_(common_pairs(solutions)), factor_(problem, common_.size()) {
+    for (const int pair : matched_pairs(common_)) add(pair, common_nis_);
+  }
+
+  /// Of one of the solutions.
+  JointNis operator()(const std::vector<int>& pair) {
+    JointNis joint = common_nis_;
+    const std::size_t kept = factor_.pairs().size();
+    for (std::size_t i = 0; i < pair.size(); ++i) {
+      if (pair[i] != common_[i]) add(pair[i], joint);
+    }
+    while (factor_.pairs().size() > kept) factor_.drop();
+    return joint;
+  }
+
+ private:
+  void add(int pair, JointNis& joint) {
+    if (pair == unmatched) return;
+    const Increment increment = factor_.weigh(pair);
+    factor_.keep(pair);
+    const int dof = problem_.pairs[pair].dof;
+    joint.nis += increment.nis;
+    joint.dof += dof;
+    joint.log_likelihood -= 0.5 * (increment.nis + increment.log_determinant + dof * ln_2pi);
+  }
+
+  const InnovationProblem& problem_;
+  std::vector<int> common_;
+  JointFactor factor_;
+  JointNis common_nis_;
+};
+
 /// The best passing one of the next-best assignments.
 std::optional<Passing> best_alternative(const InnovationProblem& problem, const AssignmentProblem& costs,
                                         const Options& options) {
   std::optional<Passing> best;
   if (options.joint_alternatives < 1) return best;
   const std::vector<AssignmentSolution> solutions = k_best_assignments(costs, options.joint_alternatives + 1);
+  if (solutions.size() < 2) return best;
+  NeighbouringNis nis_of(problem, solutions);
   for (std::size_t k = 1; k < solutions.size(); ++k) {
     const std::vector<int>& pair = solutions[k].entry;  // entry e of the costs is pair e, −1 is unmatched
-    JointNis joint = joint_nis(problem, matched_pairs(pair));
+    JointNis joint = nis_of(pair);
     if (!passes(joint, options)) continue;
     const double cost = joint_cost(joint, costs, problem, pair);
     if (!best || cost < best->cost) best = {pair, std::move(joint), static_cast<int>(k), cost};
@@ -66,18 +119,20 @@ Guarded guard_by_dropping(const InnovationProblem& problem, const std::vector<in
   Guarded guarded;
   guarded.pair = pair;
   guarded.dropped.assign(pair.size(), unmatched);
-  std::vector<int> pairs = matched_pairs(pair);
+  const std::vector<int> pairs = matched_pairs(pair);
   JointNis joint = joint_nis(problem, pairs);
   guarded.first_nis = joint.nis;
   guarded.first_dof = joint.dof;
-  while (options.joint_test && !passes(joint, options)) {
-    const std::vector<double> shares = joint_nis_shares(problem, pairs);
-    const auto worst = std::max_element(shares.begin(), shares.end()) - shares.begin();
-    const int observation = problem.pairs[pairs[worst]].observation;
-    guarded.dropped[observation] = pairs[worst];
-    guarded.pair[observation] = unmatched;
-    pairs.erase(pairs.begin() + worst);
-    joint = joint_nis(problem, pairs);
+  if (options.joint_test && !passes(joint, options)) {
+    JointShares rest(problem, pairs);
+    while (!passes(joint, options)) {
+      const std::size_t worst = rest.worst();
+      const GatedPair& dropped = problem.pairs[pairs[worst]];
+      guarded.dropped[dropped.observation] = pairs[worst];
+      guarded.pair[dropped.observation] = unmatched;
+      joint.nis -= rest.drop(worst);
+      joint.dof -= dropped.dof;
+    }
   }
   guarded.nis = joint.nis;
   guarded.dof = joint.dof;

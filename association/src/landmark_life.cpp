@@ -63,6 +63,7 @@ LifeChanges LandmarkLife::observe(const Eigen::Vector2d& sensor_m, const std::ve
   check_scan(seen, born, expected);
   ++scans_;
   born_ += born.size();
+  seen_ += seen.size();
   for (const LandmarkId id : seen) hit(*find(id), sensor_m);
   for (const LandmarkId id : expected) {
     if (!is_listed(seen, id) && !is_listed(born, id)) miss(*find(id), sensor_m);

@@ -2,6 +2,7 @@
 #include "residual_path.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "costs.hpp"
 
@@ -34,6 +35,7 @@ bool ResidualPath::search(const AssignmentSolution& solution, int first_row, int
   }
   std::fill(distance_.begin(), distance_.end(), infinity);
   std::fill(done_.begin(), done_.end(), char{0});
+  open_.clear();
   sink_distance_ = infinity;
   sink_done_ = false;
 
@@ -87,14 +89,19 @@ void ResidualPath::reach(int column, double length, int from_row, int from_entry
   distance_[column] = length;
   from_row_[column] = from_row;
   from_entry_[column] = from_entry;
+  open_.emplace_back(length, column);
+  std::push_heap(open_.begin(), open_.end(), std::greater<>());
 }
 
-int ResidualPath::nearest_column() const {
-  int best = -1;
-  for (int c = 0; c < columns_; ++c) {
-    if (!done_[c] && distance_[c] < infinity && (best < 0 || distance_[c] < distance_[best])) best = c;
+/// Of those at the same distance the first.
+int ResidualPath::nearest_column() {
+  while (!open_.empty()) {
+    const auto [distance, column] = open_.front();
+    if (!done_[column] && distance == distance_[column]) return column;
+    std::pop_heap(open_.begin(), open_.end(), std::greater<>());
+    open_.pop_back();
   }
-  return best;
+  return -1;
 }
 
 AssignmentSolution ResidualPath::apply() const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "helixnav/association/linear_assignment.hpp"
@@ -35,7 +36,7 @@ class ResidualPath {
   void relax_row(int row, double length);
   void relax_sink(double length);
   void reach(int column, double length, int from_row, int from_entry);
-  int nearest_column() const;
+  int nearest_column();
 
   const AssignmentProblem& problem_;
   int columns_;
@@ -53,6 +54,7 @@ class ResidualPath {
   std::vector<int> from_row_;  // row that reached the column, or −1 for the sink
   std::vector<int> from_entry_;
   std::vector<char> done_;
+  std::vector<std::pair<double, int>> open_;  // heap of distances and columns, some of them overtaken
 };
 
 }  // namespace helixnav::association

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/association/joint_innovation.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
 #include "helixnav/core/errors.hpp"
+#include "joint_shares.hpp"
 #include "scenes.hpp"
 
 namespace helixnav::association {
@@ -43,7 +45,7 @@ TEST(JointInnovation, EqualsDenseHPHtPlusRForMixedKindsAndSharedObservations) {
   }
 }
 
-TEST(JointInnovation, NisAndSharesEqualDenseInversesWithAndWithoutThePair) {
+TEST(JointInnovation, NisAndSharesEqualThoseWithoutThePairAsPairsAreTakenOut) {
   core::RandomStream random(15, "shares");
   for (int t = 0; t < 200; ++t) {
     const Scene scene = crowded_scene(random, 5, 5, 0.2, 8.0, t % 2 == 1);
@@ -60,12 +62,21 @@ TEST(JointInnovation, NisAndSharesEqualDenseInversesWithAndWithoutThePair) {
           -0.5 * (joint.nis + std::log(dense.S.determinant()) + joint.dof * std::log(2.0 * core::pi));
       ASSERT_NEAR(joint.log_likelihood, log_likelihood, 1e-8);
     }
-    const std::vector<double> shares = joint_nis_shares(problem, pairs);
-    ASSERT_EQ(shares.size(), pairs.size());
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      std::vector<int> rest = pairs;
-      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
-      ASSERT_NEAR(shares[i], joint.nis - joint_nis(problem, rest).nis, 1e-8 * (1.0 + joint.nis));
+    if (pairs.empty()) continue;
+    JointShares shares(problem, pairs);
+    std::vector<int> rest = pairs;
+    for (double nis = joint.nis; !rest.empty();) {
+      for (const int pair : rest) {
+        std::vector<int> others = rest;
+        others.erase(std::find(others.begin(), others.end(), pair));
+        ASSERT_NEAR(shares.of(static_cast<std::size_t>(std::find(pairs.begin(), pairs.end(), pair) - pairs.begin())),
+                    nis - joint_nis(problem, others).nis, 1e-8 * (1.0 + joint.nis));
+      }
+      const std::size_t worst = shares.worst();
+      rest.erase(std::find(rest.begin(), rest.end(), pairs[worst]));
+      nis -= shares.drop(worst);
+      ASSERT_NEAR(nis, joint_nis(problem, rest).nis, 1e-8 * (1.0 + joint.nis));
+      ASSERT_EQ(shares.of(worst), 0.0);
     }
   }
 }

@@ -33,8 +33,4 @@ struct JointNis {
 /// is not positive definite. Test: association/joint_innovation_test.cpp (dense inverse).
 JointNis joint_nis(const InnovationProblem& problem, const std::vector<int>& pairs);
 
-/// For each pair the NIS of the set minus the NIS of the set without it, in the order given. One inverse serves all:
-/// rᵢᵀ(S⁻¹)ᵢᵢ⁻¹rᵢ with r = S⁻¹ν. Cost and errors as joint_nis. Test: association/joint_innovation_test.cpp (leave one out).
-std::vector<double> joint_nis_shares(const InnovationProblem& problem, const std::vector<int>& pairs);
-
 }  // namespace helixnav::association

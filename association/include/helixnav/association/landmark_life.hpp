@@ -92,6 +92,8 @@ class LandmarkLife {
 
   /// Landmarks begun in one scan, on average: clutter and new ones together. 0 before the first scan.
   double born_per_scan() const { return scans_ == 0 ? 0.0 : static_cast<double>(born_) / static_cast<double>(scans_); }
+  /// Landmarks seen again in one scan, on average. 0 before the first scan.
+  double seen_per_scan() const { return scans_ == 0 ? 0.0 : static_cast<double>(seen_) / static_cast<double>(scans_); }
 
   /// Once the sensor is known; what was counted stays.
   void set_lengths(double look_distance_m, double tentative_patience_m);
@@ -113,7 +115,7 @@ class LandmarkLife {
   double miss_nats_;
   std::vector<LandmarkRecord> records_;
   double path_m_ = 0.0;
-  std::size_t scans_ = 0, born_ = 0;
+  std::size_t scans_ = 0, born_ = 0, seen_ = 0;
 };
 
 }  // namespace helixnav::association
