@@ -57,6 +57,28 @@ TEST_P(Equality, HoldsTo1em7OverFiftySwitches) {
   EXPECT_LE(worst.mean, 1e-7);
 }
 
+TEST_P(Equality, PhasesWithAllActiveBetweenOthers) {
+  RandomProgram program(7, {GetParam(), 220, 0, false});
+  int whole = 0;
+  for (int k = 0; k < 320; ++k) {
+    if (k % 40 == 20) program.filter.switch_region(program.filter.landmarks());
+    const Snapshot before = program.filter.snapshot();
+    whole += before.active.weights() == 0 ? 1 : 0;
+    program.step();
+    if (k % 40 == 35) {  // there and back over a phase with all active
+      program.filter.keep_since(program.filter.phase());
+      const Snapshot now = program.filter.snapshot();
+      program.filter.switch_region(program.filter.landmarks());
+      program.filter.restore(now);
+    }
+    if (k % 40 == 39) program.switch_region_randomly();
+  }
+  EXPECT_GT(whole, 60);
+  const Differences d = compare(program.filter, program.oracle);
+  EXPECT_LT(d.mean, 1e-9);
+  EXPECT_LT(d.covariance, 1e-9);
+}
+
 TEST_P(Equality, HoldsWhenClosedPhasesAreKept) {
   RandomProgram program(4, {GetParam(), 220, 25, false});
   for (int k = 0; k < 350; ++k) {

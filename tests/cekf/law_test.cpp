@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What must hold after any operation.
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -84,6 +85,24 @@ TEST_P(Law, TheOutlooksAreWhatIsToldOfEachLandmark) {
   }
 }
 
+TEST_P(Law, TheMarginalsOfManyAreThoseOfEach) {
+  RandomProgram program(45, {GetParam(), 220, 30, false});
+  for (int k = 0; k < 250; ++k) {
+    program.step();
+    if (k % 10 != 0) continue;
+    const CompressedEkf& filter = program.filter;
+    std::vector<core::LandmarkId> ids = filter.landmarks();
+    std::reverse(ids.begin(), ids.end());
+    const std::vector<core::PointGaussian> marginals = filter.marginals(ids);
+    ASSERT_EQ(marginals.size(), ids.size());
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const core::PointGaussian one = filter.landmark(ids[i]);
+      EXPECT_LT((marginals[i].mean_m - one.mean_m).norm(), 1e-9) << ids[i];
+      EXPECT_LT((marginals[i].covariance_m2 - one.covariance_m2).norm(), 1e-9 * one.covariance_m2.norm()) << ids[i];
+    }
+  }
+}
+
 TEST_P(Law, ARegionHoldsTheNeighbourhoodAndNoMoreThanAllowed) {
   FilterOptions options;
   options.retraction = GetParam();
@@ -92,11 +111,11 @@ TEST_P(Law, ARegionHoldsTheNeighbourhoodAndNoMoreThanAllowed) {
   options.max_active_landmarks = 10;
   CompressedEkf filter({}, options);
   const Eigen::Matrix2d R = 0.01 * Eigen::Matrix2d::Identity();
-  for (int i = 0; i < 15; ++i) filter.augment(core::make_cartesian({2.0 * i, 1.0}, R), {});
+  for (int i = 0; i < 40; ++i) filter.augment(core::make_cartesian({1.0 * i, 1.0}, R), {});
   EXPECT_TRUE(filter.switch_region_if_due()) << "crowded";
   EXPECT_EQ(filter.active_count(), 8) << "three quarters, so that the next activation makes no switch due";
   EXPECT_TRUE(filter.is_active(0));
-  EXPECT_FALSE(filter.is_active(14));
+  EXPECT_FALSE(filter.is_active(26));
   core::Odometry odometry;
   odometry.T_before_after = core::Pose2(24.0, 0.0, 0.0);
   filter.predict(odometry);
@@ -104,8 +123,27 @@ TEST_P(Law, ARegionHoldsTheNeighbourhoodAndNoMoreThanAllowed) {
   odometry.T_before_after = core::Pose2(2.0, 0.0, 0.0);
   filter.predict(odometry);
   EXPECT_TRUE(filter.switch_region_if_due());
-  EXPECT_TRUE(filter.is_active(14));
-  EXPECT_EQ(filter.mapped_count(), 15);
+  EXPECT_TRUE(filter.is_active(26));
+  EXPECT_EQ(filter.mapped_count(), 40);
+}
+
+TEST_P(Law, AllAreActiveAndNoWeightsKeptWhereThatCostsNoMore) {
+  FilterOptions options;
+  options.retraction = GetParam();
+  options.max_active_landmarks = 10;
+  CompressedEkf filter({}, options);
+  const Eigen::Matrix2d R = 0.01 * Eigen::Matrix2d::Identity();
+  for (int i = 0; i < 15; ++i) filter.augment(core::make_cartesian({1.0 * i, 1.0}, R), {});
+  filter.switch_region({0, 1, 2});
+  EXPECT_GT(filter.snapshot().active.weights(), 0);
+  filter.switch_region();
+  EXPECT_EQ(filter.active_count(), 15) << "more than 10, but 8 of them with weights would cost as much as 16";
+  EXPECT_EQ(filter.snapshot().active.weights(), 0);
+  EXPECT_FALSE(filter.switch_region_if_due());
+  for (int i = 15; i < 31; ++i) filter.augment(core::make_cartesian({1.0 * i, 1.0}, R), {});
+  EXPECT_TRUE(filter.switch_region_if_due()) << "crowded";
+  EXPECT_EQ(filter.active_count(), 8);
+  EXPECT_GT(filter.snapshot().active.weights(), 0);
 }
 
 TEST_P(Law, AScanThatSeesManyMayHaveTwiceAsManyActive) {
@@ -115,14 +153,14 @@ TEST_P(Law, AScanThatSeesManyMayHaveTwiceAsManyActive) {
   CompressedEkf filter({}, options);
   const Eigen::Matrix2d R = 0.01 * Eigen::Matrix2d::Identity();
   std::vector<Match> seen;
-  for (int i = 0; i < 15; ++i) {
+  for (int i = 0; i < 31; ++i) {
     const core::Observation observation = core::make_cartesian({1.0 * i, 1.0}, R);
     const core::LandmarkId id = filter.augment(observation, {});
     if (i < 8) seen.push_back({id, observation, {}});
   }
   const Snapshot before = filter.snapshot();
   filter.update(seen);
-  EXPECT_FALSE(filter.switch_region_if_due()) << "15 of 16";
+  EXPECT_FALSE(filter.switch_region_if_due()) << "31 of 32, or of 48";
   filter.restore(before);
   EXPECT_TRUE(filter.switch_region_if_due()) << "what the last update saw goes with a restore";
 }

@@ -36,15 +36,19 @@ std::vector<core::LandmarkId> CompressedEkf::landmarks_within(const Eigen::Vecto
   std::vector<core::LandmarkId> found;
   for (double slack_m = options_.hysteresis_m + 1.0;;) {
     found.clear();
-    double moved_m = 0.0;
-    for (const core::LandmarkId id : passive_in_cells(point_m, radius_m + slack_m)) {
-      const int slot = find_place(id)->index;
-      const Eigen::Vector2d mean_m = passive_mean(slot);
-      moved_m = std::max(moved_m, (mean_m - phases_.back().mean_m.segment<2>(2 * slot)).norm());
-      if ((mean_m - point_m).norm() <= radius_m) found.push_back(id);
+    const std::vector<core::LandmarkId> passive = passive_in_cells(point_m, radius_m + slack_m);
+    std::vector<int> slots;
+    slots.reserve(passive.size());
+    for (const core::LandmarkId id : passive) slots.push_back(find_place(id)->index);
+    const std::vector<Eigen::Vector2d> moved = moved_m(slots);
+    double farthest_m = 0.0;
+    for (std::size_t i = 0; i < passive.size(); ++i) {
+      farthest_m = std::max(farthest_m, moved[i].norm());
+      const Eigen::Vector2d mean_m = phases_.back().mean_m.segment<2>(2 * slots[i]) + moved[i];
+      if ((mean_m - point_m).norm() <= radius_m) found.push_back(passive[i]);
     }
-    if (moved_m <= 0.5 * slack_m) break;
-    slack_m = 3.0 * moved_m;
+    if (farthest_m <= 0.5 * slack_m) break;
+    slack_m = 3.0 * farthest_m;
   }
   for (std::size_t i = 0; i < active_.ids.size(); ++i) {
     if ((active_.points_m[i] - point_m).norm() <= radius_m) found.push_back(active_.ids[i]);

@@ -59,6 +59,51 @@ core::PointGaussian CompressedEkf::landmark(core::LandmarkId id) const {
   return {passive_mean(place.index), 0.5 * (own + own.transpose())};
 }
 
+std::vector<core::PointGaussian> CompressedEkf::marginals(const std::vector<core::LandmarkId>& ids) const {
+  std::vector<core::PointGaussian> points(ids.size());
+  std::vector<int> slots;
+  std::vector<std::size_t> where;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const Place& place = place_of(ids[i], "marginals");
+    if (place.where == Whereabouts::active) {
+      points[i] = landmark(ids[i]);
+    } else {
+      slots.push_back(place.index);
+      where.push_back(i);
+    }
+  }
+  const std::vector<core::PointGaussian> passive = passive_marginals(slots);
+  for (std::size_t k = 0; k < slots.size(); ++k) points[where[k]] = passive[k];
+  return points;
+}
+
+/// Some at a time, so that what is in between is no larger than what an update has.
+std::vector<core::PointGaussian> CompressedEkf::passive_marginals(const std::vector<int>& slots) const {
+  constexpr std::size_t at_once = 128;
+  std::vector<core::PointGaussian> points;
+  if (slots.empty()) return points;
+  const Phase& phase = phases_.back();
+  const Eigen::MatrixXd M = active_.M.view().selfadjointView<Eigen::Lower>();
+  const std::vector<int> touched = columns_not_zero(M);
+  const Panels right(M(touched, touched), right_width);
+  const std::vector<Eigen::Vector2d> moved = moved_m(slots);
+  points.reserve(slots.size());
+  while (points.size() < slots.size()) {
+    const auto begin = slots.begin() + static_cast<std::ptrdiff_t>(points.size());
+    const auto count = static_cast<std::ptrdiff_t>(std::min(at_once, slots.size() - points.size()));
+    const Eigen::MatrixXd e = basis_rows({begin, begin + count})(Eigen::all, touched);
+    ReservedMatrix reached(e.rows(), e.cols());  // by the weights
+    if (!touched.empty()) add_product(reached.col(0), reached.stride(), Panels(e, left_width), right);
+    for (Eigen::Index row = 0; row < e.rows(); row += 2) {
+      const std::size_t k = points.size();
+      const Eigen::Matrix2d own = phase.own_covariance_m2.middleRows<2>(2 * slots[k]) +
+                                  reached.view().middleRows<2>(row).lazyProduct(e.middleRows<2>(row).transpose());
+      points.push_back({phase.mean_m.segment<2>(2 * slots[k]) + moved[k], 0.5 * (own + own.transpose())});
+    }
+  }
+  return points;
+}
+
 Eigen::Vector2d CompressedEkf::landmark_mean(core::LandmarkId id) const {
   const Place& place = place_of(id, "landmark_mean");
   return place.where == Whereabouts::active ? active_.points_m[static_cast<std::size_t>(place.index)]

@@ -120,4 +120,17 @@ Eigen::Vector2d CompressedEkf::passive_mean(int slot) const {
   return phase.mean_m.segment<2>(2 * slot) + phase.basis.view().middleRows<2>(2 * slot) * active_.theta;
 }
 
+/// By how much these means have moved since the phase began; column after column, as the basis lies in memory.
+std::vector<Eigen::Vector2d> CompressedEkf::moved_m(const std::vector<int>& slots) const {
+  std::vector<Eigen::Vector2d> moved(slots.size(), Eigen::Vector2d::Zero());
+  for (Eigen::Index k = 0; k < active_.theta.size(); ++k) {
+    const double* column = phases_.back().basis.col(k);
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      const double* own = column + 2 * static_cast<Eigen::Index>(slots[i]);
+      moved[i] += active_.theta(k) * Eigen::Vector2d(own[0], own[1]);
+    }
+  }
+  return moved;
+}
+
 }  // namespace helixnav::cekf

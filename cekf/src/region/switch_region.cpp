@@ -14,11 +14,16 @@ Eigen::Vector2i CompressedEkf::cell_of(const Eigen::Vector2d& point_m) const {
 
 int CompressedEkf::most_active() const { return std::max(options_.max_active_landmarks, 2 * active_.last_seen); }
 
+/// With all landmarks active, D coordinates, a phase has no weights, and an update of m rows costs m·D²; with n coordinates
+/// active and w·n weights it costs m·(1 + w)²·n².
+int CompressedEkf::most_when_whole() const { return (1 + weights_per_anchor()) * most_active(); }
+
 bool CompressedEkf::switch_region_if_due() {
   const double side_m = options_.cell_side_m;
   const Eigen::Vector2d middle_m = side_m * (phases_.back().cell.cast<double>() + Eigen::Vector2d::Constant(0.5));
   const double outside_m = (active_.pose.position_m() - middle_m).cwiseAbs().maxCoeff() - 0.5 * side_m;
-  const bool crowded = active_count() > most_active();
+  const bool is_whole = phases_.back().passive_slots.empty();
+  const bool crowded = active_count() > (is_whole ? most_when_whole() : most_active());
   if (outside_m <= options_.hysteresis_m && !crowded) return false;
   switch_region();
   return true;
@@ -63,8 +68,8 @@ void CompressedEkf::reopen_phase(BeforeSwitch& before) {
   last_phase_ = before.last_phase;
 }
 
-/// Landmarks of the vehicle's cell and its eight neighbours; when they are too many the nearest, and fewer than may be
-/// active, so that the next activation does not make another switch due.
+/// Landmarks of the vehicle's cell and its eight neighbours. When they are too many all of the map, where that costs no more,
+/// or the nearest, and fewer than may be active, so that the next activation does not make another switch due.
 std::vector<core::LandmarkId> CompressedEkf::region_around_vehicle() const {
   const Eigen::Vector2i cell = cell_of(active_.pose.position_m());
   const Phase& phase = phases_.back();
@@ -81,6 +86,7 @@ std::vector<core::LandmarkId> CompressedEkf::region_around_vehicle() const {
   const std::ptrdiff_t most = most_active();
   const std::ptrdiff_t kept = most - most / 4;
   if (static_cast<std::ptrdiff_t>(near.size()) > kept) {
+    if (mapped_count() <= most_when_whole() - most_when_whole() / 4) return landmarks();
     std::nth_element(near.begin(), near.begin() + kept, near.end());
     near.resize(static_cast<std::size_t>(kept));
   }
@@ -104,8 +110,9 @@ void CompressedEkf::open_phase(Phase&& next, const Eigen::MatrixXd& columns,
   }
   freeze_slots(next, active);
   ActivePart part = room_for(next, active, slots);
+  const bool is_whole = next.passive_slots.empty();
   next.basis = ReservedMatrix(2 * next.slots, 0);
-  next.basis.reserve(2 * next.slots, weights_per_anchor() * (part.dimension() + 16));
+  if (!is_whole) next.basis.reserve(2 * next.slots, weights_per_anchor() * (part.dimension() + 16));
   Eigen::MatrixXd entering_columns =
       Eigen::MatrixXd::Zero(2 * next.slots, 2 * static_cast<Eigen::Index>(entering.size()));
   Eigen::MatrixXd anchors(2 * next.slots, part.dimension());
@@ -127,7 +134,7 @@ void CompressedEkf::open_phase(Phase&& next, const Eigen::MatrixXd& columns,
   }
   start_covariance(anchors, part);
   active_ = std::move(part);
-  append_first_columns(phases_.back(), active_.slots, anchors);
+  if (!is_whole) append_first_columns(phases_.back(), active_.slots, anchors);
   rebuild_places();
 }
 
@@ -148,7 +155,8 @@ void CompressedEkf::freeze_slots(Phase& phase, const std::vector<core::LandmarkI
   std::sort(phase.by_cell.begin(), phase.by_cell.end());
 }
 
-/// The active part that the phase begins with, all but its covariance.
+/// The active part that the phase begins with, all but its covariance. Where nothing is passive there is nothing that the
+/// weights would be of.
 ActivePart CompressedEkf::room_for(const Phase& phase, const std::vector<core::LandmarkId>& active,
                                    const std::vector<int>& slots) const {
   ActivePart part;
@@ -160,6 +168,8 @@ ActivePart CompressedEkf::room_for(const Phase& phase, const std::vector<core::L
   for (const int slot : slots) part.points_m.push_back(phase.mean_m.segment<2>(2 * slot));
   const int n = part.dimension();
   part.P.resize(n, n);
+  part.A.resize(0, n);
+  if (phase.passive_slots.empty()) return part;
   part.theta = Eigen::VectorXd::Zero(weights_per_anchor() * n);
   std::vector<Eigen::Vector2d> offsets_m;
   for (const Eigen::Vector2d& point_m : part.points_m) offsets_m.push_back(point_m - phase.start_m);

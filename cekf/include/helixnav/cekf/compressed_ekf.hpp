@@ -108,6 +108,8 @@ class CompressedEkf {
   core::PoseGaussian pose() const;
   /// Marginal of any landmark, read-only. O(1) active, O(q²) passive.
   core::PointGaussian landmark(core::LandmarkId id) const;
+  /// The same of many: O(q²) each, at the speed of a product of matrices. Test: cekf/law_test.cpp.
+  std::vector<core::PointGaussian> marginals(const std::vector<core::LandmarkId>& ids) const;
   /// Mean of any landmark. O(1) active, O(q) passive.
   Eigen::Vector2d landmark_mean(core::LandmarkId id) const;
   /// At least the standard deviation in any direction (root of the trace), for searches that must not cost a marginal.
@@ -217,6 +219,8 @@ class CompressedEkf {
   void fill_start_columns(const std::vector<int>& slots, std::size_t phase, Eigen::Ref<Eigen::MatrixXd> columns) const;
   Eigen::MatrixXd phase_start_blocks(const std::vector<int>& slots) const;
   Eigen::Vector2d passive_mean(int slot) const;
+  std::vector<Eigen::Vector2d> moved_m(const std::vector<int>& slots) const;
+  std::vector<core::PointGaussian> passive_marginals(const std::vector<int>& slots) const;
   double sigma_bound_m(int slot, double moved_m) const;
   std::vector<core::LandmarkId> passive_in_cells(const Eigen::Vector2d& point_m, double reach_m) const;
   Eigen::MatrixXd basis_rows(const std::vector<int>& slots) const;
@@ -236,6 +240,7 @@ class CompressedEkf {
   void start_covariance(const Eigen::MatrixXd& anchors, ActivePart& part) const;
   std::vector<core::LandmarkId> region_around_vehicle() const;
   int most_active() const;
+  int most_when_whole() const;
   Eigen::Vector2i cell_of(const Eigen::Vector2d& point_m) const;
   void return_slots(Phase& phase);
   static void open_again(Phase& phase);
