@@ -29,6 +29,8 @@ std::vector<SeenPoint> seen_points(const core::PoseGaussian& pose, const core::S
   return points;
 }
 
+bool sharper(const SeenPoint& a, const SeenPoint& b) { return a.sigma_m < b.sigma_m; }
+
 bool fixes_points(const core::Scan& scan) {
   return std::all_of(scan.observations.begin(), scan.observations.end(),
                      [](const core::Observation& o) { return core::dimension(o.kind) == 2; });
@@ -76,12 +78,14 @@ std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, cons
   const std::vector<SeenPoint> seen = seen_points(pose, scan);
   const std::vector<core::LandmarkId> about = filter.landmarks_within(sensor_m, reach_of(seen, sensor_m, sigmas));
   const std::vector<cekf::Outlook> outlooks = filter.outlooks(about);
+  const double least_sigma_m = std::min_element(seen.begin(), seen.end(), sharper)->sigma_m;
   std::vector<core::LandmarkId> chosen;
   for (std::size_t i = 0; i < about.size(); ++i) {
     const cekf::Outlook& landmark = outlooks[i];
     const auto near_with = [&](double sigma_m) { return is_near(seen, pose.mean, landmark, sigma_m, wider * sigmas); };
     if (!is_near(seen, landmark, sigmas) || !near_with(landmark.sigma_bound_m)) continue;
-    if (near_with(sigma_bound(filter.landmark(about[i]).covariance_m2))) chosen.push_back(about[i]);
+    const bool is_sharp = landmark.sigma_bound_m < least_sigma_m;  // its exact deviation would exclude next to nothing
+    if (is_sharp || near_with(sigma_bound(filter.landmark(about[i]).covariance_m2))) chosen.push_back(about[i]);
   }
   return chosen;
 }

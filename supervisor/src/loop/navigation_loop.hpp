@@ -46,7 +46,7 @@ class NavigationLoop {
 
   // window/whole_estimate.cpp
   std::vector<core::LandmarkId> landmarks() const;
-  core::PointGaussian sketched(core::LandmarkId id) const;
+  std::vector<core::PointGaussian> sketched(const std::vector<core::LandmarkId>& ids) const;
   std::vector<core::PointGaussian> marginals() const;
   core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;
 
@@ -123,6 +123,8 @@ class NavigationLoop {
   bool may_have_window() const;
   bool needs_window() const;
   WindowNeeds window_to_map() const;
+  int would_hold(const WindowNeeds& needs) const;
+  bool is_hand_over_due() const;
   WindowNeeds window_to_search() const;
   std::shared_ptr<DriveMap> drive_until_now() const;
   std::shared_ptr<DriveMap> begun_drive() const;

@@ -62,14 +62,15 @@ core::JointGaussian Navigator::joint(const std::vector<core::LandmarkId>& ids) c
 
 std::vector<core::MapLandmark> Navigator::sketch() const {
   const Belief& belief = loop_->belief();
-  std::vector<core::MapLandmark> landmarks;
-  for (const core::LandmarkId id : loop_->landmarks()) {
-    core::MapLandmark landmark;
-    landmark.id = id;
-    landmark.point = loop_->sketched(id);
-    landmark.observations = belief.existence.record(id).observations;
-    landmark.state = belief.existence.state(id);
-    landmarks.push_back(landmark);
+  const std::vector<core::LandmarkId> ids = loop_->landmarks();
+  const std::vector<core::PointGaussian> points = loop_->sketched(ids);
+  std::vector<core::MapLandmark> landmarks(ids.size());
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    core::MapLandmark& landmark = landmarks[i];
+    landmark.id = ids[i];
+    landmark.point = points[i];
+    landmark.observations = belief.existence.record(ids[i]).observations;
+    landmark.state = belief.existence.state(ids[i]);
   }
   return landmarks;
 }

@@ -38,7 +38,7 @@ core::JointMap NavigationLoop::map_to_keep(core::CarriedDecision& decision) cons
     if (record.state != core::LandmarkState::mature) continue;
     core::MapLandmark& landmark = kept.emplace_back();
     landmark.id = record.id;
-    landmark.point = sketched(record.id);
+    landmark.point = sketched({record.id}).front();
     landmark.observations = record.observations;
     landmark.state = record.state;
   }

@@ -56,6 +56,21 @@ std::vector<PointPair> associated_pairs(const RelativeGeometry& geometry, const 
   return pairs;
 }
 
+/// Of a scan with more observations than are weighed: only those landmarks that one of the weighed may be of, and their
+/// neighbours. What is left out would be paired with nothing.
+void keep_weighed(const cekf::CompressedEkf& filter, const Eigen::Vector2d& sensor_m,
+                  const std::vector<SeenPoint>& seen, const core::Scan& scan, const SlipComponent& widest,
+                  std::vector<LandmarkId>& near) {
+  if (seen.size() < most_observations) return;
+  std::vector<Eigen::Vector2d> means_m;
+  for (const LandmarkId id : near) means_m.push_back(filter.landmark_mean(id));
+  const double farthest_m = (seen.back().point_m - scan.T_robot_sensor.position_m()).norm();
+  const double range_m = farthest_m + 2.0 * slip_reach_m(widest, seen.back(), median_spacing_m(means_m));
+  near.erase(std::remove_if(near.begin(), near.end(),
+                            [&](LandmarkId id) { return (filter.landmark_mean(id) - sensor_m).norm() > range_m; }),
+             near.end());
+}
+
 double area_m2(const core::FieldOfView& view) {
   return 0.5 * (view.max_bearing_rad - view.min_bearing_rad) *
          (view.max_range_m * view.max_range_m - view.min_range_m * view.min_range_m);
@@ -103,7 +118,9 @@ std::optional<Slip> NavigationLoop::find_slip(const core::Scan& scan,
       std::count_if(fate.begin(), fate.end(), [](const auto& one) { return one.outcome != Outcome::matched; });
   if (unmatched < 2 || fate.size() < least_observations) return std::nullopt;
   const std::vector<SeenPoint> seen = seen_points(scan, most_observations);
-  const std::vector<LandmarkId> near = landmarks_near(scan);
+  std::vector<LandmarkId> near = landmarks_near(scan);
+  const Eigen::Vector2d sensor_m = core::transform(belief_.filter.pose().mean, scan.T_robot_sensor.position_m());
+  keep_weighed(belief_.filter, sensor_m, seen, scan, slip_components(options_.slip).back(), near);
   if (contradictions(belief_.filter, near, seen, fate, options_.slip.contradiction_m) < 2) return std::nullopt;
 
   const double per_m2 = options_.extraneous_per_scan / view_m2;

@@ -73,13 +73,11 @@ class Proposer {
     double nats;
   };
 
-  /// Farther than its neighbour no landmark is worth a look: displaced so far, nobody knows which is which.
   std::vector<std::vector<std::size_t>> landmarks_in_reach() const {
-    const double most_m = neighbours * median_spacing_m(geometry_.points_m);
+    const double spacing_m = median_spacing_m(geometry_.points_m);
     std::vector<std::vector<std::size_t>> in_reach(seen_.size());
     for (std::size_t s = 0; s < seen_.size(); ++s) {
-      const double turned_m = widest_.sigma_rad * seen_[s].point_m.norm();
-      const double reach_m = std::min(most_m, reach_sigmas * (widest_.sigma_m + turned_m));
+      const double reach_m = slip_reach_m(widest_, seen_[s], spacing_m);
       for (std::size_t l = 0; l < geometry_.points_m.size(); ++l) {
         if ((geometry_.points_m[l] - seen_[s].point_m).norm() < reach_m) in_reach[s].push_back(l);
       }
@@ -186,6 +184,10 @@ std::vector<Proposal> best_distinct(std::vector<Proposal> proposals, double dist
 }
 
 }  // namespace
+
+double slip_reach_m(const SlipComponent& widest, const SeenPoint& seen, double spacing_m) {
+  return std::min(neighbours * spacing_m, reach_sigmas * (widest.sigma_m + widest.sigma_rad * seen.point_m.norm()));
+}
 
 bool is_same_place(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double distinct_m) {
   return (a - b).head<2>().norm() < distinct_m && std::abs(core::wrap_to_pi(a.z() - b.z())) < same_heading_rad;

@@ -18,6 +18,10 @@ struct SlipPlace {
 /// Two displacements that are one, as far as anybody can tell.
 bool is_same_place(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double distinct_m);
 
+/// How far beside an observation the landmark may stand that it is of, after a slip of the widest component; farther than its
+/// neighbour no landmark is worth a look: displaced so far, nobody knows which is which.
+double slip_reach_m(const SlipComponent& widest, const SeenPoint& seen, double spacing_m);
+
 /// The distinct places that explain most, best first: proposed by two observations on two landmarks equally far apart,
 /// then paired and weighed anew until it settles. O(k²·c² + 8 m³) with k observations and c landmarks in reach of each.
 /// Test: supervisor/slip_places_test.cpp.

@@ -15,8 +15,23 @@ std::vector<core::LandmarkId> NavigationLoop::landmarks() const {
   return ids;
 }
 
-core::PointGaussian NavigationLoop::sketched(core::LandmarkId id) const {
-  return belief_.filter.contains(id) ? belief_.filter.landmark(id) : belief_.drive->remembered(id);
+/// What the filter does not hold as it was remembered when the filter left it out.
+std::vector<core::PointGaussian> NavigationLoop::sketched(const std::vector<core::LandmarkId>& ids) const {
+  std::vector<core::LandmarkId> held;
+  for (const core::LandmarkId id : ids) {
+    if (belief_.filter.contains(id)) held.push_back(id);
+  }
+  const std::vector<core::PointGaussian> from_filter = belief_.filter.marginals(held);
+  if (held.size() == ids.size()) return from_filter;
+  std::vector<core::PointGaussian> points;
+  points.reserve(ids.size());
+  auto next = held.begin();
+  for (const core::LandmarkId id : ids) {
+    const bool is_held = next != held.end() && *next == id;
+    points.push_back(is_held ? from_filter[static_cast<std::size_t>(next++ - held.begin())]
+                             : belief_.drive->remembered(id));
+  }
+  return points;
 }
 
 /// Of landmarks(), from the atlas, brought up to now.
