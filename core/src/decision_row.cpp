@@ -173,6 +173,13 @@ void numbers(WholeMapDecision& d, Visit&& visit) {
   visit("displaced_m", d.displaced_m);
 }
 
+template <class Visit>
+void numbers(PostponedDecision& d, Visit&& visit) {
+  visit("size", d.size);
+  visit("limit", d.limit);
+}
+
+constexpr const char* postponed_words[] = {"association", "window", "drive"};
 constexpr const char* whole_map_words[] = {"accepted", "ambiguous", "refused", "not-here"};
 constexpr const char* placed_words[] = {"sought", "accepted", "ambiguous", "refused", "not-here"};
 constexpr const char* reason_words[] = {"timed-out", "nothing-here", "abandoned", "outdone"};
@@ -213,6 +220,8 @@ KindAndVerdict words_of(const WholeMapDecision& d) {
   return {"whole-map", whole_map_words[static_cast<int>(d.verdict)]};
 }
 
+KindAndVerdict words_of(const PostponedDecision& d) { return {"postponed", postponed_words[static_cast<int>(d.work)]}; }
+
 /// Names that rows of earlier versions have.
 std::string_view former_name(std::string_view name) {
   return name == "expected_confusers" ? std::string_view("foreign_objects") : name;
@@ -249,6 +258,14 @@ Decision search_decision(const DecisionRow& row) {
   AttemptEnded ended;
   ended.reason = static_cast<AttemptEnded::Reason>(reason);
   return fill(ended, row);
+}
+
+Decision postponed_decision(const DecisionRow& row) {
+  const int work = index_in(postponed_words, row.verdict);
+  if (work < 0) return OtherDecision{row.kind, row.verdict, row.numbers};
+  PostponedDecision postponed;
+  postponed.work = static_cast<PostponedDecision::Work>(work);
+  return fill(postponed, row);
 }
 
 template <class Typed, std::size_t n>
@@ -288,6 +305,7 @@ Decision decision_of(const DecisionRow& row) {
   if (row.kind == "search") return search_decision(row);
   if (row.kind == "carried" && row.verdict == "told") return fill(CarriedDecision{}, row);
   if (row.kind == "placed") return decision_with<PlacedDecision>(placed_words, row);
+  if (row.kind == "postponed") return postponed_decision(row);
   if (row.kind == "whole-map") return decision_with<WholeMapDecision>(whole_map_words, row);
   if (row.kind == "constellation") return decision_with<VerificationDecision>(verification_words, row);
   if (row.kind == "closure" && row.verdict == "undecided") return fill(UndecidedDecision{}, row);

@@ -79,7 +79,7 @@ core::StepReport Localizer::observe(const core::Scan& scan, const std::vector<co
     association.landmark = id;
   }
   if (scan.observations.size() <= core::most_observations_used) {
-    return update(predicted(), scan, std::move(associations));
+    return update(predicted(), scan, {std::move(associations)});
   }
   const std::vector<std::size_t> used = core::observations_to_use(scan);
   std::vector<core::AssociationReport> those;
@@ -87,18 +87,17 @@ core::StepReport Localizer::observe(const core::Scan& scan, const std::vector<co
     those.push_back(associations[i]);
     those.back().observation = static_cast<int>(those.size()) - 1;
   }
-  return update_thinned(predicted(), core::thinned(scan, used), std::move(those), used, associations.size());
+  return update_thinned(predicted(), core::thinned(scan, used), {std::move(those)}, used, associations.size());
 }
 
 /// The report names the observations as they stand in the whole scan.
 core::StepReport Localizer::update_thinned(const core::PoseGaussian& pose, const core::Scan& thin,
-                                           std::vector<core::AssociationReport> associations,
-                                           const std::vector<std::size_t>& used, std::size_t observations) {
+                                           Associated associated, const std::vector<std::size_t>& used,
+                                           std::size_t observations) {
   std::vector<core::AssociationReport> all = core::reports_of_none(observations);
-  std::vector<core::Decision> decisions{core::thinning_decision(observations, used.size())};
-  core::StepReport report = update(pose, thin, std::move(associations));
+  associated.decisions.push_back(core::thinning_decision(observations, used.size()));
+  core::StepReport report = update(pose, thin, std::move(associated));
   core::name_in_whole_scan(used, all, report.associations);
-  report.decisions.swap(decisions);
   return report;
 }
 
@@ -130,37 +129,43 @@ core::JointGaussian Localizer::candidates(const core::PoseGaussian& pose, const 
   return joint;
 }
 
-std::vector<core::AssociationReport> Localizer::associate(const core::PoseGaussian& pose,
-                                                          const core::Scan& scan) const {
+Localizer::Associated Localizer::associate(const core::PoseGaussian& pose, const core::Scan& scan) const {
   const core::JointGaussian joint = candidates(pose, scan);
   association::Options how = options_.association;
   how.extraneous = association::density_in_view(scan, options_.extraneous_per_scan, how.extraneous);
   const association::Assignment assignment =
       association::associate(options_.method, association::make_innovation_problem(joint, scan, options_.gates), how);
-  std::vector<core::AssociationReport> reports;
+  Associated associated;
+  std::vector<core::AssociationReport>& reports = associated.reports;
   reports.reserve(assignment.observations.size());
   for (const association::ObservationOutcome& observation : assignment.observations) {
     const auto index = static_cast<int>(reports.size());
     reports.push_back({index, outcome_of(observation), observation.landmark, observation.nis, observation.dof,
                        observation.margin_nats});
   }
-  return reports;
+  if (assignment.budget_hit) {
+    associated.decisions.emplace_back(core::PostponedDecision{core::PostponedDecision::Work::association,
+                                                              static_cast<double>(reports.size()),
+                                                              static_cast<double>(how.node_budget)});
+  }
+  return associated;
 }
 
 /// Updates the predicted pose with what is matched. Nothing throws once something has changed.
-core::StepReport Localizer::update(const core::PoseGaussian& pose, const core::Scan& scan,
-                                   std::vector<core::AssociationReport> associations) {
+core::StepReport Localizer::update(const core::PoseGaussian& pose, const core::Scan& scan, Associated associated) {
   std::vector<Sighting> sightings;
-  for (const core::AssociationReport& association : associations) {
+  for (const core::AssociationReport& association : associated.reports) {
     if (association.outcome != core::Outcome::matched) continue;
     const auto index = static_cast<std::size_t>(association.observation);
     sightings.push_back({association.landmark, map_m_.at(association.landmark), &scan.observations[index]});
   }
   const PoseUpdate updated = update_pose(pose, scan.T_robot_sensor, sightings, step_);
   core::StepReport report;
-  report.associations = std::move(associations);
+  report.associations = std::move(associated.reports);
+  report.decisions = std::move(associated.decisions);
   report.joint_nis = updated.nis;
   report.joint_dof = updated.dof;
+  report.numerics = updated.numerics;
   report.t_ns = scan.t_ns;
   report.pose = updated.pose;
   report.mapped_landmarks = static_cast<int>(map_m_.size());

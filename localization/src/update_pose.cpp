@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "update_pose.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include <Eigen/Cholesky>
@@ -50,7 +51,8 @@ PoseUpdate update_pose(const core::PoseGaussian& pose, const core::Pose2& T_robo
   if (sightings.empty()) return {pose, 0.0, 0};
   const Stacked all = stack(pose.mean, T_robot_sensor, sightings);
   const Eigen::MatrixXd PHt = pose.covariance * all.H.transpose();
-  const Eigen::LLT<Eigen::MatrixXd> S(all.H * PHt + all.R);
+  const Eigen::MatrixXd innovations = all.H * PHt + all.R;
+  const Eigen::LLT<Eigen::MatrixXd> S(innovations);
   if (S.info() != Eigen::Success) fail("the innovation covariance is not positive definite", sightings, step);
   const Eigen::MatrixXd K = S.solve(PHt.transpose()).transpose();
   const Eigen::Vector3d corrected = pose.mean.vector() + K * all.nu;
@@ -62,6 +64,8 @@ PoseUpdate update_pose(const core::PoseGaussian& pose, const core::Pose2& T_robo
   updated.pose.covariance = 0.5 * (P + P.transpose());
   updated.nis = all.nu.dot(S.solve(all.nu));
   updated.dof = static_cast<int>(all.nu.size());
+  const Eigen::ArrayXd root = S.matrixLLT().diagonal().array();
+  updated.numerics.least_pivot = std::min(1.0, (root * root / innovations.diagonal().array()).minCoeff());
   return updated;
 }
 

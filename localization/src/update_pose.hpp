@@ -8,6 +8,7 @@
 
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/landmark_id.hpp"
+#include "helixnav/core/numerical_health.hpp"
 #include "helixnav/core/observation.hpp"
 
 namespace helixnav::localization {
@@ -23,6 +24,7 @@ struct PoseUpdate {
   core::PoseGaussian pose;
   double nis = 0.0;  ///< νᵀS⁻¹ν of all sightings together
   int dof = 0;
+  core::NumericalHealth numerics = {};
 };
 
 /// Joint EKF update of a pose with sightings of known points: S = HPHᵀ + R, K = PHᵀS⁻¹, Joseph's form of the covariance.

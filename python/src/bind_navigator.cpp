@@ -133,6 +133,12 @@ std::vector<std::pair<std::int64_t, std::vector<core::AssociationReport>>> revis
 }
 
 void bind_report(py::module_& module) {
+  py::class_<core::NumericalHealth>(module, "NumericalHealth", "How far the arithmetic of a step was from its limits.")
+      .def_readonly("least_pivot", &core::NumericalHealth::least_pivot,
+                    "Of the innovation covariances, by their diagonals; 1 without an update.")
+      .def_readonly("asymmetry", &core::NumericalHealth::asymmetry, "Of the same, by rounding.")
+      .def_readonly("repaired", &core::NumericalHealth::repaired, "Failed as asked, done in another way.")
+      .def_readonly("refused", &core::NumericalHealth::refused, "Failed and left undone.");
   py::class_<core::StepReport>(module, "StepReport", "What one scan did to the map and the pose.")
       .def_readonly("step", &core::StepReport::step)
       .def_readonly("t_ns", &core::StepReport::t_ns)
@@ -147,6 +153,7 @@ void bind_report(py::module_& module) {
                              "reports say.")
       .def_readonly("joint_nis", &core::StepReport::joint_nis)
       .def_readonly("joint_dof", &core::StepReport::joint_dof)
+      .def_readonly("numerics", &core::StepReport::numerics)
       .def_readonly("landmarks", &core::StepReport::mapped_landmarks);
 }
 

@@ -230,6 +230,21 @@ std::string sentence(const core::WholeMapDecision& d) {
   return {};
 }
 
+std::string sentence(const core::PostponedDecision& d) {
+  switch (d.work) {
+    case core::PostponedDecision::Work::association:
+      return "The search for the best association of " + counted(d.size, "observation") + " was ended after " +
+             short_number(d.limit) + " hypotheses: what is reported is the best found, and not proven to be the best.";
+    case core::PostponedDecision::Work::window:
+      return "The filter was to be handed over to a part of the map, which could not be solved: it goes on with its " +
+             counted(d.size, "landmark") + " (meant are " + short_number(d.limit) + ") and is tried again later.";
+    case core::PostponedDecision::Work::drive:
+      return "The drive of " + counted(d.size, "scan") + " and fixes is not solved as a whole: it is kept up to " +
+             short_number(d.limit) + " of them (search.smooth_up_to_scans).";
+  }
+  return {};
+}
+
 std::string sentence(const core::OtherDecision& d) {
   std::string sentence = d.kind + " " + d.verdict;
   char separator = ':';

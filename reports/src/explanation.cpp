@@ -9,6 +9,7 @@
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
+#include "numerics_text.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -131,6 +132,18 @@ std::string places_of(const std::vector<Decided>& decided) {
          '\n';
 }
 
+/// Said of every run, so that nobody need ask whether it was looked at.
+std::string numerics_line(const runs::Run& run) {
+  const core::NumericalHealth numerics = numerics_of(run);
+  std::string text = numerics_text(numerics);
+  if (text.empty()) {
+    text = "nothing was repaired or refused; the least pivot of an innovation covariance was " +
+           short_number(numerics.least_pivot);
+  }
+  const std::string postponed = postponed_text(postponed_in(run));
+  return "\nNumerics: " + text + ".\n" + (postponed.empty() ? "" : "Budgets: " + postponed + ".\n");
+}
+
 }  // namespace
 
 std::string explain_run(const runs::Run& run) {
@@ -149,7 +162,10 @@ std::string explain_run(const runs::Run& run) {
                      std::to_string(count_of(closures, "undecided")) + " left undecided.\n";
   text += places_of(decided);
   const bool nothing_else = std::all_of(decided.begin(), decided.end(), is_placing);
-  if (nothing_else) return text + "No return was ambiguous enough for a search: every scan was associated at once.\n";
+  if (nothing_else) {
+    return text + "No return was ambiguous enough for a search: every scan was associated at once.\n" +
+           numerics_line(run);
+  }
   for (std::size_t i = 0; i < closures.size(); ++i) {
     text += "\nClosure " + std::to_string(i + 1) + ", " + when(*closures[i].step) + ". " + found_by(closures[i]) +
             sentence_of(*closures[i].decision) + '\n';
@@ -157,6 +173,7 @@ std::string explain_run(const runs::Run& run) {
   if (!run.steps.empty() && run.steps.back().mode == core::Mode::searching) {
     text += "\nAt the end of the run a search was still open.\n";
   }
+  text += numerics_line(run);
   if (!closures.empty()) text += "\nDetails of one: helixnav explain " + run.path + " --closure 1\n";
   return text;
 }
@@ -197,6 +214,8 @@ std::string explain_step(const runs::Run& run, std::int64_t step) {
     text += "  Observation " + std::to_string(a.observation) + ' ' + fate_of(a) + '\n';
   }
   for (const core::Decision& decision : report.decisions) text += "  " + sentence_of(decision) + '\n';
+  const std::string numerics = numerics_text(report.numerics);
+  if (!numerics.empty()) text += "  In this step: " + numerics + ".\n";
   return text + merges_of(report);
 }
 

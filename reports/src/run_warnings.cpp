@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "helixnav/reports/decision_sentence.hpp"
+#include "numerics_text.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -129,6 +130,9 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
         warning("none of the %zu positions of truth lies within the time of the run; is it of the same clock? "
                 "'helixnav evaluate' takes --truth-offset-s",
                 evaluation.position->fixes_outside));
+  }
+  for (const std::string& text : {numerics_text(numerics_of(run)), postponed_text(postponed_in(run))}) {
+    if (!text.empty()) warnings.push_back(text);
   }
   return warnings;
 }

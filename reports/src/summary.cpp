@@ -11,6 +11,7 @@
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/runs/words.hpp"
 #include "json.hpp"
+#include "numerics_text.hpp"
 
 namespace helixnav::reports {
 
@@ -75,6 +76,21 @@ std::optional<Json> carried_to_json(const runs::Run& run) {
   return Json{{"times", times}, {"found_since", is_placed}};
 }
 
+Json numerics_to_json(const runs::Run& run) {
+  const core::NumericalHealth numerics = numerics_of(run);
+  return {{"least_pivot", numerics.least_pivot},
+          {"asymmetry", numerics.asymmetry},
+          {"repaired", numerics.repaired},
+          {"refused", numerics.refused}};
+}
+
+Json postponed_to_json(const PostponedWork& postponed) {
+  return {{"scans_thinned", postponed.scans_thinned},
+          {"associations", postponed.associations},
+          {"windows", postponed.windows},
+          {"drives", postponed.drives}};
+}
+
 std::int64_t count_landmarks(const runs::Run& run, core::LandmarkState state) {
   return std::count_if(run.map.begin(), run.map.end(),
                        [&](const core::MapLandmark& landmark) { return landmark.state == state; });
@@ -116,6 +132,10 @@ Json summary_to_json(const runs::Run& run, const evaluation::Evaluation& evaluat
   if (const auto placed = last_placing(run)) json["placed"] = placed_to_json(*placed);
   if (const auto carried = carried_to_json(run)) json["carried"] = *carried;
   json["observations"] = observations_to_json(run);
+  json["numerics"] = numerics_to_json(run);
+  if (const PostponedWork postponed = postponed_in(run); postponed.any()) {
+    json["postponed"] = postponed_to_json(postponed);
+  }
   json.update(evaluation_to_json(evaluation));
   return json;
 }

@@ -82,7 +82,7 @@ core::StampedPose read_stamped_pose(const RunRow& row) {
   return {row.seconds(0), core::Pose2(row.number(1), row.number(2), 2.0 * std::atan2(row.number(6), row.number(7)))};
 }
 
-HealthRow read_health_row(const RunRow& row) {
+HealthRow read_health_row(const RunRow& row, bool has_numerics) {
   HealthRow health{};
   core::StepReport& report = health.report;
   report.step = row.integer(0);
@@ -98,7 +98,13 @@ HealthRow read_health_row(const RunRow& row) {
   health.decision_rows = static_cast<std::size_t>(row.integer_in(15, 0, int_max));
   health.merge_rows = static_cast<std::size_t>(row.integer_in(16, 0, int_max));
   health.cloud_rows = static_cast<std::size_t>(row.integer_in(17, 0, int_max));
-  health.microseconds = row.number(18);
+  if (has_numerics) {
+    report.numerics.least_pivot = row.number(18);
+    report.numerics.asymmetry = row.number(19);
+    report.numerics.repaired = small_integer(row, 20);
+    report.numerics.refused = small_integer(row, 21);
+  }
+  health.microseconds = row.number(has_numerics ? 22 : 18);
   return health;
 }
 
@@ -142,10 +148,12 @@ core::CloudReport read_cloud_report(const RunRow& row) {
 RunTables read_tables(const std::string& folder) {
   const auto path = [&](const RunTable& table) { return folder + '/' + std::string(table.file); };
   RunTables tables;
-  for_each_row(path(health_table), health_table, [&](const RunRow& row) {
+  const bool has_numerics = !begins_with(path(health_table), health_table_without_numerics);
+  const RunTable& columns = has_numerics ? health_table : health_table_without_numerics;
+  for_each_row(path(health_table), columns, [&](const RunRow& row) {
     const bool first = tables.health.empty();
     const core::StepReport before = first ? core::StepReport{} : tables.health.back().report;
-    const HealthRow& health = tables.health.emplace_back(read_health_row(row));
+    const HealthRow& health = tables.health.emplace_back(read_health_row(row, has_numerics));
     if (!first && health.report.step <= before.step) row.refuse(0, "more than " + std::to_string(before.step));
     if (!first && health.report.t_ns < before.t_ns) row.refuse(1, "time that does not go backwards");
   });

@@ -74,6 +74,13 @@ core::Nanoseconds RunRow::seconds(std::size_t column) const {
   return *value;
 }
 
+bool begins_with(const std::string& path, const RunTable& table) {
+  const std::string bytes = files::read_whole_file(path);
+  std::string_view line = std::string_view(bytes).substr(0, bytes.find('\n'));
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  return line == table.header;
+}
+
 void for_each_row(const std::string& path, const RunTable& table, const std::function<void(const RunRow&)>& read_row) {
   const std::string bytes = files::read_whole_file(path);
   const std::size_t columns = columns_of(table).size();

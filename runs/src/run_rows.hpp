@@ -34,6 +34,9 @@ class RunRow {
   std::vector<std::string_view>& cells_;
 };
 
+/// Whether the first line of the file is the header of the table; InputError for a missing file.
+bool begins_with(const std::string& path, const RunTable& table);
+
 /// Calls `read_row` with every line below the header. A last line without its end is dropped, also when it is the
 /// header. InputError for a missing file, another header, another number of cells.
 void for_each_row(const std::string& path, const RunTable& table, const std::function<void(const RunRow&)>& read_row);

@@ -22,6 +22,11 @@ inline constexpr RunTable decisions_table{"decisions.csv", "step,t_s,kind,verdic
 inline constexpr RunTable health_table{
     "health.csv",
     "step,t_s,mode,sxx,sxy,sxh,syy,syh,shh,nis,dof,active,mapped,switched,association_rows,decision_rows,merge_rows,"
+    "cloud_rows,least_pivot,asymmetry,repaired,refused,microseconds"};
+/// As earlier versions wrote it; still read.
+inline constexpr RunTable health_table_without_numerics{
+    "health.csv",
+    "step,t_s,mode,sxx,sxy,sxh,syy,syh,shh,nis,dof,active,mapped,switched,association_rows,decision_rows,merge_rows,"
     "cloud_rows,microseconds"};
 inline constexpr RunTable merges_table{"merges.csv", "step,kept,removed"};
 inline constexpr RunTable clouds_table{"clouds.csv", "step,x,y,heading"};

@@ -134,6 +134,8 @@ void append_health(std::string& text, const core::StepReport& report, std::int64
   append_counts(text, {report.joint_dof, report.active_landmarks, report.mapped_landmarks, report.switched_region,
                        association_rows, static_cast<std::int64_t>(report.decisions.size()),
                        static_cast<std::int64_t>(report.merged.size()), cloud_rows});
+  append_cells(text, {report.numerics.least_pivot, report.numerics.asymmetry});
+  append_counts(text, {report.numerics.repaired, report.numerics.refused});
   append_cells(text, {std::round(microseconds * 10.0) / 10.0});
   text += '\n';
 }

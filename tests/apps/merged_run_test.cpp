@@ -56,7 +56,8 @@ void split_landmarks(const fs::path& run, bool record_merges) {
   std::ofstream merges(run / "merges.csv", std::ios::app);
   for (const std::string& id : ids) merges << last << ',' << id << ',' << 1000 + std::stoi(id) << '\n';
   rewrite(run / "health.csv", [&](std::vector<std::string>& cells) {
-    if (cells[0] == last) cells[cells.size() - 3] = std::to_string(ids.size());
+    constexpr std::size_t merge_rows = 16;
+    if (cells[0] == last) cells[merge_rows] = std::to_string(ids.size());
   });
 }
 

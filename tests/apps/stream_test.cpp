@@ -220,6 +220,8 @@ TEST_F(StreamProgram, NavigatesAsReplayOfTheSameLogToTheLastDigit) {
   const std::string health = text_of(out_ / "health.csv");
   const Words cells = columns_of(health.substr(health.rfind('\n', health.size() - 2) + 1));
   EXPECT_EQ(last["covariance"][1][1].get<double>(), std::stod(cells.at(6))) << "syy of its row";
+  EXPECT_EQ(last["numerics"]["least_pivot"].get<double>(), std::stod(cells.at(18)));
+  EXPECT_EQ(last["numerics"]["refused"], 0);
 }
 
 TEST_F(StreamProgram, RefusesALineWithItsNumberAndKeyAndGoesOn) {

@@ -26,6 +26,7 @@ def test_a_navigator_maps_what_it_sees():
         points = np.array([[5.0, 1.0], [6.0, -2.0]]) - [0.1 * (i + 1), 0.0]
         report = navigator.observe(small_scan(0.1 * i, points))
     assert report.step == 19 and report.mode == "mapping"
+    assert 0.0 < report.numerics.least_pivot <= 1.0 and report.numerics.refused == report.numerics.repaired == 0
     assert [a.outcome for a in report.associations] == ["matched", "matched"]
     np.testing.assert_allclose(navigator.pose.mean, [2.0, 0.0, 0.0], atol=0.05)
     landmarks = navigator.map

@@ -46,6 +46,7 @@ inline core::StepReport example_step(std::int64_t k) {
   }
   step.joint_dof = 2 * observations;
   step.joint_nis = step.joint_dof * random.uniform(0.5, 1.5);
+  step.numerics = {1.0 / (3.0 + static_cast<double>(k)), 1e-17 / 3.0, k % 90 == 11 ? 1 : 0, k % 90 == 12 ? 2 : 0};
   step.active_landmarks = 20;
   step.mapped_landmarks = static_cast<int>(k / 10);
   step.switched_region = k % 100 == 3;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -43,6 +44,10 @@ void expect_same(const core::StepReport& a, const core::StepReport& b) {
   EXPECT_EQ(a.pose.covariance, b.pose.covariance);
   EXPECT_EQ(a.joint_nis, b.joint_nis);
   EXPECT_EQ(a.joint_dof, b.joint_dof);
+  EXPECT_EQ(a.numerics.least_pivot, b.numerics.least_pivot);
+  EXPECT_EQ(a.numerics.asymmetry, b.numerics.asymmetry);
+  EXPECT_EQ(a.numerics.repaired, b.numerics.repaired);
+  EXPECT_EQ(a.numerics.refused, b.numerics.refused);
   EXPECT_EQ(a.active_landmarks, b.active_landmarks);
   EXPECT_EQ(a.mapped_landmarks, b.mapped_landmarks);
   EXPECT_EQ(a.switched_region, b.switched_region);
@@ -216,8 +221,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Damage{"trajectory.tum", 3, "1 2 3", "expected 8"},
                       Damage{"trajectory.tum", 4, "1 2 x 0 0 0 0 1", "y is \"x\", expected a number"},
                       Damage{"health.csv", 1, "step,time", "expected \"step,t_s,mode"},
-                      Damage{"health.csv", 5, "\x01\xff\x7f", "expected 19"},
-                      Damage{"health.csv", 6, "1,1,mapping,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0", "more than 3"},
+                      Damage{"health.csv", 5, "\x01\xff\x7f", "expected 23"},
+                      Damage{"health.csv", 6, "1,1,mapping,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1,0,0,0,0", "more than 3"},
                       Damage{"associations.csv", 4, "2,0,0,guessed,1,2,1,0", "one of matched"},
                       Damage{"decisions.csv", 2, "11,1,trigger,raised,sigma", "name=number"},
                       Damage{"merges.csv", 3, "11,5,-1", "from 0"}, Damage{"clouds.csv", 3, "11,0,inf,0", "finite"},
@@ -261,6 +266,26 @@ TEST(HostileRunFolder, ManifestsThatNestDeeperThanOursAreRefused) {
   }
   folder.write("run/manifest.json", "{\"config\": \"" + std::string(1000, '[') + "\\\"\"}");
   EXPECT_NE(input_error_of([&] { read_run(run); }).find("not a manifest"), std::string::npos) << "brackets in a string";
+}
+
+TEST(RunFolder, OfAnEarlierVersionHasNoNumericsAndIsRead) {
+  const TemporaryFolder folder;
+  const std::string run = (folder.path() / "run").string();
+  write_example(run, 3);
+  std::string earlier;
+  std::istringstream rows(files::read_whole_file(run + "/health.csv"));
+  for (std::string row; std::getline(rows, row);) {
+    const std::size_t microseconds = row.rfind(',');
+    std::size_t numerics = microseconds;
+    for (int column = 0; column < 4; ++column) numerics = row.rfind(',', numerics - 1);
+    earlier += row.erase(numerics, microseconds - numerics) + '\n';
+  }
+  folder.write("run/health.csv", earlier);
+  const auto read = read_run(run);
+  ASSERT_EQ(read.steps.size(), 3u);
+  EXPECT_EQ(read.steps[2].joint_dof, example_step(2).joint_dof);
+  EXPECT_EQ(read.steps[2].numerics.least_pivot, 1.0);
+  EXPECT_EQ(read.microseconds.size(), 3u);
 }
 
 /// An Eigen comma initialiser that an exception leaves half full aborts in builds with assertions.

@@ -66,6 +66,10 @@ std::string scan_answer(const core::StepReport& report, std::size_t line) {
   json["covariance"] = {{P(0, 0), P(0, 1), P(0, 2)}, {P(0, 1), P(1, 1), P(1, 2)}, {P(0, 2), P(1, 2), P(2, 2)}};
   json["mode"] = runs::word_of(runs::mode_words, report.mode);
   json["landmarks"] = report.mapped_landmarks;
+  json["numerics"] = {{"least_pivot", report.numerics.least_pivot},
+                      {"asymmetry", report.numerics.asymmetry},
+                      {"repaired", report.numerics.repaired},
+                      {"refused", report.numerics.refused}};
   json["associations"] = associations_json(report.associations);
   json["decisions"] = Json::array();
   for (const core::Decision& decision : report.decisions) json["decisions"].push_back(decision_json(decision));

@@ -23,13 +23,33 @@ void size_rows(UpdateWorkspace& w, Index rows) {
   w.R.set_zero();
 }
 
+/// 1/√S_ii, by which S has a diagonal of ones.
+void find_scale(const ReservedMatrix& S, ReservedMatrix& scale) {
+  scale.resize(S.rows(), 1);
+  for (Index i = 0; i < S.rows(); ++i) scale.view()(i, 0) = 1.0 / std::sqrt(S.view()(i, i));
+}
+
+/// Of S scaled: both triangles are computed, and differ by rounding.
+double asymmetry_of(const ReservedMatrix& S, const ReservedMatrix& scale) {
+  const auto s = S.view();
+  const auto by = scale.view();
+  double largest = 0.0;
+  for (Index j = 0; j < s.cols(); ++j) {
+    for (Index i = j + 1; i < s.rows(); ++i) {
+      largest = std::max(largest, std::abs(s(i, j) - s(j, i)) * by(i, 0) * by(j, 0));
+    }
+  }
+  return largest;
+}
+
 /// Lower Cholesky factor in place, column by column; the upper triangle is left as it was. False when a pivot is not
-/// positive.
-bool factor_in_place(ReservedMatrix& S) {
+/// positive. `least`: lowered to the least pivot of S scaled.
+bool factor_in_place(ReservedMatrix& S, const ReservedMatrix& scale, double& least) {
   auto L = S.view();
   for (Index j = 0; j < L.cols(); ++j) {
     const double pivot = L(j, j);
     if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
+    least = std::min(least, pivot * scale.view()(j, 0) * scale.view()(j, 0));
     const Index below = L.rows() - j - 1;
     L.col(j).tail(below + 1) /= std::sqrt(pivot);
     for (Index k = j + 1; k < L.cols(); ++k) L.col(k).tail(L.rows() - k) -= L(k, j) * L.col(j).tail(L.rows() - k);
@@ -145,9 +165,13 @@ double solve_innovation(UpdateWorkspace& w, const char* verb) {
   add_outer(w.G.col(0), w.G.stride(), w.G.padded_rows(), n, w.H.col(0), w.H.stride(), w.P.col(0), w.P.stride(), n);
   w.L = w.R;
   add_outer(w.L.col(0), w.L.stride(), w.L.padded_rows(), m, w.G.col(0), w.G.stride(), w.H.col(0), w.H.stride(), n);
-  if (!factor_in_place(w.L)) {
+  core::NumericalHealth health;
+  find_scale(w.L, w.scale);
+  health.asymmetry = asymmetry_of(w.L, w.scale);
+  if (!factor_in_place(w.L, w.scale, health.least_pivot)) {
     throw core::NumericalError(problem_with(w, verb, "the innovation covariance is not positive definite"));
   }
+  w.health.note(health);
   w.G = w.H;
   w.y = w.nu;
   solve_in_place(w.L, w.G);

@@ -29,7 +29,7 @@ void linearise_fix(const core::AbsoluteFix& fix, UpdateWorkspace& w);
 void linearise_pairs(double sigma_m, UpdateWorkspace& w);
 
 /// S = H·P·Hᵀ + R = L·Lᵀ, G = L⁻¹H, y = L⁻¹ν, gain = HᵀS⁻¹ν; returns νᵀS⁻¹ν. NumericalError when S is not positive
-/// definite.
+/// definite. Noted in w.health.
 double solve_innovation(UpdateWorkspace& w, const char* verb);
 
 }  // namespace helixnav::cekf

@@ -95,7 +95,10 @@ bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& opt
     closing.cost = cost ? cost->cost : 0.0;
     closing.dof = cost ? cost->dof : 0;
     closing.limit = cost ? core::chi2_quantile(options.closing_probability, cost->dof) : 0.0;
-    if (!cost) return false;
+    if (!cost) {
+      ++closing.numerics.refused;
+      return false;
+    }
     if (cost->cost <= closing.limit) return true;
     if (closing.dropped == options.most_dropped || pairs.size() <= least_pairs) return false;
     const auto worst = std::max_element(cost->parts.begin(), cost->parts.end()) - cost->parts.begin();

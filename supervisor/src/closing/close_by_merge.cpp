@@ -21,6 +21,7 @@ bool try_merge(cekf::CompressedEkf& filter, const KeptRemoved& pairs, double sig
 Closing refused_for_rounding(Closing closing) {
   closing.cost = closing.limit = 0.0;
   closing.dof = 0;
+  ++closing.numerics.refused;
   return closing;
 }
 
@@ -35,7 +36,10 @@ void merge_leftovers(cekf::CompressedEkf& filter, const DuplicateSegment& duplic
     if (rest.empty()) rest = duplicate_segment.place(filter, old, options);
     Closing rest_closing;
     if (rest.empty() || !make_compatible(filter, options, rest, rest_closing)) return;
-    if (!try_merge(filter, rest, options.merge_sigma_m)) return;
+    if (!try_merge(filter, rest, options.merge_sigma_m)) {
+      ++closing.numerics.refused;
+      return;
+    }
     closing.limit_of_leftovers += rest_closing.limit;
     note(rest, closing);
   }

@@ -34,6 +34,7 @@ bool replay(cekf::CompressedEkf& filter, const BranchRecord& record, const KeptR
     closing.cost = again.nis + merged.nis - before.nis;
     closing.dof = again.dof + merged.dof - before.dof;
   } catch (const core::NumericalError&) {
+    ++closing.numerics.refused;
     return false;
   }
   closing.limit = core::chi2_quantile(options.closing_probability, closing.dof);

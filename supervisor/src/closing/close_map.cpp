@@ -47,6 +47,9 @@ Closing close_map(cekf::CompressedEkf& filter, const ClosingView& view,
   if (options.closing == ClosingMethod::replay) {
     Closing closing = close_by_replay(filter, view.record, pairs, branch, search.old_landmarks(), options);
     if (closing.accepted) return closing;
+    Closing merged = close_by_merge(filter, pairs, branch, search.old_landmarks(), options);
+    if (merged.accepted) merged.numerics.repaired += closing.numerics.refused;
+    return merged;
   }
   return close_by_merge(filter, pairs, branch, search.old_landmarks(), options);
 }

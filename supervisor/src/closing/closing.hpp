@@ -15,6 +15,7 @@ struct Closing {
   int dof = 0;
   double limit = 0.0;
   double limit_of_leftovers = 0.0;            ///< sum, of what was merged after the pairs
+  core::NumericalHealth numerics;             ///< repairs and refusals alone
   int dropped = 0;                            ///< pairs dropped because of their cost
   std::vector<core::MergedLandmarks> merged;  ///< empty unless accepted
   std::vector<core::LandmarkId> forgotten;    ///< unconfirmed ones that coincided with an old landmark

@@ -43,6 +43,7 @@ void NavigationLoop::merge_left_open(const core::FieldOfView& view, core::StepRe
     Closing closing;
     merge_leftovers(belief_.filter, DuplicateSegment(belief_.filter, branch), branch.confirmed, old, options_.search,
                     closing);
+    report.numerics.note(closing.numerics);
     if (closing.merged.empty()) continue;
     for (const core::MergedLandmarks& one : closing.merged) belief_.existence.merge(one.kept, one.removed);
     report.merged.insert(report.merged.end(), closing.merged.begin(), closing.merged.end());

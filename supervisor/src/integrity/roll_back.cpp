@@ -30,6 +30,7 @@ StepReport NavigationLoop::roll_back_and_relocalise(StepReport report) {
       core::RollbackDecision{evidence.missing, evidence.seen, evidence.spawned, evidence.nats, scans});
   begin_search();
   StepReport through;
+  through.numerics = report.numerics;
   const auto after_fix = [&](const Tape::Fix& fix, bool accepted) {
     if (accepted == fix.accepted) pending_.decisions.pop_back();  // it was reported when it came in
   };
@@ -38,9 +39,11 @@ StepReport NavigationLoop::roll_back_and_relocalise(StepReport report) {
     for (const core::Decision& decision : report.decisions) through.decisions.emplace_back(decision);
     through.merged.insert(through.merged.end(), report.merged.begin(), report.merged.end());
     through.revised.push_back({report.step, report.associations});
+    through.numerics.note(report.numerics);
     if (!report.solved.empty()) through.solved = std::move(report.solved);
   });
   through.revised.pop_back();  // the last one is this scan
+  report.numerics = through.numerics;
   report.decisions = std::move(through.decisions);
   report.merged = std::move(through.merged);
   report.revised = std::move(through.revised);

@@ -74,11 +74,13 @@ StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* not
     StepReport report = take_as_assumed(scan);
     checkpoint_if_settled();
     hand_over_if_due();
+    report_late(report);
     if (has_lost_its_place()) return roll_back_and_relocalise(std::move(report));
     ask_whether_new(scan, report);
     solve_with_learnt_noise(report);
     report.pose = belief_.filter.pose();
     if (apart_.any()) find_place(scan.field_of_view, report);
+    report_late(report);
     return report;
   });
 }
@@ -105,6 +107,7 @@ StepReport NavigationLoop::step(const Scan& scan) {
     begin_search();
     gated = gate(scan);
   }
+  report_unfinished(gated, report);
   const Confirmation before = belief_.confirmation;
   report.associations = associate_scan(gated, options_, belief_.existence.path_m(), belief_.confirmation);
   const bool slipped = allow_for_slip(scan, before, report);
@@ -153,11 +156,18 @@ GatedScan NavigationLoop::gate(const Scan& scan) const {
   return gated;
 }
 
+void NavigationLoop::report_unfinished(const GatedScan& gated, StepReport& report) const {
+  if (!gated.assignment.budget_hit) return;
+  report.decisions.emplace_back(core::PostponedDecision{core::PostponedDecision::Work::association,
+                                                        static_cast<double>(gated.assignment.observations.size()),
+                                                        static_cast<double>(options_.association.node_budget)});
+}
+
 void NavigationLoop::update(const Scan& scan, bool slipped, StepReport& report) {
   const std::vector<cekf::Match> matched = matches(scan, report.associations);
   if (matched.empty()) return;
   const cekf::UpdateResult result =
-      slipped ? update_after_slip(belief_.filter, matched) : belief_.filter.update(matched);
+      slipped ? update_after_slip(belief_.filter, matched, report.numerics) : belief_.filter.update(matched);
   report.joint_nis = result.nis;
   report.joint_dof = result.dof;
 }
@@ -209,9 +219,18 @@ StepReport NavigationLoop::finish(const Scan& scan, StepReport report) {
   std::vector<core::Decision> decisions = std::exchange(pending_.decisions, {});
   for (core::Decision& decision : report.decisions) decisions.push_back(std::move(decision));
   report.decisions = std::move(decisions);
+  report_late(report);
   Mapping* mapping = std::get_if<Mapping>(&mode_);
   if (mapping != nullptr && !mapping->trusted) trust(take_checkpoint(belief_, tape_));
   return report;
+}
+
+/// What was done for this scan since its report was made.
+void NavigationLoop::report_late(StepReport& report) {
+  for (core::Decision& decision : pending_.decisions) report.decisions.push_back(std::move(decision));
+  pending_.decisions.clear();
+  report.numerics.note(std::exchange(pending_.numerics, {}));
+  report.numerics.note(belief_.filter.take_health());
 }
 
 /// From here on, while mapping; the call can still be undone.

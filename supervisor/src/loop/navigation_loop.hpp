@@ -56,6 +56,7 @@ class NavigationLoop {
     std::optional<core::Odometry> motion;
     double driven_m = 0.0;  ///< length along the road
     std::vector<core::Decision> decisions;
+    core::NumericalHealth numerics = {};  ///< that no report has yet
   };
   /// What a call has replaced so far, for recover().
   struct Undo {
@@ -78,10 +79,12 @@ class NavigationLoop {
   void predict();
   bool use_fix(const core::AbsoluteFix& fix);
   GatedScan gate(const core::Scan& scan) const;
+  void report_unfinished(const GatedScan& gated, core::StepReport& report) const;
   void update(const core::Scan& scan, bool slipped, core::StepReport& report);
   void augment(const core::Scan& scan, core::StepReport& report);
   std::vector<core::LandmarkId> update_existence(const core::Scan& scan, const core::StepReport& report);
   core::StepReport finish(const core::Scan& scan, core::StepReport report);
+  void report_late(core::StepReport& report);
   void trust(Checkpoint checkpoint);
   void checkpoint_if_settled();
   bool is_monitored() const;
@@ -115,6 +118,7 @@ class NavigationLoop {
 
   // smoothing/solve_drive.cpp
   void solve_drive(core::StepReport& report);
+  void report_unsolved(core::StepReport& report) const;
   Smoothing solve_by_poses(bool& accepted);
   Smoothing solve_by_atlas(bool& accepted);
   bool is_for_atlas() const;

@@ -75,6 +75,7 @@ void NavigationLoop::recover() {
   pending_ = {};
   process_again(
       since, [](const Tape::Fix&, bool) {}, [](const core::StepReport&) {});
+  belief_.filter.take_health();  // of the failed call, and of what was reported before
   std::swap(noise_, noise_before_);
   std::swap(questions_, questions_before_);
   pending_ = std::move(undo.pending);

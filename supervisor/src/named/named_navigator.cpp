@@ -122,10 +122,16 @@ StepReport NamedNavigator::step(const NamedScan& named) {
   report.pose = filter_.pose();
   report.active_landmarks = filter_.active_count();
   report.mapped_landmarks = static_cast<int>(observations_.size());
-  report.decisions = std::exchange(pending_.decisions, {});
   record(named.scan, report);
   go_on_with_drive();
+  report_late(report);
   return report;
+}
+
+void NamedNavigator::report_late(StepReport& report) {
+  report.decisions = std::exchange(pending_.decisions, {});
+  report.numerics.note(std::exchange(pending_.numerics, {}));
+  report.numerics.note(filter_.take_health());
 }
 
 bool NamedNavigator::use_fix(const core::AbsoluteFix& fix) {
@@ -243,6 +249,7 @@ void NamedNavigator::recover(std::size_t events, Pending pending) {
     if (const auto* fix = std::get_if<core::AbsoluteFix>(&taken)) use_fix(*fix);
   }
   recovering_ = false;
+  filter_.take_health();  // of the failed call, and of what was reported before
   pending_ = std::move(pending);
 }
 

@@ -96,6 +96,7 @@ void NavigationLoop::report_closing(const Closing& closing, std::size_t pairs, d
   decision.driven_m = driven_m;
   decision.moved_m = (belief_.filter.pose().mean.position_m() - before.position_m()).norm();
   report.decisions.emplace_back(decision);
+  report.numerics.note(closing.numerics);
 }
 
 /// Mapping goes on with the whole map; the landmarks that a closing has recognised confirm the pose.

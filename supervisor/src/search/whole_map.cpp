@@ -143,6 +143,7 @@ bool NavigationLoop::begin_drive_anew(const Tape& tape, const cekf::CompressedEk
     become(std::move(drive), belief_.window);
     return true;
   } catch (const core::NumericalError&) {
+    ++pending_.numerics.refused;
     return false;
   }
 }
@@ -161,6 +162,7 @@ bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair
   decision.limit = closing.limit;
   if (!closing.accepted) {
     place.as_measured = closing;
+    report.numerics.note(closing.numerics);
     Reconciled reconciled = close_against_odometry(belief_.filter, start_, view, place, options_.search);
     if (!reconciled.closing.accepted) return false;
     const bool changes_drive = belief_.drive && tape_.holds_drive();  // else only what came after the trigger
@@ -168,6 +170,7 @@ bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair
     decision.odometry_factor = reconciled.odometry_factor;
     decision.loop_m = reconciled.loop_m;
     closing = std::move(reconciled.closing);
+    report.numerics.note(belief_.filter.take_health());
     std::swap(belief_.filter, *reconciled.filter);
     if (!undo_.filter) undo_.filter.emplace(std::move(*reconciled.filter));
     std::swap(tape_, *reconciled.tape);

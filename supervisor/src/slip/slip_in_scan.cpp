@@ -165,12 +165,13 @@ bool NavigationLoop::allow_for_slip(const core::Scan& scan, const Confirmation& 
         {pair.landmark, scan.observations[static_cast<std::size_t>(pair.observation)], scan.T_robot_sensor});
   }
   cekf::CompressedEkf moved = belief_.filter;
-  update_after_slip(moved, pairs);
+  update_after_slip(moved, pairs, report.numerics);
   std::vector<LandmarkId> ids = candidates(moved, scan, options_.candidate_sigmas);
   const Searching* open = searching();
   const auto excluded = [&](LandmarkId id) { return open != nullptr && open->search.excludes(id); };
   ids.erase(std::remove_if(ids.begin(), ids.end(), excluded), ids.end());
   const GatedScan gated = gate_scan(moved, ids, scan, options_);
+  report_unfinished(gated, report);
   belief_.confirmation = before;
   report.associations = associate_scan(gated, options_, belief_.existence.path_m(), belief_.confirmation);
   match_pairs(slip->pairs, report.associations);

@@ -8,13 +8,22 @@
 
 namespace helixnav::supervisor {
 
-/// A slip is far for one linearisation: iterated, and once only where that does not settle.
-inline cekf::UpdateResult update_after_slip(cekf::CompressedEkf& filter, const std::vector<cekf::Match>& matches) {
+/// A slip is far for one linearisation: iterated, and once only where that does not settle, which is a repair.
+inline cekf::UpdateResult update_after_slip(cekf::CompressedEkf& filter, const std::vector<cekf::Match>& matches,
+                                            core::NumericalHealth& numerics) {
   try {
     return filter.update_iterated(matches);
   } catch (const core::NumericalError&) {
-    return filter.update(matches);
+    const cekf::UpdateResult result = filter.update(matches);
+    ++numerics.repaired;
+    return result;
   }
+}
+
+/// Once more, of a scan that was reported: no new repair.
+inline cekf::UpdateResult update_after_slip(cekf::CompressedEkf& filter, const std::vector<cekf::Match>& matches) {
+  core::NumericalHealth numerics;
+  return update_after_slip(filter, matches, numerics);
 }
 
 }  // namespace helixnav::supervisor

@@ -73,6 +73,7 @@ Smoothing smooth_drive(const cekf::CompressedEkf& filter, const core::PoseGaussi
     result.solved.emplace(filter_at(minimum, problem.graph, filter));
     result.path = path_of(problem.graph, drive.stops);
   } catch (const core::NumericalError&) {
+    result.failed = true;
     result.solved.reset();  // what cannot be solved leaves the filter as it is
   }
   return result;

@@ -22,6 +22,7 @@ struct Smoothing {
   double limit = 0.0;                         ///< what it must not exceed
   int poses = 0;
   int iterations = 0;
+  bool failed = false;  ///< not accepted because the mathematics failed
 };
 
 /// The filter at the least-squares solution of the whole drive with the associations known now, and with the covariance

@@ -13,14 +13,19 @@ void NavigationLoop::solve_drive(core::StepReport& report) {
   if (options_.search.closing == ClosingMethod::restart)
     tape_.drop_drive();  // what came before the restart no longer constrains the map
   const bool is_whole = belief_.drive ? tape_.holds_since(belief_.drive->end()) : tape_.holds_drive();
-  if (!is_whole) return;
+  if (!is_whole) {
+    report_unsolved(report);
+    return;
+  }
   const core::Pose2 before = belief_.filter.pose().mean;
+  report.numerics.note(belief_.filter.take_health());
   bool accepted = false;
   Smoothing smoothing = is_for_atlas() ? solve_by_atlas(accepted) : solve_by_poses(accepted);
   if (accepted) {
     tape_.append(Tape::Solved{smoothing.chi2});
     report.solved = std::move(smoothing.path);
   }
+  report.numerics.refused += smoothing.failed ? 1 : 0;
   core::SmoothingDecision decision;
   decision.accepted = accepted;
   decision.chi2 = smoothing.chi2;
@@ -29,6 +34,14 @@ void NavigationLoop::solve_drive(core::StepReport& report) {
   decision.iterations = smoothing.iterations;
   decision.moved_m = (belief_.filter.pose().mean.position_m() - before.position_m()).norm();
   report.decisions.emplace_back(decision);
+}
+
+/// A drive that was to be solved and was too long to be kept.
+void NavigationLoop::report_unsolved(core::StepReport& report) const {
+  const int most = options_.search.smooth_up_to_scans;
+  if (belief_.drive || options_.search.closing == ClosingMethod::restart || most == 0 || tape_.stops() <= most) return;
+  report.decisions.emplace_back(core::PostponedDecision{core::PostponedDecision::Work::drive,
+                                                        static_cast<double>(tape_.stops()), static_cast<double>(most)});
 }
 
 Smoothing NavigationLoop::solve_by_poses(bool& accepted) {
@@ -53,8 +66,12 @@ Smoothing NavigationLoop::solve_by_atlas(bool& accepted) {
     accepted = solution.accepted;
     return solution.figures;
   } catch (const core::NumericalError&) {
-    if (tape_.holds_drive()) return solve_by_poses(accepted);
-    return {};
+    Smoothing smoothing;
+    smoothing.failed = true;
+    if (!tape_.holds_drive()) return smoothing;
+    smoothing = solve_by_poses(accepted);
+    pending_.numerics.repaired += accepted ? 1 : 0;
+    return smoothing;
   }
 }
 

@@ -71,6 +71,7 @@ void NavigationLoop::begin_window(std::shared_ptr<DriveMap> drive, const WindowN
   cekf::CompressedEkf filter(atlas.joint(chosen.ids), belief_.filter.next_name(), belief_.filter.options());
   chosen.window.begun_path_m = belief_.existence.path_m();
   drive->remember(belief_.filter);
+  pending_.numerics.note(belief_.filter.take_health());
   std::swap(belief_.filter, filter);
   if (!undo_.filter) undo_.filter.emplace(std::move(filter));
   become(std::move(drive), chosen.window);
@@ -81,7 +82,11 @@ bool NavigationLoop::hand_over(const WindowNeeds& needs) {
     begin_window(drive_until_now(), needs);
     return true;
   } catch (const core::NumericalError&) {
-    return false;  // what cannot be solved leaves the filter as it is
+    ++pending_.numerics.refused;  // what cannot be solved leaves the filter as it is
+    pending_.decisions.emplace_back(core::PostponedDecision{core::PostponedDecision::Work::window,
+                                                            static_cast<double>(belief_.filter.mapped_count()),
+                                                            static_cast<double>(options_.map.window)});
+    return false;
   }
 }
 

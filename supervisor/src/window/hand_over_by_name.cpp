@@ -139,6 +139,10 @@ bool NamedNavigator::hand_over(const std::vector<LandmarkId>& wanted) {
   } catch (const core::NumericalError&) {  // what cannot be solved leaves the filter as it is
     constexpr std::int64_t pause = 50;     // a solution that is not found costs more than one that is
     next_try_ = step_ + pause;
+    ++pending_.numerics.refused;
+    pending_.decisions.emplace_back(core::PostponedDecision{core::PostponedDecision::Work::window,
+                                                            static_cast<double>(filter_.mapped_count()),
+                                                            static_cast<double>(landmarks_wanted(options_.map))});
     return false;
   }
 }
@@ -161,6 +165,7 @@ void NamedNavigator::begin_window(const std::vector<LandmarkId>& wanted) {
   for (int name = 0; name < count; ++name) joint.ids[static_cast<std::size_t>(name)] = name;
   cekf::CompressedEkf filter(joint, count, filter_.options());
   remember_covariances();
+  pending_.numerics.note(filter_.take_health());
   if (before_) {  // a second one in this call: what was before the call stays what was before the first
     std::swap(filter, filter_);
     std::swap(drive, drive_);

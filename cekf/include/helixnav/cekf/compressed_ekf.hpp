@@ -105,6 +105,10 @@ class CompressedEkf {
   /// Brings the passive part up to date and keeps the active set. O(N²·q).
   void global_update();
 
+  /// Of updates since the last call, of questions (iterated_cost, merge_cost, position_innovation) not. A restore changes
+  /// nothing in it: it is no part of the estimate. Test: cekf/numerical_health_test.cpp.
+  core::NumericalHealth take_health() noexcept { return std::exchange(workspace_.health, {}); }
+
   core::PoseGaussian pose() const;
   /// Marginal of any landmark, read-only. O(1) active, O(q²) passive.
   core::PointGaussian landmark(core::LandmarkId id) const;

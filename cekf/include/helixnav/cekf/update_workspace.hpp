@@ -7,6 +7,7 @@
 
 #include "helixnav/cekf/reserved_matrix.hpp"
 #include "helixnav/core/landmark_id.hpp"
+#include "helixnav/core/numerical_health.hpp"
 #include "helixnav/core/se2.hpp"
 
 namespace helixnav::cekf {
@@ -36,6 +37,9 @@ struct UpdateWorkspace {
   ReservedMatrix right_active, right_weights;
   ReservedMatrix delta_active, delta_weights;  ///< correction δ, then Δ of the retraction
   ReservedMatrix variances;                    ///< diagonal of the active covariance after the update
+
+  ReservedMatrix scale;          ///< 1/√S_ii
+  core::NumericalHealth health;  ///< of the updates since it was taken
 };
 
 }  // namespace helixnav::cekf

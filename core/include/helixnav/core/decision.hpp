@@ -203,6 +203,19 @@ struct WholeMapDecision {
   double displaced_m = 0.0;  ///< from where odometry has the vehicle
 };
 
+/// Work that was left out or put off, because a budget of it was spent or because the mathematics failed. Budgets are counts and
+/// never times: the same input gives the same bytes on any machine.
+struct PostponedDecision {
+  enum class Work {
+    association,  ///< the search for the best association was ended: the best found, not proven the best
+    window,       ///< the filter holds `size` landmarks, and the hand-over to a part of the map failed
+    drive,        ///< the drive of `size` scans and fixes was not solved as a whole after a closing
+  };
+  Work work = Work::association;
+  double size = 0.0;   ///< of what was to be done
+  double limit = 0.0;  ///< of what is done at most; association: hypotheses
+};
+
 /// A row of decisions.csv of a kind that this version does not know: listed as it stands.
 struct OtherDecision {
   std::string kind;
@@ -214,7 +227,7 @@ struct OtherDecision {
 using Decision =
     std::variant<TriggerDecision, RollbackDecision, SlipDecision, AttemptStarted, AttemptEnded, ReferenceUnusable,
                  VerificationDecision, ClosureDecision, UndecidedDecision, NewGroundDecision, SmoothingDecision,
-                 FixDecision, CarriedDecision, PlacedDecision, WholeMapDecision, OtherDecision>;
+                 FixDecision, CarriedDecision, PlacedDecision, WholeMapDecision, PostponedDecision, OtherDecision>;
 
 /// True for what ends a search: a closing accepted or refused, new ground, or a search given up.
 inline bool is_closure(const Decision& decision) {

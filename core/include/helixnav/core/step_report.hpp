@@ -8,6 +8,7 @@
 #include "helixnav/core/decision.hpp"
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/landmark_id.hpp"
+#include "helixnav/core/numerical_health.hpp"
 #include "helixnav/core/particle_cloud.hpp"
 #include "helixnav/core/se2.hpp"
 #include "helixnav/core/time.hpp"
@@ -66,6 +67,7 @@ struct StepReport {
   std::vector<AssociationReport> associations;
   double joint_nis = 0.0;  ///< of the joint update; 0 with joint_dof 0 when nothing matched
   int joint_dof = 0;
+  NumericalHealth numerics;
   int active_landmarks = 0;
   int mapped_landmarks = 0;
   bool switched_region = false;

@@ -55,11 +55,14 @@ class Localizer {
   void check_event(const core::Scan& scan) const;
   core::PoseGaussian predicted() const;
   core::JointGaussian candidates(const core::PoseGaussian& pose, const core::Scan& scan) const;
-  std::vector<core::AssociationReport> associate(const core::PoseGaussian& pose, const core::Scan& scan) const;
-  core::StepReport update(const core::PoseGaussian& pose, const core::Scan& scan,
-                          std::vector<core::AssociationReport> associations);
-  core::StepReport update_thinned(const core::PoseGaussian& pose, const core::Scan& thin,
-                                  std::vector<core::AssociationReport> associations,
+  /// What became of the observations, and whether the search was ended before its end.
+  struct Associated {
+    std::vector<core::AssociationReport> reports;
+    std::vector<core::Decision> decisions = {};
+  };
+  Associated associate(const core::PoseGaussian& pose, const core::Scan& scan) const;
+  core::StepReport update(const core::PoseGaussian& pose, const core::Scan& scan, Associated associated);
+  core::StepReport update_thinned(const core::PoseGaussian& pose, const core::Scan& thin, Associated associated,
                                   const std::vector<std::size_t>& used, std::size_t observations);
 
   LocalizerOptions options_;

@@ -99,6 +99,7 @@ class NamedNavigator {
   struct Pending {
     std::optional<core::Odometry> motion;
     std::vector<core::Decision> decisions;
+    core::NumericalHealth numerics = {};  ///< that no report has yet
   };
   struct NamedScan {
     core::Scan scan;
@@ -124,6 +125,7 @@ class NamedNavigator {
   core::StepReport observe_thinned(const core::Scan& scan, const std::vector<std::int64_t>& identities);
   core::StepReport step(const NamedScan& scan);
   bool use_fix(const core::AbsoluteFix& fix);
+  void report_late(core::StepReport& report);
   void predict();
   std::vector<core::AssociationReport> associate(const NamedScan& scan) const;
   void update(const core::Scan& scan, core::StepReport& report);
