@@ -29,6 +29,15 @@ Eigen::Vector3d pose_difference(const core::Pose2& a, const core::Pose2& b) {
   return {a.x_m - b.x_m, a.y_m - b.y_m, core::wrap_to_pi(a.heading_rad - b.heading_rad)};
 }
 
+/// One after another, not as arguments of a call, whose order the compiler chooses. The last one first: so GCC chose, and what
+/// is published was drawn so.
+template <int n>
+Eigen::Matrix<double, n, 1> normals(core::RandomStream& random) {
+  Eigen::Matrix<double, n, 1> drawn;
+  for (int i = n; i-- > 0;) drawn[i] = random.normal();
+  return drawn;
+}
+
 }  // namespace
 
 HelixProposal::HelixProposal(const ReferenceMap& map, const ScanLikelihood& likelihood, const HelixOptions& options)
@@ -110,7 +119,7 @@ void HelixProposal::sample(Particles& particles, std::size_t begin, std::size_t 
       xi[static_cast<Eigen::Index>(k)] = particles.latent[k][i];
     }
     if (i < from_prior_) {
-      const Eigen::Vector3d noise(random.normal(), random.normal(), random.normal());
+      const Eigen::Vector3d noise = normals<3>(random);
       const Eigen::Vector3d shift = map_.prior_by_latent * xi;
       particles.set_pose(i, core::Pose2(map_.prior.mean.vector() + shift + prior_L_ * noise));
       continue;
@@ -121,7 +130,8 @@ void HelixProposal::sample(Particles& particles, std::size_t begin, std::size_t 
     const double heading =
         heading_min_rad_ + (static_cast<double>(cell.heading) + random.uniform()) * heading_step_rad_;
     const Eigen::Matrix2d& R = point.covariance_m2;
-    const Eigen::Vector2d map_noise(random.normal(), random.normal()), noise(random.normal(), random.normal());
+    const Eigen::Vector2d map_noise = normals<2>(random);
+    const Eigen::Vector2d noise = normals<2>(random);
     Eigen::Vector2d landmark(table.x[m], table.y[m]);
     if (table.modes > 0) landmark += map_.latent.middleRows<2>(2 * static_cast<Eigen::Index>(m)) * xi;
     landmark += lower_root(table.sxx[m], table.sxy[m], table.syy[m]) * map_noise;
