@@ -14,6 +14,11 @@ function(helixnav_module room)
     PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
     PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
   target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
+  # In a unity build: with eight sources a group, CMake's own choice, the supervisor takes a quarter more processor time.
+  # What includes MRPT is large already.
+  if(NOT room STREQUAL mrpt_adapter)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 16)
+  endif()
   helixnav_warnings(${target})
   set_property(GLOBAL APPEND PROPERTY HELIXNAV_ROOMS ${room})
 endfunction()

@@ -11,7 +11,7 @@ namespace helixnav::sim {
 namespace {
 
 constexpr double corner_radius_m = 9.0;
-constexpr double point_spacing_m = 0.5;
+constexpr double street_spacing_m = 0.5;
 
 /// A polyline that grows, and its length.
 class RoadBuilder {
@@ -20,7 +20,7 @@ class RoadBuilder {
 
   void line_to(const Eigen::Vector2d& end_m) {
     const Eigen::Vector2d start_m = points_m_.back();
-    const int steps = static_cast<int>(std::ceil((end_m - start_m).norm() / point_spacing_m));
+    const int steps = static_cast<int>(std::ceil((end_m - start_m).norm() / street_spacing_m));
     for (int i = 1; i <= steps; ++i) append(start_m + (end_m - start_m) * i / steps);
   }
 
@@ -28,7 +28,7 @@ class RoadBuilder {
   void corner(const Eigen::Vector2d& crossing_m, const Eigen::Vector2d& in, const Eigen::Vector2d& out) {
     line_to(crossing_m - corner_radius_m * in);
     const Eigen::Vector2d centre_m = crossing_m + corner_radius_m * (out - in);
-    const int steps = static_cast<int>(std::ceil(0.5 * core::pi * corner_radius_m / point_spacing_m));
+    const int steps = static_cast<int>(std::ceil(0.5 * core::pi * corner_radius_m / street_spacing_m));
     for (int i = 1; i <= steps; ++i) {
       const double angle_rad = 0.5 * core::pi * i / steps;
       append(centre_m + corner_radius_m * (std::sin(angle_rad) * in - std::cos(angle_rad) * out));

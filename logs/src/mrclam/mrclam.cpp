@@ -96,9 +96,9 @@ core::Observation observation_of(const MrclamTables::Sighting& sighting, const M
 
 /// All sightings of one instant in one scan. Where nothing was seen for a while, an empty one lets a run tell where the
 /// robot is.
-class Weaver {
+class RobotWeaver {
  public:
-  Weaver(const std::vector<int>& chosen, const MrclamSettings& settings, core::TeamRecording& team)
+  RobotWeaver(const std::vector<int>& chosen, const MrclamSettings& settings, core::TeamRecording& team)
       : chosen_(chosen), settings_(settings), team_(team) {}
 
   void add(const Robot& robot, core::Nanoseconds t_ns, core::TeamMember& member) {
@@ -169,7 +169,7 @@ core::TeamMember member_of(const MrclamTables& tables, const std::vector<int>& c
   member.number = number;
   member.recording.name = team.name + ", robot " + std::to_string(number);
   CommandMotion motion(robot.commands, settings);
-  Weaver weaver(chosen, settings, team);
+  RobotWeaver weaver(chosen, settings, team);
   weaver.pass_over(robot, robot.commands.front().t_ns);
   for (const core::Nanoseconds t_ns : ends_of_increments(tables, chosen, number)) {
     member.recording.events.emplace_back(motion.until(t_ns));

@@ -9,7 +9,7 @@ namespace helixnav::supervisor {
 namespace {
 
 /// Where an observation sees its landmark, and how uncertain that is by pose and noise together.
-struct SeenPoint {
+struct LocatedObservation {
   Eigen::Vector2d point_m;
   double sigma_m;
 };
@@ -17,8 +17,8 @@ struct SeenPoint {
 /// Largest standard deviation of any direction, bounded by the trace.
 double sigma_bound(const Eigen::Matrix2d& covariance) { return std::sqrt(std::max(0.0, covariance.trace())); }
 
-std::vector<SeenPoint> seen_points(const core::PoseGaussian& pose, const core::Scan& scan) {
-  std::vector<SeenPoint> points;
+std::vector<LocatedObservation> seen_points(const core::PoseGaussian& pose, const core::Scan& scan) {
+  std::vector<LocatedObservation> points;
   points.reserve(scan.observations.size());
   for (const core::Observation& observation : scan.observations) {
     const core::LocatedLandmark located = core::locate_landmark(observation, pose.mean, scan.T_robot_sensor);
@@ -29,7 +29,7 @@ std::vector<SeenPoint> seen_points(const core::PoseGaussian& pose, const core::S
   return points;
 }
 
-bool sharper(const SeenPoint& a, const SeenPoint& b) { return a.sigma_m < b.sigma_m; }
+bool sharper(const LocatedObservation& a, const LocatedObservation& b) { return a.sigma_m < b.sigma_m; }
 
 bool fixes_points(const core::Scan& scan) {
   return std::all_of(scan.observations.begin(), scan.observations.end(),
@@ -37,17 +37,17 @@ bool fixes_points(const core::Scan& scan) {
 }
 
 /// Whether any observation may be of the landmark if their errors were anything at all to each other.
-bool is_near(const std::vector<SeenPoint>& seen, const cekf::Outlook& landmark, double sigmas) {
-  return std::any_of(seen.begin(), seen.end(), [&](const SeenPoint& s) {
+bool is_near(const std::vector<LocatedObservation>& seen, const cekf::Outlook& landmark, double sigmas) {
+  return std::any_of(seen.begin(), seen.end(), [&](const LocatedObservation& s) {
     return (s.point_m - landmark.mean_m).norm() < sigmas * (s.sigma_m + landmark.sigma_bound_m);
   });
 }
 
 /// Whether any may be of it as their errors are correlated: sigma_m is that of the landmark's place.
-bool is_near(const std::vector<SeenPoint>& seen, const core::Pose2& pose, const cekf::Outlook& landmark, double sigma_m,
-             double sigmas) {
+bool is_near(const std::vector<LocatedObservation>& seen, const core::Pose2& pose, const cekf::Outlook& landmark,
+             double sigma_m, double sigmas) {
   const Eigen::Matrix<double, 2, 3>& cross = landmark.with_pose;
-  return std::any_of(seen.begin(), seen.end(), [&](const SeenPoint& s) {
+  return std::any_of(seen.begin(), seen.end(), [&](const LocatedObservation& s) {
     const Eigen::Vector2d arm_m = s.point_m - pose.position_m();
     const double common_m2 = cross(0, 0) + cross(1, 1) - cross(0, 2) * arm_m.y() + cross(1, 2) * arm_m.x();
     const double relative_m2 = std::max(0.0, s.sigma_m * s.sigma_m + sigma_m * sigma_m - 2.0 * common_m2);
@@ -56,9 +56,10 @@ bool is_near(const std::vector<SeenPoint>& seen, const core::Pose2& pose, const 
 }
 
 /// How far from the sensor a landmark may be that any observation is of, if its own deviation is no larger.
-double reach_of(const std::vector<SeenPoint>& seen, const Eigen::Vector2d& sensor_m, double sigmas) {
+double reach_of(const std::vector<LocatedObservation>& seen, const Eigen::Vector2d& sensor_m, double sigmas) {
   double reach_m = 0.0;
-  for (const SeenPoint& s : seen) reach_m = std::max(reach_m, (s.point_m - sensor_m).norm() + 2.0 * sigmas * s.sigma_m);
+  for (const LocatedObservation& s : seen)
+    reach_m = std::max(reach_m, (s.point_m - sensor_m).norm() + 2.0 * sigmas * s.sigma_m);
   return reach_m;
 }
 
@@ -75,7 +76,7 @@ std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, cons
   }
 
   constexpr double wider = 1.5;  // the gate is by the Mahalanobis distance, this by the trace and a linear step
-  const std::vector<SeenPoint> seen = seen_points(pose, scan);
+  const std::vector<LocatedObservation> seen = seen_points(pose, scan);
   const std::vector<core::LandmarkId> about = filter.landmarks_within(sensor_m, reach_of(seen, sensor_m, sigmas));
   const std::vector<cekf::Outlook> outlooks = filter.outlooks(about);
   const double least_sigma_m = std::min_element(seen.begin(), seen.end(), sharper)->sigma_m;

@@ -16,12 +16,12 @@ namespace {
 using core::LandmarkId;
 using core::PlacedDecision;
 
-struct Seen {
+struct SeenLandmarks {
   std::vector<LandmarkId> confirmed, unconfirmed;
 };
 
-Seen seen_landmarks(const association::LandmarkLife& existence, int least_hits) {
-  Seen seen;
+SeenLandmarks seen_landmarks(const association::LandmarkLife& existence, int least_hits) {
+  SeenLandmarks seen;
   for (const association::LandmarkRecord& record : existence.records()) {
     (record.hits >= least_hits ? seen.confirmed : seen.unconfirmed).push_back(record.id);
   }
@@ -125,7 +125,7 @@ void NavigationLoop::note_answers(const std::vector<PlacedDecision>& answers, co
 bool NavigationLoop::join(const MapApart& apart, const relocalize::Place& place, PlacedDecision& decision,
                           core::StepReport& report) {
   const PlaceSearch& search = *apart.search;
-  const Seen seen = seen_landmarks(belief_.existence, options_.search.constellation.least_hits);
+  const SeenLandmarks seen = seen_landmarks(belief_.existence, options_.search.constellation.least_hits);
   JoinedMaps joined = join_maps(belief_.filter, search.earlier().landmarks(), place, seen.confirmed, seen.unconfirmed,
                                 search.lengths().pair_noise_m, options_.search);
   decision.cost = joined.closing.cost;

@@ -24,7 +24,7 @@ constexpr std::size_t most_observations = 24;  // nearest first: what is weighed
 constexpr std::size_t least_observations = 3;
 constexpr int least_hits = 2;  // a landmark that one false alarm began is no evidence
 
-bool contains(const std::vector<LandmarkId>& ids, LandmarkId id) {
+bool is_among(const std::vector<LandmarkId>& ids, LandmarkId id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
@@ -39,7 +39,7 @@ int contradictions(const cekf::CompressedEkf& filter, const std::vector<Landmark
     const Eigen::Vector2d at_m = core::transform(pose, one.point_m);
     const double here_m = reach_m + reach_a_metre * one.point_m.norm();
     return std::any_of(near.begin(), near.end(), [&](LandmarkId id) {
-      return (filter.landmark_mean(id) - at_m).norm() < here_m && !contains(matched, id);
+      return (filter.landmark_mean(id) - at_m).norm() < here_m && !is_among(matched, id);
     });
   }));
 }
