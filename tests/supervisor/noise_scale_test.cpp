@@ -24,6 +24,7 @@ struct NoisyDrive {
   NoiseScale learn(int scans) {
     NoiseScale scale;
     for (int k = 0; k < scans; ++k) {
+      const double before = scale.observations();
       const Eigen::Matrix3d Q = scale.odometry() * claimed_Q();
       const Eigen::Matrix3d true_Q = odometry_factor_ * claimed_Q();
       const core::Pose2 T_displaced_predicted =
@@ -39,9 +40,12 @@ struct NoisyDrive {
       }
       geometry_.covariance_m2 = by_pose() * Q * by_pose().transpose();
       scale.observe(PairEquations(geometry_, seen, pairs, Eigen::Vector3d::Zero()), sides(k), Q);
+      withdrawn += before < 1.0 && scale.observations() == 1.0 ? 1 : 0;
     }
     return scale;
   }
+
+  int withdrawn = 0;  ///< how often less noise of the detector was no longer believed
 
  private:
   /// Every tenth scan looks from another side.
@@ -98,6 +102,12 @@ TEST(NoiseScale, TakesErrorsThatAreTheSameFromOnePlaceForNoLessNoise) {
 
 TEST(NoiseScale, TakesDisplacementsThatOdometryDoesNotExplainForErrorsOfTheDetectorThatAreNotWhite) {
   EXPECT_EQ(NoisyDrive(4.0, 0.25).learn(1500).observations(), 1.0);
+}
+
+TEST(NoiseScale, DoesNotBelieveInTurnsInLessNoiseAndInNone) {
+  NoisyDrive drive(1.45, 0.25);  // where displacements are about as large as just contradicts it
+  drive.learn(6000);
+  EXPECT_LE(drive.withdrawn, 2);
 }
 
 TEST(NoiseScale, RisesWithinAMinuteOfScans) {

@@ -34,12 +34,18 @@ std::vector<core::LandmarkId> CompressedEkf::landmarks_within(const Eigen::Vecto
     throw core::PreconditionError("landmarks_within: a finite point and a radius of zero or more expected");
   }
   std::vector<core::LandmarkId> found;
-  for (double slack_m = options_.hysteresis_m + 1.0;;) {
+  for (double slack_m = 0.25 * options_.cell_side_m;;) {
     found.clear();
-    const std::vector<core::LandmarkId> passive = passive_in_cells(point_m, radius_m + slack_m);
+    std::vector<core::LandmarkId> passive = passive_in_cells(point_m, radius_m + slack_m);
     std::vector<int> slots;
     slots.reserve(passive.size());
-    for (const core::LandmarkId id : passive) slots.push_back(find_place(id)->index);
+    const auto is_far = [&](core::LandmarkId id) {
+      const int slot = find_place(id)->index;
+      const bool far = (phases_.back().mean_m.segment<2>(2 * slot) - point_m).norm() > radius_m + slack_m;
+      if (!far) slots.push_back(slot);
+      return far;
+    };
+    passive.erase(std::remove_if(passive.begin(), passive.end(), is_far), passive.end());
     const std::vector<Eigen::Vector2d> moved = moved_m(slots);
     double farthest_m = 0.0;
     for (std::size_t i = 0; i < passive.size(); ++i) {

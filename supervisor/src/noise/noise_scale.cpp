@@ -100,9 +100,11 @@ double NoiseScale::detector_factor() const {
 }
 
 /// Where displacements are larger than odometry and such a detector explain, the detector errs for all landmarks alike, and
-/// its errors are not white.
+/// its errors are not white. A factor that is not in force yet needs more: withdrawn and believed again in turn, it would
+/// have the whole drive solved anew each time.
 bool NoiseScale::motion_is_as_assumed_at_most() const {
-  return biased_motion_.weight > least_weight && biased_motion_.scale() - biased_motion_.sigma() < dead_band;
+  const double doubt = observations_ < 1.0 ? -biased_motion_.sigma() : 0.0;
+  return biased_motion_.weight > least_weight && biased_motion_.scale() + doubt < dead_band;
 }
 
 /// Likewise; down by what is left with the mean in it.
