@@ -34,10 +34,12 @@ AcfrLog small_log() {
 /// No calibration at all.
 AcfrSettings as_recorded() {
   AcfrSettings settings;
+  settings.speed_scale = 1.0;
   settings.steering_scale = 1.0;
   settings.steering_offset_rad = 0.0;
   settings.laser_delay_s = 0.0;
   settings.T_robot_laser.heading_rad = 0.0;
+  settings.sigma_sideways_m_per_sqrt_m = 0.0;
   return settings;
 }
 
@@ -75,6 +77,23 @@ TEST(MakeRecording, MovesAndDoubtsAsMuchInPartsAsInTheWhole) {
   // Speed moves along x and both variances are in proportion to the parts, so the largest terms agree to first order.
   EXPECT_NEAR(both.covariance(0, 0), whole.covariance(0, 0), 1e-3 * whole.covariance(0, 0));
   EXPECT_NEAR(both.covariance(2, 2), whole.covariance(2, 2), 1e-9 * whole.covariance(2, 2));
+}
+
+TEST(MakeRecording, SlipsSidewaysByTheWayHoweverItIsSplit) {
+  AcfrSettings settings = as_recorded();
+  const auto rolling = increments(make_recording(small_log(), settings));
+  settings.sigma_sideways_m_per_sqrt_m = 0.3;
+  const auto slipping = increments(make_recording(small_log(), settings));
+  ASSERT_EQ(slipping.size(), rolling.size());
+  for (std::size_t k = 0; k < slipping.size(); ++k) {
+    const core::Pose2& moved = slipping[k].T_before_after;
+    EXPECT_EQ(moved.vector(), rolling[k].T_before_after.vector()) << "slip has no mean";
+    const Eigen::Matrix3d more = slipping[k].covariance - rolling[k].covariance;
+    EXPECT_NEAR(more.trace(), 0.09 * moved.position_m().norm(), 1e-15) << "a part has its part of the way's variance";
+    const Eigen::Vector3d chord(moved.x_m, moved.y_m, 0.0);
+    EXPECT_LT((more * chord).norm(), 1e-15) << "across the chord only";
+    EXPECT_EQ(more(2, 2), 0.0);
+  }
 }
 
 TEST(MakeRecording, StampsAScanByWhenItWasTaken) {

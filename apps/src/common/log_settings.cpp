@@ -15,6 +15,10 @@ void add_truck(CLI::App& command, const std::string& section, logs::AcfrSettings
              "Noise of one sample of the wheel's speed");
   add_number(command, name("sigma_steering_rad").c_str(), truck.noise.sigma_steering_rad, 1e-4, 1.0,
              "Noise of one sample of the steering angle");
+  add_number(command, name("sigma_sideways").c_str(), truck.sigma_sideways_m_per_sqrt_m, 0.0, 1.0,
+             "Noise of side slip over one metre; grows by the root of the way [m]");
+  add_number(command, name("speed_scale").c_str(), truck.speed_scale, 0.5, 2.0,
+             "Every recorded speed of the wheel is multiplied by this");
   add_number(command, name("steering_offset_rad").c_str(), truck.steering_offset_rad, -0.5, 0.5,
              "Added to every recorded steering angle");
   add_number(command, name("steering_scale").c_str(), truck.steering_scale, 0.5, 2.0,

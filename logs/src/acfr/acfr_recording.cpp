@@ -33,13 +33,22 @@ class HeldSteering {
   core::Odometry increment(core::Nanoseconds t_ns) const {
     const DeadReckoning& held = log_.dead_reckoning[index_];
     core::AckermannSample sample;
-    sample.wheel_speed_mps = held.wheel_speed_mps;
+    sample.wheel_speed_mps = settings_.speed_scale * held.wheel_speed_mps;
     sample.steering_rad = settings_.steering_scale * held.steering_rad + settings_.steering_offset_rad;
     sample.duration_s = core::seconds(t_ns - now_ns_);
     core::Odometry odometry = ackermann_increment(settings_.geometry, settings_.noise, sample);
     odometry.covariance *= core::seconds(holds_until_ns(t_ns) - held.t_ns) / sample.duration_s;
+    odometry.covariance += side_slip(odometry.T_before_after);
     odometry.t_ns = t_ns;
     return odometry;
+  }
+
+  /// By the way and not by the sample, so that parts add up to the whole; across the middle of the arc.
+  Eigen::Matrix3d side_slip(const core::Pose2& moved) const {
+    const double sigma = settings_.sigma_sideways_m_per_sqrt_m;
+    const double half_turn_rad = 0.5 * moved.heading_rad;
+    const Eigen::Vector3d across(-std::sin(half_turn_rad), std::cos(half_turn_rad), 0.0);
+    return sigma * sigma * moved.position_m().norm() * across * across.transpose();
   }
 
   /// One sample has one error: a whole of duration d has d²σ², so that a part p of it carries p·d·σ².
@@ -98,7 +107,9 @@ AcfrLog without_laser_delay(AcfrLog log, double delay_s) {
 AcfrSettings car_park_settings() {
   AcfrSettings settings;
   settings.detector = AcfrSettings::Detector::reflectors;
-  settings.noise = {1.0, 0.15};
+  settings.noise = {1.0, 0.15};  // so wide that slip is in it
+  settings.sigma_sideways_m_per_sqrt_m = 0.0;
+  settings.speed_scale = 1.0;
   settings.steering_scale = 1.0;
   settings.steering_offset_rad = 0.0075;
   settings.laser_delay_s = 0.0;
