@@ -11,21 +11,30 @@
 namespace helixnav::cekf {
 namespace {
 
-/// e·M·eᵀ, its lower triangle, for a symmetric M. Weights that no update has reached are left out.
-Eigen::MatrixXd both_sides(const Eigen::MatrixXd& e, const Eigen::MatrixXd& M) {
+ReservedMatrix zeros(Eigen::Index rows, Eigen::Index cols) {
+  ReservedMatrix matrix;
+  matrix.reserve(rows, cols);  // exactly: of a whole map's joint covariance there is no room for more
+  matrix.resize(rows, cols);
+  return matrix;
+}
+
+/// sum += e·M·eᵀ for a symmetric M, the lower triangle. Weights that no update has reached are left out.
+void add_both_sides(const Eigen::MatrixXd& e, const Eigen::MatrixXd& M, Eigen::MatrixXd& sum) {
   const std::vector<int> touched = columns_not_zero(M);
+  if (touched.empty()) return;
   const Eigen::MatrixXd M_touched = M(touched, touched);
-  ReservedMatrix reached(e.rows(), M_touched.cols());  // by the weights
-  ReservedMatrix product(e.rows(), e.rows());
-  if (touched.empty()) return product.view();
-  const Panels left(e, touched, left_width);
-  add_product(reached.col(0), reached.stride(), left, Panels(M_touched, right_width));
-  const Eigen::MatrixXd e_touched = e(Eigen::all, touched);
-  ReservedMatrix right(e.rows(), e_touched.cols());
-  right.view() = e_touched;
-  add_outer_lower(product.col(0), product.stride(), product.padded_rows(), product.cols(), reached.col(0),
-                  reached.stride(), right.col(0), right.stride(), e_touched.cols());
-  return product.view();
+  const Eigen::Index n = e.rows();
+  ReservedMatrix reached = zeros(n, M_touched.cols());  // by the weights
+  add_product(reached.col(0), reached.stride(), Panels(e, touched, left_width), Panels(M_touched, right_width));
+  ReservedMatrix right = zeros(n, M_touched.cols());
+  right.view() = e(Eigen::all, touched);
+  constexpr Eigen::Index at_once = 256;  // columns, a multiple of eight
+  for (Eigen::Index first = 0; first < n; first += at_once) {
+    ReservedMatrix part = zeros(n - first, std::min(at_once, n - first));
+    add_outer(part.col(0), part.stride(), part.padded_rows(), part.cols(), reached.col(0) + first, reached.stride(),
+              right.col(0) + first, right.stride(), M_touched.cols());
+    sum.block(first, first, part.rows(), part.cols()) += part.view();
+  }
 }
 
 /// e·M·eᵀ for one landmark's rows e, from the lower triangle of M, by columns: O(q²), no matrix formed.
@@ -172,15 +181,14 @@ core::JointGaussian CompressedEkf::joint(const std::vector<core::LandmarkId>& id
   C(passive_rows, active_rows) = cross;
   C(active_rows, passive_rows) = cross.transpose();
   const Eigen::MatrixXd M = active_.M.view().selfadjointView<Eigen::Lower>();
-  Eigen::MatrixXd own = both_sides(e, M);
-  Eigen::MatrixXd before = Eigen::MatrixXd::Zero(own.rows(), own.cols());
+  const Eigen::Index rows = e.rows();
   const bool has_pairs = passive_slots.size() > 1;  // a landmark's own block needs no phase read again
-  if (has_pairs) before = phase_start_blocks(passive_slots);
+  Eigen::MatrixXd own = has_pairs ? phase_start_blocks(passive_slots) : Eigen::MatrixXd::Zero(rows, rows);
   for (std::size_t i = 0; i < passive_slots.size(); ++i) {
     const auto row = 2 * static_cast<Eigen::Index>(i);
-    before.block<2, 2>(row, row) = phases_.back().own_covariance_m2.middleRows<2>(2 * passive_slots[i]);
+    own.block<2, 2>(row, row) = phases_.back().own_covariance_m2.middleRows<2>(2 * passive_slots[i]);
   }
-  own += before;
+  add_both_sides(e, M, own);
   own.triangularView<Eigen::StrictlyUpper>() = own.transpose();
   C(passive_rows, passive_rows) = own;
   return result;
