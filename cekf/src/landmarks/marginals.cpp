@@ -105,8 +105,10 @@ std::vector<core::PointGaussian> CompressedEkf::passive_marginals(const std::vec
     if (!touched.empty()) add_product(reached.col(0), reached.stride(), Panels(e, left_width), right);
     for (Eigen::Index row = 0; row < e.rows(); row += 2) {
       const std::size_t k = points.size();
-      const Eigen::Matrix2d own = phase.own_covariance_m2.middleRows<2>(2 * slots[k]) +
-                                  reached.view().middleRows<2>(row).lazyProduct(e.middleRows<2>(row).transpose());
+      Eigen::Matrix2d own = phase.own_covariance_m2.middleRows<2>(2 * slots[k]);
+      if (!touched.empty()) {
+        own += reached.view().middleRows<2>(row).lazyProduct(e.middleRows<2>(row).transpose());
+      }
       points.push_back({phase.mean_m.segment<2>(2 * slots[k]) + moved[k], 0.5 * (own + own.transpose())});
     }
   }
