@@ -43,11 +43,13 @@ void add_filter(CLI::App& command, Settings& settings) {
   add_length(command, settings, "filter.hysteresis_m", 0.0, 1e6,
              "How far beyond its cell the vehicle drives before the region switches; auto: 2/3 of the reach");
   add_number(command, "--filter.max_active_landmarks", filter.max_active_landmarks, 1, 100000,
-             "A region switch is due beyond this number of active landmarks");
+             "A region switch is due beyond this number of active landmarks (three times it where all are active)");
   supervisor::MapOptions& map = settings.navigator.map;
   add_number(command, "--map.solve_over_poses", map.solve_over_poses, 0, 1'000'000,
              "Landmarks up to which a closing solves the drive over all its poses; of a larger map, on the atlas");
-  add_number(command, "--map.whole", map.whole, 0, 1'000'000, "Landmarks up to which the filter holds the whole map");
+  add_number(
+      command, "--map.whole", map.whole, 0, 1'000'000,
+      "Landmarks up to which the filter holds the whole map; without names, 20 times what a scan sees if that is more");
   add_number(command, "--map.window", map.window, 50, 1'000'000,
              "How many landmarks around the vehicle the filter of a larger map holds");
   add_number(command, "--map.most_in_filter", map.most, 50, 1'000'000,

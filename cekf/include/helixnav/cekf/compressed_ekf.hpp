@@ -30,7 +30,8 @@ class Panels;
 /// A copy shares the covariance of the passive landmarks until one of the two absorbs a phase into it: O(N·q) a phase kept.
 /// Every call either succeeds or throws PreconditionError (arguments), NumericalError (S not positive definite, a variance
 /// that would be negative or not finite) or std::bad_alloc and leaves the filter as it was. Cost below with n active landmarks, q weights
-/// (2·3+4·n right-invariant, 3+2·n standard), m rows of innovation. Source: THEORY §1 and §1b. Test: tests/cekf (equal
+/// (2·3+4·n right-invariant, 3+2·n standard, none where all landmarks are active), m rows of innovation.
+/// Source: THEORY §1 and §1b. Test: tests/cekf (equal
 /// to a plain full EKF on random programs, both retractions).
 class CompressedEkf {
  public:
@@ -96,7 +97,8 @@ class CompressedEkf {
   void activate(core::LandmarkId id);
 
   /// Switches to the region around the vehicle when it has left its cell by the hysteresis, or when more than
-  /// max_active_landmarks, and twice as many as the last update saw, are active. True when it did.
+  /// max_active_landmarks, and twice as many as the last update saw, are active; when all of the map is, 1 + w times as many,
+  /// w weights an anchor. True when it did. Test: cekf/law_test.cpp.
   bool switch_region_if_due();
   /// Switches to the region around the vehicle.
   void switch_region();
