@@ -133,6 +133,29 @@ TEST(WholeMap, EndsASearchOnNewGround) {
   EXPECT_GE(new_ground, 1);
 }
 
+/// A few trees of a crossing street, then a bare one: the search waits until there is something to see again, and decides
+/// with that. It was given up after 60 m of nothing.
+TEST(WholeMap, DecidesNothingOnBareGround) {
+  sim::Scenario scenario = sim::named_scenario("town");
+  scenario.world.tour_m = 8000.0;
+  const core::Recording run = sim::simulate(scenario, 2800003);
+  constexpr std::size_t scans = 1500;  // two searches were undecided at 1223 and 1442
+  NavigatorOptions options;
+  options.search.relocalizer.threads = 1;
+  Navigator navigator(run.start, options);
+  int ended = 0;
+  drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
+    if (i >= scans) return;
+    for (const core::Decision& decision : navigator.observe(scan).decisions) {
+      EXPECT_FALSE(std::holds_alternative<core::UndecidedDecision>(decision)) << "scan " << i;
+      const bool ends = std::holds_alternative<core::NewGroundDecision>(decision) ||
+                        std::holds_alternative<core::ClosureDecision>(decision);
+      if (ends) ++ended;
+    }
+  });
+  EXPECT_GE(ended, 2);
+}
+
 TEST(WholeMap, HasNoNewsWhereNothingIsAmiss) {
   const Asking drive = drive_asking(sim::simulate(sim::named_scenario("large-loop-changed"), 1), {});
   EXPECT_EQ(drive.closed, 1);

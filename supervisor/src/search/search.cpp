@@ -51,8 +51,7 @@ Search::Search(std::vector<core::LandmarkId> old, double path_m, std::uint64_t s
       begun_path_m_(path_m),
       seed_(seed),
       motion_(core::no_motion(0)),
-      last_look_path_m_(path_m - options.look_distance_m),
-      last_in_gate_path_m_(path_m) {}
+      last_look_path_m_(path_m - options.look_distance_m) {}
 
 bool Search::excludes(core::LandmarkId id) const { return std::binary_search(old_.begin(), old_.end(), id); }
 
@@ -63,13 +62,14 @@ std::optional<std::vector<ConstellationPair>> Search::look(const SearchView& vie
   has_just_started_ = false;
   const double path_m = view.life.path_m();
   if (path_m - last_look_path_m_ < options_.look_distance_m) return std::nullopt;
+  if (!sees_enough(view.scan)) blind_m_ += path_m - last_look_path_m_;
   last_look_path_m_ = path_m;
   const core::Odometry motion = std::exchange(motion_, core::no_motion(view.scan.t_ns));
   if (!attempt_) {
     if (is_promising(view) && path_m >= next_start_path_m_) start(view, decisions);
     return std::nullopt;
   }
-  last_in_gate_path_m_ = path_m;
+  last_in_gate_m_ = seeing_m(path_m);
   attempt_->relocalizer.step(motion, view.scan);
   if (options_.acceptance == Acceptance::paper_rule &&
       pf_relocalize::meets_paper_rule(attempt_->relocalizer.state(), motion)) {
@@ -91,12 +91,23 @@ std::optional<std::vector<ConstellationPair>> Search::look(const SearchView& vie
   return std::nullopt;
 }
 
-bool Search::is_undecided(double path_m) const {
-  const bool idle = !attempt_ && path_m - last_in_gate_path_m_ > options_.idle_m;
-  return idle || path_m - begun_path_m_ > options_.undecided_m;
+bool Search::sees_enough(const core::Scan& scan) const {
+  return static_cast<int>(scan.observations.size()) >= options_.start_observations;
 }
 
+double Search::seeing_m(double path_m) const { return path_m - begun_path_m_ - blind_m_; }
+
+bool Search::is_over(double path_m) const { return seeing_m(path_m) > options_.undecided_m; }
+
+bool Search::is_undecided(double path_m) const {
+  const bool idle = !attempt_ && seeing_m(path_m) - last_in_gate_m_ > options_.idle_m;
+  return idle || is_over(path_m);
+}
+
+void Search::wait(double path_m) { last_in_gate_m_ = seeing_m(path_m) - options_.idle_m + options_.ask_again_m; }
+
 bool Search::is_promising(const SearchView& view) {
+  if (!sees_enough(view.scan)) return false;
   // One landmark at a time: the marginal with the pose is all that a gate needs, and two in gate are enough to know.
   std::vector<bool> in_gate(view.scan.observations.size(), false);
   int count = 0;
@@ -110,9 +121,8 @@ bool Search::is_promising(const SearchView& view) {
     }
     if (count >= options_.start_in_gate) break;
   }
-  if (count > 0) last_in_gate_path_m_ = view.life.path_m();
-  return count >= options_.start_in_gate &&
-         static_cast<int>(view.scan.observations.size()) >= options_.start_observations;
+  if (count > 0) last_in_gate_m_ = seeing_m(view.life.path_m());
+  return count >= options_.start_in_gate;
 }
 
 void Search::start(const SearchView& view, std::vector<core::Decision>& decisions) {

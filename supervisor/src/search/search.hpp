@@ -45,8 +45,12 @@ class Search {
   /// The closing was refused: this attempt is over.
   void refuse(double path_m);
 
-  /// Whether the search should be given up.
+  /// Nothing of the old map has been in a gate for long, or the search is over. Bare ground tells nothing and counts for neither.
   bool is_undecided(double path_m) const;
+  /// Has gone on for as long as any search may.
+  bool is_over(double path_m) const;
+  /// There was too little about the vehicle to decide that the ground is new: is_undecided() is asked again a little later.
+  void wait(double path_m);
   double begun_path_m() const { return begun_path_m_; }
 
   /// T_world_robot of the heaviest mode at the last look; nothing while no attempt runs.
@@ -68,6 +72,9 @@ class Search {
     int passes = 0;
   };
 
+  bool sees_enough(const core::Scan& scan) const;
+  /// Driven since the search began where there was something to see.
+  double seeing_m(double path_m) const;
   bool is_promising(const SearchView& view);
   void start(const SearchView& view, std::vector<core::Decision>& decisions);
   std::optional<std::vector<pf_relocalize::ConstellationPair>> question(const SearchView& view,
@@ -81,7 +88,8 @@ class Search {
   std::uint64_t seed_;
   core::Odometry motion_;  ///< since the last look
   double last_look_path_m_;
-  double last_in_gate_path_m_;  ///< when an observation was last in an old landmark's gate
+  double blind_m_ = 0.0;         ///< driven with too few observations in view to say anything about the place
+  double last_in_gate_m_ = 0.0;  ///< of seeing_m(), when an observation was last in an old landmark's gate
   double next_start_path_m_ = 0.0;
   int starts_ = 0;
   int questions_ = 0;

@@ -42,6 +42,9 @@ void NavigationLoop::search(const Scan& scan, StepReport& report) {
   const double driven_m = path_m - open.begun_path_m();
   if (asked.is_nowhere()) {
     report.decisions.emplace_back(core::NewGroundDecision{driven_m, asked.decision.landmarks});
+  } else if (asks_whole_map() && !open.is_over(path_m)) {
+    open.wait(path_m);
+    return;
   } else {
     report.decisions.emplace_back(core::UndecidedDecision{driven_m});
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -26,12 +27,13 @@ struct AskedWholeMap {
 
   bool is_asked() const { return decision.questions > 0; }
   bool is_closed() const { return !pairs.empty(); }
-  /// No place fits better than chance, and of as many landmarks one would: with twenty 0.998 of the places that are on the map
-  /// are found where 30 % have changed (docs/relocalize.md).
+  /// No place fits better than the best of a map of elsewhere does by chance in one question of twenty, and of as many landmarks
+  /// one would: with twenty 0.998 of the places that are on the map are found where 30 % have changed (docs/relocalize.md).
   bool is_nowhere() const {
     constexpr int enough = 20;
+    static const double by_chance = -std::log(0.05);
     return is_asked() && decision.verdict == core::WholeMapDecision::Verdict::not_here &&
-           decision.landmarks >= enough && decision.evidence < 0.0;
+           decision.landmarks >= enough && decision.evidence < by_chance;
   }
   /// At another place than these pairs have: none is the same.
   bool is_closed_elsewhere(const std::vector<pf_relocalize::ConstellationPair>& found) const {
