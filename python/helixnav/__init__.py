@@ -12,14 +12,25 @@
         report = navigator.take(event)
     print(navigator.pose, navigator.map.means)
 
+    tuesday = helixnav.replay(helixnav.read_log("tuesday"), map="runs/mine")      # goes on in that map
+    week = helixnav.join(["runs/robot_1", "runs/robot_2"], out="runs/week")       # one map of several
+    slam = helixnav.FastSlam(options={"fastslam.particles": 200})                 # to compare with
+    team = helixnav.Team(starts=[helixnav.Pose(), None])                          # several robots, live
+
 Metres and radians, headings counter-clockwise, order (x, y, heading); times in seconds, or in whole nanoseconds as t_ns.
 """
 from ._helixnav import (
     AbsoluteFix,
     Association,
+    ChangedLandmark,
     Decision,
+    FastSlam,
     FieldOfView,
     InputError,
+    Joined,
+    JoinedSession,
+    JointMap,
+    JudgedSighting,
     Log,
     Lost,
     Map,
@@ -30,24 +41,41 @@ from ._helixnav import (
     Odometry,
     Pose,
     PreconditionError,
+    RobotSighting,
     Run,
     Scan,
     StepReport,
+    Team,
+    TeamJoin,
+    TeamLog,
+    TeamMember,
+    TeamRun,
     __commit__,
     __version__,
     evaluate,
+    join,
     read_log,
+    read_map,
     read_run,
+    read_team_log,
     replay,
+    replay_team,
     simulate,
+    simulate_team,
 )
 
 __all__ = [
     "AbsoluteFix",
     "Association",
+    "ChangedLandmark",
     "Decision",
+    "FastSlam",
     "FieldOfView",
     "InputError",
+    "Joined",
+    "JoinedSession",
+    "JointMap",
+    "JudgedSighting",
     "Log",
     "Lost",
     "Map",
@@ -58,14 +86,25 @@ __all__ = [
     "Odometry",
     "Pose",
     "PreconditionError",
+    "RobotSighting",
     "Run",
     "Scan",
     "StepReport",
+    "Team",
+    "TeamJoin",
+    "TeamLog",
+    "TeamMember",
+    "TeamRun",
     "evaluate",
+    "join",
     "read_log",
+    "read_map",
     "read_run",
+    "read_team_log",
     "replay",
+    "replay_team",
     "simulate",
+    "simulate_team",
 ]
 
 for _name in __all__:  # where they are imported from is where messages say they are

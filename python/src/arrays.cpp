@@ -63,6 +63,12 @@ std::vector<std::int64_t> identities_from(const py::handle& value) {
 
 std::string shape_text(const Array& array) { return tuple_text(array.shape(), array.ndim()); }
 
+std::filesystem::path path_from(const py::handle& value, const char* name) {
+  if (py::isinstance<py::str>(value) || py::hasattr(value, "__fspath__")) return value.cast<std::filesystem::path>();
+  throw py::type_error(std::string(name) + ": expected a path or a JointMap, found " +
+                       std::string(py::str(py::type::handle_of(value).attr("__name__"))));
+}
+
 core::Nanoseconds time_from(double t_s) {
   constexpr double most_s = 9.2e9;
   if (std::abs(t_s) <= most_s) return core::nanoseconds_from_seconds(t_s);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,9 @@ std::vector<std::int64_t> identities_from(const py::handle& value);
 
 /// "(3, 2)", "(3,)" as Python writes it.
 std::string shape_text(const Array& array);
+
+/// A path as text or os.PathLike, where a map could stand, too; TypeError for anything else. `name` says in the message which argument it was.
+std::filesystem::path path_from(const py::handle& value, const char* name);
 
 /// Seconds, finite and within the 292 years that nanoseconds can tell; else core::PreconditionError.
 core::Nanoseconds time_from(double t_s);

@@ -11,6 +11,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/gaussian.hpp"
+#include "scan.hpp"
 
 namespace helixnav::python {
 namespace {
@@ -60,17 +61,6 @@ std::vector<core::Observation> observations_of(const std::string& word, const Ar
   for (py::ssize_t i = 0; i < n; ++i)
     observations.push_back(observation_of(kind, z.data() + i * d, R.data() + (shared ? 0 : i * d * d)));
   return observations;
-}
-
-core::Scan make_scan(double t_s, const std::string& kind, const py::object& z, const py::object& R,
-                     const py::object& mounting, const core::FieldOfView& view) {
-  core::Scan scan;
-  scan.t_ns = time_from(t_s);
-  scan.T_robot_sensor = Pose2(vector3_from(mounting, "mounting"));
-  scan.field_of_view = view;
-  scan.observations = observations_of(kind, numbers_from(z, "z"), numbers_from(R, "R"));
-  core::check(scan);
-  return scan;
 }
 
 /// NaN in the second column of a bearing or range.
@@ -146,7 +136,7 @@ void bind_odometry(py::module_& module) {
 
 void bind_scan(py::module_& module) {
   py::class_<core::Scan> scan(module, "Scan", "What one sensor saw at one instant; nothing seen is information, too.");
-  scan.def(py::init(&make_scan), py::arg("t"), py::arg("kind"), py::arg("z"), py::arg("R"),
+  scan.def(py::init(&scan_from), py::arg("t"), py::arg("kind"), py::arg("z"), py::arg("R"),
            py::arg("mounting") = py::make_tuple(0.0, 0.0, 0.0), py::arg("view") = core::FieldOfView(),
            "kind: 'range_bearing', 'cartesian', 'bearing' or 'range'; z (N, d) in metres and radians, R (d, d) or (N, "
            "d, d); "
@@ -211,6 +201,17 @@ void bind_pose(py::module_& module) {
 }
 
 }  // namespace
+
+core::Scan scan_from(double t_s, const std::string& kind, const py::object& z, const py::object& R,
+                     const py::object& mounting, const core::FieldOfView& view) {
+  core::Scan scan;
+  scan.t_ns = time_from(t_s);
+  scan.T_robot_sensor = Pose2(vector3_from(mounting, "mounting"));
+  scan.field_of_view = view;
+  scan.observations = observations_of(kind, numbers_from(z, "z"), numbers_from(R, "R"));
+  core::check(scan);
+  return scan;
+}
 
 void bind_events(py::module_& module) {
   bind_pose(module);

@@ -9,9 +9,10 @@
 #include "bind.hpp"
 #include "common/fit_to_recording.hpp"
 #include "configuration.hpp"
-#include "helixnav/logs/field_of_view.hpp"
+#include "helixnav/core/errors.hpp"
 #include "helixnav/sim/simulate.hpp"
 #include "log.hpp"
+#include "replay/blackout.hpp"
 #include "replay/read_to_replay.hpp"
 
 namespace helixnav::python {
@@ -24,18 +25,36 @@ using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMaj
 Log fitted(core::Recording recording, const Configuration& configuration) {
   Log log;
   log.navigator = apps::fit_to_recording(configuration.settings, recording);
-  log.known_association = configuration.settings.known_association;
-  log.config = configuration.text + apps::lengths_text(log.navigator, logs::field_of_view_of(recording));
+  log.fastslam = configuration.settings.fastslam;
+  log.known_association = apps::goes_by_identities(configuration.settings);
+  log.config = configuration.text + apps::in_force_text(configuration.settings, log.navigator, recording);
   log.recording = std::move(recording);
   return log;
 }
 
-Log read_log(const fs::path& path, const std::optional<fs::path>& vehicle, const py::dict& options) {
+std::vector<apps::Blackout> blackouts_from(const std::vector<std::pair<double, double>>& spans) {
+  std::vector<apps::Blackout> blackouts;
+  for (const auto& [begin_s, end_s] : spans) {
+    if (!(begin_s < end_s)) throw core::PreconditionError("blackouts: expected (begin, end), the end after the begin");
+    blackouts.push_back({begin_s, end_s});
+  }
+  return blackouts;
+}
+
+Log read_log(const fs::path& path, const std::optional<fs::path>& vehicle, const py::dict& options,
+             const std::vector<std::pair<double, double>>& spans) {
+  const std::vector<apps::Blackout> blackouts = blackouts_from(spans);
   Configuration configuration = configuration_of(options, vehicle.value_or(fs::path()).string(), path.string());
   const py::gil_scoped_release released;
   core::Recording recording = apps::read_to_replay(path.string(), configuration.settings).recording;
+  std::vector<bool> withheld;
+  if (!blackouts.empty()) withheld = apps::withhold(recording, blackouts);
   apps::apply_log_settings(recording, configuration.settings);
-  return fitted(std::move(recording), configuration);
+  Log log = fitted(std::move(recording), configuration);
+  log.withheld = std::move(withheld);
+  log.files.push_back(path.string());
+  if (vehicle) log.files.push_back(vehicle->string());
+  return log;
 }
 
 Log simulate(const std::string& scenario, std::uint64_t seed, const py::dict& options) {
@@ -95,9 +114,10 @@ void bind_log(py::module_& module) {
       .def_readonly("config", &Log::config, "The configuration in force, as helixnav config --dump writes it.")
       .def("__len__", [](const Log& log) { return log.recording.events.size(); });
   module.def("read_log", &read_log, py::arg("path"), py::arg("vehicle") = py::none(), py::arg("options") = py::dict(),
+             py::arg("blackouts") = std::vector<std::pair<double, double>>(),
              "Reads a log as helixnav replay does; without `vehicle`, by the vehicle.toml beside a log of one's own. "
-             "Options are "
-             "keys and values as in a configuration file. InputError names file, line and column.");
+             "Options are keys and values as in a configuration file; the scans of `blackouts`, (begin, end) each in "
+             "seconds, are withheld from the navigator. InputError names file, line and column.");
   module.def("simulate", &simulate, py::arg("scenario") = "large-loop", py::arg("seed") = 1,
              py::arg("options") = py::dict(),
              "A drive through a world with known truth; the same seed gives the same drive.");

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "arrays.hpp"
+#include "common/joint_map_of.hpp"
 #include "configuration.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
@@ -33,56 +36,6 @@ supervisor::NavigatorOptions options_of(const py::dict& options) {
     supervisor::set_length(navigator, name, length_m);
   }
   return navigator;
-}
-
-py::array_t<std::int64_t> ids_of(const Map& map) {
-  py::array_t<std::int64_t> ids(static_cast<py::ssize_t>(map.landmarks.size()));
-  for (std::size_t i = 0; i < map.landmarks.size(); ++i) ids.mutable_data()[i] = map.landmarks[i].id;
-  return ids;
-}
-
-py::array_t<double> means_of(const Map& map) {
-  py::array_t<double> means({static_cast<py::ssize_t>(map.landmarks.size()), py::ssize_t{2}});
-  double* to = means.mutable_data();
-  for (const core::MapLandmark& landmark : map.landmarks) {
-    *to++ = landmark.point.mean_m.x();
-    *to++ = landmark.point.mean_m.y();
-  }
-  return means;
-}
-
-py::array_t<double> covariances_of(const Map& map) {
-  py::array_t<double> covariances({static_cast<py::ssize_t>(map.landmarks.size()), py::ssize_t{2}, py::ssize_t{2}});
-  double* to = covariances.mutable_data();
-  for (const core::MapLandmark& landmark : map.landmarks) {
-    for (const auto& [r, c] : {std::pair{0, 0}, std::pair{0, 1}, std::pair{1, 0}, std::pair{1, 1}})
-      *to++ = landmark.point.covariance_m2(r, c);
-  }
-  return covariances;
-}
-
-py::array_t<std::int64_t> counts_of(const Map& map) {
-  py::array_t<std::int64_t> counts(static_cast<py::ssize_t>(map.landmarks.size()));
-  for (std::size_t i = 0; i < map.landmarks.size(); ++i) counts.mutable_data()[i] = map.landmarks[i].observations;
-  return counts;
-}
-
-std::vector<std::string> states_of(const Map& map) {
-  std::vector<std::string> states;
-  for (const core::MapLandmark& landmark : map.landmarks) {
-    states.emplace_back(runs::word_of(runs::state_words, landmark.state));
-  }
-  return states;
-}
-
-void bind_map(py::module_& module) {
-  py::class_<Map>(module, "Map", "Landmarks in order of id, as arrays.")
-      .def_property_readonly("ids", &ids_of, "(N,)")
-      .def_property_readonly("means", &means_of, "(N, 2) [m]")
-      .def_property_readonly("covariances", &covariances_of, "(N, 2, 2) [m²]")
-      .def_property_readonly("observations", &counts_of, "(N,)")
-      .def_property_readonly("states", &states_of, "'tentative' or 'mature' each")
-      .def("__len__", [](const Map& map) { return map.landmarks.size(); });
 }
 
 std::optional<std::int64_t> landmark_of(const core::AssociationReport& a) {
@@ -187,6 +140,29 @@ Map map_of(Locked<AnyNavigator>& self) {
   return {locked(&AnyNavigator::map)(self)};
 }
 
+/// To go on in; None where it is too large to be saved.
+template <class AnyNavigator>
+std::optional<core::JointMap> joint_map_of(Locked<AnyNavigator>& self, double reach_m) {
+  if (!(reach_m >= 0.0)) throw core::PreconditionError("reach: expected metres, 0 where it is unknown");
+  const std::lock_guard hold(self.mutex);
+  return apps::joint_map_of(self.navigator, reach_m);
+}
+
+std::unique_ptr<Locked<Navigator>> go_on(const core::JointMap& earlier, const py::dict& options) {
+  return std::make_unique<Locked<Navigator>>(Navigator::go_on_in(earlier, options_of(options)));
+}
+
+std::unique_ptr<Locked<NamedNavigator>> go_on_named(const core::JointMap& earlier,
+                                                    const std::map<std::int64_t, core::LandmarkId>& landmark_of,
+                                                    const py::dict& options) {
+  return std::make_unique<Locked<NamedNavigator>>(NamedNavigator(earlier, landmark_of, options_of(options)));
+}
+
+void look_for_place(Locked<Navigator>& self, const core::JointMap& earlier) {
+  const std::lock_guard hold(self.mutex);
+  self.navigator.look_for_place_in(earlier);
+}
+
 template <class AnyNavigator>
 void bind_common(py::class_<Locked<AnyNavigator>>& type) {
   type.def(py::init(&of_options<AnyNavigator>), py::arg("start") = core::PoseGaussian(),
@@ -198,13 +174,15 @@ void bind_common(py::class_<Locked<AnyNavigator>>& type) {
            "True when the fix passed its gate and was used.")
       .def_property_readonly("pose", py::cpp_function(locked(&AnyNavigator::pose), Released()),
                              "At the last scan or fix.")
-      .def_property_readonly("map", py::cpp_function(&map_of<AnyNavigator>, Released()), "The landmarks as of now.");
+      .def_property_readonly("map", py::cpp_function(&map_of<AnyNavigator>, Released()), "The landmarks as of now.")
+      .def("joint_map", &joint_map_of<AnyNavigator>, py::arg("reach") = 0.0, Released(),
+           "The map with all correlations and the pose, for another session to go on in; None above 2000 landmarks. "
+           "`reach` is the sensor's [m], 0 where it is unknown.");
 }
 
 }  // namespace
 
 void bind_navigator(py::module_& module) {
-  bind_map(module);
   bind_report_parts(module);
   bind_report(module);
   py::class_<Locked<Navigator>> unnamed(module, "Navigator",
@@ -214,14 +192,26 @@ void bind_navigator(py::module_& module) {
       .def("lose", locked(&Navigator::lose), py::arg("lost"), Released(),
            "The vehicle was carried: its place is sought on what was mapped so far.")
       .def("take", locked(&Navigator::take), py::arg("event"), Released(),
-           "Any event; the report of a scan, None for others.");
+           "Any event; the report of a scan, None for others.")
+      .def_static("go_on_in", &go_on, py::arg("earlier"), py::arg("options") = py::dict(),
+                  "Goes on in the JointMap of an earlier session, from the pose in it.")
+      .def("look_for_place_in", &look_for_place, py::arg("earlier"), Released(),
+           "This session begins somewhere on the JointMap, or elsewhere: it maps on its own until the place is found, "
+           "and "
+           "then goes on in the frame of that map. Before the first scan only.")
+      .def_property_readonly("maps_apart", py::cpp_function(locked(&Navigator::maps_apart), Released()),
+                             "JointMaps of which it is not known how the present one lies to them, by part of the "
+                             "drive; 0: the earlier map of look_for_place_in.");
   py::class_<Locked<NamedNavigator>> named(module, "NamedNavigator", "For observations that are known by an identity.");
   bind_common(named);
   named
       .def("observe", &observe_named, py::arg("scan"), py::arg("identities"),
            "One scan, with an identity for each observation; a negative one is no landmark.")
       .def("take", &take_named, py::arg("event"), py::arg("identities") = py::tuple(),
-           "Any event; the report of a scan, None for others.");
+           "Any event; the report of a scan, None for others.")
+      .def_static("go_on_in", &go_on_named, py::arg("earlier"), py::arg("landmark_of"), py::arg("options") = py::dict(),
+                  "Goes on in the JointMap of an earlier session, from the pose in it; landmark_of says which landmark "
+                  "of it an identity is.");
 }
 
 }  // namespace helixnav::python

@@ -1,88 +1,56 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdint>
+#include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 
+#include "arrays.hpp"
 #include "bind.hpp"
-#include "common/chosen_navigator.hpp"
-#include "common/joint_map_of.hpp"
-#include "common/timed.hpp"
 #include "helixnav/core/errors.hpp"
-#include "helixnav/core/event_loop.hpp"
-#include "helixnav/core/version.hpp"
 #include "helixnav/evaluation/evaluation.hpp"
 #include "helixnav/reports/explanation.hpp"
-#include "helixnav/reports/finish_run.hpp"
 #include "helixnav/reports/summary.hpp"
 #include "helixnav/runs/run_folder.hpp"
-#include "helixnav/runs/run_recorder.hpp"
-#include "helixnav/runs/run_writer.hpp"
 #include "log.hpp"
 #include "map.hpp"
+#include "replay.hpp"
 
 namespace helixnav::python {
 namespace {
 
 namespace fs = std::filesystem;
 
-runs::RunManifest manifest_of(const Log& log) {
-  runs::RunManifest manifest;
-  manifest.version = core::version();
-  manifest.commit = core::commit();
-  manifest.command = "python: helixnav.replay";
-  manifest.recording = log.recording.name;
-  manifest.config = log.config;
-  manifest.seed = log.seed;
-  return manifest;
+/// "unknown", "end" or a pose (x, y, heading).
+std::optional<apps::SessionStart> start_from(const py::object& value) {
+  if (value.is_none()) return std::nullopt;
+  if (!py::isinstance<py::str>(value)) {
+    const core::Pose2 T(vector3_from(value, "start"));
+    if (!T.vector().allFinite()) throw core::PreconditionError("start: the pose is not finite");
+    return apps::SessionStart{apps::SessionStart::Kind::pose, T};
+  }
+  const std::string word = value.cast<std::string>();
+  if (word == "unknown") return apps::SessionStart{};
+  if (word == "end") return apps::SessionStart{apps::SessionStart::Kind::end, {}};
+  throw core::PreconditionError("start: expected 'unknown', 'end' or a pose (x, y, heading), found '" + word + "'");
 }
 
-/// Ctrl-C, now and then.
-void heed_signals(std::int64_t step) {
-  if (step % 256 != 0) return;
-  const py::gil_scoped_acquire acquired;
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+std::optional<OldMap> map_from(const py::object& value) {
+  if (value.is_none()) return std::nullopt;
+  if (py::isinstance<core::JointMap>(value)) return OldMap{value.cast<core::JointMap>(), {}};
+  return OldMap{std::nullopt, path_from(value, "map")};
 }
 
-/// Feeds all events. What broke of the mathematics, and where; empty when nothing did.
-std::string navigate(const Log& log, apps::ChosenNavigator& navigator, runs::RunWriter* writer,
-                     runs::RunRecorder& recorder) {
-  apps::Timed timed(navigator);
-  core::EventLoop loop(log.recording.events, timed);
-  try {
-    while (const std::optional<core::StepReport> step = loop.next()) {
-      if (writer != nullptr) writer->write(*step, 1e6 * timed.last_s());
-      recorder.add(*step, 1e6 * timed.last_s());
-      heed_signals(step->step);
-    }
-  } catch (const core::NumericalError& error) {
-    const double t_s = core::seconds(core::time_of(log.recording.events[loop.fed() - 1]));
-    return "at step " + std::to_string(loop.steps()) + ", " + std::to_string(t_s) + " s: " + error.what();
-  }
-  return {};
-}
-
-runs::Run replay(const Log& log, const std::optional<fs::path>& out, bool overwrite) {
-  if (log.known_association && log.recording.labels.empty()) {
-    throw core::InputError(log.recording.name + ": association known needs a labelled log, and this one has no labels");
-  }
-  using IfNotEmpty = runs::RunWriter::IfNotEmpty;
-  const runs::RunManifest manifest = manifest_of(log);
-  const std::string folder = out.value_or(fs::path()).string();
-  std::unique_ptr<runs::RunWriter> writer;
-  if (out) {
-    writer = std::make_unique<runs::RunWriter>(folder, manifest, log.recording,
-                                               overwrite ? IfNotEmpty::overwrite : IfNotEmpty::refuse);
-  }
-  runs::RunRecorder recorder(folder, manifest, log.recording);
-  apps::ChosenNavigator navigator(log.recording, log.navigator, log.known_association);
-  const std::string broken = navigate(log, navigator, writer.get(), recorder);
-  runs::Run run = recorder.finish(navigator.map());
-  if (writer) run.joint_map = apps::joint_map_of(navigator, log.recording);
-  if (writer) reports::finish_run(run, *writer);
-  if (!broken.empty()) throw core::NumericalError(broken);
-  return run;
+runs::Run replay_as_asked(const Log& log, const std::optional<fs::path>& out, bool overwrite, const py::object& map,
+                          const py::object& start, bool localize, bool smooth) {
+  ReplayWishes wishes;
+  wishes.out = out.value_or(fs::path()).string();
+  wishes.overwrite = overwrite;
+  wishes.map = map_from(map);
+  wishes.start = start_from(start);
+  wishes.localize = localize;
+  wishes.smooth = smooth;
+  const py::gil_scoped_release released;
+  return replay(log, wishes);
 }
 
 py::object evaluation_of(const runs::Run& run) {
@@ -108,6 +76,25 @@ py::array_t<double> trajectory_of(const runs::Run& run) {
   return rows;
 }
 
+/// At the times of the trajectory.
+py::array_t<double> final_trajectory_of(const runs::Run& run) {
+  py::array_t<double> rows = trajectory_of(run);
+  double* to = rows.mutable_data();
+  for (std::size_t k = 0; k < run.final_path.size(); ++k) {
+    const core::Pose2& pose = run.final_path[k];
+    to[4 * k + 1] = pose.x_m;
+    to[4 * k + 2] = pose.y_m;
+    to[4 * k + 3] = pose.heading_rad;
+  }
+  return rows;
+}
+
+py::dict figures_of(const runs::Run& run) {
+  py::dict numbers;
+  for (const auto& [name, value] : run.numbers) numbers[py::str(name)] = value;
+  return numbers;
+}
+
 }  // namespace
 
 void bind_run(py::module_& module) {
@@ -116,13 +103,23 @@ void bind_run(py::module_& module) {
       .def_readonly("steps", &runs::Run::steps, "A StepReport for each scan.")
       .def_property_readonly("trajectory", &trajectory_of, "(N, 4): t, x, y, heading at each scan, as estimated then.")
       .def_property_readonly("map", [](const runs::Run& run) { return Map{run.map}; })
+      .def_readonly("joint_map", &runs::Run::joint_map,
+                    "The map to go on in, a JointMap; None of a run that was read (read_map reads it), that only "
+                    "localized, of FastSLAM and above 2000 landmarks.")
+      .def_property_readonly("final_trajectory", &final_trajectory_of,
+                             "(N, 4): the same as known at the end; the trajectory where nothing corrected it.")
+      .def_property_readonly("numbers", &figures_of, "Figures of a smoother and of a map given, by name.")
       .def("evaluate", &evaluation_of, "Errors against the truth of the log, as helixnav evaluate --json.")
       .def("explain", &reports::explain_run, "How many loops were closed, refused or left open, in sentences.")
       .def("__len__", [](const runs::Run& run) { return run.steps.size(); });
   module.def(
-      "replay", &replay, py::arg("log"), py::arg("out") = py::none(), py::arg("overwrite") = false,
-      py::call_guard<py::gil_scoped_release>(),
-      "Navigates along a log. With `out`, a run folder is written as helixnav replay writes it. NumericalError names "
+      "replay", &replay_as_asked, py::arg("log"), py::arg("out") = py::none(), py::arg("overwrite") = false,
+      py::arg("map") = py::none(), py::arg("start") = py::none(), py::arg("localize") = false,
+      py::arg("smooth") = false,
+      "Navigates along a log by the filter that its options choose. With `out`, a run folder is written as helixnav "
+      "replay writes it. `map`, the folder of an earlier run or a JointMap, is gone on in, or with `localize` stays as "
+      "it is and the pose alone is estimated in it (then map.csv will do); `start` on it is 'unknown', 'end' or a pose "
+      "(x, y, heading). `smooth`: least squares over the filter's own associations afterwards. NumericalError names "
       "step and time; what was navigated until then is in the run folder.");
   module.def(
       "read_run", [](const fs::path& path) { return runs::read_run(path.string()); }, py::arg("path"),

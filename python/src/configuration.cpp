@@ -47,16 +47,19 @@ void refuse_unknown(const CLI::App& app, const std::vector<std::string>& words) 
 
 }  // namespace
 
-Configuration configuration_of(const py::dict& options, const std::string& vehicle, const std::string& log) {
+Configuration configuration_of(const py::dict& options, const std::string& vehicle, const std::string& log,
+                               Filter filter) {
   CLI::App app;
   Configuration configuration;
   apps::add_settings(app, configuration.settings);
   std::vector<std::string> words;
   add_words(options, "", words);
   refuse_unknown(app, words);
+  if (filter == Filter::fastslam) words.emplace_back("--filter=fastslam");
   std::reverse(words.begin(), words.end());  // as parse wants them
   try {
     app.parse(std::move(words));
+    apps::check_filter(app, apps::options_given(app), configuration.settings.fastslam);
     apps::apply_vehicle(app, vehicle, log, configuration.settings);
   } catch (const CLI::ParseError& error) {
     throw core::InputError(error.what());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <mutex>
+#include <utility>
 
 #include "bind.hpp"
 
@@ -13,6 +14,8 @@ template <class AnyNavigator>
 struct Locked {
   template <class... Arguments>
   explicit Locked(const Arguments&... arguments) : navigator(arguments...) {}
+
+  explicit Locked(AnyNavigator&& begun) : navigator(std::move(begun)) {}
 
   AnyNavigator navigator;
   std::mutex mutex;

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "common/fastslam_settings.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/supervisor/navigator_options.hpp"
 
@@ -13,8 +15,11 @@ namespace helixnav::python {
 struct Log {
   core::Recording recording;
   supervisor::NavigatorOptions navigator;
+  apps::FastSlamSettings fastslam;  ///< in place of the navigator, where it is chosen
   bool known_association = false;
-  std::string config;  ///< in force, for manifests
+  std::vector<bool> withheld;      ///< [scan] not to be fed; empty: none is
+  std::vector<std::string> files;  ///< that it was read from
+  std::string config;              ///< in force, for manifests
   std::uint64_t seed = 0;
 };
 

@@ -24,8 +24,13 @@ PYBIND11_MODULE(_helixnav, module) {
   bind_errors(module);
   bind_events(module);
   bind_log(module);
+  bind_map(module);
   bind_navigator(module);
+  bind_fastslam(module);
   bind_run(module);
+  bind_join(module);
+  bind_team(module);
+  bind_team_log(module);
 }
 
 }  // namespace helixnav::python

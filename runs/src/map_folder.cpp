@@ -10,7 +10,7 @@
 
 namespace helixnav::runs {
 
-void write_map(const std::string& folder, const core::JointMap& map) {
+std::vector<core::MapLandmark> landmarks_of(const core::JointMap& map) {
   std::vector<core::MapLandmark> landmarks(map.joint.ids.size());
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
     const auto row = 3 + 2 * static_cast<Eigen::Index>(i);
@@ -19,6 +19,11 @@ void write_map(const std::string& folder, const core::JointMap& map) {
     landmarks[i].observations = map.observations[i];
     landmarks[i].state = map.states[i];
   }
+  return landmarks;
+}
+
+void write_map(const std::string& folder, const core::JointMap& map) {
+  const std::vector<core::MapLandmark> landmarks = landmarks_of(map);
   files::write_whole_file(folder + '/' + std::string(map_table.file), map_text(landmarks));
   if (landmarks.size() > most_joint_landmarks) return;
   files::write_whole_file(folder + '/' + joint_map_file, joint_map_bytes(map));

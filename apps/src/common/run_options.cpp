@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run_options.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <vector>
 
@@ -64,25 +63,8 @@ void fill_drive(Drive& drive, const RunOptions& options, const std::string& conf
 }
 
 void choose_filter(Drive& drive, const Settings& settings) {
-  const FastSlamSettings& fastslam = settings.fastslam;
-  drive.fastslam = fastslam;
-  drive.known_association =
-      fastslam.chosen ? fastslam.options.association == fastslam::Association::known : settings.known_association;
-}
-
-std::vector<runs::InputFile> input_files(const std::string& path) {
-  std::vector<std::string> names;
-  if (std::filesystem::is_directory(path)) {
-    for (const auto& entry : std::filesystem::directory_iterator(path)) {
-      if (entry.is_regular_file()) names.push_back(entry.path().string());
-    }
-    std::sort(names.begin(), names.end());
-  } else {
-    names.push_back(path);
-  }
-  std::vector<runs::InputFile> inputs;
-  for (const std::string& name : names) inputs.push_back({name, runs::sha256_of_file(name)});
-  return inputs;
+  drive.fastslam = settings.fastslam;
+  drive.known_association = goes_by_identities(settings);
 }
 
 }  // namespace helixnav::apps

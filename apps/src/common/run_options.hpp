@@ -38,9 +38,6 @@ void fill_drive(Drive& drive, const RunOptions& options, const std::string& conf
 /// The filter that the settings choose, and whether labels are identities.
 void choose_filter(Drive& drive, const Settings& settings);
 
-/// The file, or the files of the folder in order of name, with their digests. InputError when one cannot be read.
-std::vector<runs::InputFile> input_files(const std::string& path);
-
 /// The words of this process's command line, for the manifest.
 void remember_command_line(int argc, char** argv);
 /// Those that matter, as one line.

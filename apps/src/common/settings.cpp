@@ -95,6 +95,11 @@ void add_landmarks(CLI::App& command, Settings& settings) {
 
 }  // namespace
 
+bool goes_by_identities(const Settings& settings) {
+  const FastSlamSettings& fastslam = settings.fastslam;
+  return fastslam.chosen ? fastslam.options.association == fastslam::Association::known : settings.known_association;
+}
+
 std::vector<association::Method> association_methods() {
   using association::Method;
   return {Method::nearest_neighbour,

@@ -32,6 +32,9 @@ struct Settings {
   GpsSettings gps;
 };
 
+/// Whether the filter chosen takes the labels of the log for identities.
+bool goes_by_identities(const Settings& settings);
+
 /// All association methods, in the order in which to show them.
 std::vector<association::Method> association_methods();
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "check_drive.hpp"
 #include "common/interrupt.hpp"
 #include "common/progress_bar.hpp"
 #include "common/timed.hpp"
@@ -38,50 +39,6 @@ double quantile(std::vector<double> times, double fraction) {
   const auto nth = times.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(times.size() - 1));
   std::nth_element(times.begin(), nth, times.end());
   return *nth;
-}
-
-void check_earlier_labels(const EarlierSession& earlier) {
-  if (earlier.start.kind == SessionStart::Kind::unknown) {
-    throw core::InputError("--association known does not look for its place: give --start end, or a pose");
-  }
-  if (earlier.landmark_of.empty()) {
-    throw core::InputError(
-        "--association known needs to know the labels of the map's landmarks: give --map the folder "
-        "of a run over a labelled log");
-  }
-}
-
-/// Who is carried is found again by what stands about him, in the maps of the navigator and of the localizer.
-void check_carried(const Drive& job) {
-  const std::vector<core::Event>& events = job.recording.events;
-  const bool is_carried = std::any_of(events.begin(), events.end(),
-                                      [](const auto& event) { return std::holds_alternative<core::Lost>(event); });
-  if (!is_carried) return;
-  if (job.given_map && !can_be_searched(*job.given_map)) {
-    throw core::InputError(job.recording.name +
-                           ": the vehicle was carried (lost), and the map has too few landmarks, or "
-                           "too many, to look for it there");
-  }
-  const char* const refusing = job.known_association ? "--association known"
-                               : job.fastslam.chosen ? "--filter fastslam"
-                               : job.smooth          ? "--smooth"
-                                                     : nullptr;
-  if (refusing == nullptr) return;
-  throw core::InputError(job.recording.name + ": the vehicle was carried (lost), which " + refusing +
-                         " does not go with");
-}
-
-void check_labels(const Drive& job) {
-  if (job.known_association && job.earlier) check_earlier_labels(*job.earlier);
-  const std::string option = job.fastslam.chosen ? "--fastslam.association known" : "--association known";
-  if (job.known_association && job.recording.labels.empty()) {
-    throw core::InputError(job.recording.name + ": " + option + " needs a labelled log, and this one has no labels");
-  }
-  if (job.known_association && job.given_map && job.given_map->landmark_of.empty()) {
-    throw core::InputError(option +
-                           " needs to know the labels of the map's landmarks: give --map the folder "
-                           "of a run over a labelled log");
-  }
 }
 
 struct Driven {
@@ -131,11 +88,6 @@ Driven navigate(const Drive& job, Estimator& estimator, runs::RunWriter& writer,
   return driven;
 }
 
-Estimator estimator_of(const Drive& job, LabelAgreement& agreement) {
-  if (job.given_map) return localizer_of(job, agreement);
-  return job.fastslam.chosen ? fastslam_of(job) : navigator_of(job);
-}
-
 /// Says on stderr what is not well.
 ExitCode verdict(const Drive& job, const Driven& driven, const runs::Run& run, const evaluation::Evaluation& evaluation,
                  ExitCode smoothed) {
@@ -158,9 +110,7 @@ ExitCode verdict(const Drive& job, const Driven& driven, const runs::Run& run, c
 }  // namespace
 
 ExitCode drive(const Drive& job) {
-  check_labels(job);
-  check_carried(job);
-  check_observable(job);
+  check_drive(job);
   catch_interrupts();
   const Clock::time_point begin = Clock::now();
   using IfNotEmpty = runs::RunWriter::IfNotEmpty;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string_view>
+#include <utility>
 
 #include "given_map.hpp"
 #include "helixnav/core/errors.hpp"
@@ -75,9 +76,14 @@ core::JointMap read_joint_map_in(const std::string& folder) {
   return runs::read_joint_map(file);
 }
 
+EarlierSession earlier_session(core::JointMap map, const SessionStart& start, const std::string& name) {
+  EarlierSession session{std::move(map), {}, start};
+  check_size(name, session);
+  return session;
+}
+
 EarlierSession read_earlier_session(const std::string& folder, const SessionStart& start) {
-  EarlierSession session{read_joint_map_in(folder), {}, start};
-  check_size(joint_map_file_in(folder), session);
+  EarlierSession session = earlier_session(read_joint_map_in(folder), start, joint_map_file_in(folder));
   if (!std::filesystem::exists(std::filesystem::path(folder) / "manifest.json")) return session;
   const std::vector<core::LandmarkId>& ids = session.map.joint.ids;
   for (const auto& [label, id] : landmarks_by_label(runs::read_run(folder))) {

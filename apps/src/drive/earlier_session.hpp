@@ -30,6 +30,9 @@ struct EarlierSession {
   SessionStart start;
 };
 
+/// From a map itself, `name` in messages. InputError where it holds too few mature landmarks to begin so.
+EarlierSession earlier_session(core::JointMap map, const SessionStart& start, const std::string& name);
+
 /// Reads the folder of a run that came to its end. InputError naming the file where there is no map.bin in it, it cannot be
 /// used, or it holds too few mature landmarks to begin so.
 EarlierSession read_earlier_session(const std::string& folder, const SessionStart& start);

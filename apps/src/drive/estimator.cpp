@@ -69,4 +69,9 @@ Estimator localizer_of(const Drive& job, LabelAgreement& agreement) {
           [&job] { return job.given_map->landmarks; }, [] { return std::nullopt; }};
 }
 
+Estimator estimator_of(const Drive& job, LabelAgreement& agreement) {
+  if (job.given_map) return localizer_of(job, agreement);
+  return job.fastslam.chosen ? fastslam_of(job) : navigator_of(job);
+}
+
 }  // namespace helixnav::apps

@@ -28,6 +28,9 @@ struct Estimator {
   std::function<std::vector<core::MapLandmark>()> sketch = {};  ///< map() for a picture, where that is cheaper
 };
 
+/// That which the job asks for. `agreement` is of localizer_of.
+Estimator estimator_of(const Drive& job, LabelAgreement& agreement);
+
 Estimator navigator_of(const Drive& job);
 
 /// FastSLAM with job.fastslam; labels as NamedNavigator takes them. Its map is that of the heaviest particle. Fixes are

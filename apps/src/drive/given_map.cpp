@@ -9,6 +9,7 @@
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/runs/joint_map_file.hpp"
+#include "helixnav/runs/map_folder.hpp"
 #include "helixnav/runs/run_folder.hpp"
 
 namespace helixnav::apps {
@@ -43,8 +44,24 @@ bool can_be_searched(const GivenMap& map) {
   return map.landmarks.size() >= least_searched && map.landmarks.size() <= runs::most_joint_landmarks;
 }
 
+void check_start(const GivenMap& map) {
+  if (!map.start || map.start->kind != SessionStart::Kind::unknown || can_be_searched(map)) return;
+  throw core::InputError("--start unknown: a map of " + std::to_string(map.landmarks.size()) +
+                         " landmarks cannot be searched; expected 5 to " + std::to_string(runs::most_joint_landmarks) +
+                         ": give a pose");
+}
+
 std::string map_file(const std::string& path) {
   return std::filesystem::is_directory(path) ? (std::filesystem::path(path) / "map.csv").string() : path;
+}
+
+GivenMap given_map(const core::JointMap& map) {
+  GivenMap given;
+  for (const core::MapLandmark& landmark : runs::landmarks_of(map)) {
+    if (landmark.state == core::LandmarkState::mature) given.landmarks.push_back(landmark);
+  }
+  if (given.landmarks.empty()) throw core::InputError("map: expected mature landmarks, found none");
+  return given;
 }
 
 GivenMap read_given_map(const std::string& path) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "earlier_session.hpp"
+#include "helixnav/core/joint_map.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/runs/run.hpp"
@@ -29,8 +30,14 @@ std::map<core::Label, core::LandmarkId> landmarks_by_label(const runs::Run& run)
 /// the landmark that most of its observations were matched with. InputError when there is no map.
 GivenMap read_given_map(const std::string& path);
 
+/// From a map itself, in which nothing says which label is which landmark. InputError without a mature one.
+GivenMap given_map(const core::JointMap& map);
+
 /// Whether a place on it can be looked for: 5 landmarks at least, and no more than a dense joint covariance may have.
 bool can_be_searched(const GivenMap& map);
+
+/// InputError where the start on it is unknown and cannot be looked for.
+void check_start(const GivenMap& map);
 
 /// The map.csv meant by what read_given_map takes.
 std::string map_file(const std::string& path);

@@ -10,10 +10,6 @@
 
 namespace helixnav::apps {
 
-/// InputError where the estimator could never map what the log holds: the navigator nothing but ranges or bearings without
-/// identities, FastSLAM any range or bearing alone.
-void check_observable(const Drive& job);
-
 /// What a user should know of a run that came to its end and is not to be trusted: what reports::warnings_of says, and
 /// what only the job explains. Test: apps/warnings_test.cpp.
 std::vector<std::string> warnings_of(const Drive& job, const runs::Run& run, const evaluation::Evaluation& evaluation);

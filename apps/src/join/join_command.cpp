@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -12,106 +11,21 @@
 #include "common/run_options.hpp"
 #include "drive/earlier_session.hpp"
 #include "helixnav/core/decision_row.hpp"
-#include "helixnav/core/errors.hpp"
-#include "helixnav/files/file.hpp"
-#include "helixnav/files/number_text.hpp"
-#include "helixnav/runs/joint_map_file.hpp"
-#include "helixnav/runs/map_folder.hpp"
-#include "helixnav/runs/run_folder.hpp"
-#include "helixnav/runs/run_manifest.hpp"
+#include "joined_folder.hpp"
 #include "session_changes.hpp"
 
 namespace helixnav::apps {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct JoinJob {
   std::vector<std::string> runs;
   RunOptions folder;
 };
 
-/// Joined maps count what they know once: no session may be in the list twice, or within another one.
-void check_independent(const std::vector<std::string>& runs) {
-  std::vector<std::string> digests;
-  for (const std::string& run : runs) digests.push_back(runs::sha256_of_file(joint_map_file_in(run)));
-  for (std::size_t a = 0; a < runs.size(); ++a) {
-    for (std::size_t b = 0; b < a; ++b) {
-      if (digests[a] == digests[b]) throw core::InputError(runs[a] + ": the same map as " + runs[b]);
-    }
-    if (!fs::exists(fs::path(runs[a]) / "manifest.json")) continue;
-    for (const runs::InputFile& input : runs::read_manifest(runs[a]).inputs) {
-      for (std::size_t b = 0; b < runs.size(); ++b) {
-        if (input.sha256 != digests[b]) continue;
-        throw core::InputError(runs[a] + ": went on in the map of " + runs[b] +
-                               " and holds it already; leave that out");
-      }
-    }
-  }
-}
-
 std::vector<core::JointMap> read_maps(const std::vector<std::string>& runs) {
   std::vector<core::JointMap> maps;
   for (const std::string& run : runs) maps.push_back(read_joint_map_in(run));
   return maps;
-}
-
-void append(std::string& text, std::initializer_list<double> numbers) {
-  for (const double number : numbers) {
-    text += ',';
-    files::append_number(text, number);
-  }
-}
-
-std::string quoted(const std::string& name) {
-  std::string text = "\"";
-  for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return text + '"';
-}
-
-std::string joins_table(const std::vector<std::string>& runs, const supervisor::JoinedSessions& joined) {
-  std::string text =
-      "run,component,verdict,x,y,heading,merged,landmarks,questions,pairs,evidence,lead,needed,cost,dof,limit\n";
-  for (std::size_t k = 0; k < runs.size(); ++k) {
-    const supervisor::JoinedSession& session = joined.sessions[k];
-    const core::PlacedDecision& decision = session.decision;
-    const core::Pose2& T = session.T_component_session;
-    text += quoted(runs[k]) + ',' + std::to_string(session.component + 1) + ',' + core::row_of(decision).verdict;
-    append(text, {T.x_m, T.y_m, T.heading_rad, static_cast<double>(decision.merged),
-                  static_cast<double>(session.name_of.size()), static_cast<double>(decision.questions),
-                  static_cast<double>(decision.pairs), decision.evidence, decision.lead, decision.needed, decision.cost,
-                  static_cast<double>(decision.dof), decision.limit});
-    text += '\n';
-  }
-  return text;
-}
-
-std::string numbers_of(const std::vector<std::size_t>& sessions) {
-  std::string text;
-  for (const std::size_t session : sessions) text += (text.empty() ? "" : " ") + std::to_string(session + 1);
-  return text;
-}
-
-std::string changes_table(const std::vector<ChangedLandmark>& shared) {
-  std::string text = "component,landmark,x,y,change,seen_in,missing_in\n";
-  for (const ChangedLandmark& landmark : shared) {
-    text += std::to_string(landmark.component + 1) + ',' + std::to_string(landmark.id);
-    append(text, {landmark.point_m.x(), landmark.point_m.y()});
-    text += std::string(",") + name_of(landmark.change()) + ',' + numbers_of(landmark.seen_in) + ',' +
-            numbers_of(landmark.missing_in) + '\n';
-  }
-  return text;
-}
-
-/// The first component in the folder itself, the others below it.
-void write_components(const std::string& out, const std::vector<core::JointMap>& components) {
-  for (std::size_t k = 0; k < components.size(); ++k) {
-    const std::string folder = k == 0 ? out : out + "/component_" + std::to_string(k + 1);
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw core::InputError(folder + ": cannot make the folder: " + error.message());
-    runs::write_map(folder, components[k]);
-  }
 }
 
 void say_changes(const std::vector<ChangedLandmark>& shared) {
@@ -149,9 +63,7 @@ void join(CLI::App& command, const JoinJob& job) {
   check_independent(job.runs);
   const supervisor::JoinedSessions joined = supervisor::join_sessions(maps);
   const std::vector<ChangedLandmark> shared = shared_landmarks(maps, joined);
-  write_components(job.folder.out, joined.components);
-  files::write_whole_file(job.folder.out + "/joins.csv", joins_table(job.runs, joined));
-  files::write_whole_file(job.folder.out + "/changes.csv", changes_table(shared));
+  write_joined(job.folder.out, job.runs, joined, shared);
   if (!job.folder.quiet) say(job, joined, shared);
 }
 

@@ -13,15 +13,14 @@
 #include "common/commands.hpp"
 #include "common/config_file.hpp"
 #include "common/fit_to_recording.hpp"
+#include "common/input_files.hpp"
 #include "common/run_options.hpp"
 #include "common/settings.hpp"
 #include "common/vehicle_option.hpp"
 #include "drive/drive.hpp"
 #include "drive/start_option.hpp"
-#include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/mrclam.hpp"
-#include "helixnav/runs/joint_map_file.hpp"
 #include "read_to_replay.hpp"
 #include "team/replay_team.hpp"
 
@@ -40,14 +39,6 @@ struct ReplayJob {
   Settings settings;
   TeamChoice team;
 };
-
-/// Before anything is written.
-void check_start(const GivenMap& map) {
-  if (!map.start || map.start->kind != SessionStart::Kind::unknown || can_be_searched(map)) return;
-  throw core::InputError("--start unknown: a map of " + std::to_string(map.landmarks.size()) +
-                         " landmarks cannot be searched; expected 5 to " + std::to_string(runs::most_joint_landmarks) +
-                         ": give a pose");
-}
 
 /// To localise in, or to go on in.
 void take_map(const ReplayJob& job, Drive& task) {

@@ -11,6 +11,7 @@
 #include "common/commands.hpp"
 #include "common/config_file.hpp"
 #include "common/fit_to_recording.hpp"
+#include "common/input_files.hpp"
 #include "common/run_options.hpp"
 #include "common/scenario_settings.hpp"
 #include "common/settings.hpp"

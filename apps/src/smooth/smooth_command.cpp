@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/commands.hpp"
+#include "common/input_files.hpp"
 #include "common/run_options.hpp"
 #include "common/validators.hpp"
 #include "drive/drive.hpp"

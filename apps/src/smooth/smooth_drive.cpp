@@ -2,6 +2,7 @@
 #include "smooth_drive.hpp"
 
 #include <cstdio>
+#include <string>
 #include <utility>
 #include <variant>
 
@@ -11,7 +12,7 @@
 namespace helixnav::apps {
 namespace {
 
-SmoothingResult smooth(const Drive& job, const runs::Run& run) {
+SmoothingResult solved(const Drive& job, const runs::Run& run, std::string& text) {
   core::Recording recording;
   recording.start = job.recording.start;
   for (const core::Event& event : job.recording.events) {
@@ -24,18 +25,24 @@ SmoothingResult smooth(const Drive& job, const runs::Run& run) {
   smoothing::SmoothOptions options;
   options.solver.first_damping = 1e-8;  // the filter's result is a good start
   SmoothingResult result = solve(task, options);
-  std::printf("smoothed: %s", text_of(task, result).c_str());
+  text = text_of(task, result);
   return result;
 }
 
 }  // namespace
 
+std::string smooth(const Drive& job, runs::Run& run) {
+  std::string text;
+  SmoothingResult result = solved(job, run, text);
+  run.numbers.insert(run.numbers.end(), result.numbers.begin(), result.numbers.end());
+  run.timing.emplace_back("smoothing_s", result.solving_s);
+  runs::add_smoothed(run, std::move(result.run));
+  return text;
+}
+
 ExitCode smooth_drive(const Drive& job, runs::Run& run) {
   try {
-    SmoothingResult result = smooth(job, run);
-    run.numbers.insert(run.numbers.end(), result.numbers.begin(), result.numbers.end());
-    run.timing.emplace_back("smoothing_s", result.solving_s);
-    runs::add_smoothed(run, std::move(result.run));
+    std::printf("smoothed: %s", smooth(job, run).c_str());
     return ExitCode::ok;
   } catch (const core::InputError& error) {
     std::fprintf(stderr, "helixnav: the run cannot be smoothed: %s\n", error.what());

@@ -6,6 +6,7 @@
 
 #include "common/commands.hpp"
 #include "common/config_file.hpp"
+#include "common/input_files.hpp"
 #include "common/run_options.hpp"
 #include "common/vehicle_option.hpp"
 #include "helixnav/core/version.hpp"

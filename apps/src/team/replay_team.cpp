@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config_file.hpp"
+#include "common/input_files.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
 #include "helixnav/logs/mrclam.hpp"

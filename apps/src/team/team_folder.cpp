@@ -90,36 +90,6 @@ Json json_of(const evaluation::ErrorStatistics& errors) {
           {"max", errors.max}};
 }
 
-std::string summary(const TeamTask& task, const TeamDrive& drive, const TeamEvaluation& evaluation) {
-  Json json;
-  int used = 0;
-  const std::vector<team::JudgedSighting> sightings = drive.team.sightings();
-  for (const team::JudgedSighting& sighting : sightings) used += sighting.used ? 1 : 0;
-  json["misread"] = task.recording.misread;
-  json["joins"] = drive.team.joins().size();
-  json["sightings"] = {{"count", sightings.size()}, {"used", used}};
-  for (std::size_t r = 0; r < drive.robots.size(); ++r) {
-    Json robot{{"robot", task.recording.robots[r].number},
-               {"component", number_of(task, drive.robots[r].component)},
-               {"alone", is_alone(drive, r)},
-               {"scans", drive.robots[r].steps.size()}};
-    if (evaluation.robots[r]) {
-      robot["position_error_m"] = json_of(evaluation.robots[r]->raw_m);
-      robot["aligned_position_error_m"] = json_of(evaluation.robots[r]->aligned_m);
-      robot["nees_mean"] = evaluation.robots[r]->nees_mean;
-    }
-    json["robots"].push_back(robot);
-  }
-  for (const LandmarkErrors& errors : evaluation.landmarks) {
-    json["landmarks"].push_back({{"component", number_of(task, errors.component)},
-                                 {"count", errors.landmarks},
-                                 {"rmse_m", errors.raw_rmse_m},
-                                 {"aligned_rmse_m", errors.aligned_rmse_m}});
-  }
-  json["timing"] = {{"navigating_s", drive.seconds}};
-  return json.dump(2) + '\n';
-}
-
 /// The robot's truth in the frame of its component.
 core::Recording with_truth_moved(const TeamTask& task, const core::Recording& recording, int component) {
   core::Recording moved = recording;
@@ -153,6 +123,36 @@ void write_robot(const std::string& folder, bool overwrite, runs::RunManifest ma
 
 }  // namespace
 
+std::string team_summary(const TeamTask& task, const TeamDrive& drive, const TeamEvaluation& evaluation) {
+  Json json;
+  int used = 0;
+  const std::vector<team::JudgedSighting> sightings = drive.team.sightings();
+  for (const team::JudgedSighting& sighting : sightings) used += sighting.used ? 1 : 0;
+  json["misread"] = task.recording.misread;
+  json["joins"] = drive.team.joins().size();
+  json["sightings"] = {{"count", sightings.size()}, {"used", used}};
+  for (std::size_t r = 0; r < drive.robots.size(); ++r) {
+    Json robot{{"robot", task.recording.robots[r].number},
+               {"component", number_of(task, drive.robots[r].component)},
+               {"alone", is_alone(drive, r)},
+               {"scans", drive.robots[r].steps.size()}};
+    if (evaluation.robots[r]) {
+      robot["position_error_m"] = json_of(evaluation.robots[r]->raw_m);
+      robot["aligned_position_error_m"] = json_of(evaluation.robots[r]->aligned_m);
+      robot["nees_mean"] = evaluation.robots[r]->nees_mean;
+    }
+    json["robots"].push_back(robot);
+  }
+  for (const LandmarkErrors& errors : evaluation.landmarks) {
+    json["landmarks"].push_back({{"component", number_of(task, errors.component)},
+                                 {"count", errors.landmarks},
+                                 {"rmse_m", errors.raw_rmse_m},
+                                 {"aligned_rmse_m", errors.aligned_rmse_m}});
+  }
+  json["timing"] = {{"navigating_s", drive.seconds}};
+  return json.dump(2) + '\n';
+}
+
 void write_team(const std::string& folder, bool overwrite, const runs::RunManifest& manifest, const TeamTask& task,
                 const TeamDrive& drive, const TeamEvaluation& evaluation) {
   for (std::size_t r = 0; r < drive.robots.size(); ++r) {
@@ -163,7 +163,7 @@ void write_team(const std::string& folder, bool overwrite, const runs::RunManife
   files::write_whole_file(folder + "/joins.csv", joins_table(task, drive));
   files::write_whole_file(folder + "/sightings.csv", sightings_table(task, drive));
   files::write_whole_file(folder + "/report.html", team_page(manifest.command, task, drive, evaluation));
-  files::write_whole_file(folder + "/summary.json", summary(task, drive, evaluation));
+  files::write_whole_file(folder + "/summary.json", team_summary(task, drive, evaluation));
 }
 
 std::string team_text(const TeamTask& task, const TeamDrive& drive, const TeamEvaluation& evaluation) {

@@ -14,6 +14,9 @@ namespace helixnav::apps {
 void write_team(const std::string& folder, bool overwrite, const runs::RunManifest& manifest, const TeamTask& task,
                 const TeamDrive& drive, const TeamEvaluation& evaluation);
 
+/// The text of summary.json.
+std::string team_summary(const TeamTask& task, const TeamDrive& drive, const TeamEvaluation& evaluation);
+
 /// The evaluation for the terminal.
 std::string team_text(const TeamTask& task, const TeamDrive& drive, const TeamEvaluation& evaluation);
 

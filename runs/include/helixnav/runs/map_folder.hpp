@@ -2,10 +2,15 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "helixnav/core/joint_map.hpp"
+#include "helixnav/core/step_report.hpp"
 
 namespace helixnav::runs {
+
+/// Its landmarks one by one, without what they have in common.
+std::vector<core::MapLandmark> landmarks_of(const core::JointMap& map);
 
 /// Writes map.csv and, for up to most_joint_landmarks, map.bin into a folder that is there: a map to go on in that no single
 /// drive made. InputError where the file system refuses. Test: apps/join_test.cpp (replay --map goes on in it).

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check_drive.hpp"
+
+#include <algorithm>
+#include <string>
+#include <variant>
+
+#include "helixnav/core/errors.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+void check_earlier_labels(const EarlierSession& earlier) {
+  if (earlier.start.kind == SessionStart::Kind::unknown) {
+    throw core::InputError("--association known does not look for its place: give --start end, or a pose");
+  }
+  if (earlier.landmark_of.empty()) {
+    throw core::InputError(
+        "--association known needs to know the labels of the map's landmarks: give --map the folder "
+        "of a run over a labelled log");
+  }
+}
+
+/// Who is carried is found again by what stands about him, in the maps of the navigator and of the localizer.
+void check_carried(const Drive& job) {
+  const std::vector<core::Event>& events = job.recording.events;
+  const bool is_carried = std::any_of(events.begin(), events.end(),
+                                      [](const auto& event) { return std::holds_alternative<core::Lost>(event); });
+  if (!is_carried) return;
+  if (job.given_map && !can_be_searched(*job.given_map)) {
+    throw core::InputError(job.recording.name +
+                           ": the vehicle was carried (lost), and the map has too few landmarks, or "
+                           "too many, to look for it there");
+  }
+  const char* const refusing = job.known_association ? "--association known"
+                               : job.fastslam.chosen ? "--filter fastslam"
+                               : job.smooth          ? "--smooth"
+                                                     : nullptr;
+  if (refusing == nullptr) return;
+  throw core::InputError(job.recording.name + ": the vehicle was carried (lost), which " + refusing +
+                         " does not go with");
+}
+
+void check_labels(const Drive& job) {
+  if (job.known_association && job.earlier) check_earlier_labels(*job.earlier);
+  const std::string option = job.fastslam.chosen ? "--fastslam.association known" : "--association known";
+  if (job.known_association && job.recording.labels.empty()) {
+    throw core::InputError(job.recording.name + ": " + option + " needs a labelled log, and this one has no labels");
+  }
+  if (job.known_association && job.given_map && job.given_map->landmark_of.empty()) {
+    throw core::InputError(option +
+                           " needs to know the labels of the map's landmarks: give --map the folder "
+                           "of a run over a labelled log");
+  }
+}
+
+/// FastSLAM begins a landmark with its first observation, so that each must place it.
+void check_all_place(const core::Recording& recording) {
+  for (const core::Event& event : recording.events) {
+    const auto* scan = std::get_if<core::Scan>(&event);
+    if (scan == nullptr) continue;
+    for (const core::Observation& observation : scan->observations) {
+      if (core::dimension(observation.kind) == 2) continue;
+      throw core::InputError(recording.name + ": holds a detection of a " +
+                             (observation.kind == core::ObservationKind::range ? "range" : "bearing") +
+                             " alone; --filter fastslam takes range and bearing, or points");
+    }
+  }
+}
+
+/// The navigator cannot map ranges or bearings alone without identities, FastSLAM none at all.
+void check_observable(const Drive& job) {
+  if (job.fastslam.chosen) return check_all_place(job.recording);
+  if (job.known_association || job.given_map) return;
+  std::size_t seen = 0;
+  for (const core::Event& event : job.recording.events) {
+    const auto* scan = std::get_if<core::Scan>(&event);
+    if (scan == nullptr) continue;
+    for (const core::Observation& observation : scan->observations) {
+      if (core::dimension(observation.kind) == 2) return;
+      ++seen;
+    }
+  }
+  if (seen == 0) return;
+  throw core::InputError(job.recording.name +
+                         ": all detections are ranges or bearings alone, which are mapped by their identities only: " +
+                         (job.recording.labels.empty() ? "the log has none (a column id)" : "add --association known"));
+}
+
+}  // namespace
+
+void check_drive(const Drive& job) {
+  check_labels(job);
+  check_carried(job);
+  check_observable(job);
+}
+
+}  // namespace helixnav::apps

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "helixnav/supervisor/join_sessions.hpp"
+#include "session_changes.hpp"
+
+namespace helixnav::apps {
+
+/// Joined maps count what they know once: InputError for a run folder that is in the list twice, or within another one.
+void check_independent(const std::vector<std::string>& runs);
+
+/// Writes what became of several sessions: the first component's map into `out`, which is made, the others' below it, and
+/// joins.csv and changes.csv. `names` are the sessions'.
+void write_joined(const std::string& out, const std::vector<std::string>& names,
+                  const supervisor::JoinedSessions& joined, const std::vector<ChangedLandmark>& shared);
+
+}  // namespace helixnav::apps

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bind.hpp"
+#include "drive/earlier_session.hpp"
+#include "helixnav/core/errors.hpp"
+#include "helixnav/supervisor/join_sessions.hpp"
+#include "join/joined_folder.hpp"
+#include "join/session_changes.hpp"
+#include "map.hpp"
+
+namespace helixnav::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Joined {
+  supervisor::JoinedSessions joined;
+  std::vector<apps::ChangedLandmark> changes;
+};
+
+struct Sessions {
+  std::vector<core::JointMap> maps;
+  std::vector<std::string> names;    ///< of each
+  std::vector<std::string> folders;  ///< of those that were read
+};
+
+Sessions sessions_from(const py::sequence& list) {
+  Sessions sessions;
+  for (const py::handle& value : list) {
+    const std::string number = std::to_string(sessions.maps.size() + 1);
+    if (py::isinstance<core::JointMap>(value)) {
+      sessions.maps.push_back(value.cast<core::JointMap>());
+      sessions.names.push_back("session " + number);
+      continue;
+    }
+    const std::string folder = path_from(value, "sessions").string();
+    sessions.maps.push_back(apps::read_joint_map_in(folder));
+    sessions.names.push_back(folder);
+    sessions.folders.push_back(folder);
+  }
+  if (sessions.maps.size() < 2) throw core::PreconditionError("join: expected two sessions or more");
+  return sessions;
+}
+
+void check_out(const fs::path& out, bool overwrite) {
+  if (!fs::exists(out) || (fs::is_directory(out) && (overwrite || fs::is_empty(out)))) return;
+  throw core::InputError(out.string() + (fs::is_directory(out) ? ": the folder is not empty" : ": is a file"));
+}
+
+Joined join(const py::sequence& list, const std::optional<fs::path>& out, bool overwrite) {
+  if (out) check_out(*out, overwrite);
+  const Sessions sessions = sessions_from(list);
+  const py::gil_scoped_release released;
+  apps::check_independent(sessions.folders);
+  Joined result;
+  result.joined = supervisor::join_sessions(sessions.maps);
+  result.changes = apps::shared_landmarks(sessions.maps, result.joined);
+  if (out) apps::write_joined(out->string(), sessions.names, result.joined, result.changes);
+  return result;
+}
+
+void bind_parts(py::module_& module) {
+  using supervisor::JoinedSession;
+  py::class_<JoinedSession>(module, "JoinedSession", "What became of one session of join.")
+      .def_readonly("component", &JoinedSession::component, "Index in Joined.components.")
+      .def_property_readonly(
+          "transform", [](const JoinedSession& s) { return s.T_component_session.vector(); },
+          "(x, y, heading): the session's frame in that of its component.")
+      .def_property_readonly(
+          "decision", [](const JoinedSession& s) { return Decided{s.decision}; },
+          "How it was placed, or why it was not; the session that gave the component its frame was not asked.")
+      .def_readonly("landmark_of", &JoinedSession::name_of, "Ids in the component by the session's own; mature ones.");
+  using apps::ChangedLandmark;
+  py::class_<ChangedLandmark>(module, "ChangedLandmark", "A landmark on ground that several sessions looked at.")
+      .def_readonly("component", &ChangedLandmark::component)
+      .def_readonly("landmark", &ChangedLandmark::id)
+      .def_readonly("position", &ChangedLandmark::point_m)
+      .def_property_readonly(
+          "change", [](const ChangedLandmark& l) { return apps::name_of(l.change()); },
+          "'kept', 'gone', 'new' or 'both' (it went and came).")
+      .def_readonly("seen_in", &ChangedLandmark::seen_in, "Indices of sessions.")
+      .def_readonly("missing_in", &ChangedLandmark::missing_in, "Likewise, that looked there.");
+}
+
+}  // namespace
+
+void bind_join(py::module_& module) {
+  bind_parts(module);
+  py::class_<Joined>(module, "Joined", "Several sessions as few maps as can be said.")
+      .def_property_readonly(
+          "components", [](const Joined& j) { return j.joined.components; },
+          "JointMaps; that of the largest session first.")
+      .def_property_readonly(
+          "sessions", [](const Joined& j) { return j.joined.sessions; }, "In the order given.")
+      .def_readonly("changes", &Joined::changes, "What is new or gone, sessions taken as in order of time.");
+  module.def(
+      "join", &join, py::arg("sessions"), py::arg("out") = py::none(), py::arg("overwrite") = false,
+      "One map of several sessions that began anywhere: JointMaps or run folders, oldest first. Each is found on "
+      "the others by its landmarks, or stays a component of its own. With `out`, the folder of helixnav join is "
+      "written. InputError for a folder that is in the list twice or within another one.");
+}
+
+}  // namespace helixnav::python

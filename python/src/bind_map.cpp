@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bind.hpp"
+#include "drive/earlier_session.hpp"
+#include "helixnav/core/errors.hpp"
+#include "helixnav/runs/map_folder.hpp"
+#include "helixnav/runs/words.hpp"
+#include "map.hpp"
+
+namespace helixnav::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+py::array_t<std::int64_t> ids_of(const Map& map) {
+  py::array_t<std::int64_t> ids(static_cast<py::ssize_t>(map.landmarks.size()));
+  for (std::size_t i = 0; i < map.landmarks.size(); ++i) ids.mutable_data()[i] = map.landmarks[i].id;
+  return ids;
+}
+
+py::array_t<double> means_of(const Map& map) {
+  py::array_t<double> means({static_cast<py::ssize_t>(map.landmarks.size()), py::ssize_t{2}});
+  double* to = means.mutable_data();
+  for (const core::MapLandmark& landmark : map.landmarks) {
+    *to++ = landmark.point.mean_m.x();
+    *to++ = landmark.point.mean_m.y();
+  }
+  return means;
+}
+
+py::array_t<double> covariances_of(const Map& map) {
+  py::array_t<double> covariances({static_cast<py::ssize_t>(map.landmarks.size()), py::ssize_t{2}, py::ssize_t{2}});
+  double* to = covariances.mutable_data();
+  for (const core::MapLandmark& landmark : map.landmarks) {
+    for (const auto& [r, c] : {std::pair{0, 0}, std::pair{0, 1}, std::pair{1, 0}, std::pair{1, 1}})
+      *to++ = landmark.point.covariance_m2(r, c);
+  }
+  return covariances;
+}
+
+py::array_t<std::int64_t> counts_of(const Map& map) {
+  py::array_t<std::int64_t> counts(static_cast<py::ssize_t>(map.landmarks.size()));
+  for (std::size_t i = 0; i < map.landmarks.size(); ++i) counts.mutable_data()[i] = map.landmarks[i].observations;
+  return counts;
+}
+
+std::vector<std::string> states_of(const Map& map) {
+  std::vector<std::string> states;
+  for (const core::MapLandmark& landmark : map.landmarks) {
+    states.emplace_back(runs::word_of(runs::state_words, landmark.state));
+  }
+  return states;
+}
+
+void bind_landmarks(py::module_& module) {
+  py::class_<Map>(module, "Map", "Landmarks in order of id, as arrays.")
+      .def_property_readonly("ids", &ids_of, "(N,)")
+      .def_property_readonly("means", &means_of, "(N, 2) [m]")
+      .def_property_readonly("covariances", &covariances_of, "(N, 2, 2) [m²]")
+      .def_property_readonly("observations", &counts_of, "(N,)")
+      .def_property_readonly("states", &states_of, "'tentative' or 'mature' each")
+      .def("__len__", [](const Map& map) { return map.landmarks.size(); });
+}
+
+core::PoseGaussian pose_in(const core::JointMap& map) {
+  return {map.joint.pose, map.joint.covariance.topLeftCorner<3, 3>()};
+}
+
+void save(const core::JointMap& map, const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw core::InputError(folder.string() + ": cannot make the folder: " + error.message());
+  runs::write_map(folder.string(), map);
+}
+
+void bind_joint_map(py::module_& module) {
+  py::class_<core::JointMap>(module, "JointMap",
+                             "A map with all correlations and the pose at its end: what another session needs to go on "
+                             "in it.")
+      .def_property_readonly(
+          "landmarks", [](const core::JointMap& map) { return Map{runs::landmarks_of(map)}; },
+          "A Map: the landmarks without what they have in common.")
+      .def_property_readonly("pose", &pose_in, "Of the vehicle at the end of that session.")
+      .def_property_readonly(
+          "covariance", [](const core::JointMap& map) { return map.joint.covariance; },
+          "(3 + 2 N, 3 + 2 N) of x, y, heading and the landmarks' x, y.")
+      .def_readonly("reach", &core::JointMap::reach_m, "Of the sensor that drew it [m]; 0: unknown.")
+      .def("save", &save, py::arg("folder"), py::call_guard<py::gil_scoped_release>(),
+           "Writes map.csv and, up to 2000 landmarks, map.bin; replay goes on in the folder.")
+      .def("__len__", [](const core::JointMap& map) { return map.joint.ids.size(); });
+}
+
+core::JointMap read_map(const fs::path& folder) { return apps::read_joint_map_in(folder.string()); }
+
+}  // namespace
+
+void bind_map(py::module_& module) {
+  bind_landmarks(module);
+  bind_joint_map(module);
+  module.def("read_map", &read_map, py::arg("folder"), py::call_guard<py::gil_scoped_release>(),
+             "The JointMap that a run, or join, left in its folder.");
+}
+
+}  // namespace helixnav::python

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "replay.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "bind.hpp"
+#include "common/input_files.hpp"
+#include "common/timed.hpp"
+#include "drive/check_drive.hpp"
+#include "drive/drive.hpp"
+#include "drive/estimator.hpp"
+#include "drive/given_map.hpp"
+#include "drive/withholding.hpp"
+#include "helixnav/core/errors.hpp"
+#include "helixnav/core/event_loop.hpp"
+#include "helixnav/core/version.hpp"
+#include "helixnav/reports/finish_run.hpp"
+#include "helixnav/runs/run_recorder.hpp"
+#include "helixnav/runs/run_writer.hpp"
+#include "smooth/smooth_drive.hpp"
+
+namespace helixnav::python {
+namespace {
+
+void refuse_contradictions(const Log& log, const ReplayWishes& wishes) {
+  using Kind = apps::SessionStart::Kind;
+  const auto refuse = [](bool contradiction, const char* why) {
+    if (contradiction) throw core::PreconditionError(std::string("replay: ") + why);
+  };
+  refuse(!wishes.map && wishes.start, "start is a place on a map: give map, too");
+  refuse(!wishes.map && wishes.localize, "localize needs a map");
+  refuse(wishes.map && wishes.smooth, "smooth takes no map");
+  refuse(wishes.localize && wishes.start && wishes.start->kind == Kind::end,
+         "start='end' goes on mapping, and localize does not map");
+  refuse(wishes.localize && wishes.start && log.known_association,
+         "start with localize is for logs without identities: these tell where one is");
+  refuse(log.fastslam.chosen && wishes.map, "FastSLAM begins a map of its own");
+  refuse(log.fastslam.chosen && wishes.smooth, "smooth needs the associations of one map; FastSLAM has many");
+}
+
+runs::RunManifest manifest_of(const Log& log, const ReplayWishes& wishes) {
+  runs::RunManifest manifest;
+  manifest.version = core::version();
+  manifest.commit = core::commit();
+  manifest.command = "python: helixnav.replay";
+  manifest.recording = log.recording.name;
+  manifest.config = log.config;
+  manifest.seed = log.fastslam.chosen ? log.fastslam.seed : log.seed;
+  if (wishes.out.empty()) return manifest;  // digests take their time, and nobody would read them
+  std::vector<std::string> files = log.files;
+  if (wishes.map && !wishes.map->map) {
+    const std::string path = wishes.map->path.string();
+    files.push_back(wishes.localize ? apps::map_file(path) : apps::joint_map_file_in(path));
+  }
+  for (const std::string& file : files) {
+    const std::vector<runs::InputFile> inputs = apps::input_files(file);
+    manifest.inputs.insert(manifest.inputs.end(), inputs.begin(), inputs.end());
+  }
+  return manifest;
+}
+
+void take_map(const ReplayWishes& wishes, apps::Drive& job) {
+  if (!wishes.map) return;
+  const std::optional<core::JointMap>& map = wishes.map->map;
+  if (wishes.localize) {
+    job.given_map = map ? apps::given_map(*map) : apps::read_given_map(wishes.map->path.string());
+    job.given_map->start = wishes.start;
+    apps::check_start(*job.given_map);
+  } else {
+    const apps::SessionStart start = wishes.start.value_or(apps::SessionStart{});
+    job.earlier =
+        map ? apps::earlier_session(*map, start, "map") : apps::read_earlier_session(wishes.map->path.string(), start);
+  }
+}
+
+apps::Drive job_of(const Log& log, const ReplayWishes& wishes) {
+  apps::Drive job;
+  job.recording = log.recording;
+  job.navigator = log.navigator;
+  job.fastslam = log.fastslam;
+  job.known_association = log.known_association;
+  job.withheld = log.withheld;
+  job.smooth = wishes.smooth;
+  job.out = wishes.out;
+  take_map(wishes, job);
+  job.manifest = manifest_of(log, wishes);
+  return job;
+}
+
+/// Ctrl-C, now and then.
+void heed_signals(std::int64_t step) {
+  if (step % 256 != 0) return;
+  const py::gil_scoped_acquire acquired;
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+/// Feeds all events. What broke of the mathematics, and where; empty when nothing did.
+std::string navigate(const apps::Drive& job, apps::Estimator& estimator, runs::RunWriter* writer,
+                     runs::RunRecorder& recorder) {
+  apps::Timed timed(estimator);
+  apps::Withholding seen(timed, job.withheld, estimator.pose);
+  core::EventLoop loop(job.recording.events, seen);
+  try {
+    while (const std::optional<core::StepReport> step = loop.next()) {
+      const double microseconds = seen.last_scan_was_withheld() ? 0.0 : 1e6 * timed.last_s();
+      if (writer != nullptr) writer->write(*step, microseconds);
+      recorder.add(*step, microseconds);
+      const bool is_looked_at = writer != nullptr && recorder.wants_map();
+      if (is_looked_at) recorder.add_map(estimator.sketch ? estimator.sketch() : estimator.map());
+      heed_signals(step->step);
+    }
+  } catch (const core::NumericalError& error) {
+    const double t_s = core::seconds(core::time_of(job.recording.events[loop.fed() - 1]));
+    return "at step " + std::to_string(loop.steps()) + ", " + std::to_string(t_s) + " s: " + error.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+runs::Run replay(const Log& log, const ReplayWishes& wishes) {
+  refuse_contradictions(log, wishes);
+  const apps::Drive job = job_of(log, wishes);
+  apps::check_drive(job);
+  using IfNotEmpty = runs::RunWriter::IfNotEmpty;
+  std::unique_ptr<runs::RunWriter> writer;
+  if (!job.out.empty()) {
+    writer = std::make_unique<runs::RunWriter>(job.out, job.manifest, job.recording,
+                                               wishes.overwrite ? IfNotEmpty::overwrite : IfNotEmpty::refuse);
+  }
+  runs::RunRecorder recorder(job.out, job.manifest, job.recording);
+  apps::LabelAgreement agreement;
+  apps::Estimator estimator = apps::estimator_of(job, agreement);
+  const std::string broken = navigate(job, estimator, writer.get(), recorder);
+  runs::Run run = recorder.finish(estimator.map());
+  run.joint_map = estimator.joint_map();
+  if (estimator.parts_apart) run.parts_apart = estimator.parts_apart();
+  if (estimator.particle_end) run.particle_end = estimator.particle_end();
+  run.numbers = apps::numbers_of(agreement);
+  if (job.smooth && broken.empty()) apps::smooth(job, run);
+  if (writer) reports::finish_run(run, *writer);
+  if (!broken.empty()) throw core::NumericalError(broken);
+  return run;
+}
+
+}  // namespace helixnav::python
