@@ -3,50 +3,18 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
 #include <sstream>
 
 #include "campaign.hpp"
+#include "campaign_files.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
 #include "helixnav/files/file.hpp"
-#include "helixnav/files/json_nesting.hpp"
 
 namespace helixnav::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* format_name = "helixnav-campaign-1";
-constexpr const char* manifest_name = "manifest.json";
-constexpr const char* rows_name = "runs.jsonl";
-constexpr const char* summary_name = "summary.json";
-
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw core::InputError(file.string() + ": cannot be read");
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
-/// Of what the summary asks a row for; numbers of any other type count as none.
-void check_row(const std::string& file, std::size_t line, const Json& row) {
-  const std::string here = file + ':' + std::to_string(line) + ": expected the JSON object of a run";
-  if (!row.is_object() || !row.contains("seed") || !row.contains("verdict")) throw core::InputError(here);
-  const auto require = [&](const char* key, bool right) {
-    if (!right) throw core::InputError(here + ", found \"" + key + "\": " + row.at(key).dump().substr(0, 60));
-  };
-  require("seed", row.at("seed").is_number_unsigned());
-  require("verdict", row.at("verdict").is_string());
-  for (const char* key : {"diverged_after_closure", "late", "closed_by_association"}) {
-    if (row.contains(key)) require(key, row.at(key).is_boolean());
-  }
-  for (const char* key : {"returns", "closures"}) {
-    if (row.contains(key)) require(key, row.at(key).is_array());
-  }
-  for (const char* key : {"end", "wall"}) {
-    if (row.contains(key)) require(key, row.at(key).is_object());
-  }
-}
 
 /// The settings in force, one a line with its section; what only helps to read is left out.
 Json config_lines(const std::string& config) {
@@ -65,26 +33,12 @@ Json config_lines(const std::string& config) {
 }
 
 Json manifest_of(const Campaign& campaign) {
-  return {{"format", format_name},
+  return {{"format", campaign_format},
           {"version", core::version()},
           {"commit", core::commit()},
           {"scenario", campaign.scenario.name},
-          {"config", config_lines(campaign.config)}};
-}
-
-std::string first_difference(const Json& held, const Json& wanted) {
-  for (const char* key : {"format", "version", "commit", "scenario"}) {
-    if (held.value(key, Json()) != wanted.at(key)) {
-      return std::string(key) + " " + held.value(key, Json()).dump() + ", now " + wanted.at(key).dump();
-    }
-  }
-  const Json lines = held.value("config", Json::array());
-  for (std::size_t i = 0; i < std::max(lines.size(), wanted.at("config").size()); ++i) {
-    const Json was = i < lines.size() ? lines[i] : Json();
-    const Json is = i < wanted.at("config").size() ? wanted.at("config")[i] : Json();
-    if (was != is) return was.dump() + ", now " + is.dump();
-  }
-  return {};
+          {"config", config_lines(campaign.config)},
+          {"seeds", Json::array({Json::array({campaign.first_seed, campaign.first_seed + campaign.runs - 1})})}};
 }
 
 }  // namespace
@@ -96,6 +50,7 @@ CampaignFolder::CampaignFolder(const Campaign& campaign) : path_(campaign.out) {
   if (error || !fs::is_directory(folder)) {
     throw core::InputError(path_ + ": expected a folder for --out" + (error ? ", cannot make it" : ", found a file"));
   }
+  lock_.emplace(path_);
   if (campaign.overwrite) {
     for (const char* name : {manifest_name, rows_name, summary_name}) fs::remove(folder / name, error);
   }
@@ -107,50 +62,34 @@ CampaignFolder::CampaignFolder(const Campaign& campaign) : path_(campaign.out) {
   } else {
     files::write_whole_file((folder / manifest_name).string(), manifest.dump(2) + '\n');
   }
-  write_rows(fs::exists(folder / rows_name) ? read_rows() : std::vector<Json>{});
+  write_rows(fs::exists(folder / rows_name) ? campaign_rows(path_) : std::vector<Json>{});
 }
 
-void CampaignFolder::take_up(const Json& manifest) const {
-  const std::string file = path_ + '/' + manifest_name;
-  const std::string text = text_of(file);
-  files::check_json_nesting(file, text);
-  const Json held = Json::parse(text, nullptr, false);
-  if (!held.is_object() || held.value("format", Json()) != format_name) {
-    throw core::InputError(file + ": not the manifest of a campaign; choose another --out");
-  }
+void CampaignFolder::take_up(Json manifest) const {
+  const Json held = campaign_manifest(path_);
   const std::string difference = first_difference(held, manifest);
-  if (difference.empty()) return;
-  throw core::InputError(file + ": the folder holds another campaign: " + difference +
-                         "; choose another --out, or --overwrite to begin it anew");
-}
-
-std::vector<Json> CampaignFolder::read_rows() const {
-  const std::string file = path_ + '/' + rows_name;
-  const std::string text = text_of(file);
-  files::check_json_nesting(file, text);
-  std::vector<Json> rows;
-  std::size_t begin = 0;
-  for (std::size_t end = text.find('\n'); end != std::string::npos; begin = end + 1, end = text.find('\n', begin)) {
-    const auto first = text.begin() + static_cast<std::ptrdiff_t>(begin);
-    Json row = Json::parse(first, text.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
-    check_row(file, rows.size() + 1, row);
-    rows.push_back(std::move(row));
+  const std::string file = path_ + '/' + manifest_name;
+  if (!difference.empty()) {
+    throw core::InputError(file + ": the folder holds another campaign: " + difference +
+                           "; choose another --out, or --overwrite to begin it anew");
   }
-  return rows;
+  SeedRanges ranges = seed_ranges(held);
+  const SeedRanges more = seed_ranges(manifest);
+  ranges.insert(ranges.end(), more.begin(), more.end());
+  manifest["seeds"] = fused(ranges);
+  if (manifest != held) files::write_whole_file(file, manifest.dump(2) + '\n');
 }
 
 void CampaignFolder::write_rows(const std::vector<Json>& rows) {
-  std::string text;
-  for (const Json& row : rows) text += row.dump() + '\n';
   const std::string file = path_ + '/' + rows_name;
   rows_.close();
-  files::write_whole_file(file, text);
+  files::write_whole_file(file, text_of_rows(rows));
   rows_.open(file, std::ios::binary | std::ios::app);
 }
 
 std::set<std::uint64_t> CampaignFolder::seeds() const {
   std::set<std::uint64_t> seeds;
-  for (const Json& row : read_rows()) seeds.insert(row.at("seed").get<std::uint64_t>());
+  for (const Json& row : campaign_rows(path_)) seeds.insert(row.at("seed").get<std::uint64_t>());
   return seeds;
 }
 
@@ -160,10 +99,8 @@ void CampaignFolder::append(const std::string& row) {
 }
 
 std::vector<Json> CampaignFolder::sort() {
-  std::vector<Json> rows = read_rows();
-  std::sort(rows.begin(), rows.end(), [](const Json& a, const Json& b) {
-    return a.at("seed").get<std::uint64_t>() < b.at("seed").get<std::uint64_t>();
-  });
+  std::vector<Json> rows = campaign_rows(path_);
+  sort_by_seed(rows);
   write_rows(rows);
   return rows;
 }

@@ -3,11 +3,14 @@
 
 #include <cstdint>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
+
+#include "folder_lock.hpp"
 
 namespace helixnav::apps {
 
@@ -19,7 +22,7 @@ using Json = nlohmann::ordered_json;
 class CampaignFolder {
  public:
   /// Begins the folder, or takes up what it holds: a last line without its end is dropped. InputError when it holds other
-  /// things, or a campaign of another scenario, configuration or build; the message names the first difference.
+  /// things, another process drives it, or it holds a campaign of another scenario, configuration or build; the message names the first difference.
   explicit CampaignFolder(const Campaign& campaign);
 
   /// Of the runs that it holds.
@@ -34,11 +37,11 @@ class CampaignFolder {
   void write_summary(const Json& summary) const;
 
  private:
-  std::vector<Json> read_rows() const;
   void write_rows(const std::vector<Json>& rows);
-  void take_up(const Json& manifest) const;
+  void take_up(Json manifest) const;
 
   std::string path_;
+  std::optional<FolderLock> lock_;
   std::ofstream rows_;
 };
 

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "campaign_files.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "helixnav/core/errors.hpp"
+#include "helixnav/files/json_nesting.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw core::InputError(file.string() + ": cannot be read");
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+/// Of what the summary asks a row for; numbers of any other type count as none.
+void check_row(const std::string& file, std::size_t line, const Json& row) {
+  const std::string here = file + ':' + std::to_string(line) + ": expected the JSON object of a run";
+  if (!row.is_object() || !row.contains("seed") || !row.contains("verdict")) throw core::InputError(here);
+  const auto require = [&](const char* key, bool right) {
+    if (!right) throw core::InputError(here + ", found \"" + key + "\": " + row.at(key).dump().substr(0, 60));
+  };
+  require("seed", row.at("seed").is_number_unsigned());
+  require("verdict", row.at("verdict").is_string());
+  for (const char* key : {"diverged_after_closure", "late", "closed_by_association"}) {
+    if (row.contains(key)) require(key, row.at(key).is_boolean());
+  }
+  for (const char* key : {"returns", "closures"}) {
+    if (row.contains(key)) require(key, row.at(key).is_array());
+  }
+  for (const char* key : {"end", "wall"}) {
+    if (row.contains(key)) require(key, row.at(key).is_object());
+  }
+}
+
+}  // namespace
+
+Json campaign_manifest(const std::string& folder) {
+  const std::string file = folder + '/' + manifest_name;
+  const std::string text = text_of(file);
+  files::check_json_nesting(file, text);
+  Json manifest = Json::parse(text, nullptr, false);
+  if (!manifest.is_object() || manifest.value("format", Json()) != campaign_format) {
+    throw core::InputError(file + ": not the manifest of a campaign; choose another folder");
+  }
+  return manifest;
+}
+
+std::vector<Json> campaign_rows(const std::string& folder) {
+  const std::string file = folder + '/' + rows_name;
+  const std::string text = text_of(file);
+  files::check_json_nesting(file, text);
+  std::vector<Json> rows;
+  std::size_t begin = 0;
+  for (std::size_t end = text.find('\n'); end != std::string::npos; begin = end + 1, end = text.find('\n', begin)) {
+    const auto first = text.begin() + static_cast<std::ptrdiff_t>(begin);
+    Json row = Json::parse(first, text.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
+    check_row(file, rows.size() + 1, row);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::string text_of_rows(const std::vector<Json>& rows) {
+  std::string text;
+  for (const Json& row : rows) text += row.dump() + '\n';
+  return text;
+}
+
+void sort_by_seed(std::vector<Json>& rows) {
+  std::sort(rows.begin(), rows.end(), [](const Json& a, const Json& b) {
+    return a.at("seed").get<std::uint64_t>() < b.at("seed").get<std::uint64_t>();
+  });
+}
+
+std::string first_difference(const Json& held, const Json& wanted) {
+  for (const char* key : {"format", "version", "commit", "scenario"}) {
+    if (held.value(key, Json()) != wanted.at(key)) {
+      return std::string(key) + " " + held.value(key, Json()).dump() + ", now " + wanted.at(key).dump();
+    }
+  }
+  const Json lines = held.value("config", Json::array());
+  for (std::size_t i = 0; i < std::max(lines.size(), wanted.at("config").size()); ++i) {
+    const Json was = i < lines.size() ? lines[i] : Json();
+    const Json is = i < wanted.at("config").size() ? wanted.at("config")[i] : Json();
+    if (was != is) return was.dump() + ", now " + is.dump();
+  }
+  return {};
+}
+
+SeedRanges seed_ranges(const Json& manifest) {
+  SeedRanges ranges;
+  for (const Json& range : manifest.value("seeds", Json::array())) {
+    const bool two = range.is_array() && range.size() == 2 && range[0].is_number_unsigned() &&
+                     range[1].is_number_unsigned() && range[0].get<std::uint64_t>() <= range[1].get<std::uint64_t>();
+    if (!two) throw core::InputError("manifest of a campaign: seeds: expected pairs, found " + range.dump());
+    ranges.emplace_back(range[0].get<std::uint64_t>(), range[1].get<std::uint64_t>());
+  }
+  return ranges;
+}
+
+SeedRanges fused(SeedRanges ranges) {
+  std::sort(ranges.begin(), ranges.end());
+  SeedRanges whole;
+  for (const auto& [first, last] : ranges) {
+    if (!whole.empty() && first <= whole.back().second + 1) {
+      whole.back().second = std::max(whole.back().second, last);
+    } else {
+      whole.emplace_back(first, last);
+    }
+  }
+  return whole;
+}
+
+}  // namespace helixnav::apps

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A campaign in parts, by Slurm with a task that is killed and requeued and by GNU parallel, is that of one machine.
+
+    HELIXNAV_PROGRAM=build/dev/apps/helixnav python3 -m pytest tests/campaign [RUNS=2000 TASKS=20 in the environment]
+"""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import tempfile
+
+import pytest
+
+import slurm_node
+
+EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples" / "campaign"
+PROGRAM = os.path.abspath(os.environ["HELIXNAV_PROGRAM"])
+RUNS, TASKS = int(os.environ.get("RUNS", 240)), int(os.environ.get("TASKS", 3))
+SCENARIO = os.environ.get("SCENARIO", "circuit")
+
+
+def montecarlo(*words, code=0):
+    done = subprocess.run([PROGRAM, "montecarlo", *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert done.returncode == code, done.stderr
+    return done.stderr if code else done.stdout
+
+
+def without_wall_clock(path):
+    """The lines of a file, byte by byte but for what the clock on the wall says."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".jsonl":
+        rows = [json.loads(line) for line in text.splitlines()]
+        for row in rows:
+            row.pop("wall")
+        return [json.dumps(row) for row in rows]
+    value = json.loads(text)
+    assert path.name == "manifest.json" or value.pop("wall")
+    return json.dumps(value, indent=2)
+
+
+def is_that_of_one_machine(merged, whole):
+    assert (merged / "manifest.json").read_bytes() == (whole / "manifest.json").read_bytes()
+    for name in ("runs.jsonl", "summary.json"):
+        assert without_wall_clock(merged / name) == without_wall_clock(whole / name), name
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("whole") / "campaign"
+    montecarlo(SCENARIO, "--seeds", f"1:{RUNS}", "--quiet", "--out", folder)
+    return folder
+
+
+@pytest.fixture
+def shared():
+    """Where daemons may write, with a name short enough for a socket."""
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="campaign_", dir="/tmp"))
+    yield folder
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+def lines_in(folder):
+    file = folder / "runs.jsonl"
+    return file.read_text(encoding="utf-8").count("\n") if file.exists() else 0
+
+
+@pytest.mark.skipif(bool(slurm_node.missing()), reason=slurm_node.missing())
+def test_a_slurm_array_with_a_task_killed_and_requeued(whole, shared):
+    out = shared / "out"
+    with slurm_node.one_node(shared / "slurm", cpus=2) as slurm:
+        job = slurm.say("sbatch", "--parsable", f"--array=1-{TASKS}", f"--output={shared}/%a.log",
+                        f"--export=ALL,HELIXNAV={PROGRAM}", EXAMPLES / "slurm_array.sh", out, RUNS, SCENARIO).strip()
+        first = out / "part_00001"
+        slurm_node.until(lambda: lines_in(first) >= 2, 120, "the first task drives nothing")
+        slurm.say("scontrol", "requeue", f"{job}_1")
+        slurm_node.until(lambda: ("1", "PENDING") in slurm.tasks(job), 30, "it is not requeued")
+        before = lines_in(first)
+        assert 2 <= before < RUNS // TASKS, "it had ended: nothing was killed"
+        assert "of its seeds were not driven" in montecarlo("--merge", first, "--out", shared / "half", code=3)
+        slurm.say("scontrol", "update", f"jobid={job}_1", "starttime=now")  # Slurm would let it wait for two minutes
+        slurm.wait(job, seconds=60 + 2 * RUNS)
+        assert "Restarts=1" in slurm.say("scontrol", "show", "job", f"{job}_1")
+    parts = sorted(out.glob("part_*"))
+    assert len(parts) == TASKS
+    montecarlo("--merge", *parts, "--out", shared / "merged")
+    is_that_of_one_machine(shared / "merged", whole)
+
+
+@pytest.mark.skipif(shutil.which("parallel") is None, reason="not installed: parallel")
+def test_gnu_parallel(whole, shared):
+    command = [EXAMPLES / "gnu_parallel.sh", shared, str(RUNS), str(TASKS), SCENARIO]
+    environment = {**os.environ, "HELIXNAV": PROGRAM, "PARALLEL_OPTIONS": "--jobs 2"}
+    begun = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                             start_new_session=True)
+    slurm_node.until(lambda: lines_in(shared / "part_00001") >= 2, 60, "nothing is driven")
+    os.killpg(begun.pid, signal.SIGKILL)  # the jobs, in groups of their own, live on for a while
+    begun.wait()
+    said = []
+
+    def goes_on():
+        done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        said.append(done.stdout)
+        return done.returncode == 0
+
+    slurm_node.until(goes_on, 120, said)
+    assert all("another process drives the campaign" in text for text in said[:-1])
+    is_that_of_one_machine(shared / "merged", whole)
