@@ -14,7 +14,7 @@
 namespace helixnav::apps {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 class CampaignParts : public ::testing::Test {
  protected:
@@ -46,14 +46,14 @@ class CampaignParts : public ::testing::Test {
     std::ifstream file(out(name) + "/runs.jsonl");
     std::string text;
     for (std::string line; std::getline(file, line);) {
-      Json row = Json::parse(line);
+      OrderedJson row = OrderedJson::parse(line);
       row.erase("wall");
       text += row.dump() + '\n';
     }
     return text;
   }
   std::string summary(const std::string& name) const {
-    Json json = Json::parse(text_of(out(name) + "/summary.json"));
+    OrderedJson json = OrderedJson::parse(text_of(out(name) + "/summary.json"));
     EXPECT_EQ(json.erase("wall"), 1u);
     return json.dump(2);
   }
