@@ -134,6 +134,11 @@ void numbers(CarriedDecision& d, Visit&& visit) {
   visit("dropped", d.dropped);
   visit("apart", d.apart);
   visit("driven_m", d.driven_m);
+  if (!d.is_found_out) return;
+  visit("missing", d.missing);
+  visit("seen", d.seen);
+  visit("unknown", d.unknown);
+  visit("elsewhere_nats", d.elsewhere_nats);
 }
 
 template <class Visit>
@@ -213,7 +218,7 @@ KindAndVerdict words_of(const UndecidedDecision&) { return {"closure", "undecide
 KindAndVerdict words_of(const NewGroundDecision&) { return {"closure", "new-ground"}; }
 KindAndVerdict words_of(const SmoothingDecision& d) { return {"smoothing", word_of(d.accepted)}; }
 KindAndVerdict words_of(const FixDecision& d) { return {"fix", word_of(d.accepted)}; }
-KindAndVerdict words_of(const CarriedDecision&) { return {"carried", "told"}; }
+KindAndVerdict words_of(const CarriedDecision& d) { return {"carried", d.is_found_out ? "found-out" : "told"}; }
 KindAndVerdict words_of(const PlacedDecision& d) { return {"placed", placed_words[static_cast<int>(d.verdict)]}; }
 
 KindAndVerdict words_of(const WholeMapDecision& d) {
@@ -260,6 +265,13 @@ Decision search_decision(const DecisionRow& row) {
   return fill(ended, row);
 }
 
+Decision carried_decision(const DecisionRow& row) {
+  CarriedDecision decision;
+  decision.is_found_out = row.verdict == "found-out";
+  if (!decision.is_found_out && row.verdict != "told") return OtherDecision{row.kind, row.verdict, row.numbers};
+  return fill(decision, row);
+}
+
 Decision postponed_decision(const DecisionRow& row) {
   const int work = index_in(postponed_words, row.verdict);
   if (work < 0) return OtherDecision{row.kind, row.verdict, row.numbers};
@@ -303,7 +315,7 @@ Decision decision_of(const DecisionRow& row) {
   if (row.kind == "trigger" && rolled_back) return fill(RollbackDecision{}, row);
   if (row.kind == "slip" && accepted) return fill(SlipDecision{}, row);
   if (row.kind == "search") return search_decision(row);
-  if (row.kind == "carried" && row.verdict == "told") return fill(CarriedDecision{}, row);
+  if (row.kind == "carried") return carried_decision(row);
   if (row.kind == "placed") return decision_with<PlacedDecision>(placed_words, row);
   if (row.kind == "postponed") return postponed_decision(row);
   if (row.kind == "whole-map") return decision_with<WholeMapDecision>(whole_map_words, row);

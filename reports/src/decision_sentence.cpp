@@ -152,9 +152,17 @@ std::string sentence(const core::FixDecision& d) {
          (d.accepted ? " within the gate " : " beyond the gate ") + short_number(d.gate) + ".";
 }
 
+std::string why_carried(const core::CarriedDecision& d) {
+  if (!d.is_found_out) return "The vehicle was carried (event lost).";
+  return "The vehicle was carried during a pause: after it " + std::to_string(d.missing) + " of " +
+         counted(d.missing + d.seen, "landmark") + " that had been in view " + (d.missing == 1 ? "was" : "were") +
+         " missing, and " + counted(d.unknown, "observation") +
+         " fitted none of them: " + short_number(d.elsewhere_nats) + " nats likelier elsewhere than where it stopped.";
+}
+
 std::string sentence(const core::CarriedDecision& d) {
-  const std::string ended = "The vehicle was carried (event lost). Part " + std::to_string(d.from_part) +
-                            " of the drive ends after " + short_number(d.driven_m) + " m";
+  const std::string ended = why_carried(d) + " Part " + std::to_string(d.from_part) + " of the drive ends after " +
+                            short_number(d.driven_m) + " m";
   const std::string kept = d.landmarks > 0 ? ": " + counted(d.landmarks, "landmark") + " of it " +
                                                  (d.landmarks == 1 ? "is" : "are") + " kept as a map of its own"
                                            : ", with too few landmarks to be found again: they are dropped";

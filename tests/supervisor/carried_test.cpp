@@ -9,36 +9,12 @@
 #include "circuits.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
+#include "pauses.hpp"
 
 namespace helixnav::supervisor {
 namespace {
 
 using Verdict = core::PlacedDecision::Verdict;
-
-/// Scans of the drive during which it was carried, nothing being measured.
-struct Pause {
-  std::size_t from = 0, to = 0;
-};
-
-/// The drive without what came in the pauses, in the place of each of which it is said that the vehicle was carried.
-core::Recording with_pauses(const core::Recording& run, const std::vector<Pause>& pauses) {
-  core::Recording carried = run;
-  carried.events.clear();
-  carried.true_poses.clear();
-  std::size_t scans = 0;
-  bool was_carried = false;
-  for (const core::Event& event : run.events) {
-    const bool is_carried = std::any_of(pauses.begin(), pauses.end(),
-                                        [&](const Pause& pause) { return scans >= pause.from && scans < pause.to; });
-    if (was_carried && !is_carried) carried.events.emplace_back(core::Lost{core::time_of(event)});
-    was_carried = is_carried;
-    if (!is_carried) carried.events.push_back(event);
-    if (!std::holds_alternative<core::Scan>(event)) continue;
-    if (!is_carried) carried.true_poses.push_back(run.true_poses[scans]);
-    ++scans;
-  }
-  return carried;
-}
 
 struct Driven {
   std::vector<core::StepReport> reports;
@@ -77,7 +53,7 @@ Driven drive_all(const core::Recording& run) {
 
 TEST(Carried, FindsItsPlaceAndHasOneMap) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
-    const core::Recording run = with_pauses(sim::simulate(wide_circuit(), seed), {{220, 290}});
+    const core::Recording run = with_pauses(sim::simulate(wide_circuit(), seed), {{220, 290}}, true);
     const Driven driven = drive_all(run);
     ASSERT_EQ(driven.carried.size(), 1u);
     EXPECT_EQ(driven.carried[0].part, 1);
@@ -92,7 +68,7 @@ TEST(Carried, FindsItsPlaceAndHasOneMap) {
 }
 
 TEST(Carried, NothingMappedBeforeIsMatchedUntilThePlaceIsFound) {
-  const core::Recording run = with_pauses(sim::simulate(wide_circuit(), 1), {{220, 290}});
+  const core::Recording run = with_pauses(sim::simulate(wide_circuit(), 1), {{220, 290}}, true);
   const Driven driven = drive_all(run);
   core::LandmarkId last = core::no_landmark;
   for (std::size_t k = 0; k < 220; ++k) {
@@ -117,7 +93,7 @@ TEST(Carried, NothingMappedBeforeIsMatchedUntilThePlaceIsFound) {
 /// Set down where it is carried away again at once, and once more before the second part was found.
 TEST(Carried, AgainAndAgainKeepsThePartsThatCanBeFound) {
   const core::Recording whole = sim::simulate(wide_circuit(), 4);
-  const Driven few = drive_all(with_pauses(whole, {{220, 250}, {252, 290}}));
+  const Driven few = drive_all(with_pauses(whole, {{220, 250}, {252, 290}}, true));
   ASSERT_EQ(few.carried.size(), 2u);
   EXPECT_EQ(few.carried[1].landmarks, 0) << "two scans make no map";
   EXPECT_EQ(few.carried[1].apart, 1);
@@ -127,7 +103,7 @@ TEST(Carried, AgainAndAgainKeepsThePartsThatCanBeFound) {
 }
 
 TEST(Carried, ToNewGroundKeepsTheMapBeforeApart) {
-  core::Recording run = with_pauses(sim::simulate(wide_circuit(), 1), {{220, 400}});
+  core::Recording run = with_pauses(sim::simulate(wide_circuit(), 1), {{220, 400}}, true);
   const core::Recording elsewhere = sim::simulate(wide_circuit(), 9);
   run.events.emplace_back(core::Lost{core::time_of(run.events.back())});
   run.events.insert(run.events.end(), elsewhere.events.begin(), elsewhere.events.begin() + 400);

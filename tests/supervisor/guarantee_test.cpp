@@ -12,6 +12,7 @@
 #include "circuits.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
+#include "pauses.hpp"
 
 namespace {
 
@@ -102,7 +103,7 @@ NavigatorOptions single_threaded(std::uint64_t seed) {
 }
 
 /// What a scan did that is worth breaking.
-enum class Kind { mapping, trigger, searching, closing, rollback, place_without_search };
+enum class Kind { mapping, trigger, searching, closing, rollback, place_without_search, carried };
 
 Kind kind_of(const core::StepReport& report) {
   const bool was_searching = report.mode == core::Mode::searching;
@@ -110,6 +111,7 @@ Kind kind_of(const core::StepReport& report) {
     const auto* asked = std::get_if<core::WholeMapDecision>(&decision);
     const bool found = asked != nullptr && asked->verdict == core::WholeMapDecision::Verdict::accepted;
     if (found && !was_searching) return Kind::place_without_search;
+    if (std::holds_alternative<core::CarriedDecision>(decision)) return Kind::carried;
     const auto* closure = std::get_if<core::ClosureDecision>(&decision);
     if (closure != nullptr && closure->accepted) return Kind::closing;
     if (std::holds_alternative<core::RollbackDecision>(decision)) return Kind::rollback;
@@ -188,10 +190,15 @@ TEST(Guarantee, HoldsInARollBack) {
 TEST(Guarantee, HoldsWhereThePlaceOfACarriedVehicleIsFoundWithoutASearch) {
   sim::Scenario scenario = sim::named_scenario("kidnapped");
   scenario.world.tour_m = 2600.0;
-  const core::Recording run = sim::simulate(scenario, 3004);
+  const core::Recording run = without_waiting(sim::simulate(scenario, 3004));
   // Hundreds of metres from the start, and a phase may be absorbed at another occasion than undisturbed.
   constexpr double rounding_m = 1e-9;
   EXPECT_EQ(break_drive(run, single_threaded(1), 6, rounding_m).count(Kind::place_without_search), 1u);
+}
+
+TEST(Guarantee, HoldsWhereItIsFoundOutThatTheVehicleWasCarried) {
+  const core::Recording run = with_pauses(sim::simulate(wide_circuit(), 1), {{220, 290}}, false);
+  EXPECT_EQ(break_drive(run, single_threaded(1), 12).count(Kind::carried), 1u);
 }
 
 TEST(Guarantee, HoldsForFixes) {

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Odometry that was wrong by more than its noise allows: the place is found by asking the whole map.
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include "circuits.hpp"
+#include "pauses.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -74,10 +77,11 @@ TEST(WholeMap, ClosesWhatOdometryForbidsByLargerNoiseOnTheLoop) {
   }
 }
 
+/// Where no pause tells that it was (found_carried_test.cpp).
 TEST(WholeMap, FindsAVehicleThatWasCarriedAway) {
   sim::Scenario scenario = sim::named_scenario("kidnapped");
   scenario.world.tour_m = 2600.0;
-  const core::Recording run = sim::simulate(scenario, 3001);
+  const core::Recording run = without_waiting(sim::simulate(scenario, 3001));
   const Asking drive = drive_asking(run, {});
   const auto cut = std::count_if(drive.asked.begin(), drive.asked.end(), [](const core::WholeMapDecision& asked) {
     return asked.verdict == core::WholeMapDecision::Verdict::accepted && asked.odometry_factor == 0.0;
@@ -88,13 +92,35 @@ TEST(WholeMap, FindsAVehicleThatWasCarriedAway) {
 
 /// Where it was put down it matched trees that stand like those that it expected.
 TEST(WholeMap, LeavesOutMatchesThatContradictThePlace) {
-  const core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3019);
+  const core::Recording run = without_waiting(sim::simulate(sim::named_scenario("kidnapped"), 3019));
   std::set<core::Label> standing;
   for (const std::vector<core::Label>& scan : run.labels) standing.insert(scan.begin(), scan.end());
   standing.erase(core::no_label);
   const Asking drive = drive_asking(run, {});
   EXPECT_LE(drive.mature, standing.size()) << "duplicates; 155 of them as long as these matches were believed";
   EXPECT_LT(drive.error_at_end_m, 5.0);
+}
+
+/// After half a turn and 250 m that odometry knows nothing of, in a part that was joined to the map before.
+TEST(WholeMap, KeepsTheCovariancePositiveDefinite) {
+  const core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3100023);
+  Navigator navigator(run.start);
+  int placed = 0;
+  for (const core::Event& event : run.events) {
+    const std::optional<core::StepReport> report = navigator.take(event);
+    if (!report) continue;
+    for (const core::Decision& decision : report->decisions) {
+      const auto* asked = std::get_if<core::WholeMapDecision>(&decision);
+      if (asked == nullptr || asked->verdict != core::WholeMapDecision::Verdict::accepted) continue;
+      ++placed;
+      std::vector<core::LandmarkId> ids;
+      for (const core::MapLandmark& landmark : navigator.map()) ids.push_back(landmark.id);
+      const Eigen::MatrixXd covariance = navigator.joint(ids).covariance;
+      const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(covariance).eigenvalues();
+      EXPECT_GT(values[0], 0.0) << "-0.03 m^2 with a jump as uncertain as it is large";
+    }
+  }
+  EXPECT_GE(placed, 1);
 }
 
 /// Trees of labels seen from the begin of the search on, that had been seen before and out of sight for a while.

@@ -2,6 +2,8 @@
 #include "closing/close_against_odometry.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -74,15 +76,24 @@ bool close_with_larger_noise(const Input& in, Reconciled& result) {
   return false;
 }
 
-/// From where the filter has the vehicle to where the place says it was, as uncertain as it is large.
-core::Odometry jump_from(const core::PoseGaussian& pose, const core::Pose2& T_map_branch) {
+/// From where the filter has the vehicle to where the place says it was: known to within the sensor's reach at both ends of the
+/// drive since, unless the jump itself is smaller. The pairs know it far better; a wider prior only costs digits, and with a
+/// jump of 250 m and half a turn the covariance was not positive definite any more.
+core::Odometry jump_from(const core::PoseGaussian& pose, const core::Pose2& T_map_branch, double driven_since_m,
+                         double reach_m) {
   core::Odometry jump = core::no_motion(0);
   jump.T_before_after = core::between(pose.mean, core::compose(T_map_branch, pose.mean));
-  const double moved_m2 = jump.T_before_after.position_m().squaredNorm();
-  const double turned_rad2 = jump.T_before_after.heading_rad * jump.T_before_after.heading_rad;
+  const double sigma_m = std::min(jump.T_before_after.position_m().norm(), reach_m);
+  const double sigma_rad =
+      std::min(std::abs(jump.T_before_after.heading_rad), reach_m / std::max(driven_since_m, reach_m));
   const Eigen::Vector3d of_pose = pose.covariance.diagonal();
-  jump.covariance.diagonal() << moved_m2 + of_pose.x(), moved_m2 + of_pose.y(), turned_rad2 + of_pose.z();
+  jump.covariance.diagonal() << sigma_m * sigma_m + of_pose.x(), sigma_m * sigma_m + of_pose.y(),
+      sigma_rad * sigma_rad + of_pose.z();
   return jump;
+}
+
+double reach_of(const ClosingView& view) {
+  return view.scan.field_of_view.reach().value_or(std::numeric_limits<double>::max());
 }
 
 /// When each landmark, as it is called now, was seen. Of a tape that holds the drive from its begin: its positions count from there.
@@ -134,6 +145,7 @@ class Sightings {
 struct Cut {
   Tape::Position position = 0;
   core::Odometry odometry_since;         ///< up to now
+  double driven_since_m = 0.0;           ///< likewise
   std::set<core::LandmarkId> displaced;  ///< begun after it
 };
 
@@ -148,6 +160,7 @@ Cut cut_at(Tape::Position position, const Sightings& sightings, const Tape& tape
     const auto* motion = std::get_if<Tape::Motion>(&entry);
     if (motion != nullptr) cut.odometry_since = core::chain(cut.odometry_since, motion->odometry);
   });
+  cut.driven_since_m = sightings.driven_m(position, sightings.end());
   return cut;
 }
 
@@ -186,7 +199,7 @@ std::optional<Tape::Position> place_with_fewest_across(const Sightings& sighting
 bool close_at_cut(const Input& in, const Cut& cut, const Tape& tape, Reconciled& result) {
   core::PoseGaussian there = in.filter.pose();
   there.mean = core::compose(there.mean, core::inverse(cut.odometry_since.T_before_after));
-  const core::Odometry jump = jump_from(there, in.place.T_map_branch);
+  const core::Odometry jump = jump_from(there, in.place.T_map_branch, cut.driven_since_m, reach_of(in.view));
   return solve_and_merge(in, tape.with_jump(cut.position, jump), cut.displaced, result);
 }
 
@@ -208,7 +221,12 @@ bool replay_after_jump(const Input& in, Reconciled& result) {
   const BranchRecord& record = in.view.record;
   cekf::CompressedEkf filter = in.filter;
   filter.restore(record.trigger.filter);
-  Tape tape = record.tape.with_jump(record.trigger.position, jump_from(filter.pose(), in.place.T_map_branch));
+  double driven_since_m = 0.0;
+  record.tape.read_from(record.trigger.position, [&](const Tape::Entry& entry) {
+    if (const auto* motion = std::get_if<Tape::Motion>(&entry)) driven_since_m += motion->driven_m;
+  });
+  const core::Odometry jump = jump_from(filter.pose(), in.place.T_map_branch, driven_since_m, reach_of(in.view));
+  Tape tape = record.tape.with_jump(record.trigger.position, jump);
   filter = in.filter;
   result.closing = replay_with_pairs(filter, {record.trigger, tape}, kept_removed(in.place.pairs), in.branch,
                                      in.view.search.old_landmarks(), in.options, {});

@@ -58,6 +58,14 @@ void NavigationLoop::fit_to(const core::FieldOfView& view) {
 
 StepReport NavigationLoop::observe(const Scan& scan) {
   fit_to(scan.field_of_view);
+  const auto carried = find_carried(scan);
+  const double driven_m = pending_.driven_m;
+  StepReport report = carried ? observe_elsewhere(scan, *carried) : observe_here(scan);
+  rhythm_.note(scan.t_ns, driven_m);
+  return report;
+}
+
+StepReport NavigationLoop::observe_here(const Scan& scan) {
   const bool is_thinned = scan.observations.size() > core::most_observations_used;
   StepReport report = is_thinned ? observe_thinned(scan) : take_step(scan, nullptr);
   name_revised(report);

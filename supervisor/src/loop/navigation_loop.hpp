@@ -19,6 +19,7 @@
 #include "loop/tape.hpp"
 #include "noise/noise_learner.hpp"
 #include "placing/maps_apart.hpp"
+#include "placing/scan_rhythm.hpp"
 #include "placing/session_question.hpp"
 #include "search/whole_map_questions.hpp"
 #include "slip/slip_decision.hpp"
@@ -71,7 +72,20 @@ class NavigationLoop {
     std::optional<std::pair<std::shared_ptr<const DriveMap>, Window>> drive = {};
   };
 
+  /// All that a part of the drive has of its own.
+  struct Part {
+    core::PoseGaussian start;
+    Belief belief;
+    Tape tape;
+    Mode mode;
+    Pending pending;
+    WholeMapQuestions questions;
+    MapsApart apart;
+    NoiseLearner noise;
+  };
+
   // loop/navigation_loop.cpp
+  core::StepReport observe_here(const core::Scan& scan);
   void fit_to(const core::FieldOfView& view);
   core::StepReport take_step(const core::Scan& scan, const core::Decision* note);
   core::StepReport take_as_assumed(const core::Scan& scan);
@@ -166,6 +180,10 @@ class NavigationLoop {
   // placing/carried.cpp
   core::JointMap map_to_keep(core::CarriedDecision& decision) const;
   Belief belief_elsewhere() const;
+  Part part_elsewhere(core::CarriedDecision decision) const;
+  void exchange(Part& other) noexcept;
+  std::optional<core::CarriedDecision> find_carried(const core::Scan& scan) const;
+  core::StepReport observe_elsewhere(const core::Scan& scan, const core::CarriedDecision& decision);
 
   // loop/process_again.hpp
   template <class AfterFix, class AfterScan>
@@ -193,6 +211,7 @@ class NavigationLoop {
   Mode mode_;
   Pending pending_;
   Undo undo_;
+  ScanRhythm rhythm_;
   std::uint64_t searches_ = 0;
   WholeMapQuestions questions_;
   WholeMapQuestions questions_before_;  ///< this call, for recover()

@@ -6,12 +6,15 @@
 #include <vector>
 
 #include "helixnav/supervisor/joint_map.hpp"
+#include "helixnav/supervisor/lengths.hpp"
 #include "loop/navigation_loop.hpp"
+#include "placing/still_there.hpp"
 
 namespace helixnav::supervisor {
 namespace {
 
 using core::LandmarkId;
+using core::StepReport;
 
 constexpr std::size_t least_to_keep = 5;    ///< pairs that a place has at least
 constexpr std::size_t most_to_keep = 3000;  ///< joint covariance of 290 MB
@@ -64,8 +67,8 @@ Belief NavigationLoop::belief_elsewhere() const {
           belief_.step};
 }
 
-void NavigationLoop::lose(const core::Lost&) {
-  core::CarriedDecision decision;
+/// Nothing of the loop is changed.
+NavigationLoop::Part NavigationLoop::part_elsewhere(core::CarriedDecision decision) const {
   core::JointMap map = map_to_keep(decision);
   Belief belief = belief_elsewhere();
   belief.filter.name_from(map.next_name);
@@ -88,18 +91,70 @@ void NavigationLoop::lose(const core::Lost&) {
   Mode mode = Mapping{{}, take_checkpoint(belief, tape), {}};
   WholeMapQuestions questions;
   questions.asked.questions = questions_.asked.questions;
+  NoiseLearner noise = noise_;
+  noise.moved.setZero();
+  noise.scale.applied_observations = noise.scale.observations();
+  noise.scale.applied_odometry = noise.scale.odometry();
+  return {{},
+          std::move(belief),
+          std::move(tape),
+          std::move(mode),
+          std::move(pending),
+          std::move(questions),
+          std::move(apart),
+          std::move(noise)};
+}
 
-  // Nothing below throws.
-  start_ = {};
-  belief_ = std::move(belief);
-  tape_ = std::move(tape);
-  mode_ = std::move(mode);
-  pending_ = std::move(pending);
-  questions_ = std::move(questions);
-  apart_ = std::move(apart);
-  noise_.moved.setZero();
-  noise_.scale.applied_observations = noise_.scale.observations();
-  noise_.scale.applied_odometry = noise_.scale.odometry();
+void NavigationLoop::exchange(Part& other) noexcept {
+  std::swap(start_, other.start);
+  std::swap(belief_, other.belief);
+  std::swap(tape_, other.tape);
+  std::swap(mode_, other.mode);
+  pending_.motion.swap(other.pending.motion);
+  std::swap(pending_.driven_m, other.pending.driven_m);
+  pending_.decisions.swap(other.pending.decisions);
+  std::swap(pending_.numerics, other.pending.numerics);
+  std::swap(questions_, other.questions);
+  std::swap(apart_, other.apart);
+  std::swap(noise_, other.noise);
+}
+
+void NavigationLoop::lose(const core::Lost&) {
+  Part elsewhere = part_elsewhere({});
+  exchange(elsewhere);
+}
+
+/// Where scans came at a steady rate, then none for long while the wheels stood still, and none of what was in view is there.
+std::optional<core::CarriedDecision> NavigationLoop::find_carried(const core::Scan& scan) const {
+  if (!is_monitored() || !rhythm_.is_pause(scan.t_ns, pending_.driven_m)) return std::nullopt;
+  constexpr double some_scans = 3.0;
+  const double lately_m = std::max(options_.life.look_distance_m, some_scans * rhythm_.driven_mean_m());
+  const core::Pose2 T_before_now = pending_.motion ? pending_.motion->T_before_after : core::Pose2{};
+  const double extraneous_per_scan =
+      with_extraneous_density(options_.search, belief_.existence.born_per_scan(), view_).extraneous_per_scan;
+  const StillThere there =
+      still_there(belief_.filter, belief_.existence, T_before_now, scan, lately_m, extraneous_per_scan, options_);
+  const IntegrityLimits& limits = options_.search.integrity;
+  if (there.elsewhere_nats < limits.nats || there.unknown < limits.spawned || there.missing == 0) return std::nullopt;
+  core::CarriedDecision decision;
+  decision.is_found_out = true;
+  decision.missing = there.missing;
+  decision.seen = there.seen;
+  decision.unknown = there.unknown;
+  decision.elsewhere_nats = there.elsewhere_nats;
+  return decision;
+}
+
+/// As observe(), from a part of the drive that begins with this scan.
+StepReport NavigationLoop::observe_elsewhere(const core::Scan& scan, const core::CarriedDecision& decision) {
+  Part other = part_elsewhere(decision);
+  exchange(other);
+  try {
+    return observe_here(scan);
+  } catch (...) {
+    exchange(other);
+    throw;
+  }
 }
 
 }  // namespace helixnav::supervisor

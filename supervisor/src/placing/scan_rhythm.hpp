@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+#include "helixnav/core/time.hpp"
+
+namespace helixnav::supervisor {
+
+/// How often scans come and how far the vehicle drives between two of them, and hence what is a pause.
+class ScanRhythm {
+ public:
+  /// Ten times as long as the scans of this drive are apart in the mean, and driven no farther than twice the mean, pauses
+  /// left out; not before twenty intervals are known.
+  bool is_pause(core::Nanoseconds until_ns, double driven_m) const {
+    constexpr double longer = 10.0, farther = 2.0;
+    constexpr int enough = 20;
+    return last_ns_ && intervals_ >= enough && driven_m <= farther * driven_mean_m() &&
+           static_cast<double>(until_ns - *last_ns_) > longer * sum_ns_ / intervals_;
+  }
+
+  double driven_mean_m() const { return intervals_ > 0 ? sum_m_ / intervals_ : 0.0; }
+
+  void note(core::Nanoseconds t_ns, double driven_m) {
+    if (last_ns_ && !is_pause(t_ns, driven_m)) {
+      sum_ns_ += static_cast<double>(std::max<core::Nanoseconds>(0, t_ns - *last_ns_));
+      sum_m_ += driven_m;
+      ++intervals_;
+    }
+    last_ns_ = t_ns;
+  }
+
+ private:
+  std::optional<core::Nanoseconds> last_ns_;
+  double sum_ns_ = 0.0;
+  double sum_m_ = 0.0;
+  int intervals_ = 0;
+};
+
+}  // namespace helixnav::supervisor

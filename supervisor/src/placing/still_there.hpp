@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "helixnav/association/landmark_life.hpp"
+#include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/events.hpp"
+#include "helixnav/supervisor/navigator_options.hpp"
+
+namespace helixnav::supervisor {
+
+/// What was in view before a pause, and what is in view after it.
+struct StillThere {
+  int seen = 0;     ///< landmarks of before with an observation in their gate
+  int missing = 0;  ///< those without, that should be in view
+  int unknown = 0;  ///< observations in no gate
+  /// ln P(scan | anywhere) / P(scan | where it stopped): anywhere a scan is a Poisson process of as many observations as scans of
+  /// this drive have in the mean; where it stopped, one of `extraneous_per_scan` and the landmarks, each detected or not.
+  double elsewhere_nats = 0.0;
+};
+
+/// The landmarks that were in view when the vehicle stopped (within `lately_m` of its drive) against the first scan after the
+/// pause, as from the pose of before and the motion that was measured meanwhile. O(landmarks in view · observations).
+/// Test: supervisor/found_carried_test.cpp.
+StillThere still_there(const cekf::CompressedEkf& filter, const association::LandmarkLife& existence,
+                       const core::Pose2& T_before_now, const core::Scan& scan, double lately_m,
+                       double extraneous_per_scan, const NavigatorOptions& options);
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A vehicle that was carried while nothing was measured and nobody said so.
+#include <algorithm>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "circuits.hpp"
+#include "pauses.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+struct Driven {
+  std::vector<core::CarriedDecision> carried;
+  std::vector<std::size_t> carried_at;  ///< scans
+  int placed = 0;
+  std::size_t mature = 0;
+  double error_at_end_m = 0.0;
+};
+
+Driven drive_all(const core::Recording& run, const NavigatorOptions& options = {}) {
+  Driven driven;
+  Navigator navigator(run.start, options);
+  drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
+    for (const core::Decision& decision : navigator.observe(scan).decisions) {
+      const auto* placed = std::get_if<core::PlacedDecision>(&decision);
+      driven.placed += placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted;
+      if (const auto* carried = std::get_if<core::CarriedDecision>(&decision)) {
+        driven.carried.push_back(*carried);
+        driven.carried_at.push_back(i);
+      }
+    }
+  });
+  for (const core::MapLandmark& one : navigator.map()) driven.mature += one.state == core::LandmarkState::mature;
+  const core::Pose2& truth = run.true_poses.back().T_world_robot;
+  driven.error_at_end_m = (navigator.pose().mean.position_m() - truth.position_m()).norm();
+  return driven;
+}
+
+/// A minute passes before every so many scans from the hundredth on, the vehicle standing still.
+core::Recording with_waits(const core::Recording& run, std::size_t every) {
+  constexpr core::Nanoseconds long_ns = 60'000'000'000;
+  core::Recording waiting = run;
+  std::size_t scans = 0;
+  for (std::size_t i = 0; i < waiting.events.size(); ++i) {
+    if (!std::holds_alternative<core::Scan>(waiting.events[i])) continue;
+    if (++scans > 100 && scans % every == 0) wait_before(waiting, i, long_ns);
+  }
+  return waiting;
+}
+
+TEST(FoundCarried, ByTheFirstScanAfterThePause) {
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Driven driven = drive_all(with_pauses(sim::simulate(wide_circuit(), seed), {{220, 290}}, false));
+    ASSERT_EQ(driven.carried.size(), 1u);
+    EXPECT_EQ(driven.carried_at[0], 220u);
+    const core::CarriedDecision& carried = driven.carried[0];
+    EXPECT_TRUE(carried.is_found_out);
+    EXPECT_GT(carried.missing, carried.seen);
+    EXPECT_GT(carried.unknown, 0);
+    EXPECT_GT(carried.elsewhere_nats, NavigatorOptions{}.search.integrity.nats);
+    EXPECT_GE(carried.landmarks, 20);
+    EXPECT_EQ(driven.placed, 1);
+    EXPECT_LT(driven.error_at_end_m, 0.8);
+    EXPECT_LE(driven.mature, 26u) << "25 stand there: one map, not two";
+  }
+}
+
+TEST(FoundCarried, IsSilentWhereAnEventSaysItToo) {
+  core::Recording run = with_pauses(sim::simulate(wide_circuit(), 1), {{220, 290}}, true);
+  Navigator navigator(run.start);
+  int carried = 0;
+  for (const core::Event& event : run.events) {
+    const auto report = navigator.take(event);
+    if (!report) continue;
+    for (const core::Decision& decision : report->decisions) {
+      const auto* one = std::get_if<core::CarriedDecision>(&decision);
+      if (one == nullptr) continue;
+      ++carried;
+      EXPECT_FALSE(one->is_found_out);
+    }
+  }
+  EXPECT_EQ(carried, 1);
+}
+
+/// 600 pauses: at one false alarm in 200 of them, none is seen by a chance of 5 %.
+TEST(FoundCarried, NotWhereItStopped) {
+  int carried = 0;
+  for (std::uint64_t seed = 101; seed <= 120; ++seed) {
+    carried += static_cast<int>(drive_all(with_waits(sim::simulate(wide_circuit(), seed), 10)).carried.size());
+  }
+  EXPECT_EQ(carried, 0);
+}
+
+/// As where a log has no clock, or its sensor never stops: nothing is asked of a scan that came in time.
+TEST(FoundCarried, NotWithoutAPause) {
+  const core::Recording run = without_waiting(with_pauses(sim::simulate(wide_circuit(), 1), {{220, 290}}, false));
+  EXPECT_TRUE(drive_all(run).carried.empty());
+}
+
+TEST(FoundCarried, NotWithoutTheMonitor) {
+  NavigatorOptions options;
+  options.search.integrity.enabled = false;
+  EXPECT_TRUE(drive_all(with_pauses(sim::simulate(wide_circuit(), 1), {{220, 290}}, false), options).carried.empty());
+}
+
+}  // namespace
+}  // namespace helixnav::supervisor
