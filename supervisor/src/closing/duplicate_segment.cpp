@@ -19,6 +19,8 @@ using pf_relocalize::Constellation;
 using pf_relocalize::ConstellationPair;
 
 constexpr std::size_t most_anchors = 6;
+// Ten times what orchards need. A stretch that may be nearly anywhere is for the whole map to place (search/whole_map).
+constexpr std::size_t most_placings = 1000;
 // χ² of what a copy may be. To first order the true one was beyond 9.2 for most trees of a stretch in one of 50 orchards;
 // the cost of merging, which is iterated, was 41 for 42 degrees of freedom there.
 constexpr double wide_gate = 40.0;
@@ -90,15 +92,18 @@ class Stretch {
 
   bool holds(LandmarkId id) const { return at_m_.count(id) > 0; }
 
-  /// Every place that brings two far apart copies onto old landmarks that they may be.
+  /// Every place that brings two far apart copies onto old landmarks that they may be; none where there are too many.
   std::vector<Placing> placings(const std::vector<Copy>& copies) const {
     std::vector<Copy> far = copies;
     std::sort(far.begin(), far.end(),
               [&](const Copy& a, const Copy& b) { return at_m_.at(a.id).norm() > at_m_.at(b.id).norm(); });
     const std::size_t anchors = std::min(most_anchors, copies.size() / 2);
     std::vector<Placing> found;
+    std::size_t tried = 0;
     for (std::size_t i = 0; i < anchors; ++i) {
-      for (std::size_t j = 0; j < anchors; ++j) add_placings(copies[i], far[j], found);
+      for (std::size_t j = 0; j < anchors; ++j) {
+        if (!add_placings(copies[i], far[j], found, tried)) return {};
+      }
     }
     return found;
   }
@@ -114,8 +119,9 @@ class Stretch {
   }
 
  private:
-  void add_placings(const Copy& a, const Copy& b, std::vector<Placing>& found) const {
-    if (a.id == b.id) return;
+  /// False where there are too many to try.
+  bool add_placings(const Copy& a, const Copy& b, std::vector<Placing>& found, std::size_t& tried) const {
+    if (a.id == b.id) return true;
     const Eigen::Vector2d& a_m = at_m_.at(a.id);
     const Eigen::Vector2d& b_m = at_m_.at(b.id);
     for (const Leftover& to_a : a.may_be) {
@@ -123,6 +129,7 @@ class Stretch {
         const Eigen::Vector2d to_a_m = filter_.landmark_mean(to_a.kept);
         const Eigen::Vector2d to_b_m = filter_.landmark_mean(to_b.kept);
         if (std::abs((to_b_m - to_a_m).norm() - (b_m - a_m).norm()) > options_.stretch_rigid_m) continue;
+        if (++tried > most_placings) return false;
         Placing placing{motion_between(a_m, b_m, to_a_m, to_b_m), {}};
         placing.pairs = score_constellation(ground_, placing.T_world_stretch, options_.constellation).pairs;
         const bool known = std::any_of(found.begin(), found.end(),
@@ -131,6 +138,7 @@ class Stretch {
         if (enough && !known) found.push_back(std::move(placing));
       }
     }
+    return true;
   }
 
   /// Landmarks of either drive on ground that both looked at, with no partner.
