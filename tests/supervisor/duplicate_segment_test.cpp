@@ -104,9 +104,7 @@ TEST(DuplicateSegment, StaysWhereNothingTellsOnePitchFromAnother) {
 }
 
 /// Its cost is bounded: one step took more than ten minutes where a jump had left a stretch that uncertain.
-TEST(DuplicateSegment, StaysWhereItMayBeNearlyAnywhere) {
-  EXPECT_TRUE(Orchard(80, 0, 8, 2.0, 100.0).placed().empty());
-}
+TEST(DuplicateSegment, StaysWhereItMayBeNearlyAnywhere) { EXPECT_TRUE(Orchard(80, 0, 8, 2.0, 100.0).placed().empty()); }
 
 TEST(DuplicateSegment, IsNothingWithoutCopies) {
   Orchard orchard(6, 0, 5, 0.0, 0.5);

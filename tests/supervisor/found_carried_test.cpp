@@ -11,7 +11,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-struct Driven {
+struct Found {
   std::vector<core::CarriedDecision> carried;
   std::vector<std::size_t> carried_at;  ///< scans
   int placed = 0;
@@ -19,8 +19,8 @@ struct Driven {
   double error_at_end_m = 0.0;
 };
 
-Driven drive_all(const core::Recording& run, const NavigatorOptions& options = {}) {
-  Driven driven;
+Found drive_through(const core::Recording& run, const NavigatorOptions& options = {}) {
+  Found driven;
   Navigator navigator(run.start, options);
   drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
     for (const core::Decision& decision : navigator.observe(scan).decisions) {
@@ -53,7 +53,7 @@ core::Recording with_waits(const core::Recording& run, std::size_t every) {
 TEST(FoundCarried, ByTheFirstScanAfterThePause) {
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u}) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const Driven driven = drive_all(with_pauses(sim::simulate(wide_circuit(), seed), {{220, 290}}, false));
+    const Found driven = drive_through(with_pauses(sim::simulate(wide_circuit(), seed), {{220, 290}}, false));
     ASSERT_EQ(driven.carried.size(), 1u);
     EXPECT_EQ(driven.carried_at[0], 220u);
     const core::CarriedDecision& carried = driven.carried[0];
@@ -89,7 +89,7 @@ TEST(FoundCarried, IsSilentWhereAnEventSaysItToo) {
 TEST(FoundCarried, NotWhereItStopped) {
   int carried = 0;
   for (std::uint64_t seed = 101; seed <= 120; ++seed) {
-    carried += static_cast<int>(drive_all(with_waits(sim::simulate(wide_circuit(), seed), 10)).carried.size());
+    carried += static_cast<int>(drive_through(with_waits(sim::simulate(wide_circuit(), seed), 10)).carried.size());
   }
   EXPECT_EQ(carried, 0);
 }
@@ -97,13 +97,14 @@ TEST(FoundCarried, NotWhereItStopped) {
 /// As where a log has no clock, or its sensor never stops: nothing is asked of a scan that came in time.
 TEST(FoundCarried, NotWithoutAPause) {
   const core::Recording run = without_waiting(with_pauses(sim::simulate(wide_circuit(), 1), {{220, 290}}, false));
-  EXPECT_TRUE(drive_all(run).carried.empty());
+  EXPECT_TRUE(drive_through(run).carried.empty());
 }
 
 TEST(FoundCarried, NotWithoutTheMonitor) {
   NavigatorOptions options;
   options.search.integrity.enabled = false;
-  EXPECT_TRUE(drive_all(with_pauses(sim::simulate(wide_circuit(), 1), {{220, 290}}, false), options).carried.empty());
+  EXPECT_TRUE(
+      drive_through(with_pauses(sim::simulate(wide_circuit(), 1), {{220, 290}}, false), options).carried.empty());
 }
 
 }  // namespace

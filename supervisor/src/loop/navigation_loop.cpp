@@ -58,10 +58,14 @@ void NavigationLoop::fit_to(const core::FieldOfView& view) {
 
 StepReport NavigationLoop::observe(const Scan& scan) {
   fit_to(scan.field_of_view);
-  const auto carried = find_carried(scan);
+  const IntegrityLimits& limits = options_.search.integrity;
+  const std::optional<double> paused_m = pause_to_weigh(scan);
+  const StillThere there = paused_m ? weigh_pause(scan, *paused_m) : StillThere{};
   const double driven_m = pending_.driven_m;
-  StepReport report = carried ? observe_elsewhere(scan, *carried) : observe_here(scan);
+  const bool is_carried = there.is_elsewhere(limits);
+  StepReport report = is_carried ? observe_elsewhere(scan, there) : observe_here(scan);
   rhythm_.note(scan.t_ns, driven_m);
+  pause_m_ = is_carried || there.is_here(limits) ? std::nullopt : paused_m;
   return report;
 }
 

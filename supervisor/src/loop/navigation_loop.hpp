@@ -21,6 +21,7 @@
 #include "placing/maps_apart.hpp"
 #include "placing/scan_rhythm.hpp"
 #include "placing/session_question.hpp"
+#include "placing/still_there.hpp"
 #include "search/whole_map_questions.hpp"
 #include "slip/slip_decision.hpp"
 #include "smoothing/smooth_drive.hpp"
@@ -182,8 +183,9 @@ class NavigationLoop {
   Belief belief_elsewhere() const;
   Part part_elsewhere(core::CarriedDecision decision) const;
   void exchange(Part& other) noexcept;
-  std::optional<core::CarriedDecision> find_carried(const core::Scan& scan) const;
-  core::StepReport observe_elsewhere(const core::Scan& scan, const core::CarriedDecision& decision);
+  std::optional<double> pause_to_weigh(const core::Scan& scan) const;
+  StillThere weigh_pause(const core::Scan& scan, double paused_m) const;
+  core::StepReport observe_elsewhere(const core::Scan& scan, const StillThere& there);
 
   // loop/process_again.hpp
   template <class AfterFix, class AfterScan>
@@ -212,6 +214,7 @@ class NavigationLoop {
   Pending pending_;
   Undo undo_;
   ScanRhythm rhythm_;
+  std::optional<double> pause_m_;  ///< where on the drive a pause was of which no scan has told yet
   std::uint64_t searches_ = 0;
   WholeMapQuestions questions_;
   WholeMapQuestions questions_before_;  ///< this call, for recover()

@@ -122,31 +122,35 @@ void NavigationLoop::exchange(Part& other) noexcept {
 void NavigationLoop::lose(const core::Lost&) {
   Part elsewhere = part_elsewhere({});
   exchange(elsewhere);
+  rhythm_.lose_last();
+  pause_m_.reset();
 }
 
-/// Where scans came at a steady rate, then none for long while the wheels stood still, and none of what was in view is there.
-std::optional<core::CarriedDecision> NavigationLoop::find_carried(const core::Scan& scan) const {
-  if (!is_monitored() || !rhythm_.is_pause(scan.t_ns, pending_.driven_m)) return std::nullopt;
+/// Where on the drive the pause was of which this scan may tell: the one that ends with it, or one that the scans since have left
+/// undecided.
+std::optional<double> NavigationLoop::pause_to_weigh(const core::Scan& scan) const {
+  if (!is_monitored()) return std::nullopt;
+  if (rhythm_.is_pause(scan.t_ns, pending_.driven_m)) return belief_.existence.path_m();
+  if (!pause_m_) return std::nullopt;
+  const double driven_m = belief_.existence.path_m() + pending_.driven_m - *pause_m_;
+  return driven_m <= options_.search.rest_m ? pause_m_ : std::nullopt;
+}
+
+StillThere NavigationLoop::weigh_pause(const core::Scan& scan, double paused_m) const {
   constexpr double some_scans = 3.0;
   const double lately_m = std::max(options_.life.look_distance_m, some_scans * rhythm_.driven_mean_m());
   const core::Pose2 T_before_now = pending_.motion ? pending_.motion->T_before_after : core::Pose2{};
-  const double extraneous_per_scan =
-      with_extraneous_density(options_.search, belief_.existence.born_per_scan(), view_).extraneous_per_scan;
-  const StillThere there =
-      still_there(belief_.filter, belief_.existence, T_before_now, scan, lately_m, extraneous_per_scan, options_);
-  const IntegrityLimits& limits = options_.search.integrity;
-  if (there.elsewhere_nats < limits.nats || there.unknown < limits.spawned || there.missing == 0) return std::nullopt;
+  return still_there(belief_.filter, belief_.existence, T_before_now, scan, {paused_m - lately_m, paused_m}, options_);
+}
+
+/// As observe(), from a part of the drive that begins with this scan.
+StepReport NavigationLoop::observe_elsewhere(const core::Scan& scan, const StillThere& there) {
   core::CarriedDecision decision;
   decision.is_found_out = true;
   decision.missing = there.missing;
   decision.seen = there.seen;
   decision.unknown = there.unknown;
   decision.elsewhere_nats = there.elsewhere_nats;
-  return decision;
-}
-
-/// As observe(), from a part of the drive that begins with this scan.
-StepReport NavigationLoop::observe_elsewhere(const core::Scan& scan, const core::CarriedDecision& decision) {
   Part other = part_elsewhere(decision);
   exchange(other);
   try {

@@ -31,6 +31,9 @@ class ScanRhythm {
     last_ns_ = t_ns;
   }
 
+  /// The time until the next scan is no pause.
+  void lose_last() { last_ns_.reset(); }
+
  private:
   std::optional<core::Nanoseconds> last_ns_;
   double sum_ns_ = 0.0;

@@ -35,34 +35,37 @@ std::vector<Met> met_landmarks(const InnovationProblem& problem) {
 }  // namespace
 
 StillThere still_there(const cekf::CompressedEkf& filter, const association::LandmarkLife& existence,
-                       const core::Pose2& T_before_now, const core::Scan& scan, double lately_m,
-                       double extraneous_per_scan, const NavigatorOptions& options) {
+                       const core::Pose2& T_before_now, const core::Scan& scan, const PathInterval& stopped,
+                       const NavigatorOptions& options) {
   core::Scan from_before = scan;
   from_before.T_robot_sensor = core::compose(T_before_now, scan.T_robot_sensor);
-  std::vector<LandmarkId> expected = expected_in_view(filter, from_before, options.view_margin_m);
-  const auto not_lately = [&](LandmarkId id) {
+  std::vector<LandmarkId> in_view = expected_in_view(filter, from_before, options.view_margin_m);
+  const auto was_not_seen_then = [&](LandmarkId id) {
     const association::LandmarkRecord& record = existence.record(id);
-    return record.state != core::LandmarkState::mature || existence.path_m() - record.last_seen_path_m > lately_m;
+    return record.born_path_m > stopped.until_m || record.last_seen_path_m < stopped.from_m;
   };
-  expected.erase(std::remove_if(expected.begin(), expected.end(), not_lately), expected.end());
+  in_view.erase(std::remove_if(in_view.begin(), in_view.end(), was_not_seen_then), in_view.end());
 
-  const core::JointGaussian joint = filter.joint(expected);
+  const core::JointGaussian joint = filter.joint(in_view);
   const InnovationProblem problem = association::make_innovation_problem(joint, from_before);
+  const double extraneous_per_scan = options.extraneous_per_scan;
   const double anywhere_per_scan = std::max(existence.seen_per_scan(), extraneous_per_scan);
   const association::ExtraneousDensity anywhere = association::density_in_view(scan, anywhere_per_scan, {});
   const double missing_nats = options.search.integrity.missing_nats;
   const double detected = 1.0 - std::exp(-missing_nats);
   StillThere there;
   there.elsewhere_nats = extraneous_per_scan - anywhere_per_scan;
-  for (const Met& met : met_landmarks(problem)) {
-    if (met.observation < 0) {
-      ++there.missing;
-      there.elsewhere_nats += missing_nats;
+  const std::vector<Met> met = met_landmarks(problem);
+  for (std::size_t k = 0; k < met.size(); ++k) {
+    if (met[k].observation < 0) {
+      const bool is_mature = existence.record(problem.ids[k]).state == core::LandmarkState::mature;
+      there.missing += is_mature;
+      there.elsewhere_nats += is_mature ? missing_nats : 0.0;
       continue;
     }
     ++there.seen;
-    const GatedObservation& observation = problem.observations[static_cast<std::size_t>(met.observation)];
-    there.elsewhere_nats += std::log(anywhere.of(observation.kind) / detected) - met.log_likelihood;
+    const GatedObservation& observation = problem.observations[static_cast<std::size_t>(met[k].observation)];
+    there.elsewhere_nats += std::log(anywhere.of(observation.kind) / detected) - met[k].log_likelihood;
   }
   for (const GatedObservation& observation : problem.observations) {
     if (observation.begin < observation.end) continue;

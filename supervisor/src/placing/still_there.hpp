@@ -11,18 +11,30 @@ namespace helixnav::supervisor {
 /// What was in view before a pause, and what is in view after it.
 struct StillThere {
   int seen = 0;     ///< landmarks of before with an observation in their gate
-  int missing = 0;  ///< those without, that should be in view
+  int missing = 0;  ///< mature ones without, that should be in view
   int unknown = 0;  ///< observations in no gate
-  /// ln P(scan | anywhere) / P(scan | where it stopped): anywhere a scan is a Poisson process of as many observations as scans of
-  /// this drive have in the mean; where it stopped, one of `extraneous_per_scan` and the landmarks, each detected or not.
+  /// ln P(scan | anywhere) / P(scan | where it stopped). Anywhere a scan is a Poisson process of as many observations as scans of
+  /// this drive have in the mean; where it stopped, one of as many extraneous ones as association assumes, and the landmarks,
+  /// each detected or not.
   double elsewhere_nats = 0.0;
+
+  /// An empty scan may be a sensor that is still starting.
+  bool is_elsewhere(const IntegrityLimits& limits) const {
+    return elsewhere_nats >= limits.nats && unknown >= limits.spawned;
+  }
+  bool is_here(const IntegrityLimits& limits) const { return elsewhere_nats <= -limits.nats; }
 };
 
-/// The landmarks that were in view when the vehicle stopped (within `lately_m` of its drive) against the first scan after the
-/// pause, as from the pose of before and the motion that was measured meanwhile. O(landmarks in view · observations).
-/// Test: supervisor/found_carried_test.cpp.
+/// By the length of the drive until then.
+struct PathInterval {
+  double from_m, until_m;
+};
+
+/// The landmarks that were in view when the vehicle stopped (begun until the end of the stretch, and seen since its begin) against
+/// a scan after the pause, as from the pose of before and the motion that was measured since.
+/// O(landmarks in view · observations). Test: supervisor/found_carried_test.cpp.
 StillThere still_there(const cekf::CompressedEkf& filter, const association::LandmarkLife& existence,
-                       const core::Pose2& T_before_now, const core::Scan& scan, double lately_m,
-                       double extraneous_per_scan, const NavigatorOptions& options);
+                       const core::Pose2& T_before_now, const core::Scan& scan, const PathInterval& stopped,
+                       const NavigatorOptions& options);
 
 }  // namespace helixnav::supervisor
