@@ -72,19 +72,22 @@ core::Pose2 NamedDrive::T_entry_exit(double length_m) const {
   return T_entry_robot;
 }
 
-void NamedDrive::close_phase(double length_m, const atlas::PointPrior* known) {
+bool NamedDrive::close_phase(double length_m, const atlas::PointPrior* known) {
   const auto end = stops_.begin() + static_cast<std::ptrdiff_t>(stops_of_phase(length_m));
   const std::vector<DrivePhase> phases = phases_of({stops_.begin(), end}, std::nullopt, length_m, begins_, all_names());
   std::vector<core::LandmarkId> seen = atlas::landmarks_of(*phases.back().log);
   const bool is_on_old_ground = comes_back(seen);
   atlas::Atlas atlas = atlas_;
   add(phases, known, atlas);
-  if (is_on_old_ground && !on_old_ground_) settle_closing(atlas);
+  const bool closes = is_on_old_ground && !on_old_ground_;
+  const bool waits = closes && !settle_closing(atlas);
   atlas_ = std::move(atlas);
   stops_.erase(stops_.begin(), end);
   begins_ = false;
+  phases_ += static_cast<int>(phases.size());
   on_old_ground_ = is_on_old_ground;
   seen_last_ = std::move(seen);
+  return !waits;
 }
 
 /// To landmarks that are known, and not from the phase before.
@@ -100,10 +103,12 @@ bool NamedDrive::comes_back(const std::vector<core::LandmarkId>& seen) const {
 
 /// A closing is solved with the first phase on old ground: from a drive that is not closed, several at once may not be found.
 /// What cannot be solved yet waits.
-void NamedDrive::settle_closing(atlas::Atlas& atlas) {
+bool NamedDrive::settle_closing(atlas::Atlas& atlas) {
   try {
     atlas.settle();
+    return true;
   } catch (const core::NumericalError&) {
+    return false;
   }
 }
 
@@ -117,7 +122,10 @@ void NamedDrive::add(const std::vector<DrivePhase>& phases, const atlas::PointPr
 }
 
 void NamedDrive::settle(double length_m, const atlas::PointPrior* known) {
-  add(phases_of({stops_.begin(), stops_.end()}, motion_, length_m, begins_, all_names()), known, atlas_);
+  const std::vector<DrivePhase> phases =
+      phases_of({stops_.begin(), stops_.end()}, motion_, length_m, begins_, all_names());
+  add(phases, known, atlas_);
+  phases_ += static_cast<int>(phases.size());
   stops_.clear();
   motion_.reset();
   begins_ = false;

@@ -42,8 +42,9 @@ class NamedDrive {
 
   /// The stops since the last phase are a whole one.
   bool has_phase(double length_m) const;
-  /// Puts one into the atlas. `known`: landmarks in the frame of its entry, where it is looked for. Strong guarantee.
-  void close_phase(double length_m, const atlas::PointPrior* known);
+  /// Puts one into the atlas. `known`: landmarks in the frame of its entry, where it is looked for. False where that closed the
+  /// drive and could not be solved: it waits. Strong guarantee.
+  bool close_phase(double length_m, const atlas::PointPrior* known);
   /// Motion by odometry over the stops that close_phase would take, or over all as long as they are no whole phase.
   core::Pose2 T_entry_exit(double length_m) const;
 
@@ -51,16 +52,18 @@ class NamedDrive {
   /// away.
   void settle(double length_m, const atlas::PointPrior* known);
   const atlas::Atlas& atlas() const { return atlas_; }
+  int phases() const { return phases_; }  ///< in the atlas, settled or not
 
  private:
   std::size_t stops_of_phase(double length_m) const;
   bool comes_back(const std::vector<core::LandmarkId>& seen) const;
-  static void settle_closing(atlas::Atlas& atlas);
+  static bool settle_closing(atlas::Atlas& atlas);
   void add(const std::vector<DrivePhase>& phases, const atlas::PointPrior* known, atlas::Atlas& atlas) const;
 
   int most_stops_;
   bool kept_;
   atlas::Atlas atlas_;
+  int phases_ = 0;
   bool begins_ = true;                       ///< the atlas has no phase yet
   bool on_old_ground_ = false;               ///< the last phase came back to known landmarks, …
   std::vector<core::LandmarkId> seen_last_;  ///< … and what it saw
