@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "association/view_area.hpp"
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/errors.hpp"
 
@@ -99,11 +100,6 @@ double views_around(const core::FieldOfView& view) {
   return width_rad > 0.0 ? std::max(2.0, std::round(2.0 * core::pi / width_rad)) : 2.0;
 }
 
-double area_m2(const core::FieldOfView& view) {
-  return 0.5 * (view.max_bearing_rad - view.min_bearing_rad) *
-         (view.max_range_m * view.max_range_m - view.min_range_m * view.min_range_m);
-}
-
 }  // namespace
 
 NavigatorOptions fit_lengths(NavigatorOptions options, const core::FieldOfView& view) {
@@ -136,7 +132,7 @@ SearchOptions with_extraneous_density(SearchOptions search, double born_per_scan
   constexpr double least_per_scan = 0.01;  // a count of zero is no estimate
   search.extraneous_per_scan = std::max(least_per_scan, born_per_scan);
   search.relocalizer.sensor.extraneous_per_scan = search.extraneous_per_scan;
-  const double area = area_m2(view);
+  const double area = view_area_m2(view);
   if (area > 0.0 && std::isfinite(area)) search.rivals.extraneous_per_m2 = search.extraneous_per_scan / area;
   return search;
 }

@@ -3,14 +3,13 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <initializer_list>
 #include <system_error>
 
+#include "common/append_cells.hpp"
 #include "drive/earlier_session.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/files/file.hpp"
-#include "helixnav/files/number_text.hpp"
 #include "helixnav/runs/map_folder.hpp"
 #include "helixnav/runs/run_folder.hpp"
 #include "helixnav/runs/run_manifest.hpp"
@@ -19,13 +18,6 @@ namespace helixnav::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-void append(std::string& text, std::initializer_list<double> numbers) {
-  for (const double number : numbers) {
-    text += ',';
-    files::append_number(text, number);
-  }
-}
 
 std::string quoted(const std::string& name) {
   std::string text = "\"";
@@ -41,10 +33,10 @@ std::string joins_table(const std::vector<std::string>& runs, const supervisor::
     const core::PlacedDecision& decision = session.decision;
     const core::Pose2& T = session.T_component_session;
     text += quoted(runs[k]) + ',' + std::to_string(session.component + 1) + ',' + core::row_of(decision).verdict;
-    append(text, {T.x_m, T.y_m, T.heading_rad, static_cast<double>(decision.merged),
-                  static_cast<double>(session.name_of.size()), static_cast<double>(decision.questions),
-                  static_cast<double>(decision.pairs), decision.evidence, decision.lead, decision.needed, decision.cost,
-                  static_cast<double>(decision.dof), decision.limit});
+    append_cells(text, {T.x_m, T.y_m, T.heading_rad, static_cast<double>(decision.merged),
+                        static_cast<double>(session.name_of.size()), static_cast<double>(decision.questions),
+                        static_cast<double>(decision.pairs), decision.evidence, decision.lead, decision.needed,
+                        decision.cost, static_cast<double>(decision.dof), decision.limit});
     text += '\n';
   }
   return text;
@@ -60,7 +52,7 @@ std::string changes_table(const std::vector<ChangedLandmark>& shared) {
   std::string text = "component,landmark,x,y,change,seen_in,missing_in\n";
   for (const ChangedLandmark& landmark : shared) {
     text += std::to_string(landmark.component + 1) + ',' + std::to_string(landmark.id);
-    append(text, {landmark.point_m.x(), landmark.point_m.y()});
+    append_cells(text, {landmark.point_m.x(), landmark.point_m.y()});
     text += std::string(",") + name_of(landmark.change()) + ',' + numbers_of(landmark.seen_in) + ',' +
             numbers_of(landmark.missing_in) + '\n';
   }

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <initializer_list>
 #include <set>
 
 #include <nlohmann/json.hpp>
 
+#include "common/append_cells.hpp"
 #include "helixnav/files/file.hpp"
 #include "helixnav/files/number_text.hpp"
 #include "helixnav/reports/finish_run.hpp"
@@ -19,13 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void append(std::string& text, std::initializer_list<double> numbers) {
-  for (const double number : numbers) {
-    text += ',';
-    files::append_number(text, number);
-  }
-}
-
 int number_of(const TeamTask& task, int robot) { return task.recording.robots[static_cast<std::size_t>(robot)].number; }
 
 std::string joins_table(const TeamTask& task, const TeamDrive& drive) {
@@ -35,8 +28,8 @@ std::string joins_table(const TeamTask& task, const TeamDrive& drive) {
     files::append_seconds(text, join.t_ns);
     text += std::string(",") + team::name_of(join.by) + ',' + std::to_string(number_of(task, join.robot)) + ',' +
             std::to_string(number_of(task, join.other));
-    append(text, {T.x_m, T.y_m, T.heading_rad, static_cast<double>(join.merged), static_cast<double>(join.sightings),
-                  join.cost, static_cast<double>(join.dof), join.limit});
+    append_cells(text, {T.x_m, T.y_m, T.heading_rad, static_cast<double>(join.merged),
+                        static_cast<double>(join.sightings), join.cost, static_cast<double>(join.dof), join.limit});
     text += '\n';
   }
   return text;
@@ -49,7 +42,7 @@ std::string sightings_table(const TeamTask& task, const TeamDrive& drive) {
     text += ',' + std::to_string(number_of(task, sighting.robot)) + ',' +
             std::to_string(number_of(task, sighting.seen)) + ',' + (sighting.used ? '1' : '0');
     if (sighting.residual) {
-      append(text, {sighting.residual->x(), sighting.residual->y()});
+      append_cells(text, {sighting.residual->x(), sighting.residual->y()});
     } else {
       text += ",,";
     }
@@ -66,8 +59,8 @@ std::string map_table(const TeamTask& task, const TeamDrive& drive) {
     for (const core::MapLandmark& landmark : drive.team.map(component)) {
       const Eigen::Matrix2d& P = landmark.point.covariance_m2;
       text += std::to_string(number_of(task, component)) + ',' + std::to_string(landmark.id);
-      append(text, {landmark.point.mean_m.x(), landmark.point.mean_m.y(), P(0, 0), P(0, 1), P(1, 1),
-                    static_cast<double>(landmark.observations)});
+      append_cells(text, {landmark.point.mean_m.x(), landmark.point.mean_m.y(), P(0, 0), P(0, 1), P(1, 1),
+                          static_cast<double>(landmark.observations)});
       text += '\n';
     }
   }

@@ -17,7 +17,7 @@ std::string counted(std::size_t count, const char* what) {
 }
 
 template <class Entry>
-void sort_by_time(std::vector<Entry>& entries) {
+void stable_sort_by_time(std::vector<Entry>& entries) {
   std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.t_ns < b.t_ns; });
 }
 
@@ -161,9 +161,9 @@ void OwnTables::sort_all() {
     std::stable_sort(log_.detections.begin(), log_.detections.end(), earlier);
   }
   std::sort(log_.lost_ns.begin(), log_.lost_ns.end());
-  sort_by_time(log_.fixes);
-  sort_by_time(log_.true_poses);
-  sort_by_time(log_.true_positions);
+  stable_sort_by_time(log_.fixes);
+  stable_sort_by_time(log_.true_poses);
+  stable_sort_by_time(log_.true_positions);
 }
 
 void OwnTables::drop_repeated_detections() {

@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "association/candidates.hpp"
+#include "association/median.hpp"
 #include "association/old_pairs.hpp"
 #include "association/rival_matchings.hpp"
 #include "helixnav/association/likelihood_ratio.hpp"
@@ -19,13 +20,6 @@ using association::Assignment;
 using association::GatedPair;
 using association::InnovationProblem;
 using core::LandmarkId;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// ln(e^a + e^b).
 double add_exponents(double a, double b) {

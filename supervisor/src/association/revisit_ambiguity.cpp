@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include "association/view_area.hpp"
 #include "helixnav/association/likelihood_ratio.hpp"
 #include "helixnav/core/chi2.hpp"
 
@@ -14,15 +15,13 @@ namespace {
 
 constexpr double gate_probability = 0.95;  // of the gate in which confusers are counted
 
-bool is_among(const std::vector<core::LandmarkId>& sorted, core::LandmarkId id) {
+bool is_in_sorted(const std::vector<core::LandmarkId>& sorted, core::LandmarkId id) {
   return std::binary_search(sorted.begin(), sorted.end(), id);
 }
 
 /// Extraneous objects per unit of the observation space at ẑ: in polar coordinates there is more ground farther out.
 double density_at(const association::Prediction& prediction, const core::FieldOfView& view, double per_scan) {
-  const double width_rad = view.max_bearing_rad - view.min_bearing_rad;
-  const double area_m2 = 0.5 * width_rad * (view.max_range_m * view.max_range_m - view.min_range_m * view.min_range_m);
-  const double per_m2 = per_scan / area_m2;
+  const double per_m2 = per_scan / view_area_m2(view);
   return prediction.kind == core::ObservationKind::range_bearing ? per_m2 * prediction.z_hat.x() : per_m2;
 }
 
@@ -34,7 +33,7 @@ std::vector<core::LandmarkId> old_in_view(const cekf::CompressedEkf& filter, con
   const Eigen::Vector2d sensor_m = core::transform(now.mean, scan.T_robot_sensor.position_m());
   std::vector<core::LandmarkId> near =
       filter.landmarks_within(sensor_m, scan.field_of_view.max_range_m + 3.0 * sigma_m);
-  near.erase(std::remove_if(near.begin(), near.end(), [&](core::LandmarkId id) { return !is_among(old, id); }),
+  near.erase(std::remove_if(near.begin(), near.end(), [&](core::LandmarkId id) { return !is_in_sorted(old, id); }),
              near.end());
   return near;
 }
@@ -100,7 +99,7 @@ std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
   std::vector<core::LandmarkId> others;  // looked up when the first old landmark is gated
   for (const association::GatedPair& pair : problem.pairs) {
     const core::LandmarkId id = problem.ids[static_cast<std::size_t>(pair.candidate)];
-    if (pair.dof != 2 || !is_among(old, id)) continue;
+    if (pair.dof != 2 || !is_in_sorted(old, id)) continue;
     if (others.empty()) others = old_in_view(filter, scan, old);
     const association::Prediction& prediction = problem.predictions[static_cast<std::size_t>(pair.prediction)];
     RevisitAmbiguity here;

@@ -6,16 +6,11 @@
 
 #include <Eigen/LU>
 
+#include "association/median.hpp"
 #include "helixnav/core/angle.hpp"
 
 namespace helixnav::supervisor {
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Median displacement of the pairs by the median distance of their landmarks to the nearest other.
 double displaced_by_spacing(const SlipQuestion& question, const SlipPlace& place) {

@@ -15,8 +15,8 @@ namespace {
 constexpr double same_heading_rad = 2.0 * core::pi / 180.0;
 constexpr double reach_sigmas = 2.5;  // of the widest component
 constexpr double neighbours = 1.25;   // how many spacings rivals are looked for
-constexpr double gate_probability = 0.999;
-constexpr std::size_t least_pairs = 3;
+constexpr double pair_gate_probability = 0.999;
+constexpr std::size_t least_pairs_of_slip = 3;
 constexpr std::size_t most_refined = 8;
 constexpr int rounds = 3;
 
@@ -43,7 +43,7 @@ class Proposer {
 
   /// Nearest first, one to one, where the vehicle is displaced so.
   Proposal pair_up(const Eigen::Vector3d& displacement, const Eigen::Matrix3d& covariance) const {
-    static const double gate = core::chi2_quantile(gate_probability, 2);
+    static const double gate = core::chi2_quantile(pair_gate_probability, 2);
     std::vector<Candidate> candidates;
     const Eigen::Matrix2d turn = core::rotation(-displacement.z());
     for (std::size_t s = 0; s < seen_.size(); ++s) {
@@ -92,13 +92,13 @@ class Proposer {
         const Eigen::Vector3d displacement = rigid_displacement(i, k, a, b);
         if (!is_in_reach(displacement)) continue;
         Proposal one = pair_up(displacement, covariance_by({i, a}, {k, b}, displacement));
-        if (one.pairs.size() >= least_pairs) found.push_back(std::move(one));
+        if (one.pairs.size() >= least_pairs_of_slip) found.push_back(std::move(one));
       }
     }
   }
 
   bool is_equally_far(std::size_t i, std::size_t k, std::size_t a, std::size_t b) const {
-    static const double gate = core::chi2_quantile(gate_probability, 1);
+    static const double gate = core::chi2_quantile(pair_gate_probability, 1);
     const Eigen::Vector2d way_m = seen_[k].point_m - seen_[i].point_m;
     const Eigen::Vector2d map_way_m = geometry_.points_m[b] - geometry_.points_m[a];
     const Eigen::Vector2d u = map_way_m.normalized();
@@ -201,13 +201,13 @@ std::vector<SlipPlace> slip_places(const RelativeGeometry& geometry, const std::
   for (Proposal& proposal : best_distinct(proposer.proposals(), distinct_m)) {
     SlipPlace place{std::move(proposal.pairs), {}};
     place.explanation.displacement = proposal.displacement;
-    for (int round = 0; round < rounds && place.pairs.size() >= least_pairs; ++round) {
+    for (int round = 0; round < rounds && place.pairs.size() >= least_pairs_of_slip; ++round) {
       place.explanation =
           explain_by_slip(geometry, seen, place.pairs, nats_a_pair, components, place.explanation.displacement);
       if (round + 1 == rounds) break;
       place.pairs = proposer.pair_up(place.explanation.displacement, place.explanation.displacement_covariance).pairs;
     }
-    if (place.pairs.size() >= least_pairs) places.push_back(std::move(place));
+    if (place.pairs.size() >= least_pairs_of_slip) places.push_back(std::move(place));
   }
   std::stable_sort(places.begin(), places.end(),
                    [](const SlipPlace& a, const SlipPlace& b) { return a.explanation.nats > b.explanation.nats; });
