@@ -9,7 +9,8 @@
 namespace helixnav::fastslam {
 
 /// Of how many particles of some drive ago the particles of today descend. A mark is set every eighth of that drive, and
-/// every particle carries the number of its ancestor at each mark that is kept. Test: fastslam/genealogy_test.cpp.
+/// every particle carries the number of its ancestor at each mark that is kept. Test: apps/fastslam_test.cpp (the drive is the
+/// same with and without).
 class Genealogy {
  public:
   Genealogy(std::size_t particles, double back_m) : back_m_(back_m) { set_mark(particles); }

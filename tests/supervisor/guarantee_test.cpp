@@ -125,8 +125,13 @@ Kind kind_of(const core::StepReport& report) {
 std::set<Kind> break_drive(const core::Recording& run, const NavigatorOptions& options, int places,
                            double rounding_m = same_m) {
   std::vector<core::StepReport> reports;
+  std::vector<long> allocations;
   Navigator first(run.start, options);
-  drive(run, first, [&](const core::Scan& scan, std::size_t) { reports.push_back(first.observe(scan)); });
+  drive(run, first, [&](const core::Scan& scan, std::size_t) {
+    core::StepReport report;
+    allocations.push_back(allocations_of([&] { report = first.observe(scan); }));
+    reports.push_back(std::move(report));
+  });
   std::set<Kind> broken;
   Navigator second(run.start, options);
   drive(run, second, [&](const core::Scan& scan, std::size_t i) {
@@ -139,16 +144,7 @@ std::set<Kind> break_drive(const core::Recording& run, const NavigatorOptions& o
     broken.insert(kind);
     const core::PoseGaussian before = second.pose();
     const std::vector<core::MapLandmark> map_before = second.map();
-    long spread = 0;
-    {
-      Navigator counted(run.start, options);  // a throw-away navigator has driven as far: its scan allocates as much
-      std::size_t scans = 0;
-      for (const core::Event& event : run.events) {
-        if (std::holds_alternative<core::Scan>(event) && scans++ == i) break;
-        counted.take(event);
-      }
-      spread = allocations_of([&] { counted.observe(scan); });
-    }
+    const long spread = allocations[i];
     for (int k = 0; k < places; ++k) {
       const long at = std::min(spread - 1, k * spread / places + (k % 3));
       if (!fails_at(at, [&] { second.observe(scan); })) {

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "circuits.hpp"
 #include "judged_drive.hpp"
 
 namespace helixnav::supervisor {
@@ -65,6 +66,40 @@ TEST(Window, ClosesWhatTheWholeMapCloses) {
   EXPECT_GE(closed(window), closed(whole));
   EXPECT_LE(window.duplicates, whole.duplicates + 2);
   EXPECT_LT(window.map_rms_m, whole.map_rms_m + 0.1);
+}
+
+/// Landmarks in the filter after each scan.
+std::vector<int> held_along(const sim::Scenario& scenario, const NavigatorOptions& options) {
+  const core::Recording run = sim::simulate(scenario, 1);
+  Navigator navigator(run.start, options);
+  std::vector<int> held;
+  drive(run, navigator, [&](const core::Scan& scan, std::size_t) {
+    navigator.observe(scan);
+    held.push_back(navigator.filter().mapped_count());
+  });
+  return held;
+}
+
+TEST(Window, HalvesTheFilterWhenItBegins) {
+  sim::Scenario scenario = town_of_3_km();
+  scenario.world.tour_m = 1500.0;
+  NavigatorOptions narrow;
+  narrow.map.whole = narrow.map.window = 60;
+  const std::vector<int> held = held_along(scenario, narrow);
+  std::size_t first = 1;
+  while (first < held.size() && held[first] > held[first - 1] - 30) ++first;  // not a merge, and none dies so
+  ASSERT_LT(first, held.size()) << "no hand-over";
+  EXPECT_GT(held[first - 1], 120);
+  EXPECT_LT(held[first], 0.6 * held[first - 1]);
+}
+
+TEST(Window, BeginsNotWhereAScanSeesATwentiethOfTheMap) {
+  NavigatorOptions narrow;
+  narrow.map.whole = narrow.map.window = 6;
+  narrow.map.most = 8;
+  const std::vector<int> held = held_along(wide_circuit(), narrow);  // of 25 landmarks a scan sees 4
+  EXPECT_GT(held.back(), 20);
+  for (std::size_t k = 1; k < held.size(); ++k) EXPECT_GT(held[k], held[k - 1] - 3) << k;
 }
 
 }  // namespace

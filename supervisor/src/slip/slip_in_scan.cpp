@@ -7,9 +7,11 @@
 
 #include "association/association_report.hpp"
 #include "association/candidates.hpp"
+#include "association/view_area.hpp"
 #include "helixnav/association/associate.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "loop/navigation_loop.hpp"
+#include "slip/keep_weighed.hpp"
 #include "slip/slip_decision.hpp"
 #include "slip/update_after_slip.hpp"
 
@@ -20,7 +22,6 @@ using core::AssociationReport;
 using core::LandmarkId;
 using core::Outcome;
 
-constexpr std::size_t most_observations = 24;  // nearest first: what is weighed, and so what the question costs
 constexpr std::size_t least_observations = 3;
 constexpr int least_hits = 2;  // a landmark that one false alarm began is no evidence
 
@@ -54,26 +55,6 @@ std::vector<PointPair> associated_pairs(const RelativeGeometry& geometry, const 
     if (at != geometry.ids.end()) pairs.push_back({s, static_cast<std::size_t>(at - geometry.ids.begin())});
   }
   return pairs;
-}
-
-/// Of a scan with more observations than are weighed: only those landmarks that one of the weighed may be of, and their
-/// neighbours. What is left out would be paired with nothing.
-void keep_weighed(const cekf::CompressedEkf& filter, const Eigen::Vector2d& sensor_m,
-                  const std::vector<SeenPoint>& seen, const core::Scan& scan, const SlipComponent& widest,
-                  std::vector<LandmarkId>& near) {
-  if (seen.size() < most_observations) return;
-  std::vector<Eigen::Vector2d> means_m;
-  for (const LandmarkId id : near) means_m.push_back(filter.landmark_mean(id));
-  const double farthest_m = (seen.back().point_m - scan.T_robot_sensor.position_m()).norm();
-  const double range_m = farthest_m + 2.0 * slip_reach_m(widest, seen.back(), median_spacing_m(means_m));
-  near.erase(std::remove_if(near.begin(), near.end(),
-                            [&](LandmarkId id) { return (filter.landmark_mean(id) - sensor_m).norm() > range_m; }),
-             near.end());
-}
-
-double area_m2(const core::FieldOfView& view) {
-  return 0.5 * (view.max_bearing_rad - view.min_bearing_rad) *
-         (view.max_range_m * view.max_range_m - view.min_range_m * view.min_range_m);
 }
 
 /// The pairs of the slip are matched, whatever else wanted their landmarks.
@@ -112,15 +93,14 @@ std::vector<LandmarkId> NavigationLoop::landmarks_near(const core::Scan& scan) c
 
 std::optional<Slip> NavigationLoop::find_slip(const core::Scan& scan,
                                               const std::vector<AssociationReport>& fate) const {
-  const double view_m2 = area_m2(scan.field_of_view);
+  const double view_m2 = view_area_m2(scan.field_of_view);
   if (!options_.slip.enabled || !std::isfinite(view_m2) || !(view_m2 > 0.0)) return std::nullopt;
   const auto unmatched =
       std::count_if(fate.begin(), fate.end(), [](const auto& one) { return one.outcome != Outcome::matched; });
   if (unmatched < 2 || fate.size() < least_observations) return std::nullopt;
-  const std::vector<SeenPoint> seen = seen_points(scan, most_observations);
+  const std::vector<SeenPoint> seen = seen_points(scan, most_weighed);
   std::vector<LandmarkId> near = landmarks_near(scan);
-  const Eigen::Vector2d sensor_m = core::transform(belief_.filter.pose().mean, scan.T_robot_sensor.position_m());
-  keep_weighed(belief_.filter, sensor_m, seen, scan, slip_components(options_.slip).back(), near);
+  keep_weighed(belief_.filter, scan, seen, slip_components(options_.slip).back(), near);
   if (contradictions(belief_.filter, near, seen, fate, options_.slip.contradiction_m) < 2) return std::nullopt;
 
   const double per_m2 = options_.extraneous_per_scan / view_m2;

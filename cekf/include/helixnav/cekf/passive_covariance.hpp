@@ -11,7 +11,7 @@ class Panels;
 
 /// Symmetric matrix that keeps only the tiles of its lower triangle and grows without being copied: the covariance of
 /// all landmarks that have a slot, as of the last absorbed phase. Memory 4·n² bytes for n rows.
-/// Test: tests/cekf/pieces_test.cpp.
+/// Test: cekf/pieces_test.cpp.
 class PassiveCovariance {
  public:
   static constexpr int tile = 128;

@@ -8,7 +8,7 @@ namespace helixnav::cekf {
 /// Column-major matrix that grows and shrinks in place, so that the per-step path never allocates. Columns begin at
 /// multiples of eight doubles and everything outside rows() × cols() is zero: the kernels may run over whole blocks of
 /// eight rows. A copy is compact; assignment keeps the storage of the target where it suffices.
-/// Test: tests/cekf/pieces_test.cpp.
+/// Test: cekf/pieces_test.cpp.
 class ReservedMatrix {
  public:
   using View = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
