@@ -14,17 +14,19 @@ function(helixnav_module room)
     PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
     PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
   target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
-  # In a unity build: with eight sources a group, CMake's own choice, the supervisor takes a quarter more processor time.
-  # What includes MRPT is large already.
-  if(NOT room STREQUAL mrpt_adapter)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 16)
-  endif()
   helixnav_warnings(${target})
   set_property(GLOBAL APPEND PROPERTY HELIXNAV_ROOMS ${room})
 endfunction()
 
-# Warnings of our own code; never exported to whoever links us.
+# Warnings of our own code; never exported to whoever links us. In a unity build a source is an included file and sees the
+# constants of the sources before it: shadowing them, and types of unnamed namespaces in fields, are no faults there.
 function(helixnav_warnings target)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wnon-virtual-dtor -Wold-style-cast
     $<$<CXX_COMPILER_ID:GNU>:-Wduplicated-cond>)
+  get_target_property(unity ${target} UNITY_BUILD)
+  if(NOT unity)
+    target_compile_options(${target} PRIVATE -Wshadow)
+  elseif(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    target_compile_options(${target} PRIVATE -Wshadow=local -Wno-subobject-linkage)
+  endif()
 endfunction()

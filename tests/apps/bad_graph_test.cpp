@@ -96,7 +96,7 @@ TEST_P(BadGraph, IsRefusedByItsOwnNameAndLeavesNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Smooth, BadGraph, ::testing::ValuesIn(bad_files()),
-                         [](const auto& info) { return std::string(info.param.claim); });
+                         [](const auto& test) { return std::string(test.param.claim); });
 
 }  // namespace
 }  // namespace helixnav::apps

@@ -46,8 +46,9 @@ TEST_F(Fusing, OfVictoriaParksGpsBringsTheDriveNearerToTheFixes) {
   find_real_data("victoria_park/raw/victoria_park_ascii.zip");
   if (IsSkipped()) return;
   const double fused_m = summary_of({"replay", path_, "--gps", "fuse"}).at("error").at("rmse_m");
-  if (!support::sanitized)
+  if (!support::sanitized) {
     EXPECT_LT(fused_m, 0.9 * summary_of({"replay", path_}).at("error").at("rmse_m").get<double>());
+  }
   EXPECT_LT(fused_m, 1.3);
 }
 

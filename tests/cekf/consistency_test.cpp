@@ -31,7 +31,9 @@ TEST(ConsistencyCampaign, OfTheRightInvariantFilterHoldsWithLargeNoiseWhereTheSt
   EXPECT_GE(nees, low);
   EXPECT_LE(nees, high);
   const double standard = thirty_runs(Retraction::standard, large_noise()).mean_nees();
-  if (support::whole_campaign) EXPECT_GT(standard, nees);
+  if (support::whole_campaign) {
+    EXPECT_GT(standard, nees);
+  }
 }
 
 }  // namespace

@@ -98,7 +98,9 @@ TEST(PlacedRun, OfSeveralPartsHasOneFrameOnceTheyAreFound) {
   for (int k = 0; k < 10; ++k) {
     const auto i = static_cast<std::size_t>(k);
     EXPECT_LT((run.steps[i].pose.mean.vector() - truth(k).vector()).norm(), 1e-12) << k;
-    if (k >= 2) EXPECT_LT((run.final_path[i].vector() - truth(k).vector()).norm(), 1e-12) << k;
+    if (k >= 2) {
+      EXPECT_LT((run.final_path[i].vector() - truth(k).vector()).norm(), 1e-12) << k;
+    }
   }
   EXPECT_NEAR(run.final_path[1].y_m, 0.25, 1e-12) << "what was solved of the first part";
 }
