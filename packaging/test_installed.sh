@@ -21,6 +21,8 @@ helixnav simulate large-loop --seed 1 --out loop --quiet | tail -3
 test -s loop/report.html
 helixnav new-vehicle robot >/dev/null
 helixnav replay robot --out own --quiet | tail -1
+helixnav new-vehicle like --like plaza >/dev/null
+cmp like/vehicle.toml /usr/share/helixnav/vehicles/plaza.toml
 for command in $(helixnav --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do
   dpkg -L helixnav | grep -q "/man1/helixnav-$command\.1\.gz$" || fail "no manual page of $command"
 done

@@ -67,7 +67,7 @@ ExitCode check(CLI::App& command, CheckJob& job) {
     std::fputs(tables_text(logs::read_own_log(job.path)).c_str(), stdout);
   }
   core::Recording recording = logs::read_recording(job.path, job.settings.logs);
-  if (job.settings.logs.vehicle && format != logs::LogFormat::own) tell_vehicle(recording, *job.settings.logs.vehicle);
+  if (job.settings.logs.vehicle) tell_vehicle(recording, format, *job.settings.logs.vehicle);
   apply_log_settings(recording, job.settings);
   std::fputs(events_text(recording).c_str(), stdout);
   print_settings(job, recording);

@@ -10,15 +10,6 @@
 namespace helixnav::apps {
 namespace {
 
-void scale_covariances(core::Recording& recording, double scale) {
-  for (core::Event& event : recording.events) {
-    if (auto* odometry = std::get_if<core::Odometry>(&event)) odometry->covariance *= scale;
-    if (auto* scan = std::get_if<core::Scan>(&event)) {
-      for (core::Observation& observation : scan->observations) observation.R *= scale;
-    }
-  }
-}
-
 double in_degrees(double angle_rad) { return angle_rad * 180.0 / core::pi; }
 
 std::string view_text(const core::FieldOfView& view) {
@@ -36,9 +27,18 @@ std::string view_text(const core::FieldOfView& view) {
 
 }  // namespace
 
+void scale_covariances(core::Recording& recording, double of_odometry, double of_observations) {
+  for (core::Event& event : recording.events) {
+    if (auto* odometry = std::get_if<core::Odometry>(&event)) odometry->covariance *= of_odometry;
+    if (auto* scan = std::get_if<core::Scan>(&event)) {
+      for (core::Observation& observation : scan->observations) observation.R *= of_observations;
+    }
+  }
+}
+
 void apply_log_settings(core::Recording& recording, const Settings& settings) {
   logs::set_field_of_view(recording, settings.field_of_view);
-  scale_covariances(recording, settings.covariance_scale);
+  scale_covariances(recording, settings.covariance_scale, settings.covariance_scale);
 }
 
 supervisor::NavigatorOptions fit_to_sensor(const Settings& settings, const core::FieldOfView& view) {

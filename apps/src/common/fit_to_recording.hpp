@@ -8,6 +8,9 @@
 
 namespace helixnav::apps {
 
+/// Factors on the covariances of every increment and of every observation.
+void scale_covariances(core::Recording& recording, double of_odometry, double of_observations);
+
 /// Applies the settings of sensor and covariances to the recording.
 void apply_log_settings(core::Recording& recording, const Settings& settings);
 

@@ -9,27 +9,36 @@
 namespace helixnav::apps {
 namespace {
 
+/// Of options that say what a vehicle file says.
+std::string deprecated(const char* help, const char* key) {
+  return std::string(help) + " (deprecated: " + key + " of --vehicle)";
+}
+
 void add_truck(CLI::App& command, const std::string& section, logs::AcfrSettings& truck) {
   const auto name = [&section](const char* key) { return "--" + section + "." + key; };
   add_number(command, name("sigma_speed_mps").c_str(), truck.noise.sigma_speed_mps, 1e-3, 10.0,
-             "Noise of one sample of the wheel's speed");
+             deprecated("Noise of one sample of the wheel's speed", "odometry.sigma_v_mps").c_str());
   add_number(command, name("sigma_steering_rad").c_str(), truck.noise.sigma_steering_rad, 1e-4, 1.0,
-             "Noise of one sample of the steering angle");
+             deprecated("Noise of one sample of the steering angle", "odometry.sigma_steering_rad").c_str());
   add_number(command, name("sigma_sideways").c_str(), truck.sigma_sideways_m_per_sqrt_m, 0.0, 1.0,
-             "Noise of side slip over one metre; grows by the root of the way [m]");
+             deprecated("Noise of side slip over one metre; grows by the root of the way [m]",
+                        "odometry.sigma_sideways_m_per_sqrt_m")
+                 .c_str());
   add_number(command, name("speed_scale").c_str(), truck.speed_scale, 0.5, 2.0,
-             "Every recorded speed of the wheel is multiplied by this");
+             deprecated("Every recorded speed of the wheel is multiplied by this", "odometry.scale").c_str());
   add_number(command, name("steering_offset_rad").c_str(), truck.steering_offset_rad, -0.5, 0.5,
-             "Added to every recorded steering angle");
-  add_number(command, name("steering_scale").c_str(), truck.steering_scale, 0.5, 2.0,
-             "Every recorded steering angle is multiplied by this first");
+             deprecated("Added to every recorded steering angle", "odometry.steering_offset_rad").c_str());
+  add_number(
+      command, name("steering_scale").c_str(), truck.steering_scale, 0.5, 2.0,
+      deprecated("Every recorded steering angle is multiplied by this first", "odometry.steering_scale").c_str());
   add_number(command, name("laser_heading_rad").c_str(), truck.T_robot_laser.heading_rad, -core::pi, core::pi,
-             "Where the laser looks, from straight ahead to the left");
+             deprecated("Where the laser looks, from straight ahead to the left", "sensor.heading_rad").c_str());
   add_number(command, name("laser_delay_s").c_str(), truck.laser_delay_s, 0.0, 1.0,
-             "Time by which a scan was taken before its stamp");
-  add_number(command, name("sigma_range_m").c_str(), truck.sigma_range_m, 1e-3, 100.0, "Noise of a detection's range");
+             deprecated("Time by which a scan was taken before its stamp", "sensor.delay_s").c_str());
+  add_number(command, name("sigma_range_m").c_str(), truck.sigma_range_m, 1e-3, 100.0,
+             deprecated("Noise of a detection's range", "sensor.sigma_range_m").c_str());
   add_number(command, name("sigma_bearing_rad").c_str(), truck.sigma_bearing_rad, 1e-4, 1.0,
-             "Noise of a detection's bearing");
+             deprecated("Noise of a detection's bearing", "sensor.sigma_bearing_rad").c_str());
 }
 
 void add_plaza(CLI::App& command, Settings& settings) {

@@ -8,8 +8,10 @@
 #include <CLI/CLI.hpp>
 
 #include "common/commands.hpp"
+#include "common/validators.hpp"
 #include "example_log.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/logs/shipped_vehicle.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -21,7 +23,7 @@ void write_file(const std::filesystem::path& path, const std::string& text) {
   if (!file) throw core::InputError(path.string() + ": cannot be written");
 }
 
-void write_folder(const std::filesystem::path& folder) {
+void make_folder(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
   std::error_code error;
   if (fs::exists(folder) && (!fs::is_directory(folder) || !fs::is_empty(folder))) {
@@ -29,6 +31,10 @@ void write_folder(const std::filesystem::path& folder) {
   }
   fs::create_directories(folder, error);
   if (error) throw core::InputError(folder.string() + ": " + error.message());
+}
+
+void write_example(const std::filesystem::path& folder) {
+  make_folder(folder);
   const ExampleLog example = make_example_log();
   write_file(folder / "vehicle.toml", example.vehicle);
   write_file(folder / "odometry.csv", example.odometry);
@@ -49,9 +55,19 @@ void add_new_vehicle_command(CLI::App& app, ExitCode&) {
       "Example:\n"
       "  helixnav new-vehicle my_robot\n"
       "  helixnav check my_robot\n"
-      "  helixnav replay my_robot --out runs/first\n");
-  command->callback([folder] {
-    write_folder(*folder);
+      "  helixnav replay my_robot --out runs/first\n"
+      "  helixnav new-vehicle truck --like victoria_park\n");
+  const auto like = std::make_shared<std::string>();
+  command->add_option("--like", *like, "Write the vehicle.toml of a published log alone, for replay LOG --vehicle FILE")
+      ->check(one_of(logs::shipped_vehicle_names()));
+  command->callback([folder, like] {
+    if (!like->empty()) {
+      make_folder(*folder);
+      write_file(std::filesystem::path(*folder) / "vehicle.toml", std::string(logs::shipped_vehicle_text(*like)));
+      std::printf("%s/vehicle.toml: as replay takes it for such a log\n", folder->c_str());
+      return;
+    }
+    write_example(*folder);
     std::printf(
         "%s: vehicle.toml, odometry.csv, detections.csv and truth_*.csv of an example\n"
         "next:   helixnav check %s\n"

@@ -26,7 +26,7 @@ LogToReplay read_to_replay(const std::string& path, Settings& settings) {
   settings.logs.plaza.range_scale = 1.0;  // see scale_ranges
   LogToReplay log{logs::read_recording(path, settings.logs), std::nullopt};
   const logs::LogFormat format = logs::recognise(path);
-  if (settings.logs.vehicle && format != logs::LogFormat::own) tell_vehicle(log.recording, *settings.logs.vehicle);
+  if (settings.logs.vehicle) tell_vehicle(log.recording, format, *settings.logs.vehicle);
   if (format == logs::LogFormat::plaza) scale_ranges(log, settings);
   if (settings.gps.fuse) fuse_gps(log.recording, settings.gps);
   if (!log.recording.true_poses.empty()) log.recording.true_positions.clear();  // the better truth

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -97,7 +98,8 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   choose_filter(task, job.settings);
   if (task.fastslam.chosen) task.manifest.seed = task.fastslam.seed;
   task.manifest.inputs = input_files(job.path);
-  if (!job.vehicle.empty()) task.manifest.inputs.push_back(input_files(job.vehicle).front());
+  const bool has_file = !job.vehicle.empty() && std::filesystem::exists(job.vehicle);  // else one that ships
+  if (has_file) task.manifest.inputs.push_back(input_files(job.vehicle).front());
   if (!job.map.empty()) {
     const std::vector<runs::InputFile> of_map =
         input_files(job.localize ? map_file(job.map) : joint_map_file_in(job.map));

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/vehicle.hpp"
@@ -87,23 +88,25 @@ void check_names(TomlSection& root, const Vehicle& vehicle) {
   }
 }
 
-toml::table parse(const std::filesystem::path& path) {
-  const std::string text = read_file(path);
+toml::table parse(std::string_view text, const std::string& name) {
   try {
-    return toml::parse(std::string_view(text), path.string());
+    return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;
-    fail_at(path.string(), at.line, at.column, "no TOML: " + std::string(error.description()));
+    fail_at(name, at.line, at.column, "no TOML: " + std::string(error.description()));
   }
 }
 
 }  // namespace
 
-Vehicle read_vehicle(const std::filesystem::path& path) {
-  const toml::table table = parse(path);
-  TomlSection root(table, path.string(), "");
+Vehicle read_vehicle(const std::filesystem::path& path) { return read_vehicle_text(read_file(path), path.string()); }
+
+Vehicle read_vehicle_text(std::string_view text, const std::string& name) {
+  const toml::table table = parse(text, name);
+  TomlSection root(table, name, "");
   Vehicle vehicle;
-  vehicle.path = path.string();
+  vehicle.path = name;
+  vehicle.text = text;
   vehicle.name = root.text("name").value_or("");
   if (auto section = root.section("odometry")) vehicle.odometry = odometry_of(*section);
   for (const TomlSection& section : root.sections("sensor")) vehicle.sensors.push_back(sensor_of(section));

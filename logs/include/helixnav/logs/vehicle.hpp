@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -65,6 +66,7 @@ struct SensorModel {
 struct Vehicle {
   std::string name;
   std::string path;  ///< of the file, for messages
+  std::string text;  ///< of the file, as it is there
   OdometryModel odometry;
   std::vector<SensorModel> sensors;
   Eigen::Vector2d antenna_m = Eigen::Vector2d::Zero();
@@ -75,5 +77,7 @@ struct Vehicle {
 /// that is unknown (with the nearest one of its section), of the wrong type, out of its range, or given in two units.
 /// Test: logs/vehicle_test.cpp.
 Vehicle read_vehicle(const std::filesystem::path& path);
+/// The same of a text; `name` stands in messages where the path would.
+Vehicle read_vehicle_text(std::string_view text, const std::string& name);
 
 }  // namespace helixnav::logs
