@@ -3,7 +3,7 @@
 
 #include <array>
 #include <cstdio>
-#include <fstream>
+#include <sstream>
 
 namespace helixnav::apps {
 namespace {
@@ -26,7 +26,7 @@ std::string scale_line(double assumed, const smoothing::NoiseScale& scale) {
 }  // namespace
 
 std::string with_noise_scales(const logs::Vehicle& vehicle, const smoothing::NoiseScales& scales) {
-  std::ifstream file(vehicle.path);
+  std::istringstream file(vehicle.text);
   std::string text, line;
   std::size_t sensor = 0;
   bool odometry = false;
