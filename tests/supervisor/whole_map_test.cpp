@@ -101,6 +101,13 @@ TEST(WholeMap, LeavesOutMatchesThatContradictThePlace) {
   EXPECT_LT(drive.error_at_end_m, 5.0);
 }
 
+/// Set down on a bare street, of a drive that is not kept as a whole: the search began 70 m before.
+TEST(WholeMap, CutsWhereNothingMappedBeforeWasSeenAnyMore) {
+  const core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3400022);
+  const Asking drive = drive_asking(run, {});
+  EXPECT_LT(drive.error_at_end_m, 5.0) << "300 with the jump where the search began: every place was refused";
+}
+
 /// After half a turn and 250 m that odometry knows nothing of, in a part that was joined to the map before.
 TEST(WholeMap, KeepsTheCovariancePositiveDefinite) {
   const core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3100023);

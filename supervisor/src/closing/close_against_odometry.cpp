@@ -96,22 +96,34 @@ double reach_of(const ClosingView& view) {
   return view.scan.field_of_view.reach().value_or(std::numeric_limits<double>::max());
 }
 
-/// When each landmark, as it is called now, was seen. Of a tape that holds the drive from its begin: its positions count from there.
+bool is_born_in(const Tape::Scan& scan, core::LandmarkId id) {
+  return std::any_of(scan.fate.begin(), scan.fate.end(), [&](const core::AssociationReport& association) {
+    return association.outcome == core::Outcome::augmented && association.landmark == id;
+  });
+}
+
+/// When each landmark, as it is called now, was seen on the tape since a position, from which those here are counted. One that was
+/// mapped before was seen at 0.
 class Sightings {
  public:
-  explicit Sightings(const Tape& tape) {
+  Sightings(const Tape& tape, Tape::Position from) : from_(from) {
     const core::MergedIds ids = merged_ids(tape);
-    tape.read_from(0, [&](const Tape::Entry& entry) {
+    tape.read_from(from, [&](const Tape::Entry& entry) {
       driven_m_.push_back(driven_m_.back());
       if (const auto* motion = std::get_if<Tape::Motion>(&entry)) driven_m_.back() += motion->driven_m;
       const auto* scan = std::get_if<Tape::Scan>(&entry);
       if (scan == nullptr) return;
-      for (const cekf::Match& match : used_observations(*scan)) at_[ids.now(match.landmark)].push_back(end());
+      for (const cekf::Match& match : used_observations(*scan)) {
+        std::vector<Tape::Position>& seen = at_[ids.now(match.landmark)];
+        if (seen.empty() && !is_born_in(*scan, match.landmark)) seen.push_back(0);
+        seen.push_back(end());
+      }
     });
   }
 
   const std::map<core::LandmarkId, std::vector<Tape::Position>>& at() const { return at_; }
   Tape::Position end() const { return driven_m_.size() - 1; }
+  Tape::Position on_tape(Tape::Position position) const { return from_ + position; }
   double driven_m(Tape::Position from, Tape::Position until) const { return driven_m_[until] - driven_m_[from]; }
 
   /// Of any of the branch's landmarks that are paired.
@@ -138,12 +150,13 @@ class Sightings {
   }
 
  private:
+  Tape::Position from_;
   std::map<core::LandmarkId, std::vector<Tape::Position>> at_;
   std::vector<double> driven_m_{0.0};
 };
 
 struct Cut {
-  Tape::Position position = 0;
+  Tape::Position position = 0;           ///< on the tape
   core::Odometry odometry_since;         ///< up to now
   double driven_since_m = 0.0;           ///< likewise
   std::set<core::LandmarkId> displaced;  ///< begun after it
@@ -151,12 +164,12 @@ struct Cut {
 
 Cut cut_at(Tape::Position position, const Sightings& sightings, const Tape& tape) {
   Cut cut;
-  cut.position = position;
+  cut.position = sightings.on_tape(position);
   for (const auto& [id, positions] : sightings.at()) {
     if (positions.front() > position) cut.displaced.insert(id);
   }
   cut.odometry_since = core::no_motion(0);
-  tape.read_from(position, [&](const Tape::Entry& entry) {
+  tape.read_from(cut.position, [&](const Tape::Entry& entry) {
     const auto* motion = std::get_if<Tape::Motion>(&entry);
     if (motion != nullptr) cut.odometry_since = core::chain(cut.odometry_since, motion->odometry);
   });
@@ -196,16 +209,20 @@ std::optional<Tape::Position> place_with_fewest_across(const Sightings& sighting
   return is_cut ? std::optional(best) : std::nullopt;
 }
 
-bool close_at_cut(const Input& in, const Cut& cut, const Tape& tape, Reconciled& result) {
+core::Odometry jump_at(const Input& in, const Cut& cut) {
   core::PoseGaussian there = in.filter.pose();
   there.mean = core::compose(there.mean, core::inverse(cut.odometry_since.T_before_after));
-  const core::Odometry jump = jump_from(there, in.place.T_map_branch, cut.driven_since_m, reach_of(in.view));
+  return jump_from(there, in.place.T_map_branch, cut.driven_since_m, reach_of(in.view));
+}
+
+bool close_at_cut(const Input& in, const Cut& cut, const Tape& tape, Reconciled& result) {
+  const core::Odometry jump = jump_at(in, cut);
   return solve_and_merge(in, tape.with_jump(cut.position, jump), cut.displaced, result);
 }
 
 bool close_after_cut(const Input& in, Reconciled& result) {
   const Tape& tape = in.view.record.tape;
-  const Sightings sightings(tape);
+  const Sightings sightings(tape, 0);
   const Tape::Position branch = sightings.first_of(in.place.pairs);
   if (branch == 0) return false;
   const auto unseen = last_place_without_view_across(sightings, branch);
@@ -216,24 +233,33 @@ bool close_after_cut(const Input& in, Reconciled& result) {
   return close_at_cut(in, cut, tape.without_matches_since(*fewest, cut.displaced), result);
 }
 
-/// Where the drive as a whole is not known any more.
-bool replay_after_jump(const Input& in, Reconciled& result) {
+bool replay_with_jump(const Input& in, Tape::Position position, const core::Odometry& jump, Reconciled& result) {
   const BranchRecord& record = in.view.record;
+  Tape tape = record.tape.with_jump(position, jump);
   cekf::CompressedEkf filter = in.filter;
-  filter.restore(record.trigger.filter);
-  double driven_since_m = 0.0;
-  record.tape.read_from(record.trigger.position, [&](const Tape::Entry& entry) {
-    if (const auto* motion = std::get_if<Tape::Motion>(&entry)) driven_since_m += motion->driven_m;
-  });
-  const core::Odometry jump = jump_from(filter.pose(), in.place.T_map_branch, driven_since_m, reach_of(in.view));
-  Tape tape = record.tape.with_jump(record.trigger.position, jump);
-  filter = in.filter;
   result.closing = replay_with_pairs(filter, {record.trigger, tape}, kept_removed(in.place.pairs), in.branch,
                                      in.view.search.old_landmarks(), in.options, {});
   if (!result.closing.accepted) return false;
   result.filter = std::move(filter);
   result.tape = std::move(tape);
   return true;
+}
+
+/// Where the drive as a whole is not known any more: the jump is where the vehicle saw no more of what it had mapped, else where
+/// the search began.
+bool replay_after_jump(const Input& in, Reconciled& result) {
+  const BranchRecord& record = in.view.record;
+  const Sightings sightings(record.tape, record.trigger.position);
+  const auto unseen = last_place_without_view_across(sightings, sightings.first_of(in.place.pairs));
+  if (unseen) {
+    const Cut cut = cut_at(*unseen, sightings, record.tape);
+    if (replay_with_jump(in, cut.position, jump_at(in, cut), result)) return true;
+  }
+  cekf::CompressedEkf filter = in.filter;
+  filter.restore(record.trigger.filter);
+  const double driven_since_m = sightings.driven_m(0, sightings.end());
+  const core::Odometry jump = jump_from(filter.pose(), in.place.T_map_branch, driven_since_m, reach_of(in.view));
+  return replay_with_jump(in, record.trigger.position, jump, result);
 }
 
 }  // namespace
