@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "particle_tables.hpp"
 
-#include "append_cells.hpp"
+#include "helixnav/files/append_cells.hpp"
 #include "run_tables.hpp"
 
 namespace helixnav::runs {
 
 void append_particles(std::string& text, std::int64_t step, const core::CloudReport& cloud) {
   files::append_number(text, step);
-  append_counts(text, {static_cast<std::int64_t>(cloud.hypotheses)});
-  append_cells(text, {cloud.effective_size});
-  append_counts(text, {cloud.resampled});
-  append_cells(text, {cloud.log_evidence});
-  append_counts(text, {static_cast<std::int64_t>(cloud.distinct_ancestors)});
+  files::append_counts(text, {static_cast<std::int64_t>(cloud.hypotheses)});
+  files::append_cells(text, {cloud.effective_size});
+  files::append_counts(text, {cloud.resampled});
+  files::append_cells(text, {cloud.log_evidence});
+  files::append_counts(text, {static_cast<std::int64_t>(cloud.distinct_ancestors)});
   text += '\n';
 }
 
@@ -22,8 +22,8 @@ std::string paths_text(const std::vector<core::PathPoint>& paths) {
   for (const core::PathPoint& point : paths) {
     const core::Pose2& pose = point.T_world_robot;
     files::append_number(text, index++);
-    append_counts(text, {static_cast<std::int64_t>(point.before), point.step});
-    append_cells(text, {pose.x_m, pose.y_m, pose.heading_rad, point.share});
+    files::append_counts(text, {static_cast<std::int64_t>(point.before), point.step});
+    files::append_cells(text, {pose.x_m, pose.y_m, pose.heading_rad, point.share});
     text += '\n';
   }
   return text;
@@ -34,8 +34,8 @@ std::string mixture_text(const std::vector<core::MixedLandmark>& mixture) {
   for (const core::MixedLandmark& landmark : mixture) {
     const Eigen::Matrix2d& P = landmark.point.covariance_m2;
     files::append_number(text, std::int64_t{landmark.id});
-    append_cells(text, {landmark.point.mean_m.x(), landmark.point.mean_m.y(), P(0, 0), P(0, 1), P(1, 1), landmark.share,
-                        landmark.mature_share});
+    files::append_cells(text, {landmark.point.mean_m.x(), landmark.point.mean_m.y(), P(0, 0), P(0, 1), P(1, 1),
+                               landmark.share, landmark.mature_share});
     text += '\n';
   }
   return text;

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <optional>
 
-#include "append_cells.hpp"
 #include "cloud_choice.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/files/append_cells.hpp"
 #include "helixnav/files/file.hpp"
 #include "helixnav/files/number_text.hpp"
 #include "helixnav/runs/joint_map_file.hpp"
@@ -64,12 +64,12 @@ void append_word(std::string& text, const std::string& word) {
 
 void append_association(std::string& text, std::int64_t step, const core::AssociationReport& a, bool revised) {
   files::append_number(text, step);
-  append_counts(text, {a.observation, a.landmark});
+  files::append_counts(text, {a.observation, a.landmark});
   text += ',';
   text += word_of(outcome_words, a.outcome);
-  append_cells(text, {a.nis});
-  append_counts(text, {a.dof});
-  append_cells(text, {a.margin_nats});
+  files::append_cells(text, {a.nis});
+  files::append_counts(text, {a.dof});
+  files::append_cells(text, {a.margin_nats});
   text += revised ? ",1\n" : ",0\n";
 }
 
@@ -104,13 +104,13 @@ void append_decision(std::string& text, const core::StepReport& report, const co
 
 void append_merge(std::string& text, std::int64_t step, const core::MergedLandmarks& merge) {
   files::append_number(text, step);
-  append_counts(text, {merge.kept, merge.removed});
+  files::append_counts(text, {merge.kept, merge.removed});
   text += '\n';
 }
 
 void append_particle(std::string& text, std::int64_t step, const core::Pose2& pose) {
   files::append_number(text, step);
-  append_cells(text, {pose.x_m, pose.y_m, pose.heading_rad});
+  files::append_cells(text, {pose.x_m, pose.y_m, pose.heading_rad});
   text += '\n';
 }
 
@@ -130,13 +130,14 @@ void append_health(std::string& text, const core::StepReport& report, std::int64
   append_step_and_time(text, report);
   text += ',';
   text += word_of(mode_words, report.mode);
-  append_cells(text, {P(0, 0), P(0, 1), P(0, 2), P(1, 1), P(1, 2), P(2, 2), report.joint_nis});
-  append_counts(text, {report.joint_dof, report.active_landmarks, report.mapped_landmarks, report.switched_region,
-                       association_rows, static_cast<std::int64_t>(report.decisions.size()),
-                       static_cast<std::int64_t>(report.merged.size()), cloud_rows});
-  append_cells(text, {report.numerics.least_pivot, report.numerics.asymmetry});
-  append_counts(text, {report.numerics.repaired, report.numerics.refused});
-  append_cells(text, {std::round(microseconds * 10.0) / 10.0});
+  files::append_cells(text, {P(0, 0), P(0, 1), P(0, 2), P(1, 1), P(1, 2), P(2, 2), report.joint_nis});
+  files::append_counts(text,
+                       {report.joint_dof, report.active_landmarks, report.mapped_landmarks, report.switched_region,
+                        association_rows, static_cast<std::int64_t>(report.decisions.size()),
+                        static_cast<std::int64_t>(report.merged.size()), cloud_rows});
+  files::append_cells(text, {report.numerics.least_pivot, report.numerics.asymmetry});
+  files::append_counts(text, {report.numerics.repaired, report.numerics.refused});
+  files::append_cells(text, {std::round(microseconds * 10.0) / 10.0});
   text += '\n';
 }
 

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <system_error>
 
-#include "common/append_cells.hpp"
 #include "drive/earlier_session.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/files/append_cells.hpp"
 #include "helixnav/files/file.hpp"
 #include "helixnav/runs/map_folder.hpp"
 #include "helixnav/runs/run_folder.hpp"
@@ -33,10 +33,10 @@ std::string joins_table(const std::vector<std::string>& runs, const supervisor::
     const core::PlacedDecision& decision = session.decision;
     const core::Pose2& T = session.T_component_session;
     text += quoted(runs[k]) + ',' + std::to_string(session.component + 1) + ',' + core::row_of(decision).verdict;
-    append_cells(text, {T.x_m, T.y_m, T.heading_rad, static_cast<double>(decision.merged),
-                        static_cast<double>(session.name_of.size()), static_cast<double>(decision.questions),
-                        static_cast<double>(decision.pairs), decision.evidence, decision.lead, decision.needed,
-                        decision.cost, static_cast<double>(decision.dof), decision.limit});
+    files::append_cells(text, {T.x_m, T.y_m, T.heading_rad, static_cast<double>(decision.merged),
+                               static_cast<double>(session.name_of.size()), static_cast<double>(decision.questions),
+                               static_cast<double>(decision.pairs), decision.evidence, decision.lead, decision.needed,
+                               decision.cost, static_cast<double>(decision.dof), decision.limit});
     text += '\n';
   }
   return text;
@@ -52,7 +52,7 @@ std::string changes_table(const std::vector<ChangedLandmark>& shared) {
   std::string text = "component,landmark,x,y,change,seen_in,missing_in\n";
   for (const ChangedLandmark& landmark : shared) {
     text += std::to_string(landmark.component + 1) + ',' + std::to_string(landmark.id);
-    append_cells(text, {landmark.point_m.x(), landmark.point_m.y()});
+    files::append_cells(text, {landmark.point_m.x(), landmark.point_m.y()});
     text += std::string(",") + name_of(landmark.change()) + ',' + numbers_of(landmark.seen_in) + ',' +
             numbers_of(landmark.missing_in) + '\n';
   }

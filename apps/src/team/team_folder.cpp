@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/append_cells.hpp"
+#include "helixnav/files/append_cells.hpp"
 #include "helixnav/files/file.hpp"
 #include "helixnav/files/number_text.hpp"
 #include "helixnav/reports/finish_run.hpp"
@@ -28,8 +28,9 @@ std::string joins_table(const TeamTask& task, const TeamDrive& drive) {
     files::append_seconds(text, join.t_ns);
     text += std::string(",") + team::name_of(join.by) + ',' + std::to_string(number_of(task, join.robot)) + ',' +
             std::to_string(number_of(task, join.other));
-    append_cells(text, {T.x_m, T.y_m, T.heading_rad, static_cast<double>(join.merged),
-                        static_cast<double>(join.sightings), join.cost, static_cast<double>(join.dof), join.limit});
+    files::append_cells(
+        text, {T.x_m, T.y_m, T.heading_rad, static_cast<double>(join.merged), static_cast<double>(join.sightings),
+               join.cost, static_cast<double>(join.dof), join.limit});
     text += '\n';
   }
   return text;
@@ -42,7 +43,7 @@ std::string sightings_table(const TeamTask& task, const TeamDrive& drive) {
     text += ',' + std::to_string(number_of(task, sighting.robot)) + ',' +
             std::to_string(number_of(task, sighting.seen)) + ',' + (sighting.used ? '1' : '0');
     if (sighting.residual) {
-      append_cells(text, {sighting.residual->x(), sighting.residual->y()});
+      files::append_cells(text, {sighting.residual->x(), sighting.residual->y()});
     } else {
       text += ",,";
     }
@@ -59,8 +60,8 @@ std::string map_table(const TeamTask& task, const TeamDrive& drive) {
     for (const core::MapLandmark& landmark : drive.team.map(component)) {
       const Eigen::Matrix2d& P = landmark.point.covariance_m2;
       text += std::to_string(number_of(task, component)) + ',' + std::to_string(landmark.id);
-      append_cells(text, {landmark.point.mean_m.x(), landmark.point.mean_m.y(), P(0, 0), P(0, 1), P(1, 1),
-                          static_cast<double>(landmark.observations)});
+      files::append_cells(text, {landmark.point.mean_m.x(), landmark.point.mean_m.y(), P(0, 0), P(0, 1), P(1, 1),
+                                 static_cast<double>(landmark.observations)});
       text += '\n';
     }
   }

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "helixnav/supervisor/joint_map.hpp"
-#include "helixnav/supervisor/lengths.hpp"
 #include "loop/navigation_loop.hpp"
 #include "placing/still_there.hpp"
 

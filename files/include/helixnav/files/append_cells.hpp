@@ -7,21 +7,21 @@
 
 #include "helixnav/files/number_text.hpp"
 
-namespace helixnav::runs {
+namespace helixnav::files {
 
-/// Further cells of a row, each with the comma before it.
+/// Further cells of a row, each with the comma before it. Test: runs/run_writer_test.cpp.
 inline void append_cells(std::string& text, std::initializer_list<double> values) {
   for (const double value : values) {
     text += ',';
-    files::append_number(text, value);
+    append_number(text, value);
   }
 }
 
 inline void append_counts(std::string& text, std::initializer_list<std::int64_t> values) {
   for (const std::int64_t value : values) {
     text += ',';
-    files::append_number(text, value);
+    append_number(text, value);
   }
 }
 
-}  // namespace helixnav::runs
+}  // namespace helixnav::files
