@@ -13,7 +13,6 @@
 #include "helixnav/core/resampling.hpp"
 #include "helixnav/core/worker_pool.hpp"
 #include "helixnav/pf_relocalize/resample.hpp"
-#include "lineage.hpp"
 
 namespace helixnav::pf_relocalize {
 namespace {
@@ -25,7 +24,7 @@ void check(const RelocalizerOptions& options) {
   const bool valid = options.least_particles >= 1 && options.most_particles >= options.least_particles &&
                      options.resample_below >= 0.0 && options.resample_below <= 1.0 && options.kld_error > 0.0 &&
                      options.bin_m > 0.0 && options.bin_rad > 0.0 && options.motion_noise_scale >= 0.0 &&
-                     options.threads >= 1 && options.most_modes >= 1 && options.lineage_scans >= 1;
+                     options.threads >= 1 && options.most_modes >= 1;
   if (!valid) throw core::PreconditionError("relocalizer: an option is out of its range");
 }
 
@@ -77,7 +76,6 @@ struct Relocalizer::Impl {
   std::vector<std::uint32_t> parents;
   std::vector<std::uint64_t> keys;
   std::vector<std::uint8_t> taken;
-  Lineage lineage;
   CloudState state;
   std::size_t helix_pairs = 0;
 };
@@ -87,8 +85,7 @@ Relocalizer::Impl::Impl(ReferenceMap reference, const RelocalizerOptions& chosen
       map(std::move(reference)),
       likelihood(map, chosen.sensor),
       pool(chosen.threads),
-      random(seed, "relocalizer"),
-      lineage(chosen.lineage_scans, chosen.most_particles) {
+      random(seed, "relocalizer") {
   for (std::size_t first = 0; first < options.most_particles; first += block_size) {
     block_random.emplace_back(seed, "relocalizer block " + std::to_string(first / block_size));
   }
@@ -142,7 +139,6 @@ void Relocalizer::Impl::absorb_weights(core::Nanoseconds t_ns) {
   state.effective_size = core::effective_sample_size(particles.log_weight);
   state.cloud = cloud_moments(particles);
   find_modes(particles, options.mode_radius, options.most_modes, 1e-4, taken, state.modes);
-  lineage.append(t_ns, particles, parents, state.modes.front().best);
   resample_when_due();
 }
 
@@ -180,7 +176,6 @@ const Particles& Relocalizer::particles() const { return impl_->particles; }
 const Particles& Relocalizer::weighted_particles() const {
   return impl_->state.resampled ? impl_->resampled : impl_->particles;
 }
-std::vector<LineagePose> Relocalizer::lineage() const { return impl_->lineage.trace(); }
 
 bool meets_paper_rule(const CloudState& state, const core::Odometry& motion) {
   const Eigen::Vector3d variance = state.cloud.covariance.diagonal();

@@ -45,7 +45,6 @@ RelocalizerOptions options_with(std::size_t particles, unsigned threads = 1) {
   options.most_particles = particles;
   options.least_particles = std::min<std::size_t>(particles, 1000);
   options.threads = threads;
-  options.lineage_scans = 32;
   return options;
 }
 
@@ -196,40 +195,6 @@ TEST(Relocalizer, AdaptsTheNumberOfParticlesBetweenFloorAndCeiling) {
   }
   EXPECT_LT(search.state().particles, 3000U);
   EXPECT_GE(search.state().particles, 1000U);
-}
-
-TEST(Relocalizer, LineageIsThePathThatTheBestParticleTook) {
-  ScatterWorld world({}, 6);
-  RelocalizerOptions options = options_with(4000);
-  options.motion_noise_scale = 0.0;  // then every link of a lineage is the odometry, exactly
-  Relocalizer search(world.map, first_scan(world), options, 1);
-  std::vector<core::Odometry> motions;
-  for (int k = 0; k < 10; ++k) {
-    motions.push_back(world.drive());
-    search.step(motions.back(), world.scan());
-  }
-  const std::vector<LineagePose> path = search.lineage();
-  ASSERT_EQ(path.size(), 11U);
-  for (std::size_t k = 0; k < motions.size(); ++k) {
-    EXPECT_EQ(path[k + 1].t_ns, motions[k].t_ns);
-    const core::Pose2 link = core::between(path[k].T_base_robot, path[k + 1].T_base_robot);
-    EXPECT_LT(core::between(motions[k].T_before_after, link).vector().norm(), 1e-9) << k;
-  }
-  const core::Pose2 best = search.state().modes.front().pose.mean;
-  EXPECT_LT((path.back().T_base_robot.position_m() - best.position_m()).norm(), 2.0);
-}
-
-TEST(Relocalizer, LineageForgetsScansBeyondItsLength) {
-  ScatterWorld world({}, 7);
-  RelocalizerOptions options = options_with(1500);
-  options.lineage_scans = 4;
-  Relocalizer search(world.map, first_scan(world), options, 1);
-  for (int k = 0; k < 9; ++k) {
-    const core::Odometry motion = world.drive();
-    search.step(motion, world.scan());
-  }
-  EXPECT_EQ(search.lineage().size(), 4U);
-  EXPECT_EQ(search.lineage().back().t_ns, world.t_ns);
 }
 
 /// Starts on a map and drives; returns what the search came to within 20 scans.

@@ -27,8 +27,7 @@ struct RelocalizerOptions {
   double motion_noise_scale = 1.3;  ///< factor on σ of the odometry
   ModeRadius mode_radius;
   std::size_t most_modes = 8;
-  std::size_t lineage_scans = 128;  ///< scans that lineage() can look back
-  unsigned threads = 2;             ///< results do not depend on it
+  unsigned threads = 2;  ///< results do not depend on it
 };
 
 /// The state after one scan.
@@ -41,12 +40,6 @@ struct CloudState {
   double log_evidence = 0.0;  ///< Σ over scans of log(mean Λ): nats against "nothing here is in the map"
   core::PoseGaussian cloud;   ///< of all particles, T_base_robot
   std::vector<Mode> modes;    ///< heaviest first, most_modes at the most
-};
-
-/// A pose of the past on the line of descent of one particle.
-struct LineagePose {
-  core::Nanoseconds t_ns = 0;
-  core::Pose2 T_base_robot;
 };
 
 /// Resolves where the vehicle is on an old map by a particle filter (SIR) that is started on helices:
@@ -82,9 +75,6 @@ class Relocalizer {
 
   /// The cloud before that resampling, with its weights: at the start, as it was drawn on helices.
   const Particles& weighted_particles() const;
-
-  /// Poses of the heaviest particle of the heaviest mode and of its ancestors at every scan, oldest first.
-  std::vector<LineagePose> lineage() const;
 
  private:
   struct Impl;
