@@ -62,6 +62,7 @@ PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
 
 class Slurm:
     def __init__(self, folder):
+        self.folder = folder
         self.environment = {**os.environ, "SLURM_CONF": str(folder / "slurm.conf"), "PATH": PATH}
 
     def say(self, *words):
@@ -74,6 +75,11 @@ class Slurm:
         """[(task, state)] of those not yet ended."""
         return [tuple(line.split()) for line in
                 self.say("squeue", "--noheader", "--array", "--job", job, "--format", "%K %T").splitlines()]
+
+    def has_ended(self, task):
+        """Whether a process of that task has ended, and Slurm knows how."""
+        job_id = self.say("scontrol", "show", "job", task).split("JobId=", 1)[1].split()[0]
+        return f"[{job_id}.batch] done with job" in (self.folder / "slurmd.log").read_text(encoding="utf-8")
 
     def wait(self, job, seconds):
         until = time.monotonic() + seconds

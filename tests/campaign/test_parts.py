@@ -79,9 +79,13 @@ def test_a_slurm_array_with_a_task_killed_and_requeued(whole, shared):
         before = lines_in(first)
         assert 2 <= before < RUNS // TASKS, "it had ended: nothing was killed"
         assert "of its seeds were not driven" in montecarlo("--merge", first, "--out", shared / "half", code=3)
+        # Had it begun anew before Slurm heard how the killed process ended, that would count as the end of the task.
+        slurm_node.until(lambda: slurm.has_ended(f"{job}_1"), 60, "what was killed does not end")
         slurm.say("scontrol", "update", f"jobid={job}_1", "starttime=now")  # Slurm would let it wait for two minutes
         slurm.wait(job, seconds=60 + 2 * RUNS)
-        assert "Restarts=1" in slurm.say("scontrol", "show", "job", f"{job}_1")
+        task = slurm.say("scontrol", "show", "job", f"{job}_1")
+        assert "Restarts=1" in task
+        assert "JobState=COMPLETED" in task, task + (shared / "1.log").read_text(encoding="utf-8")
     parts = sorted(out.glob("part_*"))
     assert len(parts) == TASKS
     montecarlo("--merge", *parts, "--out", shared / "merged")
