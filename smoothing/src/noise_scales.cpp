@@ -32,9 +32,12 @@ void draw_landmarks(Problem& problem, bool noisy, core::RandomStream& random) {
                                     problem.graph.landmarks[index_of(edge.landmark)].point_m)
               .z_hat;
     if (!noisy) continue;
+    const core::ObsVector predicted = z.z;
     core::ObsVector normal(z.z.size());
     for (Eigen::Index row = 0; row < normal.size(); ++row) normal[row] = random.normal();
     z.z += Eigen::MatrixXd(Eigen::MatrixXd(z.R).llt().matrixL()) * normal;
+    const bool has_range = z.kind == core::ObservationKind::range_bearing || z.kind == core::ObservationKind::range;
+    if (has_range && !(z.z[0] > 0.0)) z.z = 2.0 * predicted - z.z;  // as likely, and a range
   }
 }
 
