@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <regex>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "helixnav/core/angle.hpp"
+#include "helixnav/core/random.hpp"
 #include "helixnav/logs/vehicle.hpp"
 #include "program.hpp"
 #include "real_data.hpp"
@@ -64,6 +68,44 @@ TEST_F(CalibrateProgram, SaysWhatIsMissingOrWrong) {
   const Outcome noise_beside = run({"calibrate", log_, "--log.covariance_scale", "2"});
   EXPECT_EQ(noise_beside.exit_code, 2);
   EXPECT_NE(noise_beside.err.find("calibrate judges the vehicle file"), std::string::npos) << noise_beside.err;
+}
+
+/// Straight on past poles at a steady speed.
+void write_straight_drive(const fs::path& folder) {
+  core::RandomStream random(1, "straight drive");
+  fs::create_directories(folder);
+  std::ofstream vehicle(folder / "vehicle.toml"), odometry(folder / "odometry.csv"), seen(folder / "detections.csv");
+  vehicle << "[odometry]\nsigma_along_m_per_sqrt_m = 0.02\nsigma_sideways_m_per_sqrt_m = 0.002\n"
+             "sigma_heading_deg_per_sqrt_m = 0.1\n[[sensor]]\nreach_m = 12\nsigma_range_m = 0.05\nsigma_bearing_deg = "
+             "0.3\n";
+  odometry << "t_s,dx_m,dy_m,dheading_deg\n0,0,0,0\n";
+  seen << "t_s,range_m,bearing_deg\n";
+  for (int k = 1; k <= 240; ++k) {
+    const double t_s = 0.25 * k, x_m = t_s;
+    odometry << t_s << ',' << 0.25 + 0.01 * random.normal() << ',' << 0.001 * random.normal() << ','
+             << 0.05 * random.normal() << '\n';
+    for (int pole = 0; pole < 20; ++pole) {
+      const Eigen::Vector2d to(4.0 * pole - x_m, pole % 2 == 0 ? 4.0 : -5.0);
+      if (to.norm() > 12.0) continue;
+      seen << t_s << ',' << to.norm() + 0.05 * random.normal() << ','
+           << std::atan2(to.y(), to.x()) * 180.0 / core::pi + 0.3 * random.normal() << '\n';
+    }
+  }
+}
+
+// Where a sensor stands, and a scale of turns, show in turns alone.
+TEST(CalibrateStraightDrive, SaysWhatCannotBeObserved) {
+  const testing::TemporaryFolder folder;
+  const fs::path log = folder.path() / "log", out = folder.path() / "out.toml";
+  write_straight_drive(log);
+  const Outcome outcome = run({"calibrate", log, "--out", out});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* key : {"x_m", "y_m", "turn_scale"}) {
+    const std::regex row(std::string(key) + R"( +told .* not observable from this log: left as told)");
+    EXPECT_TRUE(std::regex_search(outcome.out, row)) << key << '\n' << outcome.out;
+  }
+  EXPECT_TRUE(std::regex_search(outcome.out, std::regex("heading_deg +told .* observable"))) << outcome.out;
+  EXPECT_EQ(logs::read_vehicle(out).sensors.at(0).T_vehicle_sensor.x_m, 0.0);
 }
 
 class CalibrateRealLog : public testing::RealDataTest {

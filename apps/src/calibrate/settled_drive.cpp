@@ -8,21 +8,10 @@
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/event_loop.hpp"
-#include "helixnav/smoothing/optimize.hpp"
 #include "smooth/smoothing_run.hpp"
 
 namespace helixnav::apps {
 namespace {
-
-core::Recording without_fixes(const core::Recording& recording) {
-  core::Recording rest;
-  rest.start = recording.start;
-  rest.name = recording.name;
-  for (const core::Event& event : recording.events) {
-    if (!std::holds_alternative<core::AbsoluteFix>(event)) rest.events.push_back(event);
-  }
-  return rest;
-}
 
 /// Of landmarks that lasted; clutter and what was seen once say nothing.
 Ids ids_of_mature(const std::vector<core::StepReport>& steps, const core::Recording& recording,
@@ -38,19 +27,35 @@ Ids ids_of_mature(const std::vector<core::StepReport>& steps, const core::Record
   return ids;
 }
 
+double nis_per_dof(const std::vector<core::StepReport>& steps, double from_share) {
+  double nis = 0.0;
+  int rows = 0;
+  for (auto k = static_cast<std::size_t>(from_share * static_cast<double>(steps.size())); k < steps.size(); ++k) {
+    nis += steps[k].joint_nis;
+    rows += steps[k].joint_dof;
+  }
+  return rows > 0 ? nis / rows : 0.0;
+}
+
 }  // namespace
 
-SettledDrive settle(const core::Recording& recording, const supervisor::NavigatorOptions& options,
-                    bool known_association) {
+core::Recording without_fixes(const core::Recording& recording) {
+  core::Recording rest;
+  rest.start = recording.start;
+  rest.name = recording.name;
+  for (const core::Event& event : recording.events) {
+    if (!std::holds_alternative<core::AbsoluteFix>(event)) rest.events.push_back(event);
+  }
+  return rest;
+}
+
+SettledDrive drive_through(const core::Recording& recording, const supervisor::NavigatorOptions& options,
+                           bool known_association) {
   ChosenNavigator navigator(recording, options, known_association);
   core::EventLoop loop(recording.events, navigator);
   std::vector<core::StepReport> steps;
   SettledDrive drive;
-  double nis = 0.0;
-  int rows = 0;
   while (std::optional<core::StepReport> step = loop.next()) {
-    nis += step->joint_nis;
-    rows += step->joint_dof;
     for (const core::Decision& decision : step->decisions) {
       drive.closings += core::is_closure(decision) && core::row_of(decision).verdict == std::string("accepted") ? 1 : 0;
     }
@@ -59,7 +64,8 @@ SettledDrive settle(const core::Recording& recording, const supervisor::Navigato
   }
   const std::vector<core::MapLandmark> map = navigator.map();
   const core::Recording driven = without_fixes(recording);
-  SmoothingTask task = task_from_recording(driven, ids_of_mature(steps, driven, map));
+  drive.ids = ids_of_mature(steps, driven, map);
+  SmoothingTask task = task_from_recording(driven, drive.ids);
   if (task.problem.graph.landmark_edges.empty()) {
     throw core::InputError(recording.name +
                            ": the run maps no landmark, so that nothing can be calibrated; 'helixnav check' "
@@ -68,12 +74,10 @@ SettledDrive settle(const core::Recording& recording, const supervisor::Navigato
   std::vector<core::Pose2> poses;
   for (const core::StepReport& step : steps) poses.push_back(step.pose.mean);
   start_from_run(recording.name, steps, poses, map, task);
-  smoothing::Options solver;
-  solver.first_damping = 1e-8;
-  smoothing::optimize(task.problem, solver);
   drive.used = task.problem.graph.landmark_edges.size();
-  drive.nis_per_dof = rows > 0 ? nis / rows : 0.0;
-  drive.problem = std::move(task.problem);
+  drive.nis_per_dof = nis_per_dof(steps, 0.0);
+  drive.nis_per_dof_held_out = nis_per_dof(steps, 1.0 - 1.0 / parts_held_out);
+  drive.task = std::move(task);
   return drive;
 }
 

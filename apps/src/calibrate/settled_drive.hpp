@@ -2,24 +2,33 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "helixnav/core/recording.hpp"
-#include "helixnav/smoothing/problem.hpp"
 #include "helixnav/supervisor/navigator_options.hpp"
+#include "smooth/smoothing_task.hpp"
 
 namespace helixnav::apps {
 
-/// A log with the associations of a run through it, solved as a whole.
+/// A log with the associations of a run through it.
 struct SettledDrive {
-  smoothing::Problem problem;  ///< at its optimum
+  SmoothingTask task;  ///< where the run left it
+  Ids ids;             ///< associations that it was made with
   std::size_t observations = 0, used = 0;
   std::size_t closings = 0;
-  double nis_per_dof = 0.0;  ///< of the run
+  double nis_per_dof = 0.0;           ///< of the run
+  double nis_per_dof_held_out = 0.0;  ///< of the run in the last part
 };
 
-/// Navigates and solves; observations of mature landmarks are used. core::InputError when the run maps no landmark,
+/// Parts of a log, of which each judges the constants that are fitted to the others; the last judges by a run, too.
+inline constexpr int parts_held_out = 4;
+
+/// The events but for fixes: what calibrate may see.
+core::Recording without_fixes(const core::Recording& recording);
+
+/// Navigates; observations of mature landmarks are used. core::InputError when the run maps no landmark,
 /// core::NumericalError where the mathematics breaks.
-SettledDrive settle(const core::Recording& recording, const supervisor::NavigatorOptions& options,
-                    bool known_association);
+SettledDrive drive_through(const core::Recording& recording, const supervisor::NavigatorOptions& options,
+                           bool known_association);
 
 }  // namespace helixnav::apps

@@ -3,13 +3,13 @@
 
 #include <string>
 
+#include "calibration.hpp"
 #include "helixnav/logs/vehicle.hpp"
-#include "helixnav/smoothing/noise_scales.hpp"
 
 namespace helixnav::apps {
 
-/// The text of the vehicle's file with `noise_scale` in [odometry] and in every [[sensor]] multiplied by the factors found;
-/// everything else, comments too, as it is. Test: apps/calibrate_test.cpp.
-std::string with_noise_scales(const logs::Vehicle& vehicle, const smoothing::NoiseScales& scales);
+/// The text of the vehicle's file with `noise_scale` in [odometry] and in every [[sensor]] multiplied by the factors found, and
+/// with the constants that were kept; everything else, comments too, as it is. Test: apps/calibrate_test.cpp.
+std::string calibrated_text(const logs::Vehicle& vehicle, const Calibration& calibration);
 
 }  // namespace helixnav::apps

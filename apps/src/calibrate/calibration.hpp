@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "common/settings.hpp"
+#include "helixnav/logs/vehicle.hpp"
+#include "helixnav/smoothing/noise_scales.hpp"
+#include "vehicle_constants.hpp"
+
+namespace helixnav::apps {
+
+/// A constant as found. `value` is the best one whether it is kept or not.
+struct ConstantFound {
+  VehicleConstant constant;
+  double told = 0.0;  ///< by the vehicle file
+  double value = 0.0;
+  double sigma = 0.0;  ///< of value; where nothing is observable: what is known after the log
+  bool observable = false;
+  bool kept = false;        ///< explains the held-out part better than what was told
+  double kept_value = 0.0;  ///< with the constants that are not kept as told
+};
+
+struct Calibration {
+  smoothing::NoiseScales scales;  ///< on what the vehicle file assumes
+  std::vector<ConstantFound> constants;
+  std::size_t first_closings = 0;  ///< of the run with everything as assumed
+  std::size_t closings = 0;        ///< of the last
+  int rounds = 0;
+  bool settled = false;
+  bool without_returns = false;  ///< landmarks that came back after a while were taken for others
+
+  double held_out_gain = 0.0;  ///< ln L of the parts, each with the constants fitted to the others, over that as told
+  double nis_told = 0.0, nis_found = 0.0;  ///< per degree of freedom in the last part, with the noise found
+  Settings settings;                       ///< with what is kept
+};
+
+/// Navigates with what is known, fits constants and noise to the drive solved as a whole, and again until nothing changes;
+/// prints a line for each round. Errors as drive_through().
+Calibration calibrate_log(const std::string& path, const Settings& settings, const logs::Vehicle& vehicle);
+
+}  // namespace helixnav::apps

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "settled_log.hpp"
+
+#include <algorithm>
+#include <map>
+#include <variant>
+
+#include "helixnav/core/errors.hpp"
+#include "helixnav/smoothing/optimize.hpp"
+#include "helixnav/smoothing/residuals.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+MotionsAndMountings measured(const core::Recording& recording) {
+  MotionsAndMountings result;
+  core::Pose2 moved;
+  for (const core::Event& event : recording.events) {
+    if (const auto* odometry = std::get_if<core::Odometry>(&event)) {
+      moved = core::compose(moved, odometry->T_before_after);
+    } else if (const auto* scan = std::get_if<core::Scan>(&event)) {
+      result.times.push_back(scan->t_ns);
+      result.moved.push_back(moved);
+      result.mounting.push_back(scan->T_robot_sensor);
+      moved = core::Pose2();
+    }
+  }
+  return result;
+}
+
+/// [pose] its first scan, −1 when it has none.
+std::vector<int> first_scans(const SmoothingTask& task) {
+  std::vector<int> first(task.problem.graph.poses.size(), -1);
+  for (std::size_t k = task.pose_of_step.size(); k-- > 0;) first[at(task.pose_of_step[k])] = static_cast<int>(k);
+  return first;
+}
+
+core::Pose2 moved_between(const MotionsAndMountings& log, int from, int to) {
+  core::Pose2 moved;
+  for (int k = from + 1; k <= to; ++k) moved = core::compose(moved, log.moved[at(k)]);
+  return moved;
+}
+
+Eigen::Vector3d slope(const core::Pose2& from, const core::Pose2& to, double nudge) {
+  Eigen::Vector3d difference = to.vector() - from.vector();
+  difference.z() = core::wrap_to_pi(difference.z());
+  return difference / nudge;
+}
+
+smoothing::ConstantDerivative none_of(const SmoothingTask& task) {
+  const core::LandmarkGraph& graph = task.problem.graph;
+  smoothing::ConstantDerivative derivative;
+  derivative.increments.assign(graph.pose_edges.size(), Eigen::Vector3d::Zero());
+  derivative.mountings.assign(graph.landmark_edges.size(), Eigen::Vector3d::Zero());
+  return derivative;
+}
+
+/// Of the solved increment minus the measured one.
+Eigen::Vector3d left_over(const core::LandmarkGraph& graph, const core::LandmarkGraph::PoseEdge& edge) {
+  Eigen::Vector3d e =
+      core::between(graph.poses[at(edge.from)].T_world_robot, graph.poses[at(edge.to)].T_world_robot).vector() -
+      edge.T_from_to.vector();
+  e.z() = core::wrap_to_pi(e.z());
+  return e;
+}
+
+smoothing::ConstantDerivative by_reading(const NudgedLog& log, std::size_t c, const SmoothingTask& task) {
+  const core::LandmarkGraph& graph = task.problem.graph;
+  const double nudge = log.constants[c].nudge;
+  const MotionsAndMountings& nudged = log.nudged[c];
+  const Eigen::Vector3d& factor_of = log.constants[c].factor_of;
+  const bool multiplies = !factor_of.isZero(0.0);
+  smoothing::ConstantDerivative derivative = none_of(task);
+  const std::vector<int> first = first_scans(task);
+  for (std::size_t i = 0; i < graph.pose_edges.size(); ++i) {
+    const auto& edge = graph.pose_edges[i];
+    const int from = first[at(edge.from)], to = first[at(edge.to)];
+    if (from < 0) continue;  // motion before the first scan says nothing: no landmark is seen before it
+    derivative.increments[i] = slope(moved_between(log.told, from, to), moved_between(nudged, from, to), nudge);
+    if (multiplies) derivative.increments[i] += factor_of.cwiseProduct(left_over(graph, edge)) / log.values[c];
+  }
+  for (std::size_t k = 0; k < task.edge_of.size(); ++k) {
+    for (const int edge : task.edge_of[k]) {
+      if (edge >= 0) derivative.mountings[at(edge)] = slope(log.told.mounting[k], nudged.mounting[k], nudge);
+    }
+  }
+  return derivative;
+}
+
+/// (x, y, heading) a second in the frame of the pose, from the solved poses beside it.
+Eigen::Vector3d rate_at(const NudgedLog& log, const SmoothingTask& task, const std::vector<int>& first, int pose) {
+  const int last = static_cast<int>(first.size()) - 1;
+  const int before = pose > 0 && first[at(pose - 1)] >= 0 ? pose - 1 : pose;
+  const int after = std::min(pose + 1, last);
+  const double duration_s = core::seconds(log.told.times[at(first[at(after)])] - log.told.times[at(first[at(before)])]);
+  if (!(duration_s > 0.0)) return Eigen::Vector3d::Zero();
+  const auto& poses = task.problem.graph.poses;
+  const core::Pose2& here = poses[at(pose)].T_world_robot;
+  const core::Pose2 from = core::between(here, poses[at(before)].T_world_robot);
+  const core::Pose2 to = core::between(here, poses[at(after)].T_world_robot);
+  return slope(from, to, duration_s);
+}
+
+smoothing::ConstantDerivative by_delay(const NudgedLog& log, const SmoothingTask& task) {
+  smoothing::ConstantDerivative derivative = none_of(task);
+  const std::vector<int> first = first_scans(task);
+  for (std::size_t k = 0; k < task.edge_of.size(); ++k) {
+    const int pose = task.pose_of_step[k];
+    if (first[at(pose)] < 0) continue;
+    const Eigen::Vector3d rate = rate_at(log, task, first, pose);
+    const core::Pose2& mounting = log.told.mounting[k];
+    const Eigen::Vector3d back(-rate.x() + rate.z() * mounting.y_m, -rate.y() - rate.z() * mounting.x_m, -rate.z());
+    for (const int edge : task.edge_of[k]) {
+      if (edge >= 0) derivative.mountings[at(edge)] = back;
+    }
+  }
+  return derivative;
+}
+
+}  // namespace
+
+Ids without_returns(const Ids& ids) {
+  constexpr std::size_t while_scans = 10;
+  struct Passage {
+    std::int64_t id = 0;
+    std::size_t last_scan = 0;
+  };
+  std::map<std::int64_t, Passage> passages;
+  Ids apart = ids;
+  std::int64_t next = 0;  // other names than before, so that nobody takes one for the other
+  for (const auto& of_scan : ids) {
+    for (const std::int64_t id : of_scan) next = std::max(next, id + 1);
+  }
+  for (std::size_t k = 0; k < apart.size(); ++k) {
+    for (std::int64_t& id : apart[k]) {
+      if (id < 0) continue;
+      const auto [found, begun] = passages.try_emplace(id);
+      if (begun || k - found->second.last_scan > while_scans) found->second.id = next++;
+      found->second.last_scan = k;
+      id = found->second.id;
+    }
+  }
+  return apart;
+}
+
+Ids without_outliers(const Ids& ids, const SmoothingTask& solved) {
+  const core::LandmarkGraph& graph = solved.problem.graph;
+  std::vector<double> nis(graph.landmark_edges.size(), 0.0);
+  const std::size_t all = graph.pose_edges.size() + graph.landmark_edges.size();
+  for (const smoothing::Residual& residual : smoothing::largest_residuals(solved.problem, all)) {
+    if (residual.kind == smoothing::Residual::Kind::landmark) nis[at(residual.edge)] = residual.nis;
+  }
+  if (nis.empty()) return ids;
+  std::vector<double> sorted = nis;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  constexpr double most_medians = 15.0;  // exceeded by one of 30 000 with normal noise of two rows
+  Ids kept = ids;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    for (std::size_t i = 0; i < kept[k].size(); ++i) {
+      const int edge = solved.edge_of[k][i];
+      if (edge >= 0 && nis[at(edge)] > most_medians * *middle) kept[k][i] = core::no_label;
+    }
+  }
+  return kept;
+}
+
+SmoothingTask solve_log(const core::Recording& recording, const Ids& ids, const core::LandmarkGraph& from) {
+  SmoothingTask task = task_from_recording(without_fixes(recording), ids);
+  core::LandmarkGraph& graph = task.problem.graph;
+  if (graph.poses.size() == from.poses.size()) {
+    graph.poses = from.poses;
+    core::locate_landmarks(graph);
+  }
+  std::map<std::int64_t, Eigen::Vector2d> point_of;
+  for (const auto& landmark : from.landmarks) point_of[landmark.name] = landmark.point_m;
+  for (auto& landmark : graph.landmarks) {
+    if (const auto known = point_of.find(landmark.name); known != point_of.end()) landmark.point_m = known->second;
+  }
+  smoothing::Options solver;
+  solver.first_damping = 1e-8;
+  smoothing::optimize(task.problem, solver);
+  return task;
+}
+
+bool same(const MotionsAndMountings& a, const MotionsAndMountings& b) {
+  const auto equal = [](const core::Pose2& one, const core::Pose2& other) { return one.vector() == other.vector(); };
+  return std::equal(a.moved.begin(), a.moved.end(), b.moved.begin(), b.moved.end(), equal) &&
+         std::equal(a.mounting.begin(), a.mounting.end(), b.mounting.begin(), b.mounting.end(), equal);
+}
+
+NudgedLog nudge(const ReadLog& read, const Settings& settings, const std::vector<VehicleConstant>& constants,
+                const core::Recording& told) {
+  NudgedLog log;
+  log.told = measured(told);
+  log.constants = constants;
+  for (const VehicleConstant& constant : constants) {
+    Settings nudged = settings;
+    constant.add(nudged, constant.nudge);
+    log.values.push_back(constant.value(settings));
+    log.nudged.push_back(constant.nudge > 0.0 ? measured(read(nudged)) : MotionsAndMountings());
+    if (constant.nudge > 0.0 && log.nudged.back().moved.size() != log.told.moved.size()) {
+      throw core::InputError(told.name + ": with another " + constant.key + " the log has another number of scans");
+    }
+  }
+  return log;
+}
+
+std::vector<smoothing::ConstantDerivative> derivatives_of(const NudgedLog& log, const SmoothingTask& task) {
+  std::vector<smoothing::ConstantDerivative> derivatives;
+  for (std::size_t c = 0; c < log.constants.size(); ++c) {
+    derivatives.push_back(log.constants[c].nudge > 0.0 ? by_reading(log, c, task) : by_delay(log, task));
+  }
+  return derivatives;
+}
+
+}  // namespace helixnav::apps
