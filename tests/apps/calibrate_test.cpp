@@ -100,7 +100,7 @@ TEST(CalibrateStraightDrive, SaysWhatCannotBeObserved) {
   write_straight_drive(log);
   const Outcome outcome = run({"calibrate", log, "--out", out});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  for (const char* key : {"x_m", "y_m", "turn_scale"}) {
+  for (const char* key : {"x_m", "y_m", "turn_scale", "delay_s"}) {
     const std::regex row(std::string(key) + R"( +told .* not observable from this log: left as told)");
     EXPECT_TRUE(std::regex_search(outcome.out, row)) << key << '\n' << outcome.out;
   }

@@ -183,11 +183,12 @@ class Calibrator {
     constexpr int most_steps = 4;
     for (int i = 0; i < most_steps && !constants_.empty(); ++i) {
       const core::Recording recording = read(result_.settings);
-      drive.task = solve_log(recording, drive.ids, drive.task.problem.graph);
       if (far_off_ || result_.without_returns) {
+        const smoothing::RobustKernel robust{smoothing::RobustKernel::Shape::cauchy};
+        drive.task = solve_log(recording, drive.ids, drive.task.problem.graph, robust);
         drive.ids = without_outliers(drive.ids, drive.task);
-        drive.task = solve_log(recording, drive.ids, drive.task.problem.graph);
       }
+      drive.task = solve_log(recording, drive.ids, drive.task.problem.graph);
       const auto evidence =
           smoothing::evidence_of_constants(drive.task.problem, derivatives_of(nudged(recording), drive.task));
       const std::vector<bool> free = observable(evidence.information, usual());

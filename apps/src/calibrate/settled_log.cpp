@@ -92,8 +92,10 @@ smoothing::ConstantDerivative by_reading(const NudgedLog& log, std::size_t c, co
 /// (x, y, heading) a second in the frame of the pose, from the solved poses beside it.
 Eigen::Vector3d rate_at(const NudgedLog& log, const SmoothingTask& task, const std::vector<int>& first, int pose) {
   const int last = static_cast<int>(first.size()) - 1;
-  const int before = pose > 0 && first[at(pose - 1)] >= 0 ? pose - 1 : pose;
-  const int after = std::min(pose + 1, last);
+  constexpr int window = 3;  // so wide that what is left of the noise in it says nothing of a delay
+  int before = std::max(pose - window, 0);
+  while (first[at(before)] < 0) ++before;
+  const int after = std::min(pose + window, last);
   const double duration_s = core::seconds(log.told.times[at(first[at(after)])] - log.told.times[at(first[at(before)])]);
   if (!(duration_s > 0.0)) return Eigen::Vector3d::Zero();
   const auto& poses = task.problem.graph.poses;
@@ -167,7 +169,8 @@ Ids without_outliers(const Ids& ids, const SmoothingTask& solved) {
   return kept;
 }
 
-SmoothingTask solve_log(const core::Recording& recording, const Ids& ids, const core::LandmarkGraph& from) {
+SmoothingTask solve_log(const core::Recording& recording, const Ids& ids, const core::LandmarkGraph& from,
+                        const smoothing::RobustKernel& kernel) {
   SmoothingTask task = task_from_recording(without_fixes(recording), ids);
   core::LandmarkGraph& graph = task.problem.graph;
   if (graph.poses.size() == from.poses.size()) {
@@ -181,6 +184,7 @@ SmoothingTask solve_log(const core::Recording& recording, const Ids& ids, const 
   }
   smoothing::Options solver;
   solver.first_damping = 1e-8;
+  solver.kernel = kernel;
   smoothing::optimize(task.problem, solver);
   return task;
 }

@@ -5,6 +5,7 @@
 
 #include "helixnav/core/recording.hpp"
 #include "helixnav/smoothing/constants.hpp"
+#include "helixnav/smoothing/robust_kernel.hpp"
 #include "settled_drive.hpp"
 #include "vehicle_constants.hpp"
 
@@ -22,7 +23,8 @@ Ids without_outliers(const Ids& ids, const SmoothingTask& solved);
 
 /// The least-squares problem of a log read by the settings, with the associations of a drive through it, solved from where
 /// the drive stands.
-SmoothingTask solve_log(const core::Recording& recording, const Ids& ids, const core::LandmarkGraph& from);
+SmoothingTask solve_log(const core::Recording& recording, const Ids& ids, const core::LandmarkGraph& from,
+                        const smoothing::RobustKernel& kernel = {});
 
 /// What a log measures between its scans and at them.
 struct MotionsAndMountings {

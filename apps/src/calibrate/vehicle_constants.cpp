@@ -23,7 +23,7 @@ VehicleConstant length(const char* key, int sensor, double usual_m, Places place
 }
 
 VehicleConstant delay(double least_s, double most_s, Places places) {
-  return {"delay_s", "delay_s",         VehicleConstant::every_sensor, 1.0, 0.1, 0.0, least_s,
+  return {"delay_s", "delay_s",         VehicleConstant::every_sensor, 1.0, 0.2, 0.0, least_s,
           most_s,    std::move(places), Eigen::Vector3d::Zero()};
 }
 
