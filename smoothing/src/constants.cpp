@@ -9,8 +9,6 @@
 namespace helixnav::smoothing {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// The rows of the constants in the normal equations of poses, landmarks and constants.
 class BorderedEquations {
  public:
@@ -38,18 +36,21 @@ class BorderedEquations {
  private:
   void add_odometry(std::size_t i) {
     const auto& edge = session_.problem.graph.pose_edges[i];
-    const auto factor = odometry_factor(edge, session_.state.poses[at(edge.from)], session_.state.poses[at(edge.to)]);
+    const auto from = static_cast<std::size_t>(edge.from);
+    const auto to = static_cast<std::size_t>(edge.to);
+    const auto factor = odometry_factor(edge, session_.state.poses[from], session_.state.poses[to]);
     Eigen::Matrix3Xd J(3, corner.cols());
     for (Eigen::Index c = 0; c < J.cols(); ++c) J.col(c) = -constants_[static_cast<std::size_t>(c)].increments[i];
-    add(factor, J, edge.covariance, session_.layout.pose_column[at(edge.from)],
-        session_.layout.pose_column[at(edge.to)]);
+    add(factor, J, edge.covariance, session_.layout.pose_column[from], session_.layout.pose_column[to]);
   }
 
   template <int D>
   void add_observation(std::size_t i) {
     const auto& edge = session_.problem.graph.landmark_edges[i];
-    const core::Pose2& T_world_robot = session_.state.poses[at(edge.pose)];
-    const Eigen::Vector2d& point_m = session_.state.landmarks[at(edge.landmark)];
+    const auto pose = static_cast<std::size_t>(edge.pose);
+    const auto landmark = static_cast<std::size_t>(edge.landmark);
+    const core::Pose2& T_world_robot = session_.state.poses[pose];
+    const Eigen::Vector2d& point_m = session_.state.landmarks[landmark];
     const auto factor = observation_factor<D>(edge, T_world_robot, point_m);
     const core::Pose2 T_world_sensor = core::compose(T_world_robot, edge.T_robot_sensor);
     const Eigen::Matrix<double, D, 3> by_mounting =
@@ -58,8 +59,8 @@ class BorderedEquations {
     Eigen::Matrix<double, D, Eigen::Dynamic> J(D, corner.cols());
     for (Eigen::Index c = 0; c < J.cols(); ++c)
       J.col(c) = by_mounting * constants_[static_cast<std::size_t>(c)].mountings[i];
-    add(factor, J, Eigen::Matrix<double, D, D>(edge.observation.R), session_.layout.pose_column[at(edge.pose)],
-        session_.layout.landmark_column[at(edge.landmark)]);
+    add(factor, J, Eigen::Matrix<double, D, D>(edge.observation.R), session_.layout.pose_column[pose],
+        session_.layout.landmark_column[landmark]);
   }
 
   template <int D, int NA, int NB>

@@ -20,8 +20,6 @@ namespace helixnav::apps {
 namespace {
 
 double squared(double value) { return value * value; }
-Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
 void multiply(smoothing::NoiseScale& scale, const smoothing::NoiseScale& more) {
   scale.low_95 = scale.factor * more.low_95;
   scale.high_95 = scale.factor * more.high_95;

@@ -8,8 +8,6 @@
 namespace helixnav::apps {
 namespace {
 
-Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
 std::vector<Eigen::Index> free_ones(const std::vector<bool>& free) {
   std::vector<Eigen::Index> columns;
   for (std::size_t i = 0; i < free.size(); ++i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -10,6 +11,9 @@
 namespace helixnav::apps {
 
 // Test: apps/constants_fit_test.cpp
+
+/// Constants are counted with std::size_t in vectors, with Eigen::Index in matrices.
+inline Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 /// Which constants a log says more of than is known beforehand (`usual`: its standard deviations): with the worst left out
 /// one by one, those whose standard deviation is less than half of it.

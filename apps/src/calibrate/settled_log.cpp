@@ -12,8 +12,6 @@
 namespace helixnav::apps {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 MotionsAndMountings measured(const core::Recording& recording) {
   MotionsAndMountings result;
   core::Pose2 moved;

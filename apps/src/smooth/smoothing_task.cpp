@@ -19,8 +19,6 @@ namespace {
 /// Below this the smallest variance of an increment is rounding: (10 µm)², (10 µrad)².
 constexpr double least_variance = 1e-10;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 void soften_rank_two(SmoothingTask& task) {
   for (const auto& edge : task.problem.graph.pose_edges) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(edge.covariance, Eigen::EigenvaluesOnly);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -13,6 +14,9 @@
 namespace helixnav::apps {
 
 using Ids = std::vector<std::vector<std::int64_t>>;
+
+/// For the indices of the graph, which are int because −1 is none of them.
+inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// A recording whose associations are settled, as a least-squares problem.
 struct SmoothingTask {
