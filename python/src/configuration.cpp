@@ -6,10 +6,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/config_file.hpp"
-#include "common/vehicle_option.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/nearest_name.hpp"
+#include "settings/config_file.hpp"
+#include "settings/vehicle_option.hpp"
 
 namespace helixnav::python {
 namespace {

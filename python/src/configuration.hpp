@@ -4,7 +4,7 @@
 #include <string>
 
 #include "bind.hpp"
-#include "common/settings.hpp"
+#include "settings/settings.hpp"
 
 namespace helixnav::python {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "common/fastslam_settings.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/supervisor/navigator_options.hpp"
+#include "settings/fastslam_settings.hpp"
 
 namespace helixnav::python {
 

@@ -1,6 +1,6 @@
 # cmake -DPAGE=… -DSTYLE=… -DSCRIPTS=<a.js;b.js;…> -DCHARTS=… -DOUTPUT=<file.cpp> -P embed.cmake
 # Writes the files as the raw string literals of report_assets.hpp; the scripts one after the other, as one.
-set(text "#include \"report_assets.hpp\"\n\nnamespace helixnav::reports {\n")
+set(text "#include \"report/report_assets.hpp\"\n\nnamespace helixnav::reports {\n")
 
 function(append_literal name)
   set(all "")

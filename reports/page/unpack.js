@@ -1,4 +1,4 @@
-// Reads what reports/src/packed.cpp wrote: zigzag numbers in bytes of seven bits, in base64, `order` times summed up.
+// Reads what reports/src/player/packed.cpp wrote: zigzag numbers in bytes of seven bits, in base64, `order` times summed up.
 const bytesOf = (text) => {
   const letters = atob(text);
   const bytes = new Uint8Array(letters.length);

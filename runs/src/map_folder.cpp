@@ -5,8 +5,8 @@
 
 #include "helixnav/files/file.hpp"
 #include "helixnav/runs/joint_map_file.hpp"
-#include "map_text.hpp"
-#include "run_tables.hpp"
+#include "tables/map_text.hpp"
+#include "tables/run_tables.hpp"
 
 namespace helixnav::runs {
 

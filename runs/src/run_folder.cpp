@@ -14,9 +14,9 @@
 #include "helixnav/files/number_text.hpp"
 #include "helixnav/runs/words.hpp"
 #include "manifest_json.hpp"
-#include "put_association.hpp"
-#include "run_rows.hpp"
-#include "run_tables.hpp"
+#include "tables/put_association.hpp"
+#include "tables/run_rows.hpp"
+#include "tables/run_tables.hpp"
 
 namespace helixnav::runs {
 

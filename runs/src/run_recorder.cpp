@@ -10,7 +10,7 @@
 #include "cloud_choice.hpp"
 #include "map_changes.hpp"
 #include "points_of_scan.hpp"
-#include "put_association.hpp"
+#include "tables/put_association.hpp"
 
 namespace helixnav::runs {
 namespace {

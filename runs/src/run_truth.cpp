@@ -8,8 +8,8 @@
 #include "helixnav/files/file.hpp"
 #include "helixnav/files/number_text.hpp"
 #include "helixnav/runs/run_folder.hpp"
-#include "run_rows.hpp"
-#include "run_tables.hpp"
+#include "tables/run_rows.hpp"
+#include "tables/run_tables.hpp"
 
 namespace helixnav::runs {
 

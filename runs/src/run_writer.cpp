@@ -15,9 +15,9 @@
 #include "helixnav/runs/joint_map_file.hpp"
 #include "helixnav/runs/map_folder.hpp"
 #include "helixnav/runs/words.hpp"
-#include "map_text.hpp"
-#include "particle_tables.hpp"
-#include "run_tables.hpp"
+#include "tables/map_text.hpp"
+#include "tables/particle_tables.hpp"
+#include "tables/run_tables.hpp"
 #include "write_truth.hpp"
 
 namespace helixnav::runs {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <string>
 
-#include "dense_inverse.hpp"
 #include "helixnav/core/errors.hpp"
+#include "sparse/dense_inverse.hpp"
 
 namespace helixnav::smoothing {
 namespace {

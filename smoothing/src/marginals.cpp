@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "joint.hpp"
-#include "selected_inverse.hpp"
+#include "sparse/selected_inverse.hpp"
 
 namespace helixnav::smoothing {
 namespace {

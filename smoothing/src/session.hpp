@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "cholesky.hpp"
 #include "normal_equations.hpp"
+#include "sparse/cholesky.hpp"
 
 namespace helixnav::smoothing {
 

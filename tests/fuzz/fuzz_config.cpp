@@ -2,9 +2,9 @@
 // A configuration file: what is accepted, written out and read again, is the same.
 #include <CLI/CLI.hpp>
 
-#include "common/config_file.hpp"
-#include "common/settings.hpp"
 #include "fuzz_input.hpp"
+#include "settings/config_file.hpp"
+#include "settings/settings.hpp"
 
 namespace {
 

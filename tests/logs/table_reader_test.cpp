@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "own/table_reader.hpp"
+#include "own/tables/table_reader.hpp"
 
 #include <string>
 #include <vector>

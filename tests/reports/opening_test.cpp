@@ -3,7 +3,7 @@
 
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/reports/run_warnings.hpp"
-#include "report_opening.hpp"
+#include "report/report_opening.hpp"
 
 namespace helixnav::reports {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "packed.hpp"
+#include "player/packed.hpp"
 
 #include <cmath>
 
@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "helixnav/core/random.hpp"
-#include "packed_ellipse.hpp"
+#include "player/packed_ellipse.hpp"
 #include "unpacked.hpp"
 
 namespace helixnav::reports {

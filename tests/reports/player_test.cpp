@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report_player.hpp"
+#include "player/report_player.hpp"
 
 #include <gtest/gtest.h>
 
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/reports/report.hpp"
-#include "report_clouds.hpp"
+#include "player/report_clouds.hpp"
 #include "run_example.hpp"
 #include "unpacked.hpp"
 

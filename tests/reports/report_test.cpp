@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "helixnav/core/decision_row.hpp"
-#include "report_assets.hpp"
+#include "report/report_assets.hpp"
 #include "run_example.hpp"
 #include "unpacked.hpp"
 

@@ -14,8 +14,8 @@
 #include "helixnav/core/random.hpp"
 #include "helixnav/files/file.hpp"
 #include "input_error.hpp"
-#include "put_association.hpp"
 #include "run_example.hpp"
+#include "tables/put_association.hpp"
 #include "temporary_folder.hpp"
 
 namespace helixnav::runs {

@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/validators.hpp"
 #include "convert/convert_log.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/acfr_log.hpp"
@@ -15,6 +14,7 @@
 #include "rawlog/write_acfr.hpp"
 #include "rawlog/write_recording.hpp"
 #include "reading/read_rawlog.hpp"
+#include "settings/validators.hpp"
 
 namespace helixnav::apps {
 namespace {

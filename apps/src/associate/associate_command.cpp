@@ -14,18 +14,18 @@
 #include "association_trial.hpp"
 #include "common/chosen_navigator.hpp"
 #include "common/commands.hpp"
-#include "common/config_file.hpp"
 #include "common/fit_to_recording.hpp"
 #include "common/interrupt.hpp"
 #include "common/progress_bar.hpp"
-#include "common/settings.hpp"
-#include "common/validators.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/event_loop.hpp"
 #include "helixnav/core/nearest_name.hpp"
 #include "helixnav/logs/read_recording.hpp"
 #include "helixnav/sim/ihgr_circle.hpp"
 #include "helixnav/sim/simulate.hpp"
+#include "settings/config_file.hpp"
+#include "settings/settings.hpp"
+#include "settings/validators.hpp"
 
 namespace helixnav::apps {
 namespace {

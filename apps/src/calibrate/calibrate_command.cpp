@@ -9,13 +9,13 @@
 
 #include "calibration.hpp"
 #include "common/commands.hpp"
-#include "common/config_file.hpp"
-#include "common/settings.hpp"
-#include "common/vehicle_option.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/mrclam.hpp"
 #include "helixnav/logs/read_recording.hpp"
 #include "helixnav/logs/shipped_vehicle.hpp"
+#include "settings/config_file.hpp"
+#include "settings/settings.hpp"
+#include "settings/vehicle_option.hpp"
 #include "vehicle_text.hpp"
 
 namespace helixnav::apps {

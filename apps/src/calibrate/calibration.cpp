@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "common/fit_to_recording.hpp"
-#include "common/vehicle_option.hpp"
 #include "constants_fit.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 #include "replay/read_to_replay.hpp"
+#include "settings/vehicle_option.hpp"
 #include "settled_log.hpp"
 
 namespace helixnav::apps {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "common/settings.hpp"
 #include "helixnav/logs/vehicle.hpp"
 #include "helixnav/smoothing/noise_scales.hpp"
+#include "settings/settings.hpp"
 #include "vehicle_constants.hpp"
 
 namespace helixnav::apps {

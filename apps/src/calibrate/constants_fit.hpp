@@ -10,7 +10,7 @@
 
 namespace helixnav::apps {
 
-// Test: apps/constants_fit_test.cpp
+// Test: apps/calibrate/constants_fit_test.cpp
 
 /// Constants are counted with std::size_t in vectors, with Eigen::Index in matrices.
 inline Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }

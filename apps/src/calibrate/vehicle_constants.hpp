@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
-#include "common/settings.hpp"
 #include "helixnav/logs/read_recording.hpp"
+#include "settings/settings.hpp"
 
 namespace helixnav::apps {
 

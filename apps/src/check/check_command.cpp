@@ -6,14 +6,14 @@
 #include <CLI/CLI.hpp>
 
 #include "common/commands.hpp"
-#include "common/config_file.hpp"
 #include "common/fit_to_recording.hpp"
-#include "common/settings.hpp"
-#include "common/vehicle_option.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/own_log.hpp"
 #include "helixnav/logs/read_recording.hpp"
 #include "log_page.hpp"
+#include "settings/config_file.hpp"
+#include "settings/settings.hpp"
+#include "settings/vehicle_option.hpp"
 
 namespace helixnav::apps {
 namespace {

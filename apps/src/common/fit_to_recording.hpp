@@ -4,7 +4,7 @@
 #include <string>
 
 #include "helixnav/core/recording.hpp"
-#include "settings.hpp"
+#include "settings/settings.hpp"
 
 namespace helixnav::apps {
 

@@ -6,11 +6,11 @@
 
 #include <CLI/CLI.hpp>
 
-#include "config_file.hpp"
 #include "drive/drive.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
-#include "settings.hpp"
+#include "settings/config_file.hpp"
+#include "settings/settings.hpp"
 
 namespace helixnav::apps {
 namespace {

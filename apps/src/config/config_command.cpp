@@ -6,8 +6,8 @@
 #include <CLI/CLI.hpp>
 
 #include "common/commands.hpp"
-#include "common/config_file.hpp"
-#include "common/settings.hpp"
+#include "settings/config_file.hpp"
+#include "settings/settings.hpp"
 
 namespace helixnav::apps {
 namespace {

@@ -11,10 +11,10 @@
 
 #include "common/commands.hpp"
 #include "common/hand_over.hpp"
-#include "common/validators.hpp"
 #include "convert_log.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/nearest_name.hpp"
+#include "settings/validators.hpp"
 
 namespace helixnav::apps {
 namespace {

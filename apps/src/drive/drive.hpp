@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "common/exit_code.hpp"
-#include "common/fastslam_settings.hpp"
 #include "earlier_session.hpp"
 #include "given_map.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/runs/run_manifest.hpp"
 #include "helixnav/supervisor/navigator.hpp"
+#include "settings/fastslam_settings.hpp"
 
 namespace helixnav::apps {
 

@@ -6,11 +6,11 @@
 #include <CLI/CLI.hpp>
 
 #include "common/commands.hpp"
-#include "common/validators.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/evaluation/evaluation.hpp"
 #include "helixnav/reports/summary.hpp"
 #include "helixnav/runs/run_folder.hpp"
+#include "settings/validators.hpp"
 #include "truth_file.hpp"
 
 namespace helixnav::apps {

@@ -8,9 +8,9 @@
 #include <CLI/CLI.hpp>
 
 #include "common/commands.hpp"
-#include "common/validators.hpp"
 #include "helixnav/reports/explanation.hpp"
 #include "helixnav/runs/run_folder.hpp"
+#include "settings/validators.hpp"
 
 namespace helixnav::apps {
 namespace {

@@ -27,7 +27,7 @@ struct Campaign {
 /// Drives the seeds that the folder does not hold yet, writes a line of runs.jsonl as each run ends, then sorts the lines
 /// by seed, sums up all of the folder's, prints the table on stdout and writes summary.json. On SIGINT the present runs
 /// are given up, to be driven again by the next call, and the code is `interrupted`. InputError when the folder holds something else or another campaign.
-/// Test: apps/montecarlo_test.cpp.
+/// Test: apps/montecarlo/montecarlo_test.cpp.
 ExitCode run_campaign(const Campaign& campaign);
 
 }  // namespace helixnav::apps

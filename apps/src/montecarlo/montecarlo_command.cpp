@@ -13,13 +13,13 @@
 
 #include "campaign.hpp"
 #include "common/commands.hpp"
-#include "common/config_file.hpp"
 #include "common/fit_to_recording.hpp"
-#include "common/scenario_settings.hpp"
-#include "common/settings.hpp"
-#include "common/validators.hpp"
 #include "helixnav/sim/scenario.hpp"
 #include "merge_campaigns.hpp"
+#include "settings/config_file.hpp"
+#include "settings/scenario_settings.hpp"
+#include "settings/settings.hpp"
+#include "settings/validators.hpp"
 #include "team_campaign.hpp"
 
 namespace helixnav::apps {

@@ -8,10 +8,10 @@
 #include <CLI/CLI.hpp>
 
 #include "common/commands.hpp"
-#include "common/validators.hpp"
 #include "example_log.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/shipped_vehicle.hpp"
+#include "settings/validators.hpp"
 
 namespace helixnav::apps {
 namespace {

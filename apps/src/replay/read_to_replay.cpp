@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "read_to_replay.hpp"
 
-#include "common/vehicle_option.hpp"
 #include "estimate_range_scale.hpp"
 #include "fuse_gps.hpp"
 #include "helixnav/logs/read_recording.hpp"
+#include "settings/vehicle_option.hpp"
 
 namespace helixnav::apps {
 namespace {

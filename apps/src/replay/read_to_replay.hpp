@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "common/settings.hpp"
 #include "helixnav/core/recording.hpp"
+#include "settings/settings.hpp"
 
 namespace helixnav::apps {
 

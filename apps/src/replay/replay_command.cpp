@@ -12,17 +12,17 @@
 
 #include "blackout.hpp"
 #include "common/commands.hpp"
-#include "common/config_file.hpp"
 #include "common/fit_to_recording.hpp"
 #include "common/input_files.hpp"
 #include "common/run_options.hpp"
-#include "common/settings.hpp"
-#include "common/vehicle_option.hpp"
 #include "drive/drive.hpp"
 #include "drive/start_option.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/mrclam.hpp"
 #include "read_to_replay.hpp"
+#include "settings/config_file.hpp"
+#include "settings/settings.hpp"
+#include "settings/vehicle_option.hpp"
 #include "team/replay_team.hpp"
 
 namespace helixnav::apps {

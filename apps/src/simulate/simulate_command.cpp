@@ -9,19 +9,19 @@
 #include <CLI/CLI.hpp>
 
 #include "common/commands.hpp"
-#include "common/config_file.hpp"
 #include "common/fit_to_recording.hpp"
 #include "common/input_files.hpp"
 #include "common/run_options.hpp"
-#include "common/scenario_settings.hpp"
-#include "common/settings.hpp"
-#include "common/validators.hpp"
 #include "drive/drive.hpp"
 #include "drive/start_option.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/sim/part_of.hpp"
 #include "helixnav/sim/simulate.hpp"
+#include "settings/config_file.hpp"
+#include "settings/scenario_settings.hpp"
+#include "settings/settings.hpp"
+#include "settings/validators.hpp"
 #include "team/replay_team.hpp"
 
 namespace helixnav::apps {

@@ -13,7 +13,6 @@
 #include "common/commands.hpp"
 #include "common/input_files.hpp"
 #include "common/run_options.hpp"
-#include "common/validators.hpp"
 #include "drive/drive.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/graph_files.hpp"
@@ -22,6 +21,7 @@
 #include "helixnav/runs/run_folder.hpp"
 #include "helixnav/runs/run_recorder.hpp"
 #include "helixnav/runs/run_writer.hpp"
+#include "settings/validators.hpp"
 #include "smoothing_run.hpp"
 
 namespace helixnav::apps {

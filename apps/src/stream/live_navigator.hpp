@@ -7,11 +7,11 @@
 #include <variant>
 #include <vector>
 
-#include "common/settings.hpp"
 #include "helixnav/core/joint_map.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
 #include "helixnav/supervisor/navigator.hpp"
+#include "settings/settings.hpp"
 
 namespace helixnav::apps {
 

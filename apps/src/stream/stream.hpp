@@ -4,8 +4,8 @@
 #include <string>
 
 #include "common/exit_code.hpp"
-#include "common/settings.hpp"
 #include "helixnav/runs/run_manifest.hpp"
+#include "settings/settings.hpp"
 
 namespace helixnav::apps {
 

@@ -5,11 +5,11 @@
 #include <CLI/CLI.hpp>
 
 #include "common/commands.hpp"
-#include "common/config_file.hpp"
 #include "common/input_files.hpp"
 #include "common/run_options.hpp"
-#include "common/vehicle_option.hpp"
 #include "helixnav/core/version.hpp"
+#include "settings/config_file.hpp"
+#include "settings/vehicle_option.hpp"
 #include "stream.hpp"
 
 namespace helixnav::apps {

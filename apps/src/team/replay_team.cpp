@@ -6,12 +6,12 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/config_file.hpp"
 #include "common/input_files.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
 #include "helixnav/logs/mrclam.hpp"
 #include "helixnav/sim/team_world.hpp"
+#include "settings/config_file.hpp"
 #include "team/team_drive.hpp"
 #include "team/team_evaluation.hpp"
 #include "team/team_folder.hpp"

@@ -7,7 +7,7 @@
 
 #include "common/exit_code.hpp"
 #include "common/run_options.hpp"
-#include "common/settings.hpp"
+#include "settings/settings.hpp"
 
 namespace CLI {
 class App;

@@ -18,7 +18,7 @@ struct Motion {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-/// The increment of a twist: an arc. Test: logs/own_recording_test.cpp (against fine integration).
+/// The increment of a twist: an arc. Test: logs/own/own_recording_test.cpp (against fine integration).
 core::Pose2 exponential(const Eigen::Vector3d& twist);
 /// Its inverse for turns within ±2π.
 Eigen::Vector3d logarithm(const Eigen::Vector3d& increment);

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <string>
 
-#include "own_columns.hpp"
-#include "own_tables.hpp"
+#include "own/tables/own_columns.hpp"
+#include "own/tables/own_tables.hpp"
 #include "plausible.hpp"
 
 namespace helixnav::logs {

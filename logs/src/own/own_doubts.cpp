@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "helixnav/core/angle.hpp"
-#include "units.hpp"
+#include "own/vehicle/units.hpp"
 
 namespace helixnav::logs {
 namespace {

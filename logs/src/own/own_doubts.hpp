@@ -11,7 +11,7 @@ namespace helixnav::logs {
 
 /// What makes one doubt that a log is meant as it stands, a sentence with numbers each: units of time, speed, turns and
 /// bearings, gaps, scans outside the time of the odometry, detections outside the view that the vehicle states.
-/// O(rows log rows). Test: logs/own_doubts_test.cpp.
+/// O(rows log rows). Test: logs/own/own_doubts_test.cpp.
 std::vector<std::string> doubts_of(const OwnLog& log, const Vehicle& vehicle, const core::Recording& recording);
 
 }  // namespace helixnav::logs

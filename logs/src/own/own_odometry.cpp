@@ -5,8 +5,8 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "own_columns.hpp"
-#include "own_tables.hpp"
+#include "own/tables/own_columns.hpp"
+#include "own/tables/own_tables.hpp"
 #include "plausible.hpp"
 
 namespace helixnav::logs {

@@ -9,10 +9,10 @@
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/own_log.hpp"
 #include "motion.hpp"
+#include "own/tables/sensor_rows.hpp"
 #include "own_doubts.hpp"
 #include "own_truth.hpp"
 #include "plausible.hpp"
-#include "sensor_rows.hpp"
 #include "weaver.hpp"
 
 namespace helixnav::logs {

@@ -6,8 +6,8 @@
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/own_log.hpp"
-#include "json_rows.hpp"
-#include "own_tables.hpp"
+#include "own/live/json_rows.hpp"
+#include "own/tables/own_tables.hpp"
 
 namespace helixnav::logs {
 namespace {

@@ -10,7 +10,7 @@
 namespace helixnav::logs {
 
 /// Makes events of motions and scans in order of time: before a scan, the motion since the one before as one increment.
-/// Whole logs and streams are woven by it. Test: logs/own_recording_test.cpp, logs/own_stream_test.cpp.
+/// Whole logs and streams are woven by it. Test: logs/own/own_recording_test.cpp, logs/own/own_stream_test.cpp.
 class Weaver {
  public:
   Weaver(const core::Pose2& T_vehicle_odometry, std::vector<core::Event>& events)

@@ -15,7 +15,7 @@ namespace helixnav::supervisor {
 /// deviations of pose and landmark are large and nearly the same error, their sum takes in hundreds of landmarks, and a joint
 /// covariance of these would cost more than all else. Nothing inside the exact gate is lost. Observations that fix no point
 /// (one row) take every landmark within the range of the field of view. O(landmarks about · q), and O(q²) for each chosen.
-/// Test: supervisor/candidates_test.cpp.
+/// Test: supervisor/association/candidates_test.cpp.
 std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, const core::Scan& scan, double sigmas);
 
 /// Landmarks whose estimated position lies inside the field of view, at least `margin_m` from its edge: those that

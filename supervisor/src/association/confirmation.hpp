@@ -6,7 +6,7 @@
 namespace helixnav::supervisor {
 
 /// Two-hit confirmation: an isolated match with an old landmark is accepted at the second hit, because clutter does not
-/// appear twice in the same place. Test: supervisor/revisit_ambiguity_test.cpp, campaigns in
+/// appear twice in the same place. Test: supervisor/association/revisit_ambiguity_test.cpp, campaigns in
 /// docs/adr/0009-integrity.md.
 class Confirmation {
  public:

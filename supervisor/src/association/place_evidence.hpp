@@ -26,7 +26,7 @@ struct PlaceEvidence {
 /// observations of nothing mapped, `extraneous_per_scan` in the field of view, less what each old landmark costs that should
 /// be in view and is not matched. S is given these matches.
 /// Cost: O(n²) for n gated pairs with old landmarks, O(n) for each two pairs that a rival may begin with.
-/// Source: docs/adr/0014-ambiguous-pose.md. Test: supervisor/place_evidence_test.cpp.
+/// Source: docs/adr/0014-ambiguous-pose.md. Test: supervisor/association/place_evidence_test.cpp.
 PlaceEvidence place_evidence(const cekf::CompressedEkf& filter, const association::InnovationProblem& problem,
                              const association::Assignment& assignment, const core::Scan& scan,
                              const std::vector<core::LandmarkId>& old, double extraneous_per_scan, double view_margin_m,

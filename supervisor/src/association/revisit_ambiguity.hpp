@@ -27,7 +27,7 @@ struct RevisitAmbiguity {
 /// Every old landmark that has an observation in its gate, ascending. P(wrong | matched) is about η/(P_D + η): η
 /// is the risk of associating scan by scan. `old` ascending.
 /// Cost: gated pairs × old landmarks in view, and nothing as long as no old landmark is gated.
-/// Source: PROTOTYPE §2. Test: supervisor/revisit_ambiguity_test.cpp.
+/// Source: PROTOTYPE §2. Test: supervisor/association/revisit_ambiguity_test.cpp.
 std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
                                               const association::InnovationProblem& problem, const core::Scan& scan,
                                               const std::vector<core::LandmarkId>& old, double extraneous_per_scan);

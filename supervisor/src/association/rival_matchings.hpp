@@ -13,7 +13,7 @@ namespace helixnav::supervisor {
 /// the eight in 96 of 100. One that shares half of its pairs with the best matching is at the same pose: what differs there
 /// is for the assignment to decide. One of fewer than half as many pairs is no rival. Nothing where more than 2000 pairs of
 /// pairs would have to be tried.
-/// Test: supervisor/place_evidence_test.cpp (a lattice; all matchings enumerated).
+/// Test: supervisor/association/place_evidence_test.cpp (a lattice; all matchings enumerated).
 std::optional<std::vector<Matching>> rival_matchings(const OldPairs& old, const Matching& best);
 
 }  // namespace helixnav::supervisor

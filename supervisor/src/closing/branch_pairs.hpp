@@ -46,7 +46,7 @@ bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& opt
 /// Confirmed branch landmarks that are compatible with one landmark of `old` (ascending) and with no other, by the
 /// joint covariance of the closed map, a thousand times likelier it than an unmapped one as near to it as its nearest
 /// old neighbour on another side, and not farther from it than a third of that distance, leftover_least_m at the least
-/// and leftover_most_m at the most; of several on the same one the nearest. Test: supervisor/branch_pairs_test.cpp.
+/// and leftover_most_m at the most; of several on the same one the nearest. Test: supervisor/closing/branch_pairs_test.cpp.
 KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
                       const std::vector<core::LandmarkId>& old, const SearchOptions& options);
 

@@ -39,7 +39,7 @@ struct Reconciled {
 /// there, as uncertain as it is large; or where the search began, when the drive is not kept as a whole. One scale for a long loop has a likelihood of
 /// factor^(−3/2), 3e-5 there; a jump to any place of a map as large as the loop is not less likely.
 /// Refused where the pairs contradict each other in any case. Cost: that of a closing and of solving the drive, each a few times.
-/// Test: supervisor/whole_map_test.cpp.
+/// Test: supervisor/placing/whole_map_test.cpp.
 Reconciled close_against_odometry(const cekf::CompressedEkf& filter, const core::PoseGaussian& start,
                                   const ClosingView& view, const ForbiddenPlace& place, const SearchOptions& options);
 

@@ -18,7 +18,7 @@ namespace helixnav::supervisor {
 /// branch's: to first order the J of merging them. Refused when it exceeds its χ² limit or an iteration does not converge:
 /// filter as before. A branch landmark older than the trigger is merged after the replay, and so are the duplicates when
 /// the replay with them costs too much.
-/// Exact: equal to a full EKF given the same associations. Test: supervisor/replay_test.cpp.
+/// Exact: equal to a full EKF given the same associations. Test: supervisor/closing/replay_test.cpp.
 Closing close_by_replay(cekf::CompressedEkf& filter, const BranchRecord& record,
                         const std::vector<pf_relocalize::ConstellationPair>& pairs, const Branch& branch,
                         const std::vector<core::LandmarkId>& old, const SearchOptions& options);

@@ -11,7 +11,7 @@ namespace helixnav::supervisor {
 
 /// The restart of hybrid_masson2003 §3, for comparison only: the branch is discarded and the vehicle is put where the
 /// particle filter has it, independent of the map. What the branch mapped is lost, and the particles' covariance, which
-/// leaves out the landmarks' common errors, is taken as it is. Always accepted. Test: supervisor/replay_test.cpp.
+/// leaves out the landmarks' common errors, is taken as it is. Always accepted. Test: supervisor/closing/replay_test.cpp.
 Closing close_by_restart(cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& branch,
                          const core::PoseGaussian& particles);
 

@@ -26,7 +26,7 @@ Branch branch_of(const ClosingView& view, const SearchOptions& options);
 
 /// Closes the map by the pairs that the search has found, by the method of SearchOptions::closing. A closing whose cost
 /// exceeds its χ² limit is refused (make_compatible in branch_pairs.cpp), and leaves the filter as it was.
-/// Test: supervisor/closing_test.cpp, supervisor/replay_test.cpp, supervisor/lattice_test.cpp.
+/// Test: supervisor/closing/closing_test.cpp, supervisor/closing/replay_test.cpp, supervisor/lattice_test.cpp.
 Closing close_map(cekf::CompressedEkf& filter, const ClosingView& view,
                   const std::vector<pf_relocalize::ConstellationPair>& pairs, const SearchOptions& options);
 

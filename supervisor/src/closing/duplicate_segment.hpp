@@ -25,7 +25,7 @@ class DuplicateSegment {
   /// landmarks coincide with one of the other drive, u have no partner on ground that both covered, at an unknown rate r
   /// with a uniform prior, and J is the cost of merging the M. E[J] = dof at the right alignment, so that more pairs do not
   /// make it worse. `old` ascending. Some ms for 40 copies in a lattice.
-  /// Measured: docs/closing.md. Test: supervisor/duplicate_segment_test.cpp, supervisor/lattice_test.cpp.
+  /// Measured: docs/closing.md. Test: supervisor/closing/duplicate_segment_test.cpp, supervisor/lattice_test.cpp.
   KeptRemoved place(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& old,
                     const SearchOptions& options) const;
 

@@ -8,7 +8,7 @@ namespace helixnav::supervisor {
 
 /// Squared normalised errors of two degrees of freedom each, fading exponentially, by a histogram of their logarithm. The
 /// scale is the median's ratio to that of χ²₂: a third of wrong pairs moves it little, a mean would follow the largest.
-/// Test: supervisor/fading_errors_test.cpp.
+/// Test: supervisor/noise/fading_errors_test.cpp.
 class FadingErrors {
  public:
   /// Sums fade by `keep` a scan.

@@ -17,11 +17,11 @@ struct NoisePair {
 
 /// Pairs four times nearer to each other than either is to the next of its kind. No gate takes part: with noise assumed far
 /// too small a gate admits only what happens to fit. O(n²) in the points seen, at most 24, nearest to the sensor first.
-/// Test: supervisor/noise_pairs_test.cpp.
+/// Test: supervisor/noise/noise_pairs_test.cpp.
 std::vector<NoisePair> noise_pairs(const cekf::CompressedEkf& filter, const core::Scan& scan);
 
 /// From which side each landmark was seen when its error last counted as independent. Landmarks that were out of view for a
-/// while are forgotten: O(landmarks in view) bytes. Test: supervisor/noise_pairs_test.cpp.
+/// while are forgotten: O(landmarks in view) bytes. Test: supervisor/noise/noise_pairs_test.cpp.
 class SidesSeen {
  public:
   void next_scan();

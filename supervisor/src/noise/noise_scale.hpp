@@ -19,7 +19,7 @@ namespace helixnav::supervisor {
 /// scale of ranges) and no noise, or DLR's forward motion, 8 % too long against its detector, would pass for four times the
 /// variance. Down: the detector's factor needs errors that are independent as well, of landmarks seen from another side than
 /// when they last counted, and displacements that odometry explains; odometry's needs all of w. Rules and figures:
-/// docs/slips.md. Test: supervisor/noise_scale_test.cpp.
+/// docs/slips.md. Test: supervisor/noise/noise_scale_test.cpp.
 class NoiseScale {
  public:
   /// One scan while nothing is in question; Q: the covariance of the motion before it (x, y, heading; robot frame);

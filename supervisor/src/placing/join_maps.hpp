@@ -29,7 +29,7 @@ struct JoinedMaps {
 /// more than pair_noise_m. Then further pairs that the joint covariance leaves no doubt of are merged. Refused when the cost
 /// of the pairs exceeds options.closing_probability, whatever few were dropped.
 /// confirmed: landmarks of the session that may be merged, unconfirmed: those that may be clutter; ascending.
-/// Cost O(N²·pairs) for N landmarks in all. Test: supervisor/join_maps_test.cpp (equal to least squares over both maps).
+/// Cost O(N²·pairs) for N landmarks in all. Test: supervisor/placing/join_maps_test.cpp (equal to least squares over both maps).
 JoinedMaps join_maps(const cekf::CompressedEkf& session, const core::JointGaussian& earlier,
                      const relocalize::Place& place, const std::vector<core::LandmarkId>& confirmed,
                      const std::vector<core::LandmarkId>& unconfirmed, double pair_noise_m,

@@ -32,7 +32,7 @@ struct PathInterval {
 
 /// The landmarks that were in view when the vehicle stopped (begun until the end of the stretch, and seen since its begin) against
 /// a scan after the pause, as from the pose of before and the motion that was measured since.
-/// O(landmarks in view · observations). Test: supervisor/found_carried_test.cpp.
+/// O(landmarks in view · observations). Test: supervisor/placing/found_carried_test.cpp.
 StillThere still_there(const cekf::CompressedEkf& filter, const association::LandmarkLife& existence,
                        const core::Pose2& T_before_now, const core::Scan& scan, const PathInterval& stopped,
                        const NavigatorOptions& options);

@@ -10,7 +10,7 @@ namespace helixnav::supervisor {
 
 /// The old landmarks of the present map, ready to be asked for a place. They stand in it where they were when they became old:
 /// a closing moves a part of the map as a whole, and what decides a place are pairs.
-/// Test: supervisor/whole_map_test.cpp.
+/// Test: supervisor/placing/whole_map_test.cpp.
 class OldGroundIndex {
  public:
   explicit OldGroundIndex(const relocalize::IndexOptions& lengths) : index_(lengths) {}

@@ -26,7 +26,7 @@ struct SearchView {
 /// The search for where on the old map the vehicle is. Mapping goes on meanwhile with the old landmarks excluded (the
 /// branch); the particle filter runs beside it, started from the branch's pose and restarted when an attempt fails; the
 /// answer is a constellation of branch landmarks that matches old ones better than anywhere else.
-/// Nothing here changes filter or map. Source: PROTOTYPE §3, §4. Test: supervisor/closing_test.cpp.
+/// Nothing here changes filter or map. Source: PROTOTYPE §3, §4. Test: supervisor/closing/closing_test.cpp.
 class Search {
  public:
   /// `old` ascending: the landmarks that are not to be associated during the search.

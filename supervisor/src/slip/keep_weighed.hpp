@@ -15,7 +15,7 @@ constexpr std::size_t most_weighed = 24;
 
 /// Of a scan with as many observations as are weighed, or more: only those landmarks that one of the weighed may be of, and
 /// their neighbours. What is left out would be paired with nothing. `seen`: nearest first.
-/// Test: supervisor/keep_weighed_test.cpp (the same slips as without).
+/// Test: supervisor/slip/keep_weighed_test.cpp (the same slips as without).
 void keep_weighed(const cekf::CompressedEkf& filter, const core::Scan& scan, const std::vector<SeenPoint>& seen,
                   const SlipComponent& widest, std::vector<core::LandmarkId>& near);
 

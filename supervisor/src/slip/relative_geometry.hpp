@@ -12,7 +12,7 @@
 namespace helixnav::supervisor {
 
 /// Landmarks in the frame of the predicted vehicle, r = R(−φ)(m − p), with their joint covariance: what vehicle and
-/// landmarks have drifted together is not in it. O(n²). Test: supervisor/relative_geometry_test.cpp (dense twin).
+/// landmarks have drifted together is not in it. O(n²). Test: supervisor/slip/relative_geometry_test.cpp (dense twin).
 struct RelativeGeometry {
   explicit RelativeGeometry(const core::JointGaussian& joint);
 
@@ -42,7 +42,7 @@ struct PointPair {
 };
 
 /// Pairs linearised at a displacement δ = (t, θ) of the vehicle from its predicted pose, in that pose's frame, under which
-/// landmark r is seen at R(−θ)(r − t): ν = A δ + noise of covariance S. Test: supervisor/relative_geometry_test.cpp
+/// landmark r is seen at R(−θ)(r − t): ν = A δ + noise of covariance S. Test: supervisor/slip/relative_geometry_test.cpp
 /// (A against central differences).
 struct PairEquations {
   PairEquations(const RelativeGeometry& geometry, const std::vector<SeenPoint>& seen,

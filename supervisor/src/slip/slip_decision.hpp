@@ -36,7 +36,7 @@ struct SlipQuestion {
 
 /// The slip that explains a scan, when it does so better than no slip and than a slip to anywhere else, and by less than
 /// what makes neighbours look alike. In a lattice a slip by one pitch looks like none, its rival at the true place may have
-/// too few pairs, and only the last of these rules keeps it out. Test: supervisor/slip_decision_test.cpp.
+/// too few pairs, and only the last of these rules keeps it out. Test: supervisor/slip/slip_decision_test.cpp.
 std::optional<Slip> decide_slip(const SlipQuestion& question, const SlipOptions& options);
 
 }  // namespace helixnav::supervisor

@@ -35,7 +35,7 @@ struct SlipExplanation {
 
 /// ln p(component) + m·pair_nats + ln N(ν; 0, S + A Q Aᵀ), linearised at the likeliest δ, of the best component: what that
 /// costs which explains too much (the Occam factor) is in the determinant. `start`: where the iteration begins. Very low
-/// where S is not positive definite. O(m³). Test: supervisor/slip_decision_test.cpp (numeric integration).
+/// where S is not positive definite. O(m³). Test: supervisor/slip/slip_decision_test.cpp (numeric integration).
 SlipExplanation explain_by_slip(const RelativeGeometry& geometry, const std::vector<SeenPoint>& seen,
                                 const std::vector<PointPair>& pairs, double nats_a_pair,
                                 const std::vector<SlipComponent>& components, const Eigen::Vector3d& start);

@@ -25,7 +25,7 @@ double slip_reach_m(const SlipComponent& widest, const SeenPoint& seen, double s
 /// The places that explain most, best first: proposed by two observations on two landmarks equally far apart, the distinct
 /// ones then paired and weighed anew, in which several may settle on one. O(k²·c² + 8 m³) with k observations and c landmarks
 /// in reach of each.
-/// Test: supervisor/slip_places_test.cpp.
+/// Test: supervisor/slip/slip_places_test.cpp.
 std::vector<SlipPlace> slip_places(const RelativeGeometry& geometry, const std::vector<SeenPoint>& seen,
                                    double nats_a_pair, const std::vector<SlipComponent>& components, double distinct_m);
 

@@ -9,7 +9,7 @@ namespace helixnav::supervisor {
 
 /// The slips of the drive so far. Who has slipped before may slip again, also where nothing is in view that would show it:
 /// there the motion is as uncertain as slips at the rate and of the size seen so far make it.
-/// Test: supervisor/slip_decision_test.cpp.
+/// Test: supervisor/slip/slip_decision_test.cpp.
 struct SlipRecord {
   int count = 0;
   double sum_m2 = 0.0;     ///< of squared displacements

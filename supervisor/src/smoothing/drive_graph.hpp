@@ -29,11 +29,11 @@ struct DriveGraph {
 /// and those lost again that were seen more than once.
 /// Start values: landmarks where the map has them, those `displaced` from where they were first seen; poses as located by
 /// the landmarks seen.
-/// Test: supervisor/smooth_drive_test.cpp.
+/// Test: supervisor/smoothing/smooth_drive_test.cpp.
 DriveGraph graph_of(const core::PoseGaussian& start, const Tape& tape, const cekf::CompressedEkf& filter,
                     const std::set<core::LandmarkId>& displaced = {});
 
-/// The path of the drive by the poses of its graph. Test: supervisor/smooth_drive_test.cpp.
+/// The path of the drive by the poses of its graph. Test: supervisor/smoothing/smooth_drive_test.cpp.
 std::vector<core::StampedPose> path_of(const core::LandmarkGraph& graph, const std::vector<StopInGraph>& stops);
 
 }  // namespace helixnav::supervisor

@@ -30,7 +30,7 @@ struct Smoothing {
 /// part of the map by many degrees the filter is linearised where that part was drawn, and no retraction of its own undoes
 /// that (docs/adr/0010-solving-the-drive.md). Not accepted: no convergence, or a minimum that costs more than the filter's
 /// own solution, which is then another one. Landmarks keep their ids. Cost: a few sparse factorisations and N² times the
-/// nonzeros of their factor a landmark; ADR 10 has milliseconds. Test: supervisor/smooth_drive_test.cpp (a filter that
+/// nonzeros of their factor a landmark; ADR 10 has milliseconds. Test: supervisor/smoothing/smooth_drive_test.cpp (a filter that
 /// drives along the solution).
 /// `displaced`: landmarks that the filter has at a wrong place, from where least squares would not find the right one.
 Smoothing smooth_drive(const cekf::CompressedEkf& filter, const core::PoseGaussian& start, const Tape& tape,

@@ -76,13 +76,13 @@ std::filesystem::path vehicle_beside(const std::filesystem::path& log);
 /// Reads a folder with odometry.csv and detections.csv, and lost.csv, fixes.csv, truth_poses.csv, truth_landmarks.csv where they
 /// are there, or a file of JSON Lines. Columns are known by their names, with units at their ends (docs/your_own_log.md). Rows
 /// out of order by less than a second are sorted. Throws core::InputError naming file:line:column for anything else that
-/// cannot be used. Test: logs/own_log_test.cpp, logs/own_log_refusals_test.cpp.
+/// cannot be used. Test: logs/own/own_log_test.cpp, logs/own/own_log_refusals_test.cpp.
 OwnLog read_own_log(const std::filesystem::path& path);
 
 /// The events of the log as this vehicle makes them: odometry between two scans or fixes as one increment, split at them
 /// in proportion to time, and all in the frame of the vehicle. Throws core::InputError for noise that neither the log nor
 /// the vehicle states, a sensor that the vehicle does not have, clocks that do not overlap. Remarks go to
-/// Recording::remarks. Test: logs/own_recording_test.cpp.
+/// Recording::remarks. Test: logs/own/own_recording_test.cpp.
 core::Recording make_recording(const OwnLog& log, const Vehicle& vehicle);
 
 }  // namespace helixnav::logs

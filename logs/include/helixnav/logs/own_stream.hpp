@@ -35,7 +35,7 @@ struct StreamedEvents {
 /// Late scans are woven in as long as no later one is due and they are at most late_s behind the newest odometry (plus
 /// what the sensors' delays are); everything else out of order is refused. A time more than an hour ahead of the newest is
 /// refused unless the next one is there, too. Truth and fixes are passed over with a remark.
-/// Memory does not grow with the stream. Test: logs/own_stream_test.cpp.
+/// Memory does not grow with the stream. Test: logs/own/own_stream_test.cpp.
 class OwnStream {
  public:
   static constexpr double late_s = 1.0;

@@ -11,7 +11,7 @@ namespace helixnav::reports {
 
 /// What a user should know of a run that is not to be trusted, with what to do: a map without landmarks, matching that
 /// collapsed, innovations that contradict the assumed noise, truth of another clock. A sentence each; none of a run that is well.
-/// Test: apps/warnings_test.cpp.
+/// Test: apps/hostile/warnings_test.cpp.
 std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Evaluation& evaluation);
 
 /// Where the run ended without knowing its place, or went on for long without a landmark that it knew.

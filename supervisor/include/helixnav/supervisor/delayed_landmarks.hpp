@@ -30,7 +30,7 @@ struct DelayedOptions {
 /// weighted least squares over the landmark in the frame of the robot, from many starts: while another solution explains
 /// the sightings nearly as well (the mirror image across a straight path) the landmark waits.
 /// Cost of a sighting kept: some 1000 Cholesky factors of order `window`, 1 to 5 ms. Test:
-/// supervisor/delayed_landmarks_test.cpp.
+/// supervisor/named/delayed_landmarks_test.cpp.
 class DelayedLandmarks {
  public:
   explicit DelayedLandmarks(const DelayedOptions& options = {}) : options_(options) {}

@@ -33,7 +33,7 @@ struct JoinedSessions {
 /// apart begin the next component. α = 1e-5 bounds the probability of a false answer for each pair of sessions. The result
 /// does not depend on the order of the sessions, but for the numbering of those as large as each other.
 /// PreconditionError for a map of which the parts do not fit each other. Cost: for each pair of sessions an index and a
-/// question every 20 landmarks, and O(N²·pairs) for each join. Test: supervisor/join_sessions_test.cpp.
+/// question every 20 landmarks, and O(N²·pairs) for each join. Test: supervisor/placing/join_sessions_test.cpp.
 JoinedSessions join_sessions(const std::vector<core::JointMap>& sessions);
 
 }  // namespace helixnav::supervisor

@@ -30,7 +30,7 @@ class NamedDrive;
 /// From there on ranges and bearings of new landmarks are left out (Outcome::ambiguous). docs/adr/0015-window.md.
 ///
 /// Frames, errors and the strong guarantee: as Navigator.
-/// Test: supervisor/named_navigator_test.cpp, supervisor/named_window_test.cpp, supervisor/delayed_landmarks_test.cpp,
+/// Test: supervisor/named/named_navigator_test.cpp, supervisor/named/named_window_test.cpp, supervisor/named/delayed_landmarks_test.cpp,
 /// supervisor/guarantee_test.cpp.
 class NamedNavigator {
  public:
@@ -39,7 +39,7 @@ class NamedNavigator {
   /// Goes on in the map of an earlier session, from the pose in it and with its correlations, as if that session had not
   /// ended: `landmark_of` names its landmarks. Sightings of ranges or bearings alone that had fixed no landmark yet are lost.
   /// PreconditionError where cekf::CompressedEkf refuses the joint estimate, or for a landmark that the map does not have.
-  /// Test: supervisor/find_place_test.cpp (equal to 1e-7).
+  /// Test: supervisor/placing/find_place_test.cpp (equal to 1e-7).
   NamedNavigator(const core::JointMap& earlier, const std::map<std::int64_t, core::LandmarkId>& landmark_of,
                  const NavigatorOptions& options = {});
 

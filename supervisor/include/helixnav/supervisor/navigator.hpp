@@ -31,7 +31,7 @@ class NavigationLoop;
 /// broken mathematics, std::bad_alloc) leaves everything as before it. It rolls back to its last checkpoint and
 /// processes what came since again, so that a failure costs as much as these scans did, and nothing is copied as long
 /// as none occurs; covariances between landmarks outside the active region come back to round-off, everything else bit
-/// for bit. Test: supervisor/navigator_test.cpp, supervisor/closing_test.cpp, supervisor/guarantee_test.cpp.
+/// for bit. Test: supervisor/navigator_test.cpp, supervisor/closing/closing_test.cpp, supervisor/guarantee_test.cpp.
 class Navigator {
  public:
   explicit Navigator(const core::PoseGaussian& start, const NavigatorOptions& options = {});
@@ -46,7 +46,7 @@ class Navigator {
   /// the landmarks about the vehicle are new, where they are (relocalize::ask, α = 1e-5 for the whole session). Once an answer
   /// is closed and its pairs do not contradict each other, both become one map in the frame of the earlier one
   /// (core::PlacedDecision), in which mapping goes on; a doubtful answer leaves both apart. Only before the first scan, and
-  /// with at least one mature landmark: PreconditionError. Test: supervisor/find_place_test.cpp.
+  /// with at least one mature landmark: PreconditionError. Test: supervisor/placing/find_place_test.cpp.
   void look_for_place_in(const core::JointMap& earlier);
 
   /// Any event: move, observe, fix or lose. The report of a scan, nothing for others.
@@ -68,7 +68,7 @@ class Navigator {
   /// the landmarks mapped before are not matched. Its place is sought on all parts kept apart as look_for_place_in() does;
   /// where it is found, the two become one map in the frame of the earlier one. A search that is open ends undecided. Decisions
   /// go into the report of the next scan (core::CarriedDecision). A part of fewer than five landmarks could never be found
-  /// and is dropped; of more than 3000 the nearest are kept. O(N²). Test: supervisor/carried_test.cpp.
+  /// and is dropped; of more than 3000 the nearest are kept. O(N²). Test: supervisor/placing/carried_test.cpp.
   void lose(const core::Lost& lost);
 
   /// [part] the maps of which it is not known how the present one lies to them: parts of the drive from before the vehicle

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "report_numbers.hpp"
+#include "report/report_numbers.hpp"
 #include "stride_for.hpp"
 
 namespace helixnav::reports {

@@ -10,7 +10,7 @@
 #include "json_rows.hpp"
 #include "live_motion.hpp"
 #include "live_scans.hpp"
-#include "own_tables.hpp"
+#include "own/tables/own_tables.hpp"
 
 namespace helixnav::logs {
 namespace {

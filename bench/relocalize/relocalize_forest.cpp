@@ -23,10 +23,10 @@
 #include <string>
 #include <vector>
 
+#include "../measures.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/random.hpp"
 #include "helixnav/relocalize/ask.hpp"
-#include "measures.hpp"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "live_motion.hpp"
+#include "own/tables/sensor_rows.hpp"
 #include "plausible.hpp"
-#include "sensor_rows.hpp"
 
 namespace helixnav::logs {
 

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "measures.hpp"
+#include "../measures.hpp"
 #include "relocalize_worlds.hpp"
 
 namespace {

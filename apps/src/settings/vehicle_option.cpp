@@ -10,7 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "fit_to_recording.hpp"
+#include "common/fit_to_recording.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/own_log.hpp"

@@ -142,7 +142,7 @@ class Figures:
                              "showarrow": False, "xanchor": "left"} for k, title in enumerate(self.titles, start=1)],
             **self.axes,
         }
-        plotly = (Path(__file__).resolve().parent.parent /
+        plotly = (Path(__file__).resolve().parents[2] /
                   "reports/page/node_modules/plotly.js-basic-dist-min/plotly-basic.min.js")
         Path(path).write_text(
             f'<meta charset="utf-8"><div id="f"></div><script src="{plotly.as_uri()}"></script><script>'

@@ -3,9 +3,9 @@
 
 #include <string_view>
 
+#include "player/report_player.hpp"
 #include "report_assets.hpp"
 #include "report_data.hpp"
-#include "report_player.hpp"
 #include "report_smoothing.hpp"
 
 namespace helixnav::reports {

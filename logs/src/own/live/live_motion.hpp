@@ -9,7 +9,7 @@
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/own_log.hpp"
-#include "weaver.hpp"
+#include "own/weaver.hpp"
 
 namespace helixnav::logs {
 

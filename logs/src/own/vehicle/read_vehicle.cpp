@@ -7,7 +7,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/vehicle.hpp"
 #include "input_files.hpp"
-#include "table_reader.hpp"
+#include "own/tables/table_reader.hpp"
 #include "toml_section.hpp"
 
 namespace helixnav::logs {

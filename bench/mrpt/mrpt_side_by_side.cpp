@@ -33,10 +33,10 @@
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 
+#include "../measures.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/random.hpp"
 #include "kf_slam.hpp"
-#include "measures.hpp"
 
 namespace {
 

@@ -8,10 +8,10 @@
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
 #include "helixnav/runs/words.hpp"
+#include "player/report_particles.hpp"
 #include "report_closures.hpp"
 #include "report_numbers.hpp"
 #include "report_opening.hpp"
-#include "report_particles.hpp"
 #include "report_series.hpp"
 #include "stride_for.hpp"
 

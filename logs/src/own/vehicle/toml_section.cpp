@@ -9,7 +9,7 @@
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/nearest_name.hpp"
-#include "table_reader.hpp"
+#include "own/tables/table_reader.hpp"
 #include "units.hpp"
 
 namespace helixnav::logs {

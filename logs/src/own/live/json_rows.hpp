@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "columns.hpp"
-#include "own_tables.hpp"
+#include "own/tables/columns.hpp"
+#include "own/tables/own_tables.hpp"
 
 namespace helixnav::logs {
 

@@ -1,5 +1,5 @@
 # Draws the CSV of helixnav_mrpt_side_by_side:
-#   gnuplot -e "csv='side_by_side.csv'; png='docs/mrpt_side_by_side.png'" bench/mrpt_side_by_side.gp
+#   gnuplot -e "csv='side_by_side.csv'; png='docs/mrpt_side_by_side.png'" bench/mrpt/mrpt_side_by_side.gp
 set datafile separator ","
 set terminal pngcairo size 1000,650 font "sans,13"
 set output png

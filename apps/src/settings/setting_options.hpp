@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "help_pages.hpp"
+#include "common/help_pages.hpp"
 #include "settings.hpp"
 #include "validators.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "helixnav/core/recording.hpp"
 #include "helixnav/logs/own_log.hpp"
-#include "own_tables.hpp"
+#include "own/tables/own_tables.hpp"
 
 namespace helixnav::logs {
 

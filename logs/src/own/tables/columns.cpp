@@ -12,7 +12,7 @@
 
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/nearest_name.hpp"
-#include "units.hpp"
+#include "own/vehicle/units.hpp"
 
 namespace helixnav::logs {
 namespace {
