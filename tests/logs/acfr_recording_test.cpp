@@ -38,7 +38,7 @@ AcfrSettings as_recorded() {
   settings.steering_scale = 1.0;
   settings.steering_offset_rad = 0.0;
   settings.laser_delay_s = 0.0;
-  settings.T_robot_laser.heading_rad = 0.0;
+  settings.T_robot_laser = {3.78, 0.5, 0.0};
   settings.sigma_sideways_m_per_sqrt_m = 0.0;
   return settings;
 }

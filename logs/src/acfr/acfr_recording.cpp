@@ -113,7 +113,7 @@ AcfrSettings car_park_settings() {
   settings.steering_scale = 1.0;
   settings.steering_offset_rad = 0.0075;
   settings.laser_delay_s = 0.0;
-  settings.T_robot_laser.heading_rad = 0.0;
+  settings.T_robot_laser = {3.78, 0.5, 0.0};
   settings.sigma_range_m = 0.05;
   settings.sigma_bearing_rad = 0.01;
   settings.view_range_m = 5.0;

@@ -16,14 +16,14 @@ namespace helixnav::logs {
 struct AcfrSettings {
   enum class Detector { trees, reflectors };
 
-  core::AckermannGeometry geometry;               ///< L = 2.83 m, H = 0.76 m
-  core::AckermannNoise noise{0.29, 0.012};        ///< of each dead-reckoning sample, white
-  double sigma_sideways_m_per_sqrt_m = 0.022;     ///< of side slip, which a wheel model alone rules out
-  double speed_scale = 1.003;                     ///< times the recorded speed of the wheel
-  double steering_scale = 0.97;                   ///< times the recorded angle; docs/adr/0007-victoria-park.md, and
-  double steering_offset_rad = 0.0016;            ///< added to that
-  double laser_delay_s = 0.062;                   ///< a scan was taken so long before its stamp
-  core::Pose2 T_robot_laser{3.78, 0.5, -0.0191};  ///< from the middle of the rear axle
+  core::AckermannGeometry geometry;                  ///< L = 2.83 m, H = 0.76 m
+  core::AckermannNoise noise{0.29, 0.012};           ///< of each dead-reckoning sample, white
+  double sigma_sideways_m_per_sqrt_m = 0.022;        ///< of side slip, which a wheel model alone rules out
+  double speed_scale = 1.0041;                       ///< times the recorded speed of the wheel
+  double steering_scale = 0.9786;                    ///< times the recorded angle; docs/adr/0007-victoria-park.md, and
+  double steering_offset_rad = 0.0012;               ///< added to that
+  double laser_delay_s = 0.0619;                     ///< a scan was taken so long before its stamp
+  core::Pose2 T_robot_laser{3.736, 0.595, -0.0191};  ///< from the middle of the rear axle
 
   Detector detector = Detector::trees;
   TreeRules trees;
