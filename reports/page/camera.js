@@ -29,5 +29,3 @@ const viewOf = (camera, margin = 0) => {
   const dx = (camera.width / 2 + margin) / camera.scale, dy = (camera.height / 2 + margin) / camera.scale;
   return [camera.x - dx, camera.x + dx, camera.y - dy, camera.y + dy];
 };
-
-const inView = ([x0, x1, y0, y1], x, y) => x >= x0 && x <= x1 && y >= y0 && y <= y1;

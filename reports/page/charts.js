@@ -62,13 +62,16 @@ const ellipses = (items) => {
   return { x, y };
 };
 
+const ordinal = (n) => `${count(n)}${n % 100 - n % 10 === 10 ? "th" : { 1: "st", 2: "nd", 3: "rd" }[n % 10] || "th"}`;
+const everyLandmarkText = () => (data.landmarks_stride > 1 ? `, every ${ordinal(data.landmarks_stride)}` : "");
+
 const landmarkTraces = (state, colour, symbol) => {
   const chosen = data.landmarks.filter((landmark) => landmark.state === state);
   if (chosen.length === 0) return [];
   const most_ellipses = 1500;  // more cost seconds, and none could be told from another
   const outlined = chosen.length > most_ellipses ? [] : chosen;
   const outline = ellipses(outlined.map((m) => [m.x, m.y, m.sxx, m.sxy, m.syy]));
-  const name = `${state} landmarks`;
+  const name = `${state} landmarks${everyLandmarkText()}`;
   const text = chosen.map((m) => `landmark ${m.id}<br>${m.observations} observations<br>σ ${
     Math.sqrt(m.sxx).toFixed(3)} m, ${Math.sqrt(m.syy).toFixed(3)} m`);
   return [

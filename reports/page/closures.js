@@ -33,14 +33,32 @@ const squareAround = (points) => [0, 1].map((axis_, _, both) => {
   return [middle - half, middle + half];
 });
 
-const clouds = { known: null };
 const cloudOf = (step) => {
-  clouds.known = clouds.known || unpackClouds(parse("player-data").clouds);
-  const { offsets, x, y, heading } = clouds.known;
-  const i = lastAtMost(clouds.known.step, step);
+  const { clouds } = theDrive();
+  const { offsets, x, y, heading } = clouds;
+  const i = lastAtMost(clouds.step, step);
   const poses = [];
   for (let p = offsets[i]; p < offsets[i + 1]; p++) poses.push([x[p], y[p], heading[p]]);
   return poses;
+};
+
+// Landmarks of the map at the end in a square: {x, y}.
+const landmarksWithin = ([x0, x1], [y0, y1]) => {
+  const { offsets, until, state, x, y } = theDrive().landmarks;
+  const found = { x: [], y: [] };
+  for (let i = 0; i < until.length; i++) {
+    const p = offsets[i + 1] - 1;
+    if (until[i] >= 0 || state[p] !== 1 || x[p] < x0 || x[p] > x1 || y[p] < y0 || y[p] > y1) continue;
+    found.x.push(x[p]);
+    found.y.push(y[p]);
+  }
+  return found;
+};
+
+const trueLandmarksWithin = ([x0, x1], [y0, y1]) => {
+  const known = theDrive().trueLandmarks || { x: [], y: [] };
+  const inside = Array.from(known.x.keys()).filter((i) => known.x[i] >= x0 && known.x[i] <= x1 && known.y[i] >= y0 && known.y[i] <= y1);
+  return { x: inside.map((i) => known.x[i]), y: inside.map((i) => known.y[i]) };
 };
 
 const drawView = (id, closure, view) => {
@@ -59,11 +77,11 @@ const drawView = (id, closure, view) => {
   const range = squareAround(shown);
   const length_m = .045 * (range[0][1] - range[0][0]);
   const cloud = strokes(particles, .6 * length_m);
-  const mature = data.landmarks.filter((m) => m.state === "mature");
+  const mature = landmarksWithin(...range), known = trueLandmarksWithin(...range);
   draw(id, [
-    dots("true landmarks", data.true_landmarks.map((m) => m[1]), data.true_landmarks.map((m) => m[2]), c.truth,
+    dots("true landmarks", known.x, known.y, c.truth,
       { marker: { color: c.truth, size: 9, symbol: "circle-open" }, hoverinfo: "x+y" }),
-    dots("landmarks", mature.map((m) => m.x), mature.map((m) => m.y), c.landmark),
+    dots("landmarks", mature.x, mature.y, c.landmark),
     ...constellations,
     ...(view.truth ? arrow("true pose", view.truth, 1.4 * length_m, c.truth) : []),
     line("particles", cloud.x, cloud.y, c.ink, { line: { color: c.ink, width: 1 }, opacity: .6, hoverinfo: "skip" }),

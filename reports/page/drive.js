@@ -3,7 +3,7 @@
 const outcome = { matched: 0, augmented: 1, ambiguous: 2, rejected: 3 };
 
 const unpackPoses = (packed) => ({
-  x: unpackMetres(packed.x, 1), y: unpackMetres(packed.y, 1), heading: scaled(unpack(packed.heading, 1), .001),
+  x: unpackMetres(packed.x, 1), y: unpackMetres(packed.y, 1), heading: unpackScaled(packed.heading, 1, .001),
 });
 
 // For each scan kept, its observations: landmark, outcome, and where they were seen from the robot (NaN: no point).
@@ -28,22 +28,35 @@ const unpackScans = (packed) => {
   return scans;
 };
 
-const unpackLandmarks = (packed) => {
+// Steps counted from the first scan; -1: never.
+const sinceStep = (steps, firstStep) => {
+  for (let i = 0; i < steps.length; i++) steps[i] = steps[i] < 0 ? -1 : steps[i] - firstStep;
+  return steps;
+};
+
+const unpackLandmarks = (packed, firstStep) => {
   const id = unpack(packed.id, 1);
   return {
-    id, until: unpack(packed.until, 1), offsets: offsetsOf(unpack(packed.count, 0)), step: unpack(packed.step, 1),
-    x: unpackMetres(packed.x, 1), y: unpackMetres(packed.y, 1), state: unpack(packed.state, 0),
-    ...unpackEllipses(packed), index: new Map(Array.from(id, (name, i) => [name, i])),
+    id, until: sinceStep(unpack(packed.until, 1), firstStep),
+    offsets: offsetsOf(unpack(packed.count, 0)), step: sinceStep(unpack(packed.step, 1), firstStep),
+    x: unpackMetres(packed.x, 1), y: unpackMetres(packed.y, 1), state: unpackInto(Uint8Array, packed.state, 0, 1),
+    ...unpackEllipses(packed),
   };
+};
+
+// Which landmark has an id (ids ascend); -1: none.
+const indexOf = ({ id }, wanted) => {
+  const i = lastAtMost(id, wanted);
+  return i >= 0 && id[i] === wanted ? i : -1;
 };
 
 const unpackClouds = (packed) => ({
   step: unpack(packed.step, 1), offsets: offsetsOf(unpack(packed.count, 1)), x: unpackMetres(packed.x, 1),
-  y: unpackMetres(packed.y, 1), heading: scaled(unpack(packed.heading, 1), .001),
+  y: unpackMetres(packed.y, 1), heading: unpackScaled(packed.heading, 1, .001),
 });
 
 const unpackTruth = (packed) => packed && {
-  t: scaled(unpack(packed.t, 2), .001), x: unpackMetres(packed.x, 1), y: unpackMetres(packed.y, 1),
+  t: unpackScaled(packed.t, 2, .001), x: unpackMetres(packed.x, 1), y: unpackMetres(packed.y, 1),
   aligned: packed.aligned,
 };
 
@@ -56,36 +69,37 @@ const unpackDrive = (packed) => ({
   begin_s: packed.begin_s,
   firstStep: packed.first_step,
   count: packed.steps,
-  t: scaled(unpack(packed.path.t, 2), .001),
+  t: unpackScaled(packed.path.t, 2, .001),
   ...unpackPoses(packed.path),
   ellipse: unpackEllipses(packed.path),
   final: packed.final && unpackPoses(packed.final),
-  modes: packed.modes,
-  landmarks: unpackLandmarks(packed.landmarks),
+  modes: unpackModes(packed.modes),
+  landmarks: unpackLandmarks(packed.landmarks, packed.first_step),
   merges: unpackMerges(packed.merges),
   truth: unpackTruth(packed.truth),
+  trueLandmarks: packed.true_landmarks && { x: unpackMetres(packed.true_landmarks.x, 1), y: unpackMetres(packed.true_landmarks.y, 1) },
   clouds: unpackClouds(packed.clouds),
 });
 
-// Stretches of the path in one mode and without a leap: {from, to, mode}; a leap is the scan of an accepted closing.
+// Stretches of the path in one mode and without a leap; a leap is the scan of an accepted closing.
 const stretchesOf = (drive, leaps) => {
-  const begins = [...new Set([...drive.modes.map(([from]) => from), ...leaps])].sort((a, b) => a - b);
-  return begins.map((from, i) => {
-    const next = begins[i + 1];
-    const to = next === undefined ? drive.count - 1 : leaps.includes(next) ? next - 1 : next;
-    return { from, to, mode: searchingAt(drive, from) ? 1 : 0 };
-  });
+  const begins = [...new Set([...drive.modes.from, ...leaps])].sort((a, b) => a - b);
+  const leaping = new Set(leaps);
+  return {
+    from: Int32Array.from(begins),
+    to: Int32Array.from(begins, (_, i) => {
+      const next = begins[i + 1];
+      return next === undefined ? drive.count - 1 : leaping.has(next) ? next - 1 : next;
+    }),
+    searching: Uint8Array.from(begins, (from) => searchingAt(drive, from)),
+  };
 };
 
-const searchingAt = (drive, k) => drive.modes.reduce((mode, [from, value]) => (from <= k ? value : mode), 0) === 1;
+const unpackModes = (modes) => ({
+  from: Int32Array.from(modes, ([from]) => from), searching: Uint8Array.from(modes, ([, mode]) => mode === 1),
+});
 
-// The place of a landmark at scan k: an index into landmarks.x, …; -1 when it is not on the map then.
-const placeAt = (landmarks, i, k) => {
-  if (landmarks.until[i] >= 0 && k >= landmarks.until[i]) return -1;
-  const from = landmarks.offsets[i];
-  const found = lastAtMost(landmarks.step, k, from, landmarks.offsets[i + 1]);
-  return found < from ? -1 : found;
-};
+const searchingAt = ({ modes }, k) => modes.searching[lastAtMost(modes.from, k)] === 1;
 
 // Where the truth is at a time: between two positions at most 3 s apart.
 const truthAt = (truth, t) => {
@@ -97,3 +111,15 @@ const truthAt = (truth, t) => {
   const part = (t - truth.t[i]) / (truth.t[i + 1] - truth.t[i]);
   return [truth.x[i] + part * (truth.x[i + 1] - truth.x[i]), truth.y[i] + part * (truth.y[i + 1] - truth.y[i])];
 };
+
+// Unpacked once, for the player and for the pictures of closures; null of a run without scans.
+const theDrive = (() => {
+  let drive;
+  return () => {
+    if (drive === undefined) {
+      const packed = parse("player-data");
+      drive = packed && unpackDrive(packed);
+    }
+    return drive;
+  };
+})();

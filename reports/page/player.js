@@ -5,77 +5,42 @@ const speeds = [.25, .5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 
 const makePlayer = (drive) => {
   const closings = data.decisions.filter((decision) => decision.kind === "closure");
-  const leaps = closings.filter((closing) => closing.verdict === "accepted")
-    .map((closing) => closing.step - drive.firstStep).filter((k) => k > 0);
+  const leaps = Int32Array.from(closings.filter((closing) => closing.verdict === "accepted")
+    .map((closing) => closing.step - drive.firstStep).filter((k) => k > 0));
   const line_ = (path) => path && makePolyline(path.x, path.y);
   return {
     drive, closings, leaps, stretches: stretchesOf(drive, leaps),
     lines: { path: line_(drive), final: line_(drive.final), truth: line_(drive.truth) },
-    layers: { ground: makeLayer(), trail: makeLayer() },
+    present: makePresent(drive.landmarks), visible: new Int32Array(drive.landmarks.id.length),
+    ground: makeLayer(), trail: makeLayer(), ink: makeInk(), cells: makeCells(),
     camera: makeCamera(), show: { truth: true, final: false, ids: false }, follow: false, playing: false,
-    t: 0, end: drive.t[drive.count - 1], speed: 1,
+    t: 0, end: drive.t[drive.count - 1], speed: 1, k: 0, pose: { x: 0, y: 0, heading: 0 }, palette: c,
   };
 };
 
 // Scan at the time of the player, and the pose there: between two scans on the line between them, unless that is a leap.
 const scanAt = ({ drive, t }) => Math.max(0, lastAtMost(drive.t, t + 1e-6));
-const poseAt = ({ drive, t }, k) => {
-  const pose = { x: drive.x[k], y: drive.y[k], heading: drive.heading[k] };
-  if (k + 1 >= drive.count || drive.t[k + 1] <= drive.t[k]) return pose;
+const setPose = ({ drive, t, k, pose }) => {
+  pose.x = drive.x[k];
+  pose.y = drive.y[k];
+  pose.heading = drive.heading[k];
+  if (k + 1 >= drive.count || drive.t[k + 1] <= drive.t[k]) return;
   const part = Math.min(1, Math.max(0, (t - drive.t[k]) / (drive.t[k + 1] - drive.t[k])));
   const dx = drive.x[k + 1] - pose.x, dy = drive.y[k + 1] - pose.y;
   const before = k > 0 ? Math.hypot(pose.x - drive.x[k - 1], pose.y - drive.y[k - 1]) : Infinity;
-  if (part === 0 || Math.hypot(dx, dy) > 3 * before + .5) return pose;
-  return { x: pose.x + part * dx, y: pose.y + part * dy,
-           heading: pose.heading + part * (drive.heading[k + 1] - pose.heading) };
+  if (part === 0 || Math.hypot(dx, dy) > 3 * before + .5) return;
+  pose.x += part * dx;
+  pose.y += part * dy;
+  pose.heading += part * (drive.heading[k + 1] - pose.heading);
 };
 
 const drawPlayer = (player) => {
-  const k = scanAt(player);
-  const pose = poseAt(player, k);
-  if (player.follow) [player.camera.x, player.camera.y] = [pose.x, pose.y];
-  drawScene({ ...player, context: player.context, palette: c, k, pose });
-  writeState(player, k);
-};
-
-// --- text beside the picture ---------------------------------------------------------------------------------------------
-const scanText = ({ drive }, k) => {
-  const { scans } = drive;
-  const scan = Math.floor(k / scans.stride);
-  const counts = [0, 0, 0, 0];
-  for (let i = scans.offsets[scan]; i < scans.offsets[scan + 1]; i++) counts[scans.outcome[i]]++;
-  const names = ["matched", "new", "ambiguous", "rejected"];
-  const parts = counts.map((number, i) => (number > 0 ? `${number} ${names[i]}` : "")).filter((part) => part);
-  return parts.length > 0 ? `seen: ${parts.join(", ")}` : "nothing seen";
-};
-
-const errorNow = ({ drive, t }, k) => {
-  const truth = drive.truth && !drive.truth.aligned && truthAt(drive.truth, drive.t[k]);
-  return truth ? `, error ${metres(Math.hypot(drive.x[k] - truth[0], drive.y[k] - truth[1]))}` : "";
-};
-
-const writeState = (player, k) => {
-  const { drive, t, end } = player;
-  const searching = searchingAt(drive, k);
-  byId("player-time").value = Math.round(1000 * t);
-  byId("player-clock").textContent = `${fixed(t, 1)} / ${fixed(end, 1)} s`;
-  byId("player-mode").textContent = searching ? "searching" : "mapping";
-  byId("player-mode").className = searching ? "mode searching" : "mode";
-  byId("player-state").textContent =
-    `step ${count(k + drive.firstStep)}, ${scanText(player, k)}${errorNow(player, k)}`;
-  const said = player.said(k);
-  byId("player-said").textContent = said ? `Step ${count(said.step)}: ${said.sentence}` : "";
-};
-
-// What was decided last at or before a scan: {step, sentence}.
-const decisionsByStep = (drive) => {
-  const said = [];
-  for (const { step, sentence } of [...data.decisions].sort((a, b) => a.step - b.step)) {
-    if (said.length > 0 && last(said).step === step) last(said).sentence += ` ${sentence}`;
-    else said.push({ step, sentence });
-  }
-  const steps = said.map((one) => one.step - drive.firstStep);
-  return (k) => said[lastAtMost(steps, k)];
+  player.k = scanAt(player);
+  player.palette = c;
+  setPose(player);
+  if (player.follow) [player.camera.x, player.camera.y] = [player.pose.x, player.pose.y];
+  drawScene(player);
+  writeState(player);
 };
 
 // --- time ----------------------------------------------------------------------------------------------------------------
@@ -157,7 +122,7 @@ const showAll = (player) => {
 
 const fitCanvas = (player) => {
   const { canvas, camera } = player;
-  const ratio = window.devicePixelRatio || 1;
+  const ratio = Math.min(2, window.devicePixelRatio || 1);  // more costs a phone time and shows nothing
   const first = camera.width === 1;
   camera.width = canvas.clientWidth;
   camera.height = canvas.clientHeight;
@@ -167,27 +132,6 @@ const fitCanvas = (player) => {
   if (first) fitCamera(camera, data.map_extent);
   drawStrip(player);
   requestDraw(player);
-};
-
-// The drive as a strip of time: searches, and ticks where closings were accepted or refused.
-const drawStrip = ({ drive, end, closings }) => {
-  const strip = byId("player-strip");
-  const ratio = window.devicePixelRatio || 1;
-  strip.width = Math.round(strip.clientWidth * ratio);
-  strip.height = Math.round(strip.clientHeight * ratio);
-  const context = strip.getContext("2d");
-  const x = (t) => (end > 0 ? t / end : 0) * strip.width;
-  context.fillStyle = c.band;
-  context.fillRect(0, 0, strip.width, strip.height);
-  context.fillStyle = c.other;
-  drive.modes.forEach(([from, mode], i) => {
-    const to = i + 1 < drive.modes.length ? drive.modes[i + 1][0] : drive.count - 1;
-    if (mode === 1) context.fillRect(x(drive.t[from]), .55 * strip.height, Math.max(1, x(drive.t[to] - drive.t[from])), strip.height);
-  });
-  for (const closing of closings) {
-    context.fillStyle = closing.verdict === "accepted" ? c.landmark : closing.verdict === "refused" ? c.bad : c.faint;
-    context.fillRect(x(drive.t[closing.step - drive.firstStep]) - ratio, 0, 2 * ratio, .55 * strip.height);
-  }
 };
 
 const savePicture = (player) => {

@@ -97,12 +97,12 @@ const onButtons = (player) => {
 const startSpeed = (seconds) => speeds.reduce((best, speed) => (speed <= seconds / 90 ? speed : best), 1);
 
 const startPlayer = () => {
-  const packed = parse("player-data");
-  byId("player-section").hidden = !packed || !filtered;
-  if (!packed || !filtered) return;
-  const player = makePlayer(unpackDrive(packed));
+  const drive = theDrive();
+  byId("player-section").hidden = !drive || !filtered;
+  if (!drive || !filtered) return;
+  const player = makePlayer(drive);
   player.canvas = byId("player-canvas");
-  player.context = player.canvas.getContext("2d");
+  player.context = player.canvas.getContext("2d", { alpha: false });
   player.said = decisionsByStep(player.drive);
   player.goTo = (step) => {
     const k = Math.min(player.drive.count - 1, Math.max(0, step - player.drive.firstStep));

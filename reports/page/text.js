@@ -17,7 +17,8 @@ const fixed = (value, digits) => (known(value) ? value.toFixed(digits) : "–");
 const metres = (value) => (known(value) ? `${value.toFixed(Math.abs(value) < 10 ? 3 : 2)} m` : "–");
 const degrees = (radians) => (known(radians) ? `${(radians * 180 / Math.PI).toFixed(3)}°` : "–");
 const percent = (value) => (known(value) ? `${(100 * value).toFixed(1)} %` : "–");
-const count = (value) => (known(value) ? value.toLocaleString("en").replace(/,/g, "\u202f") : "–");
+const thousands = new Intl.NumberFormat("en");
+const count = (value) => (known(value) ? thousands.format(value).replace(/,/g, "\u202f") : "–");
 const microseconds = (value) => {
   if (!known(value)) return "–";
   return value < 1000 ? `${value.toFixed(0)} µs` : `${(value / 1000).toFixed(1)} ms`;

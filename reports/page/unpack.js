@@ -12,35 +12,35 @@ const countNumbers = (bytes) => {
   return count_;
 };
 
-const sumUp = (numbers) => {
-  let sum = 0;
-  for (let i = 0; i < numbers.length; i++) numbers[i] = sum += numbers[i];
-};
-
-// Differences may need more than 32 bits, numbers do not.
-const unpack = (text, order) => {
+// Into an array that the caller makes of their number. Differences may need more than 32 bits, numbers do not.
+const unpackInto = (Numbers, text, order, unit) => {
   const bytes = bytesOf(text);
-  const numbers = new Float64Array(countNumbers(bytes));
+  const numbers = new Numbers(countNumbers(bytes));
+  let sum = 0, sumOfSums = 0;
   for (let i = 0, filled = 0; i < bytes.length; filled++) {
     let value = bytes[i] & 127;
     for (let scale = 128; bytes[i++] >= 128; scale *= 128) value += (bytes[i] & 127) * scale;
-    numbers[filled] = value % 2 === 0 ? value / 2 : -(value + 1) / 2;
+    value = value % 2 === 0 ? value / 2 : -(value + 1) / 2;
+    if (order > 0) value = sum += value;
+    if (order > 1) value = sumOfSums += value;
+    numbers[filled] = value * unit;
   }
-  for (let k = 0; k < order; k++) sumUp(numbers);
   return numbers;
 };
-
-const scaled = (numbers, unit) => {
-  for (let i = 0; i < numbers.length; i++) numbers[i] *= unit;
-  return numbers;
-};
-const unpackMetres = (text, order) => scaled(unpack(text, order), .01);
+const unpack = (text, order) => unpackInto(Int32Array, text, order, 1);
+const unpackScaled = (text, order, unit) => unpackInto(Float64Array, text, order, unit);
+const unpackMetres = (text, order) => unpackScaled(text, order, .01);
 
 // Ellipses of one σ: half axes in 24ths of a doubling from 1 mm (0: none), angles in 64ths of half a turn.
-const unpackEllipses = (packed) => {
-  const axis = (text) => Float32Array.from(unpack(text, 1), (steps) => (steps > 0 ? .001 * 2 ** (steps / 24) : 0));
-  return { a: axis(packed.a), b: axis(packed.b), angle: scaled(unpack(packed.angle, 1), Math.PI / 64) };
+const axis_lengths = Float32Array.from({ length: 1024 }, (_, steps) => (steps > 0 ? .001 * 2 ** (steps / 24) : 0));
+const unpackAxes = (text) => {
+  const axes = unpackInto(Float32Array, text, 1, 1);
+  for (let i = 0; i < axes.length; i++) axes[i] = axis_lengths[Math.min(axes[i], axis_lengths.length - 1)];
+  return axes;
 };
+const unpackEllipses = (packed) => ({
+  a: unpackAxes(packed.a), b: unpackAxes(packed.b), angle: unpackInto(Float32Array, packed.angle, 1, Math.PI / 64),
+});
 
 // Where the items of each entry begin; one more than there are entries.
 const offsetsOf = (counts) => {

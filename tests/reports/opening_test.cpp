@@ -44,6 +44,30 @@ TEST(Opening, SaysWhatWasDrivenAndClosedAndHowWrongItWas) {
   EXPECT_NE(said.find("4 m at most; of the path as corrected since: 0.5 m RMSE"), std::string::npos) << said;
 }
 
+TEST(Opening, SaysHowOftenTheVehicleSlipped) {
+  runs::Run run = drifting_run(0.0);
+  const auto said = [&run] { return all_of(opening_data(run, evaluation::evaluate(run))["sentences"]); };
+  EXPECT_EQ(said().find("slipped"), std::string::npos);
+  core::SlipDecision slip;
+  slip.moved_m = 0.5;
+  run.steps[20].decisions = {slip};
+  EXPECT_NE(said().find("The vehicle slipped once, by 0.5 m, and its"), std::string::npos) << said();
+  slip.moved_m = 0.75;
+  run.steps[40].decisions = {slip};
+  EXPECT_NE(said().find("The vehicle slipped 2 times, by 0.75 m at most, and its"), std::string::npos) << said();
+}
+
+TEST(Opening, OfACloudOfParticlesSpeaksOfNoSearch) {
+  runs::Run run = drifting_run(0.0);
+  for (core::StepReport& step : run.steps) {
+    step.decisions.clear();
+    step.particles = core::CloudReport{100, 40.0, false, 0.0, 9};
+  }
+  const std::string said = all_of(opening_data(run, evaluation::evaluate(run))["sentences"]);
+  EXPECT_NE(said.find("cloud of particles"), std::string::npos) << said;
+  EXPECT_EQ(said.find("No search"), std::string::npos) << said;
+}
+
 TEST(Opening, KnowsTheErrorBeforeAndAfterAClosing) {
   const runs::Run run = drifting_run(4.0);
   const ErrorAround error = error_around(run, 60, evaluation::evaluate(run));

@@ -133,7 +133,27 @@ Json truth_data(const runs::Run& run, const evaluation::Evaluation& evaluation) 
   return {{"t", packed(t, 2)}, {"x", packed(x, 1)}, {"y", packed(y, 1)}, {"aligned", evaluation.position->aligned}};
 }
 
+/// Null where none is known.
+Json true_landmarks_data(const runs::Run& run, const evaluation::Evaluation& evaluation) {
+  if (run.truth.landmarks.empty()) return nullptr;
+  Numbers x, y;
+  for (const Eigen::Vector2d& point_m : true_landmarks_in_map(run, evaluation)) {
+    x.push_back(quantised(point_m.x(), unit_m));
+    y.push_back(quantised(point_m.y(), unit_m));
+  }
+  return {{"x", packed(x, 1)}, {"y", packed(y, 1)}};
+}
+
 }  // namespace
+
+std::vector<Eigen::Vector2d> true_landmarks_in_map(const runs::Run& run, const evaluation::Evaluation& evaluation) {
+  const core::Pose2 T_map_truth = core::inverse(evaluation.position ? evaluation.position->T_truth_map : core::Pose2{});
+  std::vector<Eigen::Vector2d> points_m;
+  for (const core::TrueLandmark& landmark : run.truth.landmarks) {
+    points_m.push_back(core::transform(T_map_truth, landmark.point_m));
+  }
+  return points_m;
+}
 
 Json player_data(const runs::Run& run, const evaluation::Evaluation& evaluation) {
   if (run.steps.empty()) return nullptr;
@@ -147,6 +167,7 @@ Json player_data(const runs::Run& run, const evaluation::Evaluation& evaluation)
           {"landmarks", player_landmarks(run)},
           {"merges", merges_data(run)},
           {"truth", truth_data(run, evaluation)},
+          {"true_landmarks", true_landmarks_data(run, evaluation)},
           {"clouds", clouds_data(run)}};
 }
 

@@ -9,6 +9,7 @@
 #include "helixnav/reports/decision_sentence.hpp"
 #include "helixnav/runs/words.hpp"
 #include "player/report_particles.hpp"
+#include "player/report_player.hpp"
 #include "report_closures.hpp"
 #include "report_numbers.hpp"
 #include "report_opening.hpp"
@@ -20,10 +21,13 @@ namespace helixnav::reports {
 namespace {
 
 constexpr std::size_t most_decisions = 1000;
+constexpr std::size_t most_map_landmarks = 4000;
 
-Json landmarks_json(const std::vector<core::MapLandmark>& map) {
+/// Every n-th: more would cover each other in a chart, cost it seconds and the page megabytes. The player has all.
+Json landmarks_json(const std::vector<core::MapLandmark>& map, std::size_t stride) {
   Json json = Json::array();
-  for (const core::MapLandmark& landmark : map) {
+  for (std::size_t i = 0; i < map.size(); i += stride) {
+    const core::MapLandmark& landmark = map[i];
     const Eigen::Matrix2d& P = landmark.point.covariance_m2;
     json.push_back({{"id", landmark.id},
                     {"x", rounded(landmark.point.mean_m.x())},
@@ -37,12 +41,11 @@ Json landmarks_json(const std::vector<core::MapLandmark>& map) {
   return json;
 }
 
-Json true_landmarks_json(const std::vector<core::TrueLandmark>& landmarks, const core::Pose2& T_truth_map) {
-  const core::Pose2 T_map_truth = core::inverse(T_truth_map);
+Json true_landmarks_json(const runs::Run& run, const evaluation::Evaluation& evaluation) {
+  const std::vector<Eigen::Vector2d> points_m = true_landmarks_in_map(run, evaluation);
   Json json = Json::array();
-  for (const core::TrueLandmark& landmark : landmarks) {
-    const Eigen::Vector2d point_m = core::transform(T_map_truth, landmark.point_m);
-    json.push_back({landmark.label, rounded(point_m.x(), 1e-3), rounded(point_m.y(), 1e-3)});
+  for (std::size_t i = 0; i < points_m.size(); i += stride_for(points_m.size(), most_map_landmarks)) {
+    json.push_back({run.truth.landmarks[i].label, rounded(points_m[i].x(), 1e-3), rounded(points_m[i].y(), 1e-3)});
   }
   return json;
 }
@@ -148,9 +151,9 @@ Json report_data(const runs::Run& run, const evaluation::Evaluation& evaluation)
   json["truth"] = evaluation.position ? truth_json(*evaluation.position) : Json(nullptr);
   json["errors"] = evaluation.position ? errors_json(*evaluation.position) : Json(nullptr);
   json["heading"] = evaluation.pose ? heading_json(evaluation.pose->errors) : Json(nullptr);
-  json["landmarks"] = landmarks_json(run.map);
-  json["true_landmarks"] =
-      true_landmarks_json(run.truth.landmarks, evaluation.position ? evaluation.position->T_truth_map : core::Pose2{});
+  json["landmarks_stride"] = stride_for(run.map.size(), most_map_landmarks);
+  json["landmarks"] = landmarks_json(run.map, json["landmarks_stride"]);
+  json["true_landmarks"] = true_landmarks_json(run, evaluation);
   json["health"] = health_json(steps);
   json["nis"] = nis_json(steps);
   json["observations"] = observations_json(steps);

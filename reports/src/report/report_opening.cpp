@@ -37,7 +37,13 @@ std::string drive_sentence(const runs::Run& run) {
          counted(static_cast<double>(mature), "landmark") + '.';
 }
 
+std::string times(int count) { return count == 1 ? std::string("once") : std::to_string(count) + " times"; }
+
 std::string closings_sentence(const runs::Run& run) {
+  if (run.steps.back().particles) {
+    return "It was navigated by a cloud of particles, each of which associates for itself: there are no searches and "
+           "no closings to tell of.";
+  }
   int accepted = 0, refused = 0, undecided = 0, new_ground = 0;
   for (const core::StepReport& step : run.steps) {
     for (const core::Decision& decision : step.decisions) {
@@ -50,11 +56,27 @@ std::string closings_sentence(const runs::Run& run) {
     }
   }
   if (accepted + refused + undecided + new_ground == 0) return "No search for an old place was made.";
-  const auto times = [](int count) { return count == 1 ? std::string("once") : std::to_string(count) + " times"; };
   std::string text = accepted > 0 ? "The map was closed " + times(accepted) : "The map was never closed";
   text += refused > 0 ? "; a closing was refused " + times(refused) : "; no closing was refused";
   text += new_ground > 0 ? "; a search ended on new ground " + times(new_ground) : "";
   return text + (undecided > 0 ? "; a search was left undecided " + times(undecided) + "." : ".");
+}
+
+/// Empty when the vehicle did not slip.
+std::string slips_sentence(const runs::Run& run) {
+  int slips = 0;
+  double most_m = 0.0;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::Decision& decision : step.decisions) {
+      const auto* slip = std::get_if<core::SlipDecision>(&decision);
+      if (slip == nullptr) continue;
+      ++slips;
+      most_m = std::max(most_m, slip->moved_m);
+    }
+  }
+  if (slips == 0) return {};
+  return "The vehicle slipped " + times(slips) + ", by " + short_number(most_m) + " m" +
+         (slips == 1 ? "" : " at most") + ", and its odometry did not show it: the landmarks did.";
 }
 
 /// Where a session found its place on an earlier map, and where the vehicle was carried.
@@ -119,6 +141,8 @@ Json opening_data(const runs::Run& run, const evaluation::Evaluation& evaluation
   if (run.steps.empty()) return json;
   if (!(run.smoothed && run.smoothed->alone)) {
     json["sentences"] = {drive_sentence(run), closings_sentence(run)};
+    const std::string slips = slips_sentence(run);
+    if (!slips.empty()) json["sentences"].push_back(slips);
     for (const Json& sentence : placings(run)) json["sentences"].push_back(sentence);
     for (const std::string& warning : warnings_of(run, evaluation)) json["warnings"].push_back(warning);
     for (const std::string& warning : warnings_of_place(run)) json["warnings"].push_back(warning);

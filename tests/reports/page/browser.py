@@ -10,6 +10,13 @@ import tempfile
 import time
 
 
+player_is_ready = """new Promise((done) => {
+  const look = () => (window.helixnavPlayer ? requestAnimationFrame(() => done()) : setTimeout(look, 5));
+  look();
+})"""
+two_frames = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+
+
 class Page:
     """One page. `errors` holds what its console said of errors, and exceptions nobody caught."""
 
@@ -42,12 +49,28 @@ class Page:
             raise RuntimeError(json.dumps(answer["exceptionDetails"])[:2000])
         return answer["result"].get("value")
 
+    def thread_s(self):
+        """Processor seconds of the thread that runs the page's scripts."""
+        self.call("Performance.enable", timeDomain="threadTicks")
+        metrics = {one["name"]: one["value"] for one in self.call("Performance.getMetrics")["metrics"]}
+        return metrics["TaskDuration"]
+
     def press(self, key, code=None, shift=False):
         more = {"key": key, "code": code or key, "modifiers": 8 if shift else 0}
         if len(key) == 1:
             more["text"] = key
         self.call("Input.dispatchKeyEvent", type="keyDown", **more)
         self.call("Input.dispatchKeyEvent", type="keyUp", **more)
+
+    def touch(self, places):
+        """Fingers on the screen: where each is, first and then."""
+        for i, fingers in enumerate(places):
+            self.call("Input.dispatchTouchEvent", type="touchMove" if i else "touchStart",
+                      touchPoints=[{"x": x, "y": y, "id": finger} for finger, (x, y) in enumerate(fingers)])
+        self.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+
+    def download_into(self, folder):
+        self._browser.call("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": folder})
 
     def picture(self, path=None, whole=False):
         data = base64.b64decode(self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"])
@@ -102,6 +125,11 @@ class Browser:
                 if "error" in answer:
                     raise RuntimeError(f"{method}: {answer['error']}")
                 return answer["result"]
+
+    def processor_s(self):
+        """Processor seconds that pages and painting have used, all threads."""
+        processes = self.call("SystemInfo.getProcessInfo", {})["processInfo"]
+        return sum(one["cpuTime"] for one in processes if one["type"] != "browser")
 
     def wait_for(self, session, event):
         while True:

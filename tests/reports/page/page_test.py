@@ -7,36 +7,16 @@ the run folder says. With it: size, seconds to open and frames a second of a rep
 import argparse
 import os
 import sys
+import tempfile
 import time
 import unittest
 
-from browser import Browser
+from browser import Browser, player_is_ready, two_frames
+from measure import measure
 
 wide, phone = (1280, 900, False), (390, 844, True)
 
-# Frames drawn in two seconds of replay at a speed that passes the whole drive in 30 s.
-count_frames = """new Promise((done) => {
-  const player = helixnavPlayer;
-  let frames = 0, worst = 0, before = performance.now();
-  const begin = before;
-  const next = (now) => {
-    worst = Math.max(worst, now - before);
-    before = now;
-    frames++;
-    if (now - begin < 2000) requestAnimationFrame(next);
-    else done([frames / (now - begin) * 1000, worst]);
-  };
-  player.speed = player.end / 30;
-  if (!player.playing) document.getElementById("player-play").click();
-  requestAnimationFrame(next);
-})"""
-
 picture_of_canvas = "document.getElementById('player-canvas').toDataURL()"
-player_is_ready = """new Promise((done) => {
-  const look = () => (window.helixnavPlayer ? requestAnimationFrame(() => done()) : setTimeout(look, 5));
-  look();
-})"""
-two_frames = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
 
 class ReportPage(unittest.TestCase):
@@ -63,6 +43,14 @@ class ReportPage(unittest.TestCase):
         folder = os.path.dirname(self.report)
         with open(os.path.join(folder, "trajectory.tum")) as file:
             return [[float(word) for word in line.split()] for line in file if not line.startswith("#")]
+
+    def set_slider(self, page, time_s):
+        page.run(f"""(() => {{
+          const slider = document.getElementById('player-time');
+          slider.value = {round(1000 * time_s)};
+          slider.dispatchEvent(new Event('input'));
+        }})()""")
+        page.run(two_frames)
 
     def go_to(self, page, k):
         page.run(f"helixnavPlayer.goTo({k})")
@@ -102,6 +90,34 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(page.run(picture_of_canvas), there)
         self.assertNotEqual(elsewhere, there)
 
+    def test_shows_the_same_picture_after_playing_as_after_a_leap(self):
+        page = self.open()
+        page.run("helixnavPlayer.speed = helixnavPlayer.end / 4; document.getElementById('player-play').click()")
+        page.run("new Promise((done) => setTimeout(done, 1500))")
+        page.run("document.getElementById('player-play').click(); document.getElementById('player-on').click()")
+        page.run(two_frames)
+        played, time_s = page.run(f"[{picture_of_canvas}, helixnavPlayer.t]")
+        self.assertGreater(page.run("helixnavPlayer.k"), 100)
+        self.set_slider(page, 0.0)
+        self.assertNotEqual(page.run(picture_of_canvas), played)
+        self.set_slider(page, time_s)
+        self.assertEqual(page.run(picture_of_canvas), played)
+
+    def test_knows_the_landmarks_of_a_scan_whichever_way_it_came_there(self):
+        page = self.open()
+        scans = len(self.steps())
+        for k in (scans // 3, scans // 3 + 7, scans - 1, scans // 5, 0, scans // 2):
+            self.go_to(page, k)
+            wrong = page.run("""(() => {
+              const { present: { place }, drive: { landmarks: l }, k } = helixnavPlayer;
+              return Array.from(place).filter((shown, i) => {
+                let expected = -1;
+                for (let p = l.offsets[i]; p < l.offsets[i + 1]; p++) if (l.step[p] <= k) expected = p;
+                return shown !== (l.until[i] >= 0 && l.until[i] <= k ? -1 : expected);
+              }).length;
+            })()""")
+            self.assertEqual(wrong, 0, f"landmarks at scan {k}")
+
     def test_goes_to_the_closing_that_is_clicked(self):
         page = self.open()
         step = page.run("helixnavPlayer.closings.length > 0 ? helixnavPlayer.closings[0].step : -1")
@@ -110,6 +126,10 @@ class ReportPage(unittest.TestCase):
         page.run("document.querySelector('.closing').click()")
         page.run(two_frames)
         self.assertIn(f"step {step}", page.run("document.getElementById('player-state').textContent").replace("\u202f", ""))
+        top, bottom = page.run("""(({ top, bottom }) => [top, bottom])(
+          document.getElementById('player-canvas').getBoundingClientRect())""")
+        self.assertGreaterEqual(top, 0)
+        self.assertLessEqual(bottom, wide[1])
 
     def test_plays_and_obeys_the_keys(self):
         page = self.open()
@@ -146,42 +166,46 @@ class ReportPage(unittest.TestCase):
         page.run(two_frames)
         self.assertEqual(page.run(picture_of_canvas), whole)
 
-    def test_makes_a_picture_to_save(self):
+    def test_follows_the_screen_from_light_to_dark(self):
         page = self.open()
-        kind, size = page.run("""new Promise((done) => helixnavPlayer.canvas.toBlob((blob) => done([blob.type, blob.size])))""")
-        self.assertEqual(kind, "image/png")
-        self.assertGreater(size, 5000)
+        light = page.run(picture_of_canvas)
+        page.look(*wide[:2], dark=True)
+        page.run(two_frames)
+        self.assertNotEqual(page.run(picture_of_canvas), light)
+        page.look(*wide[:2], dark=False)
+        page.run(two_frames)
+        self.assertEqual(page.run(picture_of_canvas), light)
+        self.assertEqual(page.errors, [])
 
+    def test_is_moved_by_one_finger_and_zoomed_by_two(self):
+        page = self.open(phone)
+        page.run("document.getElementById('player-canvas').scrollIntoView({ block: 'center' })")
+        left, top = page.run("""(({ left, top }) => [left, top])(
+          document.getElementById('player-canvas').getBoundingClientRect())""")
+        camera = "[helixnavPlayer.camera.x, helixnavPlayer.camera.y, helixnavPlayer.camera.scale]"
+        x, y, scale = page.run(camera)
+        page.touch([[(left + 100, top + 200)], [(left + 140, top + 170)]])
+        page.run(two_frames)
+        self.assertAlmostEqual(page.run(camera)[0], x - 40 / scale, delta=0.01 * 40 / scale)
+        self.assertAlmostEqual(page.run(camera)[1], y - 30 / scale, delta=0.01 * 30 / scale)
+        page.touch([[(left + 150, top + 200), (left + 200, top + 200)], [(left + 125, top + 200), (left + 225, top + 200)]])
+        page.run(two_frames)
+        self.assertAlmostEqual(page.run(camera)[2] / scale, 2.0, delta=0.01)
 
-def measure(report, pictures):
-    """Prints the figures; 1 where one is not kept."""
-    megabytes = os.path.getsize(report) / 1e6
-    with Browser() as browser:
-        opened, ready = [], []
-        for _ in range(3):
-            page = browser.page()
-            page.look(1280, 900)
-            begin = time.monotonic()
-            opened.append(page.open(report))
-            page.run(player_is_ready)
-            ready.append(time.monotonic() - begin)
-        scans = page.run("helixnavPlayer.drive.count")
-        frames = {}
-        page.run("document.getElementById('player').scrollIntoView()")
-        for name, setup in (("whole map", "document.getElementById('player-all').click()"),
-                            ("following", "helixnavPlayer.goTo(0)")):
-            page.run(setup)
-            page.run(two_frames)
-            frames[name] = page.run(count_frames)
-            page.run("document.getElementById('player-play').click()")
-            if pictures:
-                page.picture(os.path.join(pictures, f"measure-{name.replace(' ', '-')}.png"))
-    print(f"{scans} scans: {megabytes:.2f} MB; opened in " + ", ".join(f"{s:.2f}" for s in opened) + " s, player ready after " +
-          ", ".join(f"{s:.2f}" for s in ready) + " s")
-    for name, (rate, worst) in frames.items():
-        print(f"{name}: {rate:.1f} frames/s, longest {worst:.0f} ms")
-    kept = megabytes <= 15.0 and min(ready) <= 3.0 and all(rate >= 30.0 for rate, _ in frames.values())
-    return 0 if kept else 1
+    def test_saves_a_picture(self):
+        page = self.open()
+        with tempfile.TemporaryDirectory() as folder:
+            page.download_into(folder)
+            page.run("document.getElementById('player-save').click()")
+            saved = os.path.join(folder, "helixnav-step-0.png")
+            for _ in range(200):
+                if os.path.exists(saved):
+                    break
+                time.sleep(0.05)
+            with open(saved, "rb") as file:
+                picture = file.read()
+        self.assertEqual(picture[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertGreater(len(picture), 5000)
 
 
 if __name__ == "__main__":
