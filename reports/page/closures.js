@@ -44,11 +44,11 @@ const cloudOf = (step) => {
 
 // Landmarks of the map at the end in a square: {x, y}.
 const landmarksWithin = ([x0, x1], [y0, y1]) => {
-  const { offsets, until, state, x, y } = theDrive().landmarks;
+  const { offsets, until, mature, x, y } = theDrive().landmarks;
   const found = { x: [], y: [] };
   for (let i = 0; i < until.length; i++) {
     const p = offsets[i + 1] - 1;
-    if (until[i] >= 0 || state[p] !== 1 || x[p] < x0 || x[p] > x1 || y[p] < y0 || y[p] > y1) continue;
+    if (until[i] >= 0 || mature[p] === 0 || x[p] < x0 || x[p] > x1 || y[p] < y0 || y[p] > y1) continue;
     found.x.push(x[p]);
     found.y.push(y[p]);
   }

@@ -34,13 +34,18 @@ const sinceStep = (steps, firstStep) => {
   return steps;
 };
 
+// A place of a landmark holds from its step on; that number is doubled, plus one where the landmark is mature.
 const unpackLandmarks = (packed, firstStep) => {
-  const id = unpack(packed.id, 1);
+  const step = unpack(packed.step, 1);
+  const mature = new Uint8Array(step.length);
+  for (let p = 0; p < step.length; p++) {
+    mature[p] = step[p] & 1;
+    step[p] >>= 1;
+  }
   return {
-    id, until: sinceStep(unpack(packed.until, 1), firstStep),
-    offsets: offsetsOf(unpack(packed.count, 0)), step: sinceStep(unpack(packed.step, 1), firstStep),
-    x: unpackMetres(packed.x, 1), y: unpackMetres(packed.y, 1), state: unpackInto(Uint8Array, packed.state, 0, 1),
-    ...unpackEllipses(packed),
+    id: unpack(packed.id, 1), until: sinceStep(unpack(packed.until, 1), firstStep), offsets: offsetsOf(unpack(packed.count, 0)),
+    step: sinceStep(step, firstStep), mature,
+    x: unpackMetres(packed.x, 1), y: unpackMetres(packed.y, 1), ...unpackEllipses(packed),
   };
 };
 

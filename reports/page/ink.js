@@ -76,7 +76,7 @@ const removeInk = (ink, pixel, mature) => {
 
 const changeInk = (ink, view, landmarks, before, after) => {
   const from = before < 0 ? -1 : pixelOf(ink, view, landmarks, before), to = after < 0 ? -1 : pixelOf(ink, view, landmarks, after);
-  const was = before >= 0 && landmarks.state[before] === 1, is = after >= 0 && landmarks.state[after] === 1;
+  const was = before >= 0 && landmarks.mature[before] === 1, is = after >= 0 && landmarks.mature[after] === 1;
   if (from === to && was === is) return;
   if (to >= 0) addInk(ink, to, is);
   if (from >= 0) removeInk(ink, from, was);

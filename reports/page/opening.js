@@ -1,5 +1,6 @@
-// The sentences that the page opens with; a closing is a row with a mark, and a click on it shows it in the player.
-const marks = { accepted: "✓", refused: "✗", undecided: "○", "new-ground": "◇" };
+// The sentences that the page opens with. A closing is a row with a mark, and so is where the vehicle was carried or found its place;
+// a click on it shows it in the player.
+const marks = { accepted: "✓", refused: "✗", undecided: "○", "new-ground": "◇", told: "↷", "found-out": "↷" };
 
 const errorText = (closure) => {
   if (!known(closure.error_before_m) || !known(closure.error_after_m)) return "";
@@ -11,7 +12,8 @@ const grouped = (closures) => {
   const groups = [];
   for (const closure of closures) {
     const group = last(groups);
-    if (group && closure.verdict !== "accepted" && group[0].verdict === closure.verdict) group.push(closure);
+    const repeated = group && closure.kind === "closure" && closure.verdict !== "accepted";
+    if (repeated && group[0].verdict === closure.verdict) group.push(closure);
     else groups.push([closure]);
   }
   return groups;
@@ -47,5 +49,6 @@ const writeClosings = (closures) => {
 const writeOpening = () => {
   byId("opening").append(...data.opening.warnings.map((text) => element("p", `${text}.`, "warning")),
                          ...data.opening.sentences.map((text) => element("p", text)));
-  writeClosings(data.decisions.filter((decision) => decision.kind === "closure"));
+  const placed = ({ kind, verdict }) => kind === "carried" || (kind === "placed" && verdict === "accepted");
+  writeClosings(data.decisions.filter((decision) => decision.kind === "closure" || placed(decision)));
 };

@@ -18,7 +18,7 @@ const tracePlaces = ({ context, camera, present: { landmarks }, visible }, found
   context.beginPath();
   for (let v = 0; v < found; v++) {
     const p = visible[v];
-    if ((landmarks.state[p] === 1) === mature) {
+    if ((landmarks.mature[p] === 1) === mature) {
       circle(context, toScreenX(camera, landmarks.x[p]), toScreenY(camera, landmarks.y[p]), radius);
     }
   }
@@ -34,20 +34,30 @@ const drawNearLandmarks = (scene, found, radius) => {
   context.fill();
 };
 
-// Ellipses that can be seen around their landmark; where they would cover each other, one of several.
-const drawLandmarkEllipses = ({ context, camera, palette, present: { landmarks }, visible, cells }, found, radius) => {
-  const least_m = Math.max(5, radius) / (sigmas_of_95 * camera.scale);
-  setCells(cells, camera, 12);
-  for (const mature of [false, true]) {
-    stroke(context, mature ? palette.landmark : palette.faint, 1, () => {
-      for (let v = 0; v < found; v++) {
-        const p = visible[v];
-        if (landmarks.a[p] <= least_m || (landmarks.state[p] === 1) !== mature) continue;
-        if (!takeCell(cells, landmarks.x[p], landmarks.y[p])) continue;
-        traceEllipse(context, camera, landmarks.x[p], landmarks.y[p], landmarks, p);
-      }
-    });
+// Ellipses that can be seen around their landmark. Of such as would cover each other one is drawn in each cell: [half axis in pixels from,
+// to, width of a cell].
+const ellipse_sizes = [[5, 24, 16], [24, 80, 64], [80, Infinity, 240]];
+
+const traceEllipses = ({ context, camera, present: { landmarks }, visible, cells }, found, from_m, to_m, mature) => {
+  for (let v = 0; v < found; v++) {
+    const p = visible[v];
+    if (landmarks.a[p] <= from_m || landmarks.a[p] > to_m || (landmarks.mature[p] === 1) !== mature) continue;
+    if (takeCell(cells, landmarks.x[p], landmarks.y[p])) traceEllipse(context, camera, landmarks.x[p], landmarks.y[p], landmarks, p);
   }
+};
+
+const drawLandmarkEllipses = (scene, found) => {
+  const { context, camera, palette, cells } = scene;
+  const pixels_of_sigma = sigmas_of_95 * camera.scale;
+  context.globalAlpha = .6;
+  for (const [from, to, width] of ellipse_sizes) {
+    setCells(cells, camera, width);
+    for (const mature of [true, false]) {
+      stroke(context, mature ? palette.landmark : palette.faint, 1, () =>
+        traceEllipses(scene, found, from / pixels_of_sigma, to / pixels_of_sigma, mature));
+    }
+  }
+  context.globalAlpha = 1;
 };
 
 const scans_of_birth = 15;
@@ -87,7 +97,7 @@ const drawLandmarks_ = (scene) => {
     scene.ink.look = "";
   }
   const found = findVisible(scene);
-  drawLandmarkEllipses(scene, found, radius);
+  drawLandmarkEllipses(scene, found);
   if (!far) drawNearLandmarks(scene, found, radius);
   drawBirths(scene);
   if (scene.show.ids) drawIds(scene, found);

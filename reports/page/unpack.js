@@ -33,14 +33,18 @@ const unpackMetres = (text, order) => unpackScaled(text, order, .01);
 
 // Ellipses of one σ: half axes in 24ths of a doubling from 1 mm (0: none), angles in 64ths of half a turn.
 const axis_lengths = Float32Array.from({ length: 1024 }, (_, steps) => (steps > 0 ? .001 * 2 ** (steps / 24) : 0));
-const unpackAxes = (text) => {
-  const axes = unpackInto(Float32Array, text, 1, 1);
-  for (let i = 0; i < axes.length; i++) axes[i] = axis_lengths[Math.min(axes[i], axis_lengths.length - 1)];
-  return axes;
+const axisLengths = (steps, less) => {
+  const lengths = new Float32Array(steps.length);
+  for (let i = 0; i < steps.length; i++) lengths[i] = axis_lengths[Math.min(steps[i] - (less ? less[i] : 0), axis_lengths.length - 1)];
+  return lengths;
 };
-const unpackEllipses = (packed) => ({
-  a: unpackAxes(packed.a), b: unpackAxes(packed.b), angle: unpackInto(Float32Array, packed.angle, 1, Math.PI / 64),
-});
+const unpackEllipses = (packed) => {
+  const longer = unpack(packed.a, 1);
+  return {
+    a: axisLengths(longer), b: axisLengths(longer, unpack(packed.b_less, 0)),
+    angle: unpackInto(Float32Array, packed.angle, 1, Math.PI / 64),
+  };
+};
 
 // Where the items of each entry begin; one more than there are entries.
 const offsetsOf = (counts) => {

@@ -271,7 +271,7 @@ std::string sentence(const core::OtherDecision& d) {
 std::string short_number(double value) {
   if (std::isnan(value)) return "an unknown number";
   char text[40];
-  const bool whole = std::abs(value) < 1e9 && value == std::round(value);
+  const bool whole = std::abs(value) < 1e9 && (value == std::round(value) || std::abs(value) >= 100.0);
   std::snprintf(text, sizeof(text), whole ? "%.0f" : "%.3g", value);
   return text;
 }

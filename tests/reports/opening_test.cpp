@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "helixnav/core/decision_row.hpp"
+#include "helixnav/reports/decision_sentence.hpp"
 #include "helixnav/reports/run_warnings.hpp"
 #include "report/report_opening.hpp"
 
@@ -57,6 +58,33 @@ TEST(Opening, SaysHowOftenTheVehicleSlipped) {
   EXPECT_NE(said().find("The vehicle slipped 2 times, by 0.75 m at most, and its"), std::string::npos) << said();
 }
 
+TEST(Opening, SaysHowOftenTheVehicleWasCarriedAndFoundItsPlaceAgain) {
+  runs::Run run = drifting_run(0.0);
+  const auto said = [&run] { return all_of(opening_data(run, evaluation::evaluate(run))["sentences"]); };
+  core::PlacedDecision placed;
+  placed.verdict = core::PlacedDecision::Verdict::accepted;
+  placed.driven_m = 1234.5;
+  run.steps[10].decisions = {placed};
+  EXPECT_NE(said().find("It found its place on the earlier map after 1.23 km."), std::string::npos) << said();
+  run.steps[20].decisions = {core::CarriedDecision{}};
+  EXPECT_NE(
+      said().find("The vehicle was carried once; afterwards its place on what was mapped before was never found."),
+      std::string::npos)
+      << said();
+  run.steps[30].decisions = {placed};
+  EXPECT_NE(said().find("before was found."), std::string::npos) << said();
+  run.steps[40].decisions = {core::CarriedDecision{}};
+  EXPECT_NE(said().find("carried 2 times; afterwards its place on what was mapped before was found once."),
+            std::string::npos)
+      << said();
+}
+
+TEST(Opening, WritesNoPowersOfTen) {
+  EXPECT_EQ(short_number(1617.25), "1617");
+  EXPECT_EQ(short_number(314.6), "315");
+  EXPECT_EQ(short_number(31.46), "31.5");
+}
+
 TEST(Opening, OfACloudOfParticlesSpeaksOfNoSearch) {
   runs::Run run = drifting_run(0.0);
   for (core::StepReport& step : run.steps) {
@@ -66,6 +94,13 @@ TEST(Opening, OfACloudOfParticlesSpeaksOfNoSearch) {
   const std::string said = all_of(opening_data(run, evaluation::evaluate(run))["sentences"]);
   EXPECT_NE(said.find("cloud of particles"), std::string::npos) << said;
   EXPECT_EQ(said.find("No search"), std::string::npos) << said;
+}
+
+TEST(Opening, CountsLongDrivesInHours) {
+  runs::Run run = drifting_run(0.0);
+  run.steps.back().t_ns = 19'980'000'000'000LL;
+  const std::string said = all_of(opening_data(run, evaluation::evaluate(run))["sentences"]);
+  EXPECT_NE(said.find(" in 5 h 33 min: "), std::string::npos) << said;
 }
 
 TEST(Opening, KnowsTheErrorBeforeAndAfterAClosing) {

@@ -72,6 +72,7 @@ TEST(Player, KnowsWhenLandmarksWereBornMovedAndMerged) {
   const Json& landmarks = player["landmarks"];
   EXPECT_EQ(unpacked(landmarks["id"], 1), (std::vector<std::int64_t>{3, 8}));
   EXPECT_EQ(unpacked(landmarks["until"], 1), (std::vector<std::int64_t>{-1, 6}));
+  EXPECT_EQ(unpacked(landmarks["step"], 1).front(), 2 * 0 + 0) << "begun in scan 0, tentative";
   const std::vector<std::int64_t> x = unpacked(landmarks["x"], 1);
   EXPECT_EQ(x.front(), 200);
   EXPECT_EQ(x[static_cast<std::size_t>(unpacked(landmarks["count"], 0)[0]) - 1], 250) << "where it was at the end";
@@ -119,7 +120,8 @@ TEST(Player, OfAHundredRefusedSearchesStaysUnderThreeMegabytes) {
   EXPECT_LT(render_report(run, evaluation::evaluate(run)).size(), 3'000'000u);
 }
 
-TEST(Player, OfAHundredThousandScansStaysUnderFifteenMegabytes) {
+/// A drive along x of 100 000 scans with 10 observations each.
+runs::Run long_drive() {
   runs::Run run;
   core::RandomStream random(1, "long");
   constexpr int scans = 100'000;
@@ -137,7 +139,46 @@ TEST(Player, OfAHundredThousandScansStaysUnderFifteenMegabytes) {
                             static_cast<float>(random.uniform(-40.0, 40.0)));
     }
   }
-  EXPECT_LT(render_report(run, evaluation::evaluate(run)).size(), 15'000'000u);
+  return run;
+}
+
+/// A new landmark a scan, each told of three times: where it began, as mature, and where it stood in the end.
+void put_wide_map(runs::Run& run) {
+  core::RandomStream random(1, "wide");
+  constexpr std::int64_t between = 250;
+  const auto steps = static_cast<std::int64_t>(run.steps.size());
+  for (std::int64_t end = between; end <= steps; end += between) {
+    runs::MapChange& change = run.map_changes.emplace_back();
+    change.step = end - 1;
+    for (std::int64_t id = std::max<std::int64_t>(0, end - 3 * between); id < end; ++id) {
+      core::MapLandmark landmark;
+      landmark.id = id;
+      landmark.state = id < end - between ? core::LandmarkState::mature : core::LandmarkState::tentative;
+      landmark.point.mean_m = {0.5 * static_cast<double>(id) + random.uniform(), random.uniform(-40.0, 40.0)};
+      landmark.point.covariance_m2 = Eigen::Vector2d(random.uniform(), random.uniform()).asDiagonal();
+      change.changed.push_back(landmark);
+      if (id < end - 2 * between) run.map.push_back(landmark);
+    }
+  }
+}
+
+TEST(Player, OfAHundredThousandScansStaysUnderFifteenMegabytes) {
+  const runs::Run run = long_drive();
+  const evaluation::Evaluation evaluation = evaluation::evaluate(run);
+  EXPECT_EQ(player_data(run, evaluation)["scans"]["stride"], 1);
+  EXPECT_LT(render_report(run, evaluation).size(), 15'000'000u);
+}
+
+TEST(Player, OfAHundredThousandScansAndLandmarksShowsFewerScansToStayUnderFifteenMegabytes) {
+  runs::Run run = long_drive();
+  put_wide_map(run);
+  const evaluation::Evaluation evaluation = evaluation::evaluate(run);
+  const Json player = player_data(run, evaluation);
+  EXPECT_EQ(unpacked(player["landmarks"]["id"], 1).size(), run.steps.size());
+  EXPECT_EQ(player["scans"]["stride"], 2);
+  const std::size_t size = render_report(run, evaluation).size();
+  EXPECT_LT(size, 15'000'000u);
+  EXPECT_GT(size, 8'000'000u);
 }
 
 }  // namespace

@@ -13,6 +13,19 @@ namespace {
 constexpr std::array<const char*, 8> colours{"#1f77b4", "#d62728", "#2ca02c", "#9467bd",
                                              "#ff7f0e", "#8c564b", "#17becf", "#e377c2"};
 
+/// As the reports of the robots look (reports/page/report.css). Lines and dots keep their width on any screen.
+constexpr const char* style =
+    ":root{color-scheme:light dark;--paper:#fff;--panel:#f6f7f9;--line:#d9dde3;--ink:#1b2330;--accent:#0b62a8}"
+    "@media(prefers-color-scheme:dark){:root{--paper:#14181f;--panel:#1c222b;--line:#333c48;--ink:#e6eaf0;"
+    "--accent:#6cb2ee}}"
+    "body{margin:0 auto;max-width:1240px;padding:1.5rem;background:var(--paper);color:var(--ink);font:15px/1.5 "
+    "system-ui,\"Liberation Sans\",sans-serif}"
+    "a{color:var(--accent)}code{overflow-wrap:anywhere}"
+    "svg{width:100%;max-height:80vh;border:1px solid var(--line)}"
+    "pre{background:var(--panel);border:1px solid var(--line);padding:1rem;white-space:pre-wrap}"
+    "polyline,path{vector-effect:non-scaling-stroke}.truth{stroke:var(--line);stroke-width:5}"
+    ".landmark{stroke:var(--ink);stroke-width:5;stroke-linecap:round}";
+
 std::string escaped(const std::string& text) {
   std::string safe;
   for (const char c : text) safe += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
@@ -36,9 +49,7 @@ class Picture {
   }
 
   void dot(const Eigen::Vector2d& at_m, const std::string& title) {
-    place(at_m);
-    body_ += "<circle cx=\"" + shortened(at_m.x()) + "\" cy=\"" + shortened(-at_m.y()) +
-             "\" r=\"0.08\" fill=\"#333\"><title>" + title + "</title></circle>\n";
+    body_ += "<path class=\"landmark\" d=\"M" + place(at_m) + "h0\"><title>" + title + "</title></path>\n";
   }
 
   std::string svg() const {
@@ -82,7 +93,7 @@ std::string picture_of(const TeamTask& task, const TeamDrive& drive, int compone
     }
     const std::string stroke =
         std::string("stroke=\"") + colours[r % colours.size()] + "\" vector-effect=\"non-scaling-stroke\" ";
-    picture.polyline(truth_m, "stroke=\"#bbb\" stroke-width=\"3\" vector-effect=\"non-scaling-stroke\"");
+    picture.polyline(truth_m, "class=\"truth\"");
     picture.polyline(then_m, stroke + "stroke-width=\"0.7\" stroke-dasharray=\"3 2\"");
     picture.polyline(now_m, stroke + "stroke-width=\"1.3\"");
   }
@@ -109,11 +120,10 @@ std::string legend(const TeamTask& task, const TeamDrive& drive, int component) 
 std::string team_page(const std::string& command, const TeamTask& task, const TeamDrive& drive,
                       const TeamEvaluation& evaluation) {
   std::string page =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>HelixNav team</title>\n<style>"
-      "body{font:15px/1.4 sans-serif;max-width:70em;margin:2em auto;padding:0 1em}svg{width:100%;max-height:80vh;"
-      "border:1px solid #ddd}pre{background:#f6f6f6;padding:1em;overflow:auto}</style></head><body>\n<h1>" +
-      escaped(task.recording.name) + "</h1>\n<p><code>" + escaped(command) + "</code></p>\n<pre>" +
-      escaped(team_text(task, drive, evaluation)) + "</pre>\n";
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\"><title>HelixNav team</title>\n<style>" +
+      std::string(style) + "</style></head><body>\n<h1>" + escaped(task.recording.name) + "</h1>\n<p><code>" +
+      escaped(command) + "</code></p>\n<pre>" + escaped(team_text(task, drive, evaluation)) + "</pre>\n";
   std::set<int> components;
   for (const TeamDrive::Robot& robot : drive.robots) components.insert(robot.component);
   for (const int component : components) {

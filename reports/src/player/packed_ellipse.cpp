@@ -23,12 +23,12 @@ void PackedEllipses::add(const Eigen::Matrix2d& covariance_m2) {
   const double radius = std::hypot(difference, covariance_m2(0, 1));
   const double angle_rad = 0.5 * std::atan2(covariance_m2(0, 1), difference);
   major_.push_back(by_doublings(std::sqrt(std::max(middle + radius, 0.0))));
-  minor_.push_back(by_doublings(std::sqrt(std::max(middle - radius, 0.0))));
+  less_.push_back(major_.back() - by_doublings(std::sqrt(std::max(middle - radius, 0.0))));
   angle_.push_back(quantised(angle_rad, core::pi / 64.0));
 }
 
 Json PackedEllipses::json() const {
-  return {{"a", packed(major_, 1)}, {"b", packed(minor_, 1)}, {"angle", packed(angle_, 1)}};
+  return {{"a", packed(major_, 1)}, {"b_less", packed(less_, 0)}, {"angle", packed(angle_, 1)}};
 }
 
 }  // namespace helixnav::reports

@@ -10,16 +10,16 @@
 
 namespace helixnav::reports {
 
-/// Ellipses of one σ for the player: half axes to 3 % (in 24ths of a doubling from 1 mm), angle of the longer one in 64ths
-/// of half a turn.
+/// Ellipses of one σ for the player: the longer half axis to 3 % (in 24ths of a doubling from 1 mm), by how many 24ths the other is
+/// less, angle of the longer one in 64ths of half a turn.
 class PackedEllipses {
  public:
   void add(const Eigen::Matrix2d& covariance_m2);
-  /// {"a": …, "b": …, "angle": …}
+  /// {"a": …, "b_less": …, "angle": …}
   Json json() const;
 
  private:
-  std::vector<std::int64_t> major_, minor_, angle_;
+  std::vector<std::int64_t> major_, less_, angle_;
 };
 
 }  // namespace helixnav::reports

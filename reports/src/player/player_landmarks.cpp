@@ -103,7 +103,7 @@ void put_merges(const runs::Run& run, Histories& histories) {
 }
 
 Json packed_histories(const Histories& histories) {
-  std::vector<std::int64_t> ids, until, count, step, x, y, state;
+  std::vector<std::int64_t> ids, until, count, step, x, y;
   PackedEllipses ellipses;
   for (const auto& [id, history] : histories) {
     if (history.places.empty()) continue;
@@ -111,16 +111,14 @@ Json packed_histories(const Histories& histories) {
     until.push_back(history.until);
     count.push_back(static_cast<std::int64_t>(history.places.size()));
     for (const Place& place : history.places) {
-      step.push_back(place.step);
+      step.push_back(2 * place.step + (place.state == core::LandmarkState::mature ? 1 : 0));
       x.push_back(quantised(place.point.mean_m.x(), 0.01));
       y.push_back(quantised(place.point.mean_m.y(), 0.01));
-      state.push_back(static_cast<std::int64_t>(place.state));
       ellipses.add(place.point.covariance_m2);
     }
   }
-  Json json = {{"id", packed(ids, 1)},     {"until", packed(until, 1)}, {"count", packed(count, 0)},
-               {"step", packed(step, 1)},  {"x", packed(x, 1)},         {"y", packed(y, 1)},
-               {"state", packed(state, 0)}};
+  Json json = {{"id", packed(ids, 1)},    {"until", packed(until, 1)}, {"count", packed(count, 0)},
+               {"step", packed(step, 1)}, {"x", packed(x, 1)},         {"y", packed(y, 1)}};
   json.update(ellipses.json());
   return json;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report_player.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "helixnav/core/angle.hpp"
@@ -95,10 +96,7 @@ class PackedScans {
   std::int64_t landmark_ = 0;
 };
 
-Json scans_data(const runs::Run& run) {
-  std::size_t observations = 0;
-  for (const core::StepReport& step : run.steps) observations += step.associations.size();
-  const std::size_t stride = stride_for(observations, most_player_observations);
+Json scans_data(const runs::Run& run, std::size_t stride) {
   PackedScans scans;
   for (std::size_t k = 0; k < run.steps.size(); k += stride) {
     scans.add(run.steps[k], k < run.scans.size() ? &run.scans[k] : nullptr);
@@ -106,6 +104,18 @@ Json scans_data(const runs::Run& run) {
   Json json = scans.json();
   json["stride"] = stride;
   return json;
+}
+
+/// Every scan, or as many as fit into `most_bytes`.
+Json scans_within(const runs::Run& run, std::size_t most_bytes) {
+  std::size_t observations = 0;
+  for (const core::StepReport& step : run.steps) observations += step.associations.size();
+  for (std::size_t stride = stride_for(observations, most_player_observations);; ++stride) {
+    Json json = scans_data(run, stride);
+    const std::size_t bytes = json.dump().size();
+    if (bytes <= most_bytes || stride >= run.steps.size()) return json;
+    stride = std::max(stride, stride * bytes / std::max<std::size_t>(most_bytes, 1) - 1);
+  }
 }
 
 Json merges_data(const runs::Run& run) {
@@ -157,18 +167,20 @@ std::vector<Eigen::Vector2d> true_landmarks_in_map(const runs::Run& run, const e
 
 Json player_data(const runs::Run& run, const evaluation::Evaluation& evaluation) {
   if (run.steps.empty()) return nullptr;
-  return {{"begin_s", core::seconds(run.steps.front().t_ns)},
-          {"first_step", run.steps.front().step},
-          {"steps", run.steps.size()},
-          {"path", path_data(run)},
-          {"final", final_path_data(run)},
-          {"modes", modes_data(run)},
-          {"scans", scans_data(run)},
-          {"landmarks", player_landmarks(run)},
-          {"merges", merges_data(run)},
-          {"truth", truth_data(run, evaluation)},
-          {"true_landmarks", true_landmarks_data(run, evaluation)},
-          {"clouds", clouds_data(run)}};
+  Json json = {{"begin_s", core::seconds(run.steps.front().t_ns)},
+               {"first_step", run.steps.front().step},
+               {"steps", run.steps.size()},
+               {"path", path_data(run)},
+               {"final", final_path_data(run)},
+               {"modes", modes_data(run)},
+               {"landmarks", player_landmarks(run)},
+               {"merges", merges_data(run)},
+               {"truth", truth_data(run, evaluation)},
+               {"true_landmarks", true_landmarks_data(run, evaluation)},
+               {"clouds", clouds_data(run)}};
+  const std::size_t others = json.dump().size();
+  json["scans"] = scans_within(run, most_player_bytes - std::min(most_player_bytes, others));
+  return json;
 }
 
 }  // namespace helixnav::reports

@@ -12,6 +12,7 @@
 namespace helixnav::reports {
 
 constexpr std::size_t most_player_observations = 1'000'000;  ///< 7 MB; of longer drives every n-th scan is shown
+constexpr std::size_t most_player_bytes = 12'000'000;        ///< likewise, where landmarks and paths leave less room
 
 /// What the player of the page replays: every step's pose, the scans, the landmarks as they were known, the clouds. Packed
 /// columns (packed.hpp), lengths in cm, headings in mrad, times in ms since the first step. Of a run read from its folder

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <variant>
 
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
@@ -74,13 +75,20 @@ Json closure_json(const runs::Run& run, std::size_t k, const core::Decision& dec
   return json;
 }
 
-// All closures, and of the rest the first most_decisions.
+/// The vehicle was carried, or found its place on what was mapped before.
+bool is_placing(const core::Decision& decision) {
+  const auto* placed = std::get_if<core::PlacedDecision>(&decision);
+  return std::holds_alternative<core::CarriedDecision>(decision) ||
+         (placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted);
+}
+
+// All closures and placings, and of the rest the first most_decisions.
 void put_decisions(Json& json, const runs::Run& run, const evaluation::Evaluation& evaluation) {
   Json& list = json["decisions"] = Json::array();
   std::size_t others = 0;
   for (std::size_t k = 0; k < run.steps.size(); ++k) {
     for (const core::Decision& decision : run.steps[k].decisions) {
-      if (core::is_closure(decision)) {
+      if (core::is_closure(decision) || is_placing(decision)) {
         list.push_back(closure_json(run, k, decision, evaluation));
       } else if (others++ < most_decisions) {
         list.push_back(decision_json(run.steps[k], decision));

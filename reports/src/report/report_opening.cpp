@@ -19,8 +19,10 @@ std::string length(double value_m) {
 }
 
 std::string duration(double seconds) {
-  const double minutes = std::floor(seconds / 60.0);
-  return minutes < 3.0 ? short_number(std::round(seconds)) + " s" : short_number(std::round(seconds / 60.0)) + " min";
+  const double minutes = std::round(seconds / 60.0);
+  if (std::floor(seconds / 60.0) < 3.0) return short_number(std::round(seconds)) + " s";
+  if (minutes < 120.0) return short_number(minutes) + " min";
+  return short_number(std::floor(minutes / 60.0)) + " h " + short_number(std::fmod(minutes, 60.0)) + " min";
 }
 
 std::string drive_sentence(const runs::Run& run) {
@@ -79,19 +81,26 @@ std::string slips_sentence(const runs::Run& run) {
          (slips == 1 ? "" : " at most") + ", and its odometry did not show it: the landmarks did.";
 }
 
-/// Where a session found its place on an earlier map, and where the vehicle was carried.
-Json placings(const runs::Run& run) {
-  Json sentences = Json::array();
+/// How often the vehicle was carried, and whether its place was found again, or that of the session on an earlier map; else empty.
+std::string places_sentence(const runs::Run& run) {
+  int carried = 0, found_again = 0;
+  std::string found;
   for (const core::StepReport& step : run.steps) {
     for (const core::Decision& decision : step.decisions) {
+      carried += std::holds_alternative<core::CarriedDecision>(decision);
       const auto* placed = std::get_if<core::PlacedDecision>(&decision);
-      const bool is_carried = std::holds_alternative<core::CarriedDecision>(decision);
-      if (is_carried || (placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted)) {
-        sentences.push_back(sentence_of(decision));
-      }
+      if (placed == nullptr || placed->verdict != core::PlacedDecision::Verdict::accepted) continue;
+      found_again += carried > 0;
+      if (carried == 0) found = "It found its place on the earlier map after " + length(placed->driven_m) + '.';
     }
   }
-  return sentences;
+  if (carried == 0) return found;
+  return found + (found.empty() ? "" : " ") + "The vehicle was carried " + times(carried) +
+         "; afterwards its place on what was mapped before was " +
+         (found_again == 0         ? "never found."
+          : carried == 1           ? "found."
+          : found_again >= carried ? "found each time."
+                                   : "found " + times(found_again) + '.');
 }
 
 std::string figures_of(const evaluation::ErrorStatistics& error) {
@@ -143,7 +152,8 @@ Json opening_data(const runs::Run& run, const evaluation::Evaluation& evaluation
     json["sentences"] = {drive_sentence(run), closings_sentence(run)};
     const std::string slips = slips_sentence(run);
     if (!slips.empty()) json["sentences"].push_back(slips);
-    for (const Json& sentence : placings(run)) json["sentences"].push_back(sentence);
+    const std::string places = places_sentence(run);
+    if (!places.empty()) json["sentences"].push_back(places);
     for (const std::string& warning : warnings_of(run, evaluation)) json["warnings"].push_back(warning);
     for (const std::string& warning : warnings_of_place(run)) json["warnings"].push_back(warning);
   }

@@ -14,7 +14,7 @@ std::string sentence_of(const core::Decision& decision);
 /// `value` with three significant digits and the noun, in the plural unless it is 1: "3 pairs".
 std::string counted(double value, const std::string& noun);
 
-/// Three significant digits.
+/// Three significant digits, and all before the point.
 std::string short_number(double value);
 
 }  // namespace helixnav::reports
