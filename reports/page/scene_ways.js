@@ -79,12 +79,14 @@ const drawTrueLandmarks = ({ context, camera, palette, show, drive, cells }) => 
   const radius = Math.min(6, Math.max(1.2, camera.scale));
   const [x0, x1, y0, y1] = viewOf(camera, radius);
   setCells(cells, camera, 2);
+  context.globalAlpha = radius < 2 ? .5 : 1;
   stroke(context, palette.truth, 1, () => {
     for (let i = 0; i < x.length; i++) {
       const inside = x[i] >= x0 && x[i] <= x1 && y[i] >= y0 && y[i] <= y1;
       if (inside && takeCell(cells, x[i], y[i])) circle(context, toScreenX(camera, x[i]), toScreenY(camera, y[i]), radius);
     }
   });
+  context.globalAlpha = 1;
 };
 
 const drawFinal = ({ context, camera, palette, drive, lines, show }) => {

@@ -55,7 +55,7 @@ TEST(Opening, SaysHowOftenTheVehicleSlipped) {
   EXPECT_NE(said().find("The vehicle slipped once, by 0.5 m, and its"), std::string::npos) << said();
   slip.moved_m = 0.75;
   run.steps[40].decisions = {slip};
-  EXPECT_NE(said().find("The vehicle slipped 2 times, by 0.75 m at most, and its"), std::string::npos) << said();
+  EXPECT_NE(said().find("The vehicle slipped twice, by 0.75 m at most, and its"), std::string::npos) << said();
 }
 
 TEST(Opening, SaysHowOftenTheVehicleWasCarriedAndFoundItsPlaceAgain) {
@@ -74,7 +74,7 @@ TEST(Opening, SaysHowOftenTheVehicleWasCarriedAndFoundItsPlaceAgain) {
   run.steps[30].decisions = {placed};
   EXPECT_NE(said().find("before was found."), std::string::npos) << said();
   run.steps[40].decisions = {core::CarriedDecision{}};
-  EXPECT_NE(said().find("carried 2 times; afterwards its place on what was mapped before was found once."),
+  EXPECT_NE(said().find("carried twice; afterwards its place on what was mapped before was found once."),
             std::string::npos)
       << said();
 }

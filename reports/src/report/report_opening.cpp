@@ -39,7 +39,10 @@ std::string drive_sentence(const runs::Run& run) {
          counted(static_cast<double>(mature), "landmark") + '.';
 }
 
-std::string times(int count) { return count == 1 ? std::string("once") : std::to_string(count) + " times"; }
+std::string times(int count) {
+  if (count <= 2) return count == 1 ? "once" : "twice";
+  return std::to_string(count) + " times";
+}
 
 std::string closings_sentence(const runs::Run& run) {
   if (run.steps.back().particles) {
