@@ -60,9 +60,15 @@ const unpackClouds = (packed) => ({
   y: unpackMetres(packed.y, 1), heading: unpackScaled(packed.heading, 1, .001),
 });
 
-const unpackTruth = (packed) => packed && {
-  t: unpackScaled(packed.t, 2, .001), x: unpackMetres(packed.x, 1), y: unpackMetres(packed.y, 1),
-  aligned: packed.aligned,
+const longest_gap_s = 3;
+
+// With the indices where it begins anew after a gap.
+const unpackTruth = (packed) => {
+  if (!packed) return null;
+  const t = unpackScaled(packed.t, 2, .001);
+  const begins = [0];
+  for (let i = 1; i < t.length; i++) if (t[i] - t[i - 1] > longest_gap_s) begins.push(i);
+  return { t, x: unpackMetres(packed.x, 1), y: unpackMetres(packed.y, 1), aligned: packed.aligned, begins: Int32Array.from(begins) };
 };
 
 const unpackMerges = (packed) => ({
@@ -106,11 +112,11 @@ const unpackModes = (modes) => ({
 
 const searchingAt = ({ modes }, k) => modes.searching[lastAtMost(modes.from, k)] === 1;
 
-// Where the truth is at a time: between two positions at most 3 s apart.
+// Where the truth is at a time: between two positions without a gap.
 const truthAt = (truth, t) => {
   const i = lastAtMost(truth.t, t);
-  if (i < 0 || t - truth.t[i] > 3) return null;
-  if (i + 1 >= truth.t.length || truth.t[i + 1] - truth.t[i] > 3) {
+  if (i < 0 || t - truth.t[i] > longest_gap_s) return null;
+  if (i + 1 >= truth.t.length || truth.t[i + 1] - truth.t[i] > longest_gap_s) {
     return t - truth.t[i] < .05 ? [truth.x[i], truth.y[i]] : null;
   }
   const part = (t - truth.t[i]) / (truth.t[i + 1] - truth.t[i]);

@@ -13,7 +13,7 @@ const clearInk = (ink, { canvas, palette }, radius) => {
     [ink.canvas.width, ink.canvas.height] = [ink.width, ink.height] = [width, height];
     ink.image = ink.canvas.getContext("2d").createImageData(width, height);
     ink.pixels = new Uint32Array(ink.image.data.buffer);
-    ink.counts = { mature: new Uint16Array(width * height), tentative: new Uint16Array(width * height) };
+    ink.counts = { mature: new Uint32Array(width * height), tentative: new Uint32Array(width * height) };
   }
   ink.pixels.fill(0);
   ink.counts.mature.fill(0);

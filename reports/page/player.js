@@ -73,7 +73,7 @@ const setPlaying = (player, playing) => {
   player.playing = playing;
   player.before = undefined;
   byId("player-play").textContent = playing ? "❚❚ Pause" : "▶ Play";
-  if (playing) requestDraw(player);
+  requestDraw(player);
 };
 
 const stepBy = (player, scans) => {

@@ -67,10 +67,17 @@ const drawLeaps = ({ context, camera, palette, drive, leaps }, first, end) => {
   }, [3, 4]);
 };
 
-const drawTruePath = ({ context, camera, palette, drive, lines, show }, first, end) => {
-  if (!drive.truth || !show.truth) return;
-  const from = Math.max(0, lastAtMost(drive.truth.t, drive.t[first])), to = lastAtMost(drive.truth.t, drive.t[end]);
-  if (to > from) stroke(context, palette.truth, 1.3, () => tracePolyline(context, lines.truth, camera, from, to));
+// Not over gaps, as of a satellite receiver that saw nothing.
+const drawTruePath = ({ context, camera, palette, drive: { truth, t }, lines, show }, first, end) => {
+  if (!truth || !show.truth) return;
+  const from = Math.max(0, lastAtMost(truth.t, t[first])), to = lastAtMost(truth.t, t[end]);
+  if (to <= from) return;
+  stroke(context, palette.truth, 1.3, () => {
+    for (let s = lastAtMost(truth.begins, from); s < truth.begins.length && truth.begins[s] < to; s++) {
+      const stop = s + 1 < truth.begins.length ? truth.begins[s + 1] - 1 : truth.t.length - 1;
+      tracePolyline(context, lines.truth, camera, Math.max(from, truth.begins[s]), Math.min(to, stop));
+    }
+  });
 };
 
 const drawTrueLandmarks = ({ context, camera, palette, show, drive, cells }) => {

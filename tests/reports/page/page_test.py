@@ -44,6 +44,10 @@ class ReportPage(unittest.TestCase):
         with open(os.path.join(folder, "trajectory.tum")) as file:
             return [[float(word) for word in line.split()] for line in file if not line.startswith("#")]
 
+    def state(self, page):
+        """The text under the picture."""
+        return page.run("document.getElementById('player-state').textContent").replace("\u202f", "")
+
     def set_slider(self, page, time_s):
         page.run(f"""(() => {{
           const slider = document.getElementById('player-time');
@@ -125,7 +129,7 @@ class ReportPage(unittest.TestCase):
             self.skipTest("a run without a closing")
         page.run("document.querySelector('.closing').click()")
         page.run(two_frames)
-        self.assertIn(f"step {step}", page.run("document.getElementById('player-state').textContent").replace("\u202f", ""))
+        self.assertIn(f"step {step},", self.state(page))
         top, bottom = page.run("""(({ top, bottom }) => [top, bottom])(
           document.getElementById('player-canvas').getBoundingClientRect())""")
         self.assertGreaterEqual(top, 0)
@@ -141,6 +145,7 @@ class ReportPage(unittest.TestCase):
         self.assertGreater(played, 0.0)
         page.run(two_frames)
         self.assertEqual(page.run(time_s), played)
+        self.assertIn(f"step {page.run('helixnavPlayer.k')},", self.state(page), "the text of the picture, though it changes seldom")
         page.run("document.getElementById('player-canvas').focus()")
         page.press("Home")
         page.press("ArrowRight")
