@@ -105,7 +105,6 @@ TEST(Checkpoint, GoingThroughTheTapeAgainEndsWhereItEnded) {
     if (const auto* scan = std::get_if<core::Scan>(&event)) driver.observe(*scan, run.labels[scans++]);
     if (!checkpoint && driver.belief.step == moment) {
       checkpoint.emplace(take_checkpoint(driver.belief, driver.tape));
-      driver.belief.filter.keep_since(checkpoint->filter.phase);
       known_then = driver.known;
     }
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The end of a phase: what its weights say is written down, and applied to the passive covariance when nothing needs to
 // be undone any more.
+#include <algorithm>
 #include <memory>
 #include <sstream>
 #include <utility>
@@ -151,5 +152,7 @@ void CompressedEkf::keep_since(long phase) {
   absorb_closed_phases(phase);
   keep_since_ = phase;
 }
+
+void CompressedEkf::keep_open_phase() noexcept { keep_since_ = std::min(keep_since_, phases_.back().number); }
 
 }  // namespace helixnav::cekf

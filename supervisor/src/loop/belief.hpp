@@ -38,7 +38,8 @@ struct Belief {
 };
 
 /// A belief to come back to, and where the tape was then. A snapshot of O(n_a²) bytes and the landmarks' existence; good as
-/// long as the filter keeps the snapshot's phase (CompressedEkf::keep_since).
+/// long as the filter keeps the snapshot's phase, which take_checkpoint() tells it: several scans may be taken in one call, and the
+/// filter may have begun anew in it.
 struct Checkpoint {
   cekf::Snapshot filter;
   association::LandmarkLife existence;
@@ -49,7 +50,8 @@ struct Checkpoint {
   std::vector<LeftOpen> left_open = {};
 };
 
-inline Checkpoint take_checkpoint(const Belief& belief, const Tape& tape) {
+inline Checkpoint take_checkpoint(Belief& belief, const Tape& tape) {
+  belief.filter.keep_open_phase();
   return {belief.filter.snapshot(), belief.existence, belief.confirmation, belief.step, tape.end(), belief.slips,
           belief.left_open};
 }

@@ -155,6 +155,9 @@ class CompressedEkf {
   /// Phases from `phase` on are kept restorable instead of being absorbed when they close; each costs
   /// 2N·(2q + 2n) doubles and lengthens switches and activations. Default: none but the open one.
   void keep_since(long phase);
+  /// The open phase is kept restorable as well as those that are kept already; nothing is absorbed by this call.
+  /// Test: supervisor/tape_test.cpp.
+  void keep_open_phase() noexcept;
   long phase() const { return phases_.back().number; }
   /// Memory of the closed phases kept.
   std::size_t kept_bytes() const;
