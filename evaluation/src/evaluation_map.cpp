@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <map>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 namespace helixnav::evaluation {
 
@@ -81,21 +83,43 @@ MapEvaluation evaluate_by_label(const runs::Run& run, const runs::RunTruth& trut
   return result;
 }
 
+struct NearPair {
+  double distance_m;
+  std::size_t landmark;
+  std::size_t known;
+
+  bool operator<(const NearPair& other) const {
+    return std::tie(distance_m, landmark, known) < std::tie(other.distance_m, other.landmark, other.known);
+  }
+};
+
+/// Landmarks and true ones that are no farther apart than the limit, the nearest first. Each landmark is compared with those true
+/// ones only whose x is as near.
+std::vector<NearPair> near_pairs(const runs::RunTruth& truth, const std::vector<MovedLandmark>& landmarks,
+                                 double limit_m) {
+  std::vector<std::pair<double, std::size_t>> by_x;
+  for (std::size_t j = 0; j < truth.landmarks.size(); ++j) by_x.emplace_back(truth.landmarks[j].point_m.x(), j);
+  std::sort(by_x.begin(), by_x.end());
+  std::vector<NearPair> pairs;
+  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    const Eigen::Vector2d& point_m = landmarks[i].point_truth_m;
+    auto next = std::lower_bound(by_x.begin(), by_x.end(), std::make_pair(point_m.x() - limit_m, std::size_t{0}));
+    for (; next != by_x.end() && next->first <= point_m.x() + limit_m; ++next) {
+      const double distance_m = (point_m - truth.landmarks[next->second].point_m).norm();
+      if (distance_m <= limit_m) pairs.push_back({distance_m, i, next->second});
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
 MapEvaluation evaluate_by_distance(const runs::RunTruth& truth, const std::vector<MovedLandmark>& landmarks,
                                    double limit_m) {
   MapEvaluation result;
   result.limit_m = limit_m;
-  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+  const std::vector<NearPair> pairs = near_pairs(truth, landmarks, limit_m);
   std::vector<bool> near_truth(landmarks.size(), false);
-  for (std::size_t i = 0; i < landmarks.size(); ++i) {
-    for (std::size_t j = 0; j < truth.landmarks.size(); ++j) {
-      const double distance_m = (landmarks[i].point_truth_m - truth.landmarks[j].point_m).norm();
-      if (distance_m > limit_m) continue;
-      pairs.emplace_back(distance_m, i, j);
-      near_truth[i] = true;
-    }
-  }
-  std::sort(pairs.begin(), pairs.end());
+  for (const NearPair& pair : pairs) near_truth[pair.landmark] = true;
   std::vector<bool> landmark_taken(landmarks.size(), false);
   std::vector<bool> truth_taken(truth.landmarks.size(), false);
   std::vector<double> errors_m;
