@@ -2,7 +2,8 @@
 #include "session_changes.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
+#include <utility>
 
 #include "helixnav/supervisor/lengths.hpp"
 
@@ -49,7 +50,7 @@ class Ground {
 void add_shared(std::size_t number, const core::JointMap& component, const std::vector<Ground>& grounds,
                 const std::vector<std::size_t>& sessions, std::vector<ChangedLandmark>& shared) {
   for (std::size_t i = 0; i < component.joint.ids.size(); ++i) {
-    ChangedLandmark landmark{number, component.joint.ids[i], component.joint.points_m[i], {}, {}};
+    ChangedLandmark landmark{number, component.joint.ids[i], component.joint.points_m[i], {}, {}, core::no_landmark};
     for (std::size_t k = 0; k < sessions.size(); ++k) {
       if (grounds[k].has(landmark.id)) {
         landmark.seen_in.push_back(sessions[k]);
@@ -61,11 +62,72 @@ void add_shared(std::size_t number, const core::JointMap& component, const std::
   }
 }
 
+/// Of the gone the nearest new one of a later session, within its chance radius.
+class Moves {
+ public:
+  Moves(const core::JointMap& component, std::vector<ChangedLandmark*> landmarks)
+      : component_(component), landmarks_(std::move(landmarks)) {
+    for (ChangedLandmark* landmark : landmarks_) {
+      if (landmark->is_gone()) gone_.push_back(landmark);
+      if (landmark->change() == Change::appeared) new_.push_back(landmark);
+    }
+  }
+
+  void tell() {
+    for (ChangedLandmark* gone : gone_) {
+      ChangedLandmark* near = nearest(*gone, new_);
+      if (near == nullptr || nearest(*near, gone_) != gone) continue;
+      const double apart_m = (near->point_m - gone->point_m).norm();
+      const bool later = near->seen_in.front() > gone->seen_in.back();
+      if (!later || by_chance(gone->point_m, apart_m) > most_by_chance) continue;
+      gone->counterpart = near->id;
+      near->counterpart = gone->id;
+    }
+  }
+
+ private:
+  static constexpr double most_by_chance = 0.05;  ///< wrong moves expected in a component
+
+  static ChangedLandmark* nearest(const ChangedLandmark& of, const std::vector<ChangedLandmark*>& among) {
+    ChangedLandmark* nearest = nullptr;
+    for (ChangedLandmark* other : among) {
+      const double apart_m = (other->point_m - of.point_m).norm();
+      if (nearest == nullptr || apart_m < (nearest->point_m - of.point_m).norm()) nearest = other;
+    }
+    return nearest;
+  }
+
+  /// How many of those gone have a new landmark so near that has nothing to do with them: as dense as the new ones among all,
+  /// of which the distance of the eighth neighbour says how dense they are here.
+  double by_chance(const Eigen::Vector2d& at_m, double apart_m) const {
+    constexpr std::size_t eighth = 8;
+    std::vector<double> distances_m;
+    for (const Eigen::Vector2d& other_m : component_.joint.points_m) distances_m.push_back((other_m - at_m).norm());
+    if (distances_m.size() <= eighth) return HUGE_VAL;
+    std::nth_element(distances_m.begin(), distances_m.begin() + eighth, distances_m.end());
+    const double share_new = static_cast<double>(new_.size()) / static_cast<double>(landmarks_.size());
+    const double radii = apart_m / distances_m[eighth];
+    return static_cast<double>(gone_.size()) * share_new * static_cast<double>(eighth) * radii * radii;
+  }
+
+  const core::JointMap& component_;
+  std::vector<ChangedLandmark*> landmarks_, gone_, new_;
+};
+
+void tell_moved(const core::JointMap& component, std::size_t number, std::vector<ChangedLandmark>& shared) {
+  std::vector<ChangedLandmark*> here;
+  for (ChangedLandmark& landmark : shared) {
+    if (landmark.component == number) here.push_back(&landmark);
+  }
+  Moves(component, std::move(here)).tell();
+}
+
 }  // namespace
 
 Change ChangedLandmark::change() const {
+  if (counterpart != core::no_landmark) return Change::moved;
   if (missing_in.empty()) return Change::kept;
-  if (missing_in.front() > seen_in.back()) return Change::gone;
+  if (is_gone()) return Change::gone;
   return missing_in.back() < seen_in.front() ? Change::appeared : Change::both;
 }
 
@@ -77,6 +139,8 @@ const char* name_of(Change change) {
       return "new";
     case Change::both:
       return "both";
+    case Change::moved:
+      return "moved";
     case Change::kept:
       break;
   }
@@ -96,8 +160,18 @@ std::vector<ChangedLandmark> shared_landmarks(const std::vector<core::JointMap>&
       grounds.emplace_back(joined.components[number], joined.sessions[k], reach_m);
     }
     add_shared(number, joined.components[number], grounds, members, shared);
+    tell_moved(joined.components[number], number, shared);
   }
   return shared;
+}
+
+void make_gone_tentative(const std::vector<ChangedLandmark>& shared, std::vector<core::JointMap>& components) {
+  for (const ChangedLandmark& landmark : shared) {
+    if (!landmark.is_gone()) continue;
+    core::JointMap& map = components.at(landmark.component);
+    const auto at = std::lower_bound(map.joint.ids.begin(), map.joint.ids.end(), landmark.id);
+    map.states[static_cast<std::size_t>(at - map.joint.ids.begin())] = core::LandmarkState::tentative;
+  }
 }
 
 }  // namespace helixnav::apps
