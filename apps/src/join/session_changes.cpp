@@ -62,7 +62,7 @@ void add_shared(std::size_t number, const core::JointMap& component, const std::
   }
 }
 
-/// Of the gone the nearest new one of a later session, within its chance radius.
+/// Of what is gone and what is new near by, what moved (Benjamini and Hochberg 1995).
 class Moves {
  public:
   Moves(const core::JointMap& component, std::vector<ChangedLandmark*> landmarks)
@@ -74,19 +74,33 @@ class Moves {
   }
 
   void tell() {
+    std::vector<Move> moves;
     for (ChangedLandmark* gone : gone_) {
       ChangedLandmark* near = nearest(*gone, new_);
       if (near == nullptr || nearest(*near, gone_) != gone) continue;
-      const double apart_m = (near->point_m - gone->point_m).norm();
-      const bool later = near->seen_in.front() > gone->seen_in.back();
-      if (!later || by_chance(gone->point_m, apart_m) > most_by_chance) continue;
-      gone->counterpart = near->id;
-      near->counterpart = gone->id;
+      if (near->seen_in.front() <= gone->seen_in.back()) continue;
+      moves.push_back({gone, near, by_chance(gone->point_m, (near->point_m - gone->point_m).norm())});
+    }
+    std::stable_sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) { return a.chance < b.chance; });
+    std::size_t believed = 0;
+    for (std::size_t k = 0; k < moves.size(); ++k) {
+      const double by_chance_so_far = static_cast<double>(gone_.size()) * moves[k].chance;
+      if (by_chance_so_far <= most_wrong * static_cast<double>(k + 1)) believed = k + 1;
+    }
+    for (std::size_t k = 0; k < believed; ++k) {
+      moves[k].gone->counterpart = moves[k].appeared->id;
+      moves[k].appeared->counterpart = moves[k].gone->id;
     }
   }
 
  private:
-  static constexpr double most_by_chance = 0.05;  ///< wrong moves expected in a component
+  static constexpr double most_wrong = 0.05;  ///< share of the moves told, in the mean
+
+  struct Move {
+    ChangedLandmark* gone;
+    ChangedLandmark* appeared;
+    double chance;
+  };
 
   static ChangedLandmark* nearest(const ChangedLandmark& of, const std::vector<ChangedLandmark*>& among) {
     ChangedLandmark* nearest = nullptr;
@@ -97,8 +111,8 @@ class Moves {
     return nearest;
   }
 
-  /// How many of those gone have a new landmark so near that has nothing to do with them: as dense as the new ones among all,
-  /// of which the distance of the eighth neighbour says how dense they are here.
+  /// Probability that a new landmark is so near that has nothing to do with what is gone there: as dense as the new ones are
+  /// among all, of which the distance of the eighth neighbour says how dense they are here.
   double by_chance(const Eigen::Vector2d& at_m, double apart_m) const {
     constexpr std::size_t eighth = 8;
     std::vector<double> distances_m;
@@ -107,7 +121,7 @@ class Moves {
     std::nth_element(distances_m.begin(), distances_m.begin() + eighth, distances_m.end());
     const double share_new = static_cast<double>(new_.size()) / static_cast<double>(landmarks_.size());
     const double radii = apart_m / distances_m[eighth];
-    return static_cast<double>(gone_.size()) * share_new * static_cast<double>(eighth) * radii * radii;
+    return share_new * static_cast<double>(eighth) * radii * radii;
   }
 
   const core::JointMap& component_;

@@ -31,8 +31,8 @@ const char* name_of(Change change);
 
 /// Sessions in order of time. A session looked at the ground about its own landmarks: about each, 0.6 of the way to its eighth
 /// neighbour. Joint landmarks only: those on ground of one session are left out. O(N²).
-/// Moved are one that is gone and one that is new in a session after, each the other's nearest, where all together would lie so
-/// near each other by chance with a probability of at most 5 %, as dense as new landmarks are. Test: apps/session_changes_test.cpp.
+/// Moved are one that is gone and one that is new in a session after, each the other's nearest and nearer than chance would put
+/// new ones, as dense as they are: of the moves told 5 % are wrong in the mean. Test: apps/session_changes_test.cpp.
 std::vector<ChangedLandmark> shared_landmarks(const std::vector<core::JointMap>& sessions,
                                               const supervisor::JoinedSessions& joined);
 
