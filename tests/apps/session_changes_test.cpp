@@ -65,6 +65,15 @@ TEST(SessionChanges, GoneAndNewFarFromEachOtherAreThat) {
   EXPECT_EQ(world.of(45), Change::kept);
 }
 
+TEST(SessionChanges, BeyondTheRimOfWhatASessionMappedNothingIsGone) {
+  TwoSessions world;
+  for (core::LandmarkId id = 0; id < 100; ++id) {
+    if (id % 10 >= 6) world.take_out(id, 1);  // the second came up to x = 25 m only
+  }
+  const std::vector<ChangedLandmark> changes = world.changes();
+  EXPECT_TRUE(std::none_of(changes.begin(), changes.end(), [](const ChangedLandmark& one) { return one.is_gone(); }));
+}
+
 TEST(SessionChanges, GoneAndNewNearerThanChanceMoved) {
   TwoSessions world;
   world.take_out(44, 1);

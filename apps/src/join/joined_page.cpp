@@ -52,14 +52,12 @@ std::string mark(const std::string& kind, const Eigen::Vector2d& at, double r, c
   return "<path class=\"" + kind + "\" d=\"" + path + "\">" + tip + "</path>\n";
 }
 
-/// From where it stood to where it stands, with a head.
-std::string arrow(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double r, const std::string& title) {
-  const Eigen::Vector2d along = (to - from).normalized(), across(-along.y(), along.x());
-  const std::string path =
-      line(from, to) + line(to, to - r * along + 0.5 * r * across) + line(to, to - r * along - 0.5 * r * across);
-  return "<path class=\"moved\" d=\"" + path + "\"><title>" + escaped(title) + "</title></path>\n" +
-         "<circle class=\"moved\" cx=\"" + number(from.x()) + "\" cy=\"" + number(-from.y()) + "\" r=\"" +
-         number(0.45 * r) + "\"/>\n";
+/// A diamond where it stands now, with a line from where it stood: a move is often shorter than a mark is wide.
+std::string moved_mark(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double r, const std::string& title) {
+  const Eigen::Vector2d right(r, 0.0), up(0.0, r);
+  const std::string path = line(from, to) + line(to - right, to + up) + line(to + up, to + right) +
+                           line(to + right, to - up) + line(to - up, to - right);
+  return "<path class=\"moved\" d=\"" + path + "\"><title>" + escaped(title) + "</title></path>\n";
 }
 
 std::string sessions_text(const std::vector<std::size_t>& sessions, const std::vector<std::string>& names) {
@@ -100,7 +98,7 @@ std::string picture_of(std::size_t component, const core::JointMap& map, const s
       std::string& layer = landmark.change() == Change::kept ? quiet : loud;
       layer += mark(name_of(landmark.change()), landmark.point_m, r, title);
     } else if (landmark.is_gone()) {
-      loud += arrow(landmark.point_m, changed.at(landmark.counterpart)->point_m, r, title);
+      loud += moved_mark(landmark.point_m, changed.at(landmark.counterpart)->point_m, r, title);
     }
   }
   return "<svg role=\"img\" aria-label=\"Map of component " + std::to_string(component + 1) + "\" viewBox=\"" +
@@ -124,7 +122,7 @@ std::string counts_of(std::size_t component, const std::vector<ChangedLandmark>&
   count(Change::kept, mark("kept", middle, 0.9, "kept"));
   count(Change::gone, mark("gone", middle, 0.8, "gone"));
   count(Change::appeared, mark("new", middle, 0.8, "new"));
-  count(Change::moved, arrow({-0.6, -0.6}, {0.8, 0.8}, 0.7, "moved"));
+  count(Change::moved, moved_mark({-0.9, -0.9}, {0.2, 0.2}, 0.7, "moved"));
   count(Change::both, mark("both", middle, 0.8, "both"));
   return text + key(mark("alone", middle, 0.9, "one session"), "one session looked there") + "</p>\n";
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "helixnav/core/angle.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 
 namespace helixnav::apps {
@@ -24,14 +25,33 @@ class Ground {
   }
 
   bool has(core::LandmarkId id) const { return std::binary_search(ids_.begin(), ids_.end(), id); }
+  /// Near a landmark of the session, and with others on all sides: beyond the rim of what it mapped it may not have looked.
   bool looked_at(const Eigen::Vector2d& at_m) const {
     for (std::size_t i = 0; i < points_m_.size(); ++i) {
-      if ((points_m_[i] - at_m).norm() <= radii_m_[i]) return true;
+      if ((points_m_[i] - at_m).norm() <= radii_m_[i]) return is_surrounded(at_m);
     }
     return false;
   }
 
  private:
+  /// Whether no half plane with the point on its edge is without the eight nearest landmarks.
+  bool is_surrounded(const Eigen::Vector2d& at_m) const {
+    constexpr std::size_t nearest = 8;
+    if (points_m_.size() < nearest) return false;
+    std::vector<Eigen::Vector2d> apart_m;
+    for (const Eigen::Vector2d& point_m : points_m_) apart_m.push_back(point_m - at_m);
+    std::nth_element(apart_m.begin(), apart_m.begin() + nearest - 1, apart_m.end(),
+                     [](const auto& a, const auto& b) { return a.squaredNorm() < b.squaredNorm(); });
+    std::vector<double> angles_rad;
+    for (std::size_t k = 0; k < nearest; ++k) angles_rad.push_back(std::atan2(apart_m[k].y(), apart_m[k].x()));
+    std::sort(angles_rad.begin(), angles_rad.end());
+    angles_rad.push_back(angles_rad.front() + 2.0 * core::pi);
+    for (std::size_t k = 1; k < angles_rad.size(); ++k) {
+      if (angles_rad[k] - angles_rad[k - 1] >= core::pi) return false;
+    }
+    return true;
+  }
+
   double radius_m(const Eigen::Vector2d& at_m, double reach_m) const {
     constexpr std::size_t eighth = 8;  // the landmark itself is the nearest
     constexpr double share = 0.6;
