@@ -10,10 +10,10 @@ namespace helixnav::cekf {
 namespace {
 
 constexpr int wide_pairs = 130;  // 3 + 4·130 columns of H
-constexpr double sigma_m = 0.02;
+constexpr double wide_sigma_m = 0.02;
 
 /// Landmarks 2·k and 2·k + 1 are one; all errors are correlated.
-core::JointGaussian doubled() {
+core::JointGaussian doubled_landmarks() {
   core::RandomStream random(3, "doubled");
   core::JointGaussian joint;
   const Eigen::Index n = 3 + 4 * wide_pairs;
@@ -34,7 +34,7 @@ core::JointGaussian doubled() {
   return joint;
 }
 
-support::FullEkf full(const core::JointGaussian& joint, Retraction retraction) {
+support::FullEkf full_at(const core::JointGaussian& joint, Retraction retraction) {
   support::FullEkf ekf({joint.pose, Eigen::Matrix3d::Identity()}, retraction == Retraction::right_invariant);
   ekf.x.resize(joint.covariance.rows());
   ekf.x.head<3>() = joint.pose.vector();
@@ -49,19 +49,19 @@ support::FullEkf full(const core::JointGaussian& joint, Retraction retraction) {
 class WideMerge : public testing::TestWithParam<Retraction> {};
 
 TEST_P(WideMerge, EqualsTheFullFilterWithAllLandmarksActiveOrFew) {
-  const core::JointGaussian joint = doubled();
+  const core::JointGaussian joint = doubled_landmarks();
   std::vector<CompressedEkf::LandmarkPair> pairs;
   for (int k = 0; k < wide_pairs; ++k) pairs.emplace_back(2 * k, 2 * k + 1);
-  support::FullEkf oracle = full(joint, GetParam());
-  const double cost = oracle.merge(pairs, sigma_m);
+  support::FullEkf oracle = full_at(joint, GetParam());
+  const double cost = oracle.merge(pairs, wide_sigma_m);
   for (const double cell_side_m : {1e9, 20.0}) {
     FilterOptions options;
     options.retraction = GetParam();
     options.cell_side_m = cell_side_m;
     options.max_active_landmarks = cell_side_m > 100.0 ? 2 * wide_pairs : 120;
     CompressedEkf filter(joint, 2 * wide_pairs, options);
-    EXPECT_NEAR(filter.merge_cost(pairs, sigma_m).cost, cost, 1e-6 * cost);
-    EXPECT_NEAR(filter.merge(pairs, sigma_m).nis, cost, 1e-6 * cost);
+    EXPECT_NEAR(filter.merge_cost(pairs, wide_sigma_m).cost, cost, 1e-6 * cost);
+    EXPECT_NEAR(filter.merge(pairs, wide_sigma_m).nis, cost, 1e-6 * cost);
     const core::JointGaussian merged = filter.joint(oracle.ids);
     EXPECT_LE((merged.covariance - oracle.P).cwiseAbs().maxCoeff(), 1e-9);
     EXPECT_LE((merged.pose.vector() - oracle.x.head<3>()).cwiseAbs().maxCoeff(), 1e-9);

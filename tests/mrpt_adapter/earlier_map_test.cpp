@@ -46,7 +46,7 @@ sim::Scenario wide_street() {
   return s;
 }
 
-core::Recording day(std::uint64_t seed) {
+core::Recording drive_of_day(std::uint64_t seed) {
   const sim::Scenario scenario = wide_street();
   return sim::simulate_in(sim::build_world(scenario.world, 1), scenario, seed);
 }
@@ -56,8 +56,8 @@ using Scans = std::size_t;
 constexpr Scans skipped = 60;  ///< of the second day: it begins in the middle
 
 /// The second day from scan `skipped` on; `before(k)` is called before scan k.
-Poses built(MapBuilder& builder, const core::Recording& run, Scans from,
-            const std::function<void(Scans)>& before = {}) {
+Poses built_from(MapBuilder& builder, const core::Recording& run, Scans from,
+                 const std::function<void(Scans)>& before = {}) {
   core::Recording rest = run;
   Scans scans = 0;
   const auto begin = std::find_if(run.events.begin(), run.events.end(), [&](const core::Event& event) {
@@ -77,8 +77,8 @@ Poses built(MapBuilder& builder, const core::Recording& run, Scans from,
 enum class FirstMotion { left_out, used };
 
 /// The navigator on what MRPT's types keep.
-Poses navigated(supervisor::Navigator& navigator, const core::Recording& run, Scans from,
-                const std::function<void(Scans)>& before = {}, FirstMotion first = FirstMotion::left_out) {
+Poses navigated_from(supervisor::Navigator& navigator, const core::Recording& run, Scans from,
+                     const std::function<void(Scans)>& before = {}, FirstMotion first = FirstMotion::left_out) {
   Poses poses;
   std::optional<core::Odometry> motion;
   Scans scans = 0;
@@ -97,7 +97,7 @@ Poses navigated(supervisor::Navigator& navigator, const core::Recording& run, Sc
   return poses;
 }
 
-void expect_same(const Poses& a, const Poses& b) {
+void expect_same_poses(const Poses& a, const Poses& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     const Eigen::Vector3d mean_a = a[i].mean.vector(), mean_b = b[i].mean.vector();
@@ -127,7 +127,7 @@ class EarlierMap : public ::testing::Test {
  protected:
   void SetUp() override {
     QuietBuilder yesterday;
-    built(yesterday, day(1), 0);
+    built_from(yesterday, drive_of_day(1), 0);
     yesterday.saveMapToFolder(folder());
     earlier_ = runs::read_joint_map(folder() + "/map.bin");
     pose_.mean = as_mrpt_keeps_pose(today_.true_poses[skipped].T_world_robot);
@@ -139,7 +139,7 @@ class EarlierMap : public ::testing::Test {
 
   helixnav::testing::TemporaryFolder temporary_;
   core::JointMap earlier_;
-  const core::Recording today_ = day(71);
+  const core::Recording today_ = drive_of_day(71);
   core::PoseGaussian pose_;  ///< true, where the second day begins
 };
 
@@ -152,11 +152,11 @@ TEST_F(EarlierMap, TheVehicleBegunAnywhereIsFoundAsTheNavigatorFindsIt) {
   QuietBuilder builder;
   builder.loadCurrentMapFromFile(folder());
   EXPECT_FALSE(builder.isPlaceKnown());
-  const Poses poses = built(builder, today_, skipped);
+  const Poses poses = built_from(builder, today_, skipped);
   EXPECT_TRUE(builder.isPlaceKnown());
   supervisor::Navigator navigator(core::PoseGaussian{});
   navigator.look_for_place_in(earlier_);
-  expect_same(poses, navigated(navigator, today_, skipped));
+  expect_same_poses(poses, navigated_from(navigator, today_, skipped));
   const core::Pose2& truth = today_.true_poses.back().T_world_robot;
   EXPECT_LT((poses.back().mean.position_m() - truth.position_m()).norm(), 0.8);
 }
@@ -167,7 +167,7 @@ TEST_F(EarlierMap, FromAPoseItGoesOnAsTheNavigatorDoes) {
   builder.initializeFromRun(folder(), &x0);
   EXPECT_TRUE(builder.isPlaceKnown());
   supervisor::Navigator navigator = supervisor::Navigator::go_on_in(seen_from(earlier_, pose_));
-  expect_same(built(builder, today_, skipped), navigated(navigator, today_, skipped));
+  expect_same_poses(built_from(builder, today_, skipped), navigated_from(navigator, today_, skipped));
 }
 
 TEST_F(EarlierMap, APoseGivenWhileThePlaceIsSoughtBeginsThereOnTheEarlierMap) {
@@ -176,20 +176,20 @@ TEST_F(EarlierMap, APoseGivenWhileThePlaceIsSoughtBeginsThereOnTheEarlierMap) {
   const core::PoseGaussian pose{as_mrpt_keeps_pose(truth), pose_.covariance};
   QuietBuilder builder;
   builder.loadCurrentMapFromFile(folder() + "/map.bin");
-  const Poses poses = built(builder, today_, skipped, [&](Scans k) {
+  const Poses poses = built_from(builder, today_, skipped, [&](Scans k) {
     if (k != later) return;
     EXPECT_FALSE(builder.isPlaceKnown());
     builder.setInitialPose(pdf_of(pose));
   });
   EXPECT_TRUE(builder.isPlaceKnown());
   supervisor::Navigator navigator = supervisor::Navigator::go_on_in(seen_from(earlier_, pose));
-  expect_same({poses.begin() + later, poses.end()},
-              navigated(navigator, today_, skipped + later, {}, FirstMotion::used));
+  expect_same_poses({poses.begin() + later, poses.end()},
+                    navigated_from(navigator, today_, skipped + later, {}, FirstMotion::used));
 }
 
 TEST_F(EarlierMap, APoseGivenOnThePresentMapKeepsItsLandmarks) {
   QuietBuilder builder;
-  built(builder, day(1), 0);
+  built_from(builder, drive_of_day(1), 0);
   const std::vector<core::MapLandmark> before = RunAccess::map(builder);
   builder.setInitialPose(pdf_of(pose_));
   const std::vector<core::MapLandmark> after = RunAccess::map(builder);
@@ -200,7 +200,7 @@ TEST_F(EarlierMap, APoseGivenOnThePresentMapKeepsItsLandmarks) {
     EXPECT_EQ(after[i].state, before[i].state);
   }
   EXPECT_EQ(RunAccess::pose(builder).mean.vector(), pose_.mean.vector());
-  const Poses poses = built(builder, today_, skipped);
+  const Poses poses = built_from(builder, today_, skipped);
   const core::Pose2& truth = today_.true_poses.back().T_world_robot;
   EXPECT_LT((poses.back().mean.position_m() - truth.position_m()).norm(), 0.8);
 }
@@ -208,14 +208,14 @@ TEST_F(EarlierMap, APoseGivenOnThePresentMapKeepsItsLandmarks) {
 TEST_F(EarlierMap, RelocalisingIsTheNavigatorsLosing) {
   constexpr Scans when = 30;
   QuietBuilder builder;
-  const Poses poses = built(builder, today_, 0, [&](Scans k) {
+  const Poses poses = built_from(builder, today_, 0, [&](Scans k) {
     if (k == when) builder.relocalize();
     if (k == when) EXPECT_FALSE(builder.isPlaceKnown());
   });
   supervisor::Navigator navigator(core::PoseGaussian{});
-  expect_same(poses, navigated(navigator, today_, 0, [&](Scans k) {
-                if (k == when) navigator.lose({});
-              }));
+  expect_same_poses(poses, navigated_from(navigator, today_, 0, [&](Scans k) {
+                      if (k == when) navigator.lose({});
+                    }));
   EXPECT_TRUE(builder.isPlaceKnown());
 }
 
@@ -238,7 +238,7 @@ TEST_F(EarlierMap, NamesArePassedOverOnAMapWithoutThem) {
 
 TEST_F(EarlierMap, WhatCannotBeUsedLeavesTheBuilderAsItWas) {
   QuietBuilder builder;
-  built(builder, today_, skipped);
+  built_from(builder, today_, skipped);
   const core::PoseGaussian before = RunAccess::pose(builder);
   EXPECT_THROW(builder.initializeFromRun(path("nowhere")), core::InputError);
   EXPECT_THROW(builder.loadCurrentMapFromFile(path("nowhere") + "/map.bin"), core::InputError);

@@ -32,7 +32,7 @@ MapBuilderOptions with_particles() {
 }
 
 /// As the builder's, fed what MRPT's types keep.
-fastslam::FastSlam driven(const core::Recording& run, bool by_name) {
+fastslam::FastSlam driven_cloud(const core::Recording& run, bool by_name) {
   fastslam::Options options;
   options.particles = 30;
   if (by_name) options.association = fastslam::Association::known;
@@ -65,7 +65,7 @@ TEST(ParticleBuilder, IsFastSlamWithUnknownAssociationAndByName) {
   for (const bool by_name : {false, true}) {
     QuietBuilder builder(with_particles());
     testing::drive(builder, run, by_name, [](const core::Scan&, std::size_t k) { return k + 1 < scans_driven; });
-    const fastslam::FastSlam slam = driven(run, by_name);
+    const fastslam::FastSlam slam = driven_cloud(run, by_name);
     EXPECT_EQ(RunAccess::pose(builder).mean.vector(), slam.pose().mean.vector());
     expect_same_map(builder, slam);
     EXPECT_TRUE(builder.isPlaceKnown());
@@ -77,7 +77,7 @@ TEST(ParticleBuilder, TheEstimateIsTheCloudWithItsWeights) {
   const core::Recording run = sim::simulate(sim::named_scenario("circuit"), 2);
   QuietBuilder builder(with_particles());
   testing::drive(builder, run, false, [](const core::Scan&, std::size_t k) { return k + 1 < scans_driven; });
-  const fastslam::FastSlam slam = driven(run, false);
+  const fastslam::FastSlam slam = driven_cloud(run, false);
   const auto pdf = builder.getCurrentPoseEstimation();
   const auto* particles = dynamic_cast<const mrpt::poses::CPose3DPDFParticles*>(pdf.get());
   ASSERT_NE(particles, nullptr);
@@ -99,7 +99,7 @@ TEST(ParticleBuilder, TheStateIsThatOfTheHeaviestParticleBesideTheCloudsPose) {
   mrpt::math::CVectorDouble state;
   mrpt::math::CMatrixDouble covariance;
   builder.getCurrentState(pose, points, numbers, state, &covariance);
-  const std::vector<core::MapLandmark> map = driven(run, false).map();
+  const std::vector<core::MapLandmark> map = driven_cloud(run, false).map();
   ASSERT_EQ(points.size(), map.size());
   ASSERT_EQ(covariance.rows(), 3 + 2 * static_cast<int>(map.size()));
   EXPECT_EQ(covariance(3, 4), map[0].point.covariance_m2(0, 1));

@@ -35,19 +35,19 @@ cekf::CompressedEkf doubled_map(int pairs, int wrong, KeptRemoved& same) {
   return cekf::CompressedEkf(joint, 2 * pairs, whole);
 }
 
-constexpr double sigma_m = 0.02;
-constexpr double probability = 0.99;
+constexpr double merged_sigma_m = 0.02;
+constexpr double agreeing = 0.99;
 
 TEST(ContradictingPairs, AreThoseThatSolvingAnewAfterEachDrops) {
   KeptRemoved pairs;
   const cekf::CompressedEkf filter = doubled_map(40, 7, pairs);
-  const std::vector<std::size_t> left_out = contradicting_pairs(filter, pairs, sigma_m, probability, 20);
+  const std::vector<std::size_t> left_out = contradicting_pairs(filter, pairs, merged_sigma_m, agreeing, 20);
   std::vector<std::size_t> expected, places(pairs.size());
   for (std::size_t k = 0; k < places.size(); ++k) places[k] = k;
   KeptRemoved left = pairs;
   while (true) {
-    const cekf::CostByPart cost = filter.merge_cost(left, sigma_m);
-    if (cost.cost <= core::chi2_quantile(probability, cost.dof)) break;
+    const cekf::CostByPart cost = filter.merge_cost(left, merged_sigma_m);
+    if (cost.cost <= core::chi2_quantile(agreeing, cost.dof)) break;
     const auto worst = std::max_element(cost.parts.begin(), cost.parts.end()) - cost.parts.begin();
     expected.push_back(places[static_cast<std::size_t>(worst)]);
     places.erase(places.begin() + worst);
@@ -61,10 +61,10 @@ TEST(ContradictingPairs, AreThoseThatSolvingAnewAfterEachDrops) {
 TEST(ContradictingPairs, AreNoneWhereAllAgreeAndNeverMoreThanAllowed) {
   KeptRemoved pairs;
   const cekf::CompressedEkf right = doubled_map(40, 0, pairs);
-  EXPECT_TRUE(contradicting_pairs(right, pairs, sigma_m, probability, 20).empty());
+  EXPECT_TRUE(contradicting_pairs(right, pairs, merged_sigma_m, agreeing, 20).empty());
   KeptRemoved all_wrong;
   const cekf::CompressedEkf wrong = doubled_map(40, 2, all_wrong);
-  EXPECT_EQ(contradicting_pairs(wrong, all_wrong, sigma_m, probability, 3).size(), 3u);
+  EXPECT_EQ(contradicting_pairs(wrong, all_wrong, merged_sigma_m, agreeing, 3).size(), 3u);
 }
 
 }  // namespace
