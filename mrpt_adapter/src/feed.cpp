@@ -66,6 +66,7 @@ void MapBuilder::Impl::see(NamedScan scan, bool stream) {
   if (last && !scan.has_time) scan.scan.t_ns = last->t_ns;
   if (!scan.has_time) warn("an observation has no time stamp, the last one's is taken for it");
   if (last && scan.scan.t_ns < last->t_ns) warn("an observation is older than the last one that was used");
+  reach_m_ = scan.scan.field_of_view.reach().value_or(reach_m_);
   const Clock::time_point begin = Clock::now();
   Step step;
   {
@@ -76,6 +77,7 @@ void MapBuilder::Impl::see(NamedScan scan, bool stream) {
   metric_map_is_current_ = false;
   remember(scan, step.report);
   tell(step.report);
+  place_path(step.report);
   path.push_back(step.report.pose.mean);
   last = step.report;
   last_measurements = scan.measurements;
@@ -95,7 +97,10 @@ core::StepReport MapBuilder::Impl::observe(const NamedScan& scan) {
   }
   if (association_ == Association::open) return navigator->observe_nothing(scan.scan);
   if (named && options.use_landmark_ids) {
-    warn("the first measurements had no landmarkID: association is unknown, and later IDs are passed over");
+    warn(
+        "association is unknown, as the first measurements had no landmarkID or an earlier map is gone on in: later "
+        "IDs "
+        "are passed over");
   }
   return navigator->observe(scan.scan);
 }

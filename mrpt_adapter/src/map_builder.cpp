@@ -10,7 +10,9 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/mrpt_adapter/conversions.hpp"
 #include "map_builder_impl.hpp"
+#include "navigator_estimator.hpp"
 #include "navigator_options.hpp"
+#include "particle_estimator.hpp"
 #include "pose_pdf.hpp"
 
 namespace helixnav::mrpt_adapter {
@@ -21,6 +23,12 @@ void check_that_maps_are_updated(const mrpt::slam::CMetricMapBuilder::TOptions& 
   throw core::PreconditionError("map updating is switched off, and this filter does not localise without mapping");
 }
 
+std::unique_ptr<Estimator> estimator_at(const core::PoseGaussian& start, const MapBuilderOptions& options) {
+  if (options.filter != "fastslam") return std::make_unique<NavigatorEstimator>(start, navigator_options(options));
+  if (options.gps_use) throw core::InputError("gps_use = true: FastSLAM (filter = fastslam) takes no fixes");
+  return std::make_unique<ParticleEstimator>(start, fastslam_options(options), options.fastslam_seed);
+}
+
 }  // namespace
 
 MapBuilder::Impl::Impl(const MapBuilderOptions& its_options, const mrpt::system::COutputLogger& log,
@@ -29,8 +37,10 @@ MapBuilder::Impl::Impl(const MapBuilderOptions& its_options, const mrpt::system:
   start_at({});
 }
 
-void MapBuilder::Impl::start_at(const core::PoseGaussian& start) {
-  navigator.emplace(start, navigator_options(options));
+void MapBuilder::Impl::start_at(const core::PoseGaussian& start) { restart(estimator_at(start, options)); }
+
+void MapBuilder::Impl::restart(std::unique_ptr<Estimator> estimator) {
+  navigator = std::move(estimator);
   simple_map.clear();
   path.clear();
   steps.clear();
@@ -41,6 +51,7 @@ void MapBuilder::Impl::start_at(const core::PoseGaussian& start) {
     motion_.reference = GpsReference{options.gps_latitude_deg, options.gps_longitude_deg, options.gps_altitude};
   }
   motion_is_known_ = false;
+  part_begin_ = 0;
   association_ = Association::open;
   name_of_.clear();
   seen_ns_.clear();
@@ -59,8 +70,10 @@ const MapBuilderOptions& MapBuilder::getOptions() const { return impl_->options;
 
 void MapBuilder::initialize(const mrpt::maps::CSimpleMap& initialMap, const mrpt::poses::CPosePDF* x0) {
   if (!initialMap.empty()) {
-    throw core::InputError("initialize: a past map of " + std::to_string(initialMap.size()) +
-                           " frames cannot be taken over, a CSimpleMap does not say how their errors go together");
+    throw core::InputError(
+        "initialize: a past map of " + std::to_string(initialMap.size()) +
+        " frames cannot be taken over, a CSimpleMap does not say how their errors go together; a run "
+        "folder can");
   }
   const core::PoseGaussian start = x0 != nullptr ? gaussian_of(*x0) : core::PoseGaussian{};
   const Impl::Lock lock(impl_->lock);
@@ -86,6 +99,8 @@ void MapBuilder::processObservation(const mrpt::obs::CObservation::Ptr& observat
 mrpt::poses::CPose3DPDF::Ptr MapBuilder::getCurrentPoseEstimation() const {
   const Impl::Lock lock(impl_->lock);
   if (impl_->last && !impl_->last->cloud.empty()) return particle_pdf(impl_->last->cloud);
+  const std::vector<WeightedPose> particles = impl_->navigator->particles();
+  if (!particles.empty()) return particle_pdf(particles);
   return gaussian_pdf(impl_->navigator->pose());
 }
 
@@ -109,6 +124,11 @@ const mrpt::system::CTimeLogger& MapBuilder::getProfiler() const { return impl_-
 const std::vector<Step>& RunAccess::last_steps(const MapBuilder& builder) { return builder.impl_->steps; }
 
 std::vector<core::MapLandmark> RunAccess::map(const MapBuilder& builder) { return builder.impl_->navigator->map(); }
+
+std::optional<core::JointMap> RunAccess::joint_map(const MapBuilder& builder) {
+  if (builder.getOptions().filter == "fastslam") return std::nullopt;
+  return builder.impl_->joint_map();
+}
 
 core::PoseGaussian RunAccess::pose(const MapBuilder& builder) { return builder.impl_->navigator->pose(); }
 

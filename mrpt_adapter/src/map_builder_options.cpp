@@ -61,6 +61,9 @@ const std::vector<NumberKey>& number_keys() {
       {"search_foreign_per_scan", &O::search_extraneous_per_scan, 0.0, 100.0},  // the name of version 0.1
       {"search_extraneous_per_scan", &O::search_extraneous_per_scan, 0.0, 100.0},
       {"search_view_area", &O::search_view_area, 0.0, huge},
+      {"fastslam_detection_probability", &O::fastslam_detection_probability, 0.01, 0.999},
+      {"fastslam_new_density", &O::fastslam_new_density, 1e-9, 1e3},
+      {"fastslam_clutter_density", &O::fastslam_clutter_density, 1e-9, 1e3},
   };
   return keys;
 }
@@ -75,6 +78,7 @@ constexpr SwitchKey switch_keys[] = {{"force_ignore_odometry", &O::force_ignore_
                                      {"use_landmark_ids", &O::use_landmark_ids},
                                      {"gps_use", &O::gps_use},
                                      {"search_enabled", &O::search_enabled},
+                                     {"fastslam_weigh_unseen", &O::fastslam_weigh_unseen},
                                      {"enable_profiler", &O::enable_profiler}};
 
 struct NameKey {
@@ -86,7 +90,9 @@ struct NameKey {
 std::vector<NameKey> name_keys() {
   return {{"association", &O::association, association_names()},
           {"detector", &O::detector, detector_names()},
-          {"retraction", &O::retraction, retraction_names()}};
+          {"retraction", &O::retraction, retraction_names()},
+          {"filter", &O::filter, {"compressed-ekf", "fastslam"}},
+          {"fastslam_association", &O::fastslam_association, fastslam_association_names()}};
 }
 
 struct CountKey {
@@ -97,7 +103,11 @@ struct CountKey {
 };
 
 constexpr CountKey count_keys[] = {{"search_seed", &O::search_seed, 0, std::numeric_limits<std::uint64_t>::max()},
-                                   {"search_threads", &O::search_threads, 1, 256}};
+                                   {"search_threads", &O::search_threads, 1, 256},
+                                   {"fastslam_particles", &O::fastslam_particles, 1, 1'000'000},
+                                   {"fastslam_version", &O::fastslam_version, 1, 2},
+                                   {"fastslam_seed", &O::fastslam_seed, 0, std::numeric_limits<std::uint64_t>::max()},
+                                   {"fastslam_threads", &O::fastslam_threads, 1, 256}};
 
 /// A section of a file, whose values are text until somebody asks for more.
 class Section {

@@ -54,4 +54,17 @@ supervisor::NavigatorOptions navigator_options(const MapBuilderOptions& options)
   return result;
 }
 
+fastslam::Options fastslam_options(const MapBuilderOptions& options) {
+  fastslam::Options result;
+  result.particles = options.fastslam_particles;
+  result.proposal = options.fastslam_version == 1 ? fastslam::Proposal::motion : fastslam::Proposal::motion_and_scan;
+  result.threads = static_cast<unsigned>(options.fastslam_threads);
+  result.association = fastslam_association_of(options.fastslam_association);
+  result.weigh_unseen = options.fastslam_weigh_unseen;
+  result.detection_probability = options.fastslam_detection_probability;
+  result.new_density = options.fastslam_new_density;
+  result.clutter_density = options.fastslam_clutter_density;
+  return result;
+}
+
 }  // namespace helixnav::mrpt_adapter

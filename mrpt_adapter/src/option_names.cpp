@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "helixnav/core/errors.hpp"
+#include "helixnav/fastslam/association_names.hpp"
 
 namespace helixnav::mrpt_adapter {
 namespace {
@@ -29,6 +30,22 @@ std::vector<std::string> association_names() {
 std::vector<std::string> detector_names() { return {"trees", "reflectors", "none"}; }
 
 std::vector<std::string> retraction_names() { return {"right-invariant", "standard"}; }
+
+/// Known association is what landmarkIDs make of any of these.
+std::vector<std::string> fastslam_association_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, association] : fastslam::association_names()) {
+    if (association != fastslam::Association::known) names.push_back(name);
+  }
+  return names;
+}
+
+fastslam::Association fastslam_association_of(const std::string& name) {
+  for (const auto& [its_name, association] : fastslam::association_names()) {
+    if (its_name == name && association != fastslam::Association::known) return association;
+  }
+  throw core::InputError("fastslam_association = \"" + name + "\": there is no such kind of association");
+}
 
 association::Method method_of(const std::string& name) {
   for (const association::Method method : methods()) {

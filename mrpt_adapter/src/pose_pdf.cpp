@@ -27,13 +27,20 @@ mrpt::poses::CPose3DPDF::Ptr gaussian_pdf(const core::PoseGaussian& pose) {
   return pdf;
 }
 
-mrpt::poses::CPose3DPDF::Ptr particle_pdf(const std::vector<core::Pose2>& cloud) {
-  auto pdf = std::make_shared<mrpt::poses::CPose3DPDFParticles>(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    pdf->m_particles[i].d = mrpt::math::TPose3D(cloud[i].x_m, cloud[i].y_m, 0.0, cloud[i].heading_rad, 0.0, 0.0);
-    pdf->m_particles[i].log_w = 0.0;
+mrpt::poses::CPose3DPDF::Ptr particle_pdf(const std::vector<WeightedPose>& particles) {
+  auto pdf = std::make_shared<mrpt::poses::CPose3DPDFParticles>(particles.size());
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const core::Pose2& T = particles[i].T_world_robot;
+    pdf->m_particles[i].d = mrpt::math::TPose3D(T.x_m, T.y_m, 0.0, T.heading_rad, 0.0, 0.0);
+    pdf->m_particles[i].log_w = particles[i].log_weight;
   }
   return pdf;
+}
+
+mrpt::poses::CPose3DPDF::Ptr particle_pdf(const std::vector<core::Pose2>& cloud) {
+  std::vector<WeightedPose> particles;
+  for (const core::Pose2& T_world_robot : cloud) particles.push_back({T_world_robot, 0.0});
+  return particle_pdf(particles);
 }
 
 core::PoseGaussian gaussian_of(const mrpt::poses::CPosePDF& pdf) {

@@ -62,6 +62,7 @@ Joined join(const py::sequence& list, const std::optional<fs::path>& out, bool o
   Joined result;
   result.joined = supervisor::join_sessions(sessions.maps);
   result.changes = apps::shared_landmarks(sessions.maps, result.joined);
+  apps::make_gone_tentative(result.changes, result.joined.components);
   if (out) apps::write_joined(out->string(), sessions.names, result.joined, result.changes);
   return result;
 }
@@ -84,7 +85,13 @@ void bind_parts(py::module_& module) {
       .def_readonly("position", &ChangedLandmark::point_m)
       .def_property_readonly(
           "change", [](const ChangedLandmark& l) { return apps::name_of(l.change()); },
-          "'kept', 'gone', 'new' or 'both' (it went and came).")
+          "'kept', 'gone', 'new', 'both' (it went and came) or 'moved'.")
+      .def_property_readonly(
+          "counterpart",
+          [](const ChangedLandmark& l) {
+            return l.counterpart == core::no_landmark ? std::optional<core::LandmarkId>() : l.counterpart;
+          },
+          "Of what moved: the new landmark of the one that is gone, and the other way round; else None.")
       .def_readonly("seen_in", &ChangedLandmark::seen_in, "Indices of sessions.")
       .def_readonly("missing_in", &ChangedLandmark::missing_in, "Likewise, that looked there.");
 }

@@ -102,6 +102,35 @@ TEST_F(Slam, WritesTheRunFolderAndTheFilesOfKfSlam) {
   EXPECT_GT(blue_pixels(picture), 12 * 5);  // of each post a few
 }
 
+TEST_F(Slam, FastSlamByTheConfigurationAlone) {
+  const std::string particles = application + "[HelixNav]\nsave_png=0\nfilter=fastslam\nfastslam_particles=50\n";
+  ASSERT_EQ(run_slam(job(particles + "use_landmark_ids=false\n", posts())), ExitCode::ok);
+  const runs::Run run = runs::read_run(file("out"));
+  ASSERT_EQ(run.steps.size(), 21U);
+  EXPECT_TRUE(fs::exists(file("out/particles.csv"))) << "effective size and ancestors";
+  EXPECT_FALSE(fs::exists(file("out/map.bin"))) << "there is no joint estimate";
+  EXPECT_TRUE(fs::exists(file("out/full_cov.txt")));
+  SlamJob again = job(particles + "gps_use=true\n", posts());
+  again.overwrite = true;
+  EXPECT_NE(input_error_of([&] { run_slam(again); }).find("takes no fixes"), std::string::npos);
+}
+
+TEST_F(Slam, GoesOnInTheMapOfAnEarlierRun) {
+  const std::string by_place = application + "[HelixNav]\nsave_png=0\nuse_landmark_ids=false\n";
+  ASSERT_EQ(run_slam(job(by_place, posts())), ExitCode::ok);
+  ASSERT_TRUE(fs::exists(file("out/map.bin")));
+  SlamJob later = job(by_place + "map=" + file("out") + "\n", posts());
+  later.out = file("later");
+  ASSERT_EQ(run_slam(later), ExitCode::ok);
+  const runs::Run run = runs::read_run(file("later"));
+  EXPECT_EQ(run.manifest.inputs.back().name, file("out") + "/map.bin");
+  EXPECT_NE(text_of(file("later/decisions.csv")).find("placed,sought"), std::string::npos);
+  SlamJob nowhere = job(by_place + "map=" + file("nowhere") + "\n", posts());
+  nowhere.out = file("none");
+  EXPECT_NE(input_error_of([&] { run_slam(nowhere); }).find("nowhere"), std::string::npos);
+  EXPECT_FALSE(fs::exists(file("none")));
+}
+
 TEST_F(Slam, NeverTouchesWhatAUserHasInTheFolder) {
   folder_.write("out/thesis.tex", "years of work");
   const std::string why = input_error_of([&] { run_slam(job(application, posts())); });

@@ -150,7 +150,7 @@ bool take_filter_of_kf_slam(const Section& section, mrpt_adapter::MapBuilderOpti
 
 void refuse_unknown_keys(const CConfigFileMemory& ini, const std::string& path) {
   Names known = builder_keys();
-  known.insert(known.end(), {"save_png", "overwrite"});
+  known.insert(known.end(), {"save_png", "overwrite", "map"});
   const Names keys = keys_of(ini, ours);
   const auto unknown =
       std::find_if_not(keys.begin(), keys.end(), [&](const auto& key) { return contains(known, key); });
@@ -196,6 +196,7 @@ SlamConfig read_slam_config(const std::string& path) {
   const Section own(ini, path, ours);
   own.read("save_png", config.save_png);
   own.read("overwrite", config.overwrite);
+  own.read("map", config.map);
   refuse_unknown_keys(ini, path);
   config.without_effect = keys_without_effect(ini, filter_taken);
   return config;

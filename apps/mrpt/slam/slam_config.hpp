@@ -26,6 +26,7 @@ struct SlamConfig {
   // [HelixNav], beside the keys of MapBuilderOptions, which [RangeBearingKFSLAM] may hold as well.
   bool save_png = true;
   bool overwrite = false;
+  std::string map;  ///< run folder in whose map to go on, from anywhere on it; empty: none
   mrpt_adapter::MapBuilderOptions builder;
 
   std::vector<std::string> without_effect;  ///< keys that are kf-slam's own, as [section] key

@@ -59,7 +59,7 @@ void check_that_landmarks_are_seen(const RawlogSource& source, const std::string
                          (source.damage().empty() ? "" : "; " + source.damage()));
 }
 
-runs::RunManifest manifest_of(const SlamJob& job, const std::string& rawlog, const std::vector<std::string>& truths) {
+runs::RunManifest manifest_of(const SlamJob& job, const std::string& rawlog, const std::vector<std::string>& others) {
   runs::RunManifest manifest;
   manifest.version = core::version();
   manifest.commit = core::commit();
@@ -70,7 +70,7 @@ runs::RunManifest manifest_of(const SlamJob& job, const std::string& rawlog, con
   config << file.rdbuf();
   manifest.config = config.str();
   std::vector<std::string> names{job.config, rawlog};
-  names.insert(names.end(), truths.begin(), truths.end());
+  names.insert(names.end(), others.begin(), others.end());
   for (const std::string& name : names) manifest.inputs.push_back({name, runs::sha256_of_file(name)});
   return manifest;
 }
@@ -80,7 +80,10 @@ class Run {
  public:
   Run(const SlamConfig& config, RawlogSource& source, std::string out)
       : config_(config), source_(source), out_(std::move(out)), damage_(source.damage()) {
-    if (!config_.builder.gps_use) add_true_positions(source_.entries(), config_.builder, recording_);
+    if (!config_.map.empty()) builder_.initializeFromRun(config_.map);
+    // The log's truth is in the log's frame, and the run in that of the map.
+    if (!config_.builder.gps_use && config_.map.empty())
+      add_true_positions(source_.entries(), config_.builder, recording_);
     if (!config_.ground_truth_file.empty()) recording_.true_landmarks = read_true_landmarks(config_.ground_truth_file);
     if (!config_.ground_truth_file_robot.empty()) true_path_m_ = read_true_path(config_.ground_truth_file_robot);
   }
@@ -119,6 +122,7 @@ class Run {
     if (steps_ == 0) return;
     if (writer_) {
       runs::Run run = recorder_->finish(RunAccess::map(builder_));
+      run.joint_map = RunAccess::joint_map(builder_);
       run.timing = {{"median_us", median_us()}, {"reading_s", reading_s}, {"navigating_s", navigating_s}};
       std::fputs(reports::evaluation_text(reports::finish_run(run, *writer_)).c_str(), stdout);
     }
@@ -202,11 +206,12 @@ ExitCode run_slam(const SlamJob& job) {
   RawlogSource source(rawlog, config.rawlog_offset, vehicle_for(config.builder.detector));
   check_that_landmarks_are_seen(source, rawlog);
   Run run(config, source, out);
-  std::vector<std::string> truths;
+  std::vector<std::string> others;
   for (const std::string& name : {config.ground_truth_file, config.ground_truth_file_robot}) {
-    if (!name.empty()) truths.push_back(name);
+    if (!name.empty()) others.push_back(name);
   }
-  if (!out.empty()) run.open_folder(manifest_of(job, rawlog, truths), job.overwrite || config.overwrite);
+  if (!config.map.empty()) others.push_back(config.map + "/map.bin");
+  if (!out.empty()) run.open_folder(manifest_of(job, rawlog, others), job.overwrite || config.overwrite);
   const double reading_s = seconds_since(begin);
   run.navigate(job.quiet);
   run.finish(reading_s, seconds_since(begin) - reading_s);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -21,10 +20,7 @@ template <class Navigator>
 std::optional<core::JointMap> joint_map_of(const Navigator& navigator, double reach_m) {
   const std::vector<core::MapLandmark> landmarks = navigator.map();
   if (landmarks.size() > runs::most_joint_landmarks) return std::nullopt;
-  // A filter that holds a part of the map may have names of its own.
-  const core::LandmarkId after_last = landmarks.empty() ? 0 : landmarks.back().id + 1;
-  const core::LandmarkId next_name = std::max(navigator.filter().next_name(), after_last);
-  core::JointMap map = supervisor::joint_map(navigator.joint(supervisor::ids_of(landmarks)), next_name, landmarks);
+  core::JointMap map = supervisor::joint_map(navigator, landmarks);
   map.reach_m = reach_m;
   return map;
 }

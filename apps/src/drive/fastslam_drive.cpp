@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
 #include <cstddef>
 #include <memory>
-#include <set>
 #include <utility>
 #include <variant>
 
 #include "estimator.hpp"
-#include "helixnav/core/thin_scan.hpp"
 #include "helixnav/fastslam/fast_slam.hpp"
+#include "helixnav/fastslam/observe.hpp"
 #include "helixnav/fastslam/path_tree.hpp"
 
 namespace helixnav::apps {
 namespace {
-
-using fastslam::KnownName;
 
 constexpr double points_a_loop = 50.0;  ///< marked on the paths along genealogy_m of drive
 
@@ -22,17 +18,6 @@ fastslam::Options options_of(const Drive& job) {
   fastslam::Options options = job.fastslam.options;
   if (job.known_association) options.existence.remove = false;  // what has a name is there
   return options;
-}
-
-/// Names as FastSLAM takes them: of a label that is there twice, the first counts.
-std::vector<KnownName> names_of(const std::vector<core::Label>& labels) {
-  std::vector<KnownName> names;
-  std::set<core::Label> seen;
-  for (const core::Label label : labels) {
-    const bool counts = label >= 0 && seen.insert(label).second;
-    names.push_back(counts ? KnownName{label} : fastslam::no_name);
-  }
-  return names;
 }
 
 /// [scan fed] its step: those withheld have one, too.
@@ -85,32 +70,7 @@ class FastSlamDrive {
   }
 
   core::StepReport observe(const core::Scan& scan) {
-    if (scan.observations.size() <= core::most_observations_used) return update(scan, all_of(scan));
-    const std::vector<std::size_t> used = core::observations_to_use(scan);
-    core::StepReport report = update(core::thinned(scan, used), used);
-    std::vector<core::AssociationReport> all = core::reports_of_none(scan.observations.size());
-    core::name_in_whole_scan(used, all, report.associations);
-    report.decisions.push_back(core::thinning_decision(scan.observations.size(), used.size()));
-    return report;
-  }
-
-  static std::vector<std::size_t> all_of(const core::Scan& scan) {
-    std::vector<std::size_t> places(scan.observations.size());
-    for (std::size_t i = 0; i < places.size(); ++i) places[i] = i;
-    return places;
-  }
-
-  /// `used`: places of the observations among the labels of the scan.
-  core::StepReport update(const core::Scan& scan, const std::vector<std::size_t>& used) {
-    if (!known_) return slam_.update(scan);
-    std::vector<core::Label> labels;
-    for (const std::size_t i : used) labels.push_back(labels_.at(scans_).at(i));
-    const std::vector<KnownName> names = names_of(labels);
-    core::StepReport report = slam_.update_known(scan, names);
-    for (std::size_t j = 0; j < names.size(); ++j) {
-      if (names[j] == fastslam::no_name) report.associations[j].outcome = core::Outcome::rejected;
-    }
-    return report;
+    return known_ ? fastslam::observe_known(slam_, scan, labels_.at(scans_)) : fastslam::observe(slam_, scan);
   }
 
   void mark_paths(std::size_t scan) {

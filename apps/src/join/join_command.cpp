@@ -31,8 +31,9 @@ std::vector<core::JointMap> read_maps(const std::vector<std::string>& runs) {
 void say_changes(const std::vector<ChangedLandmark>& shared) {
   std::map<Change, int> counts;
   for (const ChangedLandmark& landmark : shared) ++counts[landmark.change()];
-  std::printf("on ground that several looked at: %d landmarks kept, %d gone, %d new, %d both\n", counts[Change::kept],
-              counts[Change::gone], counts[Change::appeared], counts[Change::both]);
+  std::printf("on ground that several looked at: %d landmarks kept, %d gone, %d new, %d moved, %d both\n",
+              counts[Change::kept], counts[Change::gone], counts[Change::appeared], counts[Change::moved] / 2,
+              counts[Change::both]);
 }
 
 void say(const JoinJob& job, const supervisor::JoinedSessions& joined, const std::vector<ChangedLandmark>& shared) {
@@ -55,14 +56,16 @@ void say(const JoinJob& job, const supervisor::JoinedSessions& joined, const std
     std::printf("component %zu: %zu landmarks, %s\n", k + 1, joined.components[k].joint.ids.size(),
                 k == 0 ? job.folder.out.c_str() : (job.folder.out + "/component_" + std::to_string(k + 1)).c_str());
   }
+  std::printf("report: %s/report.html\n", job.folder.out.c_str());
 }
 
 void join(CLI::App& command, const JoinJob& job) {
   prepare_run(command, job.folder);
   const std::vector<core::JointMap> maps = read_maps(job.runs);
   check_independent(job.runs);
-  const supervisor::JoinedSessions joined = supervisor::join_sessions(maps);
+  supervisor::JoinedSessions joined = supervisor::join_sessions(maps);
   const std::vector<ChangedLandmark> shared = shared_landmarks(maps, joined);
+  make_gone_tentative(shared, joined.components);
   write_joined(job.folder.out, job.runs, joined, shared);
   if (!job.folder.quiet) say(job, joined, shared);
 }
@@ -78,8 +81,10 @@ void add_join_command(CLI::App& app, ExitCode&) {
   command->footer(
       "No start is given: each map is found on the others by its landmarks, or stays a component of its own. --out "
       "gets\n"
-      "map.csv and map.bin (replay --map goes on in them), joins.csv (how each run was placed, and why not) and\n"
-      "changes.csv (what is new or gone where several runs looked). To take a run out again, join the others.\n\n"
+      "map.csv and map.bin (replay --map goes on in them), joins.csv (how each run was placed, and why not),\n"
+      "changes.csv (what is new, moved or gone where several runs looked) and report.html, where that is drawn. What "
+      "is\n"
+      "gone is tentative from here on. To take a run out again, join the others.\n\n"
       "Example:\n"
       "  helixnav join runs/monday runs/tuesday runs/robot_2 --out runs/week\n");
   command->callback([job, command] { join(*command, *job); });

@@ -13,6 +13,7 @@
 #include "helixnav/runs/map_folder.hpp"
 #include "helixnav/runs/run_folder.hpp"
 #include "helixnav/runs/run_manifest.hpp"
+#include "joined_page.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -49,12 +50,13 @@ std::string numbers_of(const std::vector<std::size_t>& sessions) {
 }
 
 std::string changes_table(const std::vector<ChangedLandmark>& shared) {
-  std::string text = "component,landmark,x,y,change,seen_in,missing_in\n";
+  std::string text = "component,landmark,x,y,change,seen_in,missing_in,counterpart\n";
   for (const ChangedLandmark& landmark : shared) {
     text += std::to_string(landmark.component + 1) + ',' + std::to_string(landmark.id);
     files::append_cells(text, {landmark.point_m.x(), landmark.point_m.y()});
     text += std::string(",") + name_of(landmark.change()) + ',' + numbers_of(landmark.seen_in) + ',' +
-            numbers_of(landmark.missing_in) + '\n';
+            numbers_of(landmark.missing_in) + ',' +
+            (landmark.counterpart == core::no_landmark ? "" : std::to_string(landmark.counterpart)) + '\n';
   }
   return text;
 }
@@ -95,6 +97,7 @@ void write_joined(const std::string& out, const std::vector<std::string>& names,
   write_components(out, joined.components);
   files::write_whole_file(out + "/joins.csv", joins_table(names, joined));
   files::write_whole_file(out + "/changes.csv", changes_table(shared));
+  files::write_whole_file(out + "/report.html", joined_page(names, joined, shared));
 }
 
 }  // namespace helixnav::apps

@@ -13,7 +13,7 @@ namespace helixnav::apps {
 void check_independent(const std::vector<std::string>& runs);
 
 /// Writes what became of several sessions: the first component's map into `out`, which is made, the others' below it, and
-/// joins.csv and changes.csv. `names` are the sessions'.
+/// joins.csv, changes.csv and report.html. `names` are the sessions'.
 void write_joined(const std::string& out, const std::vector<std::string>& names,
                   const supervisor::JoinedSessions& joined, const std::vector<ChangedLandmark>& shared);
 

@@ -2,8 +2,10 @@
 #include "session_changes.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
+#include <utility>
 
+#include "helixnav/core/angle.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 
 namespace helixnav::apps {
@@ -23,14 +25,33 @@ class Ground {
   }
 
   bool has(core::LandmarkId id) const { return std::binary_search(ids_.begin(), ids_.end(), id); }
+  /// Near a landmark of the session, and with others on all sides: beyond the rim of what it mapped it may not have looked.
   bool looked_at(const Eigen::Vector2d& at_m) const {
     for (std::size_t i = 0; i < points_m_.size(); ++i) {
-      if ((points_m_[i] - at_m).norm() <= radii_m_[i]) return true;
+      if ((points_m_[i] - at_m).norm() <= radii_m_[i]) return is_surrounded(at_m);
     }
     return false;
   }
 
  private:
+  /// Whether no half plane with the point on its edge is without the eight nearest landmarks.
+  bool is_surrounded(const Eigen::Vector2d& at_m) const {
+    constexpr std::size_t nearest = 8;
+    if (points_m_.size() < nearest) return false;
+    std::vector<Eigen::Vector2d> apart_m;
+    for (const Eigen::Vector2d& point_m : points_m_) apart_m.push_back(point_m - at_m);
+    std::nth_element(apart_m.begin(), apart_m.begin() + nearest - 1, apart_m.end(),
+                     [](const auto& a, const auto& b) { return a.squaredNorm() < b.squaredNorm(); });
+    std::vector<double> angles_rad;
+    for (std::size_t k = 0; k < nearest; ++k) angles_rad.push_back(std::atan2(apart_m[k].y(), apart_m[k].x()));
+    std::sort(angles_rad.begin(), angles_rad.end());
+    angles_rad.push_back(angles_rad.front() + 2.0 * core::pi);
+    for (std::size_t k = 1; k < angles_rad.size(); ++k) {
+      if (angles_rad[k] - angles_rad[k - 1] >= core::pi) return false;
+    }
+    return true;
+  }
+
   double radius_m(const Eigen::Vector2d& at_m, double reach_m) const {
     constexpr std::size_t eighth = 8;  // the landmark itself is the nearest
     constexpr double share = 0.6;
@@ -49,7 +70,7 @@ class Ground {
 void add_shared(std::size_t number, const core::JointMap& component, const std::vector<Ground>& grounds,
                 const std::vector<std::size_t>& sessions, std::vector<ChangedLandmark>& shared) {
   for (std::size_t i = 0; i < component.joint.ids.size(); ++i) {
-    ChangedLandmark landmark{number, component.joint.ids[i], component.joint.points_m[i], {}, {}};
+    ChangedLandmark landmark{number, component.joint.ids[i], component.joint.points_m[i], {}, {}, core::no_landmark};
     for (std::size_t k = 0; k < sessions.size(); ++k) {
       if (grounds[k].has(landmark.id)) {
         landmark.seen_in.push_back(sessions[k]);
@@ -61,11 +82,86 @@ void add_shared(std::size_t number, const core::JointMap& component, const std::
   }
 }
 
+/// Of what is gone and what is new near by, what moved (Benjamini and Hochberg 1995).
+class Moves {
+ public:
+  Moves(const core::JointMap& component, std::vector<ChangedLandmark*> landmarks)
+      : component_(component), landmarks_(std::move(landmarks)) {
+    for (ChangedLandmark* landmark : landmarks_) {
+      if (landmark->is_gone()) gone_.push_back(landmark);
+      if (landmark->change() == Change::appeared) new_.push_back(landmark);
+    }
+  }
+
+  void tell() {
+    std::vector<Move> moves;
+    for (ChangedLandmark* gone : gone_) {
+      ChangedLandmark* near = nearest(*gone, new_);
+      if (near == nullptr || nearest(*near, gone_) != gone) continue;
+      if (near->seen_in.front() <= gone->seen_in.back()) continue;
+      moves.push_back({gone, near, by_chance(gone->point_m, (near->point_m - gone->point_m).norm())});
+    }
+    std::stable_sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) { return a.chance < b.chance; });
+    std::size_t believed = 0;
+    for (std::size_t k = 0; k < moves.size(); ++k) {
+      const double by_chance_so_far = static_cast<double>(gone_.size()) * moves[k].chance;
+      if (by_chance_so_far <= most_wrong * static_cast<double>(k + 1)) believed = k + 1;
+    }
+    for (std::size_t k = 0; k < believed; ++k) {
+      moves[k].gone->counterpart = moves[k].appeared->id;
+      moves[k].appeared->counterpart = moves[k].gone->id;
+    }
+  }
+
+ private:
+  static constexpr double most_wrong = 0.05;  ///< share of the moves told, in the mean
+
+  struct Move {
+    ChangedLandmark* gone;
+    ChangedLandmark* appeared;
+    double chance;
+  };
+
+  static ChangedLandmark* nearest(const ChangedLandmark& of, const std::vector<ChangedLandmark*>& among) {
+    ChangedLandmark* nearest = nullptr;
+    for (ChangedLandmark* other : among) {
+      const double apart_m = (other->point_m - of.point_m).norm();
+      if (nearest == nullptr || apart_m < (nearest->point_m - of.point_m).norm()) nearest = other;
+    }
+    return nearest;
+  }
+
+  /// Probability that a new landmark is so near that has nothing to do with what is gone there: as dense as the new ones are
+  /// among all, of which the distance of the eighth neighbour says how dense they are here.
+  double by_chance(const Eigen::Vector2d& at_m, double apart_m) const {
+    constexpr std::size_t eighth = 8;
+    std::vector<double> distances_m;
+    for (const Eigen::Vector2d& other_m : component_.joint.points_m) distances_m.push_back((other_m - at_m).norm());
+    if (distances_m.size() <= eighth) return HUGE_VAL;
+    std::nth_element(distances_m.begin(), distances_m.begin() + eighth, distances_m.end());
+    const double share_new = static_cast<double>(new_.size()) / static_cast<double>(landmarks_.size());
+    const double radii = apart_m / distances_m[eighth];
+    return share_new * static_cast<double>(eighth) * radii * radii;
+  }
+
+  const core::JointMap& component_;
+  std::vector<ChangedLandmark*> landmarks_, gone_, new_;
+};
+
+void tell_moved(const core::JointMap& component, std::size_t number, std::vector<ChangedLandmark>& shared) {
+  std::vector<ChangedLandmark*> here;
+  for (ChangedLandmark& landmark : shared) {
+    if (landmark.component == number) here.push_back(&landmark);
+  }
+  Moves(component, std::move(here)).tell();
+}
+
 }  // namespace
 
 Change ChangedLandmark::change() const {
+  if (counterpart != core::no_landmark) return Change::moved;
   if (missing_in.empty()) return Change::kept;
-  if (missing_in.front() > seen_in.back()) return Change::gone;
+  if (is_gone()) return Change::gone;
   return missing_in.back() < seen_in.front() ? Change::appeared : Change::both;
 }
 
@@ -77,6 +173,8 @@ const char* name_of(Change change) {
       return "new";
     case Change::both:
       return "both";
+    case Change::moved:
+      return "moved";
     case Change::kept:
       break;
   }
@@ -96,8 +194,18 @@ std::vector<ChangedLandmark> shared_landmarks(const std::vector<core::JointMap>&
       grounds.emplace_back(joined.components[number], joined.sessions[k], reach_m);
     }
     add_shared(number, joined.components[number], grounds, members, shared);
+    tell_moved(joined.components[number], number, shared);
   }
   return shared;
+}
+
+void make_gone_tentative(const std::vector<ChangedLandmark>& shared, std::vector<core::JointMap>& components) {
+  for (const ChangedLandmark& landmark : shared) {
+    if (!landmark.is_gone()) continue;
+    core::JointMap& map = components.at(landmark.component);
+    const auto at = std::lower_bound(map.joint.ids.begin(), map.joint.ids.end(), landmark.id);
+    map.states[static_cast<std::size_t>(at - map.joint.ids.begin())] = core::LandmarkState::tentative;
+  }
 }
 
 }  // namespace helixnav::apps

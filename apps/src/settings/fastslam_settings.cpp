@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "config_file.hpp"
+#include "helixnav/fastslam/association_names.hpp"
 #include "setting_options.hpp"
 #include "validators.hpp"
 
@@ -18,15 +18,8 @@ namespace {
 
 using fastslam::Association;
 
-const std::vector<std::pair<std::string, Association>> associations{
-    {"known", Association::known},
-    {"nearest-neighbour", Association::nearest_neighbour},
-    {"likelihood-ratio", Association::likelihood_ratio},
-    {"sampled", Association::sampled},
-    {"multiple-hypotheses", Association::multiple_hypotheses}};
-
 void choose_association(const std::string& word, fastslam::Options& options) {
-  for (const auto& [name, association] : associations) {
+  for (const auto& [name, association] : fastslam::association_names()) {
     if (name == word) options.association = association;
   }
 }
@@ -68,7 +61,7 @@ void add_cloud(CLI::App& command, FastSlamSettings& settings) {
 
 void add_association(CLI::App& command, fastslam::Options& options) {
   std::vector<std::string> names;
-  for (const auto& association : associations) names.push_back(association.first);
+  for (const auto& association : fastslam::association_names()) names.push_back(association.first);
   command
       .add_option_function<std::string>(
           "--fastslam.association", [&options](const std::string& word) { choose_association(word, options); },
@@ -175,7 +168,8 @@ void check_filter(const CLI::App& command, const GivenOptions& given, const Fast
 std::string text_of(const FastSlamSettings& settings) {
   const fastslam::Options& options = settings.options;
   const auto is_chosen = [&](const auto& association) { return association.second == options.association; };
-  const auto chosen = std::find_if(associations.begin(), associations.end(), is_chosen);
+  const auto& names = fastslam::association_names();
+  const auto chosen = std::find_if(names.begin(), names.end(), is_chosen);
   char text[200];
   std::snprintf(text, sizeof text, "FastSLAM %s, %zu particles, association %s, detection probability %.3g%s",
                 options.proposal == fastslam::Proposal::motion ? "1.0" : "2.0", options.particles,

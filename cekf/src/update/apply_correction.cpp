@@ -32,6 +32,23 @@ void whiten(const ReservedMatrix& picked, const ReservedMatrix& G, Index extra, 
             G.stride(), G.cols());
 }
 
+/// The same without G: left = picked·Hᵀ·L⁻ᵀ.
+void whiten_wide(const ReservedMatrix& picked, const UpdateWorkspace& w, Index extra, ReservedMatrix& left) {
+  const Index m = w.H.rows();
+  left.resize(picked.rows(), m + extra);
+  left.set_zero();
+  if (picked.rows() == 0) return;
+  auto W = left.view();
+  for (const Nonzero& h : nonzeros_of(w.H)) W.col(h.row) += h.value * picked.view().col(h.column);
+  const auto L = w.L.view();
+  for (Index j = 0; j < m; ++j) {
+    W.col(j) /= L(j, j);
+    for (Index k = j + 1; k < m; ++k) {
+      if (L(k, j) != 0.0) W.col(k) -= L(k, j) * W.col(j);
+    }
+  }
+}
+
 /// product = picked·gain.
 void multiply(const ReservedMatrix& picked, const ReservedMatrix& gain, ReservedMatrix& product) {
   product.resize(picked.rows(), 1);
@@ -140,8 +157,13 @@ void CompressedEkf::apply_correction(UpdateWorkspace& w, const char* verb) {
     throw core::NumericalError(problem_with(w, verb, "the correction is not finite"));
   }
   const Index extra = transported ? 2 : 0;
-  whiten(w.picked_active, w.G, extra, w.left_active);
-  whiten(w.picked_weights, w.G, extra, w.left_weights);
+  if (is_wide(w)) {
+    whiten_wide(w.picked_active, w, extra, w.left_active);
+    whiten_wide(w.picked_weights, w, extra, w.left_weights);
+  } else {
+    whiten(w.picked_active, w.G, extra, w.left_active);
+    whiten(w.picked_weights, w.G, extra, w.left_weights);
+  }
   if (transported) add_transport(w);
   mirror_columns(w.left_active, transported, w.right_active);
   mirror_columns(w.left_weights, transported, w.right_weights);

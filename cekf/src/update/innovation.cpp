@@ -72,6 +72,40 @@ void solve_in_place(const ReservedMatrix& lower, ReservedMatrix& right) {
   }
 }
 
+/// G = H·P, and L becomes L + G·Hᵀ.
+void multiply_by_sparse(const std::vector<Nonzero>& H, UpdateWorkspace& w) {
+  auto G = w.G.view();
+  const auto P = w.P.view();
+  for (Index j = 0; j < G.cols(); ++j) {
+    for (const Nonzero& h : H) G(h.row, j) += h.value * P(h.column, j);
+  }
+  for (const Nonzero& h : H) w.L.view().col(h.row) += h.value * G.col(h.column);
+}
+
+/// L of S, and y.
+void factor_innovation(UpdateWorkspace& w, const char* verb) {
+  const Index m = w.H.rows();
+  const Index n = w.H.cols();
+  w.G.resize(m, n);
+  w.G.set_zero();
+  w.L = w.R;
+  if (is_wide(w)) {
+    multiply_by_sparse(nonzeros_of(w.H), w);
+  } else {
+    add_outer(w.G.col(0), w.G.stride(), w.G.padded_rows(), n, w.H.col(0), w.H.stride(), w.P.col(0), w.P.stride(), n);
+    add_outer(w.L.col(0), w.L.stride(), w.L.padded_rows(), m, w.G.col(0), w.G.stride(), w.H.col(0), w.H.stride(), n);
+  }
+  core::NumericalHealth health;
+  find_scale(w.L, w.scale);
+  health.asymmetry = asymmetry_of(w.L, w.scale);
+  if (!factor_in_place(w.L, w.scale, health.least_pivot)) {
+    throw core::NumericalError(problem_with(w, verb, "the innovation covariance is not positive definite"));
+  }
+  w.health.note(health);
+  w.y = w.nu;
+  solve_in_place(w.L, w.y);
+}
+
 }  // namespace
 
 void check_observation_of(const Match& match, const char* verb) {
@@ -157,27 +191,31 @@ void linearise_pairs(double sigma_m, UpdateWorkspace& w) {
   }
 }
 
-double solve_innovation(UpdateWorkspace& w, const char* verb) {
-  const Index m = w.H.rows();
-  const Index n = w.H.cols();
-  w.G.resize(m, n);
-  w.G.set_zero();
-  add_outer(w.G.col(0), w.G.stride(), w.G.padded_rows(), n, w.H.col(0), w.H.stride(), w.P.col(0), w.P.stride(), n);
-  w.L = w.R;
-  add_outer(w.L.col(0), w.L.stride(), w.L.padded_rows(), m, w.G.col(0), w.G.stride(), w.H.col(0), w.H.stride(), n);
-  core::NumericalHealth health;
-  find_scale(w.L, w.scale);
-  health.asymmetry = asymmetry_of(w.L, w.scale);
-  if (!factor_in_place(w.L, w.scale, health.least_pivot)) {
-    throw core::NumericalError(problem_with(w, verb, "the innovation covariance is not positive definite"));
+bool is_wide(const UpdateWorkspace& w) { return w.H.cols() >= 512; }
+
+std::vector<Nonzero> nonzeros_of(const ReservedMatrix& H) {
+  std::vector<Nonzero> nonzeros;
+  const auto h = H.view();
+  for (Index row = 0; row < h.rows(); ++row) {
+    for (Index column = 0; column < h.cols(); ++column) {
+      if (h(row, column) != 0.0) nonzeros.push_back({row, column, h(row, column)});
+    }
   }
-  w.health.note(health);
-  w.G = w.H;
-  w.y = w.nu;
-  solve_in_place(w.L, w.G);
-  solve_in_place(w.L, w.y);
-  w.gain.resize(n, 1);
-  w.gain.view().noalias() = w.G.view().transpose().lazyProduct(w.y.view());
+  return nonzeros;
+}
+
+double solve_innovation(UpdateWorkspace& w, const char* verb) {
+  factor_innovation(w, verb);
+  w.gain.resize(w.H.cols(), 1);
+  if (is_wide(w)) {
+    Eigen::VectorXd lambda = w.y.view().col(0);
+    w.L.view().triangularView<Eigen::Lower>().transpose().solveInPlace(lambda);
+    w.gain.view().col(0).noalias() = w.H.view().transpose() * lambda;
+  } else {
+    w.G = w.H;
+    solve_in_place(w.L, w.G);
+    w.gain.view().noalias() = w.G.view().transpose().lazyProduct(w.y.view());
+  }
   return w.y.view().squaredNorm();
 }
 

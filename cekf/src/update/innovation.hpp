@@ -28,8 +28,19 @@ void linearise_sightings(const std::vector<Match>& matches, UpdateWorkspace& w, 
 void linearise_fix(const core::AbsoluteFix& fix, UpdateWorkspace& w);
 void linearise_pairs(double sigma_m, UpdateWorkspace& w);
 
-/// S = H·P·Hᵀ + R = L·Lᵀ, G = L⁻¹H, y = L⁻¹ν, gain = HᵀS⁻¹ν; returns νᵀS⁻¹ν. NumericalError when S is not positive
-/// definite. Noted in w.health.
+/// An update of so many landmarks that H is taken for what it is: zero but for the vehicle and one or two landmarks a row.
+/// Maps are joined so. No scan is (core::most_observations_used aside), and nothing is allocated for others.
+bool is_wide(const UpdateWorkspace& w);
+struct Nonzero {
+  Eigen::Index row;
+  Eigen::Index column;
+  double value;
+};
+/// Row by row.
+std::vector<Nonzero> nonzeros_of(const ReservedMatrix& H);
+
+/// S = H·P·Hᵀ + R = L·Lᵀ, G = L⁻¹H unless the update is wide, y = L⁻¹ν, gain = HᵀS⁻¹ν; returns νᵀS⁻¹ν. NumericalError when S
+/// is not positive definite. Noted in w.health.
 double solve_innovation(UpdateWorkspace& w, const char* verb);
 
 }  // namespace helixnav::cekf

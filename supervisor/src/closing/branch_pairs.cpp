@@ -7,6 +7,7 @@
 
 #include <Eigen/LU>
 
+#include "closing/contradicting_pairs.hpp"
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
@@ -88,6 +89,26 @@ void note(const KeptRemoved& pairs, Closing& closing) {
   for (const auto& [kept, removed] : pairs) closing.merged.push_back({kept, removed});
 }
 
+namespace {
+
+/// Of few pairs one, after which the rest is solved anew; of many, as sessions have in common, all that contradict the rest.
+void drop_worst(const cekf::CompressedEkf& filter, const SearchOptions& options, const std::vector<double>& parts,
+                KeptRemoved& pairs, Closing& closing) {
+  constexpr std::size_t many = 64;
+  std::vector<std::size_t> worst;
+  if (pairs.size() > many) {
+    worst = contradicting_pairs(filter, pairs, options.merge_sigma_m, options.closing_probability,
+                                static_cast<std::size_t>(options.most_dropped - closing.dropped));
+  }
+  if (worst.empty()) {
+    worst.push_back(static_cast<std::size_t>(std::max_element(parts.begin(), parts.end()) - parts.begin()));
+  }
+  for (std::size_t k = worst.size(); k-- > 0;) pairs.erase(pairs.begin() + static_cast<std::ptrdiff_t>(worst[k]));
+  closing.dropped += static_cast<int>(worst.size());
+}
+
+}  // namespace
+
 bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& options, KeptRemoved& pairs,
                      Closing& closing) {
   while (true) {
@@ -101,9 +122,7 @@ bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& opt
     }
     if (cost->cost <= closing.limit) return true;
     if (closing.dropped == options.most_dropped || pairs.size() <= least_pairs) return false;
-    const auto worst = std::max_element(cost->parts.begin(), cost->parts.end()) - cost->parts.begin();
-    pairs.erase(pairs.begin() + worst);
-    ++closing.dropped;
+    drop_worst(filter, options, cost->parts, pairs, closing);
   }
 }
 

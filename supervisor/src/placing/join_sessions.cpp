@@ -48,6 +48,14 @@ core::JointGaussian renamed(const EarlierMap& session, LandmarkId from) {
   return joint;
 }
 
+/// All landmarks active: pairs are all over the map, and nothing is to be left passive and brought up to date later.
+cekf::FilterOptions without_regions(cekf::FilterOptions options, std::size_t landmarks) {
+  constexpr double whole_world_m = 1e9;
+  options.cell_side_m = whole_world_m;
+  options.max_active_landmarks = std::max(options.max_active_landmarks, static_cast<int>(landmarks));
+  return options;
+}
+
 core::PlacedDecision decision_of(const std::vector<relocalize::Answer>& answers, const core::JointMap& component) {
   core::PlacedDecision decision;
   decision.verdict = core::PlacedDecision::Verdict::not_here;
@@ -112,7 +120,8 @@ bool place_in(const core::JointMap& session_map, JoinedSession& result, core::Jo
   if (answers.empty() || answers.front().verdict != relocalize::Verdict::closed) return false;
   const LandmarkId offset = component.next_name;
   const core::JointGaussian joint = renamed(session, offset);
-  const cekf::CompressedEkf filter(joint, offset + session.next_name(), options.filter);
+  const std::size_t together = joint.ids.size() + earlier.landmarks().ids.size();
+  const cekf::CompressedEkf filter(joint, offset + session.next_name(), without_regions(options.filter, together));
   constexpr std::size_t most_tried = 3;
   for (std::size_t k = 0; k < std::min(most_tried, answers.size()); ++k) {
     if (answers[k].verdict != relocalize::Verdict::closed) break;

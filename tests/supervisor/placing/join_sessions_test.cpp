@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -124,6 +125,30 @@ TEST(JoinSessions, TheOrderOfTheSessionsDoesNotMatter) {
       for (std::size_t i = 0; i < found_m.size(); ++i) EXPECT_LT((found_m[i] - expected_m[i]).norm(), 1e-6);
     }
   }
+}
+
+/// Largest first, and of those that a session does not reach the next: whatever the order they are named in.
+TEST(JoinSessions, FiveSessionsInAll120OrdersAreOneMap) {
+  const std::vector<Eigen::Vector2d> trees_m = grove(21, 150);
+  std::vector<MappedSession> sessions;
+  for (const auto& [from_m, to_m] : {std::pair{0.0, 45.0}, {25.0, 70.0}, {50.0, 95.0}, {75.0, 120.0}, {10.0, 60.0}}) {
+    sessions.emplace_back(trees_m, from_m, to_m, 211 + sessions.size());
+  }
+  const std::vector<core::JointMap> maps = maps_of(sessions);
+  const auto expected_m = points_by_x(join_sessions(maps).components.at(0));
+  std::vector<std::size_t> order{0, 1, 2, 3, 4};
+  do {
+    std::vector<core::JointMap> shuffled;
+    for (const std::size_t k : order) shuffled.push_back(maps[k]);
+    const JoinedSessions joined = join_sessions(shuffled);
+    ASSERT_EQ(joined.components.size(), 1u);
+    const auto found_m = points_by_x(joined.components[0]);
+    ASSERT_EQ(found_m.size(), expected_m.size());
+    for (std::size_t i = 0; i < found_m.size(); ++i) ASSERT_LT((found_m[i] - expected_m[i]).norm(), 1e-6);
+    for (std::size_t a = 0; a < order.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) ASSERT_EQ(wrong_pairs(joined.sessions[a], joined.sessions[b]), 0);
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
 }
 
 TEST(JoinSessions, TakingASessionOutIsJoiningTheOthers) {

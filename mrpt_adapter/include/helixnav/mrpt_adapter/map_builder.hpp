@@ -28,7 +28,8 @@ class CTimeLogger;
 namespace helixnav::mrpt_adapter {
 
 /// HelixNav's Navigator as a map builder of MRPT: landmark SLAM in the plane with a compressed EKF, unknown association,
-/// and loops closed by a particle filter. It stands where CRangeBearingKFSLAM2D or another CMetricMapBuilder stood.
+/// and loops closed by a particle filter; or FastSLAM, where options.filter says so. It stands where CRangeBearingKFSLAM2D or
+/// another CMetricMapBuilder stood.
 ///
 /// What it reads. Motion: the best CActionRobotMovement2D of the actions (else CActionRobotMovement3D, its planar part),
 /// else the increments of CObservationOdometry among the observations, else unknown motion of options.stdXY_no_odo.
@@ -58,13 +59,13 @@ class MapBuilder : public mrpt::slam::CMetricMapBuilder {
 
   // What CMetricMapBuilder asks for.
 
-  /// Forgets everything and starts at x0, at the origin without. A past map cannot be taken over: a CSimpleMap has no
-  /// covariance between its frames, so InputError unless it is empty.
+  /// Forgets everything and starts at x0, at the origin without. A past map comes from a run folder (below): a CSimpleMap has
+  /// no covariance between its frames, so InputError unless it is empty.
   void initialize(const mrpt::maps::CSimpleMap& initialMap = mrpt::maps::CSimpleMap(),
                   const mrpt::poses::CPosePDF* x0 = nullptr) override;
 
   /// CPose3DPDFGaussian while mapping; CPose3DPDFParticles, up to some 600 of equal weight, while a particle filter
-  /// looks for the vehicle on old ground. The pose of the map that goes on meanwhile is getCurrentState's. Either is as
+  /// looks for the vehicle on old ground, and those of FastSLAM with their weights. The pose of the map that goes on meanwhile is getCurrentState's. Either is as
   /// of the last landmark observation or fix: motion since then reaches the filter with the next.
   mrpt::poses::CPose3DPDF::Ptr getCurrentPoseEstimation() const override;
 
@@ -82,6 +83,35 @@ class MapBuilder : public mrpt::slam::CMetricMapBuilder {
   /// Map, path and pose from above, in the format that the file's name ends in (png, jpg, bmp; else .png is appended).
   /// formatEMF_BMP is not looked at: MRPT writes no EMF here. InputError when the file cannot be written.
   void saveCurrentEstimationToImage(const std::string& file, bool formatEMF_BMP = true) override;
+
+  // Yesterday's map (docs/yesterdays_map.md). With FastSLAM all of these are PreconditionErrors.
+
+  /// Forgets everything and goes on in the map of a run folder (map.bin in it, as helixnav, helixnav-slam and saveMapToFolder
+  /// write it), from x0 on that map. Without x0 the vehicle may be anywhere: it maps on its own, poses are in the frame of
+  /// where it began, and the place is sought by landmarks until isPlaceKnown(); from then on there is one map, in the frame of
+  /// the earlier one. Landmarks of the map have no names, so landmarkIDs are passed over. InputError where the folder
+  /// has no map, or one with too few mature landmarks; everything is then as before.
+  /// Test: mrpt_adapter/earlier_map_test.cpp.
+  void initializeFromRun(const std::string& runFolder, const mrpt::poses::CPosePDF* x0 = nullptr);
+
+  /// A run folder, or the map.bin in it, as initializeFromRun() does from anywhere; any other file as MRPT does, which loads a
+  /// CSimpleMap (InputError unless it is empty). Hides MRPT's, which is not virtual: call it on a MapBuilder.
+  void loadCurrentMapFromFile(const std::string& fileName);
+
+  /// The vehicle is at x0 on the map: on the earlier one, as long as its place on that is sought (what was mapped meanwhile is
+  /// dropped), else on the present one. The path begins anew; landmarks keep their numbers and correlations. O(N²).
+  void setInitialPose(const mrpt::poses::CPosePDF& x0);
+
+  /// The vehicle was carried, or is lost: its place on all that is mapped is sought from here on, without a prior, as
+  /// supervisor::Navigator::lose describes. PreconditionError where landmarks are known by landmarkID.
+  void relocalize();
+
+  /// False from loading a map without a pose, or from relocalize(), until the place is found.
+  bool isPlaceKnown() const;
+
+  /// Writes map.csv and map.bin into a folder, which is made: what initializeFromRun() goes on in. Where the place is still sought it
+  /// is the map since then. InputError where it cannot be written or has more than runs::most_joint_landmarks landmarks.
+  void saveMapToFolder(const std::string& folder) const;
 
   // Beyond.
 

@@ -59,7 +59,20 @@ class MapBuilderOptions : public mrpt::config::CLoadableOptions {
   double gps_longitude_deg = 0.0;
   double gps_altitude = 0.0;
 
-  // The filter and the search for old ground.
+  std::string filter =
+      "compressed-ekf";  ///< or fastslam, with the keys that begin so and no other of filter and search
+  // As in `helixnav replay --filter fastslam` (docs/fastslam.md).
+  std::uint64_t fastslam_particles = 200;
+  std::uint64_t fastslam_version = 2;  ///< 1: poses drawn from odometry; 2: corrected by the landmarks matched
+  std::uint64_t fastslam_seed = 1;
+  std::uint64_t fastslam_threads = 1;                     ///< results do not depend on it
+  std::string fastslam_association = "likelihood-ratio";  ///< where landmarks have no landmarkID
+  bool fastslam_weigh_unseen = true;
+  double fastslam_detection_probability = 0.9;
+  double fastslam_new_density = 0.01;
+  double fastslam_clutter_density = 0.01;
+
+  // The compressed EKF and the search for old ground.
   std::string retraction = "right-invariant";  ///< or standard: as kf-slam corrects
   // Lengths that are left at their defaults follow the reach that the first observation states (supervisor/lengths.hpp).
   double cell_side = 20.0;

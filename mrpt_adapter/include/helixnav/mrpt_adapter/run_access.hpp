@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "helixnav/core/joint_map.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/mrpt_adapter/map_builder.hpp"
 
@@ -22,6 +24,8 @@ class RunAccess {
   /// Of the last processActionObservation or processObservation; empty when it held nothing to see.
   static const std::vector<Step>& last_steps(const MapBuilder& builder);
   static std::vector<core::MapLandmark> map(const MapBuilder& builder);
+  /// What another session needs to go on; nothing of FastSLAM.
+  static std::optional<core::JointMap> joint_map(const MapBuilder& builder);
   static core::PoseGaussian pose(const MapBuilder& builder);
 };
 

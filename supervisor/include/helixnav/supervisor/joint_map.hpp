@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
@@ -16,5 +17,13 @@ core::JointMap joint_map(core::JointGaussian joint, core::LandmarkId next_name,
                          const std::vector<core::MapLandmark>& landmarks);
 /// In the order of `landmarks`.
 std::vector<core::LandmarkId> ids_of(const std::vector<core::MapLandmark>& landmarks);
+
+/// The same of a navigator with all landmarks of its map, as listed: a filter that holds a part of them may have names of its own.
+template <class Navigator>
+core::JointMap joint_map(const Navigator& navigator, const std::vector<core::MapLandmark>& landmarks) {
+  const core::LandmarkId after_last = landmarks.empty() ? 0 : landmarks.back().id + 1;
+  const core::LandmarkId next_name = std::max(navigator.filter().next_name(), after_last);
+  return joint_map(navigator.joint(ids_of(landmarks)), next_name, landmarks);
+}
 
 }  // namespace helixnav::supervisor

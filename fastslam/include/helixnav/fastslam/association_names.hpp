@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "helixnav/fastslam/options.hpp"
+
+namespace helixnav::fastslam {
+
+/// What configurations call the kinds of association.
+inline const std::vector<std::pair<std::string, Association>>& association_names() {
+  static const std::vector<std::pair<std::string, Association>> names{
+      {"known", Association::known},
+      {"nearest-neighbour", Association::nearest_neighbour},
+      {"likelihood-ratio", Association::likelihood_ratio},
+      {"sampled", Association::sampled},
+      {"multiple-hypotheses", Association::multiple_hypotheses}};
+  return names;
+}
+
+}  // namespace helixnav::fastslam

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "closing/contradicting_pairs.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "helixnav/core/chi2.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+using Index = Eigen::Index;
+
+/// Differences of the pairs, Gaussian: ν and S.
+struct Differences {
+  Eigen::VectorXd nu_m;
+  Eigen::MatrixXd S_m2;
+};
+
+Differences differences(const cekf::CompressedEkf& filter, const KeptRemoved& pairs, double sigma_m) {
+  std::vector<core::LandmarkId> ids;
+  for (const auto& [kept, removed] : pairs) ids.insert(ids.end(), {kept, removed});
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  const core::JointGaussian joint = filter.joint(ids);
+  const auto row_of = [&](core::LandmarkId id) {
+    return 3 + 2 * static_cast<Index>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+  };
+  const auto n = 2 * static_cast<Index>(pairs.size());
+  Differences result{Eigen::VectorXd(n), Eigen::MatrixXd(n, n)};
+  Eigen::MatrixXd PHt(joint.covariance.rows(), n);
+  for (Index k = 0; k < n; k += 2) {
+    const auto& [kept, removed] = pairs[static_cast<std::size_t>(k / 2)];
+    PHt.middleCols<2>(k) =
+        joint.covariance.middleCols<2>(row_of(kept)) - joint.covariance.middleCols<2>(row_of(removed));
+    const auto place = [&](core::LandmarkId id) {
+      return joint.points_m[static_cast<std::size_t>((row_of(id) - 3) / 2)];
+    };
+    result.nu_m.segment<2>(k) = place(removed) - place(kept);
+  }
+  for (Index k = 0; k < n; k += 2) {
+    const auto& [kept, removed] = pairs[static_cast<std::size_t>(k / 2)];
+    result.S_m2.middleRows<2>(k) = PHt.middleRows<2>(row_of(kept)) - PHt.middleRows<2>(row_of(removed));
+  }
+  result.S_m2.diagonal().array() += sigma_m * sigma_m;
+  return result;
+}
+
+/// χ² of the pairs that are left, and S⁻¹ of those.
+class Remaining {
+ public:
+  explicit Remaining(const Differences& differences)
+      : S_m2_(differences.S_m2),
+        K_(differences.S_m2.llt().solve(Eigen::MatrixXd::Identity(S_m2_.rows(), S_m2_.cols()))),
+        lambda_(K_ * differences.nu_m),
+        cost_(lambda_.dot(differences.nu_m)),
+        is_left_(static_cast<std::size_t>(S_m2_.rows() / 2), true),
+        dof_(static_cast<int>(S_m2_.rows())) {}
+
+  double cost() const { return cost_; }
+  int dof() const { return dof_; }
+
+  /// The pair with the largest share: λ_kᵀ·S_kk·λ_k.
+  std::size_t worst() const {
+    std::size_t worst = 0;
+    double largest = -1.0;
+    for (std::size_t k = 0; k < is_left_.size(); ++k) {
+      const auto row = 2 * static_cast<Index>(k);
+      const Eigen::Vector2d lambda = lambda_.segment<2>(row);
+      const double share = lambda.dot(S_m2_.block<2, 2>(row, row) * lambda);
+      if (is_left_[k] && share > largest) largest = share, worst = k;
+    }
+    return worst;
+  }
+
+  void leave_out(std::size_t pair) {
+    const auto row = 2 * static_cast<Index>(pair);
+    const Eigen::Matrix2d own = K_.block<2, 2>(row, row).inverse();
+    const Eigen::MatrixXd column = K_.middleCols<2>(row);
+    const Eigen::Vector2d lambda = lambda_.segment<2>(row);
+    cost_ -= lambda.dot(own * lambda);
+    lambda_ -= column * (own * lambda);
+    K_.noalias() -= column * own * column.transpose();
+    is_left_[pair] = false;
+    dof_ -= 2;
+  }
+
+ private:
+  Eigen::MatrixXd S_m2_, K_;
+  Eigen::VectorXd lambda_;
+  double cost_;
+  std::vector<bool> is_left_;
+  int dof_;
+};
+
+}  // namespace
+
+std::vector<std::size_t> contradicting_pairs(const cekf::CompressedEkf& filter, const KeptRemoved& pairs,
+                                             double sigma_m, double closing_probability, std::size_t most) {
+  Remaining remaining(differences(filter, pairs, sigma_m));
+  std::vector<std::size_t> left_out;
+  while (left_out.size() < most && remaining.dof() > 2 * static_cast<int>(least_pairs) &&
+         remaining.cost() > core::chi2_quantile(closing_probability, remaining.dof())) {
+    left_out.push_back(remaining.worst());
+    remaining.leave_out(left_out.back());
+  }
+  std::sort(left_out.begin(), left_out.end());
+  return left_out;
+}
+
+}  // namespace helixnav::supervisor

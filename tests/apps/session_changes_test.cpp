@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "join/session_changes.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "helixnav/core/random.hpp"
+#include "join/joined_page.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+/// A joined map of two sessions: trees of a grid of 5 m, disturbed, which both have but for what a test takes out or adds.
+class TwoSessions {
+ public:
+  TwoSessions() {
+    core::RandomStream random(4, "two sessions");
+    for (int k = 0; k < 100; ++k) {
+      const double x_m = 5.0 * (k % 10) + random.uniform(-1.0, 1.0);
+      add({x_m, 5.0 * (k / 10) + random.uniform(-1.0, 1.0)}, true, true);
+    }
+  }
+
+  core::LandmarkId add(const Eigen::Vector2d& at_m, bool first, bool second) {
+    const core::LandmarkId id = map_.next_name++;
+    map_.joint.ids.push_back(id);
+    map_.joint.points_m.push_back(at_m);
+    map_.states.push_back(core::LandmarkState::mature);
+    map_.observations.push_back(5);
+    if (first) sessions_[0].name_of[id] = id;
+    if (second) sessions_[1].name_of[id] = id;
+    return id;
+  }
+  void take_out(core::LandmarkId id, std::size_t session) { sessions_[session].name_of.erase(id); }
+  Eigen::Vector2d place_m(core::LandmarkId id) const { return map_.joint.points_m[static_cast<std::size_t>(id)]; }
+
+  supervisor::JoinedSessions joined() const {
+    supervisor::JoinedSessions joined;
+    joined.sessions = {sessions_[0], sessions_[1]};
+    joined.components = {map_};
+    return joined;
+  }
+  std::vector<ChangedLandmark> changes() const {
+    core::JointMap map = map_;
+    map.reach_m = 20.0;
+    return shared_landmarks({map, map}, joined());
+  }
+  Change of(core::LandmarkId id) const {
+    const std::vector<ChangedLandmark> all = changes();
+    return std::find_if(all.begin(), all.end(), [&](const ChangedLandmark& one) { return one.id == id; })->change();
+  }
+
+ private:
+  core::JointMap map_;
+  supervisor::JoinedSession sessions_[2];
+};
+
+TEST(SessionChanges, GoneAndNewFarFromEachOtherAreThat) {
+  TwoSessions world;
+  world.take_out(44, 1);
+  const core::LandmarkId grown = world.add({12.5, 12.5}, false, true);
+  EXPECT_EQ(world.of(44), Change::gone);
+  EXPECT_EQ(world.of(grown), Change::appeared);
+  EXPECT_EQ(world.of(45), Change::kept);
+}
+
+TEST(SessionChanges, BeyondTheRimOfWhatASessionMappedNothingIsGone) {
+  TwoSessions world;
+  for (core::LandmarkId id = 0; id < 100; ++id) {
+    if (id % 10 >= 6) world.take_out(id, 1);  // the second came up to x = 25 m only
+  }
+  const std::vector<ChangedLandmark> changes = world.changes();
+  EXPECT_TRUE(std::none_of(changes.begin(), changes.end(), [](const ChangedLandmark& one) { return one.is_gone(); }));
+}
+
+TEST(SessionChanges, GoneAndNewNearerThanChanceMoved) {
+  TwoSessions world;
+  world.take_out(44, 1);
+  const core::LandmarkId moved = world.add(world.place_m(44) + Eigen::Vector2d(0.5, 0.3), false, true);
+  EXPECT_EQ(world.of(44), Change::moved);
+  EXPECT_EQ(world.of(moved), Change::moved);
+  for (const ChangedLandmark& landmark : world.changes()) {
+    if (landmark.change() != Change::moved) continue;
+    EXPECT_EQ(landmark.counterpart, landmark.id == moved ? 44 : moved);
+  }
+}
+
+TEST(SessionChanges, WhereMuchIsNewTheSameDistanceIsChance) {
+  TwoSessions world;
+  world.take_out(44, 1);
+  world.add(world.place_m(44) + Eigen::Vector2d(0.5, 0.3), false, true);
+  core::RandomStream random(9, "undergrowth");
+  for (int k = 0; k < 100; ++k) {
+    const double x_m = random.uniform(0.0, 45.0);
+    world.add({x_m, random.uniform(0.0, 45.0)}, false, true);
+    if (k % 4 == 0 && k != 44) world.take_out(k, 1);
+  }
+  EXPECT_EQ(world.of(44), Change::gone);
+}
+
+TEST(SessionChanges, MovedGoesFromTheEarlierPlaceToTheLaterOneWhateverTheIds) {
+  TwoSessions world;
+  world.take_out(44, 0);
+  const core::LandmarkId gone = world.add(world.place_m(44) + Eigen::Vector2d(0.5, 0.3), true, false);
+  EXPECT_EQ(world.of(gone), Change::moved) << "from where it was in the first to where it is in the second";
+  EXPECT_EQ(world.of(44), Change::moved);
+}
+
+TEST(SessionChanges, WhatIsGoneIsTentativeFromThenOn) {
+  TwoSessions world;
+  world.take_out(44, 1);
+  world.take_out(45, 0);
+  supervisor::JoinedSessions joined = world.joined();
+  make_gone_tentative(world.changes(), joined.components);
+  EXPECT_EQ(joined.components[0].states[44], core::LandmarkState::tentative);
+  EXPECT_EQ(std::count(joined.components[0].states.begin(), joined.components[0].states.end(),
+                       core::LandmarkState::tentative),
+            1);
+}
+
+TEST(SessionChanges, ThePageHasAMarkForEachAndNamesTheSessions) {
+  TwoSessions world;
+  world.take_out(44, 1);
+  world.take_out(11, 1);
+  world.add(world.place_m(11) + Eigen::Vector2d(0.3, 0.0), false, true);
+  const std::string page = joined_page({"monday", "tues<day"}, world.joined(), world.changes());
+  EXPECT_NE(page.find("landmark 44: gone; seen in monday; not in tues&lt;day"), std::string::npos);
+  EXPECT_NE(page.find("landmark 11: moved"), std::string::npos);
+  EXPECT_NE(page.find("1 gone"), std::string::npos);
+  EXPECT_NE(page.find("1 moved"), std::string::npos);
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace helixnav::apps
