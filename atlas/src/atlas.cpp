@@ -6,20 +6,6 @@
 #include "tree/state.hpp"
 
 namespace helixnav::atlas {
-namespace {
-
-int add_pose(State& state, const core::Pose2& T_atlas_pose, int name) {
-  Variable variable;
-  variable.dim = 3;
-  variable.name = name;
-  state.variables.push_back(variable);
-  state.values.push_back(T_atlas_pose.vector());
-  state.phases_of.push_back(std::make_shared<const std::vector<int>>());
-  return static_cast<int>(state.variables.size()) - 1;
-}
-
-}  // namespace
-
 Atlas::Atlas(const core::PoseGaussian& start, const Options& options)
     : working_(std::make_unique<State>()), settled_(std::make_unique<State>()) {
   const bool is_certain = start.covariance.isZero(0.0);
@@ -30,11 +16,11 @@ Atlas::Atlas(const core::PoseGaussian& start, const Options& options)
   state.options = options;
   state.start = start;
   if (is_certain) {
-    state.world = add_pose(state, start.mean, 0);
+    state.world = add_variable(state, 3, 0, start.mean.vector());
     state.variable_of_clone.push_back(state.world);
   } else {
-    state.world = add_pose(state, core::Pose2(), -1);
-    state.variable_of_clone.push_back(add_pose(state, start.mean, 0));
+    state.world = add_variable(state, 3, -1, Eigen::Vector3d::Zero());
+    state.variable_of_clone.push_back(add_variable(state, 3, 0, start.mean.vector()));
   }
   *settled_ = state;
 }

@@ -32,6 +32,34 @@ TEST(Settle, StoppedAfterEveryNodeLeavesAConsistentMapAndEndsInTheSameBits) {
   EXPECT_TRUE(testing::same_bytes(AtlasAccess::settled(once), AtlasAccess::settled(stopped)));
 }
 
+TEST(Settle, StoppedAtAnyNodeAndThenChangedStillEndsAtTheOptimum) {
+  const testing::SmallDrive drive = testing::make_small_drive(6);
+  Atlas begun({}, testing::exact());
+  for (std::size_t k = 0; k < 5; ++k) testing::add_phase(begun, drive.logs[k]);
+  const double chi2_before = begun.chi2();
+  const auto add = [&drive](Atlas& atlas, std::size_t k) {
+    atlas.add(derive_factor(*drive.logs[k], dead_reckon(*drive.logs[k])), drive.logs[k]);
+  };
+  add(begun, 5);
+  Atlas at_once = begun;
+  add(at_once, 6);
+  ASSERT_TRUE(at_once.settle());
+  bool is_whole = false;
+  int nodes = 0;
+  for (; !is_whole && nodes < 1000; ++nodes) {
+    Atlas atlas = begun;
+    int left = nodes;
+    is_whole = atlas.settle([&left] { return --left < 0; });
+    if (!is_whole) ASSERT_EQ(atlas.chi2(), chi2_before) << nodes;
+    add(atlas, 6);
+    ASSERT_TRUE(atlas.settle()) << nodes;
+    ASSERT_NEAR(atlas.chi2(), at_once.chi2(), 1e-6) << nodes;
+    ASSERT_LT((atlas.pose().vector() - at_once.pose().vector()).norm(), 1e-6) << nodes;
+  }
+  EXPECT_TRUE(is_whole);
+  EXPECT_GT(nodes, 20);
+}
+
 TEST(Settle, OfANewPhaseEqualsAFullPassBitForBit) {
   const testing::SmallDrive drive = testing::make_small_drive(7);
   Atlas atlas = testing::driven(drive, Options());

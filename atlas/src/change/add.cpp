@@ -62,16 +62,6 @@ void check_determined(const State& state, const PhaseFactor& factor) {
   throw core::NumericalError("atlas: the phase does not determine its exit or landmarks:" + names);
 }
 
-int add_variable(State& state, int dim, int name, const Eigen::Vector3d& value) {
-  Variable variable;
-  variable.dim = dim;
-  variable.name = name;
-  state.variables.push_back(variable);
-  state.values.push_back(value);
-  state.phases_of.push_back(std::make_shared<const std::vector<int>>());
-  return static_cast<int>(state.variables.size()) - 1;
-}
-
 /// Mean and sum of squared distances of points from it.
 struct Spread {
   Eigen::Vector2d mean_m = Eigen::Vector2d::Zero();
@@ -209,8 +199,7 @@ void hang_beside(State& state, int leaf, int beside) {
   TreeNode joint;
   joint.parent = parent;
   joint.child = {beside, leaf};
-  state.nodes.push_back(joint);
-  const int id = static_cast<int>(state.nodes.size()) - 1;
+  const int id = add_node(state, joint);
   state.nodes.write(State::index(beside)).parent = id;
   state.nodes.write(State::index(leaf)).parent = id;
   if (parent < 0) {
@@ -237,8 +226,7 @@ void insert(State& state, Leaf leaf) {
   state.phases.push_back(std::make_shared<const Leaf>(std::move(leaf)));
   TreeNode node;
   node.phase = phase;
-  state.nodes.push_back(node);
-  const int id = static_cast<int>(state.nodes.size()) - 1;
+  const int id = add_node(state, node);
   state.leaf_of_phase.push_back(id);
   if (beside < 0) {
     state.root = id;

@@ -43,6 +43,7 @@ void Atlas::fix(int clone, const core::AbsoluteFix& fix) {
   const int v = state.variable_of_clone[State::index(clone)];
   const int phase = std::max(clone - 1, 0);
   const int node = state.leaf_of_phase[State::index(phase)];
+  if (node < 0) throw core::PreconditionError("atlas: fix of a phase that was condensed");
   Estimates estimates(state);
   estimates.reach(node);
   estimates.reach(state.variable(state.world).at);

@@ -17,6 +17,15 @@ int find_named(const State& state, core::LandmarkId id) {
 
 core::Pose2 pose_of(const Eigen::Vector3d& value) { return core::Pose2(value); }
 
+/// A clone in the atlas' own frame. One between two phases that were condensed is where the second began, seen from its host.
+core::Pose2 T_atlas_clone(const State& state, Estimates& estimates, int k) {
+  const int v = state.variable_of_clone[State::index(k)];
+  if (state.variable(v).at >= 0 || k == static_cast<int>(state.phases.size())) return pose_of(estimates.of(v));
+  const Leaf& leaf = state.leaf(k);
+  if (leaf.host < 0) return pose_of(estimates.of(v));
+  return core::compose(T_atlas_clone(state, estimates, leaf.host), leaf.T_host_entry);
+}
+
 }  // namespace
 
 core::Pose2 T_map_atlas(const State& state, Estimates& estimates) {
@@ -44,7 +53,7 @@ core::Pose2 Atlas::clone(int k) const {
   }
   Estimates estimates(state);
   const core::Pose2 T_map = T_map_atlas(state, estimates);
-  return core::compose(T_map, pose_of(estimates.of(state.variable_of_clone[State::index(k)])));
+  return core::compose(T_map, T_atlas_clone(state, estimates, k));
 }
 
 Eigen::Vector2d Atlas::landmark(core::LandmarkId id) const {
@@ -78,7 +87,7 @@ std::vector<core::Pose2> Atlas::clones() const {
   const core::Pose2 T_map = T_map_atlas(state, estimates);
   std::vector<core::Pose2> poses;
   for (std::size_t k = 0; k < state.variable_of_clone.size(); ++k) {
-    poses.push_back(core::compose(T_map, pose_of(estimates(state.variable_of_clone[k]))));
+    poses.push_back(core::compose(T_map, T_atlas_clone(state, estimates, static_cast<int>(k))));
   }
   return poses;
 }
@@ -87,9 +96,10 @@ std::vector<core::Pose2> Atlas::poses_of(int phase) const {
   if (phase < 0 || phase >= phase_count()) {
     throw core::PreconditionError("atlas: no phase " + std::to_string(phase));
   }
-  const core::Pose2 T_map_entry = clone(phase);
+  const Leaf& leaf = settled_->leaf(phase);
+  const core::Pose2 T_map_entry = leaf.host < 0 ? clone(phase) : core::compose(clone(leaf.host), leaf.T_host_entry);
   std::vector<core::Pose2> poses;
-  for (const core::Pose2& T_entry_robot : settled_->leaf(phase).phase->shape.T_entry_robot) {
+  for (const core::Pose2& T_entry_robot : leaf.phase->shape.T_entry_robot) {
     poses.push_back(core::compose(T_map_entry, T_entry_robot));
   }
   return poses;
@@ -115,6 +125,7 @@ Atlas::Size Atlas::size() const {
   Size size;
   size.phases = phase_count();
   if (settled_->root < 0) return size;
+  for (std::size_t k = 0; k < settled_->phases.size(); ++k) size.condensed += settled_->phases[k]->host >= 0 ? 1 : 0;
   size.root_front = settled_->node(settled_->root).shape->ne;
   measure(*settled_, settled_->root, 0, size);
   return size;

@@ -38,7 +38,8 @@ void add_part(const State& state, const Part& part, const FrontShape& shape, Eig
     for (int i = 0; i < state.variable(v).dim; ++i) to.push_back(row + i);
   }
   to.push_back(F.rows() - 1);
-  const Eigen::MatrixXd A = world_form(*part.gaussian, values);
+  Eigen::MatrixXd A = world_form(*part.gaussian, values);
+  if (part.weight != 1.0) A *= part.weight;
   for (std::size_t j = 0; j < to.size(); ++j) {
     for (std::size_t i = j; i < to.size(); ++i) {
       const double a = A(static_cast<Index>(i), static_cast<Index>(j));

@@ -8,10 +8,11 @@
 
 namespace helixnav::atlas {
 
-Values solve_down(const State& state, const FrontShape& shape, const Front& front, const Motion& boundary) {
+Values solve_down(const State& state, const FrontShape& shape, const Front& front, const Motion& boundary,
+                  double share) {
   Values values;
   if (shape.ne == 0) return values;
-  Eigen::VectorXd y = front.L.bottomRows<1>().transpose();
+  Eigen::VectorXd y = share * front.L.bottomRows<1>().transpose();
   if (boundary.rest.size() > 0) y.noalias() -= front.L.middleRows(shape.ne, shape.nb).transpose() * boundary.rest;
   front.L.topRows(shape.ne).triangularView<Eigen::Lower>().transpose().solveInPlace(y);
   for (int i = 0; i < shape.eliminated; ++i) {

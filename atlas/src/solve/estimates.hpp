@@ -10,8 +10,10 @@
 
 namespace helixnav::atlas {
 
-/// Values of the variables a node eliminates, given those of its boundary: x = g(lin + L₁₁⁻ᵀ(y − L₂₁ᵀe)).
-Values solve_down(const State& state, const FrontShape& shape, const Front& front, const Motion& boundary);
+/// Values of the variables a node eliminates, given those of its boundary: x = g(lin + L₁₁⁻ᵀ(s·y − L₂₁ᵀe)), s the share of the
+/// step to the solution.
+Values solve_down(const State& state, const FrontShape& shape, const Front& front, const Motion& boundary,
+                  double share = 1.0);
 
 /// Estimates as they follow from the top of the tree. Settling leaves parts of the map alone that have moved as a whole; their
 /// values are brought along here when they are asked for, one path at a time, and the state stays as it is.

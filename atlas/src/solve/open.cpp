@@ -126,6 +126,7 @@ void finish_descent(State& state) {
     open(state, node);
   }
   state.descending = false;
+  state.begun = nullptr;
 }
 
 }  // namespace helixnav::atlas

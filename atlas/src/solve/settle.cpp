@@ -5,6 +5,7 @@
 #include <string>
 
 #include "helixnav/core/errors.hpp"
+#include "solve/damped.hpp"
 #include "solve/eliminate.hpp"
 
 namespace helixnav::atlas {
@@ -40,6 +41,21 @@ bool sweep(State& state, int& redone, const std::function<bool()>& should_stop) 
   return true;
 }
 
+/// Ways up and down until nothing is bent. False when it was stopped.
+bool go_on(State& state, int& redone, const std::function<bool()>& should_stop) {
+  while (!state.is_clean()) {
+    if (++state.rounds > state.options.max_rounds) {
+      throw core::NumericalError("atlas: not settled after " + std::to_string(state.options.max_rounds) + " rounds");
+    }
+    if (!sweep(state, redone, should_stop)) {
+      --state.rounds;
+      return false;
+    }
+  }
+  state.rounds = 0;
+  return true;
+}
+
 }  // namespace
 
 bool redo_dirty(State& state, int& redone, const std::function<bool()>& should_stop) {
@@ -47,25 +63,25 @@ bool redo_dirty(State& state, int& redone, const std::function<bool()>& should_s
   return redo(state, state.root, workspace, redone, should_stop);
 }
 
+/// What the ordinary way does not find is looked for again by steps that are cut, from where it was begun and not from where it
+/// lost its way.
 bool Atlas::settle(const std::function<bool()>& should_stop) {
   if (working_->root < 0) return true;
-  const State before = *working_;
+  if (working_->begun == nullptr) working_->begun = std::make_shared<const State>(*working_);
+  const std::shared_ptr<const State> begun = working_->begun;
   try {
-    while (!working_->is_clean()) {
-      if (++working_->rounds > working_->options.max_rounds) {
-        throw core::NumericalError("atlas: not settled after " + std::to_string(working_->options.max_rounds) +
-                                   " rounds");
-      }
-      if (!sweep(*working_, nodes_redone_, should_stop)) {
-        --working_->rounds;
-        return false;
-      }
-    }
+    if (!go_on(*working_, nodes_redone_, should_stop)) return false;
+  } catch (const core::NumericalError&) {
+    *working_ = *begun;
+    State damped = *begun;
+    damp(damped, nodes_redone_);
+    go_on(damped, nodes_redone_, {});
+    *working_ = damped;
   } catch (...) {
-    *working_ = before;
+    *working_ = *begun;
     throw;
   }
-  working_->rounds = 0;
+  working_->begun = nullptr;
   *settled_ = *working_;
   return true;
 }

@@ -11,6 +11,7 @@ void Atlas::reshape() {
 }
 
 void Atlas::forget(core::LandmarkId id) {
+  finish_descent(*working_);
   for (State* state : {working_.get(), settled_.get()}) {
     if (id < 0 || id >= static_cast<int>(state->variable_of_landmark.size())) continue;
     const int v = state->variable_of_landmark[State::index(id)];

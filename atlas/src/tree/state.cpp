@@ -13,6 +13,36 @@ std::vector<int> variables_of(const Leaf& leaf) {
   return all;
 }
 
+std::vector<int> landmarks_of(const Leaf& leaf) {
+  const std::vector<int>& variables = leaf.parts.front().variables;
+  std::vector<int> landmarks(variables.begin() + 2, variables.end());
+  std::sort(landmarks.begin(), landmarks.end());
+  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
+  return landmarks;
+}
+
+int add_variable(State& state, int dim, int name, const Eigen::Vector3d& value) {
+  static const auto nobody = std::make_shared<const std::vector<int>>();
+  Variable variable;
+  variable.dim = dim;
+  variable.name = name;
+  state.variables.push_back(variable);
+  state.values.push_back(value);
+  state.phases_of.push_back(nobody);
+  return static_cast<int>(state.variables.size()) - 1;
+}
+
+int add_node(State& state, const TreeNode& node) {
+  if (state.free_node < 0) {
+    state.nodes.push_back(node);
+    return static_cast<int>(state.nodes.size()) - 1;
+  }
+  const int id = state.free_node;
+  state.free_node = state.node(id).parent;
+  state.nodes.write(State::index(id)) = node;
+  return id;
+}
+
 void mark_dirty(State& state, int node) {
   for (; node >= 0 && !state.node(node).dirty; node = state.node(node).parent) {
     state.nodes.write(State::index(node)).dirty = true;

@@ -12,6 +12,7 @@
 #include "helixnav/atlas/relative_gaussian.hpp"
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/se2.hpp"
 #include "tree/persistent_vector.hpp"
 
 namespace helixnav::atlas {
@@ -32,12 +33,16 @@ struct Part {
   std::vector<int> variables;
   std::shared_ptr<const RelativeGaussian> gaussian;
   std::shared_ptr<const core::AbsoluteFix> fix;  ///< what it came from, unless from the log
+  double weight = 1.0;                           ///< other than 1 only while settling is damped
 };
 
 struct Leaf {
   std::shared_ptr<const PhaseLog> log;       ///< null: cannot be linearised again
   std::shared_ptr<const PhaseFactor> phase;  ///< the first part
   std::vector<Part> parts;
+  int revisits = -1;         ///< the part that holds what other phases have seen here (condense), about a frame of its own
+  int host = -1;             ///< of a phase that was condensed: the one that holds what it has seen, …
+  core::Pose2 T_host_entry;  ///< … and where it began, from where the host begins
 };
 
 /// The Gaussian of a phase, which lives as long as either.
@@ -97,12 +102,15 @@ struct State {
   PersistentVector<std::shared_ptr<const Leaf>> phases;
   PersistentVector<int> leaf_of_phase;
   PersistentVector<TreeNode> nodes;
+  int free_node = -1;  ///< first of a list of nodes that no tree has any more, linked by their parents
+  int condensed = 0;   ///< phases up to here have been looked at by condense
   int root = -1;
   int world = -1;  ///< variable that stands for the map frame
 
   bool descending = false;   ///< settle is in its way down
   std::vector<int> to_open;  ///< a stack
   int rounds = 0;
+  std::shared_ptr<const State> begun;  ///< where settling was begun that was stopped and not gone on with, and nothing changed since
 
   bool is_leaf(int node) const { return nodes[index(node)].phase >= 0; }
   bool is_clean() const { return root < 0 || (!descending && !nodes[index(root)].dirty); }
@@ -116,6 +124,15 @@ struct State {
 
 /// Variables of a leaf, increasing, each once.
 std::vector<int> variables_of(const Leaf& leaf);
+
+/// Landmarks of a phase, as it was driven: variables, increasing, each once.
+std::vector<int> landmarks_of(const Leaf& leaf);
+
+/// A variable that no phase holds yet.
+int add_variable(State& state, int dim, int name, const Eigen::Vector3d& value);
+
+/// A node that no tree has yet.
+int add_node(State& state, const TreeNode& node);
 
 /// Marks a node and all above it.
 void mark_dirty(State& state, int node);

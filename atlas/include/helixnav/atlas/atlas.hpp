@@ -28,6 +28,8 @@ struct Options {
   double rederive_m = 0.1;
   double rederive_rad = 0.01;
   int max_rounds = 50;  ///< of one settling, up and down the tree
+  /// Phases on the same ground that condense leaves as they were driven, beside the one that takes in the others.
+  int laps_kept = 4;
 };
 
 /// A landmark and where it is [m, map frame].
@@ -88,9 +90,19 @@ class Atlas {
   /// Lays the whole tree out anew, by position. Worth it after a long drive over old ground; results stay the same to rounding.
   void reshape();
 
+  /// Bounds what ground driven again and again costs. Of the settled phases, a later one three quarters of whose landmarks more than
+  /// options.laps_kept others have seen too, the oldest first, becomes part of the phase before it that has most of them. What it
+  /// says of these landmarks is kept; lost are its ties to the phases before and after, what it says of landmarks that
+  /// the other does not have, and its fix, where as many others on the ground have one. All of that is marginalised as if
+  /// it were of variables of its own, which takes information away and never adds any: covariances are conservative. The last two phases
+  /// stay, and so does what alone holds a landmark. Of a phase that was condensed its shape is kept, for poses_of. Call before settle, which then
+  /// solves it. Returns how many phases were condensed. Test: atlas/condense_test.cpp.
+  int condense();
+
   /// Solves until what is bent is linearised again and everything near has its new estimate. After each node it asks
   /// `should_stop`; when that says true it returns false, what was settled last still answers, and the next call goes on.
-  /// Stopping changes no bit of the result. Test: atlas/settle_test.cpp (stopped at every node).
+  /// Stopping changes no bit of the result. Test: atlas/settle_test.cpp (stopped at every node). Where that does not end, as
+  /// after tens of metres of drift, it begins again with steps that are cut, over the whole tree and without asking (docs/atlas.md).
   bool settle(const std::function<bool()>& should_stop = {});
   bool is_settled() const;
 
@@ -118,6 +130,7 @@ class Atlas {
   /// Size of the tree as it was settled, for benchmarks and reports.
   struct Size {
     int phases = 0;
+    int condensed = 0;  ///< of them, by condense
     int depth = 0;
     int largest_front = 0;  ///< rows
     int root_front = 0;

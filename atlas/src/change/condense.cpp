@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <utility>
+
+#include "change/take_in.hpp"
+#include "helixnav/atlas/atlas.hpp"
+#include "solve/settle.hpp"
+#include "tree/take_out.hpp"
+
+namespace helixnav::atlas {
+namespace {
+
+/// How much of a phase's landmarks another has to have to be on the same ground.
+constexpr double most_of_them = 0.75;
+
+bool was_condensed(const State& state, int phase) { return state.leaf(phase).host >= 0; }
+
+struct Sharing {
+  int phase = 0;
+  int landmarks = 0;
+};
+
+/// Phases that hold most of the landmarks of one, by increasing number.
+std::vector<Sharing> on_ground_of(const State& state, int phase) {
+  const std::vector<int> points = landmarks_of(state.leaf(phase));
+  std::vector<int> all;
+  for (const int v : points) {
+    for (const int other : *state.phases_of[State::index(v)]) {
+      if (other != phase) all.push_back(other);
+    }
+  }
+  std::sort(all.begin(), all.end());
+  std::vector<Sharing> sharing;
+  for (std::size_t i = 0; i < all.size();) {
+    const std::size_t begin = i;
+    while (i < all.size() && all[i] == all[begin]) ++i;
+    const Sharing one{all[begin], static_cast<int>(i - begin)};
+    if (one.landmarks >= most_of_them * static_cast<double>(points.size())) sharing.push_back(one);
+  }
+  return sharing;
+}
+
+/// The phase before it that has most of its landmarks; −1: none has enough of them.
+int host_for(const State& state, int phase) {
+  Sharing best{-1, 0};
+  for (const Sharing& one : on_ground_of(state, phase)) {
+    if (one.phase < phase && one.landmarks > best.landmarks) best = one;
+  }
+  return best.phase;
+}
+
+/// No landmark is held by the phase alone but for those of the host.
+bool leaves_all_landmarks(const State& state, int phase, int host) {
+  const std::vector<int> kept = landmarks_of(state.leaf(host));
+  for (const int v : landmarks_of(state.leaf(phase))) {
+    if (state.phases_of[State::index(v)]->size() < 2 && !std::binary_search(kept.begin(), kept.end(), v)) return false;
+  }
+  return true;
+}
+
+bool has_fix(const State& state, int phase) {
+  const std::vector<Part>& parts = state.leaf(phase).parts;
+  return std::any_of(parts.begin(), parts.end(), [](const Part& part) { return part.fix != nullptr; });
+}
+
+bool condense_phase(State& state, int phase) {
+  const int host = host_for(state, phase);
+  if (host < 0 || !leaves_all_landmarks(state, phase, host)) return false;
+  bring_ground_along(state, phase);
+  if (!take_in(state, host, phase)) return false;
+  take_out(state, phase, host);
+  return true;
+}
+
+/// Condenses one of the phases on the ground of `phase`, where there are too many. `end`: only phases before it.
+bool condense_ground(State& state, int phase, int end) {
+  if (was_condensed(state, phase)) return false;
+  std::vector<int> ground{phase};
+  for (const Sharing& one : on_ground_of(state, phase)) ground.push_back(one.phase);
+  std::sort(ground.begin(), ground.end());
+  const auto most = static_cast<std::ptrdiff_t>(state.options.laps_kept) + 1;
+  if (static_cast<std::ptrdiff_t>(ground.size()) <= most) return false;
+  const auto fixes = std::count_if(ground.begin(), ground.end(), [&](int one) { return has_fix(state, one); });
+  for (const int one : ground) {
+    const bool stays = one == 0 || one >= end || state.leaf(one).revisits >= 0 || (has_fix(state, one) && fixes <= most);
+    if (!stays && condense_phase(state, one)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+int Atlas::condense() {
+  State state = *working_;
+  finish_descent(state);
+  int count = 0;
+  const int end = static_cast<int>(settled_->phases.size()) - 2;
+  for (; state.condensed < end; ++state.condensed) {
+    while (condense_ground(state, state.condensed, end)) ++count;
+  }
+  *working_ = std::move(state);
+  return count;
+}
+
+}  // namespace helixnav::atlas

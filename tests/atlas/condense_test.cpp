@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include "atlas_access.hpp"
+#include "campaign.hpp"
+#include "cut_problem.hpp"
+#include "helixnav/smoothing/marginals.hpp"
+#include "small_drive.hpp"
+
+namespace helixnav::atlas {
+namespace {
+
+/// Rounds on one circle, of 6⅛ phases each, so that no phase begins where one of the round before did.
+testing::SmallDrive rounds(std::uint64_t seed, int count, double noise) {
+  testing::SmallDriveOptions options;
+  options.rounds = count;
+  options.steps = 49 * count;
+  options.noise = noise;
+  return testing::make_small_drive(seed, options);
+}
+
+Atlas condensed_drive(const testing::SmallDrive& drive, int laps_kept) {
+  Options options;
+  options.laps_kept = laps_kept;
+  Atlas atlas({}, options);
+  for (const auto& log : drive.logs) {
+    testing::add_phase(atlas, log);
+    if (atlas.condense() > 0) atlas.settle();
+  }
+  return atlas;
+}
+
+std::vector<core::LandmarkId> all_of(const Atlas& atlas) {
+  std::vector<core::LandmarkId> ids;
+  for (const Place& place : atlas.landmarks()) ids.push_back(place.id);
+  return ids;
+}
+
+TEST(Condense, TakesInformationAwayAndNeverAddsAny) {
+  const testing::SmallDrive drive = rounds(31, 8, 0.0);  // no noise: both are linearised at the truth
+  const Atlas whole = testing::driven(drive, Options());
+  const Atlas condensed = condensed_drive(drive, 1);
+  EXPECT_GT(condensed.size().condensed, 20);
+  const Eigen::MatrixXd exact = whole.joint(all_of(whole)).covariance;
+  const Eigen::MatrixXd wider = condensed.joint(all_of(whole)).covariance;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> lost(wider - exact);
+  EXPECT_GT(lost.eigenvalues()[0], -1e-8 * exact.trace());
+  EXPECT_LT(wider.trace(), 1.5 * exact.trace());  // most of it is kept
+}
+
+TEST(Condense, EqualsTheBatchOfTheProblemThatIsCutInTheSamePlaces) {
+  const testing::SmallDrive drive = rounds(32, 5, 1e-4);  // so little noise that nothing is bent
+  const Atlas atlas = condensed_drive(drive, 1);
+  smoothing::Problem cut = testing::cut_problem(drive, AtlasAccess::settled(atlas));
+  EXPECT_GT(cut.graph.poses.size(), drive.problem.graph.poses.size() + 10);
+  testing::solve(cut);
+  const std::vector<core::LandmarkId> ids = all_of(atlas);
+  std::vector<int> indices;
+  for (const core::LandmarkId id : ids) indices.push_back(testing::index_of_landmark(cut, id));
+  const int last = static_cast<int>(drive.problem.graph.poses.size()) - 1;
+  const Eigen::MatrixXd exact = smoothing::joint_covariance(cut, {last}, indices);
+  const core::JointGaussian joint = atlas.joint(ids);
+  EXPECT_LT((joint.covariance - exact).cwiseAbs().maxCoeff(), 1e-6 * exact.cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const Eigen::Vector2d& point_m = cut.graph.landmarks[static_cast<std::size_t>(indices[i])].point_m;
+    EXPECT_LT((joint.points_m[i] - point_m).norm(), 1e-8);
+  }
+}
+
+TEST(Condense, BoundsWhatGroundCostsThatIsDrivenAgainAndAgain) {
+  const testing::SmallDrive drive = rounds(33, 30, 1.0);
+  Options options;
+  options.laps_kept = 2;
+  Atlas atlas({}, options);
+  std::vector<double> numbers;
+  std::vector<int> uncondensed;
+  for (std::size_t k = 0; k < drive.logs.size(); ++k) {
+    testing::add_phase(atlas, drive.logs[k]);
+    if (atlas.condense() > 0) atlas.settle();
+    const Atlas::Size size = atlas.size();
+    numbers.push_back(size.factor_nonzeros + size.message_nonzeros);
+    uncondensed.push_back(size.phases - size.condensed);
+  }
+  const auto largest = [](const auto& values, std::size_t begin, std::size_t end) {
+    return *std::max_element(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                             values.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  const std::size_t n = numbers.size();
+  EXPECT_LE(largest(numbers, 2 * n / 3, n), 1.25 * largest(numbers, n / 3, 2 * n / 3));
+  EXPECT_LE(largest(uncondensed, 2 * n / 3, n), largest(uncondensed, n / 3, 2 * n / 3) + 6);
+  EXPECT_LT(uncondensed.back(), 48);
+}
+
+TEST(Condense, KeepsThePathOfTheDriveAndAllLandmarks) {
+  const testing::SmallDrive drive = rounds(34, 6, 1.0);
+  const Atlas atlas = condensed_drive(drive, 1);
+  EXPECT_GT(atlas.size().condensed, 10);
+  EXPECT_EQ(atlas.landmarks().size(), drive.problem.graph.landmarks.size());
+  const std::vector<core::Pose2> clones = atlas.clones();
+  for (std::size_t k = 0; k < clones.size(); ++k) {
+    const core::Pose2& truth = drive.truth[static_cast<std::size_t>(drive.pose_of_clone[k])];
+    EXPECT_LT((clones[k].position_m() - truth.position_m()).norm(), 0.5) << k;
+    EXPECT_EQ(clones[k].position_m(), atlas.clone(static_cast<int>(k)).position_m());
+  }
+  for (int k = 0; k < atlas.phase_count(); ++k) {
+    const core::Pose2& truth = drive.truth[static_cast<std::size_t>(drive.pose_of_clone[static_cast<std::size_t>(k) + 1])];
+    EXPECT_LT((atlas.poses_of(k).back().position_m() - truth.position_m()).norm(), 0.5) << k;
+  }
+}
+
+/// NEES of three landmarks and the last pose, in the map frame. Bands leave with probability 1e-4; conservative covariances may bring
+/// the sum below, but not to half.
+TEST(CondenseCampaign, LeavesErrorsWithinTheirCovariances) {
+  double nees = 0.0;
+  const int runs = support::campaign_runs(30);
+  for (const std::uint64_t seed : support::campaign_seeds(200, 30)) {
+    const testing::SmallDrive drive = rounds(seed, 6, 1.0);
+    const Atlas atlas = condensed_drive(drive, 1);
+    const std::vector<core::LandmarkId> ids{3, 14, 25};
+    const core::JointGaussian joint = atlas.joint(ids);
+    Eigen::VectorXd error(9);
+    error.head<3>() = joint.pose.vector() - drive.truth.back().vector();
+    error[2] = core::wrap_to_pi(error[2]);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const auto index = static_cast<std::size_t>(testing::index_of_landmark(drive.problem, ids[i]));
+      error.segment<2>(3 + 2 * static_cast<Eigen::Index>(i)) =
+          joint.points_m[i] - drive.problem.graph.landmarks[index].point_m;
+    }
+    nees += error.dot(joint.covariance.ldlt().solve(error));
+  }
+  const support::Band band = support::chi2_band(runs, 9, 1e-4);
+  EXPECT_LT(nees, band.high);
+  EXPECT_GT(nees, 0.5 * band.low);
+}
+
+}  // namespace
+}  // namespace helixnav::atlas
