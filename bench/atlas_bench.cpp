@@ -4,6 +4,7 @@
 //   helixnav_bench_atlas park GRAPH [LENGTH_M [BEND_M [REDERIVE_M]]]   the iSAM graph of Victoria Park, live, beside its optimum
 //   helixnav_bench_atlas grid LANDMARKS                                 a street grid: the whole, joints, phases on old ground
 //   helixnav_bench_atlas road LANDMARKS                                 one road: the same on new ground
+//   helixnav_bench_atlas laps COUNT LAPS_KEPT                           a road of 4 km in a circle, driven again and again
 //   helixnav_bench_atlas close BEND_M KILOMETRES…                       a loop of 4 km closed at the end of such drives
 #include <algorithm>
 #include <cmath>
@@ -238,6 +239,35 @@ void close_loop(double kilometres, double bend_m) {
       2 * closed.phase_count() - 1, gap_m);
 }
 
+/// Ten phases at a time are added, condensed unless laps_kept is negative, and settled.
+void laps(int count, int laps_kept) {
+  bench::RoadWorld world = bench::circle(4007.0);
+  atlas::Options options;
+  options.laps_kept = laps_kept;
+  atlas::Atlas map({}, options);
+  std::printf(" lap  phases  condensed  lap [s]  largest front  fronts [MB]  peak [MB]  sigma [m]\n");
+  for (int lap = 1; lap <= count; ++lap) {
+    bench::drive_lap(world, 4007.0, lap);
+    std::vector<atlas::PhaseShape> shapes;
+    const auto logs = world.phases(shapes);
+    const double begin = bench::seconds_of_this_thread();
+    for (std::size_t k = 0; k < logs.size(); ++k) {
+      map.add(atlas::derive_factor(*logs[k], shapes[k], nullptr, 0), logs[k]);
+      if (k % 10 != 9 && k + 1 != logs.size()) continue;
+      if (laps_kept >= 0) map.condense();
+      map.settle();
+    }
+    const double lap_s = bench::seconds_of_this_thread() - begin;
+    if (lap > 5 && lap % 5 != 0) continue;
+    const atlas::Atlas::Size size = map.size();
+    const int far = world.landmark_count() / 2;
+    std::printf("%4d  %6d  %9d  %7.2f  %13d  %11.1f  %9.0f  %9.4f\n", lap, size.phases, size.condensed, lap_s,
+                size.largest_front, 8e-6 * (size.factor_nonzeros + size.message_nonzeros), bench::peak_mb(),
+                std::sqrt(map.joint({far}).covariance.bottomRightCorner<2, 2>().trace()));
+    std::fflush(stdout);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -250,6 +280,7 @@ int main(int argc, char** argv) {
   if (what == "park" && words.size() > 1)
     park(words[1].c_str(), number(2, 20.0), number(3, defaults.bend_m), number(4, defaults.rederive_m));
   if (what == "grid") grid(static_cast<int>(number(1, 10000)));
+  if (what == "laps") laps(static_cast<int>(number(1, 50)), static_cast<int>(number(2, defaults.laps_kept)));
   if (what == "road") road(static_cast<int>(number(1, 10000)));
   for (std::size_t i = 2; what == "close" && i < words.size(); ++i)
     close_loop(number(i, 4.0), number(1, defaults.bend_m));

@@ -155,4 +155,27 @@ inline RoadWorld road_and_loop(double road_m, double beyond_m) {
   return world;
 }
 
+/// Where a road of this length in a circle is, and `off_m` beside it.
+inline Eigen::Vector2d on_circle(double length_m, double s, double off_m) {
+  const double radius_m = length_m / (2.0 * core::pi);
+  const double angle = s / radius_m;
+  return {(radius_m - off_m) * std::sin(angle), radius_m - (radius_m - off_m) * std::cos(angle)};
+}
+
+/// A road in a circle, a landmark each 8 m on both sides.
+inline RoadWorld circle(double length_m) {
+  RoadWorld world(3);
+  world.sigma_seen_m = 0.1;
+  world.sigma_heading_rad = 0.001;
+  for (double s = 4.0; s < length_m - 4.0; s += 8.0) {
+    for (const double side_m : {-6.0, 6.0}) world.add_landmark(on_circle(length_m, s, side_m));
+  }
+  return world;
+}
+
+/// Lap 1, 2, … of that road.
+inline void drive_lap(RoadWorld& world, double length_m, int lap) {
+  for (double s = length_m * (lap - 1); s < length_m * lap; s += 10.0) world.drive_to(on_circle(length_m, s, 0.0));
+}
+
 }  // namespace helixnav::bench

@@ -58,6 +58,20 @@ bool leaves_all_landmarks(const State& state, int phase, int host) {
   return true;
 }
 
+/// How often the vehicle came, of the phases on some ground: one after another they are one visit, up to ten. Those before and after
+/// a phase share most of its landmarks, too, while the vehicle passes; where it stays or turns round and round, all do.
+int visits(const std::vector<int>& ground) {
+  constexpr int longest = 10;
+  int count = 0;
+  int length = 0;
+  for (std::size_t i = 0; i < ground.size(); ++i) {
+    const bool goes_on = i > 0 && ground[i] == ground[i - 1] + 1 && length < longest;
+    length = goes_on ? length + 1 : 1;
+    if (!goes_on) ++count;
+  }
+  return count;
+}
+
 bool has_fix(const State& state, int phase) {
   const std::vector<Part>& parts = state.leaf(phase).parts;
   return std::any_of(parts.begin(), parts.end(), [](const Part& part) { return part.fix != nullptr; });
@@ -78,8 +92,8 @@ bool condense_ground(State& state, int phase, int end) {
   std::vector<int> ground{phase};
   for (const Sharing& one : on_ground_of(state, phase)) ground.push_back(one.phase);
   std::sort(ground.begin(), ground.end());
-  const auto most = static_cast<std::ptrdiff_t>(state.options.laps_kept) + 1;
-  if (static_cast<std::ptrdiff_t>(ground.size()) <= most) return false;
+  const int most = state.options.laps_kept + 1;
+  if (visits(ground) <= most) return false;
   const auto fixes = std::count_if(ground.begin(), ground.end(), [&](int one) { return has_fix(state, one); });
   for (const int one : ground) {
     const bool stays = one == 0 || one >= end || state.leaf(one).revisits >= 0 || (has_fix(state, one) && fixes <= most);

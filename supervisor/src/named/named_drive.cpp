@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "named/named_drive.hpp"
 
-#include <algorithm>
 #include <utility>
 
-#include "helixnav/core/errors.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "helixnav/core/se2.hpp"
 
@@ -72,44 +70,15 @@ core::Pose2 NamedDrive::T_entry_exit(double length_m) const {
   return T_entry_robot;
 }
 
-bool NamedDrive::close_phase(double length_m, const atlas::PointPrior* known) {
+void NamedDrive::close_phase(double length_m, const atlas::PointPrior* known) {
   const auto end = stops_.begin() + static_cast<std::ptrdiff_t>(stops_of_phase(length_m));
   const std::vector<DrivePhase> phases = phases_of({stops_.begin(), end}, std::nullopt, length_m, begins_, all_names());
-  std::vector<core::LandmarkId> seen = atlas::landmarks_of(*phases.back().log);
-  const bool is_on_old_ground = comes_back(seen);
   atlas::Atlas atlas = atlas_;
   add(phases, known, atlas);
-  const bool closes = is_on_old_ground && !on_old_ground_;
-  const bool waits = closes && !settle_closing(atlas);
   atlas_ = std::move(atlas);
   stops_.erase(stops_.begin(), end);
   begins_ = false;
   phases_ += static_cast<int>(phases.size());
-  on_old_ground_ = is_on_old_ground;
-  seen_last_ = std::move(seen);
-  return !waits;
-}
-
-/// To landmarks that are known, and not from the phase before.
-bool NamedDrive::comes_back(const std::vector<core::LandmarkId>& seen) const {
-  if (seen_last_.empty()) return false;
-  constexpr int least = 3;
-  int old = 0;
-  for (const core::LandmarkId id : seen) {
-    old += id < seen_last_.back() && !std::binary_search(seen_last_.begin(), seen_last_.end(), id) ? 1 : 0;
-  }
-  return old >= least;
-}
-
-/// A closing is solved with the first phase on old ground: from a drive that is not closed, several at once may not be found.
-/// What cannot be solved yet waits.
-bool NamedDrive::settle_closing(atlas::Atlas& atlas) {
-  try {
-    atlas.settle();
-    return true;
-  } catch (const core::NumericalError&) {
-    return false;
-  }
 }
 
 /// From dead reckoning three steps of Gauss and Newton bring a phase to its minimum.
@@ -129,6 +98,7 @@ void NamedDrive::settle(double length_m, const atlas::PointPrior* known) {
   stops_.clear();
   motion_.reset();
   begins_ = false;
+  atlas_.condense();
   atlas_.settle();
 }
 

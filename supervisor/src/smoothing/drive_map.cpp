@@ -73,6 +73,7 @@ bool DriveMap::has_name(core::LandmarkId id) const {
 }
 
 void DriveMap::settle() {
+  atlas_.condense();
   atlas_.settle();
   places_ = std::make_shared<const std::vector<atlas::Place>>(atlas_.landmarks());
 }

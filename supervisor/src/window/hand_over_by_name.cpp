@@ -123,12 +123,7 @@ void NamedNavigator::go_on_with_drive() {
   if (drive_->has_phase(length_m)) {
     const atlas::PointPrior known =
         active_from(filter_, drive_->T_entry_exit(length_m), [this](LandmarkId name) { return names_.in_map(name); });
-    pending_.decisions.reserve(pending_.decisions.size() + 1);  // nothing may fail once the phase is closed
-    if (!drive_->close_phase(length_m, names_.is_part ? &known : nullptr)) {
-      ++pending_.numerics.refused;
-      pending_.decisions.emplace_back(
-          core::PostponedDecision{core::PostponedDecision::Work::closing, static_cast<double>(drive_->phases()), 0.0});
-    }
+    drive_->close_phase(length_m, names_.is_part ? &known : nullptr);
   }
   const int held = filter_.mapped_count();
   const bool is_too_large = names_.is_part ? 2 * held > 3 * std::max(landmarks_wanted(options_.map), begun_with_)

@@ -28,7 +28,8 @@ struct Options {
   double rederive_m = 0.1;
   double rederive_rad = 0.01;
   int max_rounds = 50;  ///< of one settling, up and down the tree
-  /// Phases on the same ground that condense leaves as they were driven, beside the one that takes in the others.
+  /// How often the same ground may be driven again before condense does something about it: then the first and the last of these laps are
+  /// kept as they were driven, and those between become part of the first.
   int laps_kept = 4;
 };
 
@@ -90,8 +91,8 @@ class Atlas {
   /// Lays the whole tree out anew, by position. Worth it after a long drive over old ground; results stay the same to rounding.
   void reshape();
 
-  /// Bounds what ground driven again and again costs. Of the settled phases, a later one three quarters of whose landmarks more than
-  /// options.laps_kept others have seen too, the oldest first, becomes part of the phase before it that has most of them. What it
+  /// Bounds what ground driven again and again costs. Of the settled phases, one on ground that was driven again more than options.laps_kept
+  /// times (three quarters of its landmarks are seen by others), the oldest first, becomes part of the phase before it that has most of them. What it
   /// says of these landmarks is kept; lost are its ties to the phases before and after, what it says of landmarks that
   /// the other does not have, and its fix, where as many others on the ground have one. All of that is marginalised as if
   /// it were of variables of its own, which takes information away and never adds any: covariances are conservative. The last two phases
