@@ -106,7 +106,8 @@ TEST(Condense, KeepsThePathOfTheDriveAndAllLandmarks) {
     EXPECT_EQ(clones[k].position_m(), atlas.clone(static_cast<int>(k)).position_m());
   }
   for (int k = 0; k < atlas.phase_count(); ++k) {
-    const core::Pose2& truth = drive.truth[static_cast<std::size_t>(drive.pose_of_clone[static_cast<std::size_t>(k) + 1])];
+    const core::Pose2& truth =
+        drive.truth[static_cast<std::size_t>(drive.pose_of_clone[static_cast<std::size_t>(k) + 1])];
     EXPECT_LT((atlas.poses_of(k).back().position_m() - truth.position_m()).norm(), 0.5) << k;
   }
 }

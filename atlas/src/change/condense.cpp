@@ -96,7 +96,8 @@ bool condense_ground(State& state, int phase, int end) {
   if (visits(ground) <= most) return false;
   const auto fixes = std::count_if(ground.begin(), ground.end(), [&](int one) { return has_fix(state, one); });
   for (const int one : ground) {
-    const bool stays = one == 0 || one >= end || state.leaf(one).revisits >= 0 || (has_fix(state, one) && fixes <= most);
+    const bool stays =
+        one == 0 || one >= end || state.leaf(one).revisits >= 0 || (has_fix(state, one) && fixes <= most);
     if (!stays && condense_phase(state, one)) return true;
   }
   return false;

@@ -144,8 +144,8 @@ bool take_in(State& state, int host, int phase) {
   std::set_intersection(points.begin(), points.end(), of_host.begin(), of_host.end(), std::back_inserter(stay));
   Leaf changed = state.leaf(host);
   const bool is_first = changed.revisits < 0;
-  const int frame = is_first ? changed.parts.front().variables[0]
-                             : changed.parts[State::index(changed.revisits)].variables[0];
+  const int frame =
+      is_first ? changed.parts.front().variables[0] : changed.parts[State::index(changed.revisits)].variables[0];
   const core::Pose2 T_frame_atlas = core::inverse(core::Pose2(Eigen::Vector3d(state.value(frame))));
   Values seen;
   for (std::size_t i = 0; i < variables.size(); ++i) {

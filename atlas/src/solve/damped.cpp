@@ -124,8 +124,7 @@ void damp(State& state, int& redone) {
     for (const int id : nodes) state.nodes.write(State::index(id)).dirty = true;
     return;
   }
-  throw core::NumericalError("atlas: not settled after " + std::to_string(state.options.max_rounds) +
-                             " damped rounds");
+  throw core::NumericalError("atlas: not settled after " + std::to_string(state.options.max_rounds) + " damped rounds");
 }
 
 }  // namespace helixnav::atlas

@@ -40,8 +40,8 @@ struct Leaf {
   std::shared_ptr<const PhaseLog> log;       ///< null: cannot be linearised again
   std::shared_ptr<const PhaseFactor> phase;  ///< the first part
   std::vector<Part> parts;
-  int revisits = -1;         ///< the part that holds what other phases have seen here (condense), about a frame of its own
-  int host = -1;             ///< of a phase that was condensed: the one that holds what it has seen, …
+  int revisits = -1;  ///< the part that holds what other phases have seen here (condense), about a frame of its own
+  int host = -1;      ///< of a phase that was condensed: the one that holds what it has seen, …
   core::Pose2 T_host_entry;  ///< … and where it began, from where the host begins
 };
 
@@ -110,7 +110,8 @@ struct State {
   bool descending = false;   ///< settle is in its way down
   std::vector<int> to_open;  ///< a stack
   int rounds = 0;
-  std::shared_ptr<const State> begun;  ///< where settling was begun that was stopped and not gone on with, and nothing changed since
+  std::shared_ptr<const State>
+      begun;  ///< where settling was begun that was stopped and not gone on with, and nothing changed since
 
   bool is_leaf(int node) const { return nodes[index(node)].phase >= 0; }
   bool is_clean() const { return root < 0 || (!descending && !nodes[index(root)].dirty); }

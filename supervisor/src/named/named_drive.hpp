@@ -17,7 +17,7 @@ namespace helixnav::supervisor {
 
 /// The drive of a NamedNavigator since its begin: closed phases in an atlas, and the stops since the last of them. Nothing of it
 /// is ever decided otherwise, so that a phase goes into the atlas as soon as it was driven. Memory: 250 bytes an observation
-/// and 30 kB a phase on new ground, and on ground that was driven a few times before, where it is condensed, half a kilobyte. Test: supervisor/named/named_window_test.cpp.
+/// and 30 kB a phase, half a kilobyte once it was condensed (Atlas::condense). Test: supervisor/named/named_window_test.cpp.
 class NamedDrive {
  public:
   /// `most_stops`: how many may wait for the atlas; of a longer drive that nobody puts into it nothing is kept.
