@@ -5,6 +5,7 @@
 //   helixnav_bench_atlas grid LANDMARKS                                 a street grid: the whole, joints, phases on old ground
 //   helixnav_bench_atlas road LANDMARKS                                 one road: the same on new ground
 //   helixnav_bench_atlas laps COUNT LAPS_KEPT                           a road of 4 km in a circle, driven again and again
+//   helixnav_bench_atlas loop LANDMARKS                                 one long road in a circle with a fix each 5 km, driven twice
 //   helixnav_bench_atlas close BEND_M KILOMETRES…                       a loop of 4 km closed at the end of such drives
 #include <algorithm>
 #include <cmath>
@@ -268,6 +269,54 @@ void laps(int count, int laps_kept) {
   }
 }
 
+core::AbsoluteFix fix_at(const Eigen::Vector2d& place_m, core::RandomStream& random) {
+  core::AbsoluteFix fix;
+  fix.covariance_m2.setIdentity();
+  fix.position_world_m = place_m + Eigen::Vector2d(random.normal(0.0, 1.0), random.normal(0.0, 1.0));
+  return fix;
+}
+
+/// Each lap: phases added and settled, a thousand at a time, and what is asked for where it ends.
+void loop(int landmarks) {
+  const double length_m = 4.0 * landmarks + 7.0;
+  bench::RoadWorld world = bench::circle(length_m);
+  core::RandomStream random(7);
+  const Eigen::Vector2d first_m = bench::on_circle(length_m, 10.0, 0.0);
+  core::PoseGaussian start;
+  start.mean = core::Pose2(0.0, 0.0, std::atan2(first_m.y(), first_m.x()));
+  atlas::Atlas map(start);
+  std::printf("loop of %d landmarks, %.0f km\n", world.landmark_count(), 1e-3 * length_m);
+  for (int lap = 1; lap <= 2; ++lap) {
+    bench::drive_lap(world, length_m, lap);
+    double worst_s = 0.0;
+    const double begin = bench::seconds_of_this_thread();
+    for (bool any = true; any;) {
+      std::vector<atlas::PhaseShape> shapes;
+      std::vector<Eigen::Vector2d> ends_m;
+      const auto logs = world.phases(shapes, 1000, &ends_m);
+      any = !logs.empty();
+      for (std::size_t k = 0; k < logs.size(); ++k) {
+        const int clone = map.add(atlas::derive_factor(*logs[k], shapes[k], nullptr, 0), logs[k]) + 1;
+        if (clone % 125 == 0) map.fix(clone, fix_at(ends_m[k], random));
+      }
+      const double settling = bench::seconds_of_this_thread();
+      map.settle();
+      worst_s = std::max(worst_s, bench::seconds_of_this_thread() - settling);
+    }
+    const double t1 = bench::seconds_of_this_thread();
+    const auto near = map.near(map.pose().position_m(), 100.0);
+    std::vector<core::LandmarkId> ids;
+    for (const atlas::Place& place : near) ids.push_back(place.id);
+    const double t2 = bench::seconds_of_this_thread();
+    map.joint(ids);
+    const double t3 = bench::seconds_of_this_thread();
+    std::printf("lap %d: %.1f s, longest settling %.2f s; near %.2f ms, joint of %zu %.2f ms; peak %.0f MB\n", lap,
+                t1 - begin, worst_s, 1e3 * (t2 - t1), ids.size(), 1e3 * (t3 - t2), bench::peak_mb());
+    print_size(map, landmarks);
+    std::fflush(stdout);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -281,6 +330,7 @@ int main(int argc, char** argv) {
     park(words[1].c_str(), number(2, 20.0), number(3, defaults.bend_m), number(4, defaults.rederive_m));
   if (what == "grid") grid(static_cast<int>(number(1, 10000)));
   if (what == "laps") laps(static_cast<int>(number(1, 50)), static_cast<int>(number(2, defaults.laps_kept)));
+  if (what == "loop") loop(static_cast<int>(number(1, 10000)));
   if (what == "road") road(static_cast<int>(number(1, 10000)));
   for (std::size_t i = 2; what == "close" && i < words.size(); ++i)
     close_loop(number(i, 4.0), number(1, defaults.bend_m));

@@ -40,10 +40,14 @@ class RoadWorld {
   double driven_m() const { return 10.0 * static_cast<double>(route_m_.size() - 1); }
   const Eigen::Vector2d& at_m() const { return route_m_.back(); }
 
-  /// The phases of the route from where the last call ended; about the truth, with noise in their residuals.
-  std::vector<std::shared_ptr<atlas::PhaseLog>> phases(std::vector<atlas::PhaseShape>& shapes) {
+  /// The phases of the route from where the last call ended, so many at most; about the truth, with noise in their residuals. `ends_m`:
+  /// where they end.
+  std::vector<std::shared_ptr<atlas::PhaseLog>> phases(std::vector<atlas::PhaseShape>& shapes,
+                                                       std::size_t most = static_cast<std::size_t>(-1),
+                                                       std::vector<Eigen::Vector2d>* ends_m = nullptr) {
     std::vector<std::shared_ptr<atlas::PhaseLog>> logs;
-    for (; done_ + 4 < route_m_.size(); done_ += 4) {
+    for (; done_ + 4 < route_m_.size() && logs.size() < most; done_ += 4) {
+      if (ends_m != nullptr) ends_m->push_back(route_m_[done_ + 4]);
       auto log = std::make_shared<atlas::PhaseLog>();
       std::map<int, Eigen::Vector2d> points_m;
       atlas::PhaseShape shape;

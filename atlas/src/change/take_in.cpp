@@ -34,19 +34,19 @@ RelativeGaussian derived_here(const Leaf& leaf, const Values& values) {
 }
 
 /// Rows of a phase's world form in the order: poses and landmarks that go, landmarks that stay, right-hand side.
-struct Order {
+struct RowOrder {
   std::vector<Index> to;
   Index gone = 0;
   Index all = 0;
 };
 
-Order order_of(const std::vector<int>& variables, const std::vector<int>& stay) {
+RowOrder order_of(const std::vector<int>& variables, const std::vector<int>& stay) {
   std::vector<int> go(variables.begin() + 2, variables.end());
   std::sort(go.begin(), go.end());
   go.erase(std::unique(go.begin(), go.end()), go.end());
   const auto stays = [&](int v) { return std::binary_search(stay.begin(), stay.end(), v); };
   go.erase(std::remove_if(go.begin(), go.end(), stays), go.end());
-  Order order;
+  RowOrder order;
   order.gone = 6 + 2 * static_cast<Index>(go.size());
   order.all = order.gone + 2 * static_cast<Index>(stay.size());
   for (Index i = 0; i < 6; ++i) order.to.push_back(i);
@@ -62,7 +62,7 @@ Order order_of(const std::vector<int>& variables, const std::vector<int>& stay) 
 }
 
 /// Information on the landmarks that stay, with right-hand side and χ² as last row: the Schur complement.
-std::optional<MatrixXd> marginal(const MatrixXd& world, const Order& order) {
+std::optional<MatrixXd> marginal(const MatrixXd& world, const RowOrder& order) {
   const MatrixXd A = world.selfadjointView<Eigen::Lower>();
   MatrixXd H = MatrixXd::Zero(order.all + 1, order.all + 1);
   for (std::size_t j = 0; j < order.to.size(); ++j) {
