@@ -75,6 +75,7 @@ class Atlas {
   int add(PhaseFactor factor, std::shared_ptr<const PhaseLog> log = nullptr);
 
   /// An absolute position of the robot at a clone. It is a factor relative to the map frame, so that messages still turn.
+  /// PreconditionError for a clone whose phase was condensed.
   /// Test: atlas/joint_test.cpp.
   void fix(int clone, const core::AbsoluteFix& fix);
 
