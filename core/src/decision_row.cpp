@@ -184,7 +184,7 @@ void numbers(PostponedDecision& d, Visit&& visit) {
   visit("limit", d.limit);
 }
 
-constexpr const char* postponed_words[] = {"association", "window", "drive", "closing"};
+constexpr const char* postponed_words[] = {"association", "window", "drive"};
 constexpr const char* whole_map_words[] = {"accepted", "ambiguous", "refused", "not-here"};
 constexpr const char* placed_words[] = {"sought", "accepted", "ambiguous", "refused", "not-here"};
 constexpr const char* reason_words[] = {"timed-out", "nothing-here", "abandoned", "outdone"};

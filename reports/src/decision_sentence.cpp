@@ -249,9 +249,6 @@ std::string sentence(const core::PostponedDecision& d) {
     case core::PostponedDecision::Work::drive:
       return "The drive of " + counted(d.size, "scan") + " and fixes is not solved as a whole: it is kept up to " +
              short_number(d.limit) + " of them (search.smooth_up_to_scans).";
-    case core::PostponedDecision::Work::closing:
-      return "The vehicle came back to known landmarks, and the drive of " + counted(d.size, "phase") +
-             " could not be solved with that: it is tried again with what comes.";
   }
   return {};
 }

@@ -40,7 +40,6 @@ PostponedWork postponed_in(const runs::Run& run) {
       postponed.associations += work->work == core::PostponedDecision::Work::association;
       postponed.windows += work->work == core::PostponedDecision::Work::window;
       postponed.drives += work->work == core::PostponedDecision::Work::drive;
-      postponed.closings += work->work == core::PostponedDecision::Work::closing;
     }
   }
   return postponed;
@@ -64,7 +63,6 @@ std::string postponed_text(const PostponedWork& postponed) {
   add(postponed.associations, "associations were ended before their search was", parts);
   add(postponed.windows, "hand-overs of the filter were put off", parts);
   add(postponed.drives, "solutions of the whole drive were left out", parts);
-  add(postponed.closings, "closings of the drive by name were put off", parts);
   return parts.empty() ? "" : "work was left out or put off: " + list_of(parts);
 }
 

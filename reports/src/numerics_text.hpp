@@ -18,9 +18,8 @@ struct PostponedWork {
   std::int64_t associations = 0;
   std::int64_t windows = 0;
   std::int64_t drives = 0;
-  std::int64_t closings = 0;
 
-  bool any() const { return scans_thinned + associations + windows + drives + closings > 0; }
+  bool any() const { return scans_thinned + associations + windows + drives > 0; }
 };
 PostponedWork postponed_in(const runs::Run& run);
 

@@ -88,8 +88,7 @@ Json postponed_to_json(const PostponedWork& postponed) {
   return {{"scans_thinned", postponed.scans_thinned},
           {"associations", postponed.associations},
           {"windows", postponed.windows},
-          {"drives", postponed.drives},
-          {"closings", postponed.closings}};
+          {"drives", postponed.drives}};
 }
 
 std::int64_t count_landmarks(const runs::Run& run, core::LandmarkState state) {

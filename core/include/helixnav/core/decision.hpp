@@ -215,7 +215,6 @@ struct PostponedDecision {
     association,  ///< the search for the best association was ended: the best found, not proven the best
     window,       ///< the filter holds `size` landmarks, and the hand-over to a part of the map failed
     drive,        ///< the drive of `size` scans and fixes was not solved as a whole after a closing
-    closing,  ///< a drive by name came back to known landmarks after `size` phases, and that could not be solved yet
   };
   Work work = Work::association;
   double size = 0.0;   ///< of what was to be done
