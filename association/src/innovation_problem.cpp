@@ -114,6 +114,21 @@ bool compare(const PaddedObservation& observation, const Prediction& prediction,
   return pair.nis <= nis_limit;
 }
 
+/// What class and size add to the distance of a pair, and the gates that this is judged by.
+struct Looks {
+  double nis = 0.0;
+  Thresholds limit;
+};
+
+Looks look_at(const core::Appearance& seen, core::LandmarkId id, const Gates& gates,
+              const core::MapAppearance* appearance, const Thresholds& by_place, GatedPair& pair) {
+  pair.appearance_nats = 0.0;
+  if (appearance == nullptr || !seen.is_told()) return {0.0, by_place};
+  const core::AppearanceEvidence evidence = appearance->compare(id, seen);
+  pair.appearance_nats = evidence.nats;
+  return {evidence.size_nis + evidence.gate, evidence.size_dof == 0 ? by_place : thresholds(gates, pair.dof + 1)};
+}
+
 /// Predictions of one kind stand together in problem.predictions: [begin, end) of each kind.
 using KindRanges = std::array<std::pair<int, int>, kinds>;
 
@@ -132,7 +147,7 @@ KindRanges predict_kinds(const core::Scan& scan, InnovationProblem& problem, con
 }
 
 void gate_observation(const core::Observation& observation, int index, std::pair<int, int> range, const Gates& gates,
-                      InnovationProblem& problem) {
+                      const core::MapAppearance* appearance, InnovationProblem& problem) {
   const PaddedObservation z = padded(observation);
   GatedObservation gated;
   gated.kind = observation.kind;
@@ -153,11 +168,14 @@ void gate_observation(const core::Observation& observation, int index, std::pair
                                  std::to_string(problem.ids[prediction.candidate]) +
                                  " is not finite and positive definite");
     }
+    const Looks looks =
+        look_at(observation.appearance, problem.ids[prediction.candidate], gates, appearance, limit, pair);
+    if (pair.nis + looks.nis > looks.limit.fresh) continue;
     if (pair.nis < gated.nearest_nis) {
       gated.nearest_nis = pair.nis;
       gated.nearest_candidate = pair.candidate;
     }
-    if (pair.nis <= limit.match) problem.pairs.push_back(pair);
+    if (pair.nis + looks.nis <= looks.limit.match) problem.pairs.push_back(pair);
   }
   gated.end = static_cast<int>(problem.pairs.size());
   std::sort(problem.pairs.begin() + gated.begin, problem.pairs.end(), [](const GatedPair& a, const GatedPair& b) {
@@ -166,19 +184,21 @@ void gate_observation(const core::Observation& observation, int index, std::pair
   problem.observations.push_back(gated);
 }
 
-void gate_all(const core::Scan& scan, const KindRanges& ranges, const Gates& gates, InnovationProblem& problem) {
+void gate_all(const core::Scan& scan, const KindRanges& ranges, const Gates& gates,
+              const core::MapAppearance* appearance, InnovationProblem& problem) {
   thresholds(gates, 1);  // wrong gates are refused for an empty scan too
   problem.observations.reserve(scan.observations.size());
   for (std::size_t i = 0; i < scan.observations.size(); ++i) {
     const core::Observation& observation = scan.observations[i];
-    gate_observation(observation, static_cast<int>(i), ranges[static_cast<int>(observation.kind)], gates, problem);
+    gate_observation(observation, static_cast<int>(i), ranges[static_cast<int>(observation.kind)], gates, appearance,
+                     problem);
   }
 }
 
 }  // namespace
 
-InnovationProblem make_innovation_problem(const core::JointGaussian& joint, const core::Scan& scan,
-                                          const Gates& gates) {
+InnovationProblem make_innovation_problem(const core::JointGaussian& joint, const core::Scan& scan, const Gates& gates,
+                                          const core::MapAppearance* appearance) {
   const auto n = static_cast<Eigen::Index>(joint.ids.size());
   if (joint.points_m.size() != joint.ids.size() || joint.covariance.rows() != 3 + 2 * n ||
       joint.covariance.cols() != 3 + 2 * n) {
@@ -197,7 +217,7 @@ InnovationProblem make_innovation_problem(const core::JointGaussian& joint, cons
       problem.predictions.push_back(prediction);
     }
   });
-  gate_all(scan, ranges, gates, problem);
+  gate_all(scan, ranges, gates, appearance, problem);
   return problem;
 }
 
@@ -221,7 +241,7 @@ InnovationProblem make_innovation_problem(const core::Pose2& T_world_robot, cons
       problem.predictions.push_back(prediction);
     }
   });
-  gate_all(scan, ranges, gates, problem);
+  gate_all(scan, ranges, gates, nullptr, problem);
   return problem;
 }
 

@@ -59,12 +59,15 @@ void LandmarkLife::pass(const std::vector<LandmarkId>& unseen_at_rim) {
 }
 
 LifeChanges LandmarkLife::observe(const Eigen::Vector2d& sensor_m, const std::vector<LandmarkId>& seen,
-                                  const std::vector<LandmarkId>& born, const std::vector<LandmarkId>& expected) {
+                                  const std::vector<LandmarkId>& born, const std::vector<LandmarkId>& expected,
+                                  const std::vector<double>& seen_nats) {
   check_scan(seen, born, expected);
+  if (!seen_nats.empty() && seen_nats.size() != seen.size())
+    throw core::PreconditionError("landmark life: evidence of as many landmarks as were seen expected");
   ++scans_;
   born_ += born.size();
   seen_ += seen.size();
-  for (const LandmarkId id : seen) hit(*find(id), sensor_m);
+  for (std::size_t i = 0; i < seen.size(); ++i) hit(*find(seen[i]), sensor_m, seen_nats.empty() ? 0.0 : seen_nats[i]);
   for (const LandmarkId id : expected) {
     if (!is_listed(seen, id) && !is_listed(born, id)) miss(*find(id), sensor_m);
   }
@@ -104,13 +107,13 @@ void LandmarkLife::check_scan(const std::vector<LandmarkId>& seen, const std::ve
   }
 }
 
-void LandmarkLife::hit(LandmarkRecord& record, const Eigen::Vector2d& sensor_m) {
+void LandmarkLife::hit(LandmarkRecord& record, const Eigen::Vector2d& sensor_m, double appearance_nats) {
   ++record.observations;
   record.last_seen_path_m = path_m_;
   if ((sensor_m - record.last_hit_at_m).norm() < options_.look_distance_m) return;
   ++record.hits;
   record.last_hit_at_m = sensor_m;
-  record.log_odds = std::min(options_.max_log_odds, record.log_odds + hit_nats_);
+  record.log_odds = std::min(options_.max_log_odds, record.log_odds + hit_nats_ + appearance_nats);
 }
 
 void LandmarkLife::miss(LandmarkRecord& record, const Eigen::Vector2d& sensor_m) {
@@ -146,6 +149,7 @@ void LandmarkLife::remove(LandmarkId id) {
   LandmarkRecord* record = find(id);
   if (record == nullptr) throw core::PreconditionError("landmark life: no landmark " + std::to_string(id));
   records_.erase(records_.begin() + (record - records_.data()));
+  appearance_.remove(id);
 }
 
 void LandmarkLife::merge(LandmarkId kept, LandmarkId removed) {
@@ -153,6 +157,7 @@ void LandmarkLife::merge(LandmarkId kept, LandmarkId removed) {
     throw core::PreconditionError("landmark life: landmark " + std::to_string(kept) + " with itself");
   record(kept);
   const LandmarkRecord gone = record(removed);
+  appearance_.merge(kept, removed);
   remove(removed);
   LandmarkRecord& one = *find(kept);
   one.observations += gone.observations;

@@ -87,7 +87,7 @@ AssignmentProblem likelihood_ratio_costs(const InnovationProblem& problem, doubl
   assignment.cost.reserve(problem.pairs.size());
   for (const GatedPair& pair : problem.pairs) {
     assignment.column.push_back(pair.candidate);
-    assignment.cost.push_back(-pair.log_likelihood - detection_nats);
+    assignment.cost.push_back(-pair.log_likelihood - detection_nats - pair.appearance_nats);
   }
   assignment.row_begin.reserve(problem.observations.size() + 1);
   assignment.unassigned_cost.reserve(problem.observations.size());

@@ -78,6 +78,15 @@ bool is_small_spd(const ObsMatrix& R) {
   return std::abs(R(0, 1) - R(1, 0)) <= 1e-9 * scale && R(0, 0) * R(1, 1) - R(0, 1) * R(1, 0) > 0.0;
 }
 
+/// Smaller than any length, so that its square is a variance.
+bool is_usable(const Appearance& seen) {
+  constexpr double least_m = 1e-9;
+  constexpr double most_m = 1e6;
+  const bool sized = seen.size_m == 0.0 || (seen.size_m >= least_m && seen.size_m <= most_m &&
+                                            seen.sigma_size_m >= least_m && seen.sigma_size_m <= most_m);
+  return sized && (seen.name.empty() || (seen.class_error >= least_m && seen.class_error <= 1.0 - least_m));
+}
+
 [[noreturn]] void refuse(const Observation& observation, const char* problem) {
   std::ostringstream message;
   message << "observation: " << problem << "; z = [" << observation.z.transpose() << "], R = ["
@@ -186,6 +195,8 @@ void check_observation(const Observation& observation) {
     refuse(observation, "the bearing must lie within ±2π");
   } else if (!is_small_spd(observation.R)) {
     refuse(observation, "R is not symmetric positive definite");
+  } else if (!is_usable(observation.appearance)) {
+    refuse(observation, "a class needs a class error in (0, 1), a size itself and its deviation above 0");
   }
 }
 

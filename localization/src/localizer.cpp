@@ -38,6 +38,7 @@ Localizer::Localizer(const core::PoseGaussian& start, const std::vector<core::Ma
       throw core::PreconditionError("localizer: landmark " + std::to_string(landmark.id) +
                                     (fresh ? " has no finite position" : " is twice in the map"));
     }
+    appearance_.adopt(landmark.id, landmark.appearance);
   }
 }
 
@@ -133,8 +134,8 @@ Localizer::Associated Localizer::associate(const core::PoseGaussian& pose, const
   const core::JointGaussian joint = candidates(pose, scan);
   association::Options how = options_.association;
   how.extraneous = association::density_in_view(scan, options_.extraneous_per_scan, how.extraneous);
-  const association::Assignment assignment =
-      association::associate(options_.method, association::make_innovation_problem(joint, scan, options_.gates), how);
+  const association::Assignment assignment = association::associate(
+      options_.method, association::make_innovation_problem(joint, scan, options_.gates, &appearance_), how);
   Associated associated;
   std::vector<core::AssociationReport>& reports = associated.reports;
   reports.reserve(assignment.observations.size());

@@ -97,6 +97,17 @@ std::optional<LogFormat> of_file(const fs::path& path) {
                                                                     : std::nullopt;
 }
 
+/// A serialised object of MRPT, which is linked into a program of its own.
+void refuse_rawlog(const fs::path& path) {
+  if (path.extension() != ".rawlog") return;
+  throw core::InputError(
+      path.string() +
+      ": a rawlog of MRPT, which this program does not read. helixnav-rawlog turns it into a log that it "
+      "does: helixnav-rawlog " +
+      path.filename().string() + " " + path.stem().string() +
+      ".jsonl; helixnav-slam navigates along it as it is. Both are built where MRPT is (docs/mrpt.md)");
+}
+
 core::Recording read_victoria_park(const AcfrLog& log, const RecordingSettings& settings) {
   return make_recording(log, settings.victoria_park);
 }
@@ -140,6 +151,7 @@ LogFormat recognise(const fs::path& path) {
   if (!fs::exists(path)) {
     throw core::InputError(path.string() + ": expected a file or folder, found nothing there");
   }
+  refuse_rawlog(path);
   if (is_own_log(path)) return LogFormat::own;
   const std::optional<LogFormat> format = fs::is_directory(path) ? of_folder(path) : of_file(path);
   if (!format) {

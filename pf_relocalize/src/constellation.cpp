@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tile_sum.hpp"
 
@@ -15,6 +16,7 @@ struct Candidate {
   int branch;
   int old_landmark;
   double distance_m;
+  double tolerance_m;
 };
 
 /// Branch landmarks with enough hits, placed in the map.
@@ -44,8 +46,10 @@ std::vector<Candidate> candidates(const Constellation& constellation, const Plac
       const double distance = (placed.points_m[i] - old.mean_m).norm();
       if (distance >= limits.most_tolerance_m) continue;
       const double variance = largest_variance(old.covariance_m2) + limits.branch_sigma_m * limits.branch_sigma_m;
-      if (distance < 3.0 * std::sqrt(variance) + lever_m)
-        pairs.push_back({static_cast<int>(i), static_cast<int>(j), distance});
+      const double tolerance_m = 3.0 * std::sqrt(variance) + lever_m;
+      if (distance < tolerance_m && constellation.population.look_alike(constellation.old_landmarks[j].appearance,
+                                                                        placed.landmarks[i]->appearance))
+        pairs.push_back({static_cast<int>(i), static_cast<int>(j), distance, tolerance_m});
     }
   }
   std::stable_sort(pairs.begin(), pairs.end(),
@@ -100,12 +104,59 @@ class Matching {
   std::vector<bool> visited_;
 };
 
+/// Median distance of an old landmark from its nearest neighbour.
+double spacing_m(const std::vector<OldLandmark>& landmarks) {
+  std::vector<double> nearest_m;
+  for (const OldLandmark& one : landmarks) {
+    double least2 = std::numeric_limits<double>::infinity();
+    for (const OldLandmark& other : landmarks) {
+      if (&other != &one) least2 = std::min(least2, (other.point.mean_m - one.point.mean_m).squaredNorm());
+    }
+    nearest_m.push_back(std::sqrt(least2));
+  }
+  const auto middle = nearest_m.begin() + static_cast<std::ptrdiff_t>(nearest_m.size() / 2);
+  std::nth_element(nearest_m.begin(), middle, nearest_m.end());
+  return *middle;
+}
+
+/// ConstellationScore::appearance_matches of the pairs that were matched.
+double appearance_matches(const Constellation& constellation, const PlacedBranch& placed, const Matching& matching,
+                          const std::vector<Candidate>& candidates) {
+  constexpr double least_nats = 3.0;  // where landmarks stand so densely that chance is a partner in one of twenty
+  double nearest_m = -1.0;
+  double worth = 0.0;
+  for (const Candidate& pair : candidates) {
+    const auto i = static_cast<std::size_t>(pair.branch);
+    if (matching.old_of(i) != pair.old_landmark) continue;
+    const OldLandmark& old = constellation.old_landmarks[static_cast<std::size_t>(pair.old_landmark)];
+    const double nats = constellation.population.compare(old.appearance, placed.landmarks[i]->appearance).nats;
+    if (nats == 0.0) continue;
+    if (nearest_m < 0.0) nearest_m = spacing_m(constellation.old_landmarks);
+    const double by_chance = -std::expm1(-std::log(2.0) * std::pow(pair.tolerance_m / nearest_m, 2));
+    worth += nats / std::max(least_nats, -std::log(by_chance));
+  }
+  return worth;
+}
+
 bool counts(const ConstellationScore& rival, const ConstellationScore& winner, const ConstellationLimits& limits) {
   return rival.matched >= limits.rival_least_matches && rival.matched >= limits.rival_match_share * winner.matched;
 }
 
+/// Then the particle filter, which looks at places alone, may well be where no pair looks alike.
+bool tells_appearance(const Constellation& constellation) {
+  return std::any_of(constellation.branch.begin(), constellation.branch.end(),
+                     [](const BranchLandmark& one) { return one.appearance.is_told(); });
+}
+
+/// Had it one: a winner of none has no ratio that a rival's could be compared with.
+double ratio_of_one_match(const ConstellationScore& score) {
+  return 1.0 / (1.0 + 0.5 * (score.unmatched_branch + score.unmatched_old));
+}
+
 ConstellationReason reason_for(const ConstellationVerdict& verdict, const ConstellationLimits& limits) {
-  if (verdict.winner.matched < limits.least_matches) return ConstellationReason::too_few_matches;
+  const bool enough = verdict.winner.matched + verdict.winner.appearance_matches >= limits.least_matches &&
+                      verdict.winner.matched >= std::min(limits.least_matches, limits.rival_least_matches);
+  if (!enough) return ConstellationReason::too_few_matches;
   if (verdict.winner.ratio <= limits.least_ratio) return ConstellationReason::ratio_too_low;
   return verdict.rival_share >= limits.rival_ratio ? ConstellationReason::rival_too_good
                                                    : ConstellationReason::accepted;
@@ -138,8 +189,8 @@ bool Coverage::covers(const Eigen::Vector2d& point_m) const {
 ConstellationScore score_constellation(const Constellation& constellation, const core::Pose2& T_map_robot,
                                        const ConstellationLimits& limits) {
   const PlacedBranch placed = place(constellation, T_map_robot, limits.least_hits);
-  const Matching matching(placed.points_m.size(), constellation.old_landmarks.size(),
-                          candidates(constellation, placed, limits));
+  const std::vector<Candidate> near = candidates(constellation, placed, limits);
+  const Matching matching(placed.points_m.size(), constellation.old_landmarks.size(), near);
   ConstellationScore score;
   score.T_map_robot = T_map_robot;
   for (std::size_t i = 0; i < placed.points_m.size(); ++i) {
@@ -152,6 +203,7 @@ ConstellationScore score_constellation(const Constellation& constellation, const
     score.pairs.push_back({placed.landmarks[i]->id, old.id, (placed.points_m[i] - old.point.mean_m).norm()});
   }
   score.matched = static_cast<int>(score.pairs.size());
+  score.appearance_matches = appearance_matches(constellation, placed, matching, near);
   const core::Pose2 T_robot_map = core::inverse(T_map_robot);
   for (std::size_t j = 0; j < constellation.old_landmarks.size(); ++j) {
     const Eigen::Vector2d seen_from_now = core::transform(T_robot_map, constellation.old_landmarks[j].point.mean_m);
@@ -172,6 +224,9 @@ ConstellationVerdict judge_constellation(const Constellation& constellation, con
     if (counts(rival, verdict.winner, limits) && rival.ratio > verdict.rival.ratio) verdict.rival = std::move(rival);
   }
   verdict.rival_share = verdict.winner.ratio > 0.0 ? verdict.rival.ratio / verdict.winner.ratio : 0.0;
+  if (verdict.winner.matched == 0 && tells_appearance(constellation)) {
+    verdict.rival_share = verdict.rival.ratio / ratio_of_one_match(verdict.winner);
+  }
   verdict.reason = reason_for(verdict, limits);
   verdict.accepted = verdict.reason == ConstellationReason::accepted;
   return verdict;

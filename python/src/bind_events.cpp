@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "appearance.hpp"
 #include "arrays.hpp"
 #include "helixnav/core/check_event.hpp"
 #include "helixnav/core/errors.hpp"
@@ -136,11 +137,30 @@ void bind_odometry(py::module_& module) {
 
 void bind_scan(py::module_& module) {
   py::class_<core::Scan> scan(module, "Scan", "What one sensor saw at one instant; nothing seen is information, too.");
-  scan.def(py::init(&scan_from), py::arg("t"), py::arg("kind"), py::arg("z"), py::arg("R"),
+  scan.def(py::init([](double t_s, const std::string& kind, const py::object& z, const py::object& R,
+                       const py::object& mounting, const core::FieldOfView& view, const py::object& classes,
+                       const py::object& sizes, const py::object& sigma_sizes, double class_error) {
+             core::Scan made = scan_from(t_s, kind, z, R, mounting, view);
+             tell_appearance(classes, sizes, sigma_sizes, class_error, made);
+             core::check(made);
+             return made;
+           }),
+           py::arg("t"), py::arg("kind"), py::arg("z"), py::arg("R"),
            py::arg("mounting") = py::make_tuple(0.0, 0.0, 0.0), py::arg("view") = core::FieldOfView(),
+           py::arg("classes") = py::none(), py::arg("sizes") = py::none(), py::arg("sigma_sizes") = 0.0,
+           py::arg("class_error") = core::Appearance().class_error,
            "kind: 'range_bearing', 'cartesian', 'bearing' or 'range'; z (N, d) in metres and radians, R (d, d) or (N, "
            "d, d); "
-           "mounting (x, y, heading) of the sensor on the robot. PreconditionError for what no sensor measures.")
+           "mounting (x, y, heading) of the sensor on the robot. What the objects are, where the detector tells: "
+           "classes, "
+           "names of at most 23 bytes or None each, one of which is wrong with probability class_error; sizes [m], NaN "
+           "where unknown, with standard deviations sigma_sizes. PreconditionError for what no sensor measures.")
+      .def_property_readonly("classes", &classes_of, "'' where none is told.")
+      .def_property_readonly(
+          "sizes", [](const core::Scan& s) { return sizes_of(s, &core::Appearance::size_m); },
+          "(N,) [m]; NaN where none is told.")
+      .def_property_readonly(
+          "sigma_sizes", [](const core::Scan& s) { return sizes_of(s, &core::Appearance::sigma_size_m); }, "(N,) [m].")
       .def_property_readonly("z", &z_of, "(N, 2); NaN in the second column of a bearing or range alone.")
       .def_property_readonly("R", &R_of, "(N, 2, 2); NaN in the second row and column of a bearing or range alone.")
       .def_property_readonly("kinds", &kinds_of)

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,6 +60,31 @@ std::vector<std::string> states_of(const Map& map) {
   return states;
 }
 
+/// The likeliest class; '' where none was told.
+std::vector<std::string> classes_of(const Map& map) {
+  std::vector<std::string> names;
+  for (const core::MapLandmark& landmark : map.landmarks) {
+    names.emplace_back(landmark.appearance.votes.front().name.text());
+  }
+  return names;
+}
+
+/// Mean and standard deviation; NaN where none was told.
+py::array_t<double> sizes_of(const Map& map) {
+  py::array_t<double> sizes({static_cast<py::ssize_t>(map.landmarks.size()), py::ssize_t{2}});
+  std::fill_n(sizes.mutable_data(), sizes.size(), std::numeric_limits<double>::quiet_NaN());
+  double* to = sizes.mutable_data();
+  for (const core::MapLandmark& landmark : map.landmarks) {
+    const core::LandmarkAppearance& known = landmark.appearance;
+    if (known.size_m > 0.0) {
+      to[0] = known.size_m;
+      to[1] = std::sqrt(known.size_variance_m2);
+    }
+    to += 2;
+  }
+  return sizes;
+}
+
 void bind_landmarks(py::module_& module) {
   py::class_<Map>(module, "Map", "Landmarks in order of id, as arrays.")
       .def_property_readonly("ids", &ids_of, "(N,)")
@@ -64,6 +92,8 @@ void bind_landmarks(py::module_& module) {
       .def_property_readonly("covariances", &covariances_of, "(N, 2, 2) [m²]")
       .def_property_readonly("observations", &counts_of, "(N,)")
       .def_property_readonly("states", &states_of, "'tentative' or 'mature' each")
+      .def_property_readonly("classes", &classes_of, "The likeliest class of each; '' where none was told")
+      .def_property_readonly("sizes", &sizes_of, "(N, 2), mean and standard deviation [m]; NaN where none was told")
       .def("__len__", [](const Map& map) { return map.landmarks.size(); });
 }
 

@@ -19,6 +19,11 @@ std::string format(const char* pattern, Values... values) {
   return text;
 }
 
+/// One in ten or more: the limit, and not their errors, decides what is left.
+bool too_many_left_out(const evaluation::PositionEvaluation& position) {
+  return 10 * position.fixes_left_out > position.fixes_used + position.fixes_left_out;
+}
+
 std::string position_text(const evaluation::PositionEvaluation& position) {
   const evaluation::ErrorStatistics& e = position.error_m;
   if (e.count == 0) {
@@ -31,7 +36,10 @@ std::string position_text(const evaluation::PositionEvaluation& position) {
                            : "  against            true poses, in the map frame as it is\n";
   text += format("  fixes used         %zu\n", position.fixes_used);
   if (position.aligned) {
-    text += format("  fixes left out     %zu (farther than %g m)\n", position.fixes_left_out, position.limit_m);
+    text += format("  fixes left out     %zu (farther than %g m)%s\n", position.fixes_left_out, position.limit_m,
+                   too_many_left_out(position) ? ": too many to be outliers, so that the errors above are too small; "
+                                                 "helixnav evaluate RUN --fix-limit-m takes more"
+                                               : "");
     text += format("  alignment          x %.3f m, y %.3f m, heading %.3f deg (map in the frame of the fixes)\n",
                    position.T_truth_map.x_m, position.T_truth_map.y_m, in_degrees(position.T_truth_map.heading_rad));
   }

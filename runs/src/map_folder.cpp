@@ -18,6 +18,7 @@ std::vector<core::MapLandmark> landmarks_of(const core::JointMap& map) {
     landmarks[i].point = {map.joint.points_m[i], map.joint.covariance.block<2, 2>(row, row)};
     landmarks[i].observations = map.observations[i];
     landmarks[i].state = map.states[i];
+    if (!map.appearances.empty()) landmarks[i].appearance = map.appearances[i];
   }
   return landmarks;
 }

@@ -14,6 +14,7 @@
 #include "helixnav/files/number_text.hpp"
 #include "helixnav/runs/words.hpp"
 #include "manifest_json.hpp"
+#include "tables/appearance_cells.hpp"
 #include "tables/put_association.hpp"
 #include "tables/run_rows.hpp"
 #include "tables/run_tables.hpp"
@@ -230,7 +231,8 @@ bool has_truth(const std::string& folder) {
 
 std::vector<core::MapLandmark> read_map(const std::string& path) {
   std::vector<core::MapLandmark> map;
-  for_each_row(path, map_table, [&](const RunRow& row) {
+  const bool tells_appearance = begins_with(path, map_table_with_appearance);
+  for_each_row(path, tells_appearance ? map_table_with_appearance : map_table, [&](const RunRow& row) {
     core::MapLandmark& landmark = map.emplace_back();
     landmark.id = small_integer(row, 0);
     landmark.point.mean_m = {row.finite(1), row.finite(2)};
@@ -238,6 +240,7 @@ std::vector<core::MapLandmark> read_map(const std::string& path) {
     if (!landmark.point.covariance_m2.allFinite()) row.refuse(3, "finite numbers in it and the next two columns");
     landmark.observations = small_integer(row, 6);
     landmark.state = enumerator<core::LandmarkState>(row, 7, state_words);
+    if (tells_appearance) landmark.appearance = read_appearance(row, 8);
   });
   return map;
 }

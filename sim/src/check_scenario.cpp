@@ -66,6 +66,10 @@ void check_scanner(const ScannerOptions& scanner) {
   require("scanner.detection_probability", scanner.detection_probability, 0.0, 1.0);
   require("scanner.clutter_per_scan", scanner.clutter_per_scan, 0.0, 500.0);
   require("scanner.occluding_radius_m", scanner.occluding_radius_m, 0.0, unlimited);
+  require("scanner.looks.classes", scanner.looks.classes, 0.0, 1000.0);
+  require("scanner.looks.class_error", scanner.looks.class_error, 0.0, 0.5);
+  require("scanner.looks.sigma_size_m", scanner.looks.sigma_size_m, 0.0, 100.0);
+  require("scanner.looks.diameter_m", scanner.looks.diameter_m, 1e-3, 1e3);
 }
 
 void check_noise(const NoiseLevels& noise, const std::string& whose, double least_sigma) {

@@ -22,7 +22,8 @@ Scanner::Scanner(const Scenario& scenario, const World& world, std::uint64_t see
       options_(scenario.scanner),
       true_noise_(scenario.true_noise),
       assumed_noise_(scenario.assumed_noise),
-      random_(seed, "sim.scanner") {}
+      random_(seed, "sim.scanner"),
+      looks_(scenario.scanner.looks, seed) {}
 
 LabelledScan Scanner::look(const core::Pose2& T_world_robot, double along_m, core::Nanoseconds t_ns) {
   LabelledScan seen;
@@ -74,6 +75,7 @@ void Scanner::add_tree(const Sighting& truth, LabelledScan& into) {
   if (range_m <= 0.0) return;  // a scanner has no negative ranges: a miss
   into.scan.observations.push_back(
       core::make_range_bearing(range_m, bearing_rad, assumed_noise_.sigma_range_m, assumed_noise_.sigma_bearing_rad));
+  into.scan.observations.back().appearance = looks_.told(world_.trees[static_cast<std::size_t>(truth.label)]);
   into.labels.push_back(truth.label);
 }
 
@@ -84,6 +86,7 @@ void Scanner::add_clutter(LabelledScan& into) {
   const double bearing_rad = random_.uniform(view.min_bearing_rad, view.max_bearing_rad);
   into.scan.observations.push_back(
       core::make_range_bearing(range_m, bearing_rad, assumed_noise_.sigma_range_m, assumed_noise_.sigma_bearing_rad));
+  into.scan.observations.back().appearance = looks_.told_of_clutter();
   into.labels.push_back(core::no_label);
 }
 

@@ -7,6 +7,7 @@
 #include "helixnav/core/random.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/sim/scenario.hpp"
+#include "looks.hpp"
 
 namespace helixnav::sim {
 
@@ -41,6 +42,7 @@ class Scanner {
   NoiseLevels true_noise_;
   NoiseLevels assumed_noise_;
   core::RandomStream random_;
+  Looks looks_;
 };
 
 }  // namespace helixnav::sim

@@ -194,7 +194,13 @@ World build(const WorldOptions& options, Dice& dice) {
 
 World build_world(const WorldOptions& options, std::uint64_t seed) {
   Dice dice(seed);
-  return build(options, dice);
+  World world = build(options, dice);
+  core::RandomStream looks(seed, "sim.world.looks");
+  for (Tree& tree : world.trees) {
+    tree.class_draw = looks.uniform(0.0, 1.0);
+    tree.diameter_draw = looks.uniform(0.0, 1.0);
+  }
+  return world;
 }
 
 }  // namespace helixnav::sim

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <variant>
 
 #include <gtest/gtest.h>
@@ -249,6 +250,18 @@ TEST_F(Rawlogs, AreConvertedByHelixnavConvertToo) {
   const Outcome again = run({HELIXNAV_CLI, "convert", circles, file("a.rawlog")});
   EXPECT_EQ(again.exit_code, 3);
   EXPECT_NE(again.err.find("--overwrite"), std::string::npos) << again.err;
+}
+
+TEST_F(Rawlogs, FeedAStreamThatAnswersEachScan) {
+  write_recording(testing::past_posts(), file("a.rawlog"), LandmarkIds::none);
+  const std::string programs = std::filesystem::path(HELIXNAV_CLI).parent_path().string();
+  const Outcome fed = run({"PATH=" + programs + ":/usr/bin:/bin", "sh", HELIXNAV_EXAMPLES "/live/feed_rawlog.sh",
+                           file("a.rawlog"), "--detector", "none"});
+  EXPECT_EQ(fed.exit_code, 0) << fed.err;
+  std::size_t scans = 0;
+  for (std::size_t at = 0; (at = fed.out.find("{\"scan\"", at)) != std::string::npos; ++at) ++scans;
+  EXPECT_EQ(scans, 21U) << fed.out << fed.err;
+  EXPECT_NE(fed.out.find("\"scans\": 21"), std::string::npos) << fed.out;
 }
 
 }  // namespace

@@ -181,5 +181,33 @@ TEST(Constellation, LeavesRivalsWithFewMatchesOut) {
   EXPECT_EQ(verdict.rival.matched, 0);
 }
 
+/// A row of landmarks of two classes in turn, seen often enough on both drives.
+Constellation row_of_two_classes(bool told) {
+  Constellation row;
+  for (int i = 0; i < 200; ++i) {
+    core::Appearance one;
+    one.name = core::ClassName(i % 2 == 0 ? "red" : "blue");
+    row.population.count(one);
+  }
+  for (int i = 0; i < 8; ++i) {
+    core::Appearance seen;
+    seen.name = core::ClassName(i % 2 == 0 ? "red" : "blue");
+    core::LandmarkAppearance known;
+    for (int k = 0; k < 3 && told; ++k) known = row.population.updated(known, seen);
+    row.branch.push_back({i, {5.0 * i, 0.0}, 5, known});
+    row.old_landmarks.push_back({100 + i, {{5.0 * i, 0.0}, 1e-4 * Eigen::Matrix2d::Identity()}, known});
+  }
+  return row;
+}
+
+TEST(Constellation, OfClassesInTurnHasNoRivalOnePitchAway) {
+  const core::Pose2 shifted(5.0, 0.0, 0.0);
+  EXPECT_EQ(score_constellation(row_of_two_classes(false), {}).matched, 8);
+  EXPECT_EQ(score_constellation(row_of_two_classes(false), shifted).matched, 7);
+  EXPECT_EQ(score_constellation(row_of_two_classes(true), {}).matched, 8);
+  EXPECT_EQ(score_constellation(row_of_two_classes(true), shifted).matched, 0);
+  EXPECT_EQ(score_constellation(row_of_two_classes(true), {10.0, 0.0, 0.0}).matched, 6);
+}
+
 }  // namespace
 }  // namespace helixnav::pf_relocalize

@@ -56,6 +56,30 @@ def test_a_fix_moves_the_pose_and_is_reported():
     assert decision.sentence.startswith("A position fix was used")
 
 
+def test_classes_and_sizes_are_told_and_kept():
+    navigator = helixnav.Navigator()
+    for i in range(20):
+        navigator.move(small_odometry(0.1 * i))
+        points = np.array([[5.0, 1.0], [6.0, -2.0]]) - [0.1 * (i + 1), 0.0]
+        scan = helixnav.Scan(0.1 * i, "cartesian", points, 0.01 * np.eye(2), view=helixnav.FieldOfView(max_range=20.0),
+                             classes=["oak", None], sizes=[np.nan, 0.4], sigma_sizes=0.02)
+        assert scan.classes == ["oak", ""]
+        np.testing.assert_array_equal(scan.sizes, [np.nan, 0.4])
+        np.testing.assert_array_equal(scan.sigma_sizes, [np.nan, 0.02])
+        navigator.observe(scan)
+    assert navigator.map.classes == ["oak", ""]
+    assert np.all(np.isnan(navigator.map.sizes[0]))
+    np.testing.assert_allclose(navigator.map.sizes[1], [0.4, 0.02 / np.sqrt(20)])
+
+
+@pytest.mark.parametrize("told", [{"classes": ["oak"]}, {"classes": ["a name of more than 23 bytes", None]},
+                                  {"classes": ["oak", "elm"], "class_error": 0.0}, {"sizes": [0.4, 0.4]},
+                                  {"sizes": [0.4, -1.0], "sigma_sizes": 0.1}, {"sizes": [0.4], "sigma_sizes": 0.1}])
+def test_what_cannot_be_a_class_or_a_size_is_refused(told):
+    with pytest.raises(helixnav.PreconditionError):
+        helixnav.Scan(0.0, "cartesian", [[5.0, 1.0], [6.0, -2.0]], np.eye(2), **told)
+
+
 EYE2, EYE3 = np.eye(2), np.eye(3)
 
 

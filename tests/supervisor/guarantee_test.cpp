@@ -76,6 +76,10 @@ void expect_same_map(const std::vector<core::MapLandmark>& a, const std::vector<
     EXPECT_EQ(a[i].id, b[i].id);
     EXPECT_EQ(a[i].state, b[i].state);
     EXPECT_EQ(a[i].observations, b[i].observations);
+    EXPECT_EQ(a[i].appearance.votes.front().name, b[i].appearance.votes.front().name);
+    EXPECT_EQ(a[i].appearance.votes.front().nats, b[i].appearance.votes.front().nats);
+    EXPECT_EQ(a[i].appearance.size_m, b[i].appearance.size_m);
+    EXPECT_EQ(a[i].appearance.size_variance_m2, b[i].appearance.size_variance_m2);
     EXPECT_LT((a[i].point.mean_m - b[i].point.mean_m).norm(), rounding_m);
     EXPECT_LT((a[i].point.covariance_m2 - b[i].point.covariance_m2).norm(), 1e-9 * b[i].point.covariance_m2.norm());
   }
@@ -163,6 +167,17 @@ std::set<Kind> break_drive(const core::Recording& run, const NavigatorOptions& o
 TEST(Guarantee, AScanThatThrowsLeavesTheNavigatorAsItWasWhereverItBreaks) {
   const core::Recording run = sim::simulate(sim::named_scenario("large-loop-changed"), 3);
   const std::set<Kind> broken = break_drive(run, single_threaded(3), 12);
+  for (const Kind kind : {Kind::mapping, Kind::trigger, Kind::searching, Kind::closing}) {
+    EXPECT_EQ(broken.count(kind), 1u) << static_cast<int>(kind);
+  }
+}
+
+TEST(Guarantee, HoldsForClassesAndSizes) {
+  sim::Scenario scenario = sim::named_scenario("large-loop-changed");
+  scenario.scanner.looks.classes = 4;
+  scenario.scanner.looks.class_error = 0.05;
+  scenario.scanner.looks.sigma_size_m = 0.05;
+  const std::set<Kind> broken = break_drive(sim::simulate(scenario, 3), single_threaded(3), 12);
   for (const Kind kind : {Kind::mapping, Kind::trigger, Kind::searching, Kind::closing}) {
     EXPECT_EQ(broken.count(kind), 1u) << static_cast<int>(kind);
   }

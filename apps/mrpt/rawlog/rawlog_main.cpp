@@ -63,9 +63,9 @@ GraphFormat text_format(const RawlogJob& job) {
   const std::string extension = fs::path(job.out).extension().string();
   if (const auto format = format_by_name(job.to)) return *format;
   if (const auto format = format_by_extension(extension)) return *format;
-  throw CLI::ValidationError("OUT", "'" + extension + "' says no format; give --to " +
-                                        CLI::detail::join(format_names(), ", --to ") +
-                                        ", or an extension of .rawlog, .circles, .lines, .dlr, .g2o, .isam, .gtsam");
+  throw CLI::ValidationError(
+      "OUT", "'" + extension + "' says no format; give --to " + CLI::detail::join(format_names(), ", --to ") +
+                 ", or an extension of .rawlog, .circles, .lines, .dlr, .g2o, .isam, .gtsam, .jsonl");
 }
 
 ExitCode convert(const RawlogJob& job) {
@@ -116,11 +116,13 @@ int main(int argc, char** argv) {
       "To a rawlog: ACFR logs raw, as single observations (range scans, GPS, wheel and steering, odometry); all "
       "others\n"
       "as pairs of action and sensory frame, landmarks as CObservationBearingRange.\n"
-      "From a rawlog: .circles .lines .dlr (DLR text), .g2o .isam .gtsam (need landmarkIDs).\n\n"
+      "From a rawlog: .circles .lines .dlr (DLR text), .g2o .isam .gtsam (need landmarkIDs), .jsonl (what helixnav\n"
+      "replay and stream read, with a vehicle.toml beside it).\n\n"
       "Examples:\n"
       "  helixnav-rawlog victoria_park_ascii.zip park.rawlog\n"
       "  helixnav-rawlog map.circles run_e.rawlog\n"
       "  helixnav-rawlog kf-slam_demo.rawlog demo.g2o\n"
+      "  helixnav-rawlog kf-slam_demo.rawlog demo.jsonl && helixnav stream --vehicle vehicle.toml < demo.jsonl\n"
       "  helixnav-rawlog kf-slam_demo.rawlog observations.rawlog --observations-only\n");
   return run_program(app, [&] {
     app.parse(argc, argv);

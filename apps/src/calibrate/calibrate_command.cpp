@@ -14,6 +14,7 @@
 #include "helixnav/logs/read_recording.hpp"
 #include "helixnav/logs/shipped_vehicle.hpp"
 #include "settings/config_file.hpp"
+#include "settings/deprecated_keys.hpp"
 #include "settings/settings.hpp"
 #include "settings/vehicle_option.hpp"
 #include "vehicle_text.hpp"
@@ -91,6 +92,7 @@ ExitCode calibrate(CLI::App& command, CalibrateJob& job) {
   require_compressed_ekf(command, given, job.settings.fastslam, "calibrate judges noise by the compressed EKF");
   refuse_noise_beside_file(given);
   if (logs::is_mrclam(job.path)) throw core::InputError(job.path + ": a log of several robots; calibrate reads one");
+  warn_of_deprecated_keys(command);
   apply_vehicle(command, job.vehicle, job.path, job.settings);
   const logs::Vehicle vehicle = vehicle_of(job);
   if (!job.out.empty() && std::filesystem::exists(job.out)) {

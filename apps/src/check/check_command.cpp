@@ -12,6 +12,7 @@
 #include "helixnav/logs/read_recording.hpp"
 #include "log_page.hpp"
 #include "settings/config_file.hpp"
+#include "settings/deprecated_keys.hpp"
 #include "settings/settings.hpp"
 #include "settings/vehicle_option.hpp"
 
@@ -37,6 +38,14 @@ std::string missing_text(const core::Recording& recording) {
   return text;
 }
 
+/// What to do next.
+std::string ready_text(const core::Recording& recording, bool known_association) {
+  const bool by_identity = !known_association && fixes_no_point(recording);
+  const std::string how = by_identity ? " by its identities: helixnav replay it with --association known" : "";
+  if (!recording.remarks.empty()) return "it can be navigated" + how + "; look at the notes first";
+  return by_identity ? "it can be navigated" + how : "nothing is doubtful: helixnav replay it";
+}
+
 void print_settings(const CheckJob& job, const core::Recording& recording) {
   if (job.settings.fastslam.chosen) {
     std::printf("settings    %s\n", text_of(job.settings.fastslam).c_str());
@@ -56,6 +65,7 @@ ExitCode check(CLI::App& command, CheckJob& job) {
   const GivenOptions given = options_given(command);
   if (!job.config.empty()) apply_config_file(command, job.config);
   check_filter(command, given, job.settings.fastslam);
+  warn_of_deprecated_keys(command);
   apply_vehicle(command, job.vehicle, job.path, job.settings);
   const logs::LogFormat format = logs::recognise(job.path);
   std::printf("log         %s, format %s\n", job.path.c_str(), std::string(logs::name_of(format)).c_str());
@@ -73,8 +83,7 @@ ExitCode check(CLI::App& command, CheckJob& job) {
   print_settings(job, recording);
   std::fputs(missing_text(recording).c_str(), stdout);
   for (const std::string& remark : recording.remarks) std::printf("note        %s\n", remark.c_str());
-  std::printf("%s\n", recording.remarks.empty() ? "ready       nothing is doubtful: helixnav replay it"
-                                                : "ready       it can be navigated; look at the notes first");
+  std::printf("ready       %s\n", ready_text(recording, job.settings.known_association).c_str());
   return ExitCode::ok;
 }
 

@@ -107,6 +107,11 @@ std::string tables_text(const logs::OwnLog& log) {
   const auto own = std::count_if(log.detections.begin(), log.detections.end(),
                                  [](const logs::OwnDetection& row) { return row.R[0] > 0.0; });
   text += line("detections  %zu rows, %td with noise of their own", log.detections.size(), own);
+  const auto classes = std::count_if(log.detections.begin(), log.detections.end(),
+                                     [](const logs::OwnDetection& row) { return !row.class_name.empty(); });
+  const auto sizes = std::count_if(log.detections.begin(), log.detections.end(),
+                                   [](const logs::OwnDetection& row) { return row.size_m > 0.0; });
+  if (classes + sizes > 0) text += line("            %td tell a class, %td a size", classes, sizes);
   if (log.sensor_names.size() > 1) {
     std::string names;
     for (const std::string& name : log.sensor_names) names += (names.empty() ? "" : ", ") + name;
@@ -116,6 +121,11 @@ std::string tables_text(const logs::OwnLog& log) {
     text += line("identities  names, numbered in their order: %s is 0 …", log.id_names.front().c_str());
   }
   return text;
+}
+
+bool fixes_no_point(const core::Recording& recording) {
+  const ScanCounts counts = count_scans(recording);
+  return counts.observations > 0 && counts.of_kind[0] + counts.of_kind[1] == 0;
 }
 
 std::string events_text(const core::Recording& recording) {

@@ -15,4 +15,7 @@ std::string tables_text(const logs::OwnLog& log);
 /// gaps, truth.
 std::string events_text(const core::Recording& recording);
 
+/// Whether all that is detected are ranges or bearings alone.
+bool fixes_no_point(const core::Recording& recording);
+
 }  // namespace helixnav::apps

@@ -55,9 +55,9 @@ GraphFormat format_of(const ConvertJob& job) {
   const std::string extension = std::filesystem::path(job.out).extension().string();
   if (const auto format = format_by_name(job.to)) return *format;
   if (const auto format = format_by_extension(extension)) return *format;
-  throw CLI::ValidationError("OUT", "'" + extension + "' says no format; give --to " +
-                                        CLI::detail::join(format_names(), ", --to ") +
-                                        ", or an extension of .circles, .lines, .dlr, .g2o, .isam, .gtsam, .rawlog");
+  throw CLI::ValidationError(
+      "OUT", "'" + extension + "' says no format; give --to " + CLI::detail::join(format_names(), ", --to ") +
+                 ", or an extension of .circles, .lines, .dlr, .g2o, .isam, .gtsam, .jsonl, .rawlog");
 }
 
 bool is_rawlog(const std::string& path) { return std::filesystem::path(path).extension() == ".rawlog"; }
@@ -108,7 +108,9 @@ void add_convert_command(CLI::App& app, ExitCode& code) {
   command->add_flag("--overwrite", job->overwrite, "Replace OUT when it is there");
   command->footer(
       "Formats by extension: .circles .lines .dlr (DLR text, robot axes X left, Y backward), .g2o, .isam (square-root\n"
-      "information), .gtsam (covariances). The graph formats hold what has a label; DLR text holds all.\n"
+      "information), .gtsam (covariances), .jsonl (JSON Lines of your own schema, with a vehicle.toml beside them). "
+      "The\n"
+      "graph formats hold what has a label; DLR text and JSON Lines hold all.\n"
       "A .rawlog of MRPT, as IN or OUT, is converted by helixnav-rawlog, which says more (--help).\n\n"
       "Examples:\n"
       "  helixnav convert map.circles run_e.g2o\n"

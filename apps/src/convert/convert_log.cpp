@@ -2,6 +2,7 @@
 #include "convert_log.hpp"
 
 #include <cstdio>
+#include <filesystem>
 #include <set>
 #include <utility>
 #include <variant>
@@ -9,8 +10,10 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/landmark_graph.hpp"
+#include "helixnav/files/file.hpp"
 #include "helixnav/logs/dlr.hpp"
 #include "helixnav/logs/graph_files.hpp"
+#include "helixnav/logs/own_lines.hpp"
 #include "helixnav/logs/read_recording.hpp"
 
 namespace helixnav::apps {
@@ -38,9 +41,9 @@ void check_odometry(const core::Recording& recording) {
   }
 }
 
-Converted to_dlr(core::Recording recording, const std::string& out) {
-  drop_empty_beginning(recording);
-  logs::write_dlr(recording, out);
+bool is_graph_format(GraphFormat format) { return format != GraphFormat::dlr && format != GraphFormat::jsonl; }
+
+Converted counts_of(const core::Recording& recording) {
   Converted converted;
   std::set<core::Label> labels;
   for (const core::Event& event : recording.events) {
@@ -53,6 +56,21 @@ Converted to_dlr(core::Recording recording, const std::string& out) {
   labels.erase(core::no_label);
   converted.landmarks = labels.size();
   return converted;
+}
+
+Converted to_dlr(core::Recording recording, const std::string& out) {
+  drop_empty_beginning(recording);
+  logs::write_dlr(recording, out);
+  return counts_of(recording);
+}
+
+Converted to_lines(const core::Recording& recording, const std::string& out) {
+  namespace fs = std::filesystem;
+  const fs::path vehicle = fs::absolute(out).parent_path() / "vehicle.toml";
+  const std::string text = logs::vehicle_of_lines(recording);
+  files::write_whole_file(out, logs::own_lines(recording));
+  if (!fs::exists(vehicle)) files::write_whole_file(vehicle.string(), text);
+  return counts_of(recording);
 }
 
 Converted to_graph(const core::LandmarkGraph& graph, const std::string& out, GraphFormat format) {
@@ -78,7 +96,7 @@ Converted to_graph(const core::Recording& recording, const std::string& out, Gra
 
 std::string name_of(GraphFormat format) { return format_names()[static_cast<std::size_t>(format)]; }
 
-std::vector<std::string> format_names() { return {"dlr", "g2o", "isam", "gtsam"}; }
+std::vector<std::string> format_names() { return {"dlr", "g2o", "isam", "gtsam", "jsonl"}; }
 
 std::optional<GraphFormat> format_by_name(const std::string& name) {
   const std::vector<std::string> names = format_names();
@@ -96,20 +114,22 @@ std::optional<GraphFormat> format_by_extension(const std::string& extension) {
 Converted convert_log(const std::string& in, const std::string& out, GraphFormat format,
                       const std::vector<logs::Noise>& noises, std::uint64_t seed) {
   const bool is_graph = logs::recognise(in) == logs::LogFormat::g2o;
-  if (is_graph && noises.empty() && format != GraphFormat::dlr) return to_graph(logs::read_g2o(in), out, format);
+  if (is_graph && noises.empty() && is_graph_format(format)) return to_graph(logs::read_g2o(in), out, format);
   return convert_recording(logs::read_recording(in), in, out, format, noises, seed);
 }
 
 Converted convert_recording(core::Recording recording, const std::string& in, const std::string& out,
                             GraphFormat format, const std::vector<logs::Noise>& noises, std::uint64_t seed) {
-  if (recording.labels.empty() && format != GraphFormat::dlr) {
-    throw core::InputError(in + ": a graph needs a labelled log, and this one has no labels; --to dlr needs none");
+  if (recording.labels.empty() && is_graph_format(format)) {
+    throw core::InputError(in +
+                           ": a graph needs a labelled log, and this one has no labels; --to dlr and jsonl need none");
   }
   std::vector<logs::AddedNoise> added;
   if (!noises.empty()) added = logs::add_noise(recording, noises, seed);
   check_odometry(recording);
-  Converted converted =
-      format == GraphFormat::dlr ? to_dlr(std::move(recording), out) : to_graph(recording, out, format);
+  Converted converted = format == GraphFormat::dlr     ? to_dlr(std::move(recording), out)
+                        : format == GraphFormat::jsonl ? to_lines(recording, out)
+                                                       : to_graph(recording, out, format);
   converted.noise = std::move(added);
   return converted;
 }

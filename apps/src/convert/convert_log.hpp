@@ -13,7 +13,7 @@
 namespace helixnav::apps {
 
 /// Formats that convert writes.
-enum class GraphFormat { dlr, g2o, isam, gtsam };
+enum class GraphFormat { dlr, g2o, isam, gtsam, jsonl };
 
 std::string name_of(GraphFormat format);  ///< as on the command line
 std::vector<std::string> format_names();
@@ -30,7 +30,8 @@ struct Converted {
 };
 
 /// Reads `in`, adds the noise and writes `out`, whole or not at all. A g2o graph without noise keeps its start values
-/// when written as a graph; all other graphs start from dead reckoning. InputError for what cannot be read or held.
+/// when written as a graph; all other graphs start from dead reckoning. JSON Lines of the user's own schema need a vehicle.toml,
+/// which is written beside them unless one is there. InputError for what cannot be read or held.
 /// Test: apps/convert_test.cpp.
 Converted convert_log(const std::string& in, const std::string& out, GraphFormat format,
                       const std::vector<logs::Noise>& noises, std::uint64_t seed);

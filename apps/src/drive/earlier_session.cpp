@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <string_view>
 #include <utility>
 
@@ -29,6 +30,19 @@ void check_size(const std::string& file, const EarlierSession& session) {
                          (unknown
                               ? "a place on it can be found from " + std::to_string(least) + " on: give --start a pose"
                               : "there is nothing to go on in"));
+}
+
+/// map.bin says where landmarks are, map.csv beside it what they look like.
+void tell_appearances(const std::vector<core::MapLandmark>& table, core::JointMap& map) {
+  std::map<core::LandmarkId, core::LandmarkAppearance> known;
+  for (const core::MapLandmark& landmark : table) {
+    if (landmark.appearance.is_told()) known.emplace(landmark.id, landmark.appearance);
+  }
+  if (known.empty()) return;
+  for (const core::LandmarkId id : map.joint.ids) {
+    const auto found = known.find(id);
+    map.appearances.push_back(found == known.end() ? core::LandmarkAppearance() : found->second);
+  }
 }
 
 }  // namespace
@@ -73,7 +87,10 @@ core::JointMap read_joint_map_in(const std::string& folder) {
                            std::to_string(runs::most_joint_landmarks) +
                            " landmarks, only localised, or is of version 0.1");
   }
-  return runs::read_joint_map(file);
+  core::JointMap map = runs::read_joint_map(file);
+  const fs::path table = fs::path(folder) / "map.csv";
+  if (fs::exists(table)) tell_appearances(runs::read_map(table.string()), map);
+  return map;
 }
 
 EarlierSession earlier_session(core::JointMap map, const SessionStart& start, const std::string& name) {

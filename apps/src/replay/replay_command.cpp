@@ -21,8 +21,10 @@
 #include "helixnav/logs/mrclam.hpp"
 #include "read_to_replay.hpp"
 #include "settings/config_file.hpp"
+#include "settings/deprecated_keys.hpp"
 #include "settings/settings.hpp"
 #include "settings/vehicle_option.hpp"
+#include "spooled_log.hpp"
 #include "team/replay_team.hpp"
 
 namespace helixnav::apps {
@@ -75,6 +77,9 @@ void refuse_for_team(const CLI::App& command, const ReplayJob& job, const GivenO
 ExitCode replay(CLI::App& command, ReplayJob& job) {
   const GivenOptions given = options_given(command);
   prepare_run(command, job.run);
+  warn_of_deprecated_keys(command);
+  const SpooledLog log_file(job.path);
+  job.path = log_file.path();
   if (logs::is_mrclam(job.path)) {
     refuse_for_team(command, job, given);
     return replay_team(job.path, job.team, job.run, job.settings, dump_config(command));
@@ -133,7 +138,8 @@ void add_blackouts(CLI::App& command, ReplayJob& job) {
 void add_replay_command(CLI::App& app, ExitCode& code) {
   CLI::App* command = app.add_subcommand("replay", "Navigate along a recorded log");
   const auto job = std::make_shared<ReplayJob>();
-  command->add_option("PATH", job->path, "Log: file, folder or zip; the format is recognised")->required();
+  command->add_option("PATH", job->path, "Log: file, folder or zip; the format is recognised. A FIFO: JSON Lines")
+      ->required();
   add_vehicle_option(*command, job->vehicle);
   CLI::Option* smooth = command->add_flag(
       "--smooth", job->smooth,

@@ -3,48 +3,43 @@
 
 #include <CLI/CLI.hpp>
 
+#include "deprecated_keys.hpp"
 #include "setting_options.hpp"
 #include "validators.hpp"
 
 namespace helixnav::apps {
 namespace {
 
-/// Of options that say what a vehicle file says.
-std::string deprecated(const char* help, const char* key) {
-  return std::string(help) + " (deprecated: " + key + " of --vehicle)";
+/// Of an option that says what a vehicle file says.
+void add_deprecated(CLI::App& command, const std::string& setting, double& value, double low, double high,
+                    const std::string& help) {
+  const std::string text = help + " (deprecated: " + vehicle_key_of(setting) + " of --vehicle)";
+  add_number(command, ("--" + setting).c_str(), value, low, high, text.c_str());
 }
 
 void add_truck(CLI::App& command, const std::string& section, logs::AcfrSettings& truck) {
-  const auto name = [&section](const char* key) { return "--" + section + "." + key; };
-  add_number(command, name("sigma_speed_mps").c_str(), truck.noise.sigma_speed_mps, 1e-3, 10.0,
-             deprecated("Noise of one sample of the wheel's speed", "odometry.sigma_v_mps").c_str());
-  add_number(command, name("sigma_steering_rad").c_str(), truck.noise.sigma_steering_rad, 1e-4, 1.0,
-             deprecated("Noise of one sample of the steering angle", "odometry.sigma_steering_rad").c_str());
-  add_number(command, name("sigma_sideways").c_str(), truck.sigma_sideways_m_per_sqrt_m, 0.0, 1.0,
-             deprecated("Noise of side slip over one metre; grows by the root of the way [m]",
-                        "odometry.sigma_sideways_m_per_sqrt_m")
-                 .c_str());
-  add_number(command, name("speed_scale").c_str(), truck.speed_scale, 0.5, 2.0,
-             deprecated("Every recorded speed of the wheel is multiplied by this", "odometry.scale").c_str());
-  add_number(command, name("steering_offset_rad").c_str(), truck.steering_offset_rad, -0.5, 0.5,
-             deprecated("Added to every recorded steering angle", "odometry.steering_offset_rad").c_str());
-  add_number(
-      command, name("steering_scale").c_str(), truck.steering_scale, 0.5, 2.0,
-      deprecated("Every recorded steering angle is multiplied by this first", "odometry.steering_scale").c_str());
-  add_number(command, name("laser_heading_rad").c_str(), truck.T_robot_laser.heading_rad, -core::pi, core::pi,
-             deprecated("Where the laser looks, from straight ahead to the left", "sensor.heading_rad").c_str());
-  add_number(command, name("laser_delay_s").c_str(), truck.laser_delay_s, 0.0, 1.0,
-             deprecated("Time by which a scan was taken before its stamp", "sensor.delay_s").c_str());
-  add_number(command, name("sigma_range_m").c_str(), truck.sigma_range_m, 1e-3, 100.0,
-             deprecated("Noise of a detection's range", "sensor.sigma_range_m").c_str());
-  add_number(command, name("sigma_bearing_rad").c_str(), truck.sigma_bearing_rad, 1e-4, 1.0,
-             deprecated("Noise of a detection's bearing", "sensor.sigma_bearing_rad").c_str());
+  const auto add = [&](const char* key, double& value, double low, double high, const char* help) {
+    add_deprecated(command, section + "." + key, value, low, high, help);
+  };
+  add("sigma_speed_mps", truck.noise.sigma_speed_mps, 1e-3, 10.0, "Noise of one sample of the wheel's speed");
+  add("sigma_steering_rad", truck.noise.sigma_steering_rad, 1e-4, 1.0, "Noise of one sample of the steering angle");
+  add("sigma_sideways", truck.sigma_sideways_m_per_sqrt_m, 0.0, 1.0,
+      "Noise of side slip over one metre; grows by the root of the way [m]");
+  add("speed_scale", truck.speed_scale, 0.5, 2.0, "Every recorded speed of the wheel is multiplied by this");
+  add("steering_offset_rad", truck.steering_offset_rad, -0.5, 0.5, "Added to every recorded steering angle");
+  add("steering_scale", truck.steering_scale, 0.5, 2.0, "Every recorded steering angle is multiplied by this first");
+  add("laser_heading_rad", truck.T_robot_laser.heading_rad, -core::pi, core::pi,
+      "Where the laser looks, from straight ahead to the left");
+  add("laser_delay_s", truck.laser_delay_s, 0.0, 1.0, "Time by which a scan was taken before its stamp");
+  add("sigma_range_m", truck.sigma_range_m, 1e-3, 100.0, "Noise of a detection's range");
+  add("sigma_bearing_rad", truck.sigma_bearing_rad, 1e-4, 1.0, "Noise of a detection's bearing");
 }
 
 void add_plaza(CLI::App& command, Settings& settings) {
-  add_number(command, "--plaza.range_scale", settings.plaza_range_scale, 0.0, 2.0,
-             "Recorded range over true one; 0: estimated from the log by the least innovations (known association)");
-  add_number(command, "--plaza.sigma_range_m", settings.logs.plaza.sigma_range_m, 1e-3, 100.0, "Noise of a range");
+  add_deprecated(
+      command, "plaza.range_scale", settings.plaza_range_scale, 0.0, 2.0,
+      "Recorded range over true one; 0: estimated from the log by the least innovations (known association)");
+  add_deprecated(command, "plaza.sigma_range_m", settings.logs.plaza.sigma_range_m, 1e-3, 100.0, "Noise of a range");
 }
 
 void add_mrclam(CLI::App& command, logs::MrclamSettings& mrclam) {

@@ -49,6 +49,12 @@ void add_scenario_settings(CLI::App& command, ScenarioSettings& settings) {
   add_number(command, "--sim.slip_most_m", settings.slip_most_m, 0.0, 1e3, "Most displacement by a slip");
   add_number(command, "--sim.slip_least_deg", settings.slip_least_deg, 0.0, 180.0, "Least turn by a slip");
   add_number(command, "--sim.slip_most_deg", settings.slip_most_deg, 0.0, 180.0, "Most turn by a slip");
+  add_number(command, "--sim.classes", settings.classes, 0.0, 1000.0,
+             "Classes that the detector tells of trees, rounded to a whole number; 0: none");
+  add_number(command, "--sim.class_error", settings.class_error, 0.0, 0.5,
+             "Share of detections that are told another class");
+  add_number(command, "--sim.sigma_size_m", settings.sigma_size_m, 0.0, 100.0,
+             "Noise of the diameters that the detector tells (0.2 to 0.8 m); 0: it tells none");
   command
       .add_option("--sim.announce_carried", settings.announce_carried,
                   "Whether an event says that the vehicle was carried (kidnapped)")
@@ -69,6 +75,10 @@ sim::Scenario scenario_of(const std::string& name, const ScenarioSettings& setti
   if (settings.slip_most_m) scenario.slip.distance_m.max = *settings.slip_most_m;
   if (settings.slip_least_deg) scenario.slip.turn_rad.min = radians(*settings.slip_least_deg);
   if (settings.slip_most_deg) scenario.slip.turn_rad.max = radians(*settings.slip_most_deg);
+  sim::LooksOptions& looks = scenario.scanner.looks;
+  if (settings.classes) looks.classes = static_cast<int>(std::lround(*settings.classes));
+  if (settings.class_error) looks.class_error = *settings.class_error;
+  if (settings.sigma_size_m) looks.sigma_size_m = *settings.sigma_size_m;
   scenario.carried.announced = settings.announce_carried;
   scenario.assumed_noise =
       sim::scaled(scenario.assumed_noise, settings.assumed_odometry_factor, settings.assumed_detector_factor);

@@ -19,6 +19,7 @@ struct ScenarioSettings {
   std::optional<double> slip_least_deg, slip_most_deg;
   std::optional<double> tour_m;
   std::optional<double> blocks_a_side;
+  std::optional<double> classes, class_error, sigma_size_m;
   bool announce_carried = false;
   double assumed_odometry_factor = 1.0;
   double assumed_detector_factor = 1.0;

@@ -50,6 +50,25 @@ void read_covariance(const Row& row, OwnDetection& detection) {
   }
 }
 
+void read_appearance(const Row& row, OwnDetection& detection) {
+  using namespace detection_columns;
+  constexpr double least_m = 1e-6;
+  constexpr double most_m = 1e4;
+  if (row.has(class_name)) {
+    if (row.text(class_name).size() > core::ClassName::most_bytes) {
+      row.fail(class_name, "expected a class of at most " + std::to_string(core::ClassName::most_bytes) +
+                               " bytes; a short name of it will do");
+    }
+    detection.class_name = core::ClassName(row.text(class_name));
+  }
+  if (!row.has(size)) return;
+  row.positive(size);
+  detection.size_m = row.number_between(size, least_m, most_m);
+  if (!row.has(sigma_size)) return;
+  row.positive(sigma_size);
+  detection.sigma_size_m = row.number_between(sigma_size, least_m, most_m);
+}
+
 void read_value(const Row& row, OwnDetection& detection) {
   using namespace detection_columns;
   switch (detection.kind) {
@@ -104,12 +123,7 @@ void OwnTables::add_detection(const Row& row) {
   if (of_sensor >= most_sensors) row.fail(sensor, "more than 255 sensors");
   detection.sensor = static_cast<std::uint8_t>(of_sensor);
   if (row.has(id) && row.text(id) != "-1") detection.label = ids_.of(row.text(id));
-  if (row.has(class_name)) detection.class_name = static_cast<std::int32_t>(classes_.of(row.text(class_name)));
-  if (row.has(size)) {
-    detection.size_m = row.positive(size);
-    has_sizes_ = true;
-  }
-  if (row.has(sigma_size)) detection.sigma_size_m = row.positive(sigma_size);
+  read_appearance(row, detection);
   log_.detections.push_back(detection);
 }
 

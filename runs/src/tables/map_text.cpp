@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "map_text.hpp"
 
+#include <algorithm>
+
+#include "appearance_cells.hpp"
 #include "helixnav/files/number_text.hpp"
 #include "helixnav/runs/words.hpp"
 #include "run_tables.hpp"
@@ -8,7 +11,9 @@
 namespace helixnav::runs {
 
 std::string map_text(const std::vector<core::MapLandmark>& map) {
-  std::string text(map_table.header);
+  const bool tells_appearance = std::any_of(
+      map.begin(), map.end(), [](const core::MapLandmark& landmark) { return landmark.appearance.is_told(); });
+  std::string text(tells_appearance ? map_table_with_appearance.header : map_table.header);
   text += '\n';
   for (const core::MapLandmark& landmark : map) {
     const Eigen::Matrix2d& P = landmark.point.covariance_m2;
@@ -21,6 +26,7 @@ std::string map_text(const std::vector<core::MapLandmark>& map) {
     files::append_number(text, std::int64_t{landmark.observations});
     text += ',';
     text += word_of(state_words, landmark.state);
+    if (tells_appearance) append_appearance(text, landmark.appearance);
     text += '\n';
   }
   return text;

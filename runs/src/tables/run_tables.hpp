@@ -35,6 +35,9 @@ inline constexpr RunTable particles_table{"particles.csv",
 inline constexpr RunTable paths_table{"paths.csv", "point,before,step,x,y,heading,share"};
 inline constexpr RunTable mixture_table{"mixture.csv", "id,x,y,sxx,sxy,syy,share,mature_share"};
 inline constexpr RunTable map_table{"map.csv", "id,x,y,sxx,sxy,syy,observations,state"};
+/// Where a class or a size was told.
+inline constexpr RunTable map_table_with_appearance{
+    "map.csv", "id,x,y,sxx,sxy,syy,observations,state,class,class_nats,size,sigma_size"};
 inline constexpr RunTable truth_poses_table{"truth_poses.csv", "t_s,x,y,heading"};
 inline constexpr RunTable truth_positions_table{"truth_positions.csv", "t_s,x,y,antenna_x,antenna_y"};
 inline constexpr RunTable truth_landmarks_table{"truth_landmarks.csv", "label,x,y"};

@@ -69,10 +69,10 @@ std::vector<core::LandmarkId> inside_gates(const cekf::CompressedEkf& filter, st
 }  // namespace
 
 GatedScan gate_scan(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& candidates,
-                    const core::Scan& scan, const NavigatorOptions& options) {
+                    const core::Scan& scan, const NavigatorOptions& options, const core::MapAppearance& appearance) {
   GatedScan gated;
-  gated.gating =
-      std::make_unique<Gating>(filter, inside_gates(filter, candidates, scan, options.gates), scan, options.gates);
+  gated.gating = std::make_unique<Gating>(filter, inside_gates(filter, candidates, scan, options.gates), scan,
+                                          options.gates, appearance.is_empty() ? nullptr : &appearance);
   association::Options how = options.association;
   how.extraneous = association::density_in_view(scan, options.extraneous_per_scan, how.extraneous);
   gated.assignment = association::associate(options.method, gated.gating->problem, how);
@@ -86,7 +86,7 @@ void look_for_returns(const cekf::CompressedEkf& filter, const association::Land
   const double extraneous_per_scan =
       with_extraneous_density(options.search, existence.born_per_scan(), view).extraneous_per_scan;
   const association::InnovationProblem& problem = gated.gating->problem;
-  gated.returns = returns_in_gate(filter, problem, scan, old, extraneous_per_scan);
+  gated.returns = returns_in_gate(filter, problem, scan, old, extraneous_per_scan, existence.appearance());
   const RevisitAmbiguity* worst = most_ambiguous(gated.returns);
   if (worst == nullptr || worst->expected_confusers <= options.search.expected_confusers) return;
   gated.place = place_evidence(filter, problem, gated.assignment, scan, old, extraneous_per_scan, options.view_margin_m,

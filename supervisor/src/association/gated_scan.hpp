@@ -23,8 +23,10 @@ struct GatedScan {
   PlaceEvidence place;  ///< weighed where a return alone is too ambiguous
 };
 
+/// `appearance`: class and size of the landmarks.
 GatedScan gate_scan(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& candidates,
-                    const core::Scan& scan, const NavigatorOptions& options);
+                    const core::Scan& scan, const NavigatorOptions& options,
+                    const core::MapAppearance& appearance = {});
 
 /// Fills returns and place. `view`: what the sensor is known to see.
 void look_for_returns(const cekf::CompressedEkf& filter, const association::LandmarkLife& existence,

@@ -9,11 +9,11 @@
 
 namespace helixnav::supervisor {
 
-/// What the filter expects a scan to look like. The problem refers to the joint estimate beside it: not copyable.
+/// What the filter expects a scan to look like; `appearance` null where nothing is known of classes and sizes. The problem refers to the joint estimate beside it: not copyable.
 struct Gating {
   Gating(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& ids, const core::Scan& scan,
-         const association::Gates& gates)
-      : joint(filter.joint(ids)), problem(association::make_innovation_problem(joint, scan, gates)) {}
+         const association::Gates& gates, const core::MapAppearance* appearance = nullptr)
+      : joint(filter.joint(ids)), problem(association::make_innovation_problem(joint, scan, gates, appearance)) {}
   Gating(const Gating&) = delete;
   Gating& operator=(const Gating&) = delete;
 

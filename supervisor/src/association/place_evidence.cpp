@@ -82,7 +82,8 @@ class Question {
       const double detected = 1.0 - std::exp(-options.integrity.missing_nats);
       for (const int k : matching) {
         nats += std::log(detected /
-                         extraneous.of(problem_.observations[static_cast<std::size_t>(pairs.at(k).observation)].kind));
+                         extraneous.of(problem_.observations[static_cast<std::size_t>(pairs.at(k).observation)].kind)) +
+                pairs.at(k).appearance_nats;
       }
       return nats;
     };

@@ -46,24 +46,38 @@ bool may_be(const association::InnovationProblem& problem, int observation, core
                      });
 }
 
+/// How likely it is to look so compared to what the pair says, 1 at the most. By class and size alone.
+double share_alike(double nats, const association::GatedPair& pair) {
+  return std::exp(std::min(0.0, nats - pair.appearance_nats));
+}
+
+struct Neighbours {
+  int count = 0;
+  double alike = 0.0;  ///< weighted by what class and size say
+};
+
 /// Other landmarks in the gate of the pair's landmark, or in whose gates its observation is as well: two on either
 /// side of it may be outside each other's gates and yet be about equally likely.
-int neighbours_in_gate(const cekf::CompressedEkf& filter, const core::Scan& scan,
-                       const std::vector<core::LandmarkId>& others, core::LandmarkId self,
-                       const association::GatedPair& pair, const association::InnovationProblem& problem) {
+Neighbours neighbours_in_gate(const cekf::CompressedEkf& filter, const core::Scan& scan,
+                              const std::vector<core::LandmarkId>& others, core::LandmarkId self,
+                              const association::GatedPair& pair, const association::InnovationProblem& problem,
+                              const core::MapAppearance& appearance) {
   static const double gate = core::chi2_quantile(gate_probability, 2);
   const association::Prediction& prediction = problem.predictions[static_cast<std::size_t>(pair.prediction)];
   const core::Pose2 pose = filter.pose().mean;
   const Eigen::Vector2d sensor_m = core::transform(pose, scan.T_robot_sensor.position_m());
   const Eigen::Matrix2d S_inverse = pair.S.inverse();
-  int neighbours = 0;
+  const core::Appearance& seen = scan.observations[static_cast<std::size_t>(pair.observation)].appearance;
+  Neighbours neighbours;
   for (const core::LandmarkId other : others) {
     const Eigen::Vector2d point_m = filter.landmark_mean(other);
     constexpr double too_near_m = 1e-3;  // at the sensor itself there is no bearing
     if (other == self || (point_m - sensor_m).norm() < too_near_m) continue;
     const core::ObsVector z_hat = core::predict_observation(prediction.kind, pose, scan.T_robot_sensor, point_m).z_hat;
     const Eigen::Vector2d nu = core::innovation(prediction.kind, z_hat, core::ObsVector(prediction.z_hat));
-    if (nu.dot(S_inverse * nu) < gate || may_be(problem, pair.observation, other, gate)) ++neighbours;
+    if (!(nu.dot(S_inverse * nu) < gate || may_be(problem, pair.observation, other, gate))) continue;
+    ++neighbours.count;
+    neighbours.alike += share_alike(appearance.compare(other, seen).nats, pair);
   }
   return neighbours;
 }
@@ -92,7 +106,8 @@ std::vector<core::LandmarkId> old_landmarks(const association::LandmarkLife& lif
 
 std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
                                               const association::InnovationProblem& problem, const core::Scan& scan,
-                                              const std::vector<core::LandmarkId>& old, double extraneous_per_scan) {
+                                              const std::vector<core::LandmarkId>& old, double extraneous_per_scan,
+                                              const core::MapAppearance& appearance) {
   std::vector<RevisitAmbiguity> returns;
   if (old.empty() || !scan.field_of_view.reach()) return returns;  // a sensor of no known view
   static const double gate = core::chi2_quantile(gate_probability, 2);
@@ -104,13 +119,14 @@ std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
     const association::Prediction& prediction = problem.predictions[static_cast<std::size_t>(pair.prediction)];
     RevisitAmbiguity here;
     here.landmark = id;
-    here.neighbours = neighbours_in_gate(filter, scan, others, id, pair, problem);
+    const Neighbours neighbours = neighbours_in_gate(filter, scan, others, id, pair, problem, appearance);
+    here.neighbours = neighbours.count;
     const Eigen::Matrix2d R = scan.observations[static_cast<std::size_t>(pair.observation)].R;
     const double sensor_area = std::sqrt(R.determinant());
     here.widening = std::sqrt(pair.S.determinant()) / sensor_area;
     here.gate_area = core::pi * gate * sensor_area * (here.widening - 1.0);
-    here.expected_confusers =
-        here.neighbours + density_at(prediction, scan.field_of_view, extraneous_per_scan) * here.gate_area;
+    const double extraneous = density_at(prediction, scan.field_of_view, extraneous_per_scan) * here.gate_area;
+    here.expected_confusers = neighbours.alike + share_alike(0.0, pair) * extraneous;
     keep_worst(here, returns);
   }
   return returns;

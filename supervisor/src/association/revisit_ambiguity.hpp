@@ -16,8 +16,10 @@ std::vector<core::LandmarkId> old_landmarks(const association::LandmarkLife& lif
 /// An old landmark that an observation would be matched to, and what else may be in its gate.
 struct RevisitAmbiguity {
   core::LandmarkId landmark = core::no_landmark;
-  double expected_confusers = 0.0;  ///< η = neighbours + extraneous density × area of the gate
-  int neighbours = 0;               ///< other old landmarks in its 95 % gate, or that the observation may be as well
+  /// η = neighbours + extraneous density × area of the gate, each weighted by how much less likely it is to look so, where
+  /// class and size are told.
+  double expected_confusers = 0.0;
+  int neighbours = 0;  ///< other old landmarks in its 95 % gate, or that the observation may be as well
   /// π·5.99·(√|S| − √|R|) in the units of the observation: what the pose's uncertainty adds to the gate. Clutter in the
   /// part due to the sensor's noise does not depend on the pose.
   double gate_area = 0.0;
@@ -30,7 +32,8 @@ struct RevisitAmbiguity {
 /// Source: PROTOTYPE §2. Test: supervisor/association/revisit_ambiguity_test.cpp.
 std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
                                               const association::InnovationProblem& problem, const core::Scan& scan,
-                                              const std::vector<core::LandmarkId>& old, double extraneous_per_scan);
+                                              const std::vector<core::LandmarkId>& old, double extraneous_per_scan,
+                                              const core::MapAppearance& appearance = {});
 
 /// The one with the largest η; null when there is none.
 const RevisitAmbiguity* most_ambiguous(const std::vector<RevisitAmbiguity>& returns);

@@ -67,13 +67,14 @@ std::optional<cekf::CostByPart> cost_of(const cekf::CompressedEkf& filter, const
 
 /// Old landmarks that `id` may be, as far as one looks, nearest first.
 std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::LandmarkId id,
-                                 const std::vector<core::LandmarkId>& old, double gate, double look_m, double sigma_m) {
+                                 const std::vector<core::LandmarkId>& old, double gate, double look_m, double sigma_m,
+                                 const core::MapAppearance& appearance) {
   const Eigen::Vector2d at_m = filter.landmark_mean(id);
   std::vector<Leftover> found;
   for (const core::LandmarkId kept : filter.landmarks_within(at_m, look_m)) {
     if (!std::binary_search(old.begin(), old.end(), kept)) continue;
     const Leftover leftover = compare(filter, kept, id, sigma_m);
-    if (leftover.nis < gate) found.push_back(leftover);
+    if (leftover.nis < gate && appearance.look_alike(kept, id)) found.push_back(leftover);
   }
   std::sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.nis < b.nis; });
   return found;
@@ -127,13 +128,14 @@ bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& opt
 }
 
 KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
-                      const std::vector<core::LandmarkId>& old, const SearchOptions& options) {
+                      const std::vector<core::LandmarkId>& old, const SearchOptions& options,
+                      const core::MapAppearance& appearance) {
   const double gate = options.leftover_gate;
   std::vector<Leftover> found;
   for (const core::LandmarkId id : confirmed) {
     if (!filter.contains(id)) continue;
     const double look_m = options.leftover_most_m + std::sqrt(gate) * filter.landmark_sigma_bound_m(id);
-    const std::vector<Leftover> here = compatible(filter, id, old, gate, look_m, options.duplicate_sigma_m);
+    const std::vector<Leftover> here = compatible(filter, id, old, gate, look_m, options.duplicate_sigma_m, appearance);
     if (here.size() != 1) continue;
     const double neighbour_m = nearest_old_m(filter, here.front().kept, old, options.leftover_most_m / reach_share);
     const double reach_m = std::max(options.leftover_least_m, reach_share * neighbour_m);
@@ -150,11 +152,12 @@ KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core:
 }
 
 void forget_copies(cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& unconfirmed,
-                   const std::vector<core::LandmarkId>& old, const SearchOptions& options, Closing& closing) {
+                   const std::vector<core::LandmarkId>& old, const SearchOptions& options, Closing& closing,
+                   const core::MapAppearance& appearance) {
   for (const core::LandmarkId id : unconfirmed) {
     if (!filter.contains(id)) continue;
-    const std::vector<Leftover> here =
-        compatible(filter, id, old, options.leftover_gate, options.leftover_least_m, options.duplicate_sigma_m);
+    const std::vector<Leftover> here = compatible(filter, id, old, options.leftover_gate, options.leftover_least_m,
+                                                  options.duplicate_sigma_m, appearance);
     if (here.empty()) continue;
     filter.remove(id);
     closing.forgotten.push_back(id);

@@ -27,9 +27,10 @@ struct Leftover {
   double nis;
 };
 
-/// Old landmarks within look_m that `id` may be a duplicate of, nearest first.
+/// Old landmarks within look_m that `id` may be a duplicate of, nearest first: those that do not look different.
 std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::LandmarkId id,
-                                 const std::vector<core::LandmarkId>& old, double gate, double look_m, double sigma_m);
+                                 const std::vector<core::LandmarkId>& old, double gate, double look_m, double sigma_m,
+                                 const core::MapAppearance& appearance);
 
 /// The cost of merging them; nothing where the map is so uncertain, by hundreds of metres and tens of degrees, that rounding of
 /// its covariance is larger than what the pairs are known by.
@@ -48,10 +49,12 @@ bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& opt
 /// old neighbour on another side, and not farther from it than a third of that distance, leftover_least_m at the least
 /// and leftover_most_m at the most; of several on the same one the nearest. Test: supervisor/closing/branch_pairs_test.cpp.
 KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
-                      const std::vector<core::LandmarkId>& old, const SearchOptions& options);
+                      const std::vector<core::LandmarkId>& old, const SearchOptions& options,
+                      const core::MapAppearance& appearance = {});
 
 /// Removes unconfirmed landmarks of the branch that stand on an old one: they may be clutter and are never merged.
 void forget_copies(cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& unconfirmed,
-                   const std::vector<core::LandmarkId>& old, const SearchOptions& options, Closing& closing);
+                   const std::vector<core::LandmarkId>& old, const SearchOptions& options, Closing& closing,
+                   const core::MapAppearance& appearance = {});
 
 }  // namespace helixnav::supervisor

@@ -32,7 +32,7 @@ void merge_leftovers(cekf::CompressedEkf& filter, const DuplicateSegment& duplic
                      const SearchOptions& options, Closing& closing) {
   constexpr int most_passes = 10;
   for (int pass = 0; pass < most_passes; ++pass) {
-    KeptRemoved rest = leftovers(filter, confirmed, old, options);
+    KeptRemoved rest = leftovers(filter, confirmed, old, options, duplicate_segment.appearance());
     if (rest.empty()) rest = duplicate_segment.place(filter, old, options);
     Closing rest_closing;
     if (rest.empty() || !make_compatible(filter, options, rest, rest_closing)) return;
@@ -56,7 +56,7 @@ Closing close_by_merge(cekf::CompressedEkf& filter, const std::vector<pf_relocal
   closing.accepted = true;
 
   merge_leftovers(filter, duplicate_segment, branch.confirmed, old, options, closing);
-  forget_copies(filter, branch.unconfirmed, old, options, closing);
+  forget_copies(filter, branch.unconfirmed, old, options, closing, branch.appearance);
   return closing;
 }
 

@@ -47,7 +47,7 @@ bool replay_leftovers(cekf::CompressedEkf& filter, const DuplicateSegment& dupli
                       const SearchOptions& options, KeptRemoved& pairs, Closing& closing) {
   constexpr int most_passes = 10;
   for (int pass = 0; pass < most_passes; ++pass) {
-    KeptRemoved rest = leftovers(filter, branch.confirmed, old, options);
+    KeptRemoved rest = leftovers(filter, branch.confirmed, old, options, branch.appearance);
     if (rest.empty()) rest = duplicate_segment.place(filter, old, options);
     Closing next = closing;
     next.dropped = 0;
@@ -80,7 +80,7 @@ Closing replay_with_pairs(cekf::CompressedEkf& filter, const BranchRecord& recor
   const bool complete = replay_leftovers(filter, duplicate_segment, record, branch, old, options, chosen, closing);
   note(chosen, closing);
   if (!complete) merge_leftovers(filter, duplicate_segment, branch.confirmed, old, options, closing);
-  forget_copies(filter, branch.unconfirmed, old, options, closing);
+  forget_copies(filter, branch.unconfirmed, old, options, closing, branch.appearance);
   return closing;
 }
 

@@ -33,6 +33,7 @@ Branch branch_of(const ClosingView& view, const SearchOptions& options) {
   branch.new_drive.T_frame_sensor = view.coverage.between(left_old_ground_m, std::numeric_limits<double>::infinity());
   branch.new_drive.field_of_view = view.scan.field_of_view;
   branch.new_drive.least_views = 2;
+  branch.appearance = view.life.appearance();
   return branch;
 }
 

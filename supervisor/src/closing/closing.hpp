@@ -27,6 +27,7 @@ struct Branch {
   std::vector<core::LandmarkId> unconfirmed;  ///< may be clutter: never merged
   pf_relocalize::Coverage old_drive;          ///< map frame
   pf_relocalize::Coverage new_drive;          ///< map frame as it was before the closing
+  core::MapAppearance appearance = {};        ///< of all landmarks: different ones are no copies
 };
 
 }  // namespace helixnav::supervisor

@@ -34,12 +34,14 @@ struct Copy {
 
 /// Confirmed landmarks that stand where an old one may be, best known first.
 std::vector<Copy> copies_among(const std::vector<LandmarkId>& confirmed, const cekf::CompressedEkf& filter,
-                               const std::vector<LandmarkId>& old, const SearchOptions& options) {
+                               const std::vector<LandmarkId>& old, const SearchOptions& options,
+                               const core::MapAppearance& appearance) {
   std::vector<Copy> copies;
   for (const LandmarkId id : confirmed) {
     if (!filter.contains(id)) continue;
     const double look_m = options.leftover_most_m + std::sqrt(wide_gate) * filter.landmark_sigma_bound_m(id);
-    std::vector<Leftover> may_be = compatible(filter, id, old, wide_gate, look_m, options.duplicate_sigma_m);
+    std::vector<Leftover> may_be =
+        compatible(filter, id, old, wide_gate, look_m, options.duplicate_sigma_m, appearance);
     if (may_be.empty()) continue;
     const double variance_m2 = may_be.front().information.inverse().trace();
     copies.push_back({id, std::move(may_be), variance_m2});
@@ -175,7 +177,10 @@ std::vector<core::Pose2> near(std::vector<core::Pose2> poses, const Eigen::Vecto
 }  // namespace
 
 DuplicateSegment::DuplicateSegment(const cekf::CompressedEkf& filter, const Branch& branch)
-    : confirmed_(branch.confirmed), old_drive_(branch.old_drive), new_drive_(branch.new_drive) {
+    : confirmed_(branch.confirmed),
+      old_drive_(branch.old_drive),
+      new_drive_(branch.new_drive),
+      appearance_(branch.appearance) {
   const auto is_elsewhere = [&](LandmarkId id) {
     return !filter.contains(id);
   };  // in a part that the filter leaves out
@@ -185,7 +190,7 @@ DuplicateSegment::DuplicateSegment(const cekf::CompressedEkf& filter, const Bran
 
 KeptRemoved DuplicateSegment::place(const cekf::CompressedEkf& filter, const std::vector<LandmarkId>& old,
                                     const SearchOptions& options) const {
-  std::vector<Copy> copies = copies_among(confirmed_, filter, old, options);
+  std::vector<Copy> copies = copies_among(confirmed_, filter, old, options, appearance_);
   if (copies.empty()) return {};
   const double reach_m = options.stretch_m + options.stretch_rim_m + std::sqrt(wide_gate * copies.back().variance_m2);
   const Stretch stretch(ground_around(copies.front().id, reach_m, filter, old, options), filter, options);
@@ -210,12 +215,13 @@ Constellation DuplicateSegment::ground_around(LandmarkId middle, double reach_m,
   for (const LandmarkId id : confirmed_) {
     const Eigen::Vector2d at_m = before_m_.at(id) - origin_m;
     if (!filter.contains(id) || at_m.norm() > options.stretch_m + options.stretch_rim_m) continue;
-    ground.branch.push_back({id, at_m, std::numeric_limits<int>::max()});
+    ground.branch.push_back({id, at_m, std::numeric_limits<int>::max(), appearance_.of(id)});
   }
   for (const LandmarkId id : filter.landmarks_within(now_m, reach_m)) {
     if (!std::binary_search(old.begin(), old.end(), id)) continue;
-    ground.old_landmarks.push_back({id, {filter.landmark_mean(id), Eigen::Matrix2d::Zero()}});
+    ground.old_landmarks.push_back({id, {filter.landmark_mean(id), Eigen::Matrix2d::Zero()}, appearance_.of(id)});
   }
+  ground.population = appearance_.population();
   const double range_m = new_drive_.field_of_view.max_range_m;
   ground.old_drive = old_drive_;
   ground.old_drive.T_frame_sensor = near(old_drive_.T_frame_sensor, now_m, reach_m + range_m);

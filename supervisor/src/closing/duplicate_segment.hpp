@@ -29,6 +29,8 @@ class DuplicateSegment {
   KeptRemoved place(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& old,
                     const SearchOptions& options) const;
 
+  const core::MapAppearance& appearance() const { return appearance_; }
+
  private:
   /// The segment around a landmark of the branch, in a frame there with the axes of the map before the closing, and the
   /// old ground within reach_m of where the landmark is now.
@@ -39,6 +41,7 @@ class DuplicateSegment {
   std::vector<core::LandmarkId> confirmed_;
   std::map<core::LandmarkId, Eigen::Vector2d> before_m_;  ///< where the branch had them
   pf_relocalize::Coverage old_drive_, new_drive_;
+  core::MapAppearance appearance_;
 };
 
 }  // namespace helixnav::supervisor

@@ -21,6 +21,7 @@ Branch branch_of(const Belief& belief, const LeftOpen& segment, const core::Fiel
   branch.new_drive.T_frame_sensor = belief.coverage.between(segment.begun_path_m, segment.ended_path_m + 1e-9);
   branch.old_drive.field_of_view = branch.new_drive.field_of_view = view;
   branch.new_drive.least_views = 2;
+  branch.appearance = belief.existence.appearance();
   return branch;
 }
 

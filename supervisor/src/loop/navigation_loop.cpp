@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "association/appearance_evidence.hpp"
 #include "association/association_report.hpp"
 #include "association/candidates.hpp"
 #include "association/expected_landmarks.hpp"
@@ -162,7 +163,7 @@ GatedScan NavigationLoop::gate(const Scan& scan) const {
     const auto excluded = [&](LandmarkId id) { return open->search.excludes(id); };
     ids.erase(std::remove_if(ids.begin(), ids.end(), excluded), ids.end());
   }
-  GatedScan gated = gate_scan(belief_.filter, ids, scan, options_);
+  GatedScan gated = gate_scan(belief_.filter, ids, scan, options_, belief_.existence.appearance());
   const bool looks = options_.search.enabled && open == nullptr;
   if (looks) look_for_returns(belief_.filter, belief_.existence, scan, options_, view_, gated);
   return gated;
@@ -214,7 +215,10 @@ std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const
   }
   belief_.existence.pass(at_rim);
   const core::Pose2 T_world_sensor = core::compose(belief_.filter.pose().mean, scan.T_robot_sensor);
-  const association::LifeChanges changes = belief_.existence.observe(T_world_sensor.position_m(), seen, born, expected);
+  const association::LifeChanges changes =
+      belief_.existence.observe(T_world_sensor.position_m(), seen, born, expected,
+                                appearance_nats(belief_.existence.appearance(), scan, report.associations));
+  look_at(scan, report.associations, belief_.existence);
   for (const LandmarkId id : changes.died) {
     if (belief_.filter.contains(id)) belief_.filter.remove(id);
   }

@@ -71,6 +71,7 @@ std::vector<core::MapLandmark> Navigator::sketch() const {
     landmark.point = points[i];
     landmark.observations = belief.existence.record(ids[i]).observations;
     landmark.state = belief.existence.state(ids[i]);
+    landmark.appearance = belief.existence.appearance().of(ids[i]);
   }
   return landmarks;
 }

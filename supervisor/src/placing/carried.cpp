@@ -43,6 +43,7 @@ core::JointMap NavigationLoop::map_to_keep(core::CarriedDecision& decision) cons
     landmark.point = sketched({record.id}).front();
     landmark.observations = record.observations;
     landmark.state = record.state;
+    landmark.appearance = belief_.existence.appearance().of(record.id);
   }
   kept = nearest(std::move(kept), belief_.filter.pose().mean.position_m());
   if (kept.size() < least_to_keep) kept.clear();

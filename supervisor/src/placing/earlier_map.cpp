@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "helixnav/core/errors.hpp"
+#include "placing/index_traits.hpp"
 #include "placing/relative_covariance.hpp"
 
 namespace helixnav::supervisor {
@@ -14,6 +15,7 @@ EarlierMap::EarlierMap(const core::JointMap& map) : next_name_(map.next_name) {
   const core::JointGaussian& all = map.joint;
   const auto n = static_cast<Eigen::Index>(3 + 2 * all.ids.size());
   const bool fits = map.states.size() == all.ids.size() && map.observations.size() == all.ids.size() &&
+                    (map.appearances.empty() || map.appearances.size() == all.ids.size()) &&
                     all.points_m.size() == all.ids.size() && all.covariance.rows() == n && all.covariance.cols() == n &&
                     std::is_sorted(all.ids.begin(), all.ids.end()) &&
                     (all.ids.empty() || (all.ids.front() >= 0 && all.ids.back() < next_name_));
@@ -25,6 +27,7 @@ EarlierMap::EarlierMap(const core::JointMap& map) : next_name_(map.next_name) {
     landmarks_.ids.push_back(all.ids[i]);
     landmarks_.points_m.push_back(all.points_m[i]);
     observations_.push_back(map.observations[i]);
+    if (!map.appearances.empty()) appearance_.adopt(all.ids[i], map.appearances[i]);
     const auto row = 3 + 2 * static_cast<Eigen::Index>(i);
     rows.insert(rows.end(), {row, row + 1});
   }
@@ -64,6 +67,7 @@ relocalize::MapIndex EarlierMap::index(const relocalize::IndexOptions& lengths) 
     landmark.id = landmarks_.ids[i];
     landmark.point = relative_to_neighbours(i, lengths.reach_m);
     landmark.point.covariance_m2 += half_m2 * Eigen::Matrix2d::Identity();
+    tell_traits(appearance_.of(landmark.id), landmark);
   }
   relocalize::MapIndex index(lengths, landmarks);
   index.look_around_landmarks();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "helixnav/core/joint_map.hpp"
+#include "helixnav/core/map_appearance.hpp"
 #include "helixnav/relocalize/map_index.hpp"
 
 namespace helixnav::supervisor {
@@ -18,6 +19,7 @@ class EarlierMap {
   /// Pose meaningless, ids ascending.
   const core::JointGaussian& landmarks() const { return landmarks_; }
   int observations(std::size_t landmark) const { return observations_[landmark]; }
+  const core::MapAppearance& appearance() const { return appearance_; }
   core::LandmarkId next_name() const { return next_name_; }
 
  private:
@@ -25,6 +27,7 @@ class EarlierMap {
 
   core::JointGaussian landmarks_;
   std::vector<int> observations_;
+  core::MapAppearance appearance_;
   core::LandmarkId next_name_;
 };
 

@@ -46,7 +46,11 @@ association::LandmarkLife existence_of_both(const association::LandmarkLife& ses
                                             const JoinedMaps& joined, const association::LifeOptions& life) {
   association::LandmarkLife both = session;
   both.change_frame(joined.T_map_session);
-  for (std::size_t i = 0; i < earlier.landmarks().ids.size(); ++i) both.adopt(record_of(earlier, i, life));
+  for (std::size_t i = 0; i < earlier.landmarks().ids.size(); ++i) {
+    const association::LandmarkRecord record = record_of(earlier, i, life);
+    both.adopt(record);
+    both.adopt_appearance(record.id, earlier.appearance().of(record.id));
+  }
   for (const core::MergedLandmarks& one : joined.closing.merged) both.merge(one.kept, one.removed);
   for (const LandmarkId id : joined.closing.forgotten) both.remove(id);
   return both;

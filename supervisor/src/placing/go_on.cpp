@@ -30,6 +30,7 @@ NavigationLoop::NavigationLoop(const core::JointMap& earlier, const NavigatorOpt
     const double away_m = (earlier.joint.points_m[i] - earlier.joint.pose.position_m()).norm();
     if (mature && away_m > options.search.old_after_m) record.born_path_m = record.last_seen_path_m = -1e6;
     belief_.existence.adopt(record);
+    if (!earlier.appearances.empty()) belief_.existence.adopt_appearance(record.id, earlier.appearances[i]);
   }
   tape_.drop_drive();
   std::get<Mapping>(mode_).trust(take_checkpoint(belief_, tape_));

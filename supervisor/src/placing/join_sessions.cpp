@@ -82,6 +82,12 @@ void note(const Closing& closing, core::PlacedDecision& decision) {
       closing.accepted ? core::PlacedDecision::Verdict::accepted : core::PlacedDecision::Verdict::refused;
 }
 
+void tell_appearances(const core::MapAppearance& appearance, core::JointMap& map) {
+  map.appearances.clear();
+  if (appearance.is_empty()) return;
+  for (const LandmarkId id : map.joint.ids) map.appearances.push_back(appearance.of(id));
+}
+
 /// The component with the session in it. What was merged keeps the component's name and is as often observed as both.
 void take_in(const EarlierMap& session, const JoinedMaps& joined, JoinedSession& result, core::JointMap& component) {
   const LandmarkId offset = component.next_name;
@@ -99,11 +105,16 @@ void take_in(const EarlierMap& session, const JoinedMaps& joined, JoinedSession&
     result.name_of[own] = name;
     observations[name] += session.observations(i);
   }
+  core::MapAppearance appearance = EarlierMap(component).appearance();
+  for (const auto& [own, name] : result.name_of) {
+    appearance.adopt(name, core::fused(appearance.of(name), session.appearance().of(own)));
+  }
   component.joint = joined.filter.joint(joined.filter.landmarks());
   component.next_name = offset + session.next_name();
   component.states.assign(component.joint.ids.size(), core::LandmarkState::mature);
   component.observations.clear();
   for (const LandmarkId id : component.joint.ids) component.observations.push_back(observations[id]);
+  tell_appearances(appearance, component);
 }
 
 /// Tries the surest places until one is accepted.
@@ -152,6 +163,7 @@ core::JointMap begin(const core::JointMap& session, JoinedSession& result) {
     component.observations.push_back(mature.observations(i));
     result.name_of[mature.landmarks().ids[i]] = mature.landmarks().ids[i];
   }
+  tell_appearances(mature.appearance(), component);
   return component;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/supervisor/joint_map.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace helixnav::supervisor {
@@ -17,6 +18,10 @@ core::JointMap joint_map(core::JointGaussian joint, core::LandmarkId next_name,
   for (const core::MapLandmark& landmark : landmarks) {
     map.states.push_back(landmark.state);
     map.observations.push_back(landmark.observations);
+  }
+  const auto is_told = [](const core::MapLandmark& landmark) { return landmark.appearance.is_told(); };
+  if (std::any_of(landmarks.begin(), landmarks.end(), is_told)) {
+    for (const core::MapLandmark& landmark : landmarks) map.appearances.push_back(landmark.appearance);
   }
   map.joint = std::move(joint);
   map.next_name = next_name;

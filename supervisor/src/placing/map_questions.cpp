@@ -58,7 +58,7 @@ std::vector<relocalize::Question> map_questions(const EarlierMap& map, const rel
       chosen.push_back(i);
     }
     relocalize::Question question;
-    question.landmarks = question_landmarks(landmarks, chosen, lengths.pair_noise_m);
+    question.landmarks = question_landmarks(landmarks, chosen, lengths.pair_noise_m, map.appearance());
     question.looked = ground_about(landmarks, near, lengths.reach_m);
     if (!question.looked.empty()) questions.push_back(std::move(question));
   }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "placing/question_landmarks.hpp"
 
+#include "placing/index_traits.hpp"
 #include "placing/relative_covariance.hpp"
 
 namespace helixnav::supervisor {
 
 std::vector<relocalize::Landmark> question_landmarks(const core::JointGaussian& joint,
-                                                     const std::vector<std::size_t>& chosen, double pair_noise_m) {
+                                                     const std::vector<std::size_t>& chosen, double pair_noise_m,
+                                                     const core::MapAppearance& appearance) {
   std::vector<Eigen::Vector2d> points_m;
   std::vector<Eigen::Index> rows;
   for (const std::size_t i : chosen) {
@@ -20,6 +22,7 @@ std::vector<relocalize::Landmark> question_landmarks(const core::JointGaussian& 
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     landmarks[k].id = joint.ids[chosen[k]];
     landmarks[k].point = {points_m[k], relative[k] + half_m2};
+    tell_traits(appearance.of(landmarks[k].id), landmarks[k]);
   }
   return landmarks;
 }

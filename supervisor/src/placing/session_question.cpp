@@ -68,7 +68,8 @@ relocalize::Question session_question(const Belief& belief, const LandmarksAbout
   std::vector<std::size_t> all(about.ids.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   relocalize::Question question;
-  question.landmarks = question_landmarks(belief.filter.joint(about.ids), all, lengths.pair_noise_m);
+  question.landmarks =
+      question_landmarks(belief.filter.joint(about.ids), all, lengths.pair_noise_m, belief.existence.appearance());
   const double since_path_m = belief.existence.path_m() - seen_within_m;
   question.looked = looked_at(belief, view, lengths.reach_m, since_path_m, about.within_m);
   return question;

@@ -121,7 +121,8 @@ std::vector<pf_relocalize::BranchLandmark> branch_landmarks(const SearchView& vi
     if (view.life.path_m() - record.last_seen_path_m > options.branch_seen_within_m) continue;
     if (contains(old, record.id) || !view.filter.contains(record.id)) continue;
     if (3.0 * sigma_from_vehicle_m(view.filter, record.id) > options.constellation.most_tolerance_m) continue;
-    branch.push_back({record.id, core::transform(T_robot_world, view.filter.landmark_mean(record.id)), record.hits});
+    branch.push_back({record.id, core::transform(T_robot_world, view.filter.landmark_mean(record.id)), record.hits,
+                      view.life.appearance().of(record.id)});
   }
   return branch;
 }
@@ -134,8 +135,9 @@ pf_relocalize::Constellation constellation_on(const pf_relocalize::ReferenceMap&
   pf_relocalize::Constellation constellation;
   constellation.branch = branch_landmarks(view, old, options);
   for (std::size_t i = 0; i < map.ids.size(); ++i) {
-    constellation.old_landmarks.push_back({map.ids[i], map.landmarks[i]});
+    constellation.old_landmarks.push_back({map.ids[i], map.landmarks[i], view.life.appearance().of(map.ids[i])});
   }
+  constellation.population = view.life.appearance().population();
   add_coverage(view, map.T_world_base, search_begun_path_m, options, constellation);
   return constellation;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "placing/index_traits.hpp"
 #include "placing/relative_covariance.hpp"
 
 namespace helixnav::supervisor {
@@ -44,7 +45,8 @@ core::PointGaussian point_of(const std::vector<LandmarkId>& ids, const core::Joi
 
 }  // namespace
 
-void OldGroundIndex::follow(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& old) {
+void OldGroundIndex::follow(const cekf::CompressedEkf& filter, const core::MapAppearance& appearance,
+                            const std::vector<core::LandmarkId>& old) {
   const auto gone = [&](core::LandmarkId id) {
     if (filter.contains(id)) return false;
     index_.erase(id);
@@ -58,7 +60,7 @@ void OldGroundIndex::follow(const cekf::CompressedEkf& filter, const std::vector
   for (std::size_t i = 0; i < added.size(); i += at_once) {
     insert({added.begin() + static_cast<std::ptrdiff_t>(i),
             added.begin() + static_cast<std::ptrdiff_t>(std::min(i + at_once, added.size()))},
-           filter, old);
+           filter, appearance, old);
   }
   if (added.empty()) return;
   ids_.insert(ids_.end(), added.begin(), added.end());
@@ -68,7 +70,7 @@ void OldGroundIndex::follow(const cekf::CompressedEkf& filter, const std::vector
 
 /// With one joint covariance for all, which costs little more than for one.
 void OldGroundIndex::insert(const std::vector<LandmarkId>& added, const cekf::CompressedEkf& filter,
-                            const std::vector<LandmarkId>& old) {
+                            const core::MapAppearance& appearance, const std::vector<LandmarkId>& old) {
   const relocalize::IndexOptions& lengths = index_.options();
   std::vector<std::vector<LandmarkId>> neighbours;
   std::vector<LandmarkId> all;
@@ -85,6 +87,7 @@ void OldGroundIndex::insert(const std::vector<LandmarkId>& added, const cekf::Co
     landmark.id = one.front();
     landmark.point = point_of(one, joint);
     landmark.point.covariance_m2 += half_m2;
+    tell_traits(appearance.of(landmark.id), landmark);
     index_.insert(landmark);
   }
 }

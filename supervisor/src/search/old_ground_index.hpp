@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/map_appearance.hpp"
 #include "helixnav/relocalize/map_index.hpp"
 
 namespace helixnav::supervisor {
@@ -17,14 +18,15 @@ class OldGroundIndex {
 
   /// Takes in those of `old` (ascending) that it lacks and drops those that the filter has no more. A joint covariance for
   /// every forty new ones with their neighbours.
-  void follow(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& old);
+  void follow(const cekf::CompressedEkf& filter, const core::MapAppearance& appearance,
+              const std::vector<core::LandmarkId>& old);
 
   bool contains(core::LandmarkId id) const { return index_.contains(id); }
   const relocalize::MapIndex& index() const { return index_; }
 
  private:
   void insert(const std::vector<core::LandmarkId>& added, const cekf::CompressedEkf& filter,
-              const std::vector<core::LandmarkId>& old);
+              const core::MapAppearance& appearance, const std::vector<core::LandmarkId>& old);
 
   relocalize::MapIndex index_;
   std::vector<core::LandmarkId> ids_;  ///< ascending

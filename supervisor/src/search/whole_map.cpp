@@ -109,7 +109,7 @@ void NavigationLoop::ask_whether_new(const core::Scan& scan, core::StepReport& r
 const relocalize::MapIndex& NavigationLoop::follow_old_ground(const Search& search) {
   const auto& before = questions_.old_ground;
   auto old_ground = std::make_shared<OldGroundIndex>(before ? *before : OldGroundIndex(index_lengths()));
-  old_ground->follow(belief_.filter, search.old_landmarks());
+  old_ground->follow(belief_.filter, belief_.existence.appearance(), search.old_landmarks());
   questions_.old_ground = std::move(old_ground);
   return questions_.old_ground->index();
 }

@@ -150,7 +150,7 @@ bool NavigationLoop::allow_for_slip(const core::Scan& scan, const Confirmation& 
   const Searching* open = searching();
   const auto excluded = [&](LandmarkId id) { return open != nullptr && open->search.excludes(id); };
   ids.erase(std::remove_if(ids.begin(), ids.end(), excluded), ids.end());
-  const GatedScan gated = gate_scan(moved, ids, scan, options_);
+  const GatedScan gated = gate_scan(moved, ids, scan, options_, belief_.existence.appearance());
   report_unfinished(gated, report);
   belief_.confirmation = before;
   report.associations = associate_scan(gated, options_, belief_.existence.path_m(), belief_.confirmation);

@@ -9,12 +9,15 @@
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/landmark_id.hpp"
+#include "helixnav/core/map_appearance.hpp"
 #include "helixnav/core/observation.hpp"
 
 namespace helixnav::association {
 
 /// How near an observation must be to a landmark, as probabilities that a right pair is at most so far away. The
-/// thresholds on νᵀS⁻¹ν are the χ² quantiles for the rows of the observation: 13.8 and 23.0 for two.
+/// thresholds on νᵀS⁻¹ν are the χ² quantiles for the rows of the observation: 13.8 and 23.0 for two. A size that is known on
+/// both sides is one row more. A class that a right pair has with probability p only leaves a gate that a right pair of that
+/// class is outside of as rarely as others are, −2 ln p less (exact for two rows).
 struct Gates {
   double match_probability = 0.999;  ///< nearer: the pair may be matched
   double new_probability = 0.99999;  ///< farther from every landmark: the observation may begin a new one
@@ -45,6 +48,8 @@ struct GatedPair {
   Eigen::Matrix2d S;
   double nis = 0.0;             ///< νᵀS⁻¹ν
   double log_likelihood = 0.0;  ///< ln N(ν; 0, S), in the units of the observation
+  /// ln of the likelihood ratio of class and size, against any other object; 0 where they say nothing.
+  double appearance_nats = 0.0;
 };
 
 /// One observation of the scan and where its pairs stand in InnovationProblem::pairs: [begin, end).
@@ -74,12 +79,13 @@ struct InnovationProblem {
 /// Cost O(candidates + observations × candidates), about 30 ns a pair. `joint.covariance` is kept by reference.
 /// Throws PreconditionError for an observation that is not finite or whose R is not positive definite, for gates outside
 /// (0, 1) or in the wrong order, and for a covariance of the wrong shape; NumericalError, naming observation and
-/// landmark, when an innovation covariance is not positive definite.
+/// landmark, when an innovation covariance is not positive definite. `appearance`: what the landmarks look like; null when
+/// nothing is known.
 /// Test: association/innovation_problem_test.cpp (dense H P Hᵀ + R; bearings across ±π; mixed kinds).
 InnovationProblem make_innovation_problem(const core::JointGaussian& joint, const core::Scan& scan,
-                                          const Gates& gates = {});
-InnovationProblem make_innovation_problem(core::JointGaussian&& joint, const core::Scan& scan,
-                                          const Gates& gates = {}) = delete;
+                                          const Gates& gates = {}, const core::MapAppearance* appearance = nullptr);
+InnovationProblem make_innovation_problem(core::JointGaussian&& joint, const core::Scan& scan, const Gates& gates = {},
+                                          const core::MapAppearance* appearance = nullptr) = delete;
 
 /// The same for a pose that is known and landmarks that are independent given it: the map of one FastSLAM particle.
 InnovationProblem make_innovation_problem(const core::Pose2& T_world_robot, const std::vector<core::LandmarkId>& ids,

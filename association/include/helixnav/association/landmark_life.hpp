@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "helixnav/core/landmark_id.hpp"
+#include "helixnav/core/map_appearance.hpp"
 #include "helixnav/core/se2.hpp"
 #include "helixnav/core/step_report.hpp"
 
@@ -68,10 +69,26 @@ class LandmarkLife {
 
   /// One scan taken with the sensor at `sensor_m`, world frame. `seen`: matched landmarks. `born`: those that it began.
   /// `expected`: those it should have seen, with a margin inside the field of view; seen ones may be among them. A
-  /// landmark beside an ambiguous observation belongs in neither list. PreconditionError, with nothing changed, for a
-  /// seen or expected id that is not recorded or a born one that is.
+  /// landmark beside an ambiguous observation belongs in neither list. `seen_nats`: [seen] what class and size add to a hit's
+  /// evidence, or empty. PreconditionError, with nothing changed, for a seen or expected id that is not recorded or a born one
+  /// that is.
   LifeChanges observe(const Eigen::Vector2d& sensor_m, const std::vector<core::LandmarkId>& seen,
-                      const std::vector<core::LandmarkId>& born, const std::vector<core::LandmarkId>& expected);
+                      const std::vector<core::LandmarkId>& born, const std::vector<core::LandmarkId>& expected,
+                      const std::vector<double>& seen_nats = {});
+
+  /// What the landmarks look like. It goes with them: a landmark that dies or is merged takes it along.
+  const core::MapAppearance& appearance() const { return appearance_; }
+
+  /// An observation looked so; no_landmark: of none, or of one that is not recorded.
+  void look(core::LandmarkId id, const core::Appearance& seen) {
+    appearance_.count(seen);
+    if (contains(id)) appearance_.see(id, seen);
+  }
+
+  /// A recorded landmark of an earlier drive looks so. PreconditionError for an id that is not recorded.
+  void adopt_appearance(core::LandmarkId id, const core::LandmarkAppearance& known) {
+    appearance_.adopt(record(id).id, known);
+  }
 
   /// A landmark of an earlier drive. PreconditionError for an id that is recorded.
   void adopt(const LandmarkRecord& record);
@@ -106,7 +123,7 @@ class LandmarkLife {
   const LandmarkRecord* find(core::LandmarkId id) const;
   void check_scan(const std::vector<core::LandmarkId>& seen, const std::vector<core::LandmarkId>& born,
                   const std::vector<core::LandmarkId>& expected) const;
-  void hit(LandmarkRecord& record, const Eigen::Vector2d& sensor_m);
+  void hit(LandmarkRecord& record, const Eigen::Vector2d& sensor_m, double appearance_nats);
   void miss(LandmarkRecord& record, const Eigen::Vector2d& sensor_m);
   bool is_dying(const LandmarkRecord& record) const;
 
@@ -114,6 +131,7 @@ class LandmarkLife {
   double hit_nats_;
   double miss_nats_;
   std::vector<LandmarkRecord> records_;
+  core::MapAppearance appearance_;
   double path_m_ = 0.0;
   std::size_t scans_ = 0, born_ = 0, seen_ = 0;
 };

@@ -28,8 +28,8 @@ ExtraneousDensity uniform_density(const core::FieldOfView& field_of_view, double
 /// Test: association/likelihood_ratio_test.cpp.
 ExtraneousDensity density_in_view(const core::Scan& scan, double expected_per_scan, const ExtraneousDensity& unbounded);
 
-/// Costs in nats: −ln[P_D N(ν; 0, S)/(1 − P_D)] for a pair, −ln λ for an observation without one; entry e of the
-/// result is pair e of the problem. The ratio of two hypotheses is the posterior odds
+/// Costs in nats: −ln[P_D N(ν; 0, S)/(1 − P_D)] for a pair, less its appearance_nats, −ln λ for an observation without one;
+/// entry e of the result is pair e of the problem. The ratio of two hypotheses is the posterior odds
 /// when landmarks are detected with P_D and extraneous observations are a Poisson process.
 /// Test: association/likelihood_ratio_test.cpp (metres against centimetres, radians against degrees).
 AssignmentProblem likelihood_ratio_costs(const InnovationProblem& problem, double detection_probability,

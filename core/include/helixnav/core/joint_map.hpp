@@ -10,11 +10,12 @@ namespace helixnav::core {
 
 /// A map with all correlations and the pose at its end: what another session needs to go on in it.
 struct JointMap {
-  JointGaussian joint;                ///< ids ascending
-  std::vector<LandmarkState> states;  ///< [landmark] tentative or mature
-  std::vector<int> observations;      ///< [landmark]
-  LandmarkId next_name = 0;           ///< landmarks named later are this one and above
-  double reach_m = 0.0;               ///< of the sensor that drew it; 0: unknown
+  JointGaussian joint;                               ///< ids ascending
+  std::vector<LandmarkState> states;                 ///< [landmark] tentative or mature
+  std::vector<int> observations;                     ///< [landmark]
+  LandmarkId next_name = 0;                          ///< landmarks named later are this one and above
+  double reach_m = 0.0;                              ///< of the sensor that drew it; 0: unknown
+  std::vector<LandmarkAppearance> appearances = {};  ///< [landmark], or empty: nothing is known
 };
 
 }  // namespace helixnav::core

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "helixnav/core/appearance.hpp"
 #include "helixnav/core/se2.hpp"
 
 namespace helixnav::core {
@@ -25,11 +26,12 @@ using ObsMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, 2>
 using ObsByPose = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 2, 3>;
 using ObsByPoint = Eigen::Matrix<double, Eigen::Dynamic, 2, 0, 2, 2>;
 
-/// One measured landmark: z with its noise covariance R (d×d, d = dimension(kind)).
+/// One measured landmark: z with its noise covariance R (d×d, d = dimension(kind)), and what it looks like.
 struct Observation {
   ObservationKind kind = ObservationKind::range_bearing;
   ObsVector z;
   ObsMatrix R;
+  Appearance appearance = {};
 };
 
 Observation make_range_bearing(double range_m, double bearing_rad, double sigma_range_m, double sigma_bearing_rad);
@@ -67,8 +69,8 @@ struct LocatedLandmark {
 LocatedLandmark locate_landmark(const Observation& observation, const Pose2& T_world_robot,
                                 const Pose2& T_robot_sensor);
 
-/// Throws PreconditionError unless z is finite, ranges are positive, bearings lie within ±2π, shapes fit the kind and R is
-/// symmetric positive definite. No allocation unless it throws. Test: core/observation_test.cpp.
+/// Throws PreconditionError unless z is finite, ranges are positive, bearings lie within ±2π, shapes fit the kind, R is
+/// symmetric positive definite, a class error lies in (0, 1) and a size and its deviation are positive. No allocation unless it throws. Test: core/observation_test.cpp.
 void check_observation(const Observation& observation);
 
 }  // namespace helixnav::core

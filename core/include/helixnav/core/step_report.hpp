@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "helixnav/core/appearance.hpp"
 #include "helixnav/core/decision.hpp"
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/landmark_id.hpp"
@@ -86,6 +87,7 @@ struct MapLandmark {
   PointGaussian point;
   int observations = 0;
   LandmarkState state = LandmarkState::tentative;
+  LandmarkAppearance appearance = {};
 };
 
 }  // namespace helixnav::core

@@ -11,6 +11,7 @@
 #include "helixnav/association/associate.hpp"
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/map_appearance.hpp"
 #include "helixnav/core/step_report.hpp"
 
 namespace helixnav::localization {
@@ -68,6 +69,7 @@ class Localizer {
   LocalizerOptions options_;
   core::PoseGaussian pose_;
   std::map<core::LandmarkId, Eigen::Vector2d> map_m_;
+  core::MapAppearance appearance_;
   std::optional<core::Odometry> motion_;  ///< since the last scan
   std::int64_t step_ = 0;
   core::Nanoseconds last_ns_;  ///< of the last event

@@ -33,13 +33,13 @@ struct OwnOdometry {
 struct OwnDetection {
   core::Nanoseconds t_ns = 0;
   enum class Kind : std::uint8_t { nothing, range_bearing, cartesian, bearing, range } kind = Kind::nothing;
-  std::uint8_t sensor = 0;       ///< index into OwnLog::sensor_names
-  std::int32_t class_name = -1;  ///< index into OwnLog::class_names; −1: none
+  std::uint8_t sensor = 0;     ///< index into OwnLog::sensor_names
+  core::ClassName class_name;  ///< empty: none
   core::Label label = core::no_label;
   std::array<double, 2> z{};
   std::array<double, 3> R{};  ///< (0,0), (0,1), (1,1); R(0,0) = 0: not given, the vehicle's
   double size_m = 0.0;        ///< 0: not given
-  double sigma_size_m = 0.0;
+  double sigma_size_m = 0.0;  ///< 0: not given, the vehicle's
 };
 
 struct OwnFix {
@@ -56,8 +56,7 @@ struct OwnLog {
   std::vector<Eigen::Matrix3d> odometry_covariances;  ///< of the values; empty, or one a row
   std::vector<OwnDetection> detections;
   std::vector<std::string> sensor_names;  ///< as in the files; a log without a column for it has one, ""
-  std::vector<std::string> class_names;
-  std::vector<std::string> id_names;  ///< [label] where identities are names; empty where they are numbers
+  std::vector<std::string> id_names;      ///< [label] where identities are names; empty where they are numbers
   bool has_labels = false;
   std::vector<core::Nanoseconds> lost_ns;  ///< the vehicle was carried after each of them, before the next scan
   std::vector<OwnFix> fixes;

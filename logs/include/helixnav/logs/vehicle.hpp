@@ -60,6 +60,8 @@ struct SensorModel {
   double noise_scale = 1.0;             ///< times every standard deviation, of the log or of these keys
   std::optional<double> detection_probability;
   std::optional<double> clutter_per_scan;
+  std::optional<double> class_error;   ///< probability that a class is told wrongly
+  std::optional<double> sigma_size_m;  ///< of a size
 };
 
 /// A vehicle as its vehicle.toml describes it. Its frame: x ahead, y left; its origin is the point whose path is written.

@@ -212,7 +212,6 @@ OwnLog OwnTables::take_rows() {
   rows.id_names = ids_.words();
   sensors_ = WordNumbers();
   ids_ = WordNumbers();
-  classes_ = WordNumbers();
   for (RowTimes& times : times_) times = RowTimes();
   return rows;
 }
@@ -226,10 +225,6 @@ OwnLog OwnTables::finish(std::string name) {
   log_.name = std::move(name);
   log_.sensor_names = sensors_.words();
   if (log_.sensor_names.empty()) log_.sensor_names.emplace_back();
-  log_.class_names = classes_.words();
-  if (!log_.class_names.empty() || has_sizes_) {
-    log_.remarks.emplace_back("detections: class and size are read, but the navigator does not use them yet");
-  }
   return std::move(log_);
 }
 

@@ -62,7 +62,7 @@ class OwnTables {
   OwnLog finish(std::string name);
 
   /// What was added since the last call, in the order in which it came and without a name, for what comes line by line:
-  /// sensors, classes and identities (by id_names) are numbered in it alone, and so is the order of times judged.
+  /// sensors and identities (by id_names) are numbered in it alone, and so is the order of times judged.
   OwnLog take_rows();
 
  private:
@@ -82,8 +82,7 @@ class OwnTables {
   OwnLog log_;
   bool odometry_known_ = false;
   RowTimes times_[table_count];
-  WordNumbers ids_, sensors_, classes_;
-  bool has_sizes_ = false;
+  WordNumbers ids_, sensors_;
 };
 
 }  // namespace helixnav::logs

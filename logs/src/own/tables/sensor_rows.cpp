@@ -20,6 +20,18 @@ double given_variance(const std::optional<double>& sigma, const SensorModel& sen
                          "; 'helixnav new-vehicle' writes an example");
 }
 
+core::Appearance appearance_of(const OwnDetection& row, const SensorModel& sensor, const Vehicle& vehicle) {
+  core::Appearance seen;
+  seen.name = row.class_name;
+  if (sensor.class_error) seen.class_error = *sensor.class_error;
+  if (!(row.size_m > 0.0)) return seen;
+  seen.size_m = row.size_m;
+  seen.sigma_size_m = row.sigma_size_m > 0.0
+                          ? row.sigma_size_m
+                          : std::sqrt(given_variance(sensor.sigma_size_m, sensor, vehicle, "sigma_size_m"));
+  return seen;
+}
+
 }  // namespace
 
 SensorModel sensor_called(const std::string& name, const std::string& log, const Vehicle& vehicle) {
@@ -59,6 +71,7 @@ core::Observation observation_of(const OwnDetection& row, const SensorModel& sen
     observation = core::make_cartesian(Eigen::Vector2d(row.z[0], row.z[1]) / sensor.range_scale, R);
   }
   observation.R *= sensor.noise_scale * sensor.noise_scale;
+  observation.appearance = appearance_of(row, sensor, vehicle);
   return observation;
 }
 

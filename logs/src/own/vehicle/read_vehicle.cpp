@@ -74,6 +74,8 @@ SensorModel sensor_of(TomlSection section) {
   sensor.delay_s = section.number("delay_s", -100.0, 100.0).value_or(0.0);
   sensor.detection_probability = section.number("detection_probability", 0.15, 0.999);
   sensor.clutter_per_scan = section.number("clutter_per_scan", 0.0, 1000.0);
+  sensor.class_error = section.number("class_error", 1e-6, 0.5);
+  sensor.sigma_size_m = section.number("sigma_size_m", 1e-6, most_sigma);
   sensor.noise_scale = section.number("noise_scale", 1e-3, 1e3).value_or(1.0);
   section.refuse_rest();
   return sensor;

@@ -8,6 +8,7 @@
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/landmark_id.hpp"
+#include "helixnav/core/map_appearance.hpp"
 
 namespace helixnav::pf_relocalize {
 
@@ -16,12 +17,14 @@ struct BranchLandmark {
   core::LandmarkId id = core::no_landmark;
   Eigen::Vector2d point_robot_m = Eigen::Vector2d::Zero();
   int hits = 0;  ///< scans that saw it
+  core::LandmarkAppearance appearance = {};
 };
 
 /// A landmark of the old map, in the frame that pose hypotheses are given in.
 struct OldLandmark {
   core::LandmarkId id = core::no_landmark;
   core::PointGaussian point;
+  core::LandmarkAppearance appearance = {};
 };
 
 /// Ground that a drive has looked at: sensor poses on it and what the sensor sees from each, shrunk by margins, because
@@ -39,10 +42,11 @@ struct Coverage {
 
 /// Everything that the test compares. Values only: no filter, no map.
 struct Constellation {
-  std::vector<BranchLandmark> branch;      ///< all that were seen lately, whatever their hits
-  std::vector<OldLandmark> old_landmarks;  ///< map frame
-  Coverage old_drive;                      ///< map frame
-  Coverage new_drive;                      ///< frame of the vehicle now; usually least_views = 2
+  std::vector<BranchLandmark> branch;          ///< all that were seen lately, whatever their hits
+  std::vector<OldLandmark> old_landmarks;      ///< map frame
+  Coverage old_drive;                          ///< map frame
+  Coverage new_drive;                          ///< frame of the vehicle now; usually least_views = 2
+  core::AppearancePopulation population = {};  ///< that classes and sizes come from; what these contradict is no pair
 };
 
 struct ConstellationLimits {
@@ -50,7 +54,7 @@ struct ConstellationLimits {
   double branch_sigma_m = 0.15;  ///< of a branch landmark relative to the vehicle
   double lever_rad = 0.012;      ///< tolerance per metre of distance from the vehicle
   double most_tolerance_m = 1.5;
-  int least_matches = 5;
+  int least_matches = 5;  ///< less what class and size of the pairs are worth, but no fewer than rival_least_matches
   double least_ratio = 0.4;
   int rival_least_matches = 3;
   double rival_match_share = 0.4;  ///< a rival counts from max(rival_least_matches, share × M of the winner) on
@@ -72,6 +76,10 @@ struct ConstellationScore {
   int unmatched_old = 0;     ///< u2: old landmarks without partner on ground that the new drive covered
   double ratio = 0.0;        ///< M / (M + (u1 + u2)/2), 0 when M is 0; ground not covered by both is neutral
   std::vector<ConstellationPair> pairs;
+  /// What class and size of the pairs say, in pairs: Σ nats / g, g = −ln of the probability that chance puts an old landmark
+  /// within a pair's tolerance. M pairs that fix a pose of three numbers are worth (M − 3/2)·g nats, so that with class and
+  /// size fewer say as much. 0 where nothing is told.
+  double appearance_matches = 0.0;
 };
 
 /// Scores one pose hypothesis. Cost O(branch × old + (branch + old) × coverage poses); the matching is greedy by distance,
@@ -88,7 +96,9 @@ struct ConstellationVerdict {
   ConstellationScore winner;
   ConstellationScore rival;  ///< best ratio among those that count; matched = 0 when none does
   int rivals_tried = 0;
-  double rival_share = 0.0;  ///< rival.ratio / winner.ratio, to be kept below limits.rival_ratio
+  /// rival.ratio / winner.ratio, to be kept below limits.rival_ratio. Of a winner without a pair 0; where classes or sizes are
+  /// told, as if it had one pair.
+  double rival_share = 0.0;
 };
 
 /// Winner against rivals. A rival is beaten only by contradictions on ground that both maps cover, never by lack of

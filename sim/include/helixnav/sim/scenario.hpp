@@ -21,6 +21,14 @@ struct VehicleOptions {
   double lookahead_m = 5.0;
 };
 
+/// What the scanner tells of a tree besides where it is. Trees are of any class, and of any diameter between two, alike.
+struct LooksOptions {
+  int classes = 0;            ///< 0: no class is told
+  double class_error = 0.0;   ///< share of detections that are told another class, any of them alike
+  double sigma_size_m = 0.0;  ///< of the diameter; 0: no size is told
+  Interval diameter_m{0.2, 0.8};
+};
+
 /// Scanner that finds trees: each visible one with a probability, and things that are none.
 struct ScannerOptions {
   core::Pose2 T_robot_sensor{3.78, 0.50, 0.0};
@@ -28,6 +36,7 @@ struct ScannerOptions {
   double detection_probability = 0.9;
   double clutter_per_scan = 0.5;    ///< mean of a Poisson number, uniform over the area of the field of view
   double occluding_radius_m = 0.0;  ///< of every trunk: a tree whose centre lies behind a nearer trunk is not seen
+  LooksOptions looks = {};
 };
 
 /// White noise of the sensors.

@@ -50,6 +50,8 @@ struct WorldOptions {
 struct Tree {
   Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
   Stretch present;
+  double class_draw = 0.0;     ///< uniform in [0, 1): which of the classes that a scanner tells of, and …
+  double diameter_draw = 0.0;  ///< … where between its least and its greatest diameter
 };
 
 /// The truth: the way the vehicle takes from the origin along x, and the trees. No two trees are nearer than 2 m, even

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace helixnav::apps {
+
+/// A log that can be read again and again: itself, or, of a FIFO, which can be read once, a copy of all that came through it,
+/// as JSON Lines in a file that goes away with this, beside a copy of the vehicle.toml
+/// that stands beside the FIFO. Waits for the writer. InputError where the copy cannot be written.
+/// Test: apps/own_log_test.cpp.
+class SpooledLog {
+ public:
+  explicit SpooledLog(const std::string& path);
+  ~SpooledLog();
+  SpooledLog(const SpooledLog&) = delete;
+  SpooledLog& operator=(const SpooledLog&) = delete;
+
+  const std::string& path() const { return path_; }
+
+ private:
+  bool is_copy() const { return !folder_.empty(); }
+
+  std::string path_;
+  std::string folder_;  ///< of the copy; empty without one
+};
+
+}  // namespace helixnav::apps

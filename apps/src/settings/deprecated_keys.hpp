@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace helixnav::apps {
+
+/// Of the settings that say what a vehicle file says: its key, as "odometry.scale" for "victoria_park.speed_scale"; empty for
+/// any other.
+std::string vehicle_key_of(const std::string& setting);
+
+/// A sentence with those that the command line or --config gives other than they are by default, and the keys that replace
+/// them; empty where there are none. To be asked before a vehicle file sets them. Test: apps/own_log_test.cpp.
+std::string deprecated_keys_given(const CLI::App& command);
+
+/// The sentence on stderr, if there is one.
+void warn_of_deprecated_keys(const CLI::App& command);
+
+}  // namespace helixnav::apps

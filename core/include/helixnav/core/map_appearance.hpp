@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "helixnav/core/appearance.hpp"
+#include "helixnav/core/landmark_id.hpp"
+
+namespace helixnav::core {
+
+/// What class and size say about a pair of an observation and a landmark, or of two landmarks.
+struct AppearanceEvidence {
+  double nats = 0.0;  ///< ln p(appearance | the same object) − ln p(appearance | any object)
+  double gate = 0.0;  ///< −2 ln of the probability that the same object is told a class as unlikely: adds to a NIS
+  double size_nis = 0.0;  ///< squared distance of the sizes, …
+  int size_dof = 0;       ///< … and 1 where both are known
+};
+
+/// How often which class and size is told: what an object of no known landmark looks like, and therefore what it says that two
+/// look alike. A class k is told with p(c | k) = (1 − ε) 1[c = k] + ε q_c, q the shares of the population and ε the
+/// observation's class_error, so that ln p(c | landmark) − ln q_c is bounded below by ln ε. Sizes are Gaussian.
+/// Test: core/map_appearance_test.cpp (enumeration of all classes, batch of all sizes).
+class AppearancePopulation {
+ public:
+  void count(const Appearance& seen);
+  /// Share of a class among those told, in (0, 1); above 0 for one that was never told.
+  double share(const ClassName& name) const;
+
+  /// `known`, after one more observation.
+  LandmarkAppearance updated(const LandmarkAppearance& known, const Appearance& seen) const;
+
+  /// Zeros where either says nothing. O(log classes).
+  AppearanceEvidence compare(const LandmarkAppearance& known, const Appearance& seen) const;
+  AppearanceEvidence compare(const LandmarkAppearance& one, const LandmarkAppearance& other) const;
+
+  /// Whether neither class nor size speaks against the two being one, each with 99.9 % if they were.
+  bool look_alike(const LandmarkAppearance& one, const LandmarkAppearance& other) const;
+
+ private:
+  double probability(const LandmarkAppearance& known, const ClassName& name) const;
+  double likelier(const LandmarkAppearance& known, const ClassName& than) const;
+  double ln_alike(const LandmarkAppearance& one, const LandmarkAppearance& other) const;
+  AppearanceEvidence compare_sizes(const LandmarkAppearance& known, double size_m, double variance_m2) const;
+  double ln_density(double size_m, double variance_m2) const;
+
+  static constexpr std::size_t enough_sizes = 8;
+  static constexpr std::size_t most_classes = 256;  ///< those beyond share what is left
+
+  std::vector<std::pair<ClassName, std::size_t>> classes_;  ///< ascending by name
+  std::size_t told_ = 0;
+  std::size_t sizes_ = 0;
+  double size_mean_m_ = 0.0;
+  double size_squares_m2_ = 0.0;  ///< Σ of squared distances from the mean
+};
+
+/// Class and size of the landmarks of a map, and the population that they come from. Nothing is held for landmarks of which
+/// neither was told. Test: core/map_appearance_test.cpp.
+class MapAppearance {
+ public:
+  bool is_empty() const { return landmarks_.empty(); }
+  const AppearancePopulation& population() const { return population_; }
+
+  /// One observation of no landmark in particular, or of one of the map. O(log classes).
+  void count(const Appearance& seen) { population_.count(seen); }
+  /// The landmark was observed to look so. O(log landmarks), and an insertion the first time.
+  void see(LandmarkId id, const Appearance& seen);
+  /// A landmark of an earlier drive; counts once in the population.
+  void adopt(LandmarkId id, const LandmarkAppearance& known);
+  void merge(LandmarkId kept, LandmarkId removed);
+  void remove(LandmarkId id);
+
+  /// Nothing told where it is unknown.
+  LandmarkAppearance of(LandmarkId id) const;
+
+  /// Zeros where either says nothing. O(log landmarks).
+  AppearanceEvidence compare(LandmarkId id, const Appearance& seen) const;
+  bool look_alike(LandmarkId one, LandmarkId other) const;
+
+ private:
+  using Entry = std::pair<LandmarkId, LandmarkAppearance>;
+  const LandmarkAppearance* find(LandmarkId id) const;
+  LandmarkAppearance& entry(LandmarkId id);
+
+  AppearancePopulation population_;
+  std::vector<Entry> landmarks_;  ///< ascending by id
+};
+
+}  // namespace helixnav::core

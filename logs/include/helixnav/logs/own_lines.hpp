@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "helixnav/core/recording.hpp"
+
+namespace helixnav::logs {
+
+/// The recording as JSON Lines of the user's own schema (docs/your_own_log.md): increments and detections with their
+/// covariances, labels as id, classes and sizes, times at which the vehicle was carried, truth. A line an event, in its order.
+/// Read back, everything is as it was but for sensors, which are in the vehicle file, and the correlation of a range with its
+/// bearing, which the schema does not hold. PreconditionError for fixes among the events.
+std::string own_lines(const core::Recording& recording);
+
+/// The vehicle.toml that goes with the lines: where the sensor is and what it sees. Everything else the lines say.
+/// core::InputError for scans by several sensors, which have no names in a recording. Test: logs/own/own_lines_test.cpp.
+std::string vehicle_of_lines(const core::Recording& recording);
+
+}  // namespace helixnav::logs

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "helixnav/core/map_appearance.hpp"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "helixnav/core/chi2.hpp"
+#include "helixnav/core/errors.hpp"
+#include "helixnav/core/random.hpp"
+
+namespace helixnav::core {
+namespace {
+
+constexpr int class_count = 4;
+const char* const class_names[class_count] = {"oak", "elm", "yew", "fir"};
+
+Appearance told(const std::string& name, double class_error = 0.1) {
+  Appearance seen;
+  seen.name = ClassName(name);
+  seen.class_error = class_error;
+  return seen;
+}
+
+Appearance sized(double size_m, double sigma_m) {
+  Appearance seen;
+  seen.size_m = size_m;
+  seen.sigma_size_m = sigma_m;
+  return seen;
+}
+
+/// So many of each that a few more change nothing.
+AppearancePopulation large_population() {
+  AppearancePopulation population;
+  for (int k = 0; k < class_count; ++k) {
+    for (int i = 0; i < 1000 * (k + 1); ++i) population.count(told(class_names[k]));
+  }
+  return population;
+}
+
+/// p(all that was told | each class), times its share, by definition.
+std::vector<double> enumerated(const AppearancePopulation& population, const std::vector<Appearance>& seen) {
+  std::vector<double> weights;
+  for (const char* name : class_names) {
+    double weight = population.share(ClassName(name));
+    for (const Appearance& one : seen) {
+      const double share = population.share(one.name);
+      const bool same = one.name == ClassName(name);
+      weight *= (same ? 1.0 - one.class_error : 0.0) + one.class_error * share;
+    }
+    weights.push_back(weight);
+  }
+  return weights;
+}
+
+double sum_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum;
+}
+
+std::vector<Appearance> drawn(RandomStream& random, int count) {
+  std::vector<Appearance> seen;
+  for (int i = 0; i < count; ++i) {
+    seen.push_back(told(class_names[random.below(3)], random.uniform(0.02, 0.4)));  // three of the four: all are held
+  }
+  return seen;
+}
+
+LandmarkAppearance known_from(const AppearancePopulation& population, const std::vector<Appearance>& seen) {
+  LandmarkAppearance known;
+  for (const Appearance& one : seen) known = population.updated(known, one);
+  return known;
+}
+
+/// Classes that were never told keep a share, of 1 in 10 000 here.
+constexpr double never_told = 3e-4;
+
+TEST(MapAppearance, TheEvidenceOfAClassIsThatOfEnumeratingAllClasses) {
+  const AppearancePopulation population = large_population();
+  RandomStream random(1, "appearance");
+  for (int t = 0; t < 200; ++t) {
+    const std::vector<Appearance> before = drawn(random, 1 + static_cast<int>(random.below(5)));
+    const LandmarkAppearance known = known_from(population, before);
+    const Appearance next = told(class_names[random.below(class_count)], random.uniform(0.02, 0.4));
+    std::vector<Appearance> all = before;
+    all.push_back(next);
+    const double probability = sum_of(enumerated(population, all)) / sum_of(enumerated(population, before));
+    const AppearanceEvidence evidence = population.compare(known, next);
+    EXPECT_NEAR(evidence.nats, std::log(probability / population.share(next.name)), never_told);
+    EXPECT_GE(evidence.nats, std::log(next.class_error));
+  }
+}
+
+TEST(MapAppearance, TheGateIsTheProbabilityOfBeingToldAClassAsUnlikely) {
+  const AppearancePopulation population = large_population();
+  RandomStream random(2, "appearance");
+  for (int t = 0; t < 200; ++t) {
+    const std::vector<Appearance> before = drawn(random, 2);
+    const LandmarkAppearance known = known_from(population, before);
+    const double error = random.uniform(0.02, 0.4);
+    const Appearance next = told(class_names[random.below(3)], error);
+    const std::vector<double> weights = enumerated(population, before);
+    const double total = sum_of(weights);
+    double own = 0.0;
+    double likelier = 0.0;  // classes that it is likelier to be of, told rightly
+    for (int k = 0; k < class_count; ++k) {
+      if (ClassName(class_names[k]) == next.name) own = weights[static_cast<std::size_t>(k)];
+    }
+    for (int k = 0; k < 3; ++k) {
+      const double weight = weights[static_cast<std::size_t>(k)];
+      const bool voted = weight > own * (1.0 + 1e-9) &&
+                         (before[0].name == ClassName(class_names[k]) || before[1].name == ClassName(class_names[k]));
+      if (voted) likelier += weight / total;
+    }
+    EXPECT_NEAR(population.compare(known, next).gate, -2.0 * std::log(1.0 - (1.0 - error) * likelier), 2e-3);
+  }
+}
+
+TEST(MapAppearance, TwoLandmarksLookAlikeAsMuchAsEnumerationSays) {
+  const AppearancePopulation population = large_population();
+  RandomStream random(3, "appearance");
+  for (int t = 0; t < 200; ++t) {
+    const std::vector<Appearance> one = drawn(random, 2), other = drawn(random, 3);
+    const std::vector<double> w_one = enumerated(population, one), w_other = enumerated(population, other);
+    double alike = 0.0;
+    for (int k = 0; k < class_count; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      alike += w_one[at] / sum_of(w_one) * w_other[at] / sum_of(w_other) / population.share(ClassName(class_names[k]));
+    }
+    const AppearanceEvidence evidence = population.compare(known_from(population, one), known_from(population, other));
+    EXPECT_NEAR(evidence.nats, std::log(alike), 5.0 * never_told);
+  }
+}
+
+TEST(MapAppearance, ASizeIsTheWeightedMeanOfItsMeasurements) {
+  RandomStream random(4, "appearance");
+  const AppearancePopulation population;
+  LandmarkAppearance known;
+  double information = 0.0;
+  double weighted = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    const double sigma_m = random.uniform(0.01, 0.1);
+    const double size_m = random.normal(0.5, sigma_m);
+    known = population.updated(known, sized(size_m, sigma_m));
+    information += 1.0 / (sigma_m * sigma_m);
+    weighted += size_m / (sigma_m * sigma_m);
+    EXPECT_NEAR(known.size_m, weighted / information, 1e-12);
+    EXPECT_NEAR(known.size_variance_m2 * information, 1.0, 1e-12);
+  }
+  const AppearanceEvidence evidence = population.compare(known, sized(0.6, 0.05));
+  const double off_m = 0.6 - weighted / information;
+  EXPECT_NEAR(evidence.size_nis, off_m * off_m / (0.0025 + 1.0 / information), 1e-9);
+  EXPECT_EQ(evidence.size_dof, 1);
+  EXPECT_EQ(evidence.nats, 0.0);  // nobody knows yet how sizes differ
+}
+
+/// Two-sided band on the share of right pairs beyond the 99 % quantile; false-alarm probability 1e-4 (binomial, 20 000).
+TEST(MapAppearance, RightSizesAreOutsideTheirGateAsOftenAsTheyShould) {
+  RandomStream random(5, "appearance");
+  const AppearancePopulation population;
+  constexpr int draws = 20'000;
+  const double gate = chi2_quantile(0.99, 1);
+  int outside = 0;
+  for (int i = 0; i < draws; ++i) {
+    const double true_m = random.uniform(0.2, 0.8);
+    LandmarkAppearance known;
+    for (int k = 0; k < 3; ++k) known = population.updated(known, sized(random.normal(true_m, 0.02), 0.02));
+    outside += population.compare(known, sized(random.normal(true_m, 0.03), 0.03)).size_nis > gate ? 1 : 0;
+  }
+  const double sigma = std::sqrt(draws * 0.01 * 0.99);
+  EXPECT_NEAR(outside, draws * 0.01, 3.9 * sigma);
+}
+
+TEST(MapAppearance, WhatIsNotToldSaysNothing) {
+  AppearancePopulation population = large_population();
+  LandmarkAppearance oak = population.updated({}, told("oak"));
+  EXPECT_EQ(population.compare(oak, Appearance()).nats, 0.0);
+  EXPECT_EQ(population.compare(LandmarkAppearance(), told("oak")).nats, 0.0);
+  EXPECT_EQ(population.compare(oak, sized(0.5, 0.1)).size_dof, 0);
+  MapAppearance map;
+  map.see(3, Appearance());
+  EXPECT_TRUE(map.is_empty());
+  EXPECT_TRUE(map.look_alike(3, 4));
+}
+
+TEST(MapAppearance, MergedLandmarksKnowWhatBothWereTold) {
+  MapAppearance map;
+  for (int i = 0; i < 100; ++i) map.count(told(class_names[i % class_count]));
+  for (const core::LandmarkId id : {1, 2, 9}) {
+    map.see(id, told("oak"));
+    map.see(id, sized(0.4, 0.02));
+  }
+  map.see(9, told("oak"));
+  map.see(9, sized(0.4, 0.02));
+  map.merge(1, 2);
+  EXPECT_FALSE(map.of(2).is_told());
+  EXPECT_DOUBLE_EQ(map.of(1).votes.front().nats, map.of(9).votes.front().nats);
+  EXPECT_DOUBLE_EQ(map.of(1).size_variance_m2, map.of(9).size_variance_m2);
+  map.remove(1);
+  EXPECT_FALSE(map.of(1).is_told());
+  EXPECT_TRUE(map.of(9).is_told());
+}
+
+TEST(MapAppearance, OfMoreClassesThanItHoldsTheLeastSupportedIsForgotten) {
+  LandmarkAppearance known;
+  known.add_vote(ClassName("oak"), 5.0);
+  known.add_vote(ClassName("elm"), 3.0);
+  known.add_vote(ClassName("yew"), 1.0);
+  known.add_vote(ClassName("fir"), 0.5);
+  EXPECT_EQ(known.votes.back().name, ClassName("yew"));
+  known.add_vote(ClassName("fir"), 4.0);
+  EXPECT_EQ(known.votes[1].name, ClassName("fir"));
+  EXPECT_EQ(known.votes.back().name, ClassName("elm"));
+}
+
+TEST(ClassName, HoldsNoMoreThanItsBytes) {
+  EXPECT_EQ(ClassName("Pseudotsuga menziesii").text(), "Pseudotsuga menziesii");
+  EXPECT_TRUE(ClassName("").empty());
+  EXPECT_THROW(ClassName("a name of twenty-four by"), PreconditionError);
+}
+
+}  // namespace
+}  // namespace helixnav::core
