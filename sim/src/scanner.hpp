@@ -7,6 +7,7 @@
 #include "helixnav/core/random.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/sim/scenario.hpp"
+#include "tree_grid.hpp"
 
 namespace helixnav::sim {
 
@@ -38,6 +39,7 @@ class Scanner {
 
   const World& world_;
   ScannerOptions options_;
+  TreeGrid grid_;
   NoiseLevels true_noise_;
   NoiseLevels assumed_noise_;
   core::RandomStream random_;
