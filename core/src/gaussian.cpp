@@ -34,7 +34,8 @@ bool is_symmetric_positive_semidefinite(const Eigen::Ref<const Eigen::MatrixXd>&
   if (shift == 0.0) return true;  // the zero matrix
   Eigen::MatrixXd shifted = matrix;
   shifted.diagonal().array() += shift;
-  return has_root(shifted);
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> llt(shifted);  // in place
+  return llt.info() == Eigen::Success && shifted.allFinite();
 }
 
 }  // namespace helixnav::core

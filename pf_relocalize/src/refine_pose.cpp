@@ -18,8 +18,8 @@ core::Pose2 refine_pose(const LandmarkTable& table, const std::vector<RobotPoint
     Eigen::Matrix<double, 2, 3> J;
     J << 1.0, 0.0, -arm.y(), 0.0, 1.0, arm.x();
     double total = 1.0;
-    Eigen::Matrix3d point_information = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d point_force = Eigen::Vector3d::Zero();
+    Eigen::Matrix2d weights = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d pull = Eigen::Vector2d::Zero();
     const double reach_m = 3.5 * std::sqrt(largest_variance(noise) + table.largest);
     const Eigen::Vector2d reach(reach_m, reach_m);
     table.grid.visit(placed - reach, placed + reach, [&](std::uint32_t i) {
@@ -33,11 +33,11 @@ core::Pose2 refine_pose(const LandmarkTable& table, const std::vector<RobotPoint
       const double value =
           density_ratio_m2 * std::exp(-0.5 * d.dot(W * d)) * std::sqrt(W.determinant()) / (2.0 * core::pi);
       total += value;
-      point_information += value * J.transpose() * W * J;
-      point_force += value * J.transpose() * W * d;
+      weights += value * W;
+      pull += value * (W * d);
     });
-    information += point_information / total;
-    force += point_force / total;
+    information += J.transpose() * weights * J / total;
+    force += J.transpose() * pull / total;
   }
   return core::Pose2(pose.vector() + information.ldlt().solve(force));
 }

@@ -41,7 +41,9 @@ std::size_t size_for(std::size_t landmarks) {
 /// Little-endian, whatever the machine.
 template <class Unsigned>
 void put_unsigned(std::string& bytes, Unsigned value) {
-  for (std::size_t k = 0; k < sizeof(Unsigned); ++k) bytes += static_cast<char>((value >> (8 * k)) & 0xffU);
+  std::array<char, sizeof(Unsigned)> little{};
+  for (std::size_t k = 0; k < sizeof(Unsigned); ++k) little[k] = static_cast<char>((value >> (8 * k)) & 0xffU);
+  bytes.append(little.data(), little.size());
 }
 
 void put(std::string& bytes, std::int32_t value) { put_unsigned(bytes, static_cast<std::uint32_t>(value)); }

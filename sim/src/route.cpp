@@ -49,8 +49,11 @@ double Route::nearest_along_m(const Eigen::Vector2d& point_m, const Stretch& str
   double beyond_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = segment_of(stretch.from_m); i <= last; ++i) {
     const double length_m = along_m_[i + 1] - along_m_[i];
-    const double reach_m = beyond_m + length_m;
-    if ((points_m_[i] - point_m).squaredNorm() > reach_m * reach_m) continue;
+    const double too_far_m = (points_m_[i] - point_m).norm() - beyond_m;
+    if (too_far_m > length_m) {  // so is all that begins and ends within that length of road from here
+      i = std::max(i, segment_of(along_m_[i] + too_far_m) - 1);
+      continue;
+    }
     const Eigen::Vector2d forward = (points_m_[i + 1] - points_m_[i]) / length_m;
     const double first_m = std::max(stretch.from_m - along_m_[i], 0.0);
     const double last_m = std::min(stretch.to_m - along_m_[i], length_m);

@@ -20,6 +20,7 @@ bool contains(const core::FieldOfView& view, double range_m, double bearing_rad)
 Scanner::Scanner(const Scenario& scenario, const World& world, std::uint64_t seed)
     : world_(world),
       options_(scenario.scanner),
+      grid_(world.trees, std::max(nearest_trees_m, scenario.scanner.field_of_view.max_range_m)),
       true_noise_(scenario.true_noise),
       assumed_noise_(scenario.assumed_noise),
       random_(seed, "sim.scanner"),
@@ -47,7 +48,7 @@ std::vector<Scanner::Sighting> Scanner::visible_trees(const core::Pose2& T_world
   std::vector<Sighting> visible;
   const core::Pose2 T_sensor_world = core::inverse(T_world_sensor);
   const double beyond_m2 = 1.01 * options_.field_of_view.max_range_m * options_.field_of_view.max_range_m;
-  for (std::size_t i = 0; i < world_.trees.size(); ++i) {
+  for (const std::size_t i : grid_.about(T_world_sensor.position_m(), std::sqrt(beyond_m2))) {
     const Eigen::Vector2d away_m = world_.trees[i].point_m - T_world_sensor.position_m();
     if (away_m.squaredNorm() > beyond_m2 || !contains(world_.trees[i].present, along_m)) continue;
     const Eigen::Vector2d point_m = core::transform(T_sensor_world, world_.trees[i].point_m);

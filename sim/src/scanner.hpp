@@ -8,6 +8,7 @@
 #include "helixnav/core/recording.hpp"
 #include "helixnav/sim/scenario.hpp"
 #include "looks.hpp"
+#include "tree_grid.hpp"
 
 namespace helixnav::sim {
 
@@ -39,6 +40,7 @@ class Scanner {
 
   const World& world_;
   ScannerOptions options_;
+  TreeGrid grid_;
   NoiseLevels true_noise_;
   NoiseLevels assumed_noise_;
   core::RandomStream random_;

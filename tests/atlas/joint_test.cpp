@@ -37,6 +37,19 @@ void expect_joint(const Atlas& atlas, const smoothing::Problem& problem, const s
   }
 }
 
+TEST(Poses, OfAllPhasesTogetherAreThoseOfEachToTheBit) {
+  const testing::SmallDrive drive = testing::make_small_drive(24);
+  const Atlas atlas = testing::driven(drive, Options());
+  const std::vector<std::vector<core::Pose2>> all = atlas.poses();
+  ASSERT_EQ(static_cast<int>(all.size()), atlas.phase_count());
+  for (std::size_t phase = 0; phase < all.size(); ++phase) {
+    const std::vector<core::Pose2> own = atlas.poses_of(static_cast<int>(phase));
+    ASSERT_EQ(all[phase].size(), own.size());
+    for (std::size_t k = 0; k < own.size(); ++k) EXPECT_EQ(all[phase][k].vector(), own[k].vector());
+  }
+  EXPECT_TRUE(Atlas().poses().empty());
+}
+
 TEST(Joint, AlongThePathsEqualsTheDenseInverseOfAllFactors) {
   const testing::SmallDrive drive = testing::make_small_drive(23);
   Atlas atlas = testing::driven(drive, Options());

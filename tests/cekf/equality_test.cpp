@@ -92,6 +92,28 @@ TEST_P(Equality, HoldsWhenClosedPhasesAreKept) {
   EXPECT_LE(d.mean, 1e-8);
 }
 
+/// Of up to four passive landmarks the weights are read in place, of more they are packed.
+TEST_P(Equality, JointOfAFewIsTheBlockOfTheJointOfMany) {
+  RandomProgram program(8, {GetParam(), 220, 25, false});
+  for (int k = 0; k < 200; ++k) {
+    if (k == 140) program.filter.keep_since(program.filter.phase());
+    program.step();
+  }
+  EXPECT_GE(program.filter.phases_kept(), 2);
+  std::vector<core::LandmarkId> ids = program.filter.landmarks();
+  const auto is_active = [&](core::LandmarkId id) { return program.filter.is_active(id); };
+  std::stable_partition(ids.begin(), ids.end(), [&](core::LandmarkId id) { return !is_active(id); });
+  ASSERT_FALSE(is_active(ids[9]));
+  const core::JointGaussian many = program.filter.joint(ids);
+  const double scale = many.covariance.cwiseAbs().maxCoeff();
+  for (const std::size_t count : {1U, 2U, 4U, 5U, 9U}) {
+    const core::JointGaussian few =
+        program.filter.joint({ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count)});
+    const Eigen::Index n = few.covariance.rows();
+    EXPECT_LT((few.covariance - many.covariance.topLeftCorner(n, n)).cwiseAbs().maxCoeff(), 1e-12 * scale) << count;
+  }
+}
+
 /// A point between an active and a passive landmark, shifted with the vehicle; then an ordinary life.
 TEST_P(Equality, HoldsForALandmarkDerivedFromPoseAndLandmarks) {
   RandomProgram program(6, {GetParam(), 220, 25, false});

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/sim/route.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "helixnav/core/errors.hpp"
+#include "helixnav/core/random.hpp"
 
 namespace helixnav::sim {
 namespace {
@@ -36,6 +41,29 @@ TEST(Route, NearestPointIsSoughtOnTheStretchOnly) {
   EXPECT_NEAR(route.nearest_along_m({12.0, 3.0}, {0.0, 15.0}), 13.0, 1e-12);
   EXPECT_NEAR(route.distance_m({12.0, 3.0}), 2.0, 1e-12);
   EXPECT_NEAR(route.distance_m({-3.0, -4.0}), 5.0, 1e-12);
+}
+
+/// Segments are passed over 64 at a time where they are farther than the nearest so far.
+TEST(Route, NearestPointOfALongRouteIsThatOfAllItsSegments) {
+  core::RandomStream random(5, "route_test");
+  std::vector<Eigen::Vector2d> points_m{{0.0, 0.0}};
+  double heading_rad = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    heading_rad += random.normal(0.0, 0.2);
+    points_m.emplace_back(points_m.back() + 0.5 * Eigen::Vector2d(std::cos(heading_rad), std::sin(heading_rad)));
+  }
+  const Route route(points_m);
+  for (int k = 0; k < 200; ++k) {
+    const Eigen::Vector2d point_m =
+        points_m[random.below(points_m.size())] + Eigen::Vector2d(random.normal(0.0, 20.0), random.normal(0.0, 20.0));
+    double nearest_m = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i + 1 < points_m.size(); ++i) {
+      const Eigen::Vector2d way_m = points_m[i + 1] - points_m[i];
+      const double share = std::clamp((point_m - points_m[i]).dot(way_m) / way_m.squaredNorm(), 0.0, 1.0);
+      nearest_m = std::min(nearest_m, (points_m[i] + share * way_m - point_m).norm());
+    }
+    EXPECT_NEAR(route.distance_m(point_m), nearest_m, 1e-9);
+  }
 }
 
 TEST(Route, FromOriginStartsAtTheOriginAlongX) {

@@ -18,7 +18,7 @@ std::optional<core::JointMap> joint_map_of(const ChosenNavigator& navigator, con
 /// The same of a navigator of either kind; reach_m of the sensor, 0 where it is unknown.
 template <class Navigator>
 std::optional<core::JointMap> joint_map_of(const Navigator& navigator, double reach_m) {
-  const std::vector<core::MapLandmark> landmarks = navigator.map();
+  const std::vector<core::MapLandmark> landmarks = navigator.sketch();  // the joint estimate has places and covariances
   if (landmarks.size() > runs::most_joint_landmarks) return std::nullopt;
   core::JointMap map = supervisor::joint_map(navigator, landmarks);
   map.reach_m = reach_m;

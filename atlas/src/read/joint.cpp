@@ -14,6 +14,40 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
+/// Calls act(rows, columns) for the tiles on and below the diagonal, as ranges: across a large matrix one goes tile by tile, because
+/// the elements of a row lie far from each other.
+template <class Act>
+void for_lower_tiles(Index size, const Act& act) {
+  constexpr Index tile = 64;
+  for (Index j = 0; j < size; j += tile) {
+    for (Index i = j; i < size; i += tile) {
+      act(Eigen::seqN(i, std::min(tile, size - i)), Eigen::seqN(j, std::min(tile, size - j)));
+    }
+  }
+}
+
+/// The upper triangle becomes that below.
+void mirror_lower(MatrixXd& P) {
+  for_lower_tiles(P.rows(), [&](const auto& rows, const auto& columns) {
+    const MatrixXd lower = P(rows, columns);
+    auto upper = P(columns, rows);
+    if (rows.first() != columns.first()) {
+      upper = lower.transpose();
+    } else {
+      upper.template triangularView<Eigen::StrictlyUpper>() = lower.transpose();
+    }
+  });
+}
+
+/// Both triangles become their mean.
+void make_symmetric(MatrixXd& P) {
+  for_lower_tiles(P.rows(), [&](const auto& rows, const auto& columns) {
+    const MatrixXd mean = 0.5 * (P(columns, rows) + P(rows, columns).transpose());
+    P(columns, rows) = mean;
+    P(rows, columns) = mean.transpose();
+  });
+}
+
 /// Forward solves on the union of some paths. Columns are laid out in the order in which the tree comes to their variables,
 /// so that those below a node are next to each other.
 class PathSolve {
@@ -39,7 +73,7 @@ class PathSolve {
       const auto found = std::lower_bound(column_of_.begin(), column_of_.end(), std::make_pair(v, Index{-1}));
       for (int i = 0; i < state_.variable(v).dim; ++i) rows.push_back(found->second + i);
     }
-    for (Index j = 1; j < columns_; ++j) P_.col(j).head(j) = P_.row(j).head(j).transpose();
+    mirror_lower(P_);
     MatrixXd picked = P_(rows, rows);
     P_.resize(0, 0);  // of a large map there is room for two
     return picked;
@@ -148,7 +182,11 @@ Eigen::Matrix<double, Eigen::Dynamic, 3> carried(const Eigen::Vector3d& world, c
 }
 
 void turn(MatrixXd& P, const Eigen::Matrix2d& R) {
-  for (Index row = 0; row < P.rows(); row += row == 0 ? 3 : 2) P.middleRows<2>(row) = (R * P.middleRows<2>(row)).eval();
+  for (Index column = 0; column < P.cols(); ++column) {
+    for (Index row = 0; row < P.rows(); row += row == 0 ? 3 : 2) {
+      P.block<2, 1>(row, column) = (R * P.block<2, 1>(row, column)).eval();
+    }
+  }
   for (Index row = 0; row < P.rows(); row += row == 0 ? 3 : 2) {
     P.middleCols<2>(row) = (P.middleCols<2>(row) * R.transpose()).eval();
   }
@@ -164,10 +202,7 @@ MatrixXd seen_from_world(MatrixXd P, const Eigen::Vector3d& world, const Values&
   rest.noalias() -= cross * G.transpose();
   rest.noalias() -= G * cross.transpose();
   turn(rest, core::rotation(turn_rad));
-  for (Index j = 1; j < n; ++j) {
-    rest.col(j).head(j) = 0.5 * (rest.col(j).head(j) + rest.row(j).head(j).transpose());
-    rest.row(j).head(j) = rest.col(j).head(j).transpose();
-  }
+  make_symmetric(rest);
   return rest;
 }
 

@@ -92,15 +92,34 @@ std::vector<core::Pose2> Atlas::clones() const {
   return poses;
 }
 
+namespace {
+
+/// From where the phase begins, or the host of one that was condensed.
+std::vector<core::Pose2> poses_along(const Leaf& leaf, const core::Pose2& T_map_begin) {
+  const core::Pose2 T_map_entry = leaf.host < 0 ? T_map_begin : core::compose(T_map_begin, leaf.T_host_entry);
+  std::vector<core::Pose2> poses;
+  for (const core::Pose2& T_entry_robot : leaf.phase->shape.T_entry_robot) {
+    poses.push_back(core::compose(T_map_entry, T_entry_robot));
+  }
+  return poses;
+}
+
+}  // namespace
+
 std::vector<core::Pose2> Atlas::poses_of(int phase) const {
   if (phase < 0 || phase >= phase_count()) {
     throw core::PreconditionError("atlas: no phase " + std::to_string(phase));
   }
   const Leaf& leaf = settled_->leaf(phase);
-  const core::Pose2 T_map_entry = leaf.host < 0 ? clone(phase) : core::compose(clone(leaf.host), leaf.T_host_entry);
-  std::vector<core::Pose2> poses;
-  for (const core::Pose2& T_entry_robot : leaf.phase->shape.T_entry_robot) {
-    poses.push_back(core::compose(T_map_entry, T_entry_robot));
+  return poses_along(leaf, clone(leaf.host < 0 ? phase : leaf.host));
+}
+
+std::vector<std::vector<core::Pose2>> Atlas::poses() const {
+  const std::vector<core::Pose2> entries = clones();
+  std::vector<std::vector<core::Pose2>> poses;
+  for (int phase = 0; phase < phase_count(); ++phase) {
+    const Leaf& leaf = settled_->leaf(phase);
+    poses.push_back(poses_along(leaf, entries[State::index(leaf.host < 0 ? phase : leaf.host)]));
   }
   return poses;
 }

@@ -51,6 +51,20 @@ Eigen::Matrix2d both_sides(const Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen:
   return sum;
 }
 
+/// The same for the rows of a few landmarks, added to the lower triangle of `sum`.
+void add_both_sides_of_few(const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& e,
+                           const Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& M, Eigen::MatrixXd& sum) {
+  Eigen::VectorXd reached(e.rows());
+  for (Eigen::Index k = 0; k < M.cols(); ++k) {
+    const Eigen::Index below = M.cols() - k - 1;
+    const auto column = M.col(k).tail(below);
+    for (Eigen::Index i = 0; i < e.rows(); ++i) reached[i] = e.row(i).tail(below).dot(column) + 0.5 * M(k, k) * e(i, k);
+    for (Eigen::Index j = 0; j < e.rows(); ++j) {
+      for (Eigen::Index i = j; i < e.rows(); ++i) sum(i, j) += reached[i] * e(j, k) + e(i, k) * reached[j];
+    }
+  }
+}
+
 }  // namespace
 
 core::PoseGaussian CompressedEkf::pose() const { return {active_.pose, active_.P.view().topLeftCorner<3, 3>()}; }
@@ -182,7 +196,6 @@ core::JointGaussian CompressedEkf::joint(const std::vector<core::LandmarkId>& id
   const Eigen::MatrixXd cross = e * active_.A.view()(Eigen::all, active_columns);
   C(passive_rows, active_rows) = cross;
   C(active_rows, passive_rows) = cross.transpose();
-  const Eigen::MatrixXd M = active_.M.view().selfadjointView<Eigen::Lower>();
   const Eigen::Index rows = e.rows();
   const bool has_pairs = passive_slots.size() > 1;  // a landmark's own block needs no phase read again
   Eigen::MatrixXd own = has_pairs ? phase_start_blocks(passive_slots) : Eigen::MatrixXd::Zero(rows, rows);
@@ -190,7 +203,12 @@ core::JointGaussian CompressedEkf::joint(const std::vector<core::LandmarkId>& id
     const auto row = 2 * static_cast<Eigen::Index>(i);
     own.block<2, 2>(row, row) = phases_.back().own_covariance_m2.middleRows<2>(2 * passive_slots[i]);
   }
-  add_both_sides(e, M, own);
+  constexpr std::size_t few = 4;  // M is then read once in place; to form and pack it costs more
+  if (passive_slots.size() <= few) {
+    add_both_sides_of_few(e, active_.M.view(), own);
+  } else {
+    add_both_sides(e, active_.M.view().selfadjointView<Eigen::Lower>(), own);
+  }
   own.triangularView<Eigen::StrictlyUpper>() = own.transpose();
   C(passive_rows, passive_rows) = own;
   return result;

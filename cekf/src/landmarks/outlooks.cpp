@@ -7,19 +7,19 @@
 namespace helixnav::cekf {
 namespace {
 
-/// Rows of a landmark: e·θ, by which its mean has moved in this phase, and e·A, its covariance with the pose.
-using Reached = Eigen::Matrix<double, 2, 4>;
+/// Rows of a landmark, lying as columns: e·θ, by which its mean has moved in this phase, and e·A, its covariance with the pose.
+using Reached = Eigen::Matrix<double, 4, 2>;
 
 /// Column after column, as the basis lies in memory.
 void reach(const Phase& phase, const Eigen::Matrix<double, 4, Eigen::Dynamic>& by_column, const std::vector<int>& slots,
            std::vector<Reached>& reached) {
   for (Eigen::Index k = 0; k < by_column.cols(); ++k) {
     const double* column = phase.basis.col(k);
-    const Eigen::RowVector4d weights = by_column.col(k).transpose();
+    const Eigen::Vector4d weights = by_column.col(k);
     for (std::size_t i = 0; i < slots.size(); ++i) {
       const double* own = column + 2 * static_cast<Eigen::Index>(slots[i]);
-      reached[i].row(0) += own[0] * weights;
-      reached[i].row(1) += own[1] * weights;
+      reached[i].col(0) += own[0] * weights;
+      reached[i].col(1) += own[1] * weights;
     }
   }
 }
@@ -48,9 +48,9 @@ std::vector<Outlook> CompressedEkf::outlooks(const std::vector<core::LandmarkId>
   std::vector<Reached> reached(slots.size(), Reached::Zero());
   reach(phase, by_column, slots, reached);
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    const Eigen::Vector2d moved_m = reached[i].col(0);
+    const Eigen::Vector2d moved_m = reached[i].row(0).transpose();
     result[where[i]] = {phase.mean_m.segment<2>(2 * static_cast<Eigen::Index>(slots[i])) + moved_m,
-                        sigma_bound_m(slots[i], moved_m.norm()), reached[i].rightCols<3>()};
+                        sigma_bound_m(slots[i], moved_m.norm()), reached[i].bottomRows<3>().transpose()};
   }
   return result;
 }

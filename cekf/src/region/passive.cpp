@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reading the passive part: as it was when the phase began, and as it is now.
 #include <algorithm>
+#include <iterator>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
-#include "matrices/add_outer.hpp"
+#include "matrices/packed_product.hpp"
 
 namespace helixnav::cekf {
 namespace {
@@ -12,17 +13,6 @@ namespace {
 int written_index(const Phase& phase, int slot) {
   const auto found = std::find(phase.written.begin(), phase.written.end(), slot);
   return found == phase.written.end() ? -1 : static_cast<int>(found - phase.written.begin());
-}
-
-/// Carries columns 2s, 2s+1 of the map's covariance over a closed phase that did not write the slot s.
-void replay_on_columns(const Phase& phase, int slot, Eigen::Ref<Eigen::MatrixXd> columns) {
-  if (slot >= phase.slots) return;  // born later
-  const Eigen::MatrixXd c = phase.basis.view().middleRows<2>(2 * slot);
-  columns.topRows(2 * phase.slots).noalias() += phase.response * c.transpose();
-  for (std::size_t k = 0; k < phase.written.size(); ++k) {
-    columns.middleRows<2>(2 * phase.written[k]) =
-        phase.written_covariance.block<2, 2>(2 * slot, 2 * static_cast<Eigen::Index>(k)).transpose();
-  }
 }
 
 /// Rows 2s, 2s+1 of the slots, columns that the phase touched; zero for slots born later.
@@ -38,6 +28,41 @@ Eigen::MatrixXd touched_rows(const Phase& phase, const Eigen::Ref<const Eigen::M
     }
   }
   return rows;
+}
+
+/// Where the columns of a slot stand among those asked for, and the first closed phase that they have to be carried over.
+struct Carried {
+  int slot;
+  Eigen::Index column;
+  std::size_t from;
+};
+
+/// Carries these columns of the map's covariance over a closed phase that did not write their slots: all with one product, for
+/// which the phase is packed once.
+void replay_on_columns(const Phase& phase, const std::vector<Carried>& carried, Eigen::Ref<Eigen::MatrixXd> columns) {
+  if (carried.empty()) return;
+  std::vector<int> slots;
+  for (const Carried& one : carried) slots.push_back(one.slot);
+  const Eigen::MatrixXd basis = touched_rows(phase, phase.basis.view(), slots);
+  ReservedMatrix change(2 * phase.slots, basis.rows());
+  constexpr Eigen::Index few = 4;  // rows: to pack the phase for them costs more than to go through it once
+  if (basis.rows() <= few) {
+    for (Eigen::Index k = 0; k < basis.cols(); ++k) {
+      const auto response = phase.response.col(phase.touched[static_cast<std::size_t>(k)]);
+      for (Eigen::Index row = 0; row < basis.rows(); ++row) change.view().col(row) += basis(row, k) * response;
+    }
+  } else if (!phase.touched.empty()) {
+    add_product(change.col(0), change.stride(), Panels(phase.response, phase.touched, left_width),
+                Panels(basis, right_width));
+  }
+  for (std::size_t i = 0; i < carried.size(); ++i) {
+    auto own = columns.middleCols<2>(carried[i].column);
+    own.topRows(2 * phase.slots) += change.view().middleCols<2>(2 * static_cast<Eigen::Index>(i));
+    for (std::size_t k = 0; k < phase.written.size(); ++k) {
+      own.middleRows<2>(2 * phase.written[k]) =
+          phase.written_covariance.block<2, 2>(2 * carried[i].slot, 2 * static_cast<Eigen::Index>(k)).transpose();
+    }
+  }
 }
 
 /// Carries the covariance of the slots, its lower triangle, over a closed phase.
@@ -77,8 +102,10 @@ Eigen::MatrixXd CompressedEkf::start_columns(const std::vector<int>& slots, std:
 /// The same into columns that are zero. Allocates only where closed phases are kept.
 void CompressedEkf::fill_start_columns(const std::vector<int>& slots, std::size_t phase,
                                        Eigen::Ref<Eigen::MatrixXd> columns) const {
+  std::vector<Carried> carried;
   for (std::size_t k = 0; k < slots.size(); ++k) {
-    auto own = columns.middleCols<2>(2 * static_cast<Eigen::Index>(k));
+    const Eigen::Index column = 2 * static_cast<Eigen::Index>(k);
+    auto own = columns.middleCols<2>(column);
     int w = -1;
     std::size_t p = phase;  // back to the last closed phase that wrote the slot
     while (w < 0 && p > 0) w = written_index(phases_[--p], slots[k]);
@@ -88,7 +115,14 @@ void CompressedEkf::fill_start_columns(const std::vector<int>& slots, std::size_
     } else if (2 * slots[k] < absorbed_->rows()) {
       absorbed_->copy_columns(slots[k], own.topRows(absorbed_->rows()));
     }
-    for (; p < phase; ++p) replay_on_columns(phases_[p], slots[k], own);
+    if (p < phase) carried.push_back({slots[k], column, p});
+  }
+  for (std::size_t p = 0; p < phase && !carried.empty(); ++p) {
+    std::vector<Carried> here;
+    std::copy_if(carried.begin(), carried.end(), std::back_inserter(here), [&](const Carried& one) {
+      return one.from <= p && one.slot < phases_[p].slots;  // else it was written or born later
+    });
+    replay_on_columns(phases_[p], here, columns);
   }
 }
 

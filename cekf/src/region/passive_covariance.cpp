@@ -52,7 +52,12 @@ void PassiveCovariance::copy_columns(int slot, Eigen::Ref<Eigen::MatrixXd> colum
     const int j = 2 * slot + c;
     const int J = j / tile;
     for (int i = 0; i < std::min(J * tile, rows_); ++i) columns(i, c) = tile_at(J, i / tile)(j % tile, i % tile);
-    for (int i = J * tile; i < rows_; ++i) columns(i, c) = at(i, j);
+    for (int i = J * tile; i < j; ++i) columns(i, c) = at(i, j);
+    for (int I = J; I * tile < rows_; ++I) {
+      const int first = std::max(j, I * tile);
+      const int count = std::min((I + 1) * tile, rows_) - first;
+      if (count > 0) columns.col(c).segment(first, count) = tile_at(I, J).col(j % tile).segment(first % tile, count);
+    }
   }
 }
 

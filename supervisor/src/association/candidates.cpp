@@ -80,14 +80,23 @@ std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, cons
   const std::vector<core::LandmarkId> about = filter.landmarks_within(sensor_m, reach_of(seen, sensor_m, sigmas));
   const std::vector<cekf::Outlook> outlooks = filter.outlooks(about);
   const double least_sigma_m = std::min_element(seen.begin(), seen.end(), sharper)->sigma_m;
-  std::vector<core::LandmarkId> chosen;
+  const auto near_with = [&](const cekf::Outlook& landmark, double sigma_m) {
+    return is_near(seen, pose.mean, landmark, sigma_m, wider * sigmas);
+  };
+  std::vector<core::LandmarkId> chosen, blurred;
+  std::vector<const cekf::Outlook*> of_blurred;
   for (std::size_t i = 0; i < about.size(); ++i) {
     const cekf::Outlook& landmark = outlooks[i];
-    const auto near_with = [&](double sigma_m) { return is_near(seen, pose.mean, landmark, sigma_m, wider * sigmas); };
-    if (!is_near(seen, landmark, sigmas) || !near_with(landmark.sigma_bound_m)) continue;
+    if (!is_near(seen, landmark, sigmas) || !near_with(landmark, landmark.sigma_bound_m)) continue;
     const bool is_sharp = landmark.sigma_bound_m < least_sigma_m;  // its exact deviation would exclude next to nothing
-    if (is_sharp || near_with(sigma_bound(filter.landmark(about[i]).covariance_m2))) chosen.push_back(about[i]);
+    (is_sharp ? chosen : blurred).push_back(about[i]);
+    if (!is_sharp) of_blurred.push_back(&landmark);
   }
+  const std::vector<core::PointGaussian> exact = filter.marginals(blurred);
+  for (std::size_t i = 0; i < blurred.size(); ++i) {
+    if (near_with(*of_blurred[i], sigma_bound(exact[i].covariance_m2))) chosen.push_back(blurred[i]);
+  }
+  std::sort(chosen.begin(), chosen.end());
   return chosen;
 }
 

@@ -34,9 +34,9 @@ void defer_isolated_match(const std::vector<RevisitAmbiguity>& returns, const Se
 }
 
 /// Pose and one landmark: all that its own gate needs.
-core::JointGaussian with_pose(const cekf::CompressedEkf& filter, core::LandmarkId id) {
+core::JointGaussian with_pose(const cekf::CompressedEkf& filter, core::LandmarkId id,
+                              const core::PointGaussian& point) {
   const core::PoseGaussian pose = filter.pose();
-  const core::PointGaussian point = filter.landmark(id);
   core::JointGaussian joint;
   joint.pose = pose.mean;
   joint.ids = {id};
@@ -49,21 +49,24 @@ core::JointGaussian with_pose(const cekf::CompressedEkf& filter, core::LandmarkI
   return joint;
 }
 
-/// Of many candidates those that keep some observation from being a new landmark's, each gated by itself, O(q²): where the
+/// Of many candidates those that keep some observation from being a new landmark's, each gated by itself, O(q²) all together in products that fill the caches: where the
 /// vehicle does not know where it is there are hundreds, and their joint covariance costs O(candidates²·q). Of few it costs
 /// no more than gating them one by one.
 std::vector<core::LandmarkId> inside_gates(const cekf::CompressedEkf& filter, std::vector<core::LandmarkId> candidates,
                                            const core::Scan& scan, const association::Gates& gates) {
   constexpr std::size_t few = 48;
   if (candidates.size() <= few) return candidates;
-  const auto is_outside = [&](core::LandmarkId id) {
-    const core::JointGaussian joint = with_pose(filter, id);
+  const std::vector<core::PointGaussian> points = filter.marginals(candidates);
+  std::vector<core::LandmarkId> inside;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const core::JointGaussian joint = with_pose(filter, candidates[i], points[i]);
     const association::InnovationProblem own = association::make_innovation_problem(joint, scan, gates);
-    return std::none_of(own.observations.begin(), own.observations.end(),
-                        [](const association::GatedObservation& one) { return std::isfinite(one.nearest_nis); });
-  };
-  candidates.erase(std::remove_if(candidates.begin(), candidates.end(), is_outside), candidates.end());
-  return candidates;
+    const bool is_inside =
+        std::any_of(own.observations.begin(), own.observations.end(),
+                    [](const association::GatedObservation& one) { return std::isfinite(one.nearest_nis); });
+    if (is_inside) inside.push_back(candidates[i]);
+  }
+  return inside;
 }
 
 }  // namespace

@@ -97,12 +97,12 @@ core::PointGaussian DriveMap::remembered(core::LandmarkId id) const {
 
 std::vector<core::StampedPose> DriveMap::path() const {
   std::vector<core::StampedPose> path;
+  const std::vector<core::Pose2> entries = atlas_.clones();
+  const std::vector<std::vector<core::Pose2>> poses = atlas_.poses();
   for (std::size_t phase = 0; phase < stops_.size(); ++phase) {
-    const std::vector<core::Pose2> poses = atlas_.poses_of(static_cast<int>(phase));
     for (const StopInPhase& stop : *stops_[phase]) {
       const bool at_entry = stop.step < 0;
-      path.push_back(
-          {stop.t_ns, at_entry ? atlas_.clone(static_cast<int>(phase)) : poses[static_cast<std::size_t>(stop.step)]});
+      path.push_back({stop.t_ns, at_entry ? entries[phase] : poses[phase][static_cast<std::size_t>(stop.step)]});
     }
   }
   return path;

@@ -128,6 +128,8 @@ class Atlas {
 
   /// Poses at every step of a phase, by carrying the shape it was last derived with. Needs no log.
   std::vector<core::Pose2> poses_of(int phase) const;
+  /// The same of all phases, [phase][step], O(N): one by one each would pay for its path to the root. Test: atlas/joint_test.cpp.
+  std::vector<std::vector<core::Pose2>> poses() const;
 
   /// Size of the tree as it was settled, for benchmarks and reports.
   struct Size {
