@@ -49,6 +49,12 @@ void add_scenario_settings(CLI::App& command, ScenarioSettings& settings) {
   add_number(command, "--sim.slip_most_m", settings.slip_most_m, 0.0, 1e3, "Most displacement by a slip");
   add_number(command, "--sim.slip_least_deg", settings.slip_least_deg, 0.0, 180.0, "Least turn by a slip");
   add_number(command, "--sim.slip_most_deg", settings.slip_most_deg, 0.0, 180.0, "Most turn by a slip");
+  add_number(command, "--sim.movers", settings.movers, 0.0, 100.0,
+             "Things in view on the mean that move and are detected like trees");
+  add_number(command, "--sim.mover_cars", settings.mover_cars, 0.0, 1.0,
+             "Share of cars among the things that move; the others walk");
+  add_number(command, "--sim.trees_a_m2", settings.trees_a_m2, 0.0, 0.25, "Trees of a forest, on the mean");
+  add_number(command, "--sim.twins", settings.twins, 0.0, 1.0, "Share of the trees of a forest with a second stem");
   command
       .add_option("--sim.announce_carried", settings.announce_carried,
                   "Whether an event says that the vehicle was carried (kidnapped)")
@@ -69,6 +75,10 @@ sim::Scenario scenario_of(const std::string& name, const ScenarioSettings& setti
   if (settings.slip_most_m) scenario.slip.distance_m.max = *settings.slip_most_m;
   if (settings.slip_least_deg) scenario.slip.turn_rad.min = radians(*settings.slip_least_deg);
   if (settings.slip_most_deg) scenario.slip.turn_rad.max = radians(*settings.slip_most_deg);
+  if (settings.movers) scenario.movers.in_view = *settings.movers;
+  if (settings.mover_cars) scenario.movers.car_share = *settings.mover_cars;
+  if (settings.trees_a_m2) scenario.world.trees_a_m2 = *settings.trees_a_m2;
+  if (settings.twins) scenario.world.twin_share = *settings.twins;
   scenario.carried.announced = settings.announce_carried;
   scenario.assumed_noise =
       sim::scaled(scenario.assumed_noise, settings.assumed_odometry_factor, settings.assumed_detector_factor);
