@@ -133,7 +133,10 @@ void Referee::Book::score_map(const std::vector<MapLandmark>& map, RunScore& res
     if (landmark.state != core::LandmarkState::mature) continue;
     ++result.mature_landmarks;
     const Label tree = identities.identity(landmark.id);
-    if (tree == core::no_label) continue;
+    if (tree == core::no_label) {
+      ++result.not_trees;
+      continue;
+    }
     if (!placed.insert(tree).second) ++result.duplicates;
     places.map_m.push_back(landmark.point.mean_m);
     places.true_m.push_back(recording.true_landmarks.at(static_cast<std::size_t>(tree)).point_m);

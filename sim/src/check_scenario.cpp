@@ -47,6 +47,9 @@ void check_world(const WorldOptions& world) {
   require("world.block_side_m", world.block_side_m, 40.0, 1e4);
   require("world.blocks_a_side", world.blocks_a_side, 1.0, 1e3);
   require("world.bare_share", world.bare_share, 0.0, 1.0);
+  require("world.trees_a_m2", world.trees_a_m2, 0.0, 1.0 / (nearest_trees_m * nearest_trees_m));
+  require("world.twin_share", world.twin_share, 0.0, 1.0);
+  require("world.twin_m", world.twin_m, 0.01, nearest_trees_m);
 }
 
 void check_vehicle(const VehicleOptions& vehicle) {
@@ -90,6 +93,13 @@ void check_carried(const CarryOptions& carried) {
   require("carried.distance_m", carried.distance_m, 0.0, unlimited);
 }
 
+void check_movers(const MoverOptions& movers) {
+  require("movers.in_view", movers.in_view, 0.0, 100.0);
+  require("movers.car_share", movers.car_share, 0.0, 1.0);
+  require("movers.walking_mps", movers.walking_mps, 0.0, 100.0);
+  require("movers.driving_mps", movers.driving_mps, 0.0, 100.0);
+}
+
 }  // namespace
 
 void check_scenario(const Scenario& scenario) {
@@ -104,6 +114,7 @@ void check_scenario(const Scenario& scenario) {
   require("bias.time_constant_s", scenario.bias.time_constant_s, 1e-3, unlimited);
   check_slip(scenario.slip);
   check_carried(scenario.carried);
+  check_movers(scenario.movers);
 }
 
 }  // namespace helixnav::sim

@@ -16,6 +16,9 @@ class Grove {
   /// False when there was no room.
   bool plant(const Eigen::Vector2d& point_m, const Stretch& present);
 
+  /// Beside the tree planted last, as its second stem.
+  void plant_twin(const Eigen::Vector2d& point_m) { trees_.push_back({point_m, trees_.back().present}); }
+
   /// Plants on both sides of a stretch of the route, each place with a probability.
   void plant_along(const Stretch& stretch, const WorldOptions& options, double probability, const Stretch& present,
                    core::RandomStream& random) {

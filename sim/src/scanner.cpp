@@ -5,15 +5,12 @@
 #include <cmath>
 #include <utility>
 
+#include "in_view.hpp"
+
 namespace helixnav::sim {
 namespace {
 
 bool contains(const Stretch& stretch, double along_m) { return stretch.from_m <= along_m && along_m < stretch.to_m; }
-
-bool contains(const core::FieldOfView& view, double range_m, double bearing_rad) {
-  return view.min_range_m <= range_m && range_m <= view.max_range_m && view.min_bearing_rad <= bearing_rad &&
-         bearing_rad <= view.max_bearing_rad;
-}
 
 }  // namespace
 
@@ -24,24 +21,38 @@ Scanner::Scanner(const Scenario& scenario, const World& world, std::uint64_t see
       true_noise_(scenario.true_noise),
       assumed_noise_(scenario.assumed_noise),
       random_(seed, "sim.scanner"),
-      looks_(scenario.scanner.looks, seed) {}
+      looks_(scenario.scanner.looks, seed),
+      movers_random_(seed, "sim.scanner.movers") {}
 
-LabelledScan Scanner::look(const core::Pose2& T_world_robot, double along_m, core::Nanoseconds t_ns) {
+LabelledScan Scanner::look(const core::Pose2& T_world_robot, double along_m, core::Nanoseconds t_ns,
+                           const std::vector<Eigen::Vector2d>& moving_m) {
   LabelledScan seen;
   seen.scan.t_ns = t_ns;
   seen.scan.T_robot_sensor = options_.T_robot_sensor;
   seen.scan.field_of_view = options_.field_of_view;
   if (world_.blackout && contains(*world_.blackout, along_m)) return seen;
 
-  const std::vector<Sighting> visible = visible_trees(core::compose(T_world_robot, options_.T_robot_sensor), along_m);
+  const core::Pose2 T_world_sensor = core::compose(T_world_robot, options_.T_robot_sensor);
+  const std::vector<Sighting> visible = visible_trees(T_world_sensor, along_m);
   for (const Sighting& tree : visible) {
     if (occluded(tree, visible)) continue;
-    if (random_.bernoulli(options_.detection_probability)) add_tree(tree, seen);
+    if (random_.bernoulli(options_.detection_probability)) add(tree, random_, seen);
   }
   const int clutter = random_.poisson(options_.clutter_per_scan);
   for (int i = 0; i < clutter; ++i) add_clutter(seen);
   shuffle(seen);
+  for (const Eigen::Vector2d& point_m : moving_m) add_mover(core::inverse(T_world_sensor), point_m, seen);
   return seen;
+}
+
+/// At a random place among the others.
+void Scanner::add_mover(const core::Pose2& T_sensor_world, const Eigen::Vector2d& point_m, LabelledScan& into) {
+  const Polar seen = polar(T_sensor_world, point_m);
+  if (!contains(options_.field_of_view, seen) || !movers_random_.bernoulli(options_.detection_probability)) return;
+  add({seen.range_m, seen.bearing_rad, core::no_label}, movers_random_, into);
+  const auto at = static_cast<std::size_t>(movers_random_.below(into.labels.size()));
+  std::swap(into.labels[at], into.labels.back());
+  std::swap(into.scan.observations[at], into.scan.observations.back());
 }
 
 std::vector<Scanner::Sighting> Scanner::visible_trees(const core::Pose2& T_world_sensor, double along_m) const {
@@ -51,9 +62,9 @@ std::vector<Scanner::Sighting> Scanner::visible_trees(const core::Pose2& T_world
   for (const std::size_t i : grid_.about(T_world_sensor.position_m(), std::sqrt(beyond_m2))) {
     const Eigen::Vector2d away_m = world_.trees[i].point_m - T_world_sensor.position_m();
     if (away_m.squaredNorm() > beyond_m2 || !contains(world_.trees[i].present, along_m)) continue;
-    const Eigen::Vector2d point_m = core::transform(T_sensor_world, world_.trees[i].point_m);
-    const Sighting sighting{point_m.norm(), std::atan2(point_m.y(), point_m.x()), static_cast<core::Label>(i)};
-    if (contains(options_.field_of_view, sighting.range_m, sighting.bearing_rad)) visible.push_back(sighting);
+    const Polar seen = polar(T_sensor_world, world_.trees[i].point_m);
+    if (!contains(options_.field_of_view, seen)) continue;
+    visible.push_back({seen.range_m, seen.bearing_rad, static_cast<core::Label>(i)});
   }
   std::sort(visible.begin(), visible.end(), [](const Sighting& a, const Sighting& b) {
     return std::pair(a.range_m, a.label) < std::pair(b.range_m, b.label);
@@ -70,9 +81,9 @@ bool Scanner::occluded(const Sighting& sighting, const std::vector<Sighting>& ne
   });
 }
 
-void Scanner::add_tree(const Sighting& truth, LabelledScan& into) {
-  const double range_m = random_.normal(truth.range_m, true_noise_.sigma_range_m);
-  const double bearing_rad = core::wrap_to_pi(random_.normal(truth.bearing_rad, true_noise_.sigma_bearing_rad));
+void Scanner::add(const Sighting& truth, core::RandomStream& random, LabelledScan& into) {
+  const double range_m = random.normal(truth.range_m, true_noise_.sigma_range_m);
+  const double bearing_rad = core::wrap_to_pi(random.normal(truth.bearing_rad, true_noise_.sigma_bearing_rad));
   if (range_m <= 0.0) return;  // a scanner has no negative ranges: a miss
   into.scan.observations.push_back(
       core::make_range_bearing(range_m, bearing_rad, assumed_noise_.sigma_range_m, assumed_noise_.sigma_bearing_rad));

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "helixnav/core/random.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/sim/scenario.hpp"
@@ -18,12 +20,15 @@ struct LabelledScan {
   std::vector<core::Label> labels;
 };
 
-/// Looks at the trees of a world with range and bearing noise, misses, clutter and occlusion.
+/// Looks at the trees of a world with range and bearing noise, misses, clutter and occlusion, and at what moves among them,
+/// whose draws come from a stream of their own: the trees' observations stay as they are without it.
 class Scanner {
  public:
   Scanner(const Scenario& scenario, const World& world, std::uint64_t seed);
 
-  LabelledScan look(const core::Pose2& T_world_robot, double along_m, core::Nanoseconds t_ns);
+  /// `moving_m`: where things are now that move; they are detected like trees and have no label.
+  LabelledScan look(const core::Pose2& T_world_robot, double along_m, core::Nanoseconds t_ns,
+                    const std::vector<Eigen::Vector2d>& moving_m = {});
 
  private:
   struct Sighting {
@@ -34,7 +39,8 @@ class Scanner {
 
   std::vector<Sighting> visible_trees(const core::Pose2& T_world_sensor, double along_m) const;
   bool occluded(const Sighting& sighting, const std::vector<Sighting>& nearer_first) const;
-  void add_tree(const Sighting& truth, LabelledScan& into);
+  void add(const Sighting& truth, core::RandomStream& random, LabelledScan& into);
+  void add_mover(const core::Pose2& T_sensor_world, const Eigen::Vector2d& point_m, LabelledScan& into);
   void add_clutter(LabelledScan& into);
   void shuffle(LabelledScan& scan);
 
@@ -45,6 +51,7 @@ class Scanner {
   NoiseLevels assumed_noise_;
   core::RandomStream random_;
   Looks looks_;
+  core::RandomStream movers_random_;
 };
 
 }  // namespace helixnav::sim

@@ -171,6 +171,36 @@ Scenario kidnapped() {
   return s;
 }
 
+Scenario movers() {
+  Scenario s = town();
+  s.world.tour_m = 2800.0;
+  s.movers.in_view = 2.0;
+  return s;
+}
+
+/// On foot, seeing all around; a stem is missed as often as in the stem maps of real forests, and odometry errs by 2 % along
+/// the way and 0.5° a root of a metre.
+Scenario forest() {
+  Scenario s;
+  s.world.kind = WorldKind::forest;
+  s.world.loop_length_m = {300.0, 450.0};
+  s.world.road_clearance_m = 1.0;
+  s.world.drive_on_m = 100.0;
+  s.world.twin_share = 0.05;
+  s.vehicle.geometry = {1.0, 0.0};
+  s.vehicle.speed_mps = 1.3;
+  s.vehicle.odometry_period_s = 0.5;
+  s.vehicle.samples_per_scan = 4;
+  s.vehicle.lookahead_m = 3.0;
+  s.scanner.T_robot_sensor = {};
+  s.scanner.field_of_view = {0.5, 30.0, -core::pi, core::pi};
+  s.scanner.detection_probability = 0.72;
+  s.true_noise.odometry = {0.05, 0.011};
+  s.true_noise.sigma_bearing_rad = 0.5 * degrees;
+  s.assumed_noise = s.true_noise;
+  return s;
+}
+
 Scenario noise_free() {
   Scenario s;
   s.true_noise = {{0.0, 0.0}, 0.0, 0.0};
@@ -185,7 +215,7 @@ struct Entry {
   Scenario (*make)();
 };
 
-constexpr std::array<Entry, 21> entries{{
+constexpr std::array<Entry, 23> entries{{
     {"large-loop", "closed road of 430-820 m, trees 8 m apart, the last 210-270 m bare; drives on for 180 m",
      large_loop},
     {"large-loop-changed", "large-loop with 30 % of the trees felled and as many planted between the laps",
@@ -216,6 +246,9 @@ constexpr std::array<Entry, 21> entries{{
     {"kidnapped-slip", "town of 2.8 km whose vehicle is displaced by 1.5 m and 5 deg every 700 m", kidnapped_slip},
     {"kidnapped", "tour of 3.6 km on two by two blocks of town, whose vehicle is carried on by 100-400 m every 1.4 km",
      kidnapped},
+    {"movers", "town of 2.8 km with two people or cars in view on the mean that are detected like trees", movers},
+    {"forest", "loop of 300-450 m on foot through a forest of 400 stems a hectare, 5 % of them twins; 80 stems a scan",
+     forest},
     {"noise-free", "loop of two-laps, closed once, with exact sensors that miss nothing, under the usual assumed noise",
      noise_free},
 }};

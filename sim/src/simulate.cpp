@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "carried.hpp"
+#include "movers.hpp"
 #include "odometer.hpp"
 #include "scanner.hpp"
 #include "vehicle.hpp"
@@ -41,12 +42,14 @@ core::Recording simulate_in(const World& world, const Scenario& scenario, std::u
 
   Odometer odometer(scenario, seed);
   Scanner scanner(scenario, world, seed);
-  record(scanner.look({}, 0.0, 0), {}, recording);
+  const std::vector<DriveStep> steps = drive(world.route, world.drive_m, scenario.vehicle);
+  const Movers movers(scenario, world.route, steps, seed);
+  record(scanner.look({}, 0.0, 0, movers.at(0.0)), {}, recording);
   const std::vector<Stretch> carried = draw_carried(scenario.carried, world.drive_m, seed);
   auto next = carried.begin();
   int sample = 0;
   bool is_carried = false;
-  for (const DriveStep& step : drive(world.route, world.drive_m, scenario.vehicle)) {
+  for (const DriveStep& step : steps) {
     ++sample;
     while (next != carried.end() && step.along_m > next->to_m) ++next;
     const core::Nanoseconds t_ns = core::nanoseconds_from_seconds(sample * scenario.vehicle.odometry_period_s);
@@ -55,7 +58,8 @@ core::Recording simulate_in(const World& world, const Scenario& scenario, std::u
     if (was_carried && scenario.carried.announced) recording.events.emplace_back(core::Lost{t_ns});
     recording.events.emplace_back(odometer.measure(step.sample, t_ns));
     if (sample % scenario.vehicle.samples_per_scan == 0) {
-      record(scanner.look(step.T_world_robot, step.along_m, t_ns), step.T_world_robot, recording);
+      const std::vector<Eigen::Vector2d> moving_m = movers.at(core::seconds(t_ns));
+      record(scanner.look(step.T_world_robot, step.along_m, t_ns, moving_m), step.T_world_robot, recording);
     }
   }
   recording.true_slips_ns = odometer.slips();

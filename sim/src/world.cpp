@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Geometry>
+
 #include "grove.hpp"
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/errors.hpp"
@@ -172,6 +174,37 @@ World town_world(const WorldOptions& options, Dice& dice) {
   return world;
 }
 
+/// As dense as said on the mean, where there is room; some of them with a second stem.
+void plant_forest(const WorldOptions& options, double lap_m, const Route& route, Grove& grove, Dice& dice) {
+  Eigen::AlignedBox2d box;
+  for (double along_m = 0.0; along_m < lap_m; along_m += 1.0) box.extend(route.at(along_m));
+  const Eigen::Vector2d rim_m = Eigen::Vector2d::Constant(options.forest_depth_m);
+  const Eigen::Vector2d from_m = box.min() - rim_m;
+  const Eigen::Vector2d size_m = box.max() + rim_m - from_m;
+  const double wanted = options.trees_a_m2 * size_m.prod();
+  for (double planted = 0.0; planted < wanted; planted += 1.0) {
+    const double x_m = from_m.x() + dice.trees.uniform(0.0, size_m.x());
+    const double y_m = from_m.y() + dice.trees.uniform(0.0, size_m.y());
+    const bool is_twin = dice.trees.bernoulli(options.twin_share);
+    const double apart_m = draw(options.twin_m, dice.trees);
+    const double side_rad = dice.trees.uniform(-core::pi, core::pi);
+    if (route.distance_m({x_m, y_m}) > options.forest_depth_m) continue;
+    if (!grove.plant({x_m, y_m}, always) || !is_twin) continue;
+    grove.plant_twin({x_m + apart_m * std::cos(side_rad), y_m + apart_m * std::sin(side_rad)});
+  }
+}
+
+World forest_world(const WorldOptions& options, Dice& dice) {
+  const double lap_m = draw(options.loop_length_m, dice.road);
+  const double drive_m = options.returns * lap_m + options.drive_on_m;
+  World world{route_from_origin(wavy_loop(lap_m, laps_for(drive_m, lap_m), dice.road)), drive_m, {}, {}, {}};
+  for (int i = 1; i <= options.returns; ++i) world.returns_at_m.push_back(i * lap_m);
+  Grove grove(world.route, options.road_clearance_m);
+  plant_forest(options, lap_m, world.route, grove, dice);
+  world.trees = grove.trees();
+  return world;
+}
+
 World build(const WorldOptions& options, Dice& dice) {
   switch (options.kind) {
     case WorldKind::loop:
@@ -186,6 +219,8 @@ World build(const WorldOptions& options, Dice& dice) {
       return circuit_world(options, dice);
     case WorldKind::town:
       return town_world(options, dice);
+    case WorldKind::forest:
+      return forest_world(options, dice);
   }
   throw core::PreconditionError("sim: unknown kind of world");
 }

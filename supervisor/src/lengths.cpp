@@ -87,6 +87,9 @@ constexpr std::array rows{
     Row{"slip.contradiction_m", 1, 20, [](Options& o) -> double& { return o.slip.contradiction_m; }},
     Row{"slip.distinct_m", 1, 60, [](Options& o) -> double& { return o.slip.distinct_m; }},
 
+    // What moves.
+    Row{"moving.speed_mps", 1, 6, [](Options& o) -> double& { return o.moving.speed_mps; }},
+
     // Landmarks seen as a range or a bearing only.
     Row{"delayed.spacing_m", 1, 30, [](Options& o) -> double& { return o.delayed.spacing_m; }},
     Row{"delayed.same_m", 1, 300, [](Options& o) -> double& { return o.delayed.same_m; }},

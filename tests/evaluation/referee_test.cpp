@@ -381,6 +381,17 @@ TEST(Referee, CountsMatureDuplicatesAndTheMapsErrorAfterAlignment) {
   EXPECT_NEAR(score.map_rms_m, 0.0, 1e-9);
 }
 
+TEST(Referee, CountsMatureLandmarksThatNoTreeWasSeenAs) {
+  Script script;
+  core::MapLandmark& landmark = script.more.emplace_back();
+  landmark.id = 900;  // nothing that was observed
+  landmark.state = core::LandmarkState::mature;
+  const RunScore score = judged(script);
+  EXPECT_EQ(score.not_trees, 1);
+  EXPECT_EQ(score.mature_landmarks, trees + 1);
+  EXPECT_EQ(score.duplicates, 0);
+}
+
 TEST(Referee, TellsTheErrorBeforeOldGroundAndTheSpacingOfTheTrees) {
   Script script;
   script.T_map_true = {3.0, 0.0, 0.0};

@@ -30,7 +30,8 @@ double nearest_neighbour_m(const World& world, std::size_t i) {
 
 TEST(World, NoTwoTreesAreNearerThanTwoMetresAndNoneStandsOnTheRoad) {
   for (const std::string& name : scenario_names()) {
-    const WorldOptions options = named_scenario(name).world;
+    WorldOptions options = named_scenario(name).world;
+    options.twin_share = 0.0;
     for (std::uint64_t seed = 0; seed < 3; ++seed) {
       const World world = build_world(options, seed);
       for (std::size_t i = 0; i < world.trees.size(); ++i) {

@@ -101,6 +101,7 @@ Json json_of(const evaluation::RunScore& score) {
           {"trees_seen", score.trees_seen},
           {"mature_landmarks", score.mature_landmarks},
           {"duplicates", score.duplicates},
+          {"not_trees", score.not_trees},
           {"map_rms_m", score.map_rms_m}};
 }
 

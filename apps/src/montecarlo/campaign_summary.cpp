@@ -164,11 +164,19 @@ void put_slips(Json& summary, const std::vector<Json>& rows) {
   summary["slips"] = slips;
 }
 
-void put_map(Json& summary, const std::vector<Json>& closed) {
+void put_map(Json& summary, const std::vector<Json>& rows, const std::vector<Json>& closed) {
   const double duplicates = sum(of_rows(closed, "duplicates"));
   const double trees = sum(of_rows(closed, "trees_seen"));
   summary["duplicates"] = {{"count", duplicates},
                            {"percent_of_trees", trees > 0.0 ? 100.0 * duplicates / trees : no_number}};
+  const auto counts_them = [](const Json& row) {
+    return row.contains("not_trees");
+  };  // rows of earlier versions do not
+  const std::vector<Json> counted = chosen(rows, counts_them);
+  const double not_trees = sum(of_rows(counted, "not_trees"));
+  const double mature = sum(of_rows(counted, "mature_landmarks"));
+  summary["not_trees"] = {{"count", not_trees},
+                          {"percent_of_landmarks", mature > 0.0 ? 100.0 * not_trees / mature : no_number}};
   summary["map_rms_m"] = quantiles(of_rows(closed, "map_rms_m"));
 }
 
@@ -180,7 +188,7 @@ Json summary_of(const std::string& scenario, const std::vector<Json>& rows) {
   if (!rows.empty()) summary["seeds"] = {rows.front().at("seed"), rows.back().at("seed")};
   put_shares(summary, rows);
   put_closures(summary, rows, closed);
-  put_map(summary, closed);
+  put_map(summary, rows, closed);
   put_slips(summary, rows);
   summary["wall"] = {{"run_s", quantiles(of_parts(rows, "wall", "run_s"))},
                      {"search_s", quantiles(of_parts(rows, "wall", "search_s"))},

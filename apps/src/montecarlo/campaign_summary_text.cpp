@@ -80,6 +80,9 @@ std::string counts_text(const Json& summary) {
   std::snprintf(line, sizeof(line), "  %-34s %.0f, %.2f %% of the trees\n", "duplicates",
                 number(summary.at("duplicates"), "count"), number(summary.at("duplicates"), "percent_of_trees"));
   text += line;
+  std::snprintf(line, sizeof(line), "  %-34s %.0f, %.2f %% of the mature landmarks\n", "landmarks that are no tree",
+                number(summary.at("not_trees"), "count"), number(summary.at("not_trees"), "percent_of_landmarks"));
+  text += line;
   const Json& slips = summary.at("slips");
   std::snprintf(line, sizeof(line), "  %-34s %.0f decided, %.0f of them unfounded, %.0f happened\n", "slips",
                 number(slips, "decided"), number(slips, "unfounded"), number(slips, "happened"));

@@ -55,6 +55,12 @@ void add_scenario_settings(CLI::App& command, ScenarioSettings& settings) {
              "Share of detections that are told another class");
   add_number(command, "--sim.sigma_size_m", settings.sigma_size_m, 0.0, 100.0,
              "Noise of the diameters that the detector tells (0.2 to 0.8 m); 0: it tells none");
+  add_number(command, "--sim.movers", settings.movers, 0.0, 100.0,
+             "Things in view on the mean that move and are detected like trees");
+  add_number(command, "--sim.mover_cars", settings.mover_cars, 0.0, 1.0,
+             "Share of cars among the things that move; the others walk");
+  add_number(command, "--sim.trees_a_m2", settings.trees_a_m2, 0.0, 0.25, "Trees of a forest, on the mean");
+  add_number(command, "--sim.twins", settings.twins, 0.0, 1.0, "Share of the trees of a forest with a second stem");
   command
       .add_option("--sim.announce_carried", settings.announce_carried,
                   "Whether an event says that the vehicle was carried (kidnapped)")
@@ -79,6 +85,10 @@ sim::Scenario scenario_of(const std::string& name, const ScenarioSettings& setti
   if (settings.classes) looks.classes = static_cast<int>(std::lround(*settings.classes));
   if (settings.class_error) looks.class_error = *settings.class_error;
   if (settings.sigma_size_m) looks.sigma_size_m = *settings.sigma_size_m;
+  if (settings.movers) scenario.movers.in_view = *settings.movers;
+  if (settings.mover_cars) scenario.movers.car_share = *settings.mover_cars;
+  if (settings.trees_a_m2) scenario.world.trees_a_m2 = *settings.trees_a_m2;
+  if (settings.twins) scenario.world.twin_share = *settings.twins;
   scenario.carried.announced = settings.announce_carried;
   scenario.assumed_noise =
       sim::scaled(scenario.assumed_noise, settings.assumed_odometry_factor, settings.assumed_detector_factor);

@@ -20,6 +20,8 @@ struct ScenarioSettings {
   std::optional<double> tour_m;
   std::optional<double> blocks_a_side;
   std::optional<double> classes, class_error, sigma_size_m;
+  std::optional<double> movers, mover_cars;
+  std::optional<double> trees_a_m2, twins;
   bool announce_carried = false;
   double assumed_odometry_factor = 1.0;
   double assumed_detector_factor = 1.0;

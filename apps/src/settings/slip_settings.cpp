@@ -14,6 +14,14 @@ void add_slip_settings(CLI::App& command, Settings& settings) {
       ->group(settings_group);
   add_number(command, "--slip.nats", slip.nats, 0.0, 1e6,
              "By so much a slip must explain a scan better than no slip does");
+  supervisor::MovingOptions& moving = settings.navigator.moving;
+  command
+      .add_option_function<std::string>(
+          "--moving.enabled", [&moving](const std::string& word) { moving.enabled = word == "true"; },
+          "Drop landmarks whose sightings say that they move; false: nothing moves")
+      ->check(one_of({"true", "false"}))
+      ->default_str("true")
+      ->group(settings_group);
   supervisor::NoiseOptions& noise = settings.navigator.noise;
   command
       .add_option_function<std::string>(

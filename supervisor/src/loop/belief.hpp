@@ -10,6 +10,7 @@
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "loop/coverage_trace.hpp"
 #include "loop/tape.hpp"
+#include "moving/moving_things.hpp"
 #include "slip/slip_record.hpp"
 #include "smoothing/drive_map.hpp"
 #include "window/window.hpp"
@@ -23,7 +24,7 @@ struct LeftOpen {
 };
 
 /// Everything that rolls back: pose and map, which landmarks exist, what ground was covered, which old landmark awaits its
-/// confirmation, how the vehicle slipped, and the number of scans so far.
+/// confirmation, how the vehicle slipped, what may move, and the number of scans so far.
 struct Belief {
   cekf::CompressedEkf filter;
   association::LandmarkLife existence;
@@ -35,6 +36,7 @@ struct Belief {
   /// The drive as an atlas, up to some place before the last checkpoint; null as long as the tape has it all.
   std::shared_ptr<const DriveMap> drive = {};
   Window window = {};  ///< which part of it the filter holds
+  MovingThings moving = {};
 };
 
 /// A belief to come back to, and where the tape was then. A snapshot of O(n_a²) bytes and the landmarks' existence; good as
@@ -48,12 +50,13 @@ struct Checkpoint {
   Tape::Position position;
   SlipRecord slips = {};
   std::vector<LeftOpen> left_open = {};
+  MovingThings moving = {};
 };
 
 inline Checkpoint take_checkpoint(Belief& belief, const Tape& tape) {
   belief.filter.keep_open_phase();
   return {belief.filter.snapshot(), belief.existence, belief.confirmation, belief.step, tape.end(), belief.slips,
-          belief.left_open};
+          belief.left_open,         belief.moving};
 }
 
 /// Test: supervisor/tape_test.cpp.
@@ -65,6 +68,7 @@ inline void roll_back(const Checkpoint& checkpoint, Belief& belief) {
   belief.step = checkpoint.step;
   belief.slips = checkpoint.slips;
   belief.left_open = checkpoint.left_open;
+  belief.moving = checkpoint.moving;
 }
 
 }  // namespace helixnav::supervisor

@@ -124,10 +124,14 @@ StepReport NavigationLoop::step(const Scan& scan) {
   const Confirmation before = belief_.confirmation;
   report.associations = associate_scan(gated, options_, belief_.existence.path_m(), belief_.confirmation);
   const bool slipped = allow_for_slip(scan, before, report);
+  const std::vector<SeenPoint> seen = points_to_watch(scan);
+  const std::vector<LandmarkId> moving = watch_moving(scan, seen, report);
   belief_.slips.see(landmarks_with(Outcome::matched, report.associations).size());
   update(scan, slipped, report);
   augment(scan, report);
+  if (!seen.empty()) belief_.moving.begin(scan.t_ns, seen, options_.moving, report.associations);
   std::vector<LandmarkId> died = update_existence(scan, report);
+  drop_moving(moving, died);
   tape_.append(Tape::Scan{scan, report.associations, report.joint_nis, report.joint_dof, std::move(died), slipped});
   if (searching() != nullptr) search(scan, report);
   report.switched_region = belief_.filter.switch_region_if_due();
@@ -137,6 +141,7 @@ StepReport NavigationLoop::step(const Scan& scan) {
 void NavigationLoop::predict() {
   if (!pending_.motion) return;
   belief_.filter.predict(*pending_.motion);
+  belief_.moving.move(*pending_.motion);
   noise_.moved += pending_.motion->covariance;
   if (Searching* open = searching()) open->search.move(*pending_.motion);
   belief_.existence.drive(pending_.driven_m);
@@ -224,6 +229,16 @@ std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const
   }
   belief_.coverage.pass(belief_.existence.path_m(), T_world_sensor);
   return changes.died;
+}
+
+/// Those that are still there: a search may have been closed since they were seen.
+void NavigationLoop::drop_moving(const std::vector<LandmarkId>& moving, std::vector<LandmarkId>& died) {
+  for (const LandmarkId id : moving) {
+    if (!belief_.existence.contains(id)) continue;
+    belief_.existence.remove(id);
+    if (belief_.filter.contains(id)) belief_.filter.remove(id);
+    died.push_back(id);
+  }
 }
 
 StepReport NavigationLoop::finish(const Scan& scan, StepReport report) {

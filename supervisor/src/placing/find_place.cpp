@@ -149,6 +149,7 @@ bool NavigationLoop::join(const MapApart& apart, const relocalize::Place& place,
               belief_.step,
               belief_.slips,
               belief_.left_open};
+  both.moving = belief_.moving;
   both.coverage.change_frame(decision.T_map_session);
   Mapping mapping;
   std::vector<LandmarkId> recognised;

@@ -97,6 +97,7 @@ struct RunScore {
   int trees_seen = 0;
   int mature_landmarks = 0;
   int duplicates = 0;      ///< mature landmarks on a tree that has another one
+  int not_trees = 0;       ///< mature landmarks of false detections, or of what moves
   double map_rms_m = 0.0;  ///< of the mature landmarks after a rigid alignment; NaN with fewer than two
 };
 

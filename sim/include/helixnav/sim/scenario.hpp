@@ -67,6 +67,15 @@ struct CarryOptions {
   bool announced = false;  ///< by a core::Lost event
 };
 
+/// Things that move and are detected like trees: people walk beside the road, cars drive on it, either way. They come into
+/// view and leave it again.
+struct MoverOptions {
+  double in_view = 0.0;    ///< on the mean over the scans of a drive
+  double car_share = 0.5;  ///< of those that are met
+  Interval walking_mps{0.5, 2.0};
+  Interval driving_mps{4.0, 12.0};
+};
+
 /// Everything that a simulated run depends on, beside its seed. True noise is what happens, assumed noise is what the
 /// events claim (covariance of Odometry, R of Observation).
 struct Scenario {
@@ -80,6 +89,7 @@ struct Scenario {
   OdometryBias bias;
   SlipOptions slip;
   CarryOptions carried;
+  MoverOptions movers;
 };
 
 /// Names that named_scenario knows, in the order in which to show them.

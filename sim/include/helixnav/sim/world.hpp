@@ -24,19 +24,21 @@ enum class WorldKind {
   figure_of_eight,  ///< two lobes with trees, bare around the crossing: both are come back to, the first one twice
   circuit,          ///< small circle among scattered landmarks, driven again and again
   town,             ///< random tour on a grid of streets with trees on both sides, some of them bare
+  forest,           ///< closed wavy road through trees at random places, as far as the eye reaches
 };
 
 /// What a world is drawn from. Not every quantity matters to every kind; the comment names those it matters to.
 struct WorldOptions {
   WorldKind kind = WorldKind::loop;
-  Interval loop_length_m{390.0, 820.0};  ///< once round (loop, open_road, figure_of_eight); circuit uses its middle
+  Interval loop_length_m{390.0,
+                         820.0};  ///< once round (loop, open_road, figure_of_eight, forest); circuit uses its middle
   Interval bare_length_m{110.0, 200.0};  ///< without trees, just before the loop closes (loop, open_road)
   Interval tree_spacing_m{5.0, 15.0};    ///< along each side of the road; the nearest neighbour is then about 8 m away
   Interval tree_offset_m{4.0, 9.0};      ///< from the middle of the road
   double road_clearance_m = 3.0;         ///< no tree nearer to the middle of any part of the route
   double changed_share = 0.0;            ///< of the trees: felled before the return; as many new ones planted
   double drive_on_m = 180.0;             ///< driven after the (last) return; figure_of_eight: to the lobe's end at most
-  int returns = 1;                       ///< how often the loop is closed (loop, circuit)
+  int returns = 1;                       ///< how often the loop is closed (loop, circuit, forest)
   Interval lattice_pitch_m{4.0, 7.0};    ///< orchard
   int circuit_landmarks = 20;            ///< circuit: at 0.5 to 1.5 times its radius from its centre
   double blackout_length_m = 0.0;        ///< loop: stretch of the first lap where the scanner sees nothing
@@ -44,6 +46,10 @@ struct WorldOptions {
   double block_side_m = 120.0;           ///< town: from crossing to crossing
   int blocks_a_side = 4;                 ///< town: the grid has so many blocks in each direction
   double bare_share = 0.15;              ///< town: of the streets, never the first one
+  double trees_a_m2 = 0.04;              ///< forest
+  double forest_depth_m = 35.0;          ///< forest: from the road, to either side
+  double twin_share = 0.0;               ///< forest: of the trees that have a second stem …
+  Interval twin_m{0.3, 0.8};             ///< … so far from the first
 };
 
 /// A tree, seen as a point. It exists while the vehicle is in `present` of its route.
@@ -55,7 +61,8 @@ struct Tree {
 };
 
 /// The truth: the way the vehicle takes from the origin along x, and the trees. No two trees are nearer than 2 m, even
-/// when they never stand at the same time; the index of a tree is its label.
+/// when they never stand at the same time; the second stem of a twin is a tree of its own, nearer to its first only. The
+/// index of a tree is its label.
 struct World {
   Route route;
   double drive_m = 0.0;  ///< how much of the route is driven

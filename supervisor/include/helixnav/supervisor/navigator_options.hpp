@@ -5,6 +5,7 @@
 #include "helixnav/association/landmark_life.hpp"
 #include "helixnav/cekf/filter_options.hpp"
 #include "helixnav/supervisor/delayed_landmarks.hpp"
+#include "helixnav/supervisor/moving_options.hpp"
 #include "helixnav/supervisor/noise_options.hpp"
 #include "helixnav/supervisor/search_options.hpp"
 #include "helixnav/supervisor/slip_options.hpp"
@@ -31,6 +32,7 @@ struct NavigatorOptions {
   SearchOptions search;
   SlipOptions slip;
   NoiseOptions noise;
+  MovingOptions moving;
   MapOptions map;
   DelayedOptions delayed;            ///< of landmarks known by name and seen as a range or a bearing only
   double fix_probability = 0.999;    ///< χ² gate of an absolute fix

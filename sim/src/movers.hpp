@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "helixnav/core/random.hpp"
+#include "helixnav/sim/route.hpp"
+#include "helixnav/sim/scenario.hpp"
+#include "vehicle.hpp"
+
+namespace helixnav::sim {
+
+/// Things that move along the road, each at a speed and a distance from its middle of its own; nothing beyond its ends.
+/// Test: sim/movers_test.cpp.
+class Movers {
+ public:
+  /// Draws as many as are in view on the mean over the scans of `steps`: each is somewhere in view at some time of the drive.
+  Movers(const Scenario& scenario, const Route& road, const std::vector<DriveStep>& steps, std::uint64_t seed);
+
+  /// World frame; a point for each that is on the road then.
+  std::vector<Eigen::Vector2d> at(double t_s) const;
+
+ private:
+  struct Mover {
+    double met_s = 0.0;
+    double met_at_m = 0.0;   ///< along the road
+    double speed_mps = 0.0;  ///< along the road, negative against it
+    double to_left_m = 0.0;  ///< of its middle
+  };
+
+  Mover draw(const MoverOptions& options, const core::FieldOfView& view, const std::vector<DriveStep>& steps,
+             double period_s, core::RandomStream& random) const;
+  bool is_on_road(const Mover& mover, double t_s) const;
+  Eigen::Vector2d place_m(const Mover& mover, double t_s) const;
+  double scans_in_view(const Mover& mover, const Scenario& scenario, const std::vector<DriveStep>& steps) const;
+
+  const Route& road_;
+  std::vector<Mover> movers_;
+};
+
+}  // namespace helixnav::sim

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "helixnav/core/step_report.hpp"
+#include "helixnav/supervisor/moving_options.hpp"
+#include "moving/track.hpp"
+
+namespace helixnav::supervisor {
+
+/// What is known of sensor and world.
+struct SightingRates {
+  double detection_probability = 0.9;
+  double extraneous_per_m2 = 0.0;  ///< observations of nothing mapped, a scan
+  core::FieldOfView sure_view;     ///< within which a landmark is expected to be seen
+  core::Pose2 T_robot_sensor;
+};
+
+/// Which of the things seen lately move. Each landmark that begins is told as a Track until its sightings say that it stands,
+/// or nothing is seen of it any more. By what a scan shows:
+///
+/// - matched to where it stands: ln (N_moving / N_standing), or what a missed mover and an extraneous observation say;
+/// - not where it stands, and an observation that began a landmark where it should be if it moves:
+///   ln (P_D N_moving / (P_missed λ)), with P_missed = 1 − P_D where it stands in view and was seen more than once, else 1:
+///   a false alarm is not missed.
+///
+/// It moves once the sum exceeds the limit. Then its landmarks are dropped, and its observations begin none. A prior that
+/// knows no velocity charges a pair of clutter observations for the distance that it could have explained.
+/// Cost of a scan: tracks × observations; a track lives for some scans. Test: supervisor/moving/moving_things_test.cpp.
+class MovingThings {
+ public:
+  void move(const core::Odometry& motion);
+
+  /// One scan, after association and before it is used: observations of what moves become rejected in `fate`. Returns the
+  /// landmarks to drop. `seen`: the observations as points in the frame of the vehicle.
+  std::vector<core::LandmarkId> watch(core::Nanoseconds t_ns, const std::vector<SeenPoint>& seen,
+                                      const SightingRates& rates, const MovingOptions& options,
+                                      std::vector<core::AssociationReport>& fate);
+
+  /// After the scan began its landmarks: what was begun is told from now on.
+  void begin(core::Nanoseconds t_ns, const std::vector<SeenPoint>& seen, const MovingOptions& options,
+             const std::vector<core::AssociationReport>& fate);
+
+  std::size_t tracks() const { return tracks_.size(); }
+
+ private:
+  std::vector<Track> tracks_;
+  std::vector<int> taken_by_;  ///< [observation] of the last scan: the track that took it as a mover's; −1: none
+};
+
+}  // namespace helixnav::supervisor
