@@ -123,7 +123,7 @@ struct Looks {
 Looks look_at(const core::Appearance& seen, core::LandmarkId id, const Gates& gates,
               const core::MapAppearance* appearance, const Thresholds& by_place, GatedPair& pair) {
   pair.appearance_nats = 0.0;
-  if (appearance == nullptr || !seen.is_told()) return {0.0, by_place};
+  if (appearance == nullptr || !seen.is_given()) return {0.0, by_place};
   const core::AppearanceEvidence evidence = appearance->compare(id, seen);
   pair.appearance_nats = evidence.nats;
   return {evidence.size_nis + evidence.gate, evidence.size_dof == 0 ? by_place : thresholds(gates, pair.dof + 1)};

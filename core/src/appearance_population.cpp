@@ -33,7 +33,7 @@ void AppearancePopulation::count(const Appearance& seen) {
     } else if (classes_.size() < most_classes) {
       classes_.insert(at, {seen.name, 1});
     }
-    ++told_;
+    ++given_;
   }
   if (!(seen.size_m > 0.0)) return;
   ++sizes_;
@@ -45,7 +45,7 @@ void AppearancePopulation::count(const Appearance& seen) {
 double AppearancePopulation::share(const ClassName& name) const {
   const auto at = std::lower_bound(classes_.begin(), classes_.end(), name, is_before);
   const double seen = at != classes_.end() && at->first == name ? static_cast<double>(at->second) : 0.0;
-  return (seen + 1.0) / (static_cast<double>(told_ + classes_.size()) + 2.0);
+  return (seen + 1.0) / (static_cast<double>(given_ + classes_.size()) + 2.0);
 }
 
 double AppearancePopulation::ln_density(double size_m, double variance_m2) const {

@@ -19,13 +19,13 @@ LandmarkAppearance& MapAppearance::entry(LandmarkId id) {
 }
 
 void MapAppearance::see(LandmarkId id, const Appearance& seen) {
-  if (!seen.is_told()) return;
+  if (!seen.is_given()) return;
   LandmarkAppearance& known = entry(id);
   known = population_.updated(known, seen);
 }
 
 void MapAppearance::adopt(LandmarkId id, const LandmarkAppearance& known) {
-  if (!known.is_told()) return;
+  if (!known.is_given()) return;
   entry(id) = known;
   Appearance one;
   one.name = known.votes.front().name;
@@ -55,7 +55,7 @@ LandmarkAppearance MapAppearance::of(LandmarkId id) const {
 }
 
 AppearanceEvidence MapAppearance::compare(LandmarkId id, const Appearance& seen) const {
-  if (!seen.is_told()) return {};
+  if (!seen.is_given()) return {};
   const LandmarkAppearance* known = find(id);
   return known == nullptr ? AppearanceEvidence() : population_.compare(*known, seen);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Going on in the map of an earlier run, inside MRPT: the first drive saves its map, the second begins somewhere on it
-// without a word of where, and is told once that it was carried.
+// without a word of where, and hears once that it was carried.
 #include <iostream>
 
 #include <helixnav/mrpt_adapter/map_builder.hpp>
@@ -54,7 +54,7 @@ int main() {
   say("found again", second, tuesday);
 
   tuesday.carry(50.0);
-  second.setInitialPose(mrpt::poses::CPosePDFGaussian(tuesday.pose(), Robot::told_covariance()));
+  second.setInitialPose(mrpt::poses::CPosePDFGaussian(tuesday.pose(), Robot::start_covariance()));
   drive(second, tuesday, 1);
-  say("told where", second, tuesday);
+  say("given a pose", second, tuesday);
 }

@@ -56,7 +56,7 @@ class Robot {
     return {radius_m * std::sin(angle_rad), radius_m * (1.0 - std::cos(angle_rad)), angle_rad};
   }
 
-  static mrpt::math::CMatrixDouble33 told_covariance() {
+  static mrpt::math::CMatrixDouble33 start_covariance() {
     mrpt::math::CMatrixDouble33 covariance;
     covariance(0, 0) = covariance(1, 1) = 0.04;
     covariance(2, 2) = 1e-3;

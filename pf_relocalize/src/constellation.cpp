@@ -145,7 +145,7 @@ bool counts(const ConstellationScore& rival, const ConstellationScore& winner, c
 /// Then the particle filter, which looks at places alone, may well be where no pair looks alike.
 bool tells_appearance(const Constellation& constellation) {
   return std::any_of(constellation.branch.begin(), constellation.branch.end(),
-                     [](const BranchLandmark& one) { return one.appearance.is_told(); });
+                     [](const BranchLandmark& one) { return one.appearance.is_given(); });
 }
 
 /// Had it one: a winner of none has no ratio that a rival's could be compared with.

@@ -58,8 +58,8 @@ py::array_t<double> sizes_of(const core::Scan& scan, double core::Appearance::*v
   py::array_t<double> sizes(static_cast<py::ssize_t>(scan.observations.size()));
   double* to = sizes.mutable_data();
   for (const core::Observation& one : scan.observations) {
-    const bool told = one.appearance.size_m > 0.0;
-    *to++ = told ? one.appearance.*value : std::numeric_limits<double>::quiet_NaN();
+    const bool given = one.appearance.size_m > 0.0;
+    *to++ = given ? one.appearance.*value : std::numeric_limits<double>::quiet_NaN();
   }
   return sizes;
 }

@@ -155,10 +155,10 @@ void bind_scan(py::module_& module) {
            "classes, "
            "names of at most 23 bytes or None each, one of which is wrong with probability class_error; sizes [m], NaN "
            "where unknown, with standard deviations sigma_sizes. PreconditionError for what no sensor measures.")
-      .def_property_readonly("classes", &classes_of, "'' where none is told.")
+      .def_property_readonly("classes", &classes_of, "'' where none is given.")
       .def_property_readonly(
           "sizes", [](const core::Scan& s) { return sizes_of(s, &core::Appearance::size_m); },
-          "(N,) [m]; NaN where none is told.")
+          "(N,) [m]; NaN where none is given.")
       .def_property_readonly(
           "sigma_sizes", [](const core::Scan& s) { return sizes_of(s, &core::Appearance::sigma_size_m); }, "(N,) [m].")
       .def_property_readonly("z", &z_of, "(N, 2); NaN in the second column of a bearing or range alone.")

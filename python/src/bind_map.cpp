@@ -60,7 +60,7 @@ std::vector<std::string> states_of(const Map& map) {
   return states;
 }
 
-/// The likeliest class; '' where none was told.
+/// The likeliest class; '' where none was given.
 std::vector<std::string> classes_of(const Map& map) {
   std::vector<std::string> names;
   for (const core::MapLandmark& landmark : map.landmarks) {
@@ -69,7 +69,7 @@ std::vector<std::string> classes_of(const Map& map) {
   return names;
 }
 
-/// Mean and standard deviation; NaN where none was told.
+/// Mean and standard deviation; NaN where none was given.
 py::array_t<double> sizes_of(const Map& map) {
   py::array_t<double> sizes({static_cast<py::ssize_t>(map.landmarks.size()), py::ssize_t{2}});
   std::fill_n(sizes.mutable_data(), sizes.size(), std::numeric_limits<double>::quiet_NaN());
@@ -92,8 +92,8 @@ void bind_landmarks(py::module_& module) {
       .def_property_readonly("covariances", &covariances_of, "(N, 2, 2) [m²]")
       .def_property_readonly("observations", &counts_of, "(N,)")
       .def_property_readonly("states", &states_of, "'tentative' or 'mature' each")
-      .def_property_readonly("classes", &classes_of, "The likeliest class of each; '' where none was told")
-      .def_property_readonly("sizes", &sizes_of, "(N, 2), mean and standard deviation [m]; NaN where none was told")
+      .def_property_readonly("classes", &classes_of, "The likeliest class of each; '' where none was given")
+      .def_property_readonly("sizes", &sizes_of, "(N, 2), mean and standard deviation [m]; NaN where none was given")
       .def("__len__", [](const Map& map) { return map.landmarks.size(); });
 }
 

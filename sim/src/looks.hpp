@@ -15,8 +15,8 @@ class Looks {
  public:
   Looks(const LooksOptions& options, std::uint64_t seed) : options_(options), random_(seed, "sim.looks") {}
 
-  core::Appearance told(const Tree& tree);
-  core::Appearance told_of_clutter();  ///< looks like any tree
+  core::Appearance of(const Tree& tree);
+  core::Appearance of_clutter();  ///< looks like any tree
 
  private:
   LooksOptions options_;

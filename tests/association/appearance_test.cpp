@@ -153,9 +153,9 @@ TEST(AppearanceInExistence, GoesWithItsLandmark) {
   life.look(1, looks("red", 0.01));
   life.look(2, looks("red", 0.01));
   life.look(5, looks("blue", 0.01));  // not recorded: counts for the population alone
-  EXPECT_FALSE(life.appearance().of(5).is_told());
+  EXPECT_FALSE(life.appearance().of(5).is_given());
   life.merge(1, 2);
-  EXPECT_FALSE(life.appearance().of(2).is_told());
+  EXPECT_FALSE(life.appearance().of(2).is_given());
   life.remove(1);
   EXPECT_TRUE(life.appearance().is_empty());
 }

@@ -17,7 +17,7 @@ namespace {
 constexpr int class_count = 4;
 const char* const class_names[class_count] = {"oak", "elm", "yew", "fir"};
 
-Appearance told(const std::string& name, double class_error = 0.1) {
+Appearance given(const std::string& name, double class_error = 0.1) {
   Appearance seen;
   seen.name = ClassName(name);
   seen.class_error = class_error;
@@ -35,12 +35,12 @@ Appearance sized(double size_m, double sigma_m) {
 AppearancePopulation large_population() {
   AppearancePopulation population;
   for (int k = 0; k < class_count; ++k) {
-    for (int i = 0; i < 1000 * (k + 1); ++i) population.count(told(class_names[k]));
+    for (int i = 0; i < 1000 * (k + 1); ++i) population.count(given(class_names[k]));
   }
   return population;
 }
 
-/// p(all that was told | each class), times its share, by definition.
+/// p(all that was given | each class), times its share, by definition.
 std::vector<double> enumerated(const AppearancePopulation& population, const std::vector<Appearance>& seen) {
   std::vector<double> weights;
   for (const char* name : class_names) {
@@ -64,7 +64,7 @@ double sum_of(const std::vector<double>& values) {
 std::vector<Appearance> drawn(RandomStream& random, int count) {
   std::vector<Appearance> seen;
   for (int i = 0; i < count; ++i) {
-    seen.push_back(told(class_names[random.below(3)], random.uniform(0.02, 0.4)));  // three of the four: all are held
+    seen.push_back(given(class_names[random.below(3)], random.uniform(0.02, 0.4)));  // three of the four: all are held
   }
   return seen;
 }
@@ -75,7 +75,7 @@ LandmarkAppearance known_from(const AppearancePopulation& population, const std:
   return known;
 }
 
-/// Classes that were never told keep a share, of 1 in 10 000 here.
+/// Classes that were never given keep a share, of 1 in 10 000 here.
 constexpr double never_told = 3e-4;
 
 TEST(MapAppearance, TheEvidenceOfAClassIsThatOfEnumeratingAllClasses) {
@@ -84,7 +84,7 @@ TEST(MapAppearance, TheEvidenceOfAClassIsThatOfEnumeratingAllClasses) {
   for (int t = 0; t < 200; ++t) {
     const std::vector<Appearance> before = drawn(random, 1 + static_cast<int>(random.below(5)));
     const LandmarkAppearance known = known_from(population, before);
-    const Appearance next = told(class_names[random.below(class_count)], random.uniform(0.02, 0.4));
+    const Appearance next = given(class_names[random.below(class_count)], random.uniform(0.02, 0.4));
     std::vector<Appearance> all = before;
     all.push_back(next);
     const double probability = sum_of(enumerated(population, all)) / sum_of(enumerated(population, before));
@@ -101,11 +101,11 @@ TEST(MapAppearance, TheGateIsTheProbabilityOfBeingToldAClassAsUnlikely) {
     const std::vector<Appearance> before = drawn(random, 2);
     const LandmarkAppearance known = known_from(population, before);
     const double error = random.uniform(0.02, 0.4);
-    const Appearance next = told(class_names[random.below(3)], error);
+    const Appearance next = given(class_names[random.below(3)], error);
     const std::vector<double> weights = enumerated(population, before);
     const double total = sum_of(weights);
     double own = 0.0;
-    double likelier = 0.0;  // classes that it is likelier to be of, told rightly
+    double likelier = 0.0;  // classes that it is likelier to be of, given rightly
     for (int k = 0; k < class_count; ++k) {
       if (ClassName(class_names[k]) == next.name) own = weights[static_cast<std::size_t>(k)];
     }
@@ -176,9 +176,9 @@ TEST(MapAppearance, RightSizesAreOutsideTheirGateAsOftenAsTheyShould) {
 
 TEST(MapAppearance, WhatIsNotToldSaysNothing) {
   AppearancePopulation population = large_population();
-  LandmarkAppearance oak = population.updated({}, told("oak"));
+  LandmarkAppearance oak = population.updated({}, given("oak"));
   EXPECT_EQ(population.compare(oak, Appearance()).nats, 0.0);
-  EXPECT_EQ(population.compare(LandmarkAppearance(), told("oak")).nats, 0.0);
+  EXPECT_EQ(population.compare(LandmarkAppearance(), given("oak")).nats, 0.0);
   EXPECT_EQ(population.compare(oak, sized(0.5, 0.1)).size_dof, 0);
   MapAppearance map;
   map.see(3, Appearance());
@@ -188,20 +188,20 @@ TEST(MapAppearance, WhatIsNotToldSaysNothing) {
 
 TEST(MapAppearance, MergedLandmarksKnowWhatBothWereTold) {
   MapAppearance map;
-  for (int i = 0; i < 100; ++i) map.count(told(class_names[i % class_count]));
+  for (int i = 0; i < 100; ++i) map.count(given(class_names[i % class_count]));
   for (const core::LandmarkId id : {1, 2, 9}) {
-    map.see(id, told("oak"));
+    map.see(id, given("oak"));
     map.see(id, sized(0.4, 0.02));
   }
-  map.see(9, told("oak"));
+  map.see(9, given("oak"));
   map.see(9, sized(0.4, 0.02));
   map.merge(1, 2);
-  EXPECT_FALSE(map.of(2).is_told());
+  EXPECT_FALSE(map.of(2).is_given());
   EXPECT_DOUBLE_EQ(map.of(1).votes.front().nats, map.of(9).votes.front().nats);
   EXPECT_DOUBLE_EQ(map.of(1).size_variance_m2, map.of(9).size_variance_m2);
   map.remove(1);
-  EXPECT_FALSE(map.of(1).is_told());
-  EXPECT_TRUE(map.of(9).is_told());
+  EXPECT_FALSE(map.of(1).is_given());
+  EXPECT_TRUE(map.of(9).is_given());
 }
 
 TEST(MapAppearance, OfMoreClassesThanItHoldsTheLeastSupportedIsForgotten) {

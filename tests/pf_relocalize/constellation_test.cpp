@@ -182,7 +182,7 @@ TEST(Constellation, LeavesRivalsWithFewMatchesOut) {
 }
 
 /// A row of landmarks of two classes in turn, seen often enough on both drives.
-Constellation row_of_two_classes(bool told) {
+Constellation row_of_two_classes(bool given) {
   Constellation row;
   for (int i = 0; i < 200; ++i) {
     core::Appearance one;
@@ -193,7 +193,7 @@ Constellation row_of_two_classes(bool told) {
     core::Appearance seen;
     seen.name = core::ClassName(i % 2 == 0 ? "red" : "blue");
     core::LandmarkAppearance known;
-    for (int k = 0; k < 3 && told; ++k) known = row.population.updated(known, seen);
+    for (int k = 0; k < 3 && given; ++k) known = row.population.updated(known, seen);
     row.branch.push_back({i, {5.0 * i, 0.0}, 5, known});
     row.old_landmarks.push_back({100 + i, {{5.0 * i, 0.0}, 1e-4 * Eigen::Matrix2d::Identity()}, known});
   }

@@ -36,7 +36,7 @@ void check_size(const std::string& file, const EarlierSession& session) {
 void tell_appearances(const std::vector<core::MapLandmark>& table, core::JointMap& map) {
   std::map<core::LandmarkId, core::LandmarkAppearance> known;
   for (const core::MapLandmark& landmark : table) {
-    if (landmark.appearance.is_told()) known.emplace(landmark.id, landmark.appearance);
+    if (landmark.appearance.is_given()) known.emplace(landmark.id, landmark.appearance);
   }
   if (known.empty()) return;
   for (const core::LandmarkId id : map.joint.ids) {

@@ -50,11 +50,11 @@ void add_scenario_settings(CLI::App& command, ScenarioSettings& settings) {
   add_number(command, "--sim.slip_least_deg", settings.slip_least_deg, 0.0, 180.0, "Least turn by a slip");
   add_number(command, "--sim.slip_most_deg", settings.slip_most_deg, 0.0, 180.0, "Most turn by a slip");
   add_number(command, "--sim.classes", settings.classes, 0.0, 1000.0,
-             "Classes that the detector tells of trees, rounded to a whole number; 0: none");
+             "Classes of trees that the detector names, rounded to a whole number; 0: none");
   add_number(command, "--sim.class_error", settings.class_error, 0.0, 0.5,
-             "Share of detections that are told another class");
+             "Share of detections that name another class");
   add_number(command, "--sim.sigma_size_m", settings.sigma_size_m, 0.0, 100.0,
-             "Noise of the diameters that the detector tells (0.2 to 0.8 m); 0: it tells none");
+             "Noise of the diameters that the detector measures (0.2 to 0.8 m); 0: it measures none");
   add_number(command, "--sim.movers", settings.movers, 0.0, 100.0,
              "Things in view on the mean that move and are detected like trees");
   add_number(command, "--sim.mover_cars", settings.mover_cars, 0.0, 1.0,

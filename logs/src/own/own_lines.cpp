@@ -134,7 +134,7 @@ const core::Scan* first_scan(const core::Recording& recording) {
   return nullptr;
 }
 
-/// Of the first class that is told: a sensor has one.
+/// Of the first class that is given: a sensor has one.
 std::optional<double> class_error_of(const core::Recording& recording) {
   for (const core::Event& event : recording.events) {
     const auto* scan = std::get_if<core::Scan>(&event);

@@ -12,7 +12,7 @@ const core::Appearance& appearance_of(const core::Scan& scan, const core::Associ
 
 bool tells_appearance(const core::Scan& scan) {
   return std::any_of(scan.observations.begin(), scan.observations.end(),
-                     [](const core::Observation& one) { return one.appearance.is_told(); });
+                     [](const core::Observation& one) { return one.appearance.is_given(); });
 }
 
 }  // namespace

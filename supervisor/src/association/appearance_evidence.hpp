@@ -10,8 +10,8 @@
 
 namespace helixnav::supervisor {
 
-/// [matched landmark, as landmarks_with(matched) lists them] what the class and size that were told add to the evidence of a
-/// hit, before they are taken in. Empty where nothing is told.
+/// [matched landmark, as landmarks_with(matched) lists them] what the class and size that were given add to the evidence of a
+/// hit, before they are taken in. Empty where nothing is given.
 std::vector<double> appearance_nats(const core::MapAppearance& appearance, const core::Scan& scan,
                                     const std::vector<core::AssociationReport>& associations);
 

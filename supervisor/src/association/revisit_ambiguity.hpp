@@ -17,7 +17,7 @@ std::vector<core::LandmarkId> old_landmarks(const association::LandmarkLife& lif
 struct RevisitAmbiguity {
   core::LandmarkId landmark = core::no_landmark;
   /// η = neighbours + extraneous density × area of the gate, each weighted by how much less likely it is to look so, where
-  /// class and size are told.
+  /// class and size are given.
   double expected_confusers = 0.0;
   int neighbours = 0;  ///< other old landmarks in its 95 % gate, or that the observation may be as well
   /// π·5.99·(√|S| − √|R|) in the units of the observation: what the pose's uncertainty adds to the gate. Clutter in the

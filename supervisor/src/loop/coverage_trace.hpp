@@ -30,7 +30,7 @@ class CoverageTrace {
   void thin_before(double path_m, const std::function<bool(double)>& needed);
   std::size_t size() const { return points_.size(); }
 
-  /// Everything so far was told in another frame.
+  /// Everything so far was in another frame.
   void change_frame(const core::Pose2& T_new_old);
 
   /// Sensor poses passed at path lengths in [from_m, to_m).

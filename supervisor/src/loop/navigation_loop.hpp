@@ -220,7 +220,7 @@ class NavigationLoop {
   Pending pending_;
   Undo undo_;
   ScanRhythm rhythm_;
-  std::optional<double> pause_m_;  ///< where on the drive a pause was of which no scan has told yet
+  std::optional<double> pause_m_;  ///< where on the drive a pause was that no scan has decided yet
   std::uint64_t searches_ = 0;
   WholeMapQuestions questions_;
   WholeMapQuestions questions_before_;  ///< this call, for recover()

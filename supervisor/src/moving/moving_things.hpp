@@ -17,7 +17,7 @@ struct SightingRates {
   core::Pose2 T_robot_sensor;
 };
 
-/// Which of the things seen lately move. Each landmark that begins is told as a Track until its sightings say that it stands,
+/// Which of the things seen lately move. Each landmark that begins is followed as a Track until its sightings say that it stands,
 /// or nothing is seen of it any more. By what a scan shows:
 ///
 /// - matched to where it stands: ln (N_moving / N_standing), or what a missed mover and an extraneous observation say;
@@ -38,7 +38,7 @@ class MovingThings {
                                       const SightingRates& rates, const MovingOptions& options,
                                       std::vector<core::AssociationReport>& fate);
 
-  /// After the scan began its landmarks: what was begun is told from now on.
+  /// After the scan began its landmarks: what was begun is followed from now on.
   void begin(core::Nanoseconds t_ns, const std::vector<SeenPoint>& seen, const MovingOptions& options,
              const std::vector<core::AssociationReport>& fate);
 

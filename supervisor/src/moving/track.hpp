@@ -12,7 +12,7 @@
 
 namespace helixnav::supervisor {
 
-/// Something that was seen lately, told twice: that it moves at a constant velocity, and that it stands, so that what was seen
+/// Something that was seen lately, under two hypotheses: it moves at a constant velocity, or it stands, and what was seen
 /// elsewhere is another thing. Frame of the vehicle, which drifts with nothing. Test: supervisor/moving/track_test.cpp.
 class Track {
  public:

@@ -19,8 +19,8 @@ core::JointMap joint_map(core::JointGaussian joint, core::LandmarkId next_name,
     map.states.push_back(landmark.state);
     map.observations.push_back(landmark.observations);
   }
-  const auto is_told = [](const core::MapLandmark& landmark) { return landmark.appearance.is_told(); };
-  if (std::any_of(landmarks.begin(), landmarks.end(), is_told)) {
+  const auto is_given = [](const core::MapLandmark& landmark) { return landmark.appearance.is_given(); };
+  if (std::any_of(landmarks.begin(), landmarks.end(), is_given)) {
     for (const core::MapLandmark& landmark : landmarks) map.appearances.push_back(landmark.appearance);
   }
   map.joint = std::move(joint);

@@ -35,12 +35,12 @@ TwinWorld pairs_along_a_road() {
   return world;
 }
 
-enum class Told { nothing, classes, sizes };
+enum class Given { nothing, classes, sizes };
 
-core::Appearance told_of(const TwinWorld& world, std::size_t k, Told told, core::RandomStream& random) {
+core::Appearance appearance_of(const TwinWorld& world, std::size_t k, Given given, core::RandomStream& random) {
   core::Appearance seen;
-  if (told == Told::classes) seen.name = core::ClassName(world.names[k]);
-  if (told == Told::sizes) {
+  if (given == Given::classes) seen.name = core::ClassName(world.names[k]);
+  if (given == Given::sizes) {
     seen.sigma_size_m = 0.03;
     seen.size_m = random.normal(world.sizes_m[k], seen.sigma_size_m);
   }
@@ -54,7 +54,7 @@ struct TwinScore {
 };
 
 /// Drives along the road; noise of 0.15 m on each coordinate, half the distance of twins.
-TwinScore drive_past(const TwinWorld& world, Told told, std::uint64_t seed) {
+TwinScore drive_past(const TwinWorld& world, Given given, std::uint64_t seed) {
   constexpr double sigma_m = 0.15;
   core::RandomStream random(seed, "twins");
   Navigator navigator(core::PoseGaussian{});
@@ -76,7 +76,7 @@ TwinScore drive_past(const TwinWorld& world, Told told, std::uint64_t seed) {
       const Eigen::Vector2d noise_m(random.normal(0.0, sigma_m), random.normal(0.0, sigma_m));
       scan.observations.push_back(
           core::make_cartesian(away_m + noise_m, sigma_m * sigma_m * Eigen::Matrix2d::Identity()));
-      scan.observations.back().appearance = told_of(world, k, told, random);
+      scan.observations.back().appearance = appearance_of(world, k, given, random);
       origin.push_back(k);
     }
     const core::StepReport report = navigator.observe(scan);
@@ -95,9 +95,9 @@ TwinScore drive_past(const TwinWorld& world, Told told, std::uint64_t seed) {
 TEST(Twins, AreToldApartByClassOrSizeAndNotByPlace) {
   const TwinWorld world = pairs_along_a_road();
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    const TwinScore by_place = drive_past(world, Told::nothing, seed);
-    const TwinScore by_class = drive_past(world, Told::classes, seed);
-    const TwinScore by_size = drive_past(world, Told::sizes, seed);
+    const TwinScore by_place = drive_past(world, Given::nothing, seed);
+    const TwinScore by_class = drive_past(world, Given::classes, seed);
+    const TwinScore by_size = drive_past(world, Given::sizes, seed);
     EXPECT_GT(by_place.confused, by_place.matched / 20) << seed;
     EXPECT_LT(by_class.confused, by_class.matched / 200) << seed;
     EXPECT_LT(by_size.confused, by_size.matched / 100) << seed;
@@ -107,10 +107,10 @@ TEST(Twins, AreToldApartByClassOrSizeAndNotByPlace) {
 
 TEST(Twins, KnowTheirClassesAndSizesAtTheEnd) {
   const TwinWorld world = pairs_along_a_road();
-  for (const Told told : {Told::classes, Told::sizes}) {
+  for (const Given given : {Given::classes, Given::sizes}) {
     int right = 0;
     int known = 0;
-    for (const core::MapLandmark& landmark : drive_past(world, told, 4).map) {
+    for (const core::MapLandmark& landmark : drive_past(world, given, 4).map) {
       if (landmark.state != core::LandmarkState::mature) continue;
       std::size_t nearest = 0;
       for (std::size_t k = 1; k < world.points_m.size(); ++k) {
@@ -118,8 +118,8 @@ TEST(Twins, KnowTheirClassesAndSizesAtTheEnd) {
         if (off_m(k) < off_m(nearest)) nearest = k;
       }
       ++known;
-      right += told == Told::classes ? landmark.appearance.votes.front().name == core::ClassName(world.names[nearest])
-                                     : std::abs(landmark.appearance.size_m - world.sizes_m[nearest]) < 0.1;
+      right += given == Given::classes ? landmark.appearance.votes.front().name == core::ClassName(world.names[nearest])
+                                       : std::abs(landmark.appearance.size_m - world.sizes_m[nearest]) < 0.1;
     }
     EXPECT_GT(known, 20);
     EXPECT_GE(right, known - 2);

@@ -55,7 +55,7 @@ TEST(Track, DensitiesIntegrateToOne) {
   EXPECT_NEAR(standing, 1.0, 2e-3);
 }
 
-/// Told in the frame of a vehicle that drives and turns exactly as it says, densities are what they are for one at rest.
+/// In the frame of a vehicle that drives and turns exactly as it says, densities are what they are for one at rest.
 TEST(Track, DoesNotDependOnHowTheVehicleMoves) {
   core::Odometry motion = core::no_motion(at_s(1.0));
   motion.T_before_after = core::Pose2(1.5, -0.4, 0.7);

@@ -93,7 +93,7 @@ class LandmarkLife {
   /// A landmark of an earlier drive. PreconditionError for an id that is recorded.
   void adopt(const LandmarkRecord& record);
 
-  /// Everything so far was told in another frame: places of the sensor are moved, evidence stays.
+  /// Everything so far was in another frame: places of the sensor are moved, evidence stays.
   void change_frame(const core::Pose2& T_new_old);
 
   /// A landmark that the filter lost for another reason.

@@ -29,26 +29,26 @@ class ClassName {
 
 /// What a detector says of an object besides where it is. All of it may be missing.
 struct Appearance {
-  ClassName name;             ///< of the class; empty: not told
-  double class_error = 0.01;  ///< probability that the class told is not the object's, in (0, 1)
-  double size_m = 0.0;        ///< diameter, width; 0: not told
+  ClassName name;             ///< of the class; empty: not given
+  double class_error = 0.01;  ///< probability that the class given is not the object's, in (0, 1)
+  double size_m = 0.0;        ///< diameter, width; 0: not given
   double sigma_size_m = 0.0;
 
-  bool is_told() const { return !name.empty() || size_m > 0.0; }
+  bool is_given() const { return !name.empty() || size_m > 0.0; }
 };
 
 /// What is known of a landmark's appearance from all its observations. ln of the odds that speak for each of a few classes
-/// against one that was never told, and a Gaussian for its size.
+/// against one that was never given, and a Gaussian for its size.
 struct LandmarkAppearance {
   struct Vote {
     ClassName name;     ///< empty: none
-    double nats = 0.0;  ///< Σ ln(p(told | is it) / p(told | is not))
+    double nats = 0.0;  ///< Σ ln(p(given | is it) / p(given | is not))
   };
   std::array<Vote, 3> votes;  ///< by falling nats; of more classes the least supported are forgotten
   double size_m = 0.0;        ///< 0: unknown
   double size_variance_m2 = 0.0;
 
-  bool is_told() const { return !votes.front().name.empty() || size_m > 0.0; }
+  bool is_given() const { return !votes.front().name.empty() || size_m > 0.0; }
   void add_vote(const ClassName& name, double nats);
   /// The size measured once more, independently.
   void add_size(double measured_m, double variance_m2);

@@ -13,19 +13,19 @@ namespace helixnav::core {
 /// What class and size say about a pair of an observation and a landmark, or of two landmarks.
 struct AppearanceEvidence {
   double nats = 0.0;  ///< ln p(appearance | the same object) − ln p(appearance | any object)
-  double gate = 0.0;  ///< −2 ln of the probability that the same object is told a class as unlikely: adds to a NIS
+  double gate = 0.0;  ///< −2 ln of the probability that the same object is given a class as unlikely: adds to a NIS
   double size_nis = 0.0;  ///< squared distance of the sizes, …
   int size_dof = 0;       ///< … and 1 where both are known
 };
 
-/// How often which class and size is told: what an object of no known landmark looks like, and therefore what it says that two
-/// look alike. A class k is told with p(c | k) = (1 − ε) 1[c = k] + ε q_c, q the shares of the population and ε the
+/// How often which class and size is given: what an object of no known landmark looks like, and therefore what it says that two
+/// look alike. A class k is given with p(c | k) = (1 − ε) 1[c = k] + ε q_c, q the shares of the population and ε the
 /// observation's class_error, so that ln p(c | landmark) − ln q_c is bounded below by ln ε. Sizes are Gaussian.
 /// Test: core/map_appearance_test.cpp (enumeration of all classes, batch of all sizes).
 class AppearancePopulation {
  public:
   void count(const Appearance& seen);
-  /// Share of a class among those told, in (0, 1); above 0 for one that was never told.
+  /// Share of a class among those given, in (0, 1); above 0 for one that was never given.
   double share(const ClassName& name) const;
 
   /// `known`, after one more observation.
@@ -49,14 +49,14 @@ class AppearancePopulation {
   static constexpr std::size_t most_classes = 256;  ///< those beyond share what is left
 
   std::vector<std::pair<ClassName, std::size_t>> classes_;  ///< ascending by name
-  std::size_t told_ = 0;
+  std::size_t given_ = 0;
   std::size_t sizes_ = 0;
   double size_mean_m_ = 0.0;
   double size_squares_m2_ = 0.0;  ///< Σ of squared distances from the mean
 };
 
 /// Class and size of the landmarks of a map, and the population that they come from. Nothing is held for landmarks of which
-/// neither was told. Test: core/map_appearance_test.cpp.
+/// neither was given. Test: core/map_appearance_test.cpp.
 class MapAppearance {
  public:
   bool is_empty() const { return landmarks_.empty(); }
@@ -71,7 +71,7 @@ class MapAppearance {
   void merge(LandmarkId kept, LandmarkId removed);
   void remove(LandmarkId id);
 
-  /// Nothing told where it is unknown.
+  /// Nothing given where it is unknown.
   LandmarkAppearance of(LandmarkId id) const;
 
   /// Zeros where either says nothing. O(log landmarks).

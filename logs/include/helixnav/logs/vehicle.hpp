@@ -60,7 +60,7 @@ struct SensorModel {
   double noise_scale = 1.0;             ///< times every standard deviation, of the log or of these keys
   std::optional<double> detection_probability;
   std::optional<double> clutter_per_scan;
-  std::optional<double> class_error;   ///< probability that a class is told wrongly
+  std::optional<double> class_error;   ///< probability that a class is named wrongly
   std::optional<double> sigma_size_m;  ///< of a size
 };
 

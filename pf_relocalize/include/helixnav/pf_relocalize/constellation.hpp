@@ -78,7 +78,7 @@ struct ConstellationScore {
   std::vector<ConstellationPair> pairs;
   /// What class and size of the pairs say, in pairs: Σ nats / g, g = −ln of the probability that chance puts an old landmark
   /// within a pair's tolerance. M pairs that fix a pose of three numbers are worth (M − 3/2)·g nats, so that with class and
-  /// size fewer say as much. 0 where nothing is told.
+  /// size fewer say as much. 0 where nothing is given.
   double appearance_matches = 0.0;
 };
 
@@ -97,7 +97,7 @@ struct ConstellationVerdict {
   ConstellationScore rival;  ///< best ratio among those that count; matched = 0 when none does
   int rivals_tried = 0;
   /// rival.ratio / winner.ratio, to be kept below limits.rival_ratio. Of a winner without a pair 0; where classes or sizes are
-  /// told, as if it had one pair.
+  /// given, as if it had one pair.
   double rival_share = 0.0;
 };
 

@@ -23,9 +23,9 @@ struct VehicleOptions {
 
 /// What the scanner tells of a tree besides where it is. Trees are of any class, and of any diameter between two, alike.
 struct LooksOptions {
-  int classes = 0;            ///< 0: no class is told
-  double class_error = 0.0;   ///< share of detections that are told another class, any of them alike
-  double sigma_size_m = 0.0;  ///< of the diameter; 0: no size is told
+  int classes = 0;            ///< 0: no classes
+  double class_error = 0.0;   ///< share of detections that name another class, any of them alike
+  double sigma_size_m = 0.0;  ///< of the diameter; 0: no sizes
   Interval diameter_m{0.2, 0.8};
 };
 
