@@ -12,7 +12,7 @@ namespace helixnav::runs {
 
 std::string map_text(const std::vector<core::MapLandmark>& map) {
   const bool tells_appearance = std::any_of(
-      map.begin(), map.end(), [](const core::MapLandmark& landmark) { return landmark.appearance.is_told(); });
+      map.begin(), map.end(), [](const core::MapLandmark& landmark) { return landmark.appearance.is_given(); });
   std::string text(tells_appearance ? map_table_with_appearance.header : map_table.header);
   text += '\n';
   for (const core::MapLandmark& landmark : map) {
