@@ -31,7 +31,7 @@ std::vector<DecisionRow> all_rows() {
   for (const char* verdict : {"accepted", "ambiguous", "refused", "not-here"}) {
     rows.push_back(row_of(decision_of({"whole-map", verdict, {}})));
   }
-  for (const char* work : {"association", "window", "drive", "closing"}) {
+  for (const char* work : {"association", "window", "drive"}) {
     rows.push_back(row_of(decision_of({"postponed", work, {}})));
   }
   return rows;
