@@ -261,7 +261,7 @@ TEST_F(Rawlogs, FeedAStreamThatAnswersEachScan) {
   std::size_t scans = 0;
   for (std::size_t at = 0; (at = fed.out.find("{\"scan\"", at)) != std::string::npos; ++at) ++scans;
   EXPECT_EQ(scans, 21U) << fed.out << fed.err;
-  EXPECT_NE(fed.out.find("\"scans\": 21"), std::string::npos) << fed.out;
+  EXPECT_NE(fed.out.find("\"scans\":21"), std::string::npos) << fed.out;
 }
 
 }  // namespace
