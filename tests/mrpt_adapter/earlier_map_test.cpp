@@ -18,6 +18,7 @@
 #include "input_error.hpp"
 #include "quiet_builder.hpp"
 #include "temporary_folder.hpp"
+#include "wide_circuit.hpp"
 
 namespace helixnav::mrpt_adapter {
 namespace {
@@ -25,29 +26,8 @@ namespace {
 using testing::as_mrpt_keeps;
 using testing::QuietBuilder;
 
-/// A circuit of 200 m with 25 landmarks, which the sensor sees all around up to 30 m.
-sim::Scenario wide_street() {
-  sim::Scenario s = sim::named_scenario("circuit");
-  s.world.loop_length_m = {200.0, 200.0};
-  s.world.drive_on_m = 200.0;
-  s.world.returns = 1;
-  s.world.circuit_landmarks = 25;
-  s.vehicle.geometry = {2.0, 0.0};
-  s.vehicle.speed_mps = 2.0;
-  s.vehicle.odometry_period_s = 0.25;
-  s.vehicle.samples_per_scan = 2;
-  s.vehicle.lookahead_m = 4.0;
-  s.scanner.field_of_view = {0.5, 30.0, -core::pi, core::pi};
-  s.scanner.detection_probability = 0.95;
-  s.true_noise.odometry = {0.1, 0.02};
-  s.true_noise.sigma_range_m = 0.1;
-  s.true_noise.sigma_bearing_rad = 1.0 * core::pi / 180.0;
-  s.assumed_noise = s.true_noise;
-  return s;
-}
-
 core::Recording drive_of_day(std::uint64_t seed) {
-  const sim::Scenario scenario = wide_street();
+  const sim::Scenario scenario = sim::wide_circuit();
   return sim::simulate_in(sim::build_world(scenario.world, 1), scenario, seed);
 }
 
