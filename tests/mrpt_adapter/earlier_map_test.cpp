@@ -190,7 +190,9 @@ TEST_F(EarlierMap, RelocalisingIsTheNavigatorsLosing) {
   QuietBuilder builder;
   const Poses poses = built_from(builder, today_, 0, [&](Scans k) {
     if (k == when) builder.relocalize();
-    if (k == when) EXPECT_FALSE(builder.isPlaceKnown());
+    if (k == when) {
+      EXPECT_FALSE(builder.isPlaceKnown());
+    }
   });
   supervisor::Navigator navigator(core::PoseGaussian{});
   expect_same_poses(poses, navigated_from(navigator, today_, 0, [&](Scans k) {

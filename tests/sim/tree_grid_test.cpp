@@ -30,7 +30,9 @@ TEST(TreeGrid, FindsEveryTreeWithinTheRadiusOnceAndFewBeyond) {
     EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
     for (std::size_t i = 0; i < trees.size(); ++i) {
       const bool is_near = (trees[i].point_m - point_m).norm() <= 30.0;
-      if (is_near) EXPECT_TRUE(std::binary_search(found.begin(), found.end(), i)) << "tree " << i;
+      if (is_near) {
+        EXPECT_TRUE(std::binary_search(found.begin(), found.end(), i)) << "tree " << i;
+      }
     }
   }
   EXPECT_LT(looked_at, trees.size() * places / 10);
