@@ -87,7 +87,9 @@ void Scanner::add(const Sighting& truth, core::RandomStream& random, LabelledSca
   if (range_m <= 0.0) return;  // a scanner has no negative ranges: a miss
   into.scan.observations.push_back(
       core::make_range_bearing(range_m, bearing_rad, assumed_noise_.sigma_range_m, assumed_noise_.sigma_bearing_rad));
-  into.scan.observations.back().appearance = looks_.of(world_.trees[static_cast<std::size_t>(truth.label)]);
+  into.scan.observations.back().appearance = truth.label == core::no_label
+                                                 ? looks_.of_clutter()
+                                                 : looks_.of(world_.trees[static_cast<std::size_t>(truth.label)]);
   into.labels.push_back(truth.label);
 }
 

@@ -60,6 +60,15 @@ TEST(Movers, LeaveWhatIsSeenOfTheTreesAndTheOdometryAsTheyWere) {
   }
 }
 
+TEST(Movers, AreNamedAsAClassLikeTrees) {
+  Scenario scenario = walk_and_drive(2.0);
+  scenario.scanner.looks.classes = 4;
+  const core::Recording run = simulate(scenario, 4);
+  for (const core::Scan& scan : events_of<core::Scan>(run)) {
+    for (const core::Observation& seen : scan.observations) ASSERT_FALSE(seen.appearance.name.empty());
+  }
+}
+
 TEST(Movers, WalkAndDriveAtSpeedsOfTheirsOnEitherSideOfAStraightRoad) {
   Scenario scenario = walk_and_drive(1.0);
   scenario.movers.car_share = 0.0;
