@@ -43,6 +43,13 @@ void numbers(SlipDecision& d, Visit&& visit) {
 }
 
 template <class Visit>
+void numbers(MovingDecision& d, Visit&& visit) {
+  visit("landmarks", d.landmarks);
+  visit("nats", d.nats);
+  visit("speed_mps", d.speed_mps);
+}
+
+template <class Visit>
 void numbers(AttemptStarted& d, Visit&& visit) {
   visit("attempt", d.attempt);
   visit("reference_landmarks", d.reference_landmarks);
@@ -207,6 +214,7 @@ struct KindAndVerdict {
 KindAndVerdict words_of(const TriggerDecision&) { return {"trigger", "started"}; }
 KindAndVerdict words_of(const RollbackDecision&) { return {"trigger", "rolled-back"}; }
 KindAndVerdict words_of(const SlipDecision&) { return {"slip", "accepted"}; }
+KindAndVerdict words_of(const MovingDecision&) { return {"moving", "dropped"}; }
 KindAndVerdict words_of(const AttemptStarted&) { return {"search", "started"}; }
 KindAndVerdict words_of(const AttemptEnded& d) { return {"search", reason_words[static_cast<int>(d.reason)]}; }
 KindAndVerdict words_of(const ReferenceUnusable&) { return {"search", "reference-unusable"}; }
@@ -314,6 +322,7 @@ Decision decision_of(const DecisionRow& row) {
   const bool rolled_back = row.verdict == "rolled-back" || row.verdict == "rewound";  // the latter in earlier versions
   if (row.kind == "trigger" && rolled_back) return fill(RollbackDecision{}, row);
   if (row.kind == "slip" && accepted) return fill(SlipDecision{}, row);
+  if (row.kind == "moving" && row.verdict == "dropped") return fill(MovingDecision{}, row);
   if (row.kind == "search") return search_decision(row);
   if (row.kind == "carried") return carried_decision(row);
   if (row.kind == "placed") return decision_with<PlacedDecision>(placed_words, row);

@@ -36,6 +36,12 @@ std::string sentence(const core::SlipDecision& d) {
          " better than a slip to anywhere else. The pose was widened by " + short_number(d.sigma_m) + " m.";
 }
 
+std::string sentence(const core::MovingDecision& d) {
+  return "Something that moves, at " + short_number(d.speed_mps) +
+         " m/s, had been mapped: " + counted(d.landmarks, "landmark") +
+         " dropped. That it moves explains its sightings " + short_number(d.nats) + " nats better than that it stands.";
+}
+
 std::string attempt_number(int attempt) { return "Attempt " + std::to_string(attempt); }
 
 std::string sentence(const core::AttemptStarted& d) {

@@ -10,9 +10,9 @@ namespace {
 std::vector<DecisionRow> all_rows() {
   std::vector<DecisionRow> rows;
   for (const Decision& decision :
-       {Decision(TriggerDecision{}), Decision(RollbackDecision{}), Decision(SlipDecision{}), Decision(AttemptStarted{}),
-        Decision(ReferenceUnusable{}), Decision(UndecidedDecision{}), Decision(NewGroundDecision{}),
-        Decision(CarriedDecision{})}) {
+       {Decision(TriggerDecision{}), Decision(RollbackDecision{}), Decision(SlipDecision{}), Decision(MovingDecision{}),
+        Decision(AttemptStarted{}), Decision(ReferenceUnusable{}), Decision(UndecidedDecision{}),
+        Decision(NewGroundDecision{}), Decision(CarriedDecision{})}) {
     rows.push_back(row_of(decision));
   }
   rows.push_back(row_of(decision_of({"carried", "found-out", {}})));

@@ -58,6 +58,16 @@ TEST(Opening, SaysHowOftenTheVehicleSlipped) {
   EXPECT_NE(said().find("The vehicle slipped twice, by 0.75 m at most, and its"), std::string::npos) << said();
 }
 
+TEST(Opening, SaysHowOftenSomethingThatMovesHadBeenMapped) {
+  runs::Run run = drifting_run(0.0);
+  const auto said = [&run] { return all_of(opening_data(run, evaluation::evaluate(run))["sentences"]); };
+  EXPECT_EQ(said().find("moves"), std::string::npos);
+  run.steps[20].decisions = {core::MovingDecision{2, 13.0, 1.5}};
+  EXPECT_NE(said().find("Something that moves had been mapped once: 2 landmarks were dropped."), std::string::npos);
+  run.steps[40].decisions = {core::MovingDecision{1, 13.0, 1.5}};
+  EXPECT_NE(said().find("mapped twice: 3 landmarks were dropped."), std::string::npos) << said();
+}
+
 TEST(Opening, SaysHowOftenTheVehicleWasCarriedAndFoundItsPlaceAgain) {
   runs::Run run = drifting_run(0.0);
   const auto said = [&run] { return all_of(opening_data(run, evaluation::evaluate(run))["sentences"]); };

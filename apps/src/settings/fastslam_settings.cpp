@@ -129,7 +129,8 @@ void refuse_with_fastslam(const CLI::Option& option) {
   if (section == "landmarks") refuse(option, "--filter fastslam has --fastslam.mature_looks and .look_probability");
   if (key == "gps.use" && is_changed(option))
     refuse(option, "--filter fastslam does not use GPS; it can be compared with it only (truth)");
-  const bool of_navigator = section == "search" || section == "slip" || section == "noise" || section == "filter";
+  const bool of_navigator =
+      section == "search" || section == "slip" || section == "moving" || section == "noise" || section == "filter";
   if (of_navigator && key != "filter.method") {
     refuse(option, "is of the compressed EKF and has no part in --filter fastslam");
   }

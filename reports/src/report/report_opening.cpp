@@ -84,6 +84,22 @@ std::string slips_sentence(const runs::Run& run) {
          (slips == 1 ? "" : " at most") + ", and its odometry did not show it: the landmarks did.";
 }
 
+/// Empty when nothing that moves was mapped.
+std::string movers_sentence(const runs::Run& run) {
+  int movers = 0, landmarks = 0;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::Decision& decision : step.decisions) {
+      const auto* moving = std::get_if<core::MovingDecision>(&decision);
+      if (moving == nullptr) continue;
+      ++movers;
+      landmarks += moving->landmarks;
+    }
+  }
+  if (movers == 0) return {};
+  return "Something that moves had been mapped " + times(movers) + ": " + counted(landmarks, "landmark") +
+         (landmarks == 1 ? " was" : " were") + " dropped.";
+}
+
 /// How often the vehicle was carried, and whether its place was found again, or that of the session on an earlier map; else empty.
 std::string places_sentence(const runs::Run& run) {
   int carried = 0, found_again = 0;
@@ -153,10 +169,9 @@ Json opening_data(const runs::Run& run, const evaluation::Evaluation& evaluation
   if (run.steps.empty()) return json;
   if (!(run.smoothed && run.smoothed->alone)) {
     json["sentences"] = {drive_sentence(run), closings_sentence(run)};
-    const std::string slips = slips_sentence(run);
-    if (!slips.empty()) json["sentences"].push_back(slips);
-    const std::string places = places_sentence(run);
-    if (!places.empty()) json["sentences"].push_back(places);
+    for (const std::string& said : {slips_sentence(run), movers_sentence(run), places_sentence(run)}) {
+      if (!said.empty()) json["sentences"].push_back(said);
+    }
     for (const std::string& warning : warnings_of(run, evaluation)) json["warnings"].push_back(warning);
     for (const std::string& warning : warnings_of_place(run)) json["warnings"].push_back(warning);
   }

@@ -125,13 +125,13 @@ StepReport NavigationLoop::step(const Scan& scan) {
   report.associations = associate_scan(gated, options_, belief_.existence.path_m(), belief_.confirmation);
   const bool slipped = allow_for_slip(scan, before, report);
   const std::vector<SeenPoint> seen = points_to_watch(scan);
-  const std::vector<LandmarkId> moving = watch_moving(scan, seen, report);
+  const std::vector<Mover> movers = watch_moving(scan, seen, report);
   belief_.slips.see(landmarks_with(Outcome::matched, report.associations).size());
   update(scan, slipped, report);
   augment(scan, report);
   if (!seen.empty()) belief_.moving.begin(scan.t_ns, seen, options_.moving, report.associations);
   std::vector<LandmarkId> died = update_existence(scan, report);
-  drop_moving(moving, died);
+  drop_movers(movers, report, died);
   tape_.append(Tape::Scan{scan, report.associations, report.joint_nis, report.joint_dof, std::move(died), slipped});
   if (searching() != nullptr) search(scan, report);
   report.switched_region = belief_.filter.switch_region_if_due();
@@ -231,13 +231,18 @@ std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const
   return changes.died;
 }
 
-/// Those that are still there: a search may have been closed since they were seen.
-void NavigationLoop::drop_moving(const std::vector<LandmarkId>& moving, std::vector<LandmarkId>& died) {
-  for (const LandmarkId id : moving) {
-    if (!belief_.existence.contains(id)) continue;
-    belief_.existence.remove(id);
-    if (belief_.filter.contains(id)) belief_.filter.remove(id);
-    died.push_back(id);
+/// Of their landmarks those that are still there: a search may have been closed since they were seen.
+void NavigationLoop::drop_movers(const std::vector<Mover>& movers, StepReport& report, std::vector<LandmarkId>& died) {
+  for (const Mover& mover : movers) {
+    core::MovingDecision decision{0, mover.nats, mover.speed_mps};
+    for (const LandmarkId id : mover.landmarks) {
+      if (!belief_.existence.contains(id)) continue;
+      belief_.existence.remove(id);
+      if (belief_.filter.contains(id)) belief_.filter.remove(id);
+      died.push_back(id);
+      ++decision.landmarks;
+    }
+    if (decision.landmarks > 0) report.decisions.emplace_back(decision);
   }
 }
 

@@ -98,7 +98,7 @@ class NavigationLoop {
   void update(const core::Scan& scan, bool slipped, core::StepReport& report);
   void augment(const core::Scan& scan, core::StepReport& report);
   std::vector<core::LandmarkId> update_existence(const core::Scan& scan, const core::StepReport& report);
-  void drop_moving(const std::vector<core::LandmarkId>& moving, std::vector<core::LandmarkId>& died);
+  void drop_movers(const std::vector<Mover>& movers, core::StepReport& report, std::vector<core::LandmarkId>& died);
   core::StepReport finish(const core::Scan& scan, core::StepReport report);
   void report_late(core::StepReport& report);
   void trust(Checkpoint checkpoint);
@@ -117,8 +117,7 @@ class NavigationLoop {
 
   // moving/watch_moving.cpp
   std::vector<SeenPoint> points_to_watch(const core::Scan& scan) const;
-  std::vector<core::LandmarkId> watch_moving(const core::Scan& scan, const std::vector<SeenPoint>& seen,
-                                             core::StepReport& report);
+  std::vector<Mover> watch_moving(const core::Scan& scan, const std::vector<SeenPoint>& seen, core::StepReport& report);
 
   // noise/learn_noise.cpp
   void learn_noise(const core::Scan& scan);

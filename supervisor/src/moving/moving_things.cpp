@@ -77,14 +77,14 @@ void MovingThings::move(const core::Odometry& motion) {
   for (Track& track : tracks_) track.change_frame(uncertain);
 }
 
-std::vector<LandmarkId> MovingThings::watch(core::Nanoseconds t_ns, const std::vector<SeenPoint>& seen,
-                                            const SightingRates& rates, const MovingOptions& options,
-                                            std::vector<AssociationReport>& fate) {
+std::vector<Mover> MovingThings::watch(core::Nanoseconds t_ns, const std::vector<SeenPoint>& seen,
+                                       const SightingRates& rates, const MovingOptions& options,
+                                       std::vector<AssociationReport>& fate) {
   // The surest first: an observation is of one thing only.
   std::stable_sort(tracks_.begin(), tracks_.end(), [](const Track& a, const Track& b) { return a.nats() > b.nats(); });
   taken_by_.assign(fate.size(), nobody);
   const double missed = 1.0 - rates.detection_probability;
-  std::vector<LandmarkId> dropped;
+  std::vector<Mover> found;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     Track& track = tracks_[i];
     track.predict(t_ns);
@@ -109,9 +109,10 @@ std::vector<LandmarkId> MovingThings::watch(core::Nanoseconds t_ns, const std::v
     AssociationReport& report = fate_of(*one, fate);
     report.outcome = Outcome::rejected;
     report.landmark = core::no_landmark;
-    for (const LandmarkId id : track.take_landmarks()) dropped.push_back(id);
+    std::vector<LandmarkId> landmarks = track.take_landmarks();
+    if (!landmarks.empty()) found.push_back({std::move(landmarks), track.nats(), track.speed_mps()});
   }
-  return dropped;
+  return found;
 }
 
 void MovingThings::begin(core::Nanoseconds t_ns, const std::vector<SeenPoint>& seen, const MovingOptions& options,

@@ -17,6 +17,13 @@ struct SightingRates {
   core::Pose2 T_robot_sensor;
 };
 
+/// What was found to move by a scan.
+struct Mover {
+  std::vector<core::LandmarkId> landmarks;  ///< that it had begun, oldest first
+  double nats = 0.0;                        ///< "it moves" against "it stands"
+  double speed_mps = 0.0;                   ///< over the ground
+};
+
 /// Which of the things seen lately move. Each landmark that begins is followed as a Track until its sightings say that it stands,
 /// or nothing is seen of it any more. By what a scan shows:
 ///
@@ -32,11 +39,11 @@ class MovingThings {
  public:
   void move(const core::Odometry& motion);
 
-  /// One scan, after association and before it is used: observations of what moves become rejected in `fate`. Returns the
-  /// landmarks to drop. `seen`: the observations as points in the frame of the vehicle.
-  std::vector<core::LandmarkId> watch(core::Nanoseconds t_ns, const std::vector<SeenPoint>& seen,
-                                      const SightingRates& rates, const MovingOptions& options,
-                                      std::vector<core::AssociationReport>& fate);
+  /// One scan, after association and before it is used: observations of what moves become rejected in `fate`. Returns
+  /// those found by this scan, whose landmarks are to be dropped. `seen`: the observations as points in the frame of the
+  /// vehicle.
+  std::vector<Mover> watch(core::Nanoseconds t_ns, const std::vector<SeenPoint>& seen, const SightingRates& rates,
+                           const MovingOptions& options, std::vector<core::AssociationReport>& fate);
 
   /// After the scan began its landmarks: what was begun is followed from now on.
   void begin(core::Nanoseconds t_ns, const std::vector<SeenPoint>& seen, const MovingOptions& options,

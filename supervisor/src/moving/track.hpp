@@ -42,7 +42,8 @@ class Track {
   const std::vector<core::LandmarkId>& landmarks() const { return landmarks_; }
 
   const Eigen::Vector2d& stands_m() const { return stands_m_; }
-  double nats() const { return nats_; }  ///< log-likelihood ratio of "moves" against "stands"
+  double nats() const { return nats_; }                     ///< log-likelihood ratio of "moves" against "stands"
+  double speed_mps() const { return x_.tail<2>().norm(); }  ///< if it moves
   int misses_in_a_row() const { return misses_in_a_row_; }
   /// The last of its landmarks was seen more than once: a false alarm is not missed.
   bool was_seen_again() const { return was_seen_again_; }

@@ -10,8 +10,8 @@
 namespace helixnav::supervisor {
 
 /// Before the scan is used. Landmarks that were found to move are dropped at its end.
-std::vector<core::LandmarkId> NavigationLoop::watch_moving(const core::Scan& scan, const std::vector<SeenPoint>& seen,
-                                                           core::StepReport& report) {
+std::vector<Mover> NavigationLoop::watch_moving(const core::Scan& scan, const std::vector<SeenPoint>& seen,
+                                                core::StepReport& report) {
   if (seen.empty()) return {};
   const double per_scan = std::max(options_.extraneous_per_scan, belief_.existence.born_per_scan());
   SightingRates rates{options_.association.detection_probability, per_scan / view_area_m2(scan.field_of_view),

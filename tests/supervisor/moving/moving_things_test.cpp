@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <variant>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "helixnav/core/angle.hpp"
+#include "helixnav/core/event_loop.hpp"
 #include "helixnav/core/random.hpp"
 #include "judged_drive.hpp"
 
@@ -42,7 +45,12 @@ class Watch {
       report.landmark = landmarks[i];
     }
     const core::Nanoseconds t_ns = core::nanoseconds_from_seconds(scan_s * scans_++);
-    const std::vector<LandmarkId> dropped = things_.watch(t_ns, seen, rates_, options_, fate);
+    std::vector<LandmarkId> dropped;
+    for (Mover& mover : things_.watch(t_ns, seen, rates_, options_, fate)) {
+      EXPECT_GE(mover.nats, options_.nats);
+      dropped.insert(dropped.end(), mover.landmarks.begin(), mover.landmarks.end());
+      speed_mps = mover.speed_mps;
+    }
     for (std::size_t i = 0; i < fate.size(); ++i) {
       if (fate[i].outcome == Outcome::augmented) fate[i].landmark = next_++;
       landmarks[i] = fate[i].landmark;
@@ -54,7 +62,8 @@ class Watch {
   }
 
   std::size_t tracks() const { return things_.tracks(); }
-  long rejected = 0;  ///< observations of the last scan
+  long rejected = 0;       ///< observations of the last scan
+  double speed_mps = 0.0;  ///< of what was found last
 
  private:
   MovingThings things_;
@@ -80,6 +89,7 @@ TEST(MovingThings, FindACarByItsFifthSightingAndBeginNoLandmarkForIt) {
       if (landmark.front() != core::no_landmark) begun.push_back(landmark.front());
     }
     EXPECT_EQ(dropped, begun) << seed;
+    EXPECT_NEAR(watch.speed_mps, 8.0, 2.0) << seed;  // 4 m in half a second, known to 0.15 m at each end
     EXPECT_LE(begun.size(), 4u) << seed;
     EXPECT_EQ(watch.rejected, 1) << seed;
   }
@@ -134,6 +144,27 @@ TEST(MovingThings, MakeNoMoverOfClutter) {
     dropped += watch.scan(points_m, landmarks).empty() ? 0 : 1;
   }
   EXPECT_LE(dropped, 2u);
+}
+
+/// So that a user can see what became of a landmark.
+TEST(MovingDrive, DecidesWhatIsDropped) {
+  sim::Scenario scenario = sim::named_scenario("movers");
+  scenario.world.tour_m = 600.0;
+  const core::Recording drive = sim::simulate(scenario, 11);
+  Navigator navigator(drive.start, NavigatorOptions());
+  core::EventLoop loop(drive.events, navigator);
+  int decided = 0;
+  while (const std::optional<core::StepReport> step = loop.next()) {
+    for (const core::Decision& decision : step->decisions) {
+      const auto* moving = std::get_if<core::MovingDecision>(&decision);
+      if (moving == nullptr) continue;
+      ++decided;
+      EXPECT_GE(moving->landmarks, 1);
+      EXPECT_GE(moving->nats, MovingOptions().nats);
+      EXPECT_LT(moving->speed_mps, 4.0 * MovingOptions().speed_mps);
+    }
+  }
+  EXPECT_GE(decided, 5);  // two are in view at a time
 }
 
 TEST(MovingDrive, LeavesFewLandmarksThatAreNoTreesAndMergesNoneWrongly) {

@@ -46,6 +46,13 @@ struct SlipDecision {
   double displaced = 0.0;  ///< median displacement of the pairs by the spacing of the landmarks
 };
 
+/// Something that moves had been taken for landmarks: they were dropped (supervisor/moving_things).
+struct MovingDecision {
+  int landmarks = 0;       ///< dropped
+  double nats = 0.0;       ///< log-likelihood ratio of "it moves" against "it stands"
+  double speed_mps = 0.0;  ///< over the ground, when it was found out
+};
+
 /// An attempt of a search began: particles drawn on helices around old landmarks.
 struct AttemptStarted {
   int attempt = 0;
@@ -229,10 +236,10 @@ struct OtherDecision {
 };
 
 /// A decision of the navigator that is worth a sentence, with the numbers that decided it.
-using Decision =
-    std::variant<TriggerDecision, RollbackDecision, SlipDecision, AttemptStarted, AttemptEnded, ReferenceUnusable,
-                 VerificationDecision, ClosureDecision, UndecidedDecision, NewGroundDecision, SmoothingDecision,
-                 FixDecision, CarriedDecision, PlacedDecision, WholeMapDecision, PostponedDecision, OtherDecision>;
+using Decision = std::variant<TriggerDecision, RollbackDecision, SlipDecision, MovingDecision, AttemptStarted,
+                              AttemptEnded, ReferenceUnusable, VerificationDecision, ClosureDecision, UndecidedDecision,
+                              NewGroundDecision, SmoothingDecision, FixDecision, CarriedDecision, PlacedDecision,
+                              WholeMapDecision, PostponedDecision, OtherDecision>;
 
 /// True for what ends a search: a closing accepted or refused, new ground, or a search given up.
 inline bool is_closure(const Decision& decision) {
