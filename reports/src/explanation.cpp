@@ -2,6 +2,7 @@
 #include "helixnav/reports/explanation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <variant>
 #include <vector>
@@ -132,6 +133,37 @@ std::string places_of(const std::vector<Decided>& decided) {
          '\n';
 }
 
+/// Decisions of one kind, that need no search: the first few, and how many there are.
+template <class Kind>
+std::string all_of_kind(const std::vector<Decided>& decided, const char* heading) {
+  constexpr int most = 5;
+  int count = 0;
+  std::string text;
+  for (const Decided& one : decided) {
+    if (std::holds_alternative<Kind>(*one.decision) && count++ < most) text += line_of(one);
+  }
+  if (count == 0) return {};
+  const std::string more = count > most ? "  And " + std::to_string(count - most) + " more in decisions.csv.\n" : "";
+  return '\n' + std::string(heading) + ", " + std::to_string(count) + ":\n" + text + more;
+}
+
+/// What became of all that was observed.
+std::string fates_line(const runs::Run& run) {
+  std::array<std::int64_t, 4> count{};  // [outcome]
+  for (const core::StepReport& step : run.steps) {
+    for (const core::AssociationReport& a : step.associations) ++count.at(static_cast<std::size_t>(a.outcome));
+  }
+  const auto of = [&](core::Outcome outcome) { return std::to_string(count.at(static_cast<std::size_t>(outcome))); };
+  return "Observations: " + of(core::Outcome::matched) + " matched, " + of(core::Outcome::augmented) +
+         " began landmarks, " + of(core::Outcome::ambiguous) + " ambiguous and left out, " +
+         of(core::Outcome::rejected) + " rejected.\n";
+}
+
+bool is_of_search(const Decided& decided) {
+  return is_closure(decided) || is_trigger(decided) ||
+         std::holds_alternative<core::WholeMapDecision>(*decided.decision);
+}
+
 /// Said of every run, so that nobody need ask whether it was looked at.
 std::string numerics_line(const runs::Run& run) {
   const core::NumericalHealth numerics = numerics_of(run);
@@ -160,11 +192,9 @@ std::string explain_run(const runs::Run& run) {
                      std::to_string(count_of(closures, "refused")) + " refused, " +
                      std::to_string(count_of(closures, "new-ground")) + " on new ground, " +
                      std::to_string(count_of(closures, "undecided")) + " left undecided.\n";
-  text += places_of(decided);
-  const bool nothing_else = std::all_of(decided.begin(), decided.end(), is_placing);
-  if (nothing_else) {
-    return text + "No return was ambiguous enough for a search: every scan was associated at once.\n" +
-           numerics_line(run);
+  text += fates_line(run) + places_of(decided);
+  if (std::none_of(decided.begin(), decided.end(), is_of_search)) {
+    text += "No return was ambiguous enough for a search: every scan was associated at once.\n";
   }
   for (std::size_t i = 0; i < closures.size(); ++i) {
     text += "\nClosure " + std::to_string(i + 1) + ", " + when(*closures[i].step) + ". " + found_by(closures[i]) +
@@ -173,6 +203,8 @@ std::string explain_run(const runs::Run& run) {
   if (!run.steps.empty() && run.steps.back().mode == core::Mode::searching) {
     text += "\nAt the end of the run a search was still open.\n";
   }
+  text += all_of_kind<core::SlipDecision>(decided, "Slips that the odometry did not show");
+  text += all_of_kind<core::MovingDecision>(decided, "What moves");
   text += numerics_line(run);
   if (!closures.empty()) text += "\nDetails of one: helixnav explain " + run.path + " --closure 1\n";
   return text;
