@@ -121,6 +121,7 @@ RunScore Referee::score(const std::vector<MapLandmark>& map) const {
 }
 
 bool Referee::Book::is_carried(const core::Recording& recording) {
+  if (!recording.true_carries_ns.empty()) return true;
   return std::any_of(recording.events.begin(), recording.events.end(),
                      [](const core::Event& event) { return std::holds_alternative<core::Lost>(event); });
 }

@@ -47,7 +47,7 @@ struct Referee::Book {
   int wrong_so_far = 0;                   ///< wrong old matches since the present return, while nothing triggered
   bool on_old_ground = false;             ///< in the present scan
   std::set<core::LandmarkId> recognised;  ///< old landmarks matched in the present scan
-  bool judges_at_once;                    ///< a vehicle that is said to be carried leaves the map of that time
+  bool judges_at_once;                    ///< a vehicle that is carried leaves the map of that time
   bool is_apart = false;                  ///< it was carried, and how its map lies to the one before is unknown
   std::size_t steps = 0;
   double last_slip_m = -std::numeric_limits<double>::infinity();  ///< driven until then

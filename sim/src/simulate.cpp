@@ -55,6 +55,7 @@ core::Recording simulate_in(const World& world, const Scenario& scenario, std::u
     const core::Nanoseconds t_ns = core::nanoseconds_from_seconds(sample * scenario.vehicle.odometry_period_s);
     const bool was_carried = std::exchange(is_carried, next != carried.end() && step.along_m > next->from_m);
     if (is_carried) continue;
+    if (was_carried) recording.true_carries_ns.push_back(t_ns);
     if (was_carried && scenario.carried.announced) recording.events.emplace_back(core::Lost{t_ns});
     recording.events.emplace_back(odometer.measure(step.sample, t_ns));
     if (sample % scenario.vehicle.samples_per_scan == 0) {

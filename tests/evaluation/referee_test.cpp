@@ -68,6 +68,7 @@ struct Script {
   core::Pose2 end_error;                ///< of the last pose, in its stead when it is not the identity
   core::Pose2 T_map_true;               ///< the whole map lies wrong by this
   std::vector<core::MapLandmark> more;  ///< in the map
+  double carried_at_m = 1e9;            ///< from there on the map is another one, with nothing in it
 };
 
 class Run {
@@ -75,6 +76,7 @@ class Run {
   explicit Run(const Script& script) : script_(script), recording_(circle_drive(script.length_m)) {}
 
   RunScore judged() {
+    if (script_.carried_at_m < script_.length_m) recording_.true_carries_ns = {0};
     Referee referee(recording_, script_.returns_at_m);
     const auto map_now = [this] { return map(); };
     for (std::size_t k = 0; k < recording_.labels.size(); ++k) referee.watch(report(k), map_now);
@@ -103,6 +105,10 @@ class Run {
       report.associations.push_back(association(static_cast<int>(j), recording_.labels[k][j], at_m));
     }
     if (at_m == script_.close_at_m) close(report);
+    if (at_m == script_.carried_at_m) {
+      known_.clear();
+      report.decisions.emplace_back(core::CarriedDecision{});
+    }
     return report;
   }
 
@@ -261,6 +267,16 @@ TEST(Referee, CallsLateWhatIsLostOnOldGroundAfterTheClosing) {
   script.close_at_m = 480.0;
   script.end_error = {2.1, 0.0, 0.0};  // at 490 m
   EXPECT_TRUE(judged(script).diverged_after_closure);
+}
+
+/// The map of then, which lies wrong by 5 m as a whole, is gone when the drive ends.
+TEST(Referee, JudgesAVehicleThatIsCarriedAwayOnTheMapOfThen) {
+  Script script;
+  script.T_map_true = {4.0, -3.0, 0.0};
+  script.carried_at_m = 484.0;
+  const RunScore score = judged(script);
+  EXPECT_EQ(score.verdict, RunVerdict::closed);
+  EXPECT_NEAR(score.end_on_old_ground.relative.position_m, 0.0, 1e-9);
 }
 
 TEST(Referee, CallsAnyClosingFalseWhereNothingReturns) {

@@ -55,6 +55,8 @@ struct Recording {
   std::vector<SharedObservation> shared_observations;  ///< `labels` holds the first label of each
   std::vector<TruePose> true_poses;
   std::vector<TrueLandmark> true_landmarks;
+  std::vector<Nanoseconds>
+      true_carries_ns;  ///< of the first measurement after each time that it was carried, ascending (simulator)
   std::vector<Nanoseconds> true_slips_ns;  ///< ends of the increments that a slip made wrong, ascending (simulator)
   std::vector<TruePosition> true_positions;
   /// Observations of no mapped landmark in a scan, clutter and new ones together, as known of the sensor; 0:
