@@ -105,6 +105,11 @@ void look_for_returns(const cekf::CompressedEkf& filter, const association::Land
                                options.search);
 }
 
+void leave_returns_unused(GatedScan& gated) {
+  gated.place.loose.clear();
+  for (const RevisitAmbiguity& met : gated.returns) gated.place.loose.push_back(met.landmark);
+}
+
 std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, const NavigatorOptions& options,
                                                     double path_m, Confirmation& confirmation) {
   std::vector<core::AssociationReport> reports = association_reports(gated.assignment);

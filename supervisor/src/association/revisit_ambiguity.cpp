@@ -120,7 +120,7 @@ std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
                                               const core::MapAppearance& appearance) {
   std::vector<RevisitAmbiguity> returns;
   if (old.empty() || !scan.field_of_view.reach()) return returns;  // a sensor of no known view
-  std::vector<core::LandmarkId> others;  // looked up when the first old landmark is gated
+  std::vector<core::LandmarkId> others;                            // looked up when the first old landmark is gated
   for (const association::GatedPair& pair : problem.pairs) {
     const core::LandmarkId id = problem.ids[static_cast<std::size_t>(pair.candidate)];
     if (pair.dof != 2 || !is_in_sorted(old, id)) continue;
