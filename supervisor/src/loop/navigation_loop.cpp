@@ -64,7 +64,7 @@ StepReport NavigationLoop::observe(const Scan& scan) {
   const StillThere there = paused_m ? weigh_pause(scan, *paused_m) : StillThere{};
   const double driven_m = pending_.driven_m;
   const bool is_carried = there.is_elsewhere(limits);
-  StepReport report = is_carried ? observe_elsewhere(scan, there) : observe_here(scan);
+  StepReport report = is_carried ? observe_elsewhere(scan, there) : observe_somewhere(scan);
   rhythm_.note(scan.t_ns, driven_m);
   pause_m_ = is_carried || there.is_here(limits) ? std::nullopt : paused_m;
   return report;
