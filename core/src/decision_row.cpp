@@ -141,7 +141,11 @@ void numbers(CarriedDecision& d, Visit&& visit) {
   visit("dropped", d.dropped);
   visit("apart", d.apart);
   visit("driven_m", d.driven_m);
-  if (!d.is_found_out) return;
+  if (d.cause == CarriedDecision::Cause::broken_off) {
+    visit("pose_sigma_m", d.pose_sigma_m);
+    visit("heading_sigma_deg", d.heading_sigma_deg);
+  }
+  if (d.cause != CarriedDecision::Cause::found_out) return;
   visit("missing", d.missing);
   visit("seen", d.seen);
   visit("unknown", d.unknown);
@@ -191,6 +195,7 @@ void numbers(PostponedDecision& d, Visit&& visit) {
   visit("limit", d.limit);
 }
 
+constexpr const char* carried_words[] = {"told", "found-out", "broken-off"};
 constexpr const char* postponed_words[] = {"association", "window", "drive"};
 constexpr const char* whole_map_words[] = {"accepted", "ambiguous", "refused", "not-here"};
 constexpr const char* placed_words[] = {"sought", "accepted", "ambiguous", "refused", "not-here"};
@@ -226,7 +231,7 @@ KindAndVerdict words_of(const UndecidedDecision&) { return {"closure", "undecide
 KindAndVerdict words_of(const NewGroundDecision&) { return {"closure", "new-ground"}; }
 KindAndVerdict words_of(const SmoothingDecision& d) { return {"smoothing", word_of(d.accepted)}; }
 KindAndVerdict words_of(const FixDecision& d) { return {"fix", word_of(d.accepted)}; }
-KindAndVerdict words_of(const CarriedDecision& d) { return {"carried", d.is_found_out ? "found-out" : "told"}; }
+KindAndVerdict words_of(const CarriedDecision& d) { return {"carried", carried_words[static_cast<int>(d.cause)]}; }
 KindAndVerdict words_of(const PlacedDecision& d) { return {"placed", placed_words[static_cast<int>(d.verdict)]}; }
 
 KindAndVerdict words_of(const WholeMapDecision& d) {
@@ -275,8 +280,9 @@ Decision search_decision(const DecisionRow& row) {
 
 Decision carried_decision(const DecisionRow& row) {
   CarriedDecision decision;
-  decision.is_found_out = row.verdict == "found-out";
-  if (!decision.is_found_out && row.verdict != "told") return OtherDecision{row.kind, row.verdict, row.numbers};
+  const int cause = index_in(carried_words, row.verdict);
+  if (cause < 0) return OtherDecision{row.kind, row.verdict, row.numbers};
+  decision.cause = static_cast<CarriedDecision::Cause>(cause);
   return fill(decision, row);
 }
 

@@ -159,7 +159,12 @@ std::string sentence(const core::FixDecision& d) {
 }
 
 std::string why_carried(const core::CarriedDecision& d) {
-  if (!d.is_found_out) return "The vehicle was carried (event lost).";
+  using Cause = core::CarriedDecision::Cause;
+  if (d.cause == Cause::told) return "The vehicle was carried (event lost).";
+  if (d.cause == Cause::broken_off) {
+    return "The arithmetic could not go on with a pose uncertain by " + short_number(d.pose_sigma_m) + " m and " +
+           short_number(d.heading_sigma_deg) + "°.";
+  }
   return "The vehicle was carried during a pause: after it " + std::to_string(d.missing) + " of " +
          counted(d.missing + d.seen, "landmark") + " that had been in view " + (d.missing == 1 ? "was" : "were") +
          " missing, and " + counted(d.unknown, "observation") +
@@ -172,9 +177,8 @@ std::string sentence(const core::CarriedDecision& d) {
   const std::string kept = d.landmarks > 0 ? ": " + counted(d.landmarks, "landmark") + " of it " +
                                                  (d.landmarks == 1 ? "is" : "are") + " kept as a map of its own"
                                            : ", with too few landmarks to be found again: they are dropped";
-  return ended + kept + ". Part " + std::to_string(d.part) +
-         " begins where the vehicle was set down, maps on its own and asks " + counted(d.apart, "map") +
-         " where that is.";
+  return ended + kept + ". Part " + std::to_string(d.part) + " begins where the vehicle is, maps on its own and asks " +
+         counted(d.apart, "map") + " where that is.";
 }
 
 std::string map_of(const core::PlacedDecision& d) {

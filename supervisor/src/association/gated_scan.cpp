@@ -33,6 +33,15 @@ void defer_isolated_match(const std::vector<RevisitAmbiguity>& returns, const Se
   if (ambiguous || (informative && !met_again)) isolated->outcome = core::Outcome::ambiguous;
 }
 
+/// The others say where the vehicle is, but not where this one is.
+void defer_loose_matches(const std::vector<core::LandmarkId>& loose, std::vector<core::AssociationReport>& reports) {
+  for (core::AssociationReport& report : reports) {
+    if (report.outcome == core::Outcome::matched && std::binary_search(loose.begin(), loose.end(), report.landmark)) {
+      report.outcome = core::Outcome::ambiguous;
+    }
+  }
+}
+
 /// Pose and one landmark: all that its own gate needs.
 core::JointGaussian with_pose(const cekf::CompressedEkf& filter, core::LandmarkId id,
                               const core::PointGaussian& point) {
@@ -96,9 +105,15 @@ void look_for_returns(const cekf::CompressedEkf& filter, const association::Land
                                options.search);
 }
 
+void leave_returns_unused(GatedScan& gated) {
+  gated.place.loose.clear();
+  for (const RevisitAmbiguity& met : gated.returns) gated.place.loose.push_back(met.landmark);
+}
+
 std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, const NavigatorOptions& options,
                                                     double path_m, Confirmation& confirmation) {
   std::vector<core::AssociationReport> reports = association_reports(gated.assignment);
+  defer_loose_matches(gated.place.loose, reports);
   defer_isolated_match(gated.returns, options.search, path_m, confirmation, reports);
   return reports;
 }

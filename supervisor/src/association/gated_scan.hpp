@@ -33,8 +33,13 @@ void look_for_returns(const cekf::CompressedEkf& filter, const association::Land
                       const core::Scan& scan, const NavigatorOptions& options, const core::FieldOfView& view,
                       GatedScan& gated);
 
+/// None of the old landmarks is matched: where a search is open none can begin for those that have become old since, and the pose that
+/// they would be matched by is in question.
+void leave_returns_unused(GatedScan& gated);
+
 /// The outcome of every observation. Two matched old landmarks confirm each other; an isolated match is deferred when other
-/// objects may be in its gate, and, until its second hit, when it would correct the pose by much.
+/// objects may be in its gate, and, until its second hit, when it would correct the pose by much. So is one that hangs loose
+/// (place_evidence.hpp) however many others are matched.
 /// Test: supervisor/association/revisit_ambiguity_test.cpp.
 std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, const NavigatorOptions& options,
                                                     double path_m, Confirmation& confirmation);

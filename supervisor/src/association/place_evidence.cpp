@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numeric>
 
 #include <Eigen/LU>
 
 #include "association/candidates.hpp"
 #include "association/median.hpp"
 #include "association/old_pairs.hpp"
+#include "association/revisit_ambiguity.hpp"
 #include "association/rival_matchings.hpp"
 #include "helixnav/association/likelihood_ratio.hpp"
 
@@ -66,6 +69,27 @@ class Question {
     return place;
   }
 
+  /// Of the half of the matches that is known worst those that hang loose (fixes_pose).
+  std::vector<LandmarkId> loose(double extraneous_per_scan, double defer_confusers) const {
+    const OldPairs pairs = old_pairs_given(problem_, matched_, given_);
+    const auto may_be = [&](int k, const Eigen::Matrix2d& S) {
+      return extraneous_in_gate(problem_, pairs.at(k), S, scan_, extraneous_per_scan) > defer_confusers;
+    };
+    std::vector<int> by_width(matched_.size());
+    std::iota(by_width.begin(), by_width.end(), 0);
+    std::sort(by_width.begin(), by_width.end(), [&](int k, int l) { return widening(pairs, k) < widening(pairs, l); });
+    const auto half = by_width.begin() + static_cast<std::ptrdiff_t>((by_width.size() + 1) / 2);
+    std::vector<int> best = given_;
+    std::transform(by_width.begin(), half, std::back_inserter(best), [&](int k) { return matched_[at(k)]; });
+    std::vector<LandmarkId> loose;
+    for (auto k = half; k != by_width.end(); ++k) {
+      if (!may_be(*k, pairs.covariance(*k, *k))) continue;  // given more, its gate is smaller still
+      if (may_be(*k, old_pairs_given(problem_, {matched_[at(*k)]}, best).S)) loose.push_back(landmark(pairs.at(*k)));
+    }
+    std::sort(loose.begin(), loose.end());
+    return loose;
+  }
+
   double wrong_probability(double extraneous_per_scan, double view_margin_m, const SearchOptions& options) const {
     const OldPairs pairs = old_pairs_given(problem_, gated_with_old(), given_);
     Matching best;
@@ -93,6 +117,11 @@ class Question {
   }
 
  private:
+  static std::size_t at(int k) { return static_cast<std::size_t>(k); }
+  double widening(const OldPairs& pairs, int k) const {
+    const core::ObsMatrix& R = scan_.observations[at(pairs.at(k).observation)].R;
+    return std::sqrt(pairs.covariance(k, k).determinant() / Eigen::Matrix2d(R).determinant());
+  }
   const GatedPair& pair_at(int p) const { return problem_.pairs[static_cast<std::size_t>(p)]; }
   LandmarkId landmark(const GatedPair& pair) const { return problem_.ids[static_cast<std::size_t>(pair.candidate)]; }
   bool is_old(LandmarkId id) const { return std::binary_search(old_.begin(), old_.end(), id); }
@@ -160,12 +189,15 @@ PlaceEvidence place_evidence(const cekf::CompressedEkf& filter, const Innovation
   const Question question(filter, problem, assignment, scan, old);
   if (question.matched() == 0) return {};
   PlaceEvidence place = question.widths();
-  if (adds_little(place, options) || !leaves_no_room(place)) return place;  // the rest decides nothing
+  if (!adds_little(place, options) && !leaves_no_room(place)) return place;  // the rest decides nothing
+  place.loose = question.loose(extraneous_per_scan, options.defer_confusers);
+  if (adds_little(place, options)) return place;
   place.wrong_probability = question.wrong_probability(extraneous_per_scan, view_margin_m, options);
   return place;
 }
 
 bool fixes_pose(const PlaceEvidence& place, const SearchOptions& options) {
+  if (place.loose.size() > 1) return false;
   return adds_little(place, options) ||
          (leaves_no_room(place) && place.wrong_probability < options.wrong_place_probability);
 }

@@ -19,6 +19,8 @@ struct PlaceEvidence {
   /// P(another pose | scan): (1 + Σ exp e_rival) / (1 + Σ exp e_rival + exp e), where e is the log-likelihood ratio of a
   /// matching against "none of the old landmarks is met".
   double wrong_probability = 1.0;
+  /// Old landmarks of matches that hang loose: the vehicle is known beside the others, and yet not where these are.
+  std::vector<core::LandmarkId> loose;
 };
 
 /// Evidence of the assignment's matches with old landmarks (ascending in `old`) together, given its matches with landmarks
@@ -35,7 +37,10 @@ PlaceEvidence place_evidence(const cekf::CompressedEkf& filter, const associatio
 /// Whether no other pose is in question, so that what is ambiguous is for the assignment to decide and no search helps:
 /// either the pose adds little to where the old landmarks are expected (widening below the limit for a single match), or it
 /// leaves them no room beside one another (two standard deviations below half their spacing) and P(another pose | scan) is
-/// below `wrong_place_probability`.
+/// below `wrong_place_probability`. In question is the pose where two matches or more hang loose, whatever the others say; one is
+/// to be left unused. It hangs loose where, given the half of the matches that is known best, its gate holds more than
+/// `defer_confusers` objects of no landmark: a median says nothing about a single landmark far from all the others, and the
+/// observation of nothing that meets its gate, as wide as the whole drift, would move everything by it.
 bool fixes_pose(const PlaceEvidence& place, const SearchOptions& options);
 
 }  // namespace helixnav::supervisor

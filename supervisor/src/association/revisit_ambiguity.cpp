@@ -15,6 +15,11 @@ namespace {
 
 constexpr double gate_probability = 0.95;  // of the gate in which confusers are counted
 
+double confuser_gate() {
+  static const double gate = core::chi2_quantile(gate_probability, 2);
+  return gate;
+}
+
 bool is_in_sorted(const std::vector<core::LandmarkId>& sorted, core::LandmarkId id) {
   return std::binary_search(sorted.begin(), sorted.end(), id);
 }
@@ -23,6 +28,11 @@ bool is_in_sorted(const std::vector<core::LandmarkId>& sorted, core::LandmarkId 
 double density_at(const association::Prediction& prediction, const core::FieldOfView& view, double per_scan) {
   const double per_m2 = per_scan / view_area_m2(view);
   return prediction.kind == core::ObservationKind::range_bearing ? per_m2 * prediction.z_hat.x() : per_m2;
+}
+
+/// By how much the gate is larger than the sensor's noise makes it.
+double widened_area(const Eigen::Matrix2d& S, const Eigen::Matrix2d& R) {
+  return core::pi * confuser_gate() * (std::sqrt(std::max(0.0, S.determinant())) - std::sqrt(R.determinant()));
 }
 
 /// Old landmarks that the sensor may have in view.
@@ -62,7 +72,7 @@ Neighbours neighbours_in_gate(const cekf::CompressedEkf& filter, const core::Sca
                               const std::vector<core::LandmarkId>& others, core::LandmarkId self,
                               const association::GatedPair& pair, const association::InnovationProblem& problem,
                               const core::MapAppearance& appearance) {
-  static const double gate = core::chi2_quantile(gate_probability, 2);
+  const double gate = confuser_gate();
   const association::Prediction& prediction = problem.predictions[static_cast<std::size_t>(pair.prediction)];
   const core::Pose2 pose = filter.pose().mean;
   const Eigen::Vector2d sensor_m = core::transform(pose, scan.T_robot_sensor.position_m());
@@ -110,8 +120,7 @@ std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
                                               const core::MapAppearance& appearance) {
   std::vector<RevisitAmbiguity> returns;
   if (old.empty() || !scan.field_of_view.reach()) return returns;  // a sensor of no known view
-  static const double gate = core::chi2_quantile(gate_probability, 2);
-  std::vector<core::LandmarkId> others;  // looked up when the first old landmark is gated
+  std::vector<core::LandmarkId> others;                            // looked up when the first old landmark is gated
   for (const association::GatedPair& pair : problem.pairs) {
     const core::LandmarkId id = problem.ids[static_cast<std::size_t>(pair.candidate)];
     if (pair.dof != 2 || !is_in_sorted(old, id)) continue;
@@ -122,14 +131,20 @@ std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
     const Neighbours neighbours = neighbours_in_gate(filter, scan, others, id, pair, problem, appearance);
     here.neighbours = neighbours.count;
     const Eigen::Matrix2d R = scan.observations[static_cast<std::size_t>(pair.observation)].R;
-    const double sensor_area = std::sqrt(R.determinant());
-    here.widening = std::sqrt(pair.S.determinant()) / sensor_area;
-    here.gate_area = core::pi * gate * sensor_area * (here.widening - 1.0);
+    here.widening = std::sqrt(pair.S.determinant() / R.determinant());
+    here.gate_area = widened_area(pair.S, R);
     const double extraneous = density_at(prediction, scan.field_of_view, extraneous_per_scan) * here.gate_area;
     here.expected_confusers = neighbours.alike + share_alike(0.0, pair) * extraneous;
     keep_worst(here, returns);
   }
   return returns;
+}
+
+double extraneous_in_gate(const association::InnovationProblem& problem, const association::GatedPair& pair,
+                          const Eigen::Matrix2d& S, const core::Scan& scan, double extraneous_per_scan) {
+  const association::Prediction& prediction = problem.predictions[static_cast<std::size_t>(pair.prediction)];
+  const Eigen::Matrix2d R = scan.observations[static_cast<std::size_t>(pair.observation)].R;
+  return share_alike(0.0, pair) * density_at(prediction, scan.field_of_view, extraneous_per_scan) * widened_area(S, R);
 }
 
 const RevisitAmbiguity* most_ambiguous(const std::vector<RevisitAmbiguity>& returns) {

@@ -35,6 +35,11 @@ std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
                                               const std::vector<core::LandmarkId>& old, double extraneous_per_scan,
                                               const core::MapAppearance& appearance = {});
 
+/// The part of η that objects of no landmark make up, where the pair's innovation has covariance S.
+/// Test: supervisor/association/place_evidence_test.cpp.
+double extraneous_in_gate(const association::InnovationProblem& problem, const association::GatedPair& pair,
+                          const Eigen::Matrix2d& S, const core::Scan& scan, double extraneous_per_scan);
+
 /// The one with the largest η; null when there is none.
 const RevisitAmbiguity* most_ambiguous(const std::vector<RevisitAmbiguity>& returns);
 

@@ -64,7 +64,7 @@ StepReport NavigationLoop::observe(const Scan& scan) {
   const StillThere there = paused_m ? weigh_pause(scan, *paused_m) : StillThere{};
   const double driven_m = pending_.driven_m;
   const bool is_carried = there.is_elsewhere(limits);
-  StepReport report = is_carried ? observe_elsewhere(scan, there) : observe_here(scan);
+  StepReport report = is_carried ? observe_elsewhere(scan, there) : observe_somewhere(scan);
   rhythm_.note(scan.t_ns, driven_m);
   pause_m_ = is_carried || there.is_here(limits) ? std::nullopt : paused_m;
   return report;
@@ -116,9 +116,13 @@ StepReport NavigationLoop::step(const Scan& scan) {
   predict();
   GatedScan gated = gate(scan);
   if (const auto trigger = find_trigger(gated, belief_.filter.pose(), options_.search)) {
-    report.decisions.emplace_back(*trigger);
-    begin_search();
-    gated = gate(scan);
+    if (searching() == nullptr) {
+      report.decisions.emplace_back(*trigger);
+      begin_search();
+      gated = gate(scan);
+    } else {
+      leave_returns_unused(gated);
+    }
   }
   report_unfinished(gated, report);
   const Confirmation before = belief_.confirmation;
@@ -160,7 +164,7 @@ bool NavigationLoop::use_fix(const core::AbsoluteFix& fix) {
   return decision.accepted;
 }
 
-/// While a search is open the old landmarks are no candidates, and no return is looked for.
+/// While a search is open the landmarks that were old when it began are no candidates. Others become old while it lasts.
 GatedScan NavigationLoop::gate(const Scan& scan) const {
   const Searching* open = searching();
   std::vector<LandmarkId> ids = candidates(belief_.filter, scan, options_.candidate_sigmas);
@@ -169,8 +173,7 @@ GatedScan NavigationLoop::gate(const Scan& scan) const {
     ids.erase(std::remove_if(ids.begin(), ids.end(), excluded), ids.end());
   }
   GatedScan gated = gate_scan(belief_.filter, ids, scan, options_, belief_.existence.appearance());
-  const bool looks = options_.search.enabled && open == nullptr;
-  if (looks) look_for_returns(belief_.filter, belief_.existence, scan, options_, view_, gated);
+  if (options_.search.enabled) look_for_returns(belief_.filter, belief_.existence, scan, options_, view_, gated);
   return gated;
 }
 

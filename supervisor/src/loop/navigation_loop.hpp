@@ -191,6 +191,9 @@ class NavigationLoop {
   std::optional<double> pause_to_weigh(const core::Scan& scan) const;
   StillThere weigh_pause(const core::Scan& scan, double paused_m) const;
   core::StepReport observe_elsewhere(const core::Scan& scan, const StillThere& there);
+  core::StepReport begin_part_with(const core::Scan& scan, const core::CarriedDecision& decision);
+  core::CarriedDecision broken_off() const;
+  core::StepReport observe_somewhere(const core::Scan& scan);
 
   // loop/process_again.hpp
   template <class AfterFix, class AfterScan>

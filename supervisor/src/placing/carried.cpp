@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The vehicle was carried away: what was mapped is kept as an earlier map, and a new part of the drive begins.
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include <Eigen/Eigenvalues>
+
+#include "helixnav/core/angle.hpp"
+#include "helixnav/core/errors.hpp"
 #include "helixnav/supervisor/joint_map.hpp"
 #include "loop/navigation_loop.hpp"
 #include "placing/still_there.hpp"
@@ -31,6 +36,26 @@ std::vector<core::MapLandmark> nearest(std::vector<core::MapLandmark> landmarks,
   return landmarks;
 }
 
+/// What cancellation has taken from a covariance is added to the variance of every landmark: as if that were noise of its own.
+/// Cost O(n³).
+void make_definite(Eigen::MatrixXd& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance, Eigen::EigenvaluesOnly);
+  const double least = solver.eigenvalues().minCoeff();
+  if (!(least < 0.0)) return;
+  constexpr double margin = 2.0;
+  covariance.diagonal().array() -= margin * least;
+}
+
+core::CarriedDecision found_out(const StillThere& there) {
+  core::CarriedDecision decision;
+  decision.cause = core::CarriedDecision::Cause::found_out;
+  decision.missing = there.missing;
+  decision.seen = there.seen;
+  decision.unknown = there.unknown;
+  decision.elsewhere_nats = there.elsewhere_nats;
+  return decision;
+}
+
 }  // namespace
 
 /// The mature landmarks; none where they are too few to be found again.
@@ -55,6 +80,7 @@ core::JointMap NavigationLoop::map_to_keep(core::CarriedDecision& decision) cons
   }
   core::JointMap map = joint_map(joint(ids_of(kept)), next_name, kept);
   map.reach_m = view_.reach().value_or(0.0);
+  if (decision.cause == core::CarriedDecision::Cause::broken_off) make_definite(map.joint.covariance);
   return map;
 }
 
@@ -143,14 +169,12 @@ StillThere NavigationLoop::weigh_pause(const core::Scan& scan, double paused_m) 
   return still_there(belief_.filter, belief_.existence, T_before_now, scan, {paused_m - lately_m, paused_m}, options_);
 }
 
-/// As observe(), from a part of the drive that begins with this scan.
 StepReport NavigationLoop::observe_elsewhere(const core::Scan& scan, const StillThere& there) {
-  core::CarriedDecision decision;
-  decision.is_found_out = true;
-  decision.missing = there.missing;
-  decision.seen = there.seen;
-  decision.unknown = there.unknown;
-  decision.elsewhere_nats = there.elsewhere_nats;
+  return begin_part_with(scan, found_out(there));
+}
+
+/// As observe(), from a part of the drive that begins with this scan.
+StepReport NavigationLoop::begin_part_with(const core::Scan& scan, const core::CarriedDecision& decision) {
   Part other = part_elsewhere(decision);
   exchange(other);
   try {
@@ -159,6 +183,30 @@ StepReport NavigationLoop::observe_elsewhere(const core::Scan& scan, const Still
     exchange(other);
     throw;
   }
+}
+
+/// Where variances of 10⁵ m² and more have cancelled until nothing is left of a landmark's 0.01 m², the map is kept as it was and the
+/// drive goes on beside it: its place is found by landmarks alone, which needs no prior. A part that begins like that and
+/// breaks at once, or one of which nothing can be kept, has another cause, and the error stays one.
+StepReport NavigationLoop::observe_somewhere(const core::Scan& scan) {
+  try {
+    return observe_here(scan);
+  } catch (const core::NumericalError&) {
+    const core::CarriedDecision broken = broken_off();
+    core::CarriedDecision kept = broken;
+    map_to_keep(kept);
+    if (kept.landmarks == 0) throw;
+    return begin_part_with(scan, broken);
+  }
+}
+
+core::CarriedDecision NavigationLoop::broken_off() const {
+  const Eigen::Matrix3d covariance = belief_.filter.pose().covariance;
+  core::CarriedDecision decision;
+  decision.cause = core::CarriedDecision::Cause::broken_off;
+  decision.pose_sigma_m = std::sqrt(std::max(0.0, covariance.topLeftCorner<2, 2>().trace()));
+  decision.heading_sigma_deg = std::sqrt(std::max(0.0, covariance(2, 2))) * 180.0 / core::pi;
+  return decision;
 }
 
 }  // namespace helixnav::supervisor

@@ -11,6 +11,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "association/gated_scan.hpp"
 #include "association/gating.hpp"
 #include "association/old_pairs.hpp"
 #include "association/rival_matchings.hpp"
@@ -245,6 +246,65 @@ TEST(PlaceEvidence, AWorldThatIsNotThereDoesNotFixThePose) {
     elsewhere.see({}, which, random);
     EXPECT_FALSE(fixes_pose(elsewhere.weigh({}), {})) << "seed " << seed;
   }
+}
+
+/// Six landmarks seen again right after they were mapped, and others mapped before a drive of which odometry knows little.
+struct TornGround {
+  Ground ground{{}, 0.0, 0.0};
+  core::RandomStream random = place_stream(7);
+
+  explicit TornGround(const std::vector<Eigen::Vector2d>& before) {
+    add(before);
+    core::Odometry odometry;
+    odometry.covariance.diagonal() << 36.0, 36.0, 1e-4;
+    ground.filter.predict(odometry);
+    add({{10.0, 3.0}, {14.0, -6.0}, {-9.0, 8.0}, {-5.0, -12.0}, {3.0, 16.0}, {18.0, 9.0}});
+    odometry.covariance.diagonal() << 1e-4, 1e-4, 1e-6;
+    ground.filter.predict(odometry);
+    const std::size_t last = ground.ids.size();
+    ground.see({}, {last - 6, last - 5, last - 4, last - 3, last - 2, last - 1}, random);
+  }
+
+  void add(const std::vector<Eigen::Vector2d>& points_m) {
+    for (const Eigen::Vector2d& point_m : points_m) {
+      ground.points_m.push_back(point_m);
+      ground.ids.push_back(
+          ground.filter.augment(core::make_cartesian(point_m, 0.0025 * Eigen::Matrix2d::Identity()), {}));
+    }
+  }
+};
+
+GatedScan gated_with_place(const Ground& ground) {
+  GatedScan gated = gate_scan(ground.filter, ground.ids, ground.scan, {});
+  gated.place = place_evidence(ground.filter, gated.gating->problem, gated.assignment, ground.scan, ground.ids,
+                               foreign_in_scan, 2.0, {});
+  return gated;
+}
+
+TEST(PlaceEvidence, WhatIsKnownBesideOthersSaysNothingOfALandmarkFarFromThemAll) {
+  TornGround torn({{2.0, -3.0}});
+  torn.ground.see({1.0, 0.0, 0.0}, {0}, torn.random);  // of nothing: it happens to be in a gate of tens of metres
+  const GatedScan gated = gated_with_place(torn.ground);
+  ASSERT_EQ(gated.place.pairs, 7);
+  EXPECT_LT(gated.place.widening, 2.0);
+  EXPECT_EQ(gated.place.loose, std::vector<core::LandmarkId>{torn.ground.ids.front()});
+  EXPECT_TRUE(fixes_pose(gated.place, {}));
+  Confirmation confirmation;
+  const std::vector<core::AssociationReport> fate = associate_scan(gated, {}, 0.0, confirmation);
+  const auto outcomes = [&](core::Outcome outcome) {
+    return std::count_if(fate.begin(), fate.end(), [&](const auto& one) { return one.outcome == outcome; });
+  };
+  EXPECT_EQ(outcomes(core::Outcome::matched), 6);
+  EXPECT_EQ(outcomes(core::Outcome::ambiguous), 1);
+}
+
+TEST(PlaceEvidence, TwoThatHangLooseAreAPlaceInQuestion) {
+  TornGround torn({{2.0, -3.0}, {-12.0, -3.0}});
+  torn.ground.see({1.0, 0.0, 0.0}, {0, 1}, torn.random);
+  const GatedScan gated = gated_with_place(torn.ground);
+  ASSERT_EQ(gated.place.pairs, 8);
+  EXPECT_EQ(gated.place.loose.size(), 2U);
+  EXPECT_FALSE(fixes_pose(gated.place, {}));
 }
 
 }  // namespace

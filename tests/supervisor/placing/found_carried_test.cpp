@@ -57,7 +57,7 @@ TEST(FoundCarried, ByTheFirstScanAfterThePause) {
     ASSERT_EQ(driven.carried.size(), 1u);
     EXPECT_EQ(driven.carried_at[0], 220u);
     const core::CarriedDecision& carried = driven.carried[0];
-    EXPECT_TRUE(carried.is_found_out);
+    EXPECT_EQ(carried.cause, core::CarriedDecision::Cause::found_out);
     EXPECT_GT(carried.missing, carried.seen);
     EXPECT_GT(carried.unknown, 0);
     EXPECT_GT(carried.elsewhere_nats, NavigatorOptions{}.search.integrity.nats);
@@ -79,7 +79,7 @@ TEST(FoundCarried, IsSilentWhereAnEventSaysItToo) {
       const auto* one = std::get_if<core::CarriedDecision>(&decision);
       if (one == nullptr) continue;
       ++carried;
-      EXPECT_FALSE(one->is_found_out);
+      EXPECT_EQ(one->cause, core::CarriedDecision::Cause::told);
     }
   }
   EXPECT_EQ(carried, 1);

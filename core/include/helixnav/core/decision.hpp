@@ -149,17 +149,24 @@ struct FixDecision {
 /// as a new part, with a map of its own, and its place on the parts before is sought (PlacedDecision). Part 0 is what the drive
 /// began on; where that was sought on an earlier map, part 0 is that map and the drive began as part 1.
 struct CarriedDecision {
-  int part = 0;                 ///< that begins with this scan
-  int from_part = 0;            ///< that ends
-  int landmarks = 0;            ///< of the part that ends, kept as a map of its own
-  int dropped = 0;              ///< of it: tentative ones, and those of a map that is too small or too large to be kept
-  int apart = 0;                ///< parts of which it is not known how they lie to the one that begins
-  double driven_m = 0.0;        ///< in the part that ends
-  bool is_found_out = false;    ///< by the numbers that follow, after a pause; else an event said so
-  int missing = 0;              ///< landmarks that were in view before the pause and were not after it
-  int seen = 0;                 ///< those that were after it, too
-  int unknown = 0;              ///< observations after it of something else
-  double elsewhere_nats = 0.0;  ///< ln of how much likelier all these are anywhere than where it stopped
+  enum class Cause {
+    told,        ///< an event said so
+    found_out,   ///< by the scan after a pause: missing to elsewhere_nats
+    broken_off,  ///< it was not carried: the part that ends cannot be computed any further
+  };
+  int part = 0;           ///< that begins with this scan
+  int from_part = 0;      ///< that ends
+  int landmarks = 0;      ///< of the part that ends, kept as a map of its own
+  int dropped = 0;        ///< of it: tentative ones, and those of a map that is too small or too large to be kept
+  int apart = 0;          ///< parts of which it is not known how they lie to the one that begins
+  double driven_m = 0.0;  ///< in the part that ends
+  Cause cause = Cause::told;
+  int missing = 0;                 ///< landmarks that were in view before the pause and were not after it
+  int seen = 0;                    ///< those that were after it, too
+  int unknown = 0;                 ///< observations after it of something else
+  double elsewhere_nats = 0.0;     ///< ln of how much likelier all these are anywhere than where it stopped
+  double pose_sigma_m = 0.0;       ///< where it is broken off
+  double heading_sigma_deg = 0.0;  ///< likewise
 };
 
 /// The session and the map of an earlier one: whether, where and by which evidence the one was found in the other. Rows where
