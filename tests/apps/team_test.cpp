@@ -137,5 +137,28 @@ TEST(TeamCampaign, JoinsWhatIsSharedAndNothingElse) {
   EXPECT_EQ(complete_lines(folder.path() / "campaign" / "runs.csv"), 5u);
 }
 
+TEST(TeamCampaign, PartsMakeTheCampaignThatWasNotDivided) {
+  const testing::TemporaryFolder folder;
+  const auto drive = [&](const std::string& name, const std::string& first, const std::string& runs) {
+    const std::string out = (folder.path() / name).string();
+    const Outcome outcome =
+        run({"montecarlo", "team", "--first-seed", first, "--runs", runs, "--jobs", "1", "--quiet", "--out", out});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return out;
+  };
+  const std::string whole = drive("whole", "21", "2");
+  const std::string second = drive("second", "22", "1");
+  const std::string first = drive("first", "21", "1");
+  const std::string merged = (folder.path() / "merged").string();
+  const Outcome outcome = run({"montecarlo", "--merge", second, first, "--out", merged});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* file : {"manifest.json", "runs.csv", "summary.json"}) {
+    EXPECT_EQ(text_of(fs::path(merged) / file), text_of(fs::path(whole) / file)) << file;
+  }
+  const Outcome twice = run({"montecarlo", "--merge", whole, first, "--out", merged, "--overwrite"});
+  EXPECT_EQ(twice.exit_code, 3);
+  EXPECT_NE(twice.err.find("seed 21 is in"), std::string::npos) << twice.err;
+}
+
 }  // namespace
 }  // namespace helixnav::apps
