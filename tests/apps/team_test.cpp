@@ -54,6 +54,19 @@ TEST_F(TeamWholeReplay, KeepsFiveRobotsWithin15CentimetresOfTheirTruth) {
   EXPECT_EQ(robot.exit_code, 0) << robot.err;
 }
 
+TEST_F(TeamWholeReplay, KeepsFiveRobotsWithin20CentimetresWithoutNames) {
+  const Outcome outcome = replay({"--association", "unknown"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  double sum_m = 0.0;
+  const json figures = summary();
+  for (const json& robot : figures["robots"]) {
+    const double rmse_m = robot["position_error_m"]["rmse"];
+    EXPECT_LT(rmse_m, 0.20) << robot["robot"];
+    sum_m += rmse_m;
+  }
+  EXPECT_LT(sum_m / 5.0, 0.16);
+}
+
 TEST_F(TeamReplay, FindsOneFrameFromUnknownStarts) {
   const Outcome outcome = replay({"--robots", "1,3", "--unknown-starts"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
