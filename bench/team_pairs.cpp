@@ -22,8 +22,15 @@ using By = team::TeamJoin::By;
 constexpr double wrong_m = 1.5;
 constexpr double wrong_rad = 20.0 * core::pi / 180.0;
 
+/// By which evidence, and whether a robot knows its own landmarks by their barcodes.
+struct Way {
+  By by;
+  bool has_names = true;
+};
+
 struct Joined {
   double t_s = 0.0, error_m = 0.0, error_rad = 0.0;
+  team::TeamJoin join;
 };
 
 /// An event (i ≥ 0), or a sighting of a robot (−1 − its index), in the order in which Team wants them.
@@ -54,7 +61,7 @@ std::vector<Fed> in_order(const core::TeamRecording& recording) {
   return all;
 }
 
-void give(const core::TeamRecording& recording, const Fed& fed, bool common_names, team::Team& team) {
+void give(const core::TeamRecording& recording, const Fed& fed, const Way& way, team::Team& team) {
   const core::TeamMember& member = recording.robots[fed.robot];
   const int robot = static_cast<int>(fed.robot);
   if (fed.kind == 1) {
@@ -62,8 +69,8 @@ void give(const core::TeamRecording& recording, const Fed& fed, bool common_name
     return;
   }
   std::vector<std::int64_t> names;
-  if (fed.kind == 2) names = member.recording.labels[fed.scan];
-  for (std::int64_t& name : names) name += common_names || name < 0 ? 0 : 1000 * (robot + 1);
+  if (fed.kind == 2 && way.has_names) names = member.recording.labels[fed.scan];
+  for (std::int64_t& name : names) name += way.by == By::names || name < 0 ? 0 : 1000 * (robot + 1);
   team.take(robot, member.recording.events[static_cast<std::size_t>(fed.index)], names);
 }
 
@@ -74,8 +81,11 @@ core::Pose2 truth_at(const std::vector<core::TruePose>& truth, core::Nanoseconds
   return (after == truth.end() ? std::prev(after) : after)->T_world_robot;
 }
 
-std::optional<Joined> drive(const core::TeamRecording& recording, By by) {
+std::optional<Joined> drive(const core::TeamRecording& recording, const Way& way) {
+  const By by = way.by;
   team::TeamOptions options;
+  options.looks_as_one = recording.looks_as_one;
+  options.join.by_place = !way.has_names;
   options.join.by_names = by == By::names;
   options.join.by_sightings = by == By::sightings;
   options.join.by_constellation = by == By::constellation;
@@ -83,13 +93,13 @@ std::optional<Joined> drive(const core::TeamRecording& recording, By by) {
   std::vector<core::Nanoseconds> moved_ns(2, 0);
   for (const Fed& fed : in_order(recording)) {
     if (fed.kind == 0) moved_ns[fed.robot] = fed.t_ns;
-    give(recording, fed, by == By::names, team);
+    give(recording, fed, way, team);
     if (team.joins().empty()) continue;
     const core::Pose2 truth = core::between(truth_at(recording.robots[0].recording.true_poses, moved_ns[0]),
                                             truth_at(recording.robots[1].recording.true_poses, moved_ns[1]));
     const core::Pose2 estimate = core::between(team.pose(0).mean, team.pose(1).mean);
     return Joined{core::seconds(fed.t_ns), (estimate.position_m() - truth.position_m()).norm(),
-                  std::abs(core::wrap_to_pi(estimate.heading_rad - truth.heading_rad))};
+                  std::abs(core::wrap_to_pi(estimate.heading_rad - truth.heading_rad)), team.joins().front()};
   }
   return std::nullopt;
 }
@@ -100,7 +110,7 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-void print_total(By by, int pairs, const std::vector<Joined>& joined) {
+void print_total(const Way& way, int pairs, const std::vector<Joined>& joined) {
   std::vector<double> errors_m, errors_deg;
   int wrong = 0;
   for (const Joined& one : joined) {
@@ -108,7 +118,8 @@ void print_total(By by, int pairs, const std::vector<Joined>& joined) {
     errors_deg.push_back(one.error_rad * 180.0 / core::pi);
     wrong += one.error_m > wrong_m || one.error_rad > wrong_rad ? 1 : 0;
   }
-  std::printf("%-14s joined %zu of %d, wrong (beyond 1.5 m or 20 deg) %d", name_of(by), joined.size(), pairs, wrong);
+  std::printf("%-14s%s joined %zu of %d, wrong (beyond 1.5 m or 20 deg) %d", name_of(way.by),
+              way.has_names ? "" : " without any name", joined.size(), pairs, wrong);
   if (!joined.empty()) {
     std::printf("; position median %.3f, max %.3f m; heading median %.1f, max %.1f deg", median(errors_m),
                 *std::max_element(errors_m.begin(), errors_m.end()), median(errors_deg),
@@ -119,24 +130,25 @@ void print_total(By by, int pairs, const std::vector<Joined>& joined) {
 
 int run(const std::string& path) {
   constexpr int robots = 5;
-  for (const By by : {By::sightings, By::names, By::constellation}) {
+  for (const Way& way : {Way{By::sightings}, Way{By::names}, Way{By::constellation}, Way{By::constellation, false}}) {
     std::vector<Joined> all;
     int pairs = 0;
     for (int a = 1; a <= robots; ++a) {
       for (int b = a + 1; b <= robots; ++b, ++pairs) {
         const core::TeamRecording recording = logs::read_mrclam(path, {a, b});
         if (!recording.starts_known) throw core::InputError(path + ": robots have no truth");
-        const std::optional<Joined> joined = drive(recording, by);
+        const std::optional<Joined> joined = drive(recording, way);
         if (joined) {
-          std::printf("  %d %d  at %5.1f s  %.3f m  %.1f deg\n", a, b, joined->t_s, joined->error_m,
-                      joined->error_rad * 180.0 / core::pi);
+          std::printf("  %d %d  at %5.1f s  %.3f m  %.1f deg, %d landmarks, chi2 %.1f of at most %.1f\n", a, b,
+                      joined->t_s, joined->error_m, joined->error_rad * 180.0 / core::pi, joined->join.merged,
+                      joined->join.cost, joined->join.limit);
           all.push_back(*joined);
         } else {
           std::printf("  %d %d  not joined\n", a, b);
         }
       }
     }
-    print_total(by, pairs, all);
+    print_total(way, pairs, all);
   }
   return 0;
 }

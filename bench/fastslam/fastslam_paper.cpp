@@ -43,7 +43,7 @@ std::vector<Figure> figures(const StudySettings& s, const std::string& only) {
           {"12", [=] { return run_victoria_park(s, 800.0, only); }},
           {"12-whole", [=] { return run_victoria_park(s, 1e5, only.empty() ? "FS2 lr" : only); }},
           {"13", [=] { return run_four(s); }},
-          {"14", [=] { return run_robots(s); }},
+          {"14", [=] { return run_robots(s, only); }},
           {"consistency", [=] { return run_consistency(s); }}};
 }
 

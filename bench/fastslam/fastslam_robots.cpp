@@ -149,22 +149,27 @@ struct Comparison {
 
 }  // namespace
 
-int run_robots(const StudySettings& settings) {
+int run_robots(const StudySettings& settings, const std::string& only) {
   const int runs = settings.runs != 0 ? settings.runs : 30;
-  std::printf("two robots, %d runs, 500 particles alone, 800 together: position RMSE, mean over runs, robot 1 / 2\n",
-              runs);
+  const std::size_t joint = settings.particles != 0 ? settings.particles : 800;
+  const std::size_t single = 5 * joint / 8;
+  std::printf("two robots, %d runs, %zu particles alone, %zu together: position RMSE, mean over runs, robot 1 / 2\n",
+              runs, single, joint);
   Comparison ekf, smoothed;
-  for (int run = 0; run < runs; ++run) {
+  for (int run = 0; run < runs && only.empty(); ++run) {
     const RobotsWorld world = make_world(run);
     ekf.add(kalman(world, false), kalman(world, true));
     smoothed.add(graph(world, false), graph(world, true));
   }
-  ekf.print("EKF known", runs);
-  smoothed.print("Team known", runs);
+  if (only.empty()) {
+    ekf.print("EKF known", runs);
+    smoothed.print("Team known", runs);
+  }
   const std::vector<Method> methods{{"FS1 known", false, Proposal::motion, Association::known},
                                     {"FS2 known", false, Proposal::motion_and_scan, Association::known},
                                     {"FS2 lr", false, Proposal::motion_and_scan, Association::likelihood_ratio}};
   for (const Method& method : methods) {
+    if (!only.empty() && method.name != only) continue;
     fastslam::Options base;
     base.threads = settings.threads;
     fastslam::Options options = method.options(base);
@@ -172,9 +177,9 @@ int run_robots(const StudySettings& settings) {
     Comparison comparison;
     for (int run = 0; run < runs; ++run) {
       const RobotsWorld world = make_world(run);
-      options.particles = 500;
+      options.particles = single;
       const Errors lone = alone(world, options, 9 + run);
-      options.particles = 800;
+      options.particles = joint;
       comparison.add(lone, together(world, options, 9 + run));
     }
     comparison.print(method.name.c_str(), runs);

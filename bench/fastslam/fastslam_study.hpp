@@ -157,7 +157,8 @@ inline PathScore score_path(const std::vector<TimedPose>& path, const core::Reco
 
 int run_pair(const StudySettings& settings, bool one_return);
 int run_four(const StudySettings& settings);
-int run_robots(const StudySettings& settings);
+int run_robots(const StudySettings& settings,
+               const std::string& only);  ///< only: one method by its name; empty: all, and the EKF
 int run_car_park(const StudySettings& settings, bool known);
 int run_victoria_park(const StudySettings& settings, double until_s, const std::string& which);
 int run_consistency(const StudySettings& settings);

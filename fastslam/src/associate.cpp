@@ -115,6 +115,13 @@ double Associator::nis(const Hypothesis& h, LineageId id, std::size_t observatio
   return innovation(h, place_m(id, *landmark), landmark->covariance_m2(), scan_.observations[observation]).nis;
 }
 
+Eigen::Vector2d Associator::normalised_innovation(const Hypothesis& h, LineageId id, std::size_t observation) const {
+  const LandmarkRecord* landmark = maps_[h.parent].find(id);
+  const Innovation i =
+      innovation(h, place_m(id, *landmark), landmark->covariance_m2(), scan_.observations[observation]);
+  return {i.pair.nu.x() / std::sqrt(i.S.xx), i.pair.nu.y() / std::sqrt(i.S.yy)};
+}
+
 void Associator::find_candidates(const Hypothesis& h, std::size_t observation, double gate, bool likelihood,
                                  AssociationScratch& scratch) const {
   const PreparedObservation& z = scan_.observations[observation];

@@ -66,6 +66,9 @@ class Associator {
   /// νᵀS⁻¹ν of a landmark that h's particle holds, seen from (x, P).
   double nis(const Hypothesis& h, LineageId id, std::size_t observation) const;
 
+  /// ν of the same, each row by its standard deviation.
+  Eigen::Vector2d normalised_innovation(const Hypothesis& h, LineageId id, std::size_t observation) const;
+
   /// The match moves (x, P), with FastSLAM 2.0, and weighs; `known`: without a doubt, whatever its likelihood was before.
   void take(Hypothesis& h, const Candidate& candidate, bool known) const;
 

@@ -12,6 +12,7 @@
 #include "helixnav/core/worker_pool.hpp"
 #include "helixnav/fastslam/fast_slam.hpp"
 #include "realise.hpp"
+#include "repeated_looks.hpp"
 
 namespace helixnav::fastslam {
 
@@ -35,6 +36,7 @@ struct FastSlam::Impl {
     core::Pose2 T_look_robot;              ///< since its last look
     std::uint16_t look = 0;
     bool has_looked = false;
+    RepeatedLooks repeated;
   };
 
   /// One worker's share of particles, hypotheses and nodes.
@@ -68,6 +70,7 @@ struct FastSlam::Impl {
   // Working memory of a scan.
   HypothesisSet set;
   std::vector<double> set_log_weight, uniforms;
+  std::vector<std::pair<LineageId, Eigen::Vector2d>> innovations;
   std::vector<Eigen::Vector3d> normals, new_poses;
   std::vector<std::uint32_t> chosen, parents;  ///< [new particle] hypothesis; particle of before
   std::vector<PersistentMap> new_maps;
@@ -91,6 +94,7 @@ struct FastSlam::Impl {
   void append_children(const Associator& associator, std::size_t observation);
   void prune();
   void weigh(std::size_t robot);
+  void count_repeated(const Associator& associator, std::size_t heaviest, const Hypothesis& before, Robot& robot);
   void choose(bool sees);
   void resample();
   bool repeats(std::size_t k) const;

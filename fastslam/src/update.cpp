@@ -40,7 +40,9 @@ core::StepReport FastSlam::Impl::update(const core::Scan& scan, const std::vecto
   }
   const auto heaviest =
       static_cast<std::size_t>(std::max_element(set_log_weight.begin(), set_log_weight.end()) - set_log_weight.begin());
-  core::StepReport out = report(scan, associator, heaviest, before_scan(set.all[heaviest], robots[robot], motion));
+  const Hypothesis before = before_scan(set.all[heaviest], robots[robot], motion);
+  core::StepReport out = report(scan, associator, heaviest, before);
+  count_repeated(associator, heaviest, before, robots[robot]);
 
   drive(robots[robot], motion, scan.T_robot_sensor);
   choose(!scan.observations.empty());
@@ -185,7 +187,28 @@ void FastSlam::Impl::prune() {
   std::swap(set, kept);
 }
 
+void FastSlam::Impl::count_repeated(const Associator& associator, std::size_t heaviest, const Hypothesis& before,
+                                    Robot& robot) {
+  innovations.clear();
+  for (std::size_t j = 0; j < set.observations; ++j) {
+    const Choice choice = set.choices_of(heaviest)[j];
+    if (choice < 0) continue;
+    const auto id = static_cast<LineageId>(choice);
+    innovations.emplace_back(id, associator.normalised_innovation(before, id, j));
+  }
+  if (!innovations.empty()) robot.repeated.count(innovations);
+}
+
+/// Weights tell particles apart by what the scan has to say of its own. All of it, where scans in a row repeat each other,
+/// picks the ancestor of all particles long before a loop can tell which was right. Children of several hypotheses, which
+/// differ by what a scan says of one landmark or two, are weighed as they are.
 void FastSlam::Impl::weigh(std::size_t robot) {
+  const bool several = options.association == Association::multiple_hypotheses;
+  const double own_share = several ? 1.0 : robots[robot].repeated.own_share();
+  for (Hypothesis& h : set.all) {
+    const double before = log_weight[h.parent];
+    h.log_weight = before + own_share * (h.log_weight - before);
+  }
   set_log_weight.clear();
   for (const Hypothesis& h : set.all) set_log_weight.push_back(h.log_weight);
   const double log_sum = core::normalise(set_log_weight);

@@ -36,11 +36,13 @@ core::RobotSighting make_sighting(double t_s, int seen, const std::string& kind,
 }
 
 std::unique_ptr<LockedTeam> make_team(const std::vector<std::optional<core::PoseGaussian>>& starts, bool by_names,
-                                      bool by_sightings, bool by_constellation) {
+                                      bool by_sightings, bool by_constellation, bool by_place, double looks_as_one) {
   team::TeamOptions options;
   options.join.by_names = by_names;
   options.join.by_sightings = by_sightings;
   options.join.by_constellation = by_constellation;
+  options.join.by_place = by_place;
+  options.looks_as_one = looks_as_one;
   return std::make_unique<LockedTeam>(Team(starts, options));
 }
 
@@ -139,12 +141,16 @@ void bind_team(py::module_& module) {
       "joins it. Robots by their index.")
       .def(
           py::init(&make_team), py::arg("starts"), py::arg("by_names") = true, py::arg("by_sightings") = true,
-          py::arg("by_constellation") = false,
+          py::arg("by_constellation") = false, py::arg("by_place") = false, py::arg("looks_as_one") = 1.0,
           "A Pose for each robot, None where the start is unknown. With by_names a name means the same landmark to all "
-          "robots, else to its own.")
-      .def("take", &take_of_robot, py::arg("robot"), py::arg("event"), py::arg("names") = py::tuple(),
-           "Odometry, or a scan with a name for each observation, a negative one for none. The report of a scan; None "
-           "for odometry, and for a scan that came late.")
+          "robots, else to its own; with by_place landmarks of one place become one. looks_as_one: so many looks in a "
+          "row say "
+          "what one would, and scans without names are told apart by the noise of one.")
+      .def(
+          "take", &take_of_robot, py::arg("robot"), py::arg("event"), py::arg("names") = py::tuple(),
+          "Odometry, or a scan with a name for each observation, a negative one for none, or without names: associated "
+          "by place. The report of a scan; None "
+          "for odometry, and for a scan that came late.")
       .def("sight", locked(&Team::sight), py::arg("robot"), py::arg("sighting"), Released(),
            "`robot` sees another one.")
       .def("solve", locked(&Team::solve), Released(), "Solves the graph with all that has come.")

@@ -109,4 +109,34 @@ core::PointGaussian JointFilter::landmark(core::LandmarkId id) const {
   return {points_m_[landmark], 0.5 * (P + P.transpose())};
 }
 
+core::JointGaussian JointFilter::joint(std::size_t robot, const std::vector<std::size_t>& landmarks) const {
+  core::JointGaussian joint;
+  joint.pose = poses_[robot];
+  const auto pose = static_cast<Eigen::Index>(3 * robot);
+  std::vector<Eigen::Index> columns{pose, pose + 1, pose + 2};
+  for (const std::size_t landmark : landmarks) {
+    joint.ids.push_back(ids_[landmark]);
+    joint.points_m.push_back(points_m_[landmark]);
+    columns.insert(columns.end(), {column_of(landmark), column_of(landmark) + 1});
+  }
+  joint.covariance = covariance_(columns, columns);
+  return joint;
+}
+
+void JointFilter::remove(const std::vector<core::LandmarkId>& ids) {
+  std::vector<Eigen::Index> columns;
+  for (Eigen::Index c = 0; c < static_cast<Eigen::Index>(3 * poses_.size()); ++c) columns.push_back(c);
+  std::vector<core::LandmarkId> kept;
+  std::vector<Eigen::Vector2d> points_m;
+  for (std::size_t i = 0; i < ids_.size(); ++i) {
+    if (std::find(ids.begin(), ids.end(), ids_[i]) != ids.end()) continue;
+    columns.insert(columns.end(), {column_of(i), column_of(i) + 1});
+    kept.push_back(ids_[i]);
+    points_m.push_back(points_m_[i]);
+  }
+  covariance_ = covariance_(columns, columns).eval();
+  ids_ = std::move(kept);
+  points_m_ = std::move(points_m);
+}
+
 }  // namespace helixnav::team

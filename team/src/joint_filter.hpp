@@ -48,7 +48,16 @@ class JointFilter {
   std::size_t robots() const { return poses_.size(); }
   core::PoseGaussian pose(std::size_t robot) const;
   core::PointGaussian landmark(core::LandmarkId id) const;
+  /// The robot's pose with landmarks by their place in ids(): what data association asks for.
+  core::JointGaussian joint(std::size_t robot, const std::vector<std::size_t>& landmarks) const;
+  /// Leaves landmarks out. O(N²).
+  void remove(const std::vector<core::LandmarkId>& ids);
   const std::vector<core::LandmarkId>& ids() const { return ids_; }
+  /// Trace of the covariance of a landmark by its place in ids().
+  double variance_m2(std::size_t landmark) const {
+    const Eigen::Index column = column_of(landmark);
+    return covariance_(column, column) + covariance_(column + 1, column + 1);
+  }
   const std::vector<Eigen::Vector2d>& points_m() const { return points_m_; }
   const Eigen::MatrixXd& covariance() const { return covariance_; }
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "associate_scan.hpp"
 #include "helixnav/core/chi2.hpp"
 
 namespace helixnav::team {
@@ -55,11 +56,11 @@ LandmarkId known_id(std::size_t robot, std::int64_t name, const TeamOptions& opt
   return core::no_landmark;
 }
 
-LandmarkId new_id(std::size_t robot, std::int64_t name, State& state) {
+LandmarkId new_id(const Birth& birth, State& state) {
   const auto id = static_cast<LandmarkId>(state.merged_into.size());
   state.merged_into.push_back(id);
   state.observations.push_back(0);
-  state.id_of_name[{robot, name}] = id;
+  state.births.push_back(birth);
   return id;
 }
 
@@ -69,18 +70,20 @@ void note_reach(const core::Observation& observation, State& state) {
   state.reach_m = std::max(state.reach_m, range_m);
 }
 
-/// One observation into filter and graph.
-core::AssociationReport observe(std::size_t robot, const core::Pose2& T_robot_sensor,
-                                const core::Observation& observation, std::int64_t name, const TeamOptions& options,
-                                State& state) {
+/// One observation into filter and graph: of the landmark told, of a new one where none is.
+core::AssociationReport observe(std::size_t robot, const core::Scan& scan, int index, bool is_named,
+                                LandmarkId landmark, const TeamOptions& options, State& state) {
+  const core::Pose2& T_robot_sensor = scan.T_robot_sensor;
+  const core::Observation& observation = scan.observations[static_cast<std::size_t>(index)];
   core::AssociationReport report;
+  report.observation = index;
   report.outcome = core::Outcome::matched;
-  report.landmark = known_id(robot, name, options, state);
+  report.landmark = landmark;
   JointFilter& filter = state.of(robot).filter;
   const std::size_t slot = state.robots[robot].slot;
   const Place place = place_of(robot, options, state);
   if (report.landmark == core::no_landmark) {
-    report.landmark = new_id(robot, name, state);
+    report.landmark = new_id({robot, scan.t_ns, index, is_named}, state);
     report.outcome = core::Outcome::augmented;
     filter.augment(slot, report.landmark, T_robot_sensor, observation);
   } else {
@@ -94,28 +97,59 @@ core::AssociationReport observe(std::size_t robot, const core::Pose2& T_robot_se
     }
   }
   state.landmark_rows.push_back(row_of(robot, place, report.landmark, T_robot_sensor, observation));
+  state.landmark_rows.back().scan = state.robots[robot].scans;
   ++state.observations[static_cast<std::size_t>(report.landmark)];
   note_reach(observation, state);
   state.of(robot).news = true;
   return report;
 }
 
-core::AssociationReport nothing_matched() {
+core::AssociationReport unused(int index, core::Outcome outcome) {
   core::AssociationReport report;
-  report.outcome = core::Outcome::rejected;
+  report.observation = index;
+  report.outcome = outcome;
   return report;
+}
+
+using Reports = std::vector<core::AssociationReport>;
+
+Reports observe_by_name(std::size_t robot, const NamedScan& named, const TeamOptions& options, State& state) {
+  Reports reports;
+  std::set<std::int64_t> seen;
+  for (int i = 0; i < static_cast<int>(named.names.size()); ++i) {
+    const std::int64_t name = named.names[static_cast<std::size_t>(i)];
+    if (name < 0 || !seen.insert(name).second) {
+      reports.push_back(unused(i, core::Outcome::rejected));
+      continue;
+    }
+    const LandmarkId known = known_id(robot, name, options, state);
+    reports.push_back(observe(robot, named.scan, i, true, known, options, state));
+    if (reports.back().outcome == core::Outcome::augmented) state.id_of_name[{robot, name}] = reports.back().landmark;
+  }
+  return reports;
+}
+
+Reports observe_by_place(std::size_t robot, const core::Scan& scan, const TeamOptions& options, State& state) {
+  Reports reports;
+  const association::Assignment assignment = associate_scan(robot, scan, options, state);
+  for (int i = 0; i < static_cast<int>(assignment.observations.size()); ++i) {
+    const association::ObservationOutcome& one = assignment.observations[static_cast<std::size_t>(i)];
+    const bool is_new = one.outcome == association::Outcome::new_landmark;
+    if (one.outcome == association::Outcome::ambiguous) {
+      reports.push_back(unused(i, core::Outcome::ambiguous));
+    } else {
+      reports.push_back(observe(robot, scan, i, false, is_new ? core::no_landmark : one.landmark, options, state));
+    }
+    reports.back().margin_nats = one.margin_nats;
+  }
+  return reports;
 }
 
 core::StepReport take(std::size_t robot, const NamedScan& named, const TeamOptions& options, State& state) {
   core::StepReport report;
-  std::set<std::int64_t> seen;
-  for (std::size_t i = 0; i < named.names.size(); ++i) {
-    const bool is_landmark = named.names[i] >= 0 && seen.insert(named.names[i]).second;
-    report.associations.push_back(is_landmark ? observe(robot, named.scan.T_robot_sensor, named.scan.observations[i],
-                                                        named.names[i], options, state)
-                                              : nothing_matched());
-    core::AssociationReport& association = report.associations.back();
-    association.observation = static_cast<int>(i);
+  report.associations = named.names.empty() ? observe_by_place(robot, named.scan, options, state)
+                                            : observe_by_name(robot, named, options, state);
+  for (const core::AssociationReport& association : report.associations) {
     if (association.outcome != core::Outcome::matched) continue;
     report.joint_nis += association.nis;
     report.joint_dof += association.dof;
@@ -208,6 +242,25 @@ State begin(const std::vector<std::optional<core::PoseGaussian>>& starts) {
     component.filter = JointFilter(poses, {}, {}, P);
   }
   return state;
+}
+
+void drop_seen_once(State& state) {
+  std::set<LandmarkId> dropped;
+  const std::size_t ids = state.births.size();
+  for (std::size_t id = 0; id < state.born_before_solution; ++id) {
+    if (!state.births[id].named && state.observations[id] == 1 &&
+        state.merged_into[id] == static_cast<LandmarkId>(id)) {
+      dropped.insert(static_cast<LandmarkId>(id));
+      state.observations[id] = 0;
+    }
+  }
+  state.born_before_solution = ids;
+  if (dropped.empty()) return;
+  std::vector<LandmarkRow>& rows = state.landmark_rows;
+  rows.erase(
+      std::remove_if(rows.begin(), rows.end(), [&](const LandmarkRow& row) { return dropped.count(row.landmark) > 0; }),
+      rows.end());
+  for (Component& component : state.components) component.filter.remove({dropped.begin(), dropped.end()});
 }
 
 std::size_t clone_now(std::size_t robot, State& state) {

@@ -14,7 +14,7 @@
 
 namespace helixnav::team {
 
-/// The observations of a robot with their names.
+/// The observations of a robot with their names; without any: to be associated by place.
 struct NamedScan {
   core::Scan scan;
   std::vector<std::int64_t> names;
@@ -37,6 +37,10 @@ State begin(const std::vector<std::optional<core::PoseGaussian>>& starts);
 
 /// Takes one entry in; the report of a scan.
 std::optional<core::StepReport> process(const Entry& entry, const TeamOptions& options, State& state);
+
+/// Leaves landmarks without a name out that were there at the last solution and still have been seen once: mostly clutter,
+/// and one look at a place that nothing else knows says nothing of anything else.
+void drop_seen_once(State& state);
 
 /// The robot's present pose as a pose of the graph, a new one unless it has not moved since the last.
 std::size_t clone_now(std::size_t robot, State& state);

@@ -10,6 +10,7 @@
 #include "helixnav/core/odometry.hpp"
 #include "helixnav/core/robot_sighting.hpp"
 #include "helixnav/core/step_report.hpp"
+#include "helixnav/team/same_landmarks.hpp"
 #include "helixnav/team/team_join.hpp"
 #include "joint_filter.hpp"
 
@@ -39,6 +40,15 @@ struct LandmarkRow {
   core::LandmarkId landmark = core::no_landmark;
   core::Pose2 T_clone_sensor;
   core::Observation observation;
+  std::int64_t scan = 0;  ///< of the robot
+};
+
+/// What began a landmark: the same whatever came late, so that a decision on it can be taken back.
+struct Birth {
+  std::size_t robot = 0;
+  core::Nanoseconds t_ns = 0;
+  int observation = 0;
+  bool named = false;
 };
 
 /// A robot seen from a clone of another.
@@ -71,8 +81,11 @@ struct State {
   std::map<std::pair<std::size_t, std::int64_t>, core::LandmarkId> id_of_name;  ///< by (robot, name)
   std::vector<core::LandmarkId> merged_into;                                    ///< [id] itself, or the one it became
   std::vector<int> observations;                                                ///< [id]
+  std::vector<Birth> births;                                                    ///< [id]
+  std::size_t born_before_solution = 0;                                         ///< landmarks, by id
   double reach_m = 0.0;                                                         ///< farthest landmark seen
   std::vector<TeamJoin> joins;
+  std::vector<SameLandmarks> same;
   std::map<std::pair<std::size_t, std::size_t>, int>
       observations_asked;                                   ///< at the last question, by pair of components
   std::vector<std::pair<std::size_t, std::size_t>> placed;  ///< (robot, join) not yet reported

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <set>
 #include <string>
 #include <utility>
 
 #include "find_joins.hpp"
+#include "find_same.hpp"
 #include "helixnav/core/check_event.hpp"
 #include "helixnav/core/errors.hpp"
 #include "process.hpp"
@@ -36,6 +38,7 @@ struct Team::Book {
   void solve_all(core::Nanoseconds t_ns);
   void rewind(std::size_t entries);
   void replay();
+  void start_again();
   void move(std::size_t robot, const core::Odometry& motion);
   void sight(std::size_t robot, const core::RobotSighting& sighting);
   void end_motion_at(std::size_t robot, core::Nanoseconds t_ns);
@@ -50,7 +53,21 @@ struct Team::Book {
   std::vector<core::Nanoseconds> moved_until_ns;  ///< [robot]
   std::vector<Entry> waiting;                     ///< sightings of robots that have not yet moved until then
   RefusedJoins refused;
+  RefusedSame refused_same;
 };
+
+namespace {
+
+/// Components into which others came.
+std::set<std::size_t> joined_since(std::size_t joins, const State& state) {
+  std::set<std::size_t> components;
+  for (std::size_t j = joins; j < state.joins.size(); ++j) {
+    components.insert(state.robots[static_cast<std::size_t>(state.joins[j].robot)].component);
+  }
+  return components;
+}
+
+}  // namespace
 
 std::optional<core::StepReport> Team::Book::enter(Entry entry) {
   const auto place = std::upper_bound(entries.begin(), entries.end(), entry, before);
@@ -95,10 +112,25 @@ void Team::Book::solve_if_due(core::Nanoseconds t_ns) {
 }
 
 void Team::Book::solve_all(core::Nanoseconds t_ns) {
+  drop_seen_once(state);
+  std::vector<std::size_t> solved;
   for (std::size_t c = 0; c < state.components.size(); ++c) {
-    if (state.components[c].news) helixnav::team::solve(c, state);
+    if (state.components[c].news && helixnav::team::solve(c, state)) solved.push_back(c);
   }
+  if (options.join.by_place) {
+    for (const std::size_t c : solved) find_same(c, t_ns, options, refused_same, state);
+  }
+  const std::size_t joins = state.joins.size();
   find_joins(t_ns, options, refused, state);
+  if (options.join.by_place) {
+    for (const std::size_t c : joined_since(joins, state)) find_same(c, t_ns, options, refused_same, state);
+  }
+}
+
+void Team::Book::start_again() {
+  checkpoints.clear();
+  rewind(0);
+  replay();
 }
 
 /// To a checkpoint that rests on none of the entries from `entries_kept` on, nor was taken because of one of them.
@@ -174,7 +206,7 @@ void Team::Book::check_robot(int robot) const {
 namespace {
 
 void check_names(const core::Scan& scan, const std::vector<std::int64_t>& names) {
-  if (names.size() != scan.observations.size()) {
+  if (!names.empty() && names.size() != scan.observations.size()) {
     throw core::PreconditionError("team: " + std::to_string(names.size()) + " names for " +
                                   std::to_string(scan.observations.size()) + " observations");
   }
@@ -284,9 +316,18 @@ std::vector<JudgedSighting> Team::sightings() const {
 void Team::remove_join(std::size_t join) {
   const TeamJoin removed = joins().at(join);
   book_->refused.insert({removed.by, removed.robot, removed.other});
-  book_->checkpoints.clear();
-  book_->rewind(0);
-  book_->replay();
+  book_->start_again();
+}
+
+const std::vector<SameLandmarks>& Team::same_landmarks() const { return book_->state.same; }
+
+void Team::remove_same(std::size_t same) {
+  const SameLandmarks removed = same_landmarks().at(same);
+  const std::vector<Birth>& births = book_->state.births;
+  const BirthKey a = key_of(births[static_cast<std::size_t>(removed.kept)]);
+  const BirthKey b = key_of(births[static_cast<std::size_t>(removed.removed)]);
+  book_->refused_same.insert({std::min(a, b), std::max(a, b)});
+  book_->start_again();
 }
 
 }  // namespace helixnav::team

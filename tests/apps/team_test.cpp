@@ -54,6 +54,19 @@ TEST_F(TeamWholeReplay, KeepsFiveRobotsWithin15CentimetresOfTheirTruth) {
   EXPECT_EQ(robot.exit_code, 0) << robot.err;
 }
 
+TEST_F(TeamWholeReplay, KeepsFiveRobotsWithin20CentimetresWithoutNames) {
+  const Outcome outcome = replay({"--association", "unknown"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  double sum_m = 0.0;
+  const json figures = summary();
+  for (const json& robot : figures["robots"]) {
+    const double rmse_m = robot["position_error_m"]["rmse"];
+    EXPECT_LT(rmse_m, 0.20) << robot["robot"];
+    sum_m += rmse_m;
+  }
+  EXPECT_LT(sum_m / 5.0, 0.16);
+}
+
 TEST_F(TeamReplay, FindsOneFrameFromUnknownStarts) {
   const Outcome outcome = replay({"--robots", "1,3", "--unknown-starts"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -135,6 +148,29 @@ TEST(TeamCampaign, JoinsWhatIsSharedAndNothingElse) {
   for (const char* kind : {"shared", "apart", "chain", "orchard"}) EXPECT_EQ(figures[kind]["failed"], 0) << kind;
   EXPECT_GE(figures["shared"]["joined"]["count"], 1);
   EXPECT_EQ(complete_lines(folder.path() / "campaign" / "runs.csv"), 5u);
+}
+
+TEST(TeamCampaign, PartsMakeTheCampaignThatWasNotDivided) {
+  const testing::TemporaryFolder folder;
+  const auto drive = [&](const std::string& name, const std::string& first, const std::string& runs) {
+    const std::string out = (folder.path() / name).string();
+    const Outcome outcome =
+        run({"montecarlo", "team", "--first-seed", first, "--runs", runs, "--jobs", "1", "--quiet", "--out", out});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return out;
+  };
+  const std::string whole = drive("whole", "21", "2");
+  const std::string second = drive("second", "22", "1");
+  const std::string first = drive("first", "21", "1");
+  const std::string merged = (folder.path() / "merged").string();
+  const Outcome outcome = run({"montecarlo", "--merge", second, first, "--out", merged});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* file : {"manifest.json", "runs.csv", "summary.json"}) {
+    EXPECT_EQ(text_of(fs::path(merged) / file), text_of(fs::path(whole) / file)) << file;
+  }
+  const Outcome twice = run({"montecarlo", "--merge", whole, first, "--out", merged, "--overwrite"});
+  EXPECT_EQ(twice.exit_code, 3);
+  EXPECT_NE(twice.err.find("seed 21 is in"), std::string::npos) << twice.err;
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ struct SmallTeamOptions {
   double noise = 1.0;  ///< on all sigmas below
   double drawn = 1.0;  ///< what is drawn of them; 0: measurements are exact and do not say so
   double reach_m = 8.0;
+  double twin_m = 0.0;  ///< each landmark has another so far beside it; 0: none
   bool see_each_other = true;
   std::uint64_t seed = 1;
 };
@@ -52,6 +53,9 @@ inline SmallTeam small_team(const SmallTeamOptions& options = {}) {
   for (int i = 0; i < 12; ++i) {
     const double y_m = random.uniform(-6.0, 6.0);  // one after the other: the order of arguments is up to the compiler
     team.landmarks.emplace_back(random.uniform(-8.0, 8.0), y_m);
+  }
+  for (std::size_t i = 0; i < 12 && options.twin_m > 0.0; ++i) {
+    team.landmarks.emplace_back(team.landmarks[i] + Eigen::Vector2d(options.twin_m, 0.0));
   }
   for (int r = 0; r < options.robots; ++r) team.starts.emplace_back(2.5 * r, -1.0 * r, 0.7 * r);
   team.last = team.starts;

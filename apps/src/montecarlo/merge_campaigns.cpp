@@ -12,6 +12,7 @@
 #include "campaign_summary.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/files/file.hpp"
+#include "team_campaign.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -74,6 +75,10 @@ void check_out(const std::string& out, bool overwrite) {
 
 void merge_campaigns(const std::vector<std::string>& parts, const std::string& out, bool overwrite) {
   check_out(out, overwrite);
+  if (!parts.empty() && campaign_manifest(parts.front()).value("scenario", std::string()) == team_scenario) {
+    merge_team_campaigns(parts, out);
+    return;
+  }
   Merged merged;
   for (const std::string& part : parts) add_part(part, merged);
   sort_by_seed(merged.rows);

@@ -2,113 +2,22 @@
 #include "team_campaign.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
+#include <map>
+#include <utility>
 #include <vector>
 
-#include <boost/math/distributions/binomial.hpp>
-#include <nlohmann/json.hpp>
-
+#include "campaign_files.hpp"
 #include "common/progress_bar.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/core/version.hpp"
 #include "helixnav/core/worker_pool.hpp"
 #include "helixnav/files/file.hpp"
-#include "helixnav/files/number_text.hpp"
+#include "team_campaign_table.hpp"
 #include "team_trial.hpp"
 
 namespace helixnav::apps {
 namespace {
-
-struct World {
-  std::uint64_t seed = 0;
-  TeamTrial trial;
-  TeamVerdict verdict;
-};
-
-constexpr const char* columns =
-    "seed,world,pitch_m,jitter_m,failed,joined,wrong,t_s,merged,merged_wrong,error_m,error_rad\n";
-
-std::string rows_of(const std::vector<World>& worlds, std::size_t from, std::size_t count) {
-  std::string text;
-  for (std::size_t i = from; i < from + count; ++i) {
-    const World& world = worlds[i];
-    const TeamVerdict& verdict = world.verdict;
-    const bool lattice = world.trial.world.kind == sim::TeamWorldKind::orchard;
-    text += std::to_string(world.seed) + ',' + world.trial.name + ',';
-    if (lattice) files::append_number(text, world.trial.world.pitch_m);
-    text += ',';
-    if (lattice) files::append_number(text, world.trial.world.jitter_m);
-    text +=
-        std::string(verdict.failed ? ",1" : ",0") + (verdict.joined ? ",1" : ",0") + (verdict.wrong ? ",1," : ",0,");
-    files::append_number(text, verdict.t_s);
-    text += ',' + std::to_string(verdict.merged) + ',' + std::to_string(verdict.merged_wrong) + ',';
-    files::append_number(text, verdict.error_m);
-    text += ',';
-    files::append_number(text, verdict.error_rad);
-    text += '\n';
-  }
-  return text;
-}
-
-/// Clopper and Pearson's two-sided 95 % interval.
-nlohmann::ordered_json share_of(std::size_t hits, std::size_t trials) {
-  using boost::math::binomial_distribution;
-  const auto n = static_cast<double>(trials);
-  const auto k = static_cast<double>(hits);
-  constexpr double tail = 0.025;
-  return {{"count", hits},
-          {"of", trials},
-          {"low_95", binomial_distribution<>::find_lower_bound_on_p(n, k, tail)},
-          {"high_95", binomial_distribution<>::find_upper_bound_on_p(n, k, tail)}};
-}
-
-nlohmann::ordered_json summary_of(const std::vector<World>& worlds) {
-  nlohmann::ordered_json json;
-  for (const TeamTrial& trial : trials_of(0)) {
-    std::size_t count = 0, failed = 0, joined = 0, wrong = 0;
-    int merged = 0, merged_wrong = 0;
-    std::vector<double> errors_m;
-    for (const World& world : worlds) {
-      if (world.trial.name != trial.name) continue;
-      ++count;
-      failed += world.verdict.failed ? 1 : 0;
-      joined += world.verdict.joined ? 1 : 0;
-      wrong += world.verdict.wrong ? 1 : 0;
-      merged += world.verdict.merged;
-      merged_wrong += world.verdict.merged_wrong;
-      if (world.verdict.joined && !world.verdict.wrong) errors_m.push_back(world.verdict.error_m);
-    }
-    nlohmann::ordered_json& one = json[trial.name];
-    one["failed"] = failed;
-    one["joined"] = share_of(joined, count);
-    one["false"] = share_of(wrong, count);
-    one["landmarks_merged"] = merged;
-    one["landmarks_merged_wrong"] = merged_wrong;
-    if (errors_m.empty()) continue;
-    std::sort(errors_m.begin(), errors_m.end());
-    one["median_error_m"] = errors_m[errors_m.size() / 2];
-    one["max_error_m"] = errors_m.back();
-  }
-  return json;
-}
-
-void print(const nlohmann::ordered_json& summary) {
-  for (const auto& [name, figures] : summary.items()) {
-    const auto& joined = figures["joined"];
-    const auto& wrong = figures["false"];
-    std::printf("%-8s joined %zu of %zu [%.1f, %.1f] %%, falsely %zu (at most %.2f %%)", name.c_str(),
-                joined["count"].get<std::size_t>(), joined["of"].get<std::size_t>(),
-                100.0 * joined["low_95"].get<double>(), 100.0 * joined["high_95"].get<double>(),
-                wrong["count"].get<std::size_t>(), 100.0 * wrong["high_95"].get<double>());
-    if (figures.contains("median_error_m")) {
-      std::printf("; error median %.3f m, max %.3f m", figures["median_error_m"].get<double>(),
-                  figures["max_error_m"].get<double>());
-    }
-    if (figures["failed"] > 0) std::printf("; failed %zu", figures["failed"].get<std::size_t>());
-    std::printf("; landmarks merged %d, of them wrongly %d\n", figures["landmarks_merged"].get<int>(),
-                figures["landmarks_merged_wrong"].get<int>());
-  }
-}
 
 void make_folder(const TeamCampaign& campaign) {
   namespace fs = std::filesystem;
@@ -119,8 +28,8 @@ void make_folder(const TeamCampaign& campaign) {
   throw core::InputError(campaign.out + ": the folder is not empty; choose another --out, or --overwrite");
 }
 
-std::vector<World> worlds_of(const TeamCampaign& campaign) {
-  std::vector<World> worlds;
+std::vector<TeamWorld> worlds_of(const TeamCampaign& campaign) {
+  std::vector<TeamWorld> worlds;
   for (std::uint64_t run = 0; run < campaign.runs; ++run) {
     const std::uint64_t seed = campaign.first_seed + run;
     for (const TeamTrial& trial : trials_of(seed)) worlds.push_back({seed, trial, {}});
@@ -128,29 +37,90 @@ std::vector<World> worlds_of(const TeamCampaign& campaign) {
   return worlds;
 }
 
+Json manifest_of(const TeamCampaign& campaign) {
+  return {{"format", campaign_format},
+          {"version", core::version()},
+          {"commit", core::commit()},
+          {"scenario", team_scenario},
+          {"config", Json::array()},
+          {"seeds", Json::array({Json::array({campaign.first_seed, campaign.first_seed + campaign.runs - 1})})}};
+}
+
+void write_summary(const std::vector<TeamWorld>& worlds, const std::string& out) {
+  const Json summary = team_campaign_summary(worlds);
+  files::write_whole_file(out + '/' + summary_name, summary.dump(2) + '\n');
+  print_team_campaign(summary);
+}
+
+/// The worlds of a part, all of those that its manifest promises.
+std::vector<TeamWorld> whole_part(const std::string& part, const Json& manifest) {
+  std::vector<TeamWorld> worlds = read_team_rows(part);
+  std::map<std::uint64_t, std::size_t> driven;
+  for (const TeamWorld& world : worlds) ++driven[world.seed];
+  for (const auto& [first, last] : seed_ranges(manifest)) {
+    for (std::uint64_t seed = first; seed <= last; ++seed) {
+      if (driven[seed] == trials_of(seed).size()) continue;
+      throw core::InputError(part + ": not all worlds of its seeds were driven, the first seed is " +
+                             std::to_string(seed) + "; give the command that began it again, with --overwrite");
+    }
+  }
+  return worlds;
+}
+
 }  // namespace
+
+void merge_team_campaigns(const std::vector<std::string>& parts, const std::string& out) {
+  Json merged;
+  SeedRanges seeds;
+  std::vector<TeamWorld> worlds;
+  std::map<std::uint64_t, std::string> part_of;
+  for (const std::string& part : parts) {
+    const Json manifest = campaign_manifest(part);
+    if (merged.is_null()) merged = manifest;
+    const std::string difference = first_difference(manifest, merged);
+    if (!difference.empty()) {
+      throw core::InputError(part + '/' + manifest_name + ": another campaign than the first part: " + difference +
+                             " in the first part");
+    }
+    const SeedRanges ranges = seed_ranges(manifest);
+    seeds.insert(seeds.end(), ranges.begin(), ranges.end());
+    for (TeamWorld& world : whole_part(part, manifest)) {
+      const std::string& held = part_of.emplace(world.seed, part).first->second;
+      if (held != part) {
+        throw core::InputError(part + ": seed " + std::to_string(world.seed) + " is in " + held + ", too");
+      }
+      worlds.push_back(std::move(world));
+    }
+  }
+  std::stable_sort(worlds.begin(), worlds.end(),
+                   [](const TeamWorld& a, const TeamWorld& b) { return a.seed < b.seed; });
+  merged["seeds"] = fused(seeds);
+  std::filesystem::create_directories(out);
+  files::write_whole_file(out + '/' + manifest_name, merged.dump(2) + '\n');
+  files::write_whole_file(out + '/' + team_rows_name, team_columns + team_rows(worlds, 0, worlds.size()));
+  write_summary(worlds, out);
+}
 
 ExitCode run_team_campaign(const TeamCampaign& campaign) {
   make_folder(campaign);
-  std::vector<World> worlds = worlds_of(campaign);
+  std::vector<TeamWorld> worlds = worlds_of(campaign);
   core::WorkerPool workers(campaign.jobs);
   ProgressBar progress("driving", worlds.size(), campaign.quiet);
   const std::size_t batch = std::size_t{4} * campaign.jobs;
-  std::filesystem::remove(campaign.out + "/runs.csv");
-  files::AppendFile table(campaign.out + "/runs.csv");
-  table.append(columns);
+  files::write_whole_file(campaign.out + '/' + manifest_name, manifest_of(campaign).dump(2) + '\n');
+  std::filesystem::remove(campaign.out + '/' + team_rows_name);
+  files::AppendFile table(campaign.out + '/' + team_rows_name);
+  table.append(team_columns);
   for (std::size_t done = 0; done < worlds.size(); done += batch) {
     const std::size_t count = std::min(batch, worlds.size() - done);
     workers.for_each(count, [&](std::size_t i) {
-      World& world = worlds[done + i];
+      TeamWorld& world = worlds[done + i];
       world.verdict = judge_world(world.trial, world.seed);
     });
-    table.append(rows_of(worlds, done, count));
+    table.append(team_rows(worlds, done, count));
     progress.advance_to(done + count);
   }
-  const nlohmann::ordered_json summary = summary_of(worlds);
-  files::write_whole_file(campaign.out + "/summary.json", summary.dump(2) + '\n');
-  print(summary);
+  write_summary(worlds, campaign.out);
   return ExitCode::ok;
 }
 

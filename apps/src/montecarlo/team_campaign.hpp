@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "common/exit_code.hpp"
 
@@ -19,7 +20,13 @@ struct TeamCampaign {
   bool quiet = false;
 };
 
-/// Writes runs.csv, a row a world as they end, and summary.json with Clopper and Pearson's 95 % intervals; prints the summary.
+inline constexpr const char* team_scenario = "team";
+
+/// Writes manifest.json, runs.csv, a row a world as they end, and summary.json with Clopper and Pearson's 95 % intervals; prints the summary.
 ExitCode run_team_campaign(const TeamCampaign& campaign);
+
+/// One campaign of its parts: manifest, rows in order of seed, and the summary as if it had been driven at once. InputError for
+/// parts of other builds, a seed in two parts, and seeds of which not all worlds were driven.
+void merge_team_campaigns(const std::vector<std::string>& parts, const std::string& out);
 
 }  // namespace helixnav::apps

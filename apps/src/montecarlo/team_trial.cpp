@@ -102,6 +102,7 @@ TeamVerdict judge_world(const TeamTrial& trial, std::uint64_t seed) {
   task.recording = sim::simulate_team(trial.world, seed);
   task.unknown_starts = true;
   task.known_association = false;
+  task.own_names = true;
   task.quiet = true;
   task.options.join.by_names = false;
   task.options.join.by_sightings = false;

@@ -45,6 +45,10 @@ void add_plaza(CLI::App& command, Settings& settings) {
 void add_mrclam(CLI::App& command, logs::MrclamSettings& mrclam) {
   add_number(command, "--mrclam.sigma_range_m", mrclam.sigma_range_m, 1e-3, 100.0, "Noise of a range");
   add_number(command, "--mrclam.sigma_bearing_rad", mrclam.sigma_bearing_rad, 1e-4, 1.0, "Noise of a bearing");
+  add_number(
+      command, "--mrclam.looks_as_one", mrclam.looks_as_one, 1.0, 1e3,
+      "Looks in a row that say what one would: both noises are that of all of them, and landmarks without a name "
+      "are told apart by that of one");
   add_number(command, "--mrclam.sigma_speed", mrclam.sigma_speed_m_per_sqrt_s, 1e-4, 10.0,
              "Noise along the way of a second under command [m]");
   add_number(command, "--mrclam.sigma_side", mrclam.sigma_side_m_per_sqrt_s, 1e-4, 10.0,

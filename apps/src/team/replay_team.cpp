@@ -21,10 +21,11 @@ namespace {
 
 void choose(bool unknown_starts, const RunOptions& run, const Settings& settings, TeamTask& task) {
   task.unknown_starts = unknown_starts;
+  task.options.looks_as_one = task.recording.looks_as_one;
   task.known_association = !settings.unknown_association;
   task.quiet = run.quiet;
   task.options.join.by_names = task.known_association;
-  task.options.join.by_constellation = !task.known_association;
+  task.options.join.by_constellation = task.options.join.by_place = !task.known_association;
 }
 
 ExitCode navigate(const TeamTask& task, runs::RunManifest manifest, const RunOptions& run, const std::string& config) {

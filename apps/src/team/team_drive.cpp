@@ -105,7 +105,7 @@ TeamDrive drive_team(const TeamTask& task) {
   TeamDrive drive{std::vector<TeamDrive::Robot>(members.size()), make_team(task), 0.0};
   std::vector<int> first_component;
   for (std::size_t r = 0; r < members.size(); ++r) first_component.push_back(drive.team.component(static_cast<int>(r)));
-  std::vector<OwnNames> own(task.known_association ? 0 : members.size());
+  std::vector<OwnNames> own(task.own_names ? members.size() : 0);
   std::vector<core::Nanoseconds> last_sighting_ns(members.size(), -1);
   const std::vector<Fed> all = in_order(task.recording);
   ProgressBar progress("navigating", all.size(), task.quiet);
@@ -121,7 +121,7 @@ TeamDrive drive_team(const TeamTask& task) {
     }
     const core::Event& event = member.recording.events[fed.index];
     std::vector<std::int64_t> names;
-    if (!task.known_association) names = own[r].take(event);
+    if (task.own_names) names = own[r].take(event);
     if (task.known_association && fed.kind == Fed::scan) names = member.recording.labels[fed.step];
     if (fed.kind == Fed::scan) drive.robots[r].names.push_back(names);
     std::optional<core::StepReport> report = drive.team.take(fed.robot, event, names);

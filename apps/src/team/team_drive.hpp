@@ -30,6 +30,7 @@ struct TeamTask {
   core::TeamRecording recording;
   bool unknown_starts = false;
   bool known_association = true;
+  bool own_names = false;  ///< each robot tells its own landmarks apart by a navigator of its own, and no other's
   team::TeamOptions options;
   bool quiet = false;
 };

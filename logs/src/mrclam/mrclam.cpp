@@ -225,6 +225,7 @@ core::TeamRecording read_mrclam(const fs::path& path, const std::vector<int>& ro
   team.name = (path.has_filename() ? path : path.parent_path()).filename().string();
   team.true_landmarks = tables.landmarks;
   team.starts_known = true;
+  team.looks_as_one = settings.looks_as_one;
   for (const int number : chosen) team.robots.push_back(member_of(tables, chosen, number, settings, team));
   return team;
 }

@@ -23,8 +23,9 @@ struct TeamRecording {
   std::vector<TeamMember> robots;
   bool starts_known = false;                 ///< Recording::start of each robot is in the frame of the truth
   std::vector<TrueLandmark> true_landmarks;  ///< frame of the truth; also where no robot has a true pose
-  int misread = 0;                           ///< sightings of nobody knows whom, left out
-  std::vector<std::string> remarks;          ///< as Recording::remarks
+  double looks_as_one = 1.0;         ///< so many looks in a row say what one would; the noise is that of all of them
+  int misread = 0;                   ///< sightings of nobody knows whom, left out
+  std::vector<std::string> remarks;  ///< as Recording::remarks
 };
 
 }  // namespace helixnav::core

@@ -12,6 +12,7 @@ namespace helixnav::logs {
 struct MrclamSettings {
   double sigma_range_m = 0.40;
   double sigma_bearing_rad = 0.05;
+  double looks_as_one = 13.0;  ///< looks in a row that say what one would; both noises are that of all of them
   double sigma_speed_m_per_sqrt_s = 0.04;   ///< along, while commanded to move
   double sigma_side_m_per_sqrt_s = 0.01;    ///< across, likewise
   double sigma_turn_rad_per_sqrt_s = 0.10;  ///< heading, likewise

@@ -9,6 +9,7 @@
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/robot_sighting.hpp"
 #include "helixnav/core/step_report.hpp"
+#include "helixnav/team/same_landmarks.hpp"
 #include "helixnav/team/team_join.hpp"
 #include "helixnav/team/team_options.hpp"
 
@@ -46,7 +47,9 @@ class Team {
   Team& operator=(Team&&) noexcept;
 
   /// Motion, or a scan with a name for each observation, below 0: none. With JoinOptions::by_names a name means the same
-  /// landmark to all robots, else to this one. The report of a scan, nothing for motion and for a scan that came late.
+  /// landmark to all robots, else to this one. Without names at all the observations of a scan are associated with the
+  /// landmarks of the robot's component, whichever robot began them (optimal assignment by likelihood ratio), or begin new
+  /// ones. The report of a scan, nothing for motion and for a scan that came late.
   std::optional<core::StepReport> take(int robot, const core::Event& event,
                                        const std::vector<std::int64_t>& names = {});
 
@@ -68,9 +71,14 @@ class Team {
   core::LandmarkId landmark_of(int robot, std::int64_t name) const;
   const std::vector<TeamJoin>& joins() const;
   std::vector<JudgedSighting> sightings() const;
+  /// Landmarks that were made one by where they stand (JoinOptions::by_place).
+  const std::vector<SameLandmarks>& same_landmarks() const;
 
   /// Takes a join back, and everything that came of it; the same two are not joined by the same kind of evidence again.
   void remove_join(std::size_t join);
+
+  /// Makes two landmarks two again, with all that came of their being one; these two are not made one by their places again.
+  void remove_same(std::size_t same);
 
  private:
   struct Book;

@@ -14,6 +14,7 @@ struct JoinOptions {
   double max_sigma_m = 0.5;     ///< of the joined robots' relative position, else it is too early for a join by names
   double max_sigma_rad = 0.1;   ///< of their relative heading, likewise
   int mature_observations = 5;  ///< of a landmark that may speak for a join
+  bool by_place = false;        ///< landmarks of one component that stand in one place become one (SameLandmarks)
 };
 
 struct TeamOptions {
@@ -22,6 +23,9 @@ struct TeamOptions {
   double clone_sigma_m = 0.005;   ///< a sighting opens a pose of the graph where the motion since the last one is as
   double clone_sigma_rad = 0.01;  ///< uncertain as this
   double gate_probability = 0.999999;  ///< of the innovation of a sighting
+  double looks_as_one =
+      1.0;  ///< so many looks at a landmark in a row say what one would, and the noise given is that of
+            ///< all of them: scans without names are told apart by the noise of one look, R divided by it
   JoinOptions join;
 };
 

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "associate_scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "helixnav/association/innovation_problem.hpp"
+#include "helixnav/core/chi2.hpp"
+#include "helixnav/supervisor/navigator_options.hpp"
+
+namespace helixnav::team {
+namespace {
+
+/// The scan with the noise of one look, by which things are told apart.
+core::Scan as_one_look(const core::Scan& scan, double looks_as_one) {
+  core::Scan look = scan;
+  for (core::Observation& observation : look.observations) observation.R /= looks_as_one;
+  return look;
+}
+
+/// Places in the filter of landmarks that the robot may see, by a bound on the distance.
+std::vector<std::size_t> within_reach(std::size_t slot, const core::Scan& look, double gate,
+                                      const JointFilter& filter) {
+  const core::PoseGaussian pose = filter.pose(slot);
+  double range_m = 0.0;
+  double turn_m2 = 0.0;
+  double noise_m2 = 0.0;
+  for (const core::Observation& observation : look.observations) {
+    const core::LocatedLandmark located = core::locate_landmark(observation, core::Pose2(), look.T_robot_sensor);
+    range_m = std::max(range_m, located.point_world_m.norm());
+    turn_m2 = std::max(turn_m2, located.point_world_m.squaredNorm() * pose.covariance(2, 2));
+    noise_m2 = std::max(noise_m2, (located.G_z * observation.R * located.G_z.transpose()).trace());
+  }
+  const double own_m2 = pose.covariance.topLeftCorner<2, 2>().trace() + turn_m2 + noise_m2;
+  std::vector<std::size_t> near;
+  for (std::size_t i = 0; i < filter.ids().size(); ++i) {
+    const double distance_m = (filter.points_m()[i] - pose.mean.position_m()).norm();
+    const double spread_m2 = 2.0 * (own_m2 + filter.variance_m2(i));  // correlations at their worst
+    if (distance_m <= range_m + std::sqrt(gate * spread_m2)) near.push_back(i);
+  }
+  return near;
+}
+
+double noise_m2(const core::Observation& observation, const core::Pose2& T_robot_sensor) {
+  const core::LocatedLandmark located = core::locate_landmark(observation, core::Pose2(), T_robot_sensor);
+  return (located.G_z * observation.R * located.G_z.transpose()).trace();
+}
+
+/// Takes matches back that may as well be of another landmark, which the scan has not found elsewhere: an odds of 20 is
+/// asked for. Which of two landmarks it is makes no difference where the noise given is wider than they are apart.
+void leave_doubtful(const core::Scan& scan, const association::InnovationProblem& problem,
+                    const core::JointGaussian& joint, association::Assignment& assignment) {
+  const double needed_nats = std::log(20.0);
+  std::vector<bool> found(problem.ids.size(), false);
+  for (const int pair : assignment.pairs) {
+    found[static_cast<std::size_t>(problem.pairs[static_cast<std::size_t>(pair)].candidate)] = true;
+  }
+  const auto is_rival = [&](const association::GatedPair& own, const association::GatedPair& other) {
+    const auto a = static_cast<std::size_t>(own.candidate);
+    const auto b = static_cast<std::size_t>(other.candidate);
+    if (found[b] || own.log_likelihood - other.log_likelihood >= needed_nats) return false;
+    const double apart_m2 = (joint.points_m[a] - joint.points_m[b]).squaredNorm();
+    return apart_m2 > noise_m2(scan.observations[static_cast<std::size_t>(own.observation)], scan.T_robot_sensor);
+  };
+  for (const int pair : assignment.pairs) {
+    const association::GatedPair& own = problem.pairs[static_cast<std::size_t>(pair)];
+    const association::GatedObservation& of = problem.observations[static_cast<std::size_t>(own.observation)];
+    const bool doubtful = std::any_of(problem.pairs.begin() + of.begin, problem.pairs.begin() + of.end,
+                                      [&](const association::GatedPair& other) { return is_rival(own, other); });
+    association::ObservationOutcome& outcome = assignment.observations[static_cast<std::size_t>(own.observation)];
+    if (doubtful) outcome.outcome = association::Outcome::ambiguous;
+  }
+}
+
+}  // namespace
+
+association::Assignment associate_scan(std::size_t robot, const core::Scan& scan, const TeamOptions& options,
+                                       const State& state) {
+  const supervisor::NavigatorOptions as_navigator;
+  const JointFilter& filter = state.components[state.robots[robot].component].filter;
+  const std::size_t slot = state.robots[robot].slot;
+  const core::Scan look = as_one_look(scan, options.looks_as_one);
+  const double gate = core::chi2_quantile(as_navigator.gates.new_probability, 2);
+  const core::JointGaussian joint = filter.joint(slot, within_reach(slot, look, gate, filter));
+  const association::InnovationProblem problem = association::make_innovation_problem(joint, look, as_navigator.gates);
+  association::Options how = as_navigator.association;
+  how.extraneous = association::density_in_view(look, as_navigator.extraneous_per_scan, how.extraneous);
+  association::Assignment assignment = association::associate(as_navigator.method, problem, how);
+  leave_doubtful(scan, problem, joint, assignment);
+  return assignment;
+}
+
+}  // namespace helixnav::team

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "helixnav/team/team_options.hpp"
+#include "state.hpp"
+
+namespace helixnav::team {
+
+/// Landmarks that were made two again, by what began them.
+using BirthKey = std::tuple<std::size_t, core::Nanoseconds, int>;
+using RefusedSame = std::set<std::pair<BirthKey, BirthKey>>;
+
+BirthKey key_of(const Birth& birth);
+
+/// Makes landmarks of a solved component one that stand in one place, as far as χ² of least squares with them as one does
+/// not object; no change otherwise. Robots that map the same ground begin the same landmarks more than once, before they
+/// are joined or while their poses are not known well.
+void find_same(std::size_t component, core::Nanoseconds t_ns, const TeamOptions& options, const RefusedSame& refused,
+               State& state);
+
+}  // namespace helixnav::team
