@@ -119,7 +119,8 @@ int main(int count, char** arguments) {
   }
   const auto seed = static_cast<std::uint64_t>(std::atoll(arguments[1]));
   const int questions = count > 2 ? std::atoi(arguments[2]) : 100;
-  std::printf("   N change kind    | closed wrong best right  ms | CLIPPER right, pairs at least, pairs where wrong, ms\n");
+  std::printf(
+      "   N change kind    | closed wrong best right  ms | CLIPPER right, pairs at least, pairs where wrong, ms\n");
   for (const std::size_t landmarks : {100U, 200U, 365U}) {
     for (const Cell& cell : {Cell{landmarks, 0.3, false}, Cell{landmarks, 0.5, false}, Cell{landmarks, 0.3, true}}) {
       const Tally t = run(cell, questions, seed);
