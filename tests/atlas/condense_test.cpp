@@ -112,6 +112,29 @@ TEST(Condense, KeepsThePathOfTheDriveAndAllLandmarks) {
   }
 }
 
+/// Between two condensed phases a street without landmarks hung on nothing, and nothing could be solved any more.
+TEST(Condense, LeavesNoPhaseThatNothingHolds) {
+  testing::SmallDriveOptions options;
+  options.rounds = 8;
+  options.steps = 8 * 49;
+  options.steps_per_phase = 4;
+  options.noise = 0.0;
+  options.bare_rad = 3.5;
+  const testing::SmallDrive drive = testing::make_small_drive(35, options);
+  const Atlas whole = testing::driven(drive, Options());
+  const Atlas condensed = condensed_drive(drive, 1);
+  EXPECT_GT(condensed.size().condensed, 40);
+  const int phases = condensed.phase_count();
+  EXPECT_EQ(phases, whole.phase_count());
+  for (int k = 0; k < phases; ++k) {
+    const auto end = static_cast<std::size_t>(drive.pose_of_clone[static_cast<std::size_t>(k) + 1]);
+    EXPECT_LT((condensed.poses_of(k).back().position_m() - drive.truth[end].position_m()).norm(), 1e-6) << k;
+  }
+  const Eigen::MatrixXd lost =
+      condensed.joint(all_of(whole)).covariance - whole.joint(all_of(whole)).covariance;
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(lost).eigenvalues()[0], -1e-8 * lost.trace());
+}
+
 /// NEES of three landmarks and the last pose, in the map frame. Bands leave with probability 1e-4; conservative covariances may bring
 /// the sum below, but not to half.
 TEST(CondenseCampaign, LeavesErrorsWithinTheirCovariances) {

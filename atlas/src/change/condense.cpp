@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "change/floating.hpp"
 #include "change/take_in.hpp"
 #include "helixnav/atlas/atlas.hpp"
 #include "solve/settle.hpp"
@@ -77,12 +78,35 @@ bool has_fix(const State& state, int phase) {
   return std::any_of(parts.begin(), parts.end(), [](const Part& part) { return part.fix != nullptr; });
 }
 
-bool condense_phase(State& state, int phase) {
+/// A run that floats and can go without a loss: what it has seen, no other phase has or needs.
+bool can_be_dropped(const State& state, const Run& run, int end) {
+  for (int phase = run.first; phase <= run.last; ++phase) {
+    if (phase == 0 || phase >= end || state.leaf(phase).revisits >= 0 || has_fix(state, phase)) return false;
+    for (const int v : landmarks_of(state.leaf(phase))) {
+      const std::vector<int>& phases = *state.phases_of[State::index(v)];
+      const auto is_inside = [&](int other) { return other >= run.first && other <= run.last; };
+      if (std::all_of(phases.begin(), phases.end(), is_inside)) return false;
+    }
+  }
+  return true;
+}
+
+bool condense_phase(State& state, int phase, int end) {
   const int host = host_for(state, phase);
   if (host < 0 || !leaves_all_landmarks(state, phase, host)) return false;
+  const std::vector<Run> floating = floating_without(state, phase);
+  if (!std::all_of(floating.begin(), floating.end(), [&](const Run& run) { return can_be_dropped(state, run, end); })) {
+    return false;
+  }
   bring_ground_along(state, phase);
+  for (const Run& run : floating) {
+    for (int one = run.first; one <= run.last; ++one) bring_ground_along(state, one);
+  }
   if (!take_in(state, host, phase)) return false;
   take_out(state, phase, host);
+  for (const Run& run : floating) {
+    for (int one = run.first; one <= run.last; ++one) take_out(state, one, host);
+  }
   return true;
 }
 
@@ -98,7 +122,7 @@ bool condense_ground(State& state, int phase, int end) {
   for (const int one : ground) {
     const bool stays =
         one == 0 || one >= end || state.leaf(one).revisits >= 0 || (has_fix(state, one) && fixes <= most);
-    if (!stays && condense_phase(state, one)) return true;
+    if (!stays && condense_phase(state, one, end)) return true;
   }
   return false;
 }
