@@ -150,6 +150,19 @@ TEST_F(CutRun, ByItsLimitOfMemoryIsClosedProperly) {
   EXPECT_EQ(nlohmann::json::parse(evaluation.out).at("steps"), 1);
 }
 
+TEST_F(CutRun, ByALimitOfMemoryIsForReplayAndSimulateOnly) {
+  const fs::path log = folder_.write("circle.txt", circle_graph(30));
+  using Words = std::vector<std::string>;
+  for (const Words& words : {Words{"stream", "--vehicle", "generic"}, Words{"montecarlo", "circuit"},
+                             Words{"associate", log}, Words{"calibrate", log}}) {
+    Words limited = words;
+    limited.insert(limited.end(), {"--map.memory_mb", "100"});
+    const Outcome outcome = run(limited);
+    EXPECT_EQ(outcome.exit_code, 2) << words.front();
+    EXPECT_NE(outcome.err.find("--map.memory_mb: is for replay and simulate"), std::string::npos) << outcome.err;
+  }
+}
+
 TEST_F(CutRun, ByAKillIsReadUpToItsLastCompleteStep) {
   const Outcome outcome = cut_by(SIGKILL);
   EXPECT_EQ(outcome.signal, SIGKILL);
