@@ -3,6 +3,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "helixnav/core/wide_cholesky.hpp"
+
 namespace helixnav::core {
 namespace {
 
@@ -34,8 +36,7 @@ bool is_symmetric_positive_semidefinite(const Eigen::Ref<const Eigen::MatrixXd>&
   if (shift == 0.0) return true;  // the zero matrix
   Eigen::MatrixXd shifted = matrix;
   shifted.diagonal().array() += shift;
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> llt(shifted);  // in place
-  return llt.info() == Eigen::Success && shifted.allFinite();
+  return eliminate_first(shifted, shifted.rows()) && shifted.allFinite();
 }
 
 }  // namespace helixnav::core

@@ -100,20 +100,24 @@ void check(const core::JointGaussian& joint, const Bases& bases) {
   }
 }
 
-/// J·M for the Jacobian J of the change of frame; M has the rows of the joint state.
+/// J·M for the Jacobian J of the change of frame; M has the rows of the joint state. Column after column, as they lie in memory.
 Eigen::MatrixXd apply_jacobian(const core::JointGaussian& joint, const Bases& bases,
                                const core::JointGaussian& relative, const Eigen::MatrixXd& M) {
   const Matrix2d R_base_world = core::rotation(-base_frame(joint, bases).heading_rad);
-  const auto of_a = M.middleRows<2>(3 + 2 * bases.a);
-  const Eigen::RowVectorXd dalpha = heading_lever(joint, bases).transpose() * (M.middleRows<2>(3 + 2 * bases.b) - of_a);
+  const Vector2d lever = heading_lever(joint, bases);
   Eigen::MatrixXd out(M.rows(), M.cols());
-  out.topRows<2>().noalias() = R_base_world * (M.topRows<2>() - of_a);
-  out.topRows<2>().noalias() -= turned_left(relative.pose.position_m()) * dalpha;
-  out.row(2) = M.row(2) - dalpha;
-  for (int i = 0; i < landmark_count(joint); ++i) {
-    auto rows = out.middleRows<2>(3 + 2 * i);
-    rows.noalias() = R_base_world * (M.middleRows<2>(3 + 2 * i) - of_a);
-    rows.noalias() -= turned_left(point(relative, i)) * dalpha;
+  for (Eigen::Index column = 0; column < M.cols(); ++column) {
+    const auto from = M.col(column);
+    auto to = out.col(column);
+    const Vector2d of_a = from.segment<2>(3 + 2 * bases.a);
+    const double dalpha = lever.dot(from.segment<2>(3 + 2 * bases.b) - of_a);
+    const auto carry = [&](Eigen::Index row, const Vector2d& point_m) {
+      const Vector2d moved = R_base_world * (from.segment<2>(row) - of_a);
+      to.segment<2>(row) = moved - turned_left(point_m) * dalpha;
+    };
+    carry(0, relative.pose.position_m());
+    to(2) = from(2) - dalpha;
+    for (int i = 0; i < landmark_count(joint); ++i) carry(3 + 2 * i, point(relative, i));
   }
   return out;
 }

@@ -9,6 +9,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/nearest_name.hpp"
 #include "settings/config_file.hpp"
+#include "settings/memory_limit.hpp"
 #include "settings/vehicle_option.hpp"
 
 namespace helixnav::python {
@@ -60,6 +61,7 @@ Configuration configuration_of(const py::dict& options, const std::string& vehic
   try {
     app.parse(std::move(words));
     apps::check_filter(app, apps::options_given(app), configuration.settings.fastslam);
+    apps::refuse_memory_limit(configuration.settings, "a process of Python is its user's");
     apps::apply_vehicle(app, vehicle, log, configuration.settings);
   } catch (const CLI::ParseError& error) {
     throw core::InputError(error.what());

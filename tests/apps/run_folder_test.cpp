@@ -133,6 +133,36 @@ TEST_F(CutRun, ByAnInterruptEndsAfterItsStepAndIsClosedProperly) {
   expect_readable_up_to_the_last_step();
 }
 
+TEST_F(CutRun, ByItsLimitOfMemoryIsClosedProperly) {
+  const fs::path log = folder_.write("circle.txt", circle_graph(300));
+  const auto with = [&](const std::string& memory_mb) {
+    return run({"replay", log, "--association", "known", "--map.memory_mb", memory_mb, "--out", out(memory_mb)});
+  };
+  const Outcome enough = with("100000");
+  EXPECT_EQ(enough.exit_code, 0) << enough.err;
+  const Outcome outcome = with("1");  // less than any process has: after the first step
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.err.find("more than the 1 of --map.memory_mb"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(fs::exists(out("1") / "report.html"));
+  EXPECT_TRUE(fs::exists(out("1") / "map.csv"));
+  const Outcome evaluation = run({"evaluate", out("1"), "--json"});
+  ASSERT_EQ(evaluation.exit_code, 0) << evaluation.err;
+  EXPECT_EQ(nlohmann::json::parse(evaluation.out).at("steps"), 1);
+}
+
+TEST_F(CutRun, ByALimitOfMemoryIsForReplayAndSimulateOnly) {
+  const fs::path log = folder_.write("circle.txt", circle_graph(30));
+  using Words = std::vector<std::string>;
+  for (const Words& words : {Words{"stream", "--vehicle", "generic"}, Words{"montecarlo", "circuit"},
+                             Words{"associate", log}, Words{"calibrate", log}}) {
+    Words limited = words;
+    limited.insert(limited.end(), {"--map.memory_mb", "100"});
+    const Outcome outcome = run(limited);
+    EXPECT_EQ(outcome.exit_code, 2) << words.front();
+    EXPECT_NE(outcome.err.find("--map.memory_mb: is for replay and simulate"), std::string::npos) << outcome.err;
+  }
+}
+
 TEST_F(CutRun, ByAKillIsReadUpToItsLastCompleteStep) {
   const Outcome outcome = cut_by(SIGKILL);
   EXPECT_EQ(outcome.signal, SIGKILL);

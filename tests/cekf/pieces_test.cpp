@@ -8,8 +8,6 @@
 #include "helixnav/cekf/passive_covariance.hpp"
 #include "helixnav/cekf/reserved_matrix.hpp"
 #include "helixnav/core/random.hpp"
-#include "matrices/add_outer.hpp"
-#include "matrices/packed_product.hpp"
 
 namespace helixnav::cekf {
 namespace {
@@ -17,35 +15,6 @@ namespace {
 Eigen::MatrixXd random_matrix(core::RandomStream& random, int rows, int cols) {
   return Eigen::MatrixXd::NullaryExpr(rows, cols, [&] { return random.normal(); });
 }
-
-class AddOuter : public testing::TestWithParam<Instructions> {};
-
-TEST_P(AddOuter, EqualsThePlainProductForAnyShape) {
-  core::RandomStream random(7);
-  for (const int rows : {8, 16, 24, 88}) {
-    for (const int cols : {1, 2, 3, 7, 8, 19, 83}) {
-      for (const int depth : {1, 2, 18, 131}) {
-        const Eigen::MatrixXd A = random_matrix(random, rows + 8, depth);
-        const Eigen::MatrixXd B = random_matrix(random, cols + 3, depth);
-        Eigen::MatrixXd C = random_matrix(random, rows + 16, cols);
-        Eigen::MatrixXd expected = C;
-        expected.topRows(rows) += A.topRows(rows) * B.topRows(cols).transpose();
-        add_outer_with(GetParam(), C.data(), C.outerStride(), rows, cols, A.data(), A.outerStride(), B.data(),
-                       B.outerStride(), depth);
-        ASSERT_LE((C - expected).cwiseAbs().maxCoeff(), 1e-12) << rows << ' ' << cols << ' ' << depth;
-      }
-    }
-  }
-}
-
-/// A processor is tested on what it has; on what it lacks there is nothing to run.
-std::vector<Instructions> supported() {
-  std::vector<Instructions> all{Instructions::baseline, Instructions::avx2, Instructions::avx512};
-  all.erase(std::remove_if(all.begin(), all.end(), [](Instructions i) { return !is_supported(i); }), all.end());
-  return all;
-}
-
-INSTANTIATE_TEST_SUITE_P(SupportedInstructions, AddOuter, testing::ValuesIn(supported()));
 
 TEST(ReservedMatrix, KeepsWhatIsCommonAndZeroesTheRest) {
   ReservedMatrix matrix(5, 4);
@@ -63,22 +32,6 @@ TEST(ReservedMatrix, KeepsWhatIsCommonAndZeroesTheRest) {
   EXPECT_EQ(copy.view().sum(), 2.0 * 6);
   matrix = copy;
   EXPECT_EQ(matrix.view(), copy.view());
-}
-
-TEST(Panels, MultiplyBitForBitLikeTheMatricesTheyWereCopiedFrom) {
-  core::RandomStream random(2);
-  for (const Eigen::Index rows : {1, 8, 16, 21, 150}) {
-    const ReservedMatrix zero(rows, 13);
-    ReservedMatrix A(rows, 37);
-    A.view() = random_matrix(random, rows, 37);
-    const Eigen::MatrixXd B = random_matrix(random, 13, 37);
-    ReservedMatrix direct = zero;
-    ReservedMatrix packed = zero;
-    add_outer(direct.col(0), direct.stride(), direct.padded_rows(), 13, A.col(0), A.stride(), B.data(), B.outerStride(),
-              37);
-    add_product(packed.col(0), packed.stride(), Panels(A.view(), left_width), Panels(B, right_width));
-    EXPECT_EQ(packed.view(), direct.view()) << rows << " rows";
-  }
 }
 
 TEST(PassiveCovariance, AddsAProductAndReadsItBack) {

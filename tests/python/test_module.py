@@ -189,6 +189,8 @@ def test_options_are_those_of_a_configuration_file():
     assert "particles = 300" in log.config and "enabled = false" in log.config
     with pytest.raises(helixnav.InputError, match="search.particles"):
         helixnav.simulate("circuit", options={"search.particels": 300})
+    with pytest.raises(helixnav.InputError, match="is for replay and simulate"):
+        helixnav.Navigator(options={"map.memory_mb": 100})
     with pytest.raises(helixnav.InputError, match="search.particles"):
         helixnav.Navigator(options={"search.particles": "many"})
     with pytest.raises(helixnav.InputError, match="landmarks.tentative_patience_m"):

@@ -24,6 +24,7 @@
 #include "helixnav/sim/ihgr_circle.hpp"
 #include "helixnav/sim/simulate.hpp"
 #include "settings/config_file.hpp"
+#include "settings/memory_limit.hpp"
 #include "settings/settings.hpp"
 #include "settings/validators.hpp"
 
@@ -127,6 +128,7 @@ ExitCode associate(CLI::App& command, AssociateJob& job) {
   const GivenOptions given = options_given(command);
   if (!job.config.empty()) apply_config_file(command, job.config);
   require_compressed_ekf(command, given, job.settings.fastslam, "associate compares methods of the compressed EKF");
+  refuse_memory_limit(job.settings, "associate compares whole drives");
   if (job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "has no part in comparing associations");
   catch_interrupts();
   return job.scan >= 0 ? show_scan(job) : compare(job);

@@ -15,6 +15,7 @@
 #include "helixnav/logs/shipped_vehicle.hpp"
 #include "settings/config_file.hpp"
 #include "settings/deprecated_keys.hpp"
+#include "settings/memory_limit.hpp"
 #include "settings/settings.hpp"
 #include "settings/vehicle_option.hpp"
 #include "vehicle_text.hpp"
@@ -90,6 +91,7 @@ ExitCode calibrate(CLI::App& command, CalibrateJob& job) {
   const GivenOptions given = options_given(command);
   if (!job.config.empty()) apply_config_file(command, job.config);
   require_compressed_ekf(command, given, job.settings.fastslam, "calibrate judges noise by the compressed EKF");
+  refuse_memory_limit(job.settings, "calibrate judges whole drives");
   refuse_noise_beside_file(given);
   if (logs::is_mrclam(job.path)) throw core::InputError(job.path + ": a log of several robots; calibrate reads one");
   warn_of_deprecated_keys(command);

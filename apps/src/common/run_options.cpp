@@ -65,6 +65,7 @@ void fill_drive(Drive& drive, const RunOptions& options, const std::string& conf
 void choose_filter(Drive& drive, const Settings& settings) {
   drive.fastslam = settings.fastslam;
   drive.known_association = goes_by_identities(settings);
+  drive.memory_mb = settings.memory_mb;
 }
 
 }  // namespace helixnav::apps

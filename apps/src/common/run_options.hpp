@@ -35,7 +35,7 @@ void prepare_run(CLI::App& command, const RunOptions& options);
 /// Copies the options into the drive and begins its manifest; `config` is the configuration in force.
 void fill_drive(Drive& drive, const RunOptions& options, const std::string& config);
 
-/// The filter that the settings choose, and whether labels are identities.
+/// The filter that the settings choose, whether labels are identities, and how much memory there is.
 void choose_filter(Drive& drive, const Settings& settings);
 
 /// The words of this process's command line, for the manifest.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "drive.hpp"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -46,7 +48,14 @@ struct Driven {
   std::vector<double> step_us;          ///< of each scan that was fed
   std::map<std::string, int> closings;  ///< how many of each verdict
   std::string broken;                   ///< what of the mathematics broke, and where; the run ended there
+  double full_mb = 0.0;                 ///< of memory that were taken where the limit ended the run
 };
+
+/// Most that the process has had resident.
+double peak_memory_mb() {
+  rusage usage{};
+  return getrusage(RUSAGE_SELF, &usage) == 0 ? static_cast<double>(usage.ru_maxrss) / 1024.0 : 0.0;
+}
 
 void count_closings(const core::StepReport& report, Driven& driven) {
   for (const core::Decision& decision : report.decisions) {
@@ -83,6 +92,10 @@ Driven navigate(const Drive& job, Estimator& estimator, runs::RunWriter& writer,
     writer.write(*step, microseconds);
     recorder.add(*step, microseconds);
     if (recorder.wants_map()) recorder.add_map(estimator.sketch ? estimator.sketch() : estimator.map());
+    if (job.memory_mb > 0.0 && peak_memory_mb() > job.memory_mb) {
+      driven.full_mb = peak_memory_mb();
+      break;
+    }
   }
   driven.steps = static_cast<std::size_t>(loop.steps());
   return driven;
@@ -95,6 +108,14 @@ ExitCode verdict(const Drive& job, const Driven& driven, const runs::Run& run, c
     std::fprintf(stderr, "helixnav: %s\nhelixnav: map and report of what was navigated until then are written\n",
                  driven.broken.c_str());
     return ExitCode::numerical;
+  }
+  if (driven.full_mb > 0.0) {
+    std::fprintf(
+        stderr,
+        "helixnav: after %zu steps %.0f MB of memory are taken, more than the %.0f of --map.memory_mb; map and "
+        "report of what was navigated until then are written\n",
+        driven.steps, driven.full_mb, job.memory_mb);
+    return ExitCode::data;
   }
   if (interrupted()) {
     std::fprintf(stderr, "helixnav: interrupted after %zu steps; the run folder is complete up to there\n",
@@ -136,7 +157,7 @@ ExitCode drive(const Drive& job) {
     const auto withheld = std::count(job.withheld.begin(), job.withheld.end(), true);
     run.numbers.emplace_back("blackout.scans", static_cast<double>(withheld));
   }
-  const bool whole = !interrupted() && driven.broken.empty();
+  const bool whole = !interrupted() && driven.broken.empty() && driven.full_mb == 0.0;
   const ExitCode smoothed = job.smooth && whole ? smooth_drive(job, run) : ExitCode::ok;
   const evaluation::Evaluation evaluation = reports::finish_run(run, writer);
   std::fputs(reports::evaluation_text(evaluation).c_str(), stdout);

@@ -25,6 +25,7 @@ struct Drive {
   std::optional<EarlierSession> earlier;  ///< go on in its map
   bool known_association = false;         ///< use the recording's labels as identities
   std::vector<bool> withheld;             ///< [scan] not to be fed (blackout.hpp); empty: none is
+  double memory_mb = 0.0;                 ///< of the process, at which the drive ends; 0: no limit
   bool smooth = false;                    ///< afterwards, with the filter's own associations
   std::string out;
   bool overwrite = false;
@@ -34,7 +35,8 @@ struct Drive {
 };
 
 /// Runs it, prints the evaluation on stdout and where the report is. On SIGINT the run ends after the present step, its
-/// folder is closed properly and the code is `interrupted`.
+/// folder is closed properly and the code is `interrupted`. Where the process has taken `memory_mb` it ends likewise, with the code `data`:
+/// what the map, its joint covariance and the report are written from comes on top.
 ExitCode drive(const Drive& job);
 
 }  // namespace helixnav::apps

@@ -17,6 +17,7 @@
 #include "helixnav/sim/scenario.hpp"
 #include "merge_campaigns.hpp"
 #include "settings/config_file.hpp"
+#include "settings/memory_limit.hpp"
 #include "settings/scenario_settings.hpp"
 #include "settings/settings.hpp"
 #include "settings/validators.hpp"
@@ -72,6 +73,7 @@ ExitCode run(CLI::App& command, MonteCarloJob& job) {
   if (!job.config.empty()) apply_config_file(command, job.config);
   require_compressed_ekf(command, given, job.settings.fastslam,
                          "campaigns are of the compressed EKF; simulate takes it");
+  refuse_memory_limit(job.settings, "the runs of a campaign share the process");
   Campaign& campaign = job.campaign;
   campaign.scenario = scenario_of(job.scenario, job.scenario_settings);
   const core::FieldOfView& view = campaign.scenario.scanner.field_of_view;

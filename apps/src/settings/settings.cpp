@@ -54,6 +54,8 @@ void add_filter(CLI::App& command, Settings& settings) {
              "How many landmarks around the vehicle the filter of a larger map holds");
   add_number(command, "--map.most_in_filter", map.most, 50, 1'000'000,
              "Most that it holds where the vehicle may have drifted farther than that");
+  add_number(command, "--map.memory_mb", settings.memory_mb, 0.0, 1e9,
+             "Memory of the process at which replay and simulate end the drive, map and report written; 0: no limit");
 }
 
 void add_association(CLI::App& command, Settings& settings) {

@@ -30,6 +30,7 @@ struct Settings {
   double covariance_scale = 1.0;   ///< on the covariances that the log itself states or its sensor settings give
   double plaza_range_scale = 0.0;  ///< 0: estimate it from the log
   GpsSettings gps;
+  double memory_mb = 0.0;  ///< that a drive may take until it ends there; 0: any
 };
 
 /// Whether the filter chosen takes the labels of the log for identities.

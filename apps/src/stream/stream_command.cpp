@@ -9,6 +9,7 @@
 #include "common/run_options.hpp"
 #include "helixnav/core/version.hpp"
 #include "settings/config_file.hpp"
+#include "settings/memory_limit.hpp"
 #include "settings/vehicle_option.hpp"
 #include "stream.hpp"
 
@@ -26,6 +27,7 @@ ExitCode run_stream(CLI::App& command, StreamOptions& options) {
   prepare_run(command, options.run);
   StreamJob& job = options.job;
   require_compressed_ekf(command, given, job.settings.fastslam, "a stream is navigated by the compressed EKF");
+  refuse_memory_limit(job.settings, "a stream ends when its input does");
   if (job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "needs a whole log: a stream uses no fixes");
   apply_vehicle(command, options.vehicle, "", job.settings);
   job.out = options.run.out;

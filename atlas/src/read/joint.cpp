@@ -26,9 +26,9 @@ void for_lower_tiles(Index size, const Act& act) {
   }
 }
 
-/// The upper triangle becomes that below.
+/// The upper triangle becomes that below. P may have rows to spare.
 void mirror_lower(MatrixXd& P) {
-  for_lower_tiles(P.rows(), [&](const auto& rows, const auto& columns) {
+  for_lower_tiles(P.cols(), [&](const auto& rows, const auto& columns) {
     const MatrixXd lower = P(rows, columns);
     auto upper = P(columns, rows);
     if (rows.first() != columns.first()) {
@@ -66,7 +66,7 @@ class PathSolve {
 
   /// Covariance with rows and columns in the order of `variables`.
   MatrixXd covariance(const std::vector<int>& variables) {
-    P_.setZero(columns_, columns_);
+    P_.setZero(columns_ + spare_rows, columns_);
     solve(state_.root, 0.0);
     std::vector<Index> rows;
     for (const int v : variables) {
@@ -98,22 +98,16 @@ class PathSolve {
       below[c] = solve(node.child[c], turn_rad + node.front->child_turn_rad[c]);
     }
     const std::vector<int> own = wanted_of(shape);
-    MatrixXd F = MatrixXd::Zero(shape.ne + shape.nb, next_column_ - first);
+    MatrixXd F = MatrixXd::Zero(shape.ne + shape.nb + spare_rows, next_column_ - first);
     for (std::size_t c = 0; c < 2; ++c) {
       if (below[c].rows.cols() > 0) add_from_child(node, c, below[c], first, F);
     }
     place(own, shape, turn_rad, first, F);
-    auto Y = F.topRows(shape.ne);
-    const Index count = F.cols();
-    if (shape.ne > 0) {
-      solve_lower(node.front->L.topRows(shape.ne), Y);
-      add_gram(Y, P_.block(first, first, count, count));
+    if (shape.ne > 0 && F.cols() > 0) {
+      solve_down_columns(node.front->L.topRows(shape.ne + shape.nb), F);
+      add_gram(F.topRows(shape.ne), &P_(first, first), P_.outerStride());
     }
-    Passed passed{first, F.bottomRows(shape.nb)};
-    if (shape.ne > 0 && shape.nb > 0) {
-      subtract_product(node.front->L.middleRows(shape.ne, shape.nb), Y, passed.rows);
-    }
-    return passed;
+    return {first, F.middleRows(shape.ne, shape.nb)};
   }
 
   /// Wanted variables that a front eliminates, as places in it; they get the next columns.

@@ -1,36 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solve/partial_cholesky.hpp"
 
-#include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "helixnav/core/packed_product.hpp"
+#include "helixnav/core/wide_cholesky.hpp"
 
 namespace helixnav::atlas {
+namespace {
 
-bool partial_cholesky(Square F, Eigen::Index ne) {
-  if (ne == 0) return true;
-  Square D = F.topLeftCorner(ne, ne);
-  const Eigen::LLT<Square> llt(D);
-  if (llt.info() != Eigen::Success) return false;
-  const Eigen::Index rest = F.rows() - ne;
-  auto below = F.bottomLeftCorner(rest, ne);
-  D.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
-  F.bottomRightCorner(rest, rest).selfadjointView<Eigen::Lower>().rankUpdate(below, -1.0);
-  return true;
+constexpr Eigen::Index solved_at_once = 32;  ///< rows
+
+}  // namespace
+
+bool partial_cholesky(Square F, Eigen::Index ne) { return core::eliminate_first(F, ne); }
+
+void solve_down_columns(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& L, Eigen::MatrixXd& F) {
+  const Eigen::Index ne = L.cols();
+  for (Eigen::Index first = 0; first < ne; first += solved_at_once) {
+    const Eigen::Index count = std::min(solved_at_once, ne - first);
+    const Eigen::Index below = L.rows() - first - count;
+    auto solved = F.middleRows(first, count);
+    L.block(first, first, count, count).triangularView<Eigen::Lower>().solveInPlace(solved);
+    if (below == 0) continue;
+    core::add_product(&F(first + count, 0), F.outerStride(),
+                      core::Panels(L.block(first + count, first, below, count), core::left_width),
+                      core::Panels::of_transposed(solved, core::right_width, -1.0));
+  }
 }
 
-void solve_lower(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& L,
-                 Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>> B) {
-  L.triangularView<Eigen::Lower>().solveInPlace(B);
-}
-
-void add_gram(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& Y, Square P) {
-  if (Y.rows() == 0) return;  // a product of no depth divides by zero in Eigen
-  P.selfadjointView<Eigen::Lower>().rankUpdate(Y.transpose());
-}
-
-void subtract_product(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& A,
-                      const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& B,
-                      Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>> C) {
-  C.noalias() -= A * B;
+void add_gram(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& Y, double* P, Eigen::Index stride) {
+  constexpr Eigen::Index at_once = 128;  // what is packed of as many rows lies in the first cache
+  for (Eigen::Index first = 0; first < Y.rows(); first += at_once) {
+    const auto some = Y.middleRows(first, std::min(at_once, Y.rows() - first));
+    core::add_product_lower(P, stride, core::Panels::of_transposed(some, core::left_width),
+                            core::Panels::of_transposed(some, core::right_width));
+  }
 }
 
 }  // namespace helixnav::atlas

@@ -13,16 +13,12 @@ using Square = Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 /// Test: atlas/joint_test.cpp.
 bool partial_cholesky(Square F, Eigen::Index ne);
 
-/// B ← L⁻¹B, L lower triangular. Test: atlas/joint_test.cpp.
-void solve_lower(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& L,
-                 Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>> B);
+/// [Y; R] ← [L₁₁⁻¹Y; R − L₂₁L₁₁⁻¹Y] in the first rows of F, as many as L = [L₁₁; L₂₁] has, L₁₁ lower triangular. F has
+/// `spare_rows` more at least, finite ones. Test: atlas/joint_test.cpp.
+void solve_down_columns(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& L, Eigen::MatrixXd& F);
+constexpr Eigen::Index spare_rows = 7;  ///< the products go by eight rows
 
-/// Lower triangle of P += YᵀY.
-void add_gram(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& Y, Square P);
-
-/// C −= A·B.
-void subtract_product(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& A,
-                      const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& B,
-                      Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>> C);
+/// Lower triangle of P += YᵀY, P with this stride in a larger array that has `spare_rows` more rows; the upper one gets any value.
+void add_gram(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& Y, double* P, Eigen::Index stride);
 
 }  // namespace helixnav::atlas

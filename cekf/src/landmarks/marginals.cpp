@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
-#include "matrices/add_outer.hpp"
-#include "matrices/packed_product.hpp"
+#include "helixnav/core/add_outer.hpp"
+#include "helixnav/core/packed_product.hpp"
 #include "region/touched_weights.hpp"
 
 namespace helixnav::cekf {
@@ -25,14 +25,15 @@ void add_both_sides(const Eigen::MatrixXd& e, const Eigen::MatrixXd& M, Eigen::M
   const Eigen::MatrixXd M_touched = M(touched, touched);
   const Eigen::Index n = e.rows();
   ReservedMatrix reached = zeros(n, M_touched.cols());  // by the weights
-  add_product(reached.col(0), reached.stride(), Panels(e, touched, left_width), Panels(M_touched, right_width));
+  core::add_product(reached.col(0), reached.stride(), core::Panels(e, touched, core::left_width),
+                    core::Panels(M_touched, core::right_width));
   ReservedMatrix right = zeros(n, M_touched.cols());
   right.view() = e(Eigen::all, touched);
   constexpr Eigen::Index at_once = 256;  // columns, a multiple of eight
   for (Eigen::Index first = 0; first < n; first += at_once) {
     ReservedMatrix part = zeros(n - first, std::min(at_once, n - first));
-    add_outer(part.col(0), part.stride(), part.padded_rows(), part.cols(), reached.col(0) + first, reached.stride(),
-              right.col(0) + first, right.stride(), M_touched.cols());
+    core::add_outer(part.col(0), part.stride(), part.padded_rows(), part.cols(), reached.col(0) + first,
+                    reached.stride(), right.col(0) + first, right.stride(), M_touched.cols());
     sum.block(first, first, part.rows(), part.cols()) += part.view();
   }
 }
@@ -108,7 +109,7 @@ std::vector<core::PointGaussian> CompressedEkf::passive_marginals(const std::vec
   const Phase& phase = phases_.back();
   const Eigen::MatrixXd M = active_.M.view().selfadjointView<Eigen::Lower>();
   const std::vector<int> touched = columns_not_zero(M);
-  const Panels right(M(touched, touched), right_width);
+  const core::Panels right(M(touched, touched), core::right_width);
   const std::vector<Eigen::Vector2d> moved = moved_m(slots);
   points.reserve(slots.size());
   while (points.size() < slots.size()) {
@@ -116,7 +117,7 @@ std::vector<core::PointGaussian> CompressedEkf::passive_marginals(const std::vec
     const auto count = static_cast<std::ptrdiff_t>(std::min(at_once, slots.size() - points.size()));
     const Eigen::MatrixXd e = basis_rows({begin, begin + count})(Eigen::all, touched);
     ReservedMatrix reached(e.rows(), e.cols());  // by the weights
-    if (!touched.empty()) add_product(reached.col(0), reached.stride(), Panels(e, left_width), right);
+    if (!touched.empty()) core::add_product(reached.col(0), reached.stride(), core::Panels(e, core::left_width), right);
     for (Eigen::Index row = 0; row < e.rows(); row += 2) {
       const std::size_t k = points.size();
       Eigen::Matrix2d own = phase.own_covariance_m2.middleRows<2>(2 * slots[k]);

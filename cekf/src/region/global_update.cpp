@@ -9,8 +9,8 @@
 
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/core/packed_product.hpp"
 #include "matrices/make_room.hpp"
-#include "matrices/packed_product.hpp"
 #include "region/touched_weights.hpp"
 
 namespace helixnav::cekf {
@@ -31,7 +31,8 @@ Eigen::MatrixXd product_with_symmetric(const ReservedMatrix& E, const Eigen::Mat
                                        const std::vector<int>& columns) {
   const Eigen::MatrixXd M_named = M(columns, columns);
   ReservedMatrix named(E.rows(), M_named.cols());
-  add_product(named.col(0), named.stride(), Panels(E.view(), columns, left_width), Panels(M_named, right_width));
+  core::add_product(named.col(0), named.stride(), core::Panels(E.view(), columns, core::left_width),
+                    core::Panels(M_named, core::right_width));
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(E.rows(), M.cols());
   product(Eigen::all, columns) = named.view();
   return product;
@@ -61,11 +62,11 @@ int CompressedEkf::assign_slots(Phase& phase) {
 }
 
 /// Covariance of all slots (rows) with the active part (columns), 2·slots × n.
-Eigen::MatrixXd CompressedEkf::end_columns(const Panels& basis, int slots) const {
+Eigen::MatrixXd CompressedEkf::end_columns(const core::Panels& basis, int slots) const {
   const int n = active_.dimension();
   ReservedMatrix columns(2 * slots, n);
   const Eigen::MatrixXd weights = active_.A.view().transpose();
-  add_product(columns.col(0), columns.stride(), basis, Panels(weights, right_width));
+  core::add_product(columns.col(0), columns.stride(), basis, core::Panels(weights, core::right_width));
   const auto P = active_.P.view();
   for (int i = 0; i < active_count(); ++i) {
     columns.view().middleRows<2>(2 * active_.slots[static_cast<std::size_t>(i)]) =
@@ -94,7 +95,7 @@ Eigen::MatrixXd CompressedEkf::close_phase(Phase& next) {
   Phase& phase = phases_.back();
   make_room(phase.taken, active_.slots.size());
   const int slots = assign_slots(phase);
-  const Panels basis(phase.basis.view(), left_width);
+  const core::Panels basis(phase.basis.view(), core::left_width);
   Eigen::MatrixXd columns = end_columns(basis, slots);
 
   const Eigen::MatrixXd M = active_.M.view().selfadjointView<Eigen::Lower>();
@@ -125,11 +126,11 @@ Eigen::MatrixXd CompressedEkf::close_phase(Phase& next) {
 void CompressedEkf::absorb_closed_phases(long until) {
   std::size_t count = 0;
   std::size_t dead = 0;
-  std::vector<std::pair<Panels, Panels>> products;
+  std::vector<std::pair<core::Panels, core::Panels>> products;
   for (; count + 1 < phases_.size() && phases_[count].number < until; ++count) {
     const Phase& phase = phases_[count];
-    products.emplace_back(Panels(phase.response, phase.touched, left_width),
-                          Panels(phase.basis.view(), phase.touched, right_width));
+    products.emplace_back(core::Panels(phase.response, phase.touched, core::left_width),
+                          core::Panels(phase.basis.view(), phase.touched, core::right_width));
     dead += phase.dead.size();
   }
   if (count == 0) return;

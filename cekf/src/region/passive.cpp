@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
-#include "matrices/packed_product.hpp"
+#include "helixnav/core/packed_product.hpp"
 
 namespace helixnav::cekf {
 namespace {
@@ -52,8 +52,8 @@ void replay_on_columns(const Phase& phase, const std::vector<Carried>& carried, 
       for (Eigen::Index row = 0; row < basis.rows(); ++row) change.view().col(row) += basis(row, k) * response;
     }
   } else if (!phase.touched.empty()) {
-    add_product(change.col(0), change.stride(), Panels(phase.response, phase.touched, left_width),
-                Panels(basis, right_width));
+    core::add_product(change.col(0), change.stride(), core::Panels(phase.response, phase.touched, core::left_width),
+                      core::Panels(basis, core::right_width));
   }
   for (std::size_t i = 0; i < carried.size(); ++i) {
     auto own = columns.middleCols<2>(carried[i].column);
@@ -154,14 +154,20 @@ Eigen::Vector2d CompressedEkf::passive_mean(int slot) const {
   return phase.mean_m.segment<2>(2 * slot) + phase.basis.view().middleRows<2>(2 * slot) * active_.theta;
 }
 
-/// By how much these means have moved since the phase began; column after column, as the basis lies in memory.
+/// By how much these means have moved since the phase began; column after column, as the basis lies in memory. The second column
+/// of an anchor is the first turned by a right angle (append_columns) and need not be read.
 std::vector<Eigen::Vector2d> CompressedEkf::moved_m(const std::vector<int>& slots) const {
   std::vector<Eigen::Vector2d> moved(slots.size(), Eigen::Vector2d::Zero());
-  for (Eigen::Index k = 0; k < active_.theta.size(); ++k) {
+  const int w = weights_per_anchor();
+  for (Eigen::Index k = 0; k < active_.theta.size(); k += w) {
+    const double along = active_.theta(k);
+    const double across = w == 2 ? active_.theta(k + 1) : 0.0;
+    if (along == 0.0 && across == 0.0) continue;  // of an anchor that no update has reached
     const double* column = phases_.back().basis.col(k);
     for (std::size_t i = 0; i < slots.size(); ++i) {
       const double* own = column + 2 * static_cast<Eigen::Index>(slots[i]);
-      moved[i] += active_.theta(k) * Eigen::Vector2d(own[0], own[1]);
+      moved[i] += along * Eigen::Vector2d(own[0], own[1]);
+      moved[i] += across * Eigen::Vector2d(-own[1], own[0]);
     }
   }
   return moved;

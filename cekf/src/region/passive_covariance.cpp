@@ -3,15 +3,17 @@
 
 #include <algorithm>
 
-#include "matrices/add_outer.hpp"
-#include "matrices/packed_product.hpp"
+#include "helixnav/core/add_outer.hpp"
+#include "helixnav/core/packed_product.hpp"
 
 namespace helixnav::cekf {
 
 void PassiveCovariance::grow(int rows) {
   if (rows <= rows_) return;
   const std::size_t side = static_cast<std::size_t>((rows + tile - 1) / tile);
-  tiles_.resize(side * (side + 1) / 2, Tile::Zero());
+  const std::size_t tiles = side * (side + 1) / 2;
+  tiles_.reserve(tiles);  // exactly: resize would take room for up to as many again, and a map grows slowly
+  tiles_.resize(tiles, Tile::Zero());
   rows_ = rows;
 }
 
@@ -64,27 +66,27 @@ void PassiveCovariance::copy_columns(int slot, Eigen::Ref<Eigen::MatrixXd> colum
 void PassiveCovariance::add_symmetric_product(const Eigen::Ref<const Eigen::MatrixXd>& left,
                                               const Eigen::Ref<const Eigen::MatrixXd>& right,
                                               const std::vector<int>& columns) {
-  add_symmetric_product(Panels(left, columns, left_width), Panels(right, columns, right_width));
+  add_symmetric_product(core::Panels(left, columns, core::left_width), core::Panels(right, columns, core::right_width));
 }
 
-void PassiveCovariance::add_symmetric_product(const Panels& left, const Panels& right) {
+void PassiveCovariance::add_symmetric_product(const core::Panels& left, const core::Panels& right) {
   for (int I = 0; I * tile < left.rows(); ++I) {
     for (int J = 0; J <= I; ++J) add_to_tile(I, J, left, right);
   }
 }
 
 /// Tile by tile, because the panels of two tiles, and the tile, stay in a second-level cache meanwhile.
-void PassiveCovariance::add_to_tile(int I, int J, const Panels& left, const Panels& right) {
-  constexpr int lefts = tile / static_cast<int>(left_width);
-  constexpr int rights = tile / static_cast<int>(right_width);
+void PassiveCovariance::add_to_tile(int I, int J, const core::Panels& left, const core::Panels& right) {
+  constexpr int lefts = tile / static_cast<int>(core::left_width);
+  constexpr int rights = tile / static_cast<int>(core::right_width);
   double* const C = tile_at(I, J).data();
   for (int l = 0; l < lefts && I * lefts + l < left.count(); ++l) {
-    const int row = l * static_cast<int>(left_width);
+    const int row = l * static_cast<int>(core::left_width);
     for (int r = 0; r < rights && J * rights + r < right.count(); ++r) {
-      const int column = r * static_cast<int>(right_width);
-      if (I == J && column >= row + left_width) break;  // above the diagonal
-      add_outer(C + row + column * tile, tile, left_width, right_width, left.panel(I * lefts + l), left_width,
-                right.panel(J * rights + r), right_width, left.depth());
+      const int column = r * static_cast<int>(core::right_width);
+      if (I == J && column >= row + core::left_width) break;  // above the diagonal
+      core::add_outer(C + row + column * tile, tile, core::left_width, core::right_width, left.panel(I * lefts + l),
+                      core::left_width, right.panel(J * rights + r), core::right_width, left.depth());
     }
   }
 }

@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/add_outer.hpp"
 #include "helixnav/core/errors.hpp"
-#include "matrices/add_outer.hpp"
 #include "update/innovation.hpp"
 #include "update/retraction.hpp"
 
@@ -28,8 +28,8 @@ void whiten(const ReservedMatrix& picked, const ReservedMatrix& G, Index extra, 
   left.resize(picked.rows(), G.rows() + extra);
   left.set_zero();
   if (picked.rows() == 0) return;
-  add_outer(left.col(0), left.stride(), left.padded_rows(), G.rows(), picked.col(0), picked.stride(), G.col(0),
-            G.stride(), G.cols());
+  core::add_outer(left.col(0), left.stride(), left.padded_rows(), G.rows(), picked.col(0), picked.stride(), G.col(0),
+                  G.stride(), G.cols());
 }
 
 /// The same without G: left = picked·Hᵀ·L⁻ᵀ.
@@ -55,14 +55,14 @@ void multiply(const ReservedMatrix& picked, const ReservedMatrix& gain, Reserved
   product.set_zero();
   if (picked.rows() == 0) return;
   constexpr Index next = 1;  // from one element of the column `gain` to the next
-  add_outer(product.col(0), product.stride(), product.padded_rows(), 1, picked.col(0), picked.stride(), gain.col(0),
-            next, picked.cols());
+  core::add_outer(product.col(0), product.stride(), product.padded_rows(), 1, picked.col(0), picked.stride(),
+                  gain.col(0), next, picked.cols());
 }
 
 /// Column m + 1 of left += W·wᵀ, W the first m columns of left, w a row with its elements `stride` apart.
 void add_product_to_column(ReservedMatrix& left, Index m, const double* w, Index stride) {
   if (left.rows() == 0) return;
-  add_outer(left.col(m + 1), left.stride(), left.padded_rows(), 1, left.col(0), left.stride(), w, stride, m);
+  core::add_outer(left.col(m + 1), left.stride(), left.padded_rows(), 1, left.col(0), left.stride(), w, stride, m);
 }
 
 /// right = [−W g n] from left = [W n g].
@@ -77,8 +77,8 @@ void mirror_columns(const ReservedMatrix& left, bool transported, ReservedMatrix
 
 void add_to_lower(ReservedMatrix& target, const ReservedMatrix& left, const ReservedMatrix& right) {
   if (target.rows() == 0) return;
-  add_outer_lower(target.col(0), target.stride(), target.padded_rows(), target.cols(), left.col(0), left.stride(),
-                  right.col(0), right.stride(), left.cols());
+  core::add_outer_lower(target.col(0), target.stride(), target.padded_rows(), target.cols(), left.col(0), left.stride(),
+                        right.col(0), right.stride(), left.cols());
 }
 
 /// Whole tiles of 4 × 4, the diagonal's among them, so that a tile is turned in registers; then the rows left over.
@@ -175,8 +175,9 @@ void CompressedEkf::apply_correction(UpdateWorkspace& w, const char* verb) {
   copy_lower_to_upper(active_.P);
   add_to_lower(active_.M, w.left_weights, w.right_weights);
   if (active_.A.rows() > 0) {
-    add_outer(active_.A.col(0), active_.A.stride(), active_.A.padded_rows(), active_.A.cols(), w.left_weights.col(0),
-              w.left_weights.stride(), w.right_active.col(0), w.right_active.stride(), w.left_weights.cols());
+    core::add_outer(active_.A.col(0), active_.A.stride(), active_.A.padded_rows(), active_.A.cols(),
+                    w.left_weights.col(0), w.left_weights.stride(), w.right_active.col(0), w.right_active.stride(),
+                    w.left_weights.cols());
   }
   move_means(w);
 }

@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "helixnav/cekf/active_part.hpp"
+#include "helixnav/core/add_outer.hpp"
 #include "helixnav/core/check_event.hpp"
 #include "helixnav/core/errors.hpp"
-#include "matrices/add_outer.hpp"
 
 namespace helixnav::cekf {
 namespace {
@@ -92,8 +92,10 @@ void factor_innovation(UpdateWorkspace& w, const char* verb) {
   if (is_wide(w)) {
     multiply_by_sparse(nonzeros_of(w.H), w);
   } else {
-    add_outer(w.G.col(0), w.G.stride(), w.G.padded_rows(), n, w.H.col(0), w.H.stride(), w.P.col(0), w.P.stride(), n);
-    add_outer(w.L.col(0), w.L.stride(), w.L.padded_rows(), m, w.G.col(0), w.G.stride(), w.H.col(0), w.H.stride(), n);
+    core::add_outer(w.G.col(0), w.G.stride(), w.G.padded_rows(), n, w.H.col(0), w.H.stride(), w.P.col(0), w.P.stride(),
+                    n);
+    core::add_outer(w.L.col(0), w.L.stride(), w.L.padded_rows(), m, w.G.col(0), w.G.stride(), w.H.col(0), w.H.stride(),
+                    n);
   }
   core::NumericalHealth health;
   find_scale(w.L, w.scale);

@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 
 #include "helixnav/core/chi2.hpp"
+#include "search/may_be_seen.hpp"
 #include "search/old_ground.hpp"
 
 namespace helixnav::supervisor {
@@ -25,12 +26,21 @@ std::vector<core::Pose2> in_frame(const core::Pose2& T_world_frame, std::vector<
   return poses;
 }
 
-/// Ground looked at on the old drive (base frame) and lately (vehicle frame).
+/// Ground looked at on the old drive (base frame) and lately (vehicle frame). Of the old drive only views that may show a branch
+/// landmark at one of `hypotheses` (base frame): others see nothing that is asked about, and a drive is long.
 void add_coverage(const SearchView& view, const core::Pose2& T_world_base, double search_begun_path_m,
-                  const SearchOptions& options, pf_relocalize::Constellation& constellation) {
+                  const SearchOptions& options, const std::vector<core::Pose2>& hypotheses,
+                  pf_relocalize::Constellation& constellation) {
   const double now_m = view.life.path_m();
   const double old_until_m = search_begun_path_m - options.old_after_m;
-  constellation.old_drive.T_frame_sensor = in_frame(T_world_base, view.coverage.between(0.0, old_until_m));
+  MayBeSeen may_be(constellation.branch, view.scan.field_of_view.max_range_m);
+  for (const core::Pose2& T_base_robot : hypotheses)
+    may_be.add(core::transform(T_world_base, T_base_robot.position_m()));
+  std::vector<core::Pose2> old = view.coverage.between(0.0, old_until_m);
+  old.erase(std::remove_if(old.begin(), old.end(),
+                           [&](const core::Pose2& pose) { return !may_be.seen_from(pose.position_m()); }),
+            old.end());
+  constellation.old_drive.T_frame_sensor = in_frame(T_world_base, std::move(old));
   constellation.old_drive.field_of_view = view.scan.field_of_view;
   constellation.new_drive.T_frame_sensor =
       in_frame(view.filter.pose().mean, view.coverage.between(now_m - options.old_after_m, until_now));
@@ -130,15 +140,13 @@ std::vector<pf_relocalize::BranchLandmark> branch_landmarks(const SearchView& vi
 namespace {
 
 pf_relocalize::Constellation constellation_on(const pf_relocalize::ReferenceMap& map, const SearchView& view,
-                                              const std::vector<core::LandmarkId>& old, double search_begun_path_m,
-                                              const SearchOptions& options) {
+                                              const std::vector<core::LandmarkId>& old, const SearchOptions& options) {
   pf_relocalize::Constellation constellation;
   constellation.branch = branch_landmarks(view, old, options);
   for (std::size_t i = 0; i < map.ids.size(); ++i) {
     constellation.old_landmarks.push_back({map.ids[i], map.landmarks[i], view.life.appearance().of(map.ids[i])});
   }
   constellation.population = view.life.appearance().population();
-  add_coverage(view, map.T_world_base, search_begun_path_m, options, constellation);
   return constellation;
 }
 
@@ -155,11 +163,14 @@ ConstellationAnswer ask_constellation(const SearchView& view, const std::vector<
   if (!reference.map) return answer;  // without a reference map nothing matches
   const pf_relocalize::ReferenceMap& map = *reference.map;
 
-  const pf_relocalize::Constellation constellation = constellation_on(map, view, old, search_begun_path_m, options);
+  pf_relocalize::Constellation constellation = constellation_on(map, view, old, options);
   const std::vector<pf_relocalize::BranchLandmark> confirmed =
       seen_often_enough(constellation.branch, options.constellation.least_hits);
   const pf_relocalize::RivalPoses poses =
       pf_relocalize::find_rivals(map, confirmed, core::between(map.T_world_base, T_world_robot), options.rivals, seed);
+  std::vector<core::Pose2> hypotheses = poses.rivals;
+  hypotheses.push_back(poses.winner);
+  add_coverage(view, map.T_world_base, search_begun_path_m, options, hypotheses, constellation);
   answer.verdict = judge_constellation(constellation, poses.winner, poses.rivals, options.constellation);
   if (answer.verdict.rival_share > 1.0 && is_likely(answer.verdict.rival.T_map_robot, map.prior)) {
     pf_relocalize::ConstellationVerdict other = judge_rival(constellation, answer.verdict, poses, options);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "smoothing/smooth_drive.hpp"
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,10 +13,10 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// The filter that all measurements linearised at the minimum make: the pose at the end of the drive and the landmarks that
-/// `before` has, everything else eliminated.
-cekf::CompressedEkf filter_at(const smoothing::Minimum& minimum, const core::LandmarkGraph& graph,
-                              const cekf::CompressedEkf& before) {
+/// The pose at the end of the drive and the landmarks that `before` has as all measurements linearised at the minimum make them,
+/// everything else eliminated.
+core::JointGaussian joint_at(const smoothing::Minimum& minimum, const core::LandmarkGraph& graph,
+                             const cekf::CompressedEkf& before) {
   core::JointGaussian joint;
   std::vector<int> landmarks;
   for (std::size_t k = 0; k < graph.landmarks.size(); ++k) {
@@ -27,7 +28,7 @@ cekf::CompressedEkf filter_at(const smoothing::Minimum& minimum, const core::Lan
   }
   joint.pose = graph.poses.back().T_world_robot;
   joint.covariance = minimum.joint_covariance({static_cast<int>(graph.poses.size()) - 1}, landmarks);
-  return {joint, before.next_name(), before.options()};
+  return joint;
 }
 
 smoothing::Options from_a_good_start() {
@@ -57,23 +58,38 @@ smoothing::Problem problem_of(const core::PoseGaussian& start, core::LandmarkGra
   return problem;
 }
 
+namespace {
+
+/// Everything of the solution but the filter, and the joint estimate that this is to begin with, where it is accepted. Graph, factors and
+/// minimum are gone when the filter is made: that is where a drive needs most memory.
+std::optional<core::JointGaussian> solve(const cekf::CompressedEkf& filter, const core::PoseGaussian& start,
+                                         const Tape& tape, const std::set<core::LandmarkId>& displaced,
+                                         Smoothing& result) {
+  DriveGraph drive = graph_of(start, tape, filter, displaced);
+  smoothing::Problem problem = problem_of(start, std::move(drive.graph));
+  result.poses = static_cast<int>(problem.graph.poses.size());
+  const smoothing::Minimum minimum(problem, from_a_good_start());
+  const smoothing::Report& report = minimum.report();
+  result.chi2 = report.chi2.total();
+  result.iterations = static_cast<int>(report.iterations.size());
+  if (report.reason != smoothing::Reason::converged || !(result.chi2 <= result.limit)) return std::nullopt;
+  core::JointGaussian joint = joint_at(minimum, problem.graph, filter);
+  result.path = path_of(problem.graph, drive.stops);
+  return joint;
+}
+
+}  // namespace
+
 Smoothing smooth_drive(const cekf::CompressedEkf& filter, const core::PoseGaussian& start, const Tape& tape,
                        const std::set<core::LandmarkId>& displaced) {
   Smoothing result;
   result.limit = drive_cost(tape) + slack();
   try {
-    DriveGraph drive = graph_of(start, tape, filter, displaced);
-    smoothing::Problem problem = problem_of(start, std::move(drive.graph));
-    result.poses = static_cast<int>(problem.graph.poses.size());
-    const smoothing::Minimum minimum(problem, from_a_good_start());
-    const smoothing::Report& report = minimum.report();
-    result.chi2 = report.chi2.total();
-    result.iterations = static_cast<int>(report.iterations.size());
-    if (report.reason != smoothing::Reason::converged || !(result.chi2 <= result.limit)) return result;
-    result.solved.emplace(filter_at(minimum, problem.graph, filter));
-    result.path = path_of(problem.graph, drive.stops);
+    const std::optional<core::JointGaussian> joint = solve(filter, start, tape, displaced, result);
+    if (joint) result.solved.emplace(*joint, filter.next_name(), filter.options());
   } catch (const core::NumericalError&) {
     result.failed = true;
+    result.path.clear();    // as that of a drive not solved
     result.solved.reset();  // what cannot be solved leaves the filter as it is
   }
   return result;

@@ -18,9 +18,11 @@
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/gaussian.hpp"
 
-namespace helixnav::cekf {
-
+namespace helixnav::core {
 class Panels;
+}
+
+namespace helixnav::cekf {
 
 /// EKF-SLAM over a pose and point landmarks, exactly, at a cost per step that does not depend on the size of the map:
 /// only the landmarks of the vehicle's neighbourhood are active; what the steps of a phase mean for all others is
@@ -237,7 +239,7 @@ class CompressedEkf {
   // global_update.cpp, switch_region.cpp, snapshot.cpp
   struct BeforeSwitch;
   int assign_slots(Phase& phase);
-  Eigen::MatrixXd end_columns(const Panels& basis, int slots) const;
+  Eigen::MatrixXd end_columns(const core::Panels& basis, int slots) const;
   Eigen::MatrixXd close_phase(Phase& next);
   void absorb_closed_phases(long until);
   void check_own_covariances(const Phase& next) const;

@@ -5,9 +5,11 @@
 
 #include <Eigen/Core>
 
-namespace helixnav::cekf {
-
+namespace helixnav::core {
 class Panels;
+}
+
+namespace helixnav::cekf {
 
 /// Symmetric matrix that keeps only the tiles of its lower triangle and grows without being copied: the covariance of
 /// all landmarks that have a slot, as of the last absorbed phase. Memory 4·n² bytes for n rows.
@@ -30,7 +32,7 @@ class PassiveCovariance {
   void add_symmetric_product(const Eigen::Ref<const Eigen::MatrixXd>& left,
                              const Eigen::Ref<const Eigen::MatrixXd>& right, const std::vector<int>& columns);
   /// The same with both sides packed (widths of packed_product.hpp). No allocation.
-  void add_symmetric_product(const Panels& left, const Panels& right);
+  void add_symmetric_product(const core::Panels& left, const core::Panels& right);
   /// Overwrites rows and columns of the slots; columns is rows() × 2·|slots|.
   void overwrite(const std::vector<int>& slots, const Eigen::Ref<const Eigen::MatrixXd>& columns);
   std::size_t bytes() const { return tiles_.size() * tile * tile * sizeof(double); }
@@ -44,7 +46,7 @@ class PassiveCovariance {
   Tile& tile_at(int I, int J) { return tiles_[index(I, J)]; }
   const Tile& tile_at(int I, int J) const { return tiles_[index(I, J)]; }
   void set(int i, int j, double value);
-  void add_to_tile(int I, int J, const Panels& left, const Panels& right);
+  void add_to_tile(int I, int J, const core::Panels& left, const core::Panels& right);
 
   std::vector<Tile, Eigen::aligned_allocator<Tile>> tiles_;
   int rows_ = 0;

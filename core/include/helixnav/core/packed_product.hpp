@@ -5,11 +5,11 @@
 
 #include <Eigen/Core>
 
-namespace helixnav::cekf {
+namespace helixnav::core {
 
 /// A rows × depth matrix copied into panels of `width` rows, each panel contiguous with `width` as its stride and zero
 /// beyond the last row. Columns of a tall matrix lie whole pages or powers of two apart, so that a kernel that walks along
-/// the depth would miss the first cache at every step; in a panel it reads line after line.
+/// the depth would miss the first cache at every step; in a panel it reads line after line. Test: core/packed_product_test.cpp.
 class Panels {
  public:
   using Source = Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
@@ -17,6 +17,8 @@ class Panels {
   Panels(const Source& from, Eigen::Index width);
   /// Only the columns named.
   Panels(const Source& from, const std::vector<int>& columns, Eigen::Index width);
+  /// Of factor·fromᵀ.
+  static Panels of_transposed(const Source& from, Eigen::Index width, double factor = 1.0);
 
   Eigen::Index rows() const { return rows_; }
   Eigen::Index depth() const { return depth_; }
@@ -25,6 +27,8 @@ class Panels {
   const double* panel(Eigen::Index p) const { return data_.data() + p * width_ * depth_; }
 
  private:
+  Panels(Eigen::Index rows, Eigen::Index depth, Eigen::Index width);
+
   Eigen::Index rows_;
   Eigen::Index depth_;
   Eigen::Index width_;
@@ -36,7 +40,12 @@ constexpr Eigen::Index left_width = 16;
 constexpr Eigen::Index right_width = 8;
 
 /// C += left·rightᵀ, bit for bit what add_outer gives. C is column-major with at least left.rows() rows rounded up to
-/// eight, padding included.
+/// eight, padding included: zero is added there.
 void add_product(double* C, Eigen::Index stride_C, const Panels& left, const Panels& right);
+/// The first `columns` of it.
+void add_product(double* C, Eigen::Index stride_C, const Panels& left, const Panels& right, Eigen::Index columns);
 
-}  // namespace helixnav::cekf
+/// The same for the lower triangle of a square C; what of its tiles is above the diagonal gets any value.
+void add_product_lower(double* C, Eigen::Index stride_C, const Panels& left, const Panels& right);
+
+}  // namespace helixnav::core

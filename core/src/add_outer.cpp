@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "matrices/add_outer.hpp"
+#include "helixnav/core/add_outer.hpp"
 
 #include <algorithm>
 #include <cstring>
 
-namespace helixnav::cekf {
+namespace helixnav::core {
 namespace {
 
 using Index = Eigen::Index;
@@ -162,4 +162,4 @@ void add_outer_lower(double* C, Index stride_C, Index rows, Index cols, const do
   }
 }
 
-}  // namespace helixnav::cekf
+}  // namespace helixnav::core
