@@ -130,8 +130,7 @@ TEST(Condense, LeavesNoPhaseThatNothingHolds) {
     const auto end = static_cast<std::size_t>(drive.pose_of_clone[static_cast<std::size_t>(k) + 1]);
     EXPECT_LT((condensed.poses_of(k).back().position_m() - drive.truth[end].position_m()).norm(), 1e-6) << k;
   }
-  const Eigen::MatrixXd lost =
-      condensed.joint(all_of(whole)).covariance - whole.joint(all_of(whole)).covariance;
+  const Eigen::MatrixXd lost = condensed.joint(all_of(whole)).covariance - whole.joint(all_of(whole)).covariance;
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(lost).eigenvalues()[0], -1e-8 * lost.trace());
 }
 

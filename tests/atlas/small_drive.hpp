@@ -29,7 +29,7 @@ struct SmallDriveOptions {
   double rounds = 2.0;
   double radius_m = 25.0;
   double reach_m = 12.0;
-  double noise = 1.0;  ///< times the assumed sigmas
+  double noise = 1.0;     ///< times the assumed sigmas
   double bare_rad = 0.0;  ///< of the circle, from its beginning, on which no landmark stands
 };
 
@@ -49,8 +49,7 @@ inline SmallDrive make_small_drive(std::uint64_t seed, const SmallDriveOptions& 
   core::LandmarkGraph& graph = drive.problem.graph;
   std::vector<Eigen::Vector2d> points_m;
   for (int i = 0; i < o.landmarks; ++i) {
-    const double angle_rad =
-        o.bare_rad + (2.0 * core::pi - o.bare_rad) * (i + random.uniform(0.0, 1.0)) / o.landmarks;
+    const double angle_rad = o.bare_rad + (2.0 * core::pi - o.bare_rad) * (i + random.uniform(0.0, 1.0)) / o.landmarks;
     const double side = random.uniform() < 0.5 ? -1.0 : 1.0;
     const double r_m = o.radius_m + side * random.uniform(2.0, 6.0);
     points_m.emplace_back(r_m * std::sin(angle_rad), o.radius_m - r_m * std::cos(angle_rad));

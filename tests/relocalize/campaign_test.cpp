@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Small campaigns of one seed each; docs/relocalize.md has the large ones.
+#include <cmath>
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "worlds.hpp"
@@ -48,6 +51,35 @@ TEST(Campaign, ClosesTwentyLandmarksAtThirtyPercentChangeAndTenAtNone) {
   const Tally few = campaign(map, map, {10}, 100, 13);
   EXPECT_GE(few.right, 97);
   EXPECT_EQ(few.wrong, 0);
+}
+
+double best_evidence(const MapIndex& index, const test::Points& world, const test::Asking& asking, int question) {
+  core::RandomStream random(16, "question " + std::to_string(question));
+  const Answer answer = ask(index, test::ask_somewhere(world, asking, random).question);
+  return answer.places.empty() ? -1e9 : answer.places.front().evidence;
+}
+
+/// Evidence is the ratio of two likelihoods, so what is present says how rare it is where nothing is: the threshold that
+/// evidence_needed() takes from its density leaves no more than α, and the tail that can be counted is what it should be.
+TEST(Campaign, EvidenceOfWhatIsAbsentIsAsRareAsWhatIsPresentSays) {
+  core::RandomStream random(16);
+  const test::Points map = test::uniform_world(2000, random);
+  const test::Points elsewhere = test::uniform_world(2000, random);
+  const MapIndex index = test::index_of(map, campaign_index);
+  constexpr int questions = 800;
+  for (const test::Asking& asking : {test::Asking{10, 0.3}, test::Asking{10, 0.5}, test::Asking{20, 0.5}}) {
+    double accepted = 0.0, expected = 0.0;
+    int counted = 0;
+    for (int q = 0; q < questions; ++q) {
+      const double present = best_evidence(index, map, asking, q);
+      if (present >= 0.0) expected += std::exp(-present);
+      if (present >= evidence_needed({})) accepted += std::exp(-present) / questions;
+      counted += best_evidence(index, elsewhere, asking, questions + q) >= 0.0 ? 1 : 0;
+    }
+    EXPECT_LT(accepted, AskOptions{}.alpha) << asking.landmarks << ", " << asking.change;
+    // Fewer are counted, since candidates that begin badly are not followed; more have a probability below 1e-4.
+    EXPECT_LT(counted, expected + 4.0 * std::sqrt(expected) + 4.0) << asking.landmarks << ", " << asking.change;
+  }
 }
 
 TEST(Campaign, ClosesNothingInALattice) {

@@ -57,13 +57,12 @@ RivalScale rival_scale(const std::vector<Place>& places) {
   return {std::max(1.0, sum / count), floor > 0.0 ? count : 0.0};
 }
 
-Verdict decide(const Answer& answer, double alpha) {
-  const double threshold = -std::log(alpha);
+Verdict decide(const Answer& answer, const AskOptions& options) {
   if (answer.places.empty()) return Verdict::not_here;
   const Place& best = answer.places.front();
-  if (best.evidence < threshold || best.pairs.size() < least_pairs) return Verdict::not_here;
+  if (best.evidence < evidence_needed(options) || best.pairs.size() < least_pairs) return Verdict::not_here;
   const bool cut_short = answer.crowded || (answer.capped && answer.triangles < enough_triangles);
-  return cut_short || answer.gap < threshold ? Verdict::ambiguous : Verdict::closed;
+  return cut_short || answer.gap < -std::log(options.alpha) ? Verdict::ambiguous : Verdict::closed;
 }
 
 }  // namespace
@@ -79,8 +78,13 @@ const char* name_of(Verdict verdict) {
   }
 }
 
+double evidence_needed(const AskOptions& options) { return std::log(options.evidence_density / options.alpha); }
+
 Answer ask(const MapIndex& map, const Question& question, const AskOptions& options) {
   if (!(options.alpha > 0.0 && options.alpha < 1.0)) throw core::PreconditionError("ask: alpha is not in (0, 1)");
+  if (!(options.evidence_density > 0.0 && options.evidence_density <= 1.0)) {
+    throw core::PreconditionError("ask: evidence_density is not in (0, 1]");
+  }
   const Prepared asked(map.parts(), question);
   Answer answer;
   if (asked.points.size() < 4 || map.size() < 4) return answer;
@@ -95,7 +99,7 @@ Answer ask(const MapIndex& map, const Question& question, const AskOptions& opti
   answer.rival_scale = scale.mean;
   const double rival = answer.places.size() > 1 ? std::max(0.0, answer.places[1].evidence) : 0.0;
   answer.gap = scale.score(answer.places.front().evidence - rival);
-  answer.verdict = decide(answer, options.alpha);
+  answer.verdict = decide(answer, options);
   return answer;
 }
 

@@ -5,8 +5,18 @@
 #include <vector>
 
 #include "helixnav/core/landmark_id.hpp"
+#include "helixnav/relocalize/ask.hpp"
 
 namespace helixnav::supervisor {
+
+/// What a session has mapped on its own bends, and its landmarks share errors: the evidence, of independent pairs, is asked for
+/// without what its density would spare.
+inline relocalize::AskOptions session_options(double alpha) {
+  relocalize::AskOptions options;
+  options.alpha = alpha;
+  options.evidence_density = 1.0;
+  return options;
+}
 
 /// Questions to a map about where the vehicle is on it: how many there were, and with which landmarks the last one was asked.
 struct Asked {

@@ -2,13 +2,13 @@
 #include "helixnav/supervisor/join_sessions.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "helixnav/relocalize/ask.hpp"
 #include "helixnav/supervisor/lengths.hpp"
+#include "placing/asked.hpp"
 #include "placing/earlier_map.hpp"
 #include "placing/join_maps.hpp"
 #include "placing/map_questions.hpp"
@@ -25,11 +25,14 @@ relocalize::IndexOptions lengths_of(const NavigatorOptions& options, double reac
   return {reach_m, std::min(options.search.constellation.branch_sigma_m, most_share * reach_m)};
 }
 
+relocalize::AskOptions options_for(std::size_t questions) {
+  return session_options(alpha_a_pair / static_cast<double>(std::max<std::size_t>(1, questions)));
+}
+
 /// Answers that were closed, the surest first.
 std::vector<relocalize::Answer> ask_for(const EarlierMap& session, const relocalize::MapIndex& index) {
   const std::vector<relocalize::Question> questions = map_questions(session, index.options());
-  relocalize::AskOptions options;
-  options.alpha = alpha_a_pair / static_cast<double>(std::max<std::size_t>(1, questions.size()));
+  const relocalize::AskOptions options = options_for(questions.size());
   std::vector<relocalize::Answer> answers;
   for (const relocalize::Question& question : questions) answers.push_back(relocalize::ask(index, question, options));
   std::stable_sort(answers.begin(), answers.end(), [](const relocalize::Answer& a, const relocalize::Answer& b) {
@@ -61,7 +64,7 @@ core::PlacedDecision decision_of(const std::vector<relocalize::Answer>& answers,
   decision.verdict = core::PlacedDecision::Verdict::not_here;
   decision.earlier_landmarks = static_cast<int>(component.joint.ids.size());
   decision.questions = static_cast<int>(answers.size());
-  decision.needed = -std::log(alpha_a_pair / static_cast<double>(std::max<std::size_t>(1, answers.size())));
+  decision.needed = relocalize::evidence_needed(options_for(answers.size()));
   if (answers.empty()) return decision;
   const relocalize::Answer& best = answers.front();
   if (best.verdict == relocalize::Verdict::ambiguous) decision.verdict = core::PlacedDecision::Verdict::ambiguous;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "placing/place_search.hpp"
 
-#include <cmath>
-
 namespace helixnav::supervisor {
 namespace {
 
@@ -19,14 +17,13 @@ PlaceSearch::PlaceSearch(const core::JointMap& earlier, const relocalize::IndexO
 
 relocalize::Answer PlaceSearch::ask(const relocalize::Question& question, const Asked& before,
                                     core::PlacedDecision& decision) const {
-  relocalize::AskOptions options;
-  options.alpha = before.next_alpha();
+  const relocalize::AskOptions options = session_options(before.next_alpha());
   relocalize::Answer answer = relocalize::ask(index_, question, options);
   decision.verdict = verdict_of(answer.verdict);
   decision.earlier_landmarks = static_cast<int>(earlier_.landmarks().ids.size());
   decision.questions = before.questions + 1;
   decision.landmarks = static_cast<int>(question.landmarks.size());
-  decision.needed = -std::log(options.alpha);
+  decision.needed = relocalize::evidence_needed(options);
   decision.lead = answer.gap;
   if (answer.places.empty()) return answer;
   const relocalize::Place& best = answer.places.front();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where odometry was wrong by more than its noise, no prior holds the place where the vehicle is: the whole map is asked.
-#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -120,14 +119,13 @@ AskedWholeMap NavigationLoop::ask(LandmarksAbout& about, const Search& search, c
   const relocalize::Question question =
       session_question(belief_, about, scan.field_of_view, index.options(), options_.search.branch_seen_within_m);
   if (question.looked.empty() || !(index.looked_at_m2() > 0.0)) return {};
-  relocalize::AskOptions how;
-  how.alpha = questions_.asked.next_alpha();
+  const relocalize::AskOptions how = session_options(questions_.asked.next_alpha());
   const relocalize::Answer answer = relocalize::ask(index, question, how);
   AskedWholeMap asked{figures_of(answer), {}};
   asked.decision.old_landmarks = static_cast<int>(index.size());
   asked.decision.landmarks = static_cast<int>(question.landmarks.size());
   asked.decision.questions = questions_.asked.questions + 1;
-  asked.decision.needed = -std::log(how.alpha);
+  asked.decision.needed = relocalize::evidence_needed(how);
   if (answer.verdict == relocalize::Verdict::closed) asked.pairs = constellation_of(answer.places.front());
   questions_.asked.note(about.ids);
   return asked;
