@@ -65,7 +65,8 @@ StepReport NavigationLoop::observe(const Scan& scan) {
   const double driven_m = pending_.driven_m;
   const bool is_carried = there.is_elsewhere(limits);
   const bool has_paused = paused_m && rhythm_.is_pause(scan.t_ns, driven_m);
-  const Pause pause{paused_m.value_or(0.0), belief_.step};
+  const UnsurePause pause{paused_m.value_or(0.0), belief_.step};
+  pauses_.reserve(pauses_.size() + 1);  // nothing throws once the scan has been taken
   StepReport report = is_carried ? observe_elsewhere(scan, there) : observe_somewhere(scan);
   rhythm_.note(scan.t_ns, driven_m);
   forget_pauses(report);

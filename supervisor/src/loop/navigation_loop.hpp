@@ -201,8 +201,8 @@ class NavigationLoop {
 
   // placing/part_at_pause.cpp
   void forget_pauses(const core::StepReport& report);
-  std::optional<Pause> pause_before(const std::vector<pf_relocalize::ConstellationPair>& pairs) const;
-  Belief belief_since(const Pause& pause) const;
+  std::optional<UnsurePause> pause_before(const std::vector<pf_relocalize::ConstellationPair>& pairs) const;
+  Belief belief_since(const UnsurePause& pause) const;
   void part_at_pause(const core::Scan& scan, core::StepReport& report);
 
   // loop/process_again.hpp
@@ -233,7 +233,8 @@ class NavigationLoop {
   Undo undo_;
   ScanRhythm rhythm_;
   std::optional<double> pause_m_;  ///< where on the drive a pause was that no scan has decided yet
-  std::vector<Pause> pauses_;      ///< since the place was last certain, of which no scan said surely that it was the same
+  std::vector<UnsurePause>
+      pauses_;  ///< since the place was last certain, of which no scan said surely that it was the same
   std::uint64_t searches_ = 0;
   WholeMapQuestions questions_;
   WholeMapQuestions questions_before_;  ///< this call, for recover()

@@ -32,7 +32,7 @@ void NavigationLoop::forget_pauses(const StepReport& report) {
 
 /// The last one before all that is paired was mapped, if the vehicle can have been carried then: the old landmarks were mapped before
 /// it, few others of before were matched since, and it is no longer ago than a search may last.
-std::optional<Pause> NavigationLoop::pause_before(
+std::optional<UnsurePause> NavigationLoop::pause_before(
     const std::vector<pf_relocalize::ConstellationPair>& pairs) const {
   const association::LandmarkLife& existence = belief_.existence;
   double first_m = existence.path_m();
@@ -42,9 +42,10 @@ std::optional<Pause> NavigationLoop::pause_before(
     first_m = std::min(first_m, existence.record(pair.branch).born_path_m);
     last_old_m = std::max(last_old_m, existence.record(pair.old_landmark).born_path_m);
   }
-  const auto after = std::find_if(pauses_.begin(), pauses_.end(), [&](const Pause& p) { return p.path_m >= first_m; });
+  const auto after =
+      std::find_if(pauses_.begin(), pauses_.end(), [&](const UnsurePause& p) { return p.path_m >= first_m; });
   if (after == pauses_.begin()) return std::nullopt;
-  const Pause pause = *std::prev(after);
+  const UnsurePause pause = *std::prev(after);
   if (last_old_m > pauses_.front().path_m) return std::nullopt;
   if (existence.path_m() - pause.path_m > options_.search.undecided_m) return std::nullopt;
   int since = 0, across = 0;
@@ -58,7 +59,7 @@ std::optional<Pause> NavigationLoop::pause_before(
 }
 
 /// Pose and landmarks begun since, in the frame that they are in.
-Belief NavigationLoop::belief_since(const Pause& pause) const {
+Belief NavigationLoop::belief_since(const UnsurePause& pause) const {
   std::vector<core::LandmarkId> ids;
   association::LandmarkLife existence = belief_.existence;
   for (const association::LandmarkRecord& record : belief_.existence.records()) {
@@ -82,7 +83,7 @@ Belief NavigationLoop::belief_since(const Pause& pause) const {
 /// Only where the part is then found on the map of before: else everything stays as it is. Of several pauses since the place was
 /// certain nobody knows in which one it was: what was mapped between them is dropped, and so is what was matched since.
 void NavigationLoop::part_at_pause(const core::Scan& scan, StepReport& report) {
-  const std::optional<Pause> pause = pause_before(std::exchange(pending_.forbidden, {}));
+  const std::optional<UnsurePause> pause = pause_before(std::exchange(pending_.forbidden, {}));
   if (!pause || apart_.any()) return;
   core::CarriedDecision decision;
   decision.cause = core::CarriedDecision::Cause::by_place;

@@ -10,7 +10,7 @@
 namespace helixnav::supervisor {
 
 /// A pause in which the vehicle may have been carried.
-struct Pause {
+struct UnsurePause {
   double path_m = 0.0;    ///< length of the drive until it
   std::int64_t step = 0;  ///< of the first scan after it
 };

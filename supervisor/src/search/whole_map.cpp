@@ -77,7 +77,8 @@ AskedWholeMap NavigationLoop::ask_whole_map(const core::Scan& scan, core::StepRe
 }
 
 /// Attempts to find the place within the prior may go on and on where the prior does not hold it: a search that has seen enough for
-/// long asks the whole map beside them. That ends it only where it is closed: that nothing fits is asked at its end.
+/// long asks the whole map beside them. That ends it only at a place that odometry as measured forbids: another one it finds by
+/// itself, and that nothing fits is asked at its end.
 void NavigationLoop::ask_meanwhile(const core::Scan& scan, core::StepReport& report) {
   const double path_m = belief_.existence.path_m();
   if (!asks_whole_map() || !searching()->search.goes_on(path_m) || path_m < questions_.next_path_m) return;
@@ -92,7 +93,12 @@ void NavigationLoop::ask_meanwhile(const core::Scan& scan, core::StepReport& rep
   const Searching& open = *searching();
   AskedWholeMap asked = ask(about, open.search, scan);
   questions_.asked_meanwhile = std::exchange(questions_.asked.with, before.with);
-  if (asked.is_closed() && close_at(asked.pairs, open.search, open.trigger, scan, asked.decision, report)) return;
+  if (asked.is_closed()) {
+    const ClosingView view{open.search, belief_.existence, belief_.coverage, scan, {open.trigger, tape_}};
+    cekf::CompressedEkf trial = belief_.filter;
+    if (close_map(trial, view, asked.pairs, options_.search).accepted) return;
+    if (close_at(asked.pairs, open.search, open.trigger, scan, asked.decision, report)) return;
+  }
   const bool is_news = asked.is_asked() && asked.decision.verdict != WholeMapDecision::Verdict::not_here;
   if (is_news) report.decisions.emplace_back(asked.decision);
 }
