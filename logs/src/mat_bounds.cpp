@@ -56,6 +56,10 @@ std::vector<Part> parts_of(std::string_view matrix, std::size_t most, bool littl
   return parts;
 }
 
+/// The array flags are the first part, of eight bytes, which is what matio takes whatever length is given: with another one
+/// it would go on elsewhere than we do.
+bool has_flags(const std::vector<Part>& parts) { return parts.empty() || parts[0].length == 8; }
+
 /// The dimensions are the second part, of four bytes each.
 bool has_few_dimensions(const std::vector<Part>& parts) { return parts.size() < 2 || parts[1].length <= 4 * 32; }
 
@@ -83,6 +87,7 @@ bool has_room_for_cells(const std::vector<Part>& parts, std::size_t bytes, std::
 std::string_view broken_bound_of_matrix(std::string_view matrix, int levels, bool little_endian) {
   constexpr std::size_t head = 5;
   const std::vector<Part> first = parts_of(matrix, head, little_endian);
+  if (!has_flags(first)) return "array flags of 8 bytes";
   if (!has_few_dimensions(first)) return "at most 32 dimensions";
   if (!has_short_name(first)) return "a name of at most 1024 bytes";
   if (!is_container(matrix, little_endian)) return {};

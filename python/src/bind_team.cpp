@@ -21,6 +21,7 @@ namespace helixnav::python {
 namespace {
 
 using team::JudgedSighting;
+using team::SameLandmarks;
 using team::Team;
 using team::TeamJoin;
 using LockedTeam = Locked<Team>;
@@ -93,6 +94,11 @@ std::vector<TeamJoin> joins_of(LockedTeam& self) {
   return self.navigator.joins();
 }
 
+std::vector<SameLandmarks> same_landmarks_of(LockedTeam& self) {
+  const std::lock_guard hold(self.mutex);
+  return self.navigator.same_landmarks();
+}
+
 void bind_sightings(py::module_& module) {
   using core::RobotSighting;
   py::class_<RobotSighting>(module, "RobotSighting", "One robot of a team sees the reference point of another.")
@@ -129,12 +135,24 @@ void bind_joins(py::module_& module) {
       .def_readonly("limit", &TeamJoin::limit);
 }
 
+void bind_same_landmarks(py::module_& module) {
+  py::class_<SameLandmarks>(module, "SameLandmarks", "Two landmarks of a team became one by where they stand.")
+      .def_property_readonly("t", [](const SameLandmarks& s) { return core::seconds(s.t_ns); })
+      .def_readonly("kept", &SameLandmarks::kept)
+      .def_readonly("removed", &SameLandmarks::removed)
+      .def_readonly("nats", &SameLandmarks::nats, "ln of the likelihood ratio against another one that stands there.")
+      .def_readonly("cost", &SameLandmarks::cost)
+      .def_readonly("dof", &SameLandmarks::dof)
+      .def_readonly("limit", &SameLandmarks::limit);
+}
+
 }  // namespace
 
 void bind_team(py::module_& module) {
   using Released = py::call_guard<py::gil_scoped_release>;
   bind_sightings(module);
   bind_joins(module);
+  bind_same_landmarks(module);
   py::class_<LockedTeam>(
       module, "Team",
       "Several robots in one map; a robot of unknown start is a component of its own until something "
@@ -165,7 +183,11 @@ void bind_team(py::module_& module) {
       .def_property_readonly("joins", py::cpp_function(&joins_of, Released()), "TeamJoins so far.")
       .def_property_readonly("sightings", py::cpp_function(locked(&Team::sightings), Released()), "JudgedSightings.")
       .def("remove_join", locked(&Team::remove_join), py::arg("join"), Released(),
-           "Takes a join back, by its index, and everything that came of it.");
+           "Takes a join back, by its index, and everything that came of it.")
+      .def_property_readonly("same_landmarks", py::cpp_function(&same_landmarks_of, Released()),
+                             "SameLandmarks so far, of by_place.")
+      .def("remove_same", locked(&Team::remove_same), py::arg("same"), Released(),
+           "Makes two landmarks two again, by the index, with everything that came of their being one.");
 }
 
 }  // namespace helixnav::python

@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <cstring>
 #include <string_view>
+#include <vector>
 
 #include <openssl/evp.h>
 
 #include "helixnav/core/errors.hpp"
+#include "helixnav/core/gaussian.hpp"
 #include "helixnav/files/file.hpp"
 
 namespace helixnav::runs {
@@ -112,6 +114,28 @@ std::size_t check_frame(const std::string& path, std::string_view bytes) {
   return landmarks;
 }
 
+// Beyond these a map is garbage, as the numbers of a log are (docs/fuzzing.md).
+constexpr double most_coordinate_m = 1e8;
+constexpr double most_reach_m = 1e5;
+constexpr double most_variance = 1e12;
+constexpr core::LandmarkId most_name = 10'000'000;  // lists by name are as long as the last one
+
+bool is_place(const Eigen::Vector2d& point_m) {
+  return point_m.allFinite() && point_m.cwiseAbs().maxCoeff() <= most_coordinate_m;
+}
+
+/// No two quantities are correlated by more than one, but for what solving a large map loses to rounding. O(N²): a whole
+/// factorisation would tell more, and take seconds.
+bool can_be_covariance(const Eigen::MatrixXd& P) {
+  if (!P.allFinite() || P.diagonal().minCoeff() < 0.0 || P.diagonal().maxCoeff() > most_variance) return false;
+  const double rounding = 1e-6 * P.diagonal().maxCoeff();
+  const Eigen::VectorXd deviations = P.diagonal().cwiseSqrt();
+  for (Eigen::Index j = 0; j < P.cols(); ++j) {
+    if (((P.col(j).cwiseAbs() - deviations(j) * deviations).array() > rounding).any()) return false;
+  }
+  return core::is_symmetric_positive_semidefinite(P.topLeftCorner<3, 3>());
+}
+
 /// What a program other than this one may have written.
 void check_content(const std::string& path, const core::JointMap& map) {
   core::LandmarkId last = -1;
@@ -119,12 +143,24 @@ void check_content(const std::string& path, const core::JointMap& map) {
     if (id <= last || id >= map.next_name) refuse(path, "names of landmarks are not ascending below the next name");
     last = id;
   }
-  const auto is_finite = [](const Eigen::Vector2d& point_m) { return point_m.allFinite(); };
-  const bool finite = map.joint.pose.vector().allFinite() && map.joint.covariance.allFinite() &&
-                      std::all_of(map.joint.points_m.begin(), map.joint.points_m.end(), is_finite);
-  if (!(map.reach_m >= 0.0) || !std::isfinite(map.reach_m)) refuse(path, "expected the reach of a sensor, 0 or above");
-  if (!finite || map.joint.covariance.diagonal().minCoeff() < 0.0) {
-    refuse(path, "expected finite numbers and variances that are not negative");
+  if (map.next_name < 0 || map.next_name > most_name) {
+    refuse(path, "expected the next name from 0 to " + std::to_string(most_name) + ", found " +
+                     std::to_string(map.next_name));
+  }
+  if (!(map.reach_m >= 0.0 && map.reach_m <= most_reach_m)) {
+    refuse(path, "expected the reach of a sensor, 0 to 100 km");
+  }
+  const std::vector<Eigen::Vector2d>& points_m = map.joint.points_m;
+  if (!is_place(map.joint.pose.position_m()) || !std::isfinite(map.joint.pose.heading_rad) ||
+      !std::all_of(points_m.begin(), points_m.end(), is_place)) {
+    refuse(path, "expected finite numbers, and coordinates within 1e8 m");
+  }
+  if (!can_be_covariance(map.joint.covariance)) {
+    refuse(path, "its covariance is none: variances from 0 to 1e12 and correlations of at most one are expected");
+  }
+  const auto is_negative = [](int count) { return count < 0; };
+  if (std::any_of(map.observations.begin(), map.observations.end(), is_negative)) {
+    refuse(path, "a landmark was observed less than never");
   }
 }
 

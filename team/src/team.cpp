@@ -314,7 +314,8 @@ std::vector<JudgedSighting> Team::sightings() const {
 }
 
 void Team::remove_join(std::size_t join) {
-  const TeamJoin removed = joins().at(join);
+  if (join >= joins().size()) throw core::PreconditionError("remove_join: there is no join " + std::to_string(join));
+  const TeamJoin removed = joins()[join];
   book_->refused.insert({removed.by, removed.robot, removed.other});
   book_->start_again();
 }
@@ -322,7 +323,10 @@ void Team::remove_join(std::size_t join) {
 const std::vector<SameLandmarks>& Team::same_landmarks() const { return book_->state.same; }
 
 void Team::remove_same(std::size_t same) {
-  const SameLandmarks removed = same_landmarks().at(same);
+  if (same >= same_landmarks().size()) {
+    throw core::PreconditionError("remove_same: no landmarks were made one as number " + std::to_string(same));
+  }
+  const SameLandmarks removed = same_landmarks()[same];
   const std::vector<Birth>& births = book_->state.births;
   const BirthKey a = key_of(births[static_cast<std::size_t>(removed.kept)]);
   const BirthKey b = key_of(births[static_cast<std::size_t>(removed.removed)]);

@@ -150,7 +150,7 @@ TEST(TeamCampaign, JoinsWhatIsSharedAndNothingElse) {
   EXPECT_EQ(complete_lines(folder.path() / "campaign" / "runs.csv"), 5u);
 }
 
-TEST(TeamCampaign, PartsMakeTheCampaignThatWasNotDivided) {
+TEST(TeamCampaignParts, AreTheCampaignThatWasNotDivided) {
   const testing::TemporaryFolder folder;
   const auto drive = [&](const std::string& name, const std::string& first, const std::string& runs) {
     const std::string out = (folder.path() / name).string();

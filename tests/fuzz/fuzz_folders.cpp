@@ -23,6 +23,7 @@ std::string with_readings(const std::string& text) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace helixnav;
+  fuzz::folder();
   const helixnav::testing::TemporaryFolder log;
   for (const auto& [name, text] : fuzz::files_of(data, size)) {
     if (name.empty() || name.find('/') != std::string::npos || name[0] == '.' || name.size() > 40) continue;

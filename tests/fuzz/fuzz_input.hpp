@@ -100,7 +100,7 @@ inline std::map<std::string, std::string> files_of(const std::uint8_t* data, std
   return files;
 }
 
-/// A folder of this process, in memory where the system has one there.
+/// A folder of this process, in memory where the system has one there; so are all temporary folders made after the call.
 inline const std::filesystem::path& folder() {
   static const bool in_memory = std::filesystem::exists("/dev/shm") && ::setenv("TMPDIR", "/dev/shm", 1) == 0;
   static const testing::TemporaryFolder own;

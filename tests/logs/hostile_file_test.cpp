@@ -113,6 +113,18 @@ TEST(HostileMatlabFile, MoreDimensionsThanAnyMatrixHasAreRefused) {
   }
 }
 
+/// matio takes eight bytes of flags whatever their length says, and would find other dimensions after them.
+TEST(HostileMatlabFile, FlagsOfAnotherLengthAreRefused) {
+  for (const std::uint32_t length : {0u, 16u, 0x80000u}) {
+    std::string other_flags = matrix(6, 1, 1, "VicPark_clean_data", element(9, std::string(8, '\0')));
+    other_flags.replace(12, 4, word32(length));
+    for (const std::string& elements : {other_flags, compressed(other_flags)}) {
+      EXPECT_NE(error_of(elements).find("hostile.mat: byte 128: expected array flags of 8 bytes"), std::string::npos)
+          << error_of(elements);
+    }
+  }
+}
+
 TEST(HostileMatlabFile, ANameAsLongAsTheFileIsNotIsRefused) {
   std::string long_name = matrix(6, 1, 1, "VicPark_clean_data", element(9, std::string(8, '\0')));
   long_name.replace(44, 4, word32(0xa0000001));  // bytes of the name

@@ -97,6 +97,8 @@ TEST_F(MrclamFolder, RefusesWhatIsMissingOrContradictsItself) {
   folder_.write("measurements.csv", sightings);
   folder_.write("odometry.csv", std::string(commands) + "1,5.0,0.0,0.0\n");
   EXPECT_NE(error().find("odometry.csv:8: robot 1 is here a second time"), std::string::npos) << error();
+  folder_.write("odometry.csv", std::string(commands) + "2,9000000.0,0.0,0.0\n");
+  EXPECT_NE(error().find("robot 2 has no command from 4.000000 to 9000000.000000 s"), std::string::npos) << error();
   folder_.write("odometry.csv", std::string(commands) + "2,abc,0.0,0.0\n");
   EXPECT_NE(error().find("odometry.csv:8: "), std::string::npos) << error();
   EXPECT_NE(input_error_of([&] { read_mrclam(folder_.path(), {1, 1}); }).find("odometry.csv:8"), std::string::npos);

@@ -181,8 +181,7 @@ def test_a_team_is_navigated_as_the_program_does(program, team_log, tmp_path):
         run.map(2)
 
 
-def test_a_team_takes_events_live(team_log):
-    team = helixnav.Team([None, None])
+def feed(team, team_log):
     fed = []
     for index, robot in enumerate(team_log.robots):
         scans = iter(robot.labels)
@@ -195,6 +194,11 @@ def test_a_team_takes_events_live(team_log):
             team.sight(index, event)
         else:
             assert (team.take(index, event, names) is not None) == (kind == 2)
+
+
+def test_a_team_takes_events_live(team_log):
+    team = helixnav.Team([None, None])
+    feed(team, team_log)
     team.solve()
     assert team.component(1) == 0 and len(team.joins) == 1 and any(sighting.used for sighting in team.sightings)
     name = next(label for labels in team_log.robots[0].labels for label in labels if label >= 0)
@@ -210,3 +214,16 @@ def test_a_team_takes_events_live(team_log):
                   lambda: helixnav.RobotSighting(0.0, 1, "cartesian", [[1, 1], [2, 2]], np.eye(2))):
         with pytest.raises(helixnav.PreconditionError):
             wrong()
+
+
+def test_landmarks_that_were_made_one_are_listed_and_taken_back(team_log):
+    team = helixnav.Team([None, None], by_names=False, by_place=True)
+    feed(team, team_log)
+    team.solve()
+    same = team.same_landmarks
+    assert same and all(one.cost <= one.limit and one.nats > 0 and one.kept != one.removed for one in same)
+    removed = same[0].removed
+    team.remove_same(0)
+    assert (same[0].kept, removed) not in [(one.kept, one.removed) for one in team.same_landmarks]
+    with pytest.raises(helixnav.PreconditionError):
+        team.remove_same(len(team.same_landmarks))

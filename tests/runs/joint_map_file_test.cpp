@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/runs/joint_map_file.hpp"
 
+#include <cmath>
 #include <fstream>
+#include <limits>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -113,7 +115,26 @@ TEST_F(JointMapFile, WhatIsNoMapIsRefusedThoughItsChecksumFits) {
   expect_refused(joint_map_bytes(map), "next name");
   map = three_landmarks();
   map.joint.covariance(4, 4) = -1.0;
-  expect_refused(joint_map_bytes(map), "negative");
+  expect_refused(joint_map_bytes(map), "covariance");
+  map = three_landmarks();
+  map.joint.covariance(4, 3) = map.joint.covariance(3, 4) = 1.1 * map.joint.covariance.diagonal().maxCoeff();
+  expect_refused(joint_map_bytes(map), "covariance");
+  map = three_landmarks();
+  const double sigma_m = std::sqrt(map.joint.covariance(0, 0) * map.joint.covariance(1, 1));
+  map.joint.covariance(1, 0) = map.joint.covariance(0, 1) = 0.99 * sigma_m;
+  map.joint.covariance(2, 0) = map.joint.covariance(0, 2) = 0.0;
+  map.joint.covariance(2, 1) = map.joint.covariance(1, 2) =
+      0.9 * std::sqrt(map.joint.covariance(1, 1) * map.joint.covariance(2, 2));
+  expect_refused(joint_map_bytes(map), "covariance");  // of the pose: no correlation above one, and yet none
+  map = three_landmarks();
+  map.joint.points_m[1].x() = 1e9;
+  expect_refused(joint_map_bytes(map), "coordinates");
+  map = three_landmarks();
+  map.next_name = std::numeric_limits<core::LandmarkId>::max();
+  expect_refused(joint_map_bytes(map), "next name");
+  map = three_landmarks();
+  map.observations[2] = -1;
+  expect_refused(joint_map_bytes(map), "observed");
   map = three_landmarks();
   map.states[0] = core::LandmarkState::dead;
   expect_refused(joint_map_bytes(map), "state");

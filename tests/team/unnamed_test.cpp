@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "helixnav/core/errors.hpp"
 #include "helixnav/team/team.hpp"
 #include "small_team.hpp"
 
@@ -91,6 +92,8 @@ TEST(UnnamedTeam, WhatWasMadeOneCanBeTakenBack) {
                                  [&](std::int64_t one) { return team.landmark_of(0, one) == first.kept; });
   ASSERT_NE(name, names.end());
   ASSERT_EQ(team.landmark_of(1, 100 + *name), first.kept);
+  EXPECT_THROW(team.remove_same(team.same_landmarks().size()), core::PreconditionError);
+  EXPECT_THROW(team.remove_join(team.joins().size()), core::PreconditionError);
   team.remove_same(0);
   team.solve();
   EXPECT_NE(team.landmark_of(0, *name), team.landmark_of(1, 100 + *name));

@@ -48,12 +48,24 @@ void check_span(const Robot& robot, int number, core::Nanoseconds begin_ns, core
                          ": expected one clock");
 }
 
+/// A command is held until the next one; for hours it is not, and an increment each half a second would fill the memory.
+void check_gaps(const Robot& robot, const std::string& name) {
+  constexpr core::Nanoseconds most_held_ns = 3'600'000'000'000;
+  for (std::size_t k = 1; k < robot.commands.size(); ++k) {
+    const core::Nanoseconds from_ns = robot.commands[k - 1].t_ns, to_ns = robot.commands[k].t_ns;
+    if (to_ns - from_ns <= most_held_ns) continue;
+    throw core::InputError(robot.file + ": " + name + " has no command from " + span_text(from_ns, to_ns) +
+                           ": expected one an hour, at least");
+  }
+}
+
 void check(const MrclamTables& tables, const std::vector<int>& chosen) {
   const Robot& first = tables.robots.at(chosen.front());
   for (const int number : chosen) {
     const Robot& robot = tables.robots.at(number);
     const std::string name = "robot " + std::to_string(number);
     if (robot.commands.empty()) throw core::InputError(robot.file + ": expected commands of " + name + ", found none");
+    check_gaps(robot, name);
     if (robot.sightings.empty()) throw core::InputError(robot.file + ": " + name + " has no sightings");
     check_span(robot, number, robot.sightings.front().t_ns, robot.sightings.back().t_ns, "its sightings");
     check_span(robot, number, first.commands.front().t_ns, first.commands.back().t_ns, "those of another robot");

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "helixnav/core/random.hpp"
+#include "sanitized.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -137,7 +138,9 @@ TEST(JoinSessions, FiveSessionsInAll120OrdersAreOneMap) {
   const std::vector<core::JointMap> maps = maps_of(sessions);
   const auto expected_m = points_by_x(join_sessions(maps).components.at(0));
   std::vector<std::size_t> order{0, 1, 2, 3, 4};
+  int tried = 0;
   do {
+    if (support::sanitized && tried++ % 30 != 29) continue;  // four will do to watch the code
     std::vector<core::JointMap> shuffled;
     for (const std::size_t k : order) shuffled.push_back(maps[k]);
     const JoinedSessions joined = join_sessions(shuffled);

@@ -75,6 +75,7 @@ class Team {
   const std::vector<SameLandmarks>& same_landmarks() const;
 
   /// Takes a join back, and everything that came of it; the same two are not joined by the same kind of evidence again.
+  /// PreconditionError for one that is not there; so of remove_same().
   void remove_join(std::size_t join);
 
   /// Makes two landmarks two again, with all that came of their being one; these two are not made one by their places again.

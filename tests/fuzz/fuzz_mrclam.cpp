@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tables of several robots: a text with a line "=== name" before each; MRCLAM's own names, or those of the tables.
+#include "fuzz_input.hpp"
+#include "helixnav/logs/mrclam.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace helixnav;
+  fuzz::folder();
+  const helixnav::testing::TemporaryFolder log;
+  for (const auto& [name, text] : fuzz::files_of(data, size)) {
+    if (name.empty() || name.find('/') != std::string::npos || name[0] == '.' || name.size() > 40) continue;
+    if (name.find('\0') != std::string::npos) continue;
+    log.write(name, text);
+  }
+  fuzz::read_or_refuse([&] {
+    const core::TeamRecording team = logs::read_mrclam(log.path());
+    for (const core::TeamMember& robot : team.robots) {
+      fuzz::check_recording(robot.recording);
+      for (const core::RobotSighting& sighting : robot.sightings) {
+        fuzz::require(sighting.seen >= 0 && static_cast<std::size_t>(sighting.seen) < team.robots.size(),
+                      "a robot seen that is not there");
+      }
+    }
+  });
+  return 0;
+}
