@@ -188,8 +188,12 @@ bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair
   decision.dof = closing.dof;
   decision.limit = closing.limit;
   if (!closing.accepted) {
-    place.as_measured = closing;
     report.numerics.note(closing.numerics);
+    if (was_no_noise(closing) && pause_before(pairs)) {
+      pending_.forbidden = pairs;  // a pause says when it was carried, matches only after which scans nothing fitted any more
+      return false;
+    }
+    place.as_measured = closing;
     Reconciled reconciled = close_against_odometry(belief_.filter, start_, view, place, options_.search);
     if (!reconciled.closing.accepted) {
       pending_.forbidden = pairs;

@@ -82,6 +82,16 @@ TEST(PartAtPause, WhereASearchGoesOnInAWrongPrior) {
   EXPECT_LT(driven.by_place[0].decision.scans, 120);
 }
 
+/// Set down on a bare street; what it mapped behind that was cut off, and what it had mapped before stayed where it never was: from then
+/// on the vehicle was found on either street in turn.
+TEST(PartAtPause, LeavesNothingWhereItNeverWas) {
+  const core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3900028);
+  const FoundLater driven = drive_on(run);
+  EXPECT_EQ(driven.by_place.size(), 1u);
+  EXPECT_EQ(driven.placed, 2);
+  EXPECT_LT(driven.error_at_end_m, 5.0);
+}
+
 /// A log that does not show when it was carried leaves the vehicle undecided rather than cut anywhere.
 TEST(PartAtPause, NotWithoutAPause) {
   const core::Recording run = without_waiting(sim::simulate(sim::named_scenario("kidnapped"), 3400054));
