@@ -190,7 +190,7 @@ bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair
   if (!closing.accepted) {
     report.numerics.note(closing.numerics);
     if (was_no_noise(closing) && pause_before(pairs)) {
-      pending_.forbidden = pairs;  // a pause says when it was carried, matches only after which scans nothing fitted any more
+      pending_.forbidden = pairs;  // a pause says when it was carried, matches only since when nothing fitted
       return false;
     }
     place.as_measured = closing;
