@@ -56,6 +56,11 @@ std::vector<FrameOfStep> frames_of(const Run& run) {
       if (const auto* carried = std::get_if<core::CarriedDecision>(&decision)) {
         part = carried->part;
         ++times_carried;
+        const std::size_t scans = std::min(frames.size(), static_cast<std::size_t>(std::max(0, carried->scans)));
+        for (std::size_t k = frames.size() - scans; k < frames.size(); ++k) {
+          part_of[k] = part;
+          frames[k].times_carried = times_carried;
+        }
       }
       const core::PlacedDecision* placing = placing_in(decision);
       if (placing == nullptr || placing->part == part) continue;

@@ -105,6 +105,31 @@ TEST(PlacedRun, OfSeveralPartsHasOneFrameOnceTheyAreFound) {
   EXPECT_NEAR(run.final_path[1].y_m, 0.25, 1e-12) << "what was solved of the first part";
 }
 
+/// Found out two scans later, when the place was found at once.
+TEST(PlacedRun, APartMayHaveBegunBeforeAnybodyKnew) {
+  const auto truth = [](int k) { return core::Pose2(0.5 * k, 0.1 * k, 0.02 * k); };
+  RunRecorder recorder("run", {}, {});
+  for (int k = 0; k < 8; ++k) {
+    core::StepReport step = step_at(k, false);
+    const bool is_elsewhere = k == 3 || k == 4;
+    step.pose.mean = is_elsewhere ? core::compose(core::inverse(T_map_session), truth(k)) : truth(k);
+    if (k == 5) {
+      core::CarriedDecision carried;
+      carried.cause = core::CarriedDecision::Cause::by_place;
+      carried.part = 1;
+      carried.scans = 2;
+      step.decisions.emplace_back(carried);
+      step.decisions.emplace_back(placed(core::PlacedDecision::Verdict::accepted));
+    }
+    recorder.add(step, 0.0);
+  }
+  const runs::Run run = recorder.finish({});
+  for (int k = 0; k < 8; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    EXPECT_LT((run.steps[i].pose.mean.vector() - truth(k).vector()).norm(), 1e-12) << k;
+  }
+}
+
 TEST(PlacedRun, WhatWasKnownBeforeItWasLostStaysWhereItIs) {
   const testing::TemporaryFolder folder;
   const runs::Run run = write_run((folder.path() / "run").string(), false);

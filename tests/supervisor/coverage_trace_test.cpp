@@ -34,6 +34,14 @@ CoverageTrace laps_thinned(int count, const std::function<bool(double)>& needed)
   return trace;
 }
 
+TEST(CoverageTrace, BeginsAfterAPlaceOfTheDrive) {
+  CoverageTrace trace(trace_spacing_m);
+  for (int i = 0; i < 10; ++i) trace.pass(trace_spacing_m * i, on_circle(trace_spacing_m * i));
+  trace.begin_after(trace_spacing_m * 3);
+  EXPECT_EQ(trace.size(), 6u);
+  EXPECT_TRUE(trace.between(0.0, trace_spacing_m * 4).empty());
+}
+
 TEST(CoverageTrace, IsAsLargeAsTheGroundHoweverLongTheDrive) {
   EXPECT_LE(laps_thinned(10, not_needed).size(), 4096u);
   EXPECT_LE(laps_thinned(100, not_needed).size(), 4096u);

@@ -107,7 +107,7 @@ NavigatorOptions single_threaded(std::uint64_t seed) {
 }
 
 /// What a scan did that is worth breaking.
-enum class Kind { mapping, trigger, searching, closing, rollback, place_without_search, carried };
+enum class Kind { mapping, trigger, searching, closing, rollback, place_without_search, carried, parted };
 
 Kind kind_of(const core::StepReport& report) {
   const bool was_searching = report.mode == core::Mode::searching;
@@ -115,7 +115,9 @@ Kind kind_of(const core::StepReport& report) {
     const auto* asked = std::get_if<core::WholeMapDecision>(&decision);
     const bool found = asked != nullptr && asked->verdict == core::WholeMapDecision::Verdict::accepted;
     if (found && !was_searching) return Kind::place_without_search;
-    if (std::holds_alternative<core::CarriedDecision>(decision)) return Kind::carried;
+    const auto* carried = std::get_if<core::CarriedDecision>(&decision);
+    const bool is_parted = carried != nullptr && carried->cause == core::CarriedDecision::Cause::by_place;
+    if (carried != nullptr) return is_parted ? Kind::parted : Kind::carried;
     const auto* closure = std::get_if<core::ClosureDecision>(&decision);
     if (closure != nullptr && closure->accepted) return Kind::closing;
     if (std::holds_alternative<core::RollbackDecision>(decision)) return Kind::rollback;
@@ -210,6 +212,12 @@ TEST(Guarantee, HoldsWhereThePlaceOfACarriedVehicleIsFoundWithoutASearch) {
 TEST(Guarantee, HoldsWhereItIsFoundOutThatTheVehicleWasCarried) {
   const core::Recording run = with_pauses(sim::simulate(wide_circuit(), 1), {{220, 290}}, false);
   EXPECT_EQ(break_drive(run, single_threaded(1), 12).count(Kind::carried), 1u);
+}
+
+TEST(Guarantee, HoldsWhereTheDriveIsPartedAtAPause) {
+  const core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3400054);
+  constexpr double rounding_m = 1e-9;  // as above
+  EXPECT_EQ(break_drive(run, single_threaded(1), 12, rounding_m).count(Kind::parted), 1u);
 }
 
 TEST(Guarantee, HoldsForFixes) {

@@ -43,10 +43,12 @@ inline void wait_before(core::Recording& run, std::size_t at, core::Nanoseconds 
   }
 }
 
-/// The same events with no more than a second between two of them: no clock tells of a pause.
-inline core::Recording without_waiting(core::Recording run) {
+/// The same events with no more than a second between two of them, those before `since_ns` as they are: no clock tells of a pause.
+inline core::Recording without_waiting(core::Recording run, core::Nanoseconds since_ns = 0) {
   constexpr core::Nanoseconds longest_ns = 1'000'000'000;
-  for (std::size_t i = 1; i < run.events.size(); ++i) {
+  std::size_t first = 1;
+  while (first < run.events.size() && core::time_of(run.events[first]) < since_ns) ++first;
+  for (std::size_t i = first; i < run.events.size(); ++i) {
     const core::Nanoseconds passed_ns = core::time_of(run.events[i]) - core::time_of(run.events[i - 1]);
     if (passed_ns > longest_ns) wait_before(run, i, longest_ns - passed_ns);
   }

@@ -264,6 +264,8 @@ bool replay_after_jump(const Input& in, Reconciled& result) {
 
 }  // namespace
 
+bool was_no_noise(const Closing& as_measured) { return factor_from(as_measured) > largest_factor; }
+
 Reconciled close_against_odometry(const cekf::CompressedEkf& filter, const core::PoseGaussian& start,
                                   const ClosingView& view, const ForbiddenPlace& place, const SearchOptions& options) {
   const Input in{filter, start, view, place, options, branch_of(view, options)};

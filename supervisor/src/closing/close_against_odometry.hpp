@@ -31,6 +31,9 @@ struct Reconciled {
   double loop_m = 0.0;                        ///< length of that motion
 };
 
+/// Its noise would have to be a thousand times the variance that was assumed.
+bool was_no_noise(const Closing& as_measured);
+
 /// Closes the map at a place that odometry forbids. χ² of the pairs at a free pose decides a place; what their cost with
 /// odometry has beyond that, on three degrees of freedom, says only how wrong odometry was since the old landmarks of the
 /// pairs were last seen. Its noise over this loop is taken to be as large as makes that excess what it should be; the drive

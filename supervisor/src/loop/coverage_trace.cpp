@@ -58,6 +58,11 @@ void CoverageTrace::back_to(double path_m) {
   while (!points_.empty() && points_.back().path_m > path_m) points_.pop_back();
 }
 
+void CoverageTrace::begin_after(double path_m) {
+  const auto is_before = [&](const Point& point) { return point.path_m <= path_m; };
+  points_.erase(std::remove_if(points_.begin(), points_.end(), is_before), points_.end());
+}
+
 void CoverageTrace::thin_before(double path_m, const std::function<bool(double)>& needed) {
   if (points_.size() < thin_from_) return;
   std::vector<Point> kept;

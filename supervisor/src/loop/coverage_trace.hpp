@@ -22,6 +22,9 @@ class CoverageTrace {
   /// Forgets what was passed after `path_m`.
   void back_to(double path_m);
 
+  /// Forgets what was passed until `path_m`.
+  void begin_after(double path_m);
+
   /// Of the poses passed before `path_m`, drops those from which nothing was seen that an older one did not see: less than
   /// three quarters of the spacing away from it and turned by less than 0.3 rad. Those that `needed(path_m)` are kept. Does
   /// nothing before there are twice as many poses as it left last time, and never below 4096, so that it costs O(log n) a

@@ -64,8 +64,14 @@ StepReport NavigationLoop::observe(const Scan& scan) {
   const StillThere there = paused_m ? weigh_pause(scan, *paused_m) : StillThere{};
   const double driven_m = pending_.driven_m;
   const bool is_carried = there.is_elsewhere(limits);
+  const bool has_paused = paused_m && rhythm_.is_pause(scan.t_ns, driven_m);
+  const UnsurePause pause{paused_m.value_or(0.0), belief_.step};
+  pauses_.reserve(pauses_.size() + 1);  // nothing throws once the scan has been taken
   StepReport report = is_carried ? observe_elsewhere(scan, there) : observe_somewhere(scan);
   rhythm_.note(scan.t_ns, driven_m);
+  forget_pauses(report);
+  if (is_carried) pauses_.clear();
+  if (has_paused && !is_carried && !there.is_surely_here()) pauses_.push_back(pause);
   pause_m_ = is_carried || there.is_here(limits) ? std::nullopt : paused_m;
   return report;
 }
@@ -82,6 +88,7 @@ StepReport NavigationLoop::observe_here(const Scan& scan) {
 StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* note) {
   return all_or_nothing([&] {
     if (note != nullptr) pending_.decisions.push_back(*note);
+    pending_.forbidden.clear();
     predict();
     learn_noise(scan);
     StepReport report = take_as_assumed(scan);
@@ -93,6 +100,7 @@ StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* not
     solve_with_learnt_noise(report);
     report.pose = belief_.filter.pose();
     if (apart_.any()) find_place(scan.field_of_view, report);
+    if (!pending_.forbidden.empty()) part_at_pause(scan, report);
     report_late(report);
     return report;
   });

@@ -59,6 +59,8 @@ class NavigationLoop {
     double driven_m = 0.0;  ///< length along the road
     std::vector<core::Decision> decisions;
     core::NumericalHealth numerics = {};  ///< that no report has yet
+    std::vector<pf_relocalize::ConstellationPair> forbidden =
+        {};  ///< of a place that the whole map has and to which it could not be closed in this step
   };
   /// What a call has replaced so far, for recover().
   struct Undo {
@@ -162,6 +164,7 @@ class NavigationLoop {
   bool asks_whole_map() const;
   AskedWholeMap ask_whole_map(const core::Scan& scan, core::StepReport& report);
   void ask_whether_new(const core::Scan& scan, core::StepReport& report);
+  void ask_meanwhile(const core::Scan& scan, core::StepReport& report);
   LandmarksAbout branch_about() const;
   AskedWholeMap ask_about_place(const core::Scan& scan);
   AskedWholeMap ask(LandmarksAbout& about, const Search& search, const core::Scan& scan);
@@ -184,9 +187,10 @@ class NavigationLoop {
             core::StepReport& report);
 
   // placing/carried.cpp
-  core::JointMap map_to_keep(core::CarriedDecision& decision) const;
+  core::JointMap map_to_keep(core::CarriedDecision& decision, double until_m) const;
   Belief belief_elsewhere() const;
-  Part part_elsewhere(core::CarriedDecision decision) const;
+  Part part_elsewhere(const core::CarriedDecision& decision) const;
+  Part part_apart(core::CarriedDecision decision, core::JointMap map, Belief belief) const;
   void exchange(Part& other) noexcept;
   std::optional<double> pause_to_weigh(const core::Scan& scan) const;
   StillThere weigh_pause(const core::Scan& scan, double paused_m) const;
@@ -194,6 +198,12 @@ class NavigationLoop {
   core::StepReport begin_part_with(const core::Scan& scan, const core::CarriedDecision& decision);
   core::CarriedDecision broken_off() const;
   core::StepReport observe_somewhere(const core::Scan& scan);
+
+  // placing/part_at_pause.cpp
+  void forget_pauses(const core::StepReport& report);
+  std::optional<UnsurePause> pause_before(const std::vector<pf_relocalize::ConstellationPair>& pairs) const;
+  Belief belief_since(const UnsurePause& pause) const;
+  void part_at_pause(const core::Scan& scan, core::StepReport& report);
 
   // loop/process_again.hpp
   template <class AfterFix, class AfterScan>
@@ -223,6 +233,8 @@ class NavigationLoop {
   Undo undo_;
   ScanRhythm rhythm_;
   std::optional<double> pause_m_;  ///< where on the drive a pause was that no scan has decided yet
+  std::vector<UnsurePause>
+      pauses_;  ///< since the place was last certain, of which no scan said surely that it was the same
   std::uint64_t searches_ = 0;
   WholeMapQuestions questions_;
   WholeMapQuestions questions_before_;  ///< this call, for recover()

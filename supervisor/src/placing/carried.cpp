@@ -2,6 +2,7 @@
 // The vehicle was carried away: what was mapped is kept as an earlier map, and a new part of the drive begins.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -58,11 +59,14 @@ core::CarriedDecision found_out(const StillThere& there) {
 
 }  // namespace
 
-/// The mature landmarks; none where they are too few to be found again.
-core::JointMap NavigationLoop::map_to_keep(core::CarriedDecision& decision) const {
+/// The mature landmarks begun and last seen until then; none where they are too few to be found again.
+core::JointMap NavigationLoop::map_to_keep(core::CarriedDecision& decision, double until_m) const {
   std::vector<core::MapLandmark> kept;
+  std::size_t begun = 0;
   for (const association::LandmarkRecord& record : belief_.existence.records()) {
-    if (record.state != core::LandmarkState::mature) continue;
+    begun += record.born_path_m <= until_m;
+    if (record.state != core::LandmarkState::mature || record.born_path_m > until_m) continue;
+    if (record.last_seen_path_m > until_m) continue;
     core::MapLandmark& landmark = kept.emplace_back();
     landmark.id = record.id;
     landmark.point = sketched({record.id}).front();
@@ -73,7 +77,7 @@ core::JointMap NavigationLoop::map_to_keep(core::CarriedDecision& decision) cons
   kept = nearest(std::move(kept), belief_.filter.pose().mean.position_m());
   if (kept.size() < least_to_keep) kept.clear();
   decision.landmarks = static_cast<int>(kept.size());
-  decision.dropped = static_cast<int>(belief_.existence.records().size() - kept.size());
+  decision.dropped = static_cast<int>(begun - kept.size());
   LandmarkId next_name = belief_.filter.next_name();
   for (const association::LandmarkRecord& record : belief_.existence.records()) {
     next_name = std::max(next_name, record.id + 1);
@@ -94,10 +98,17 @@ Belief NavigationLoop::belief_elsewhere() const {
 }
 
 /// Nothing of the loop is changed.
-NavigationLoop::Part NavigationLoop::part_elsewhere(core::CarriedDecision decision) const {
-  core::JointMap map = map_to_keep(decision);
+NavigationLoop::Part NavigationLoop::part_elsewhere(const core::CarriedDecision& decision) const {
+  core::CarriedDecision kept = decision;
+  core::JointMap map = map_to_keep(kept, std::numeric_limits<double>::infinity());
   Belief belief = belief_elsewhere();
   belief.filter.name_from(map.next_name);
+  return part_apart(kept, std::move(map), std::move(belief));
+}
+
+/// A part with this belief, apart from what else is and from the map.
+NavigationLoop::Part NavigationLoop::part_apart(core::CarriedDecision decision, core::JointMap map,
+                                                Belief belief) const {
   MapsApart apart = apart_;
   decision.from_part = apart.part;
   decision.part = apart.part = apart.next_part++;
@@ -150,6 +161,7 @@ void NavigationLoop::lose(const core::Lost&) {
   exchange(elsewhere);
   rhythm_.lose_last();
   pause_m_.reset();
+  pauses_.clear();
 }
 
 /// Where on the drive the pause was of which this scan may tell: the one that ends with it, or one that the scans since have left
@@ -194,7 +206,7 @@ StepReport NavigationLoop::observe_somewhere(const core::Scan& scan) {
   } catch (const core::NumericalError&) {
     const core::CarriedDecision broken = broken_off();
     core::CarriedDecision kept = broken;
-    map_to_keep(kept);
+    map_to_keep(kept, std::numeric_limits<double>::infinity());
     if (kept.landmarks == 0) throw;
     return begin_part_with(scan, broken);
   }

@@ -2,11 +2,18 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 
 #include "helixnav/core/time.hpp"
 
 namespace helixnav::supervisor {
+
+/// A pause in which the vehicle may have been carried.
+struct UnsurePause {
+  double path_m = 0.0;    ///< length of the drive until it
+  std::int64_t step = 0;  ///< of the first scan after it
+};
 
 /// How often scans come and how far the vehicle drives between two of them, and hence what is a pause.
 class ScanRhythm {

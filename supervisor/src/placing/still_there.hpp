@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+
 #include "helixnav/association/landmark_life.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/events.hpp"
@@ -23,6 +25,11 @@ struct StillThere {
     return elsewhere_nats >= limits.nats && unknown >= limits.spawned;
   }
   bool is_here(const IntegrityLimits& limits) const { return elsewhere_nats <= -limits.nats; }
+  /// By as much as a place on the whole map is asked for: a tree or two may stand where others did.
+  bool is_surely_here() const {
+    static const double needed = -std::log(1e-5);
+    return elsewhere_nats <= -needed;
+  }
 };
 
 /// By the length of the drive until then.

@@ -47,6 +47,8 @@ class Search {
 
   /// Nothing of the old map has been in a gate for long, or the search is over. Bare ground tells nothing and counts for neither.
   bool is_undecided(double path_m) const;
+  /// Has gone on for longer than one that finds its place does.
+  bool goes_on(double path_m) const { return seeing_m(path_m) > options_.idle_m; }
   /// Has gone on for as long as any search may.
   bool is_over(double path_m) const;
   /// There was too little about the vehicle to decide that the ground is new: is_undecided() is asked again a little later.

@@ -36,7 +36,11 @@ void NavigationLoop::search(const Scan& scan, StepReport& report) {
   report.mode = core::Mode::searching;
   if (pairs) close(scan, *pairs, report);
   const double path_m = belief_.existence.path_m();
-  if (searching() == nullptr || !open.is_undecided(path_m)) return;
+  if (searching() == nullptr) return;
+  if (!open.is_undecided(path_m)) {
+    ask_meanwhile(scan, report);
+    return;
+  }
   const AskedWholeMap asked = ask_whole_map(scan, report);
   if (searching() == nullptr) return;
   const double driven_m = path_m - open.begun_path_m();

@@ -75,6 +75,33 @@ AskedWholeMap NavigationLoop::ask_whole_map(const core::Scan& scan, core::StepRe
   return asked;
 }
 
+/// Attempts to find the place within the prior may go on and on where the prior does not hold it: a search that has seen enough for
+/// long asks the whole map beside them. That ends it only at a place that odometry as measured forbids: another one it finds by
+/// itself, and that nothing fits is asked at its end.
+void NavigationLoop::ask_meanwhile(const core::Scan& scan, core::StepReport& report) {
+  const double path_m = belief_.existence.path_m();
+  if (!asks_whole_map() || !searching()->search.goes_on(path_m) || path_m < questions_.next_path_m) return;
+  questions_.next_path_m = path_m + options_.search.ask_again_m;
+  LandmarksAbout about = branch_about();
+  const Asked before = questions_.asked;
+  questions_.asked.with = questions_.asked_meanwhile;
+  constexpr double least_new = 0.5;
+  const bool is_due = questions_.asked.is_due(about.ids, least_new);
+  questions_.asked.with = before.with;
+  if (!is_due) return;
+  const Searching& open = *searching();
+  AskedWholeMap asked = ask(about, open.search, scan);
+  questions_.asked_meanwhile = std::exchange(questions_.asked.with, before.with);
+  if (asked.is_closed()) {
+    const ClosingView view{open.search, belief_.existence, belief_.coverage, scan, {open.trigger, tape_}};
+    cekf::CompressedEkf trial = belief_.filter;
+    if (close_map(trial, view, asked.pairs, options_.search).accepted) return;
+    if (close_at(asked.pairs, open.search, open.trigger, scan, asked.decision, report)) return;
+  }
+  const bool is_news = asked.is_asked() && asked.decision.verdict != WholeMapDecision::Verdict::not_here;
+  if (is_news) report.decisions.emplace_back(asked.decision);
+}
+
 /// Of a place that a search has found with these pairs: what the landmarks say without the prior that it was found with.
 AskedWholeMap NavigationLoop::ask_about_place(const core::Scan& scan) {
   LandmarksAbout about = branch_about();
@@ -159,10 +186,17 @@ bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair
   decision.dof = closing.dof;
   decision.limit = closing.limit;
   if (!closing.accepted) {
-    place.as_measured = closing;
     report.numerics.note(closing.numerics);
+    if (was_no_noise(closing) && pause_before(pairs)) {
+      pending_.forbidden = pairs;  // a pause says when it was carried, matches only since when nothing fitted
+      return false;
+    }
+    place.as_measured = closing;
     Reconciled reconciled = close_against_odometry(belief_.filter, start_, view, place, options_.search);
-    if (!reconciled.closing.accepted) return false;
+    if (!reconciled.closing.accepted) {
+      pending_.forbidden = pairs;
+      return false;
+    }
     const bool changes_drive = belief_.drive && tape_.holds_drive();  // else only what came after the trigger
     if (changes_drive && !begin_drive_anew(*reconciled.tape, *reconciled.filter)) return false;
     decision.odometry_factor = reconciled.odometry_factor;

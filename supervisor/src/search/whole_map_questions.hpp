@@ -16,6 +16,7 @@ namespace helixnav::supervisor {
 /// What was asked of the whole map so far, by all searches and outside of any: they share one probability of a false answer.
 struct WholeMapQuestions {
   Asked asked;
+  std::vector<core::LandmarkId> asked_meanwhile = {};  ///< with which a search that went on asked last, ascending
   double next_path_m = 0.0;  ///< length of the drive when it is asked next whether ground is new
   std::shared_ptr<const OldGroundIndex> old_ground;  ///< null before the first question
 };

@@ -153,6 +153,7 @@ struct CarriedDecision {
     told,        ///< an event said so
     found_out,   ///< by the scan after a pause: missing to elsewhere_nats
     broken_off,  ///< it was not carried: the part that ends cannot be computed any further
+    by_place,    ///< landmarks mapped since a pause stand elsewhere on the map: it was carried then
   };
   int part = 0;           ///< that begins with this scan
   int from_part = 0;      ///< that ends
@@ -167,6 +168,7 @@ struct CarriedDecision {
   double elsewhere_nats = 0.0;     ///< ln of how much likelier all these are anywhere than where it stopped
   double pose_sigma_m = 0.0;       ///< where it is broken off
   double heading_sigma_deg = 0.0;  ///< likewise
+  int scans = 0;                   ///< before this one, with which the part begins already: those since the pause
 };
 
 /// The session and the map of an earlier one: whether, where and by which evidence the one was found in the other. Rows where

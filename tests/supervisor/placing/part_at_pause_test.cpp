@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A vehicle that was carried during a pause after which no scan told: what it maps since tells.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "circuits.hpp"
+#include "pauses.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+struct ByPlace {
+  core::CarriedDecision decision;
+  std::size_t scan = 0;
+};
+
+struct FoundLater {
+  std::vector<ByPlace> by_place;
+  int refused = 0;  ///< places that the whole map had
+  int placed = 0;
+  double error_at_end_m = 0.0;
+};
+
+FoundLater drive_on(const core::Recording& run, const NavigatorOptions& options = {}) {
+  FoundLater driven;
+  Navigator navigator(run.start, options);
+  drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
+    for (const core::Decision& decision : navigator.observe(scan).decisions) {
+      const auto* carried = std::get_if<core::CarriedDecision>(&decision);
+      const auto* placed = std::get_if<core::PlacedDecision>(&decision);
+      const auto* asked = std::get_if<core::WholeMapDecision>(&decision);
+      driven.placed += placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted;
+      driven.refused += asked != nullptr && asked->verdict == core::WholeMapDecision::Verdict::refused;
+      const bool is_by_place = carried != nullptr && carried->cause == core::CarriedDecision::Cause::by_place;
+      if (is_by_place) driven.by_place.push_back({*carried, i});
+    }
+  });
+  driven.error_at_end_m =
+      (navigator.pose().mean.position_m() - run.true_poses.back().T_world_robot.position_m()).norm();
+  return driven;
+}
+
+/// The first scan at or after the time.
+std::size_t first_scan(const core::Recording& run, core::Nanoseconds t_ns) {
+  std::size_t scans = 0;
+  for (const core::Event& event : run.events) {
+    if (!std::holds_alternative<core::Scan>(event)) continue;
+    if (core::time_of(event) >= t_ns) return scans;
+    ++scans;
+  }
+  return scans;
+}
+
+void expect_part_since_the_last_carry(const core::Recording& run, const FoundLater& driven) {
+  ASSERT_EQ(driven.by_place.size(), 1u);
+  const ByPlace& found = driven.by_place[0];
+  EXPECT_EQ(found.scan - static_cast<std::size_t>(found.decision.scans), first_scan(run, run.true_carries_ns.back()));
+  EXPECT_GE(driven.placed, 2) << "the first time it was noticed at once";
+  EXPECT_EQ(driven.refused, 1) << "the answer that it was found by";
+  EXPECT_LT(driven.error_at_end_m, 5.0);
+}
+
+/// Two trees stand where two of those stood that it left. The map is of two parts by then, and no drive is kept that could be cut.
+TEST(PartAtPause, WhereTreesHappenToStandAsThoseItLeft) {
+  const core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3400054);
+  const FoundLater driven = drive_on(run);
+  expect_part_since_the_last_carry(run, driven);  // 207 m off at the end, ten answers of the whole map refused
+  ASSERT_EQ(driven.by_place.size(), 1u);
+  EXPECT_LT(driven.by_place[0].decision.scans, 40);
+}
+
+/// Set down on a bare street. The search that begins then goes from one attempt to the next where its prior has it, and asked the
+/// whole map after 541 m.
+TEST(PartAtPause, WhereASearchGoesOnInAWrongPrior) {
+  const core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3400030);
+  const FoundLater driven = drive_on(run);
+  expect_part_since_the_last_carry(run, driven);
+  ASSERT_EQ(driven.by_place.size(), 1u);
+  EXPECT_LT(driven.by_place[0].decision.scans, 120);
+}
+
+/// Set down on a bare street; what it mapped behind that was cut off, and what it had mapped before stayed where it never was: from then
+/// on the vehicle was found on either street in turn.
+TEST(PartAtPause, LeavesNothingWhereItNeverWas) {
+  const core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3900028);
+  const FoundLater driven = drive_on(run);
+  EXPECT_EQ(driven.by_place.size(), 1u);
+  EXPECT_EQ(driven.placed, 2);
+  EXPECT_LT(driven.error_at_end_m, 5.0);
+}
+
+/// A log that does not show when it was carried leaves the vehicle undecided rather than cut anywhere.
+TEST(PartAtPause, NotWithoutAPause) {
+  const core::Recording run = without_waiting(sim::simulate(sim::named_scenario("kidnapped"), 3400054));
+  EXPECT_TRUE(drive_on(run).by_place.empty());
+}
+
+}  // namespace
+}  // namespace helixnav::supervisor
