@@ -153,8 +153,9 @@ TEST_F(CutRun, ByItsLimitOfMemoryIsClosedProperly) {
 TEST_F(CutRun, ByALimitOfMemoryIsForReplayAndSimulateOnly) {
   const fs::path log = folder_.write("circle.txt", circle_graph(30));
   using Words = std::vector<std::string>;
-  for (const Words& words : {Words{"stream", "--vehicle", "generic"}, Words{"montecarlo", "circuit"},
-                             Words{"associate", log}, Words{"calibrate", log}}) {
+  for (const Words& words :
+       {Words{"stream", "--vehicle", "generic"}, Words{"montecarlo", "circuit", "--out", out("campaign")},
+        Words{"associate", log}, Words{"calibrate", log}}) {
     Words limited = words;
     limited.insert(limited.end(), {"--map.memory_mb", "100"});
     const Outcome outcome = run(limited);
