@@ -2,7 +2,6 @@
 #include "helixnav/core/packed_product.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "helixnav/core/add_outer.hpp"
 
@@ -10,33 +9,40 @@ namespace helixnav::core {
 
 using Index = Eigen::Index;
 
-namespace {
+Panels::Panels(const Source& from, Index width) : Panels(width) { pack(from); }
 
-std::vector<int> all_columns(Index count) {
-  std::vector<int> columns(static_cast<std::size_t>(count));
-  std::iota(columns.begin(), columns.end(), 0);
-  return columns;
+Panels::Panels(const Source& from, const std::vector<int>& columns, Index width) : Panels(width) {
+  pack(from, columns);
 }
 
-}  // namespace
+Panels::Panels(Index rows, Index depth, Index width) : Panels(width) { set_zero(rows, depth); }
 
-Panels::Panels(const Source& from, Index width) : Panels(from, all_columns(from.cols()), width) {}
-
-Panels::Panels(Index rows, Index depth, Index width) : rows_(rows), depth_(depth), width_(width) {
-  data_.resize(static_cast<std::size_t>(count() * width_ * depth_));
+void Panels::set_zero(Index rows, Index depth) {
+  rows_ = rows;
+  depth_ = depth;
+  data_.assign(static_cast<std::size_t>(count() * width_ * depth_), 0.0);
 }
 
-Panels::Panels(const Source& from, const std::vector<int>& columns, Index width)
-    : Panels(from.rows(), static_cast<Index>(columns.size()), width) {
-  for (Index p = 0; p < count(); ++p) {
-    const Index first = p * width_;
+void Panels::reserve(Index rows, Index depth) {
+  data_.reserve(static_cast<std::size_t>((rows + width_ - 1) / width_ * width_ * depth));
+}
+
+void Panels::copy_column(const double* source, Index k) {
+  for (Index first = 0; first < rows_; first += width_) {
     const Index filled = std::min(width_, rows_ - first);
-    double* to = data_.data() + first * depth_;
-    for (const int column : columns) {
-      const double* source = from.data() + first + column * from.outerStride();
-      std::copy(source, source + filled, to);
-      to += width_;
-    }
+    std::copy(source + first, source + first + filled, data_.data() + first * depth_ + k * width_);
+  }
+}
+
+void Panels::pack(const Source& from) {
+  set_zero(from.rows(), from.cols());
+  for (Index k = 0; k < depth_; ++k) copy_column(from.data() + k * from.outerStride(), k);
+}
+
+void Panels::pack(const Source& from, const std::vector<int>& columns) {
+  set_zero(from.rows(), static_cast<Index>(columns.size()));
+  for (Index k = 0; k < depth_; ++k) {
+    copy_column(from.data() + columns[static_cast<std::size_t>(k)] * from.outerStride(), k);
   }
 }
 

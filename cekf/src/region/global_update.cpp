@@ -17,25 +17,24 @@ namespace helixnav::cekf {
 namespace {
 
 /// Columns 2s, 2s+1 of left·rightᵀ in the rows 2s, 2s+1, for all slots.
-void add_own_blocks(const Eigen::MatrixXd& left, const ReservedMatrix& right, Eigen::MatrixXd& blocks) {
-  const auto r = right.view();
+void add_own_blocks(const Eigen::MatrixXd& left, const ReservedMatrix& right, const std::vector<int>& columns,
+                    Eigen::MatrixXd& blocks) {
   for (Eigen::Index k = 0; k < left.cols(); ++k) {
+    const auto r = right.view().col(columns[static_cast<std::size_t>(k)]);
     for (Eigen::Index i = 0; i + 1 < left.rows(); i += 2) {
-      blocks.block<2, 2>(i, 0) += left.block<2, 1>(i, k) * r.block<2, 1>(i, k).transpose();
+      blocks.block<2, 2>(i, 0) += left.block<2, 1>(i, k) * r.segment<2>(i).transpose();
     }
   }
 }
 
-/// E·M, where M is symmetric and zero outside the rows and columns named.
+/// The columns named of E·M, where M is symmetric and zero outside the rows and columns named.
 Eigen::MatrixXd product_with_symmetric(const ReservedMatrix& E, const Eigen::MatrixXd& M,
                                        const std::vector<int>& columns) {
   const Eigen::MatrixXd M_named = M(columns, columns);
   ReservedMatrix named(E.rows(), M_named.cols());
   core::add_product(named.col(0), named.stride(), core::Panels(E.view(), columns, core::left_width),
                     core::Panels(M_named, core::right_width));
-  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(E.rows(), M.cols());
-  product(Eigen::all, columns) = named.view();
-  return product;
+  return named.view();
 }
 
 }  // namespace
@@ -104,6 +103,7 @@ Eigen::MatrixXd CompressedEkf::close_phase(Phase& next) {
   phase.written = active_.slots;
   phase.written_covariance = columns.rightCols(columns.cols() - 3);
   phase.dead = active_.dead_slots;
+  if (phase.number >= keep_since_) phase.basis = ReservedMatrix(phase.basis);  // compact: a search may keep hundreds
 
   next.number = ++last_phase_;
   next.slots = slots;
@@ -111,7 +111,7 @@ Eigen::MatrixXd CompressedEkf::close_phase(Phase& next) {
   next.mean_m.head(2 * phase.slots) = phase.mean_m + phase.basis.view() * active_.theta;
   next.own_covariance_m2 = Eigen::MatrixXd::Zero(2 * slots, 2);
   next.own_covariance_m2.topRows(2 * phase.slots) = phase.own_covariance_m2;
-  add_own_blocks(phase.response, phase.basis, next.own_covariance_m2);
+  add_own_blocks(phase.response, phase.basis, phase.touched, next.own_covariance_m2);
   for (std::size_t i = 0; i < active_.slots.size(); ++i) {
     const int row = 2 * active_.slots[i];
     const int column = ActivePart::column(static_cast<int>(i));
@@ -122,15 +122,17 @@ Eigen::MatrixXd CompressedEkf::close_phase(Phase& next) {
   return columns;
 }
 
-/// Closed phases before `until` become part of the passive covariance. Whatever allocates comes first.
+/// Closed phases before `until` become part of the passive covariance. Whatever allocates comes first; packed is one phase
+/// after the other, because a search that ends may have kept hundreds.
 void CompressedEkf::absorb_closed_phases(long until) {
   std::size_t count = 0;
   std::size_t dead = 0;
-  std::vector<std::pair<core::Panels, core::Panels>> products;
+  core::Panels response(core::left_width);
+  core::Panels basis(core::right_width);
   for (; count + 1 < phases_.size() && phases_[count].number < until; ++count) {
     const Phase& phase = phases_[count];
-    products.emplace_back(core::Panels(phase.response, phase.touched, core::left_width),
-                          core::Panels(phase.basis.view(), phase.touched, core::right_width));
+    response.reserve(phase.response.rows(), phase.response.cols());
+    basis.reserve(phase.basis.rows(), phase.response.cols());
     dead += phase.dead.size();
   }
   if (count == 0) return;
@@ -140,8 +142,10 @@ void CompressedEkf::absorb_closed_phases(long until) {
   absorbed_->grow(static_cast<int>(phases_[count - 1].written_covariance.rows()));
 
   // Nothing below allocates or throws.
-  for (const auto& [response, basis] : products) {
+  for (; count > 0; --count) {
     const Phase& phase = phases_.front();
+    response.pack(phase.response);
+    basis.pack(phase.basis.view(), phase.touched);
     absorbed_->add_symmetric_product(response, basis);
     absorbed_->overwrite(phase.written, phase.written_covariance);
     free_slots_.insert(free_slots_.end(), phase.dead.begin(), phase.dead.end());

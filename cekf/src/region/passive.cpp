@@ -2,6 +2,7 @@
 // Reading the passive part: as it was when the phase began, and as it is now.
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/packed_product.hpp"
@@ -15,19 +16,26 @@ int written_index(const Phase& phase, int slot) {
   return found == phase.written.end() ? -1 : static_cast<int>(found - phase.written.begin());
 }
 
-/// Rows 2s, 2s+1 of the slots, columns that the phase touched; zero for slots born later.
-Eigen::MatrixXd touched_rows(const Phase& phase, const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& from,
-                             const std::vector<int>& slots) {
-  const auto width = static_cast<Eigen::Index>(phase.touched.size());
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * static_cast<Eigen::Index>(slots.size()), width);
-  for (Eigen::Index column = 0; column < width; ++column) {
-    const auto source = from.col(phase.touched[static_cast<std::size_t>(column)]);
+/// Rows 2s, 2s+1 of the slots, these columns; zero for slots that the phase does not know yet.
+Eigen::MatrixXd rows_of(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& from,
+                        const std::vector<int>& slots, const std::vector<int>& columns) {
+  Eigen::MatrixXd rows =
+      Eigen::MatrixXd::Zero(2 * static_cast<Eigen::Index>(slots.size()), static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t column = 0; column < columns.size(); ++column) {
+    const auto source = from.col(columns[column]);
     for (std::size_t k = 0; k < slots.size(); ++k) {
-      if (slots[k] >= phase.slots) continue;
-      rows.col(column).segment<2>(2 * static_cast<Eigen::Index>(k)) = source.segment<2>(2 * slots[k]);
+      if (2 * slots[k] >= from.rows()) continue;
+      rows.col(static_cast<Eigen::Index>(column)).segment<2>(2 * static_cast<Eigen::Index>(k)) =
+          source.segment<2>(2 * slots[k]);
     }
   }
   return rows;
+}
+
+std::vector<int> all_columns(Eigen::Index count) {
+  std::vector<int> columns(static_cast<std::size_t>(count));
+  std::iota(columns.begin(), columns.end(), 0);
+  return columns;
 }
 
 /// Where the columns of a slot stand among those asked for, and the first closed phase that they have to be carried over.
@@ -43,16 +51,16 @@ void replay_on_columns(const Phase& phase, const std::vector<Carried>& carried, 
   if (carried.empty()) return;
   std::vector<int> slots;
   for (const Carried& one : carried) slots.push_back(one.slot);
-  const Eigen::MatrixXd basis = touched_rows(phase, phase.basis.view(), slots);
+  const Eigen::MatrixXd basis = rows_of(phase.basis.view(), slots, phase.touched);
   ReservedMatrix change(2 * phase.slots, basis.rows());
   constexpr Eigen::Index few = 4;  // rows: to pack the phase for them costs more than to go through it once
   if (basis.rows() <= few) {
     for (Eigen::Index k = 0; k < basis.cols(); ++k) {
-      const auto response = phase.response.col(phase.touched[static_cast<std::size_t>(k)]);
+      const auto response = phase.response.col(k);
       for (Eigen::Index row = 0; row < basis.rows(); ++row) change.view().col(row) += basis(row, k) * response;
     }
   } else if (!phase.touched.empty()) {
-    core::add_product(change.col(0), change.stride(), core::Panels(phase.response, phase.touched, core::left_width),
+    core::add_product(change.col(0), change.stride(), core::Panels(phase.response, core::left_width),
                       core::Panels(basis, core::right_width));
   }
   for (std::size_t i = 0; i < carried.size(); ++i) {
@@ -68,8 +76,8 @@ void replay_on_columns(const Phase& phase, const std::vector<Carried>& carried, 
 /// Carries the covariance of the slots, its lower triangle, over a closed phase.
 void replay_on_blocks(const Phase& phase, const std::vector<int>& slots, Eigen::MatrixXd& blocks) {
   if (!phase.touched.empty()) {  // a product of no depth ends in a division by zero in Eigen
-    const Eigen::MatrixXd response = touched_rows(phase, phase.response, slots);
-    const Eigen::MatrixXd basis = touched_rows(phase, phase.basis.view(), slots);
+    const Eigen::MatrixXd response = rows_of(phase.response, slots, all_columns(phase.response.cols()));
+    const Eigen::MatrixXd basis = rows_of(phase.basis.view(), slots, phase.touched);
     blocks.triangularView<Eigen::Lower>() += response * basis.transpose();
   }
   for (std::size_t k = 0; k < slots.size(); ++k) {

@@ -26,9 +26,9 @@ struct Phase {
   std::vector<std::pair<std::pair<int, int>, core::LandmarkId>> by_cell;  ///< passive landmarks by cell, sorted
   std::vector<int> late_anchors;  ///< slots whose columns were appended, in order
 
-  // Filled when the phase closes: P_bb += response·basisᵀ, then the rows and columns of `written` are overwritten.
+  // Filled when the phase closes: P_bb += response·basisᵀ over `touched`, then the rows and columns of `written` are overwritten.
   std::vector<int> touched;            ///< weights that an update reached: all other columns of M are zero
-  Eigen::MatrixXd response;            ///< E·M, 2·slots × q
+  Eigen::MatrixXd response;            ///< those columns of E·M, 2·slots × |touched|
   std::vector<int> written;            ///< slots of the landmarks active at the end
   Eigen::MatrixXd written_covariance;  ///< 2·slots_after × 2·|written|
   std::vector<int> dead;               ///< slots free once the phase can no longer be undone

@@ -14,11 +14,17 @@ class Panels {
  public:
   using Source = Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 
+  explicit Panels(Eigen::Index width) : rows_(0), depth_(0), width_(width) {}
   Panels(const Source& from, Eigen::Index width);
   /// Only the columns named.
   Panels(const Source& from, const std::vector<int>& columns, Eigen::Index width);
   /// Of factor·fromᵀ.
   static Panels of_transposed(const Source& from, Eigen::Index width, double factor = 1.0);
+
+  /// Room for a matrix of as many rows and columns: packing it then does not allocate.
+  void reserve(Eigen::Index rows, Eigen::Index depth);
+  void pack(const Source& from);
+  void pack(const Source& from, const std::vector<int>& columns);
 
   Eigen::Index rows() const { return rows_; }
   Eigen::Index depth() const { return depth_; }
@@ -28,6 +34,8 @@ class Panels {
 
  private:
   Panels(Eigen::Index rows, Eigen::Index depth, Eigen::Index width);
+  void set_zero(Eigen::Index rows, Eigen::Index depth);
+  void copy_column(const double* source, Eigen::Index k);
 
   Eigen::Index rows_;
   Eigen::Index depth_;
