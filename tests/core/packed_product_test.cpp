@@ -69,6 +69,25 @@ TEST(Panels, MultiplyBitForBitLikeTheMatricesTheyWereCopiedFrom) {
   }
 }
 
+/// As phases that were kept are packed, one after the other, smaller and larger ones.
+TEST(Panels, PackedAgainInTheSamePlaceAreAsIfNew) {
+  RandomStream random(5);
+  Panels again(left_width);
+  again.reserve(40, 12);
+  for (const int rows : {40, 7, 16, 33}) {
+    const Eigen::MatrixXd from = normal_matrix(random, rows, 12);
+    const std::vector<int> columns{1, 4, 5, 11};
+    const Panels fresh(from, columns, left_width);
+    again.pack(from, columns);
+    ASSERT_EQ(again.rows(), fresh.rows());
+    ASSERT_EQ(again.depth(), fresh.depth());
+    for (Eigen::Index p = 0; p < fresh.count(); ++p) {
+      const auto size = static_cast<std::size_t>(left_width * fresh.depth());
+      EXPECT_TRUE(std::equal(fresh.panel(p), fresh.panel(p) + size, again.panel(p))) << rows << ' ' << p;
+    }
+  }
+}
+
 TEST(Panels, MultiplyTheLowerTriangleOnly) {
   RandomStream random(3);
   for (const Eigen::Index rows : {1, 8, 23, 100}) {
