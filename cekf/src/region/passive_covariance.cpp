@@ -12,7 +12,10 @@ void PassiveCovariance::grow(int rows) {
   if (rows <= rows_) return;
   const std::size_t side = static_cast<std::size_t>((rows + tile - 1) / tile);
   const std::size_t tiles = side * (side + 1) / 2;
-  tiles_.reserve(tiles);  // exactly: resize would take room for up to as many again, and a map grows slowly
+  if (tiles > tiles_.capacity()) {  // resize would take room for up to as many again, and a map grows slowly
+    const std::size_t roomy = side + side / 16;
+    tiles_.reserve(roomy * (roomy + 1) / 2);
+  }
   tiles_.resize(tiles, Tile::Zero());
   rows_ = rows;
 }
