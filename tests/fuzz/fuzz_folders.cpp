@@ -25,11 +25,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace helixnav;
   fuzz::folder();
   const helixnav::testing::TemporaryFolder log;
-  for (const auto& [name, text] : fuzz::files_of(data, size)) {
-    if (name.empty() || name.find('/') != std::string::npos || name[0] == '.' || name.size() > 40) continue;
-    if (name.find('\0') != std::string::npos) continue;
-    log.write(name, name == "LASER.txt" ? with_readings(text) : text);
-  }
+  fuzz::write_files(data, size, log, [](const std::string& name, const std::string& text) {
+    return name == "LASER.txt" ? with_readings(text) : text;
+  });
   fuzz::read_or_refuse([&] { fuzz::check_recording(logs::read_recording(log.path())); });
   return 0;
 }

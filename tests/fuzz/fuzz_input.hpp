@@ -100,6 +100,17 @@ inline std::map<std::string, std::string> files_of(const std::uint8_t* data, std
   return files;
 }
 
+/// Writes such files into a folder, those left out whose names no log has: with paths, hidden, or without end.
+template <class Content>
+void write_files(const std::uint8_t* data, std::size_t size, const testing::TemporaryFolder& folder,
+                 Content&& content) {
+  for (const auto& [name, text] : files_of(data, size)) {
+    if (name.empty() || name.find('/') != std::string::npos || name[0] == '.' || name.size() > 40) continue;
+    if (name.find('\0') != std::string::npos) continue;
+    folder.write(name, content(name, text));
+  }
+}
+
 /// A folder of this process, in memory where the system has one there; so are all temporary folders made after the call.
 inline const std::filesystem::path& folder() {
   static const bool in_memory = std::filesystem::exists("/dev/shm") && ::setenv("TMPDIR", "/dev/shm", 1) == 0;

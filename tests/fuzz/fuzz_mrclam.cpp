@@ -7,11 +7,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace helixnav;
   fuzz::folder();
   const helixnav::testing::TemporaryFolder log;
-  for (const auto& [name, text] : fuzz::files_of(data, size)) {
-    if (name.empty() || name.find('/') != std::string::npos || name[0] == '.' || name.size() > 40) continue;
-    if (name.find('\0') != std::string::npos) continue;
-    log.write(name, text);
-  }
+  fuzz::write_files(data, size, log, [](const std::string&, const std::string& text) { return text; });
   fuzz::read_or_refuse([&] {
     const core::TeamRecording team = logs::read_mrclam(log.path());
     for (const core::TeamMember& robot : team.robots) {
