@@ -39,7 +39,7 @@ void numbers(SlipDecision& d, Visit&& visit) {
   visit("moved_m", d.moved_m);
   visit("turned_deg", d.turned_deg);
   visit("sigma_m", d.sigma_m);
-  visit("displaced", d.displaced);
+  visit("pattern_nats", d.pattern_nats);
 }
 
 template <class Visit>

@@ -84,7 +84,6 @@ constexpr std::array rows{
     Row{"slip.small_m", 1, 120, [](Options& o) -> double& { return o.slip.small_m; }},
     Row{"slip.middle_m", 7, 300, [](Options& o) -> double& { return o.slip.middle_m; }},
     Row{"slip.large_m", 1, 15, [](Options& o) -> double& { return o.slip.large_m; }},
-    Row{"slip.contradiction_m", 1, 20, [](Options& o) -> double& { return o.slip.contradiction_m; }},
     Row{"slip.distinct_m", 1, 60, [](Options& o) -> double& { return o.slip.distinct_m; }},
 
     // What moves.

@@ -2,33 +2,41 @@
 #include "slip/slip_decision.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 #include <Eigen/LU>
 
-#include "association/median.hpp"
 #include "helixnav/core/angle.hpp"
+#include "slip/density_by_pattern.hpp"
 
 namespace helixnav::supervisor {
 namespace {
 
-/// Median displacement of the pairs by the median distance of their landmarks to the nearest other.
-double displaced_by_spacing(const SlipQuestion& question, const SlipPlace& place) {
-  const std::vector<Eigen::Vector2d>& points_m = question.geometry.points_m;
-  const core::Pose2 T_predicted_displaced(place.explanation.displacement);
-  std::vector<double> displaced_m;
-  std::vector<double> spacing_m;
-  for (const PointPair& pair : place.pairs) {
-    const Eigen::Vector2d& seen_m = question.seen[pair.seen].point_m;
-    displaced_m.push_back((core::transform(T_predicted_displaced, seen_m) - seen_m).norm());
-    double nearest_m = std::numeric_limits<double>::infinity();
-    for (std::size_t l = 0; l < points_m.size(); ++l) {
-      if (l != pair.landmark) nearest_m = std::min(nearest_m, (points_m[l] - points_m[pair.landmark]).norm());
-    }
-    spacing_m.push_back(nearest_m);
-  }
-  return median(std::move(displaced_m)) / median(std::move(spacing_m));
+/// A place for the vehicle to be, or "where it was predicted".
+struct Hypothesis {
+  core::Pose2 T_predicted_here;
+  const std::vector<PointPair>& pairs;
+};
+
+bool has(const std::vector<PointPair>& pairs, std::size_t seen) {
+  return std::any_of(pairs.begin(), pairs.end(), [&](const PointPair& pair) { return pair.seen == seen; });
 }
+
+/// What the pairs of one place are worth less beside another that leaves their observations over: they are new landmarks
+/// there, of the pattern of the map: ln λ(displacement)/λ₀ each, where that is denser than what is in no map.
+double nats_of_pattern(const SlipQuestion& question, const Hypothesis& one, const Hypothesis& other) {
+  const DensityByPattern pattern(question.geometry,
+                                 core::compose(other.T_predicted_here, core::inverse(one.T_predicted_here)));
+  double nats = 0.0;
+  for (const PointPair& pair : one.pairs) {
+    if (has(other.pairs, pair.seen)) continue;
+    const double per_m2 = pattern.per_m2(question.seen[pair.seen].covariance_m2);
+    nats += std::max(0.0, std::log(per_m2 / question.extraneous_per_m2));
+  }
+  return nats;
+}
+
+Hypothesis hypothesis(const SlipPlace& place) { return {core::Pose2(place.explanation.displacement), place.pairs}; }
 
 core::SlipDecision figures_of(const SlipQuestion& question, const std::vector<SlipPlace>& places,
                               const SlipOptions& options) {
@@ -39,26 +47,23 @@ core::SlipDecision figures_of(const SlipQuestion& question, const std::vector<Sl
   };
   core::SlipDecision figures;
   figures.pairs = static_cast<int>(best.pairs.size());
-  figures.nats = nats - without(question.associated);
+  figures.pattern_nats = nats_of_pattern(question, hypothesis(best), {core::Pose2(), question.associated});
+  figures.nats = nats - without(question.associated) - figures.pattern_nats;
   figures.same_pairs_nats = nats - without(best.pairs);
   figures.rival_nats = nats;  // nothing explained but by chance
   for (const SlipPlace& other : places) {
     if (is_same_place(other.explanation.displacement, best.explanation.displacement, options.distinct_m)) continue;
-    figures.rival_nats = std::min(figures.rival_nats, nats - other.explanation.nats);
-    break;
+    const double lead = nats - other.explanation.nats - nats_of_pattern(question, hypothesis(best), hypothesis(other));
+    figures.rival_nats = std::min(figures.rival_nats, lead);
   }
   figures.moved_m = best.explanation.displacement.head<2>().norm();
   figures.turned_deg = best.explanation.displacement.z() * 180.0 / core::pi;
   figures.sigma_m = best.explanation.component.sigma_m;
-  figures.displaced = displaced_by_spacing(question, best);
   return figures;
 }
 
 bool is_believed(const core::SlipDecision& d, bool tentative, const SlipOptions& options) {
-  if (d.same_pairs_nats <= options.same_pairs_nats || d.rival_nats <= options.rival_nats ||
-      !(d.displaced < options.most_displaced)) {
-    return false;
-  }
+  if (d.same_pairs_nats <= options.same_pairs_nats || d.rival_nats <= options.rival_nats) return false;
   if (d.pairs >= options.least_pairs) return d.nats > (tentative ? options.tentative_nats : options.nats);
   return !tentative && d.nats > options.few_pairs_nats;
 }

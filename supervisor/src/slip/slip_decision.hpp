@@ -31,12 +31,12 @@ struct SlipQuestion {
   const std::vector<SeenPoint>& seen;
   std::vector<PointPair> associated;
   double nats_a_pair = 0.0;
+  double extraneous_per_m2 = 0.0;  ///< density of what is in no map, as in pair_nats
   bool tentative = false;
 };
 
-/// The slip that explains a scan, when it does so better than no slip and than a slip to anywhere else, and by less than
-/// what makes neighbours look alike. In a lattice a slip by one pitch looks like none, its rival at the true place may have
-/// too few pairs, and only the last of these rules keeps it out. Test: supervisor/slip/slip_decision_test.cpp.
+/// The slip that explains a scan, when it does so better than no slip with new landmarks where the pattern of the map has
+/// them, and than a slip to anywhere else. Test: supervisor/slip/slip_decision_test.cpp.
 std::optional<Slip> decide_slip(const SlipQuestion& question, const SlipOptions& options);
 
 }  // namespace helixnav::supervisor

@@ -13,6 +13,7 @@
 #include "loop/navigation_loop.hpp"
 #include "slip/keep_weighed.hpp"
 #include "slip/slip_decision.hpp"
+#include "slip/slip_places.hpp"
 #include "slip/update_after_slip.hpp"
 
 namespace helixnav::supervisor {
@@ -29,16 +30,19 @@ bool is_among(const std::vector<LandmarkId>& ids, LandmarkId id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
-/// Unmatched observations that have an unmatched landmark beside them.
+/// Unmatched observations that have an unmatched landmark beside them, as far as a slip may displace it.
 int contradictions(const cekf::CompressedEkf& filter, const std::vector<LandmarkId>& near,
-                   const std::vector<SeenPoint>& seen, const std::vector<AssociationReport>& fate, double reach_m) {
-  constexpr double reach_a_metre = 0.1;  // by a turn of the vehicle
+                   const std::vector<SeenPoint>& seen, const std::vector<AssociationReport>& fate,
+                   const SlipComponent& widest) {
+  std::vector<Eigen::Vector2d> means_m;
+  for (const LandmarkId id : near) means_m.push_back(filter.landmark_mean(id));
+  const double spacing_m = median_spacing_m(means_m);
   const std::vector<LandmarkId> matched = landmarks_with(Outcome::matched, fate);
   const core::Pose2 pose = filter.pose().mean;
   return static_cast<int>(std::count_if(seen.begin(), seen.end(), [&](const SeenPoint& one) {
     if (fate[static_cast<std::size_t>(one.observation)].outcome == Outcome::matched) return false;
     const Eigen::Vector2d at_m = core::transform(pose, one.point_m);
-    const double here_m = reach_m + reach_a_metre * one.point_m.norm();
+    const double here_m = slip_reach_m(widest, one, spacing_m);
     return std::any_of(near.begin(), near.end(), [&](LandmarkId id) {
       return (filter.landmark_mean(id) - at_m).norm() < here_m && !is_among(matched, id);
     });
@@ -100,15 +104,16 @@ std::optional<Slip> NavigationLoop::find_slip(const core::Scan& scan,
   if (unmatched < 2 || fate.size() < least_observations) return std::nullopt;
   const std::vector<SeenPoint> seen = seen_points(scan, most_weighed);
   std::vector<LandmarkId> near = landmarks_near(scan);
-  keep_weighed(belief_.filter, scan, seen, slip_components(options_.slip).back(), near);
-  if (contradictions(belief_.filter, near, seen, fate, options_.slip.contradiction_m) < 2) return std::nullopt;
+  const SlipComponent widest = slip_components(options_.slip).back();
+  keep_weighed(belief_.filter, scan, seen, widest, near);
+  if (contradictions(belief_.filter, near, seen, fate, widest) < 2) return std::nullopt;
 
   const double per_m2 = options_.extraneous_per_scan / view_m2;
   const auto ask = [&](const std::vector<LandmarkId>& witnesses, bool tentative) -> std::optional<Slip> {
     if (witnesses.size() < least_observations) return std::nullopt;
     const RelativeGeometry geometry(belief_.filter.joint(witnesses));
     return decide_slip({geometry, seen, associated_pairs(geometry, seen, fate),
-                        pair_nats(options_.association.detection_probability, per_m2), tentative},
+                        pair_nats(options_.association.detection_probability, per_m2), per_m2, tentative},
                        options_.slip);
   };
   std::vector<LandmarkId> known = near;

@@ -169,6 +169,15 @@ class Proposer {
   std::vector<std::vector<std::size_t>> in_reach_;
 };
 
+/// Half of the pairs of `one`, or more, are pairs of the other: what is weighed anew from there would settle on the same.
+bool pairs_alike(const std::vector<PointPair>& one, const std::vector<PointPair>& other) {
+  const auto shared = std::count_if(one.begin(), one.end(), [&](const PointPair& a) {
+    return std::any_of(other.begin(), other.end(),
+                       [&](const PointPair& b) { return a.seen == b.seen && a.landmark == b.landmark; });
+  });
+  return 2 * static_cast<std::size_t>(shared) >= one.size();
+}
+
 std::vector<Proposal> best_distinct(std::vector<Proposal> proposals, double distinct_m) {
   std::stable_sort(proposals.begin(), proposals.end(),
                    [](const Proposal& a, const Proposal& b) { return a.nats > b.nats; });
@@ -176,7 +185,7 @@ std::vector<Proposal> best_distinct(std::vector<Proposal> proposals, double dist
   for (Proposal& one : proposals) {
     if (best.size() >= most_refined) break;
     const bool known = std::any_of(best.begin(), best.end(), [&](const Proposal& other) {
-      return is_same_place(other.displacement, one.displacement, distinct_m);
+      return is_same_place(other.displacement, one.displacement, distinct_m) || pairs_alike(one.pairs, other.pairs);
     });
     if (!known) best.push_back(std::move(one));
   }

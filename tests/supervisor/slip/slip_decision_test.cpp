@@ -16,7 +16,8 @@ namespace helixnav::supervisor {
 namespace {
 
 std::optional<Slip> decide(const SlipScene& scene, std::vector<PointPair> associated = {}) {
-  return decide_slip({scene.geometry, scene.seen, std::move(associated), a_pair_nats, false}, SlipOptions{});
+  return decide_slip({scene.geometry, scene.seen, std::move(associated), a_pair_nats, extraneous_per_m2, false},
+                     SlipOptions{});
 }
 
 double log_normal(const Eigen::VectorXd& nu, const Eigen::MatrixXd& S) {
@@ -95,21 +96,51 @@ TEST(SlipDecision, BelievesNoneWhereTheVehicleIsAsPredicted) {
   }
 }
 
-TEST(SlipDecision, BelievesNoneInALatticeMovedByMoreThanHalfItsPitch) {
-  std::vector<Eigen::Vector2d> lattice_m;
-  for (int i = 0; i < 4; ++i) {
-    for (int k = 0; k < 4; ++k) lattice_m.emplace_back(3.0 + 4.0 * i, -6.0 + 4.0 * k);
+std::vector<Eigen::Vector2d> lattice(double pitch_m, int columns) {
+  std::vector<Eigen::Vector2d> points_m;
+  for (int i = 0; i < columns; ++i) {
+    for (int k = 0; k < 4; ++k) points_m.emplace_back(3.0 + pitch_m * i, pitch_m * (k - 1.5));
   }
-  EXPECT_TRUE(decide(SlipScene(lattice_m, {0.8, 0.0, 0.0}, 1)));
-  EXPECT_FALSE(decide(SlipScene(lattice_m, {4.0, 0.0, 0.0}, 2)));
-  EXPECT_FALSE(decide(SlipScene(lattice_m, {2.4, 0.0, 0.0}, 3)));
+  return points_m;
+}
+
+TEST(SlipDecision, FindsALargeSlipWhereTheMapIsIrregular) {
+  core::RandomStream random(2, "large slips");
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Eigen::Vector3d truth(random.uniform(1.5, 3.0), random.uniform(-2.0, 2.0), random.uniform(-0.2, 0.2));
+    const std::optional<Slip> slip = decide(SlipScene(scattered(seed, 12), truth, seed));
+    ASSERT_TRUE(slip) << seed;
+    EXPECT_LT((slip->displacement - truth).head<2>().norm(), 0.3) << seed;
+  }
+}
+
+TEST(SlipDecision, BelievesNoneInALatticeThatLooksLikeOneMovedByAPitch) {
+  EXPECT_TRUE(decide(SlipScene(lattice(4.0, 4), {0.8, 0.0, 0.0}, 1)));
+  EXPECT_FALSE(decide(SlipScene(lattice(4.0, 4), {4.0, 0.0, 0.0}, 2)));
+  EXPECT_FALSE(decide(SlipScene(lattice(4.0, 4), {2.4, 0.0, 0.0}, 3)));
+}
+
+TEST(SlipDecision, TakesANewRowOfALatticeForNoSlip) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SlipScene scene(lattice(5.0, 5), Eigen::Vector3d::Zero(), seed);
+    scene.geometry = RelativeGeometry(SlipScene::joint_of(lattice(5.0, 4)));
+    EXPECT_FALSE(decide(scene, all_pairs(16))) << seed << ": four of a new row, where a slip by a pitch wants old ones";
+  }
+}
+
+TEST(SlipDecision, TakesASlipOfAPitchForNoneWhereItsRivalIsToSeeNewRows) {
+  SlipScene scene(lattice(4.0, 6), {0.7, 0.0, 0.0}, 1);
+  scene.geometry = RelativeGeometry(SlipScene::joint_of(lattice(4.0, 5)));
+  const std::optional<Slip> slip = decide(scene);
+  EXPECT_TRUE(!slip || slip->displacement.head<2>().norm() < 1.0)
+      << "four trees of a new row fit a slip by 3.3 m the other way, too";
 }
 
 TEST(SlipDecision, NeedsMoreEvidenceFromFewOrTentativeLandmarks) {
   const SlipScene three(scattered(3, 3), {0.5, 0.3, 2.0 * degree}, 3);
   const std::optional<Slip> slip = decide(three);
   EXPECT_TRUE(!slip || slip->figures.nats > 15.0);
-  SlipQuestion question{three.geometry, three.seen, {}, a_pair_nats, true};
+  SlipQuestion question{three.geometry, three.seen, {}, a_pair_nats, extraneous_per_m2, true};
   EXPECT_FALSE(decide_slip(question, SlipOptions{}));
 }
 

@@ -8,11 +8,13 @@
 #include "helixnav/core/random.hpp"
 #include "helixnav/core/se2.hpp"
 #include "slip/relative_geometry.hpp"
+#include "slip/slip_evidence.hpp"
 
 namespace helixnav::supervisor {
 
 constexpr double degree = core::pi / 180.0;
-constexpr double a_pair_nats = 8.0;  // about one extraneous observation a scan of 1400 m²
+constexpr double extraneous_per_m2 = 1.0 / 1400.0;  // about one a scan
+const double a_pair_nats = pair_nats(0.9, extraneous_per_m2);
 
 /// Landmarks known to 5 cm, and what a vehicle displaced by `truth` sees of them, noise of 10 cm.
 struct SlipScene {

@@ -37,13 +37,13 @@ struct RollbackDecision {
 /// than what stands beside it (supervisor/slip_decision).
 struct SlipDecision {
   int pairs = 0;                 ///< of observation and landmark that say so
-  double nats = 0.0;             ///< than no slip
+  double nats = 0.0;             ///< than no slip, with new landmarks where the pattern of the map has them
+  double pattern_nats = 0.0;     ///< what that pattern takes from `nats`
   double same_pairs_nats = 0.0;  ///< than the same pairs without a slip
   double rival_nats = 0.0;       ///< than a slip to the best other place; than chance where there is none
   double moved_m = 0.0;
   double turned_deg = 0.0;
-  double sigma_m = 0.0;    ///< by which the pose was widened
-  double displaced = 0.0;  ///< median displacement of the pairs by the spacing of the landmarks
+  double sigma_m = 0.0;  ///< by which the pose was widened
 };
 
 /// Something that moves had been taken for landmarks: they were dropped (supervisor/moving_things).

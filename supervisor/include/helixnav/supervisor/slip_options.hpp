@@ -15,8 +15,7 @@ struct SlipOptions {
   double middle_m = 0.7;
   double large_m = 2.0;
 
-  double contradiction_m = 1.5;  ///< an unmatched landmark so near to an unmatched observation asks the question
-  double distinct_m = 0.5;       ///< places farther apart than that are rivals
+  double distinct_m = 0.5;  ///< places farther apart than that are rivals
 
   // What an accepted slip is ahead by, in nats.
   double nats = 8.0;             ///< of what was associated without a slip
@@ -25,7 +24,6 @@ struct SlipOptions {
   double few_pairs_nats = 15.0;  ///< instead of `nats`, where it rests on three pairs only
   double tentative_nats = 25.0;  ///< instead of `nats`, where it rests on landmarks seen only once
   int least_pairs = 4;
-  double most_displaced = 0.5;  ///< of the distance to a landmark's neighbour: beyond it nobody knows which is which
 };
 
 }  // namespace helixnav::supervisor
