@@ -19,7 +19,7 @@ struct SlipOptions {
 
   // What an accepted slip is ahead by, in nats.
   double nats = 8.0;             ///< of what was associated without a slip
-  double same_pairs_nats = 3.0;  ///< of the same pairs without a slip
+  double same_pairs_nats = 4.0;  ///< of the same pairs without a slip
   double rival_nats = 6.9;       ///< of a slip to any other place: a thousand to one
   double few_pairs_nats = 15.0;  ///< instead of `nats`, where it rests on three pairs only
   double tentative_nats = 25.0;  ///< instead of `nats`, where it rests on landmarks seen only once
