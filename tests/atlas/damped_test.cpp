@@ -9,6 +9,7 @@
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/random.hpp"
+#include "solve/damped.hpp"
 
 namespace helixnav::atlas {
 namespace {
@@ -22,11 +23,20 @@ class LongRoad {
   /// 2·(observations − landmarks): degrees of freedom that measurements have beyond what they determine.
   int dof() const { return 2 * (observations_ - static_cast<int>(landmarks_.size())); }
 
-  void add_phase(Atlas& atlas) {
+  /// The clone where it ends.
+  int add_phase(Atlas& atlas) {
     auto log = std::make_shared<PhaseLog>();
     for (int i = 0; i < 9; ++i) log->steps.push_back(step());
-    atlas.add(derive_factor(*log, dead_reckon(*log)), log);
+    return atlas.add(derive_factor(*log, dead_reckon(*log)), log) + 1;
   }
+  void fix(Atlas& atlas, int clone, const core::Pose2& T_map_world = {}) {
+    core::AbsoluteFix fix;
+    fix.covariance_m2.setIdentity();
+    fix.position_world_m = core::transform(T_map_world, pose(k_).position_m()) +
+                           Eigen::Vector2d(random_.normal(0.0, 1.0), random_.normal(0.0, 1.0));
+    atlas.fix(clone, fix);
+  }
+  Eigen::Vector2d position_m() const { return pose(k_).position_m(); }
   double error_m(const Atlas& atlas) const { return (atlas.pose().position_m() - pose(k_).position_m()).norm(); }
 
   static constexpr long steps_a_lap = 8000;
@@ -87,6 +97,23 @@ TEST(DampedCampaign, ManyPhasesOnOldGroundAtOnceAreSolvedAfterAnyDrift) {
     EXPECT_LT(road.error_m(atlas), 2.0) << seed;
     EXPECT_NEAR(atlas.chi2(), road.dof(), 4.5 * std::sqrt(2.0 * road.dof())) << seed;  // leaves with probability 1e-5
   }
+}
+
+TEST(Damped, SeesWhatAFixThatCameWhereTheMapIsFarOffPulls) {
+  LongRoad road(1);
+  core::PoseGaussian start;
+  start.covariance = Eigen::Vector3d(0.01, 0.01, 0.2).cwiseAbs2().asDiagonal();
+  Atlas atlas(start);
+  int clone = 0;
+  while (road.steps() < 500) clone = road.add_phase(atlas);
+  atlas.settle();
+  const core::Pose2 T_true_turned(0.0, 0.0, 0.1);  // the drive of a kilometre began with a heading wrong by so much
+  road.fix(atlas, clone, T_true_turned);
+  State state = AtlasAccess::working(atlas);
+  int redone = 0;
+  ASSERT_NO_THROW(damp(state, redone)) << "what it was added with is not what it can have at least";
+  atlas.settle();
+  EXPECT_LT((atlas.pose().position_m() - core::transform(T_true_turned, road.position_m())).norm(), 5.0);
 }
 
 }  // namespace

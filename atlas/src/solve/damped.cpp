@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Cholesky>
+
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/errors.hpp"
 #include "phase/world_form.hpp"
@@ -27,26 +29,43 @@ std::vector<int> nodes_downwards(const State& state) {
   return nodes;
 }
 
-/// χ² of a part at the present values, above what it was where the part was derived.
-double excess_of(const State& state, const Part& part) {
+/// χ² of a part at the present values.
+double chi2_of(const State& state, const Part& part) {
   Values values;
   for (const int v : part.variables) values.push_back(state.value(v));
   const RelativeGaussian& g = *part.gaussian;
   Eigen::VectorXd delta = relative_coordinates(values) - g.mean;
   delta[2] = core::wrap_to_pi(delta[2]);
-  return delta.dot(g.information * delta) - 2.0 * g.vector.dot(delta);
+  return g.chi2 + delta.dot(g.information * delta) - 2.0 * g.vector.dot(delta);
+}
+
+/// The least χ² that a part can have. Where it was derived it may have more: a fix that came where the map was wrong, a phase derived
+/// while the map bent it.
+double least_chi2_of(const RelativeGaussian& g) { return g.chi2 - g.vector.dot(g.information.ldlt().solve(g.vector)); }
+
+/// least_chi2_of all parts, phase after phase.
+using LeastChi2 = std::vector<std::vector<double>>;
+
+LeastChi2 least_chi2(const State& state) {
+  LeastChi2 least;
+  for (std::size_t k = 0; k < state.phases.size(); ++k) {
+    least.emplace_back();
+    for (const Part& part : state.phases[k]->parts) least.back().push_back(least_chi2_of(*part.gaussian));
+  }
+  return least;
 }
 
 /// Where Cauchy's cost begins to bend: far above what noise makes of a part.
 double scale_of(const Part& part) { return 25.0 * static_cast<double>(part.gaussian->mean.size()); }
 
 /// Cauchy's cost: what was torn apart by a closing pulls the less the farther.
-double cost_of(const State& state) {
+double cost_of(const State& state, const LeastChi2& least) {
   double cost = 0.0;
   for (std::size_t k = 0; k < state.phases.size(); ++k) {
-    for (const Part& part : state.phases[k]->parts) {
-      const double scale = scale_of(part);
-      cost += scale * std::log1p(std::max(0.0, excess_of(state, part)) / scale);
+    const std::vector<Part>& parts = state.phases[k]->parts;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const double scale = scale_of(parts[p]);
+      cost += scale * std::log1p(std::max(0.0, chi2_of(state, parts[p]) - least[k][p]) / scale);
     }
   }
   return cost;
@@ -57,15 +76,16 @@ struct Weighed {
   double least = 1.0;
   double chi2 = 0.0;
 };
-Weighed weigh(State& state) {
+Weighed weigh(State& state, const LeastChi2& least) {
   Weighed weighed;
   for (std::size_t k = 0; k < state.phases.size(); ++k) {
     Leaf leaf = *state.phases[k];
-    for (Part& part : leaf.parts) {
-      const double excess = excess_of(state, part);
-      part.weight = 1.0 / (1.0 + std::max(0.0, excess) / scale_of(part));
+    for (std::size_t p = 0; p < leaf.parts.size(); ++p) {
+      Part& part = leaf.parts[p];
+      const double chi2 = chi2_of(state, part);
+      part.weight = 1.0 / (1.0 + std::max(0.0, chi2 - least[k][p]) / scale_of(part));
       weighed.least = std::min(weighed.least, part.weight);
-      weighed.chi2 += part.weight * (part.gaussian->chi2 + excess);
+      weighed.chi2 += part.weight * chi2;
     }
     state.phases.write(k) = std::make_shared<const Leaf>(std::move(leaf));
   }
@@ -90,14 +110,15 @@ void step(State& state, const std::vector<int>& nodes, double share) {
 }
 
 /// Goes so much of the way that the cost falls by a tenth of what the linear problem promises; returns what was promised.
-double step_down(State& state, const std::vector<int>& nodes, double chi2) {
+double step_down(State& state, const std::vector<int>& nodes, double chi2, const LeastChi2& least) {
   constexpr double least_kept = 0.1, smallest_share = 1e-4, rounding = 1e-9;
   const double promised = chi2 - state.node(state.root).front->message.back();
   const PersistentVector<Eigen::Vector3d> begun = state.values;
-  const double before = cost_of(state);
+  const double before = cost_of(state, least);
   for (double share = 1.0; share > smallest_share; share *= 0.5) {
     step(state, nodes, share);
-    if (before - cost_of(state) > least_kept * (2.0 - share) * share * promised - rounding * chi2) return promised;
+    if (before - cost_of(state, least) > least_kept * (2.0 - share) * share * promised - rounding * chi2)
+      return promised;
     state.values = begun;
   }
   throw core::NumericalError("atlas: no step from where the map is brings it nearer to its measurements");
@@ -113,12 +134,13 @@ void damp(State& state, int& redone) {
   estimates.update_all(state.root);
   estimates.store(state);
   const std::vector<int> nodes = nodes_downwards(state);
+  const LeastChi2 least = least_chi2(state);
   state.rounds = 0;
   for (int round = 0; round < state.options.max_rounds; ++round) {
-    const Weighed weighed = weigh(state);
+    const Weighed weighed = weigh(state, least);
     for (const int id : nodes) state.nodes.write(State::index(id)).dirty = true;
     redo_dirty(state, redone, {});
-    const double promised = step_down(state, nodes, weighed.chi2);
+    const double promised = step_down(state, nodes, weighed.chi2, least);
     if (promised > near || weighed.least < no_longer_torn) continue;
     unweigh(state);
     for (const int id : nodes) state.nodes.write(State::index(id)).dirty = true;
