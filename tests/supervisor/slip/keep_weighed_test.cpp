@@ -55,7 +55,7 @@ TEST(KeepWeighed, LeavesOutWhatIsFartherThanAllThatIsWeighed) {
 
   const auto decide = [&](const std::vector<core::LandmarkId>& witnesses) {
     const RelativeGeometry geometry(filter.joint(witnesses));
-    return decide_slip({geometry, seen, {}, pair_nats(0.9, 1e-4), false}, options);
+    return decide_slip({geometry, seen, {}, pair_nats(0.9, 1e-4), 1e-4, false}, options);
   };
   const std::optional<Slip> of_all = decide(filter.landmarks());
   const std::optional<Slip> of_near = decide(near);
