@@ -293,7 +293,7 @@ void loop(int landmarks) {
     for (bool any = true; any;) {
       std::vector<atlas::PhaseShape> shapes;
       std::vector<Eigen::Vector2d> ends_m;
-      const auto logs = world.phases(shapes, 1000, &ends_m);
+      const auto logs = world.phases(shapes, 25, &ends_m);
       any = !logs.empty();
       for (std::size_t k = 0; k < logs.size(); ++k) {
         const int clone = map.add(atlas::derive_factor(*logs[k], shapes[k], nullptr, 0), logs[k]) + 1;

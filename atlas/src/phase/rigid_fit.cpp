@@ -43,6 +43,19 @@ RigidMotion fit(const State& state, const int* variables, const Eigen::Vector3d*
   return motion;
 }
 
+bool is_far_frame(const State& state, int variable, std::size_t count) { return variable == state.world && count > 1; }
+
+/// Takes the chord of the map frame's position in motion.rest for what has moved at the centre of the part.
+void rest_of_far_frame(const Eigen::Vector2d& was_m, Eigen::Index row, Motion& motion) {
+  const Eigen::Vector2d to_center_m = motion.rigid.from_m - was_m;
+  const double turn_rad = motion.rest[row + 2];
+  const Eigen::Vector2d turned_m = core::rotation(turn_rad) * to_center_m - to_center_m;
+  motion.world.row = row;
+  motion.world.off_m = motion.rest.segment<2>(row) + turned_m;
+  motion.world.lever_m << -turned_m.y(), turned_m.x();
+  motion.rest.segment<2>(row) = motion.world.off_m - turn_rad * Eigen::Vector2d(-to_center_m.y(), to_center_m.x());
+}
+
 }  // namespace
 
 Eigen::Vector2d RigidMotion::point(const Eigen::Vector2d& p) const {
@@ -66,27 +79,28 @@ Motion motion_of(const State& state, const FrontShape& shape, int begin, const E
   motion.rigid = fit(state, variables, was, now);
   double span_m = smallest_span_m;
   for (std::size_t i = 0; i < now.size(); ++i) {
+    if (is_far_frame(state, variables[i], now.size())) continue;
     const double arm_m = (was[i].head<2>() - motion.rigid.from_m).norm();
     motion.reach_m = std::max(motion.reach_m, arm_m);
-    if (variables[i] != state.world) span_m = std::max(span_m, 2.0 * arm_m);
+    span_m = std::max(span_m, 2.0 * arm_m);
   }
   motion.rest.resize(begin == shape.eliminated ? shape.nb : shape.ne + shape.nb);
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < now.size(); ++i) {
     const int dim = state.variable(variables[i]).dim;
-    const double own_span_m =
-        variables[i] == state.world ? std::max(span_m, (was[i].head<2>() - motion.rigid.from_m).norm()) : span_m;
     const Eigen::Vector3d moved = now[i] - motion.rigid(was[i], dim);
     motion.rest.segment<2>(row) = motion.rigid.R.transpose() * moved.head<2>();
     double rest_m = moved.head<2>().norm();
-    if (dim == 3) {
-      motion.rest[row + 2] = core::wrap_to_pi(moved.z());
-      rest_m = std::max(rest_m, own_span_m * std::abs(motion.rest[row + 2]));
+    if (dim == 3) motion.rest[row + 2] = core::wrap_to_pi(moved.z());
+    if (is_far_frame(state, variables[i], now.size())) {
+      rest_of_far_frame(was[i].head<2>(), row, motion);
+      rest_m = motion.world.off_m.norm();
     }
+    if (dim == 3) rest_m = std::max(rest_m, span_m * std::abs(motion.rest[row + 2]));
     motion.rest_m = std::max(motion.rest_m, rest_m);
-    motion.bend_m = std::max(motion.bend_m, rest_m * rest_m / own_span_m);
     row += dim;
   }
+  motion.bend_m = motion.rest_m * motion.rest_m / span_m;
   return motion;
 }
 

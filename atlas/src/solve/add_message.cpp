@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "phase/rigid_fit.hpp"
 #include "solve/eliminate.hpp"
@@ -39,10 +41,37 @@ struct Rows {
 };
 
 /// rest turned by a right angle: how it moves in the frame linearised in, against the turn of that frame.
-Eigen::VectorXd turned_rest(const Eigen::VectorXd& rest, const Rows& rows) {
-  Eigen::VectorXd turned = Eigen::VectorXd::Zero(rest.size());
-  for (const Index row : rows.from) turned.segment<2>(row) << -rest[row + 1], rest[row];
+Eigen::VectorXd turned_rest(const Motion& motion, const Rows& rows) {
+  Eigen::VectorXd turned = Eigen::VectorXd::Zero(motion.rest.size());
+  for (const Index row : rows.from) {
+    const Eigen::Vector2d rest_m = row == motion.world.row ? motion.world.off_m : motion.rest.segment<2>(row).eval();
+    turned.segment<2>(row) << -rest_m.y(), rest_m.x();
+  }
   return turned;
+}
+
+/// The rows of a right-hand side by the present values: the far frame's heading moves its point at the part's centre, too.
+void turn_far_frame(const FarFrame& world, Eigen::VectorXd& rhs) {
+  if (world.row >= 0) rhs[world.row + 2] += world.lever_m.dot(rhs.segment<2>(world.row));
+}
+
+/// The same of a message: TᵀΛT, T the identity but for the lever above the heading's diagonal.
+std::vector<double> turn_far_frame(const FarFrame& world, std::vector<double> data, Index rows) {
+  const auto at = [&](Index i, Index j) -> double& {
+    return data[static_cast<std::size_t>(std::min(i, j) * rows - std::min(i, j) * (std::min(i, j) + 1) / 2 +
+                                         std::max(i, j))];
+  };
+  const Index h = world.row + 2;
+  for (int axis = 0; axis < 2; ++axis) {
+    const Index from = world.row + axis;
+    const double lever_m = world.lever_m[axis];
+    const double twice = lever_m * (2.0 * at(h, from) + lever_m * at(from, from));
+    for (Index i = 0; i < rows; ++i) {
+      if (i != h) at(h, i) += lever_m * at(from, i);
+    }
+    at(h, h) += twice;
+  }
+  return data;
 }
 
 /// What is not rigid turns with the frame that it is measured in. That term of the Jacobian, E = Dᵀ − (J·rest)·fᵀ with f the gradient
@@ -84,6 +113,23 @@ void copy_columns(const Message& message, Index from, Index dim, Index n, Eigen:
   }
 }
 
+/// Adds the columns of one variable of a message where its rows are in the parent.
+void add_columns(const Eigen::MatrixXd& block, const Rows& rows, std::size_t c, const std::vector<int>& offsets,
+                 Eigen::Map<Eigen::MatrixXd> F) {
+  for (Index j = 0; j < rows.dim[c]; ++j) {
+    const Index to_column = offsets[c] + j;
+    for (Index i = j; i < rows.dim[c]; ++i) F(to_column + i - j, to_column) += block(i, j);
+    for (std::size_t r = c + 1; r < offsets.size(); ++r) {
+      const double* from = &block(rows.from[r] - rows.from[c], j);
+      if (offsets[r] > offsets[c]) {
+        for (Index i = 0; i < rows.dim[r]; ++i) F(offsets[r] + i, to_column) += from[i];
+      } else {
+        for (Index i = 0; i < rows.dim[r]; ++i) F(to_column, offsets[r] + i) += from[i];
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void add_message(const State& state, int child, const Motion& motion, const std::vector<int>& offsets,
@@ -92,7 +138,7 @@ void add_message(const State& state, int child, const Motion& motion, const std:
   const FrontShape& shape = *node.shape;
   const Index n = shape.nb;
   const Index last = F.rows() - 1;
-  const Message message(node.front->message, n + 1);
+  Message message(node.front->message, n + 1);
   Eigen::VectorXd rhs(n);
   for (Index j = 0; j < n; ++j) rhs[j] = message.column(j)[n];
   double chi2 = message.column(n)[n];
@@ -108,9 +154,10 @@ void add_message(const State& state, int child, const Motion& motion, const std:
   }
   const Eigen::Matrix2d& R = motion.rigid.R;
   if (motion.rest.size() > 0) {
-    const Eigen::VectorXd turned = turned_rest(motion.rest, rows);
+    const Eigen::VectorXd turned = turned_rest(motion, rows);
     Eigen::VectorXd pull = message.product(turned);
     const double weight = turned.dot(pull);
+    turn_far_frame(motion.world, pull);
     std::vector<Index> to;
     for (std::size_t c = 0; c < offsets.size(); ++c) {
       pull.segment<2>(rows.from[c]) = R * pull.segment<2>(rows.from[c]).eval();
@@ -121,6 +168,12 @@ void add_message(const State& state, int child, const Motion& motion, const std:
     const double turn_pull = turned.dot(rhs);
     for (std::size_t i = 0; i < to.size(); ++i) F(last, to[i]) -= turning[static_cast<Index>(i)] * turn_pull;
   }
+  std::vector<double> turned_message;
+  if (motion.world.row >= 0) {
+    turned_message = turn_far_frame(motion.world, node.front->message, n + 1);
+    message = Message(turned_message, n + 1);
+    turn_far_frame(motion.world, rhs);
+  }
   Eigen::MatrixXd block(n, 3);
   for (std::size_t c = 0; c < offsets.size(); ++c) {
     copy_columns(message, rows.from[c], rows.dim[c], n, block);
@@ -130,19 +183,8 @@ void add_message(const State& state, int child, const Motion& motion, const std:
       turn_pairs(columns, R, rows, c);
       rhs.segment<2>(rows.from[c]) = R * rhs.segment<2>(rows.from[c]).eval();
     }
-    for (Index j = 0; j < rows.dim[c]; ++j) {
-      const Index to_column = offsets[c] + j;
-      for (Index i = j; i < rows.dim[c]; ++i) F(to_column + i - j, to_column) += block(i, j);
-      for (std::size_t r = c + 1; r < offsets.size(); ++r) {
-        const double* from = &block(rows.from[r] - rows.from[c], j);
-        if (offsets[r] > offsets[c]) {
-          for (Index i = 0; i < rows.dim[r]; ++i) F(offsets[r] + i, to_column) += from[i];
-        } else {
-          for (Index i = 0; i < rows.dim[r]; ++i) F(to_column, offsets[r] + i) += from[i];
-        }
-      }
-      F(last, to_column) += rhs[rows.from[c] + j];
-    }
+    add_columns(block, rows, c, offsets, F);
+    for (Index j = 0; j < rows.dim[c]; ++j) F(last, offsets[c] + j) += rhs[rows.from[c] + j];
   }
   F(last, last) += chi2;
 }
