@@ -276,7 +276,7 @@ core::AbsoluteFix fix_at(const Eigen::Vector2d& place_m, core::RandomStream& ran
   return fix;
 }
 
-/// Each lap: phases added and settled, a thousand at a time, and what is asked for where it ends.
+/// Each lap: phases added and settled, 25 at a time, and what is asked for where it ends.
 void loop(int landmarks) {
   const double length_m = 4.0 * landmarks + 7.0;
   bench::RoadWorld world = bench::circle(length_m);
