@@ -12,21 +12,22 @@ namespace {
 
 using core::LandmarkId;
 
-constexpr std::size_t most_neighbours = 12;  ///< the landmark itself among them
+constexpr std::size_t most_neighbours = 11;
 constexpr std::size_t at_once = 40;
 
-/// The nearest of `old` within reach, the landmark itself first.
+/// The landmark itself, and the nearest others of `old` within reach. That it is among those within reach is not certain:
+/// where parts of the passive map have moved far apart since they were left, some are missed (CompressedEkf::landmarks_within).
 std::vector<LandmarkId> neighbours_of(LandmarkId id, const cekf::CompressedEkf& filter,
                                       const std::vector<LandmarkId>& old, double reach_m) {
   const Eigen::Vector2d at_m = filter.landmark_mean(id);
   std::vector<std::pair<double, LandmarkId>> near;
   for (const LandmarkId other : filter.landmarks_within(at_m, reach_m)) {
-    if (!std::binary_search(old.begin(), old.end(), other)) continue;
-    near.emplace_back(other == id ? -1.0 : (filter.landmark_mean(other) - at_m).norm(), other);
+    if (other == id || !std::binary_search(old.begin(), old.end(), other)) continue;
+    near.emplace_back((filter.landmark_mean(other) - at_m).norm(), other);
   }
   const std::size_t kept = std::min(most_neighbours, near.size());
   std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(kept), near.end());
-  std::vector<LandmarkId> ids;
+  std::vector<LandmarkId> ids{id};
   for (std::size_t i = 0; i < kept; ++i) ids.push_back(near[i].second);
   return ids;
 }

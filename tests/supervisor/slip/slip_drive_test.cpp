@@ -29,5 +29,11 @@ TEST(SlipDrive, OfAnOrchardWithoutSlipsDecidesForNone) {
   }
 }
 
+/// Carried, slipped, and carried again: old landmarks stand 100 m from where the region that they are passive in was left, and are not
+/// among those that lie around them.
+TEST(SlipDrive, OfAVehicleThatIsCarriedTooIsIndexed) {
+  EXPECT_NO_THROW(navigate_and_judge(sim::named_scenario("kidnapped-slip"), 4300009));
+}
+
 }  // namespace
 }  // namespace helixnav::supervisor
