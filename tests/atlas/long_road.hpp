@@ -12,7 +12,8 @@
 
 namespace helixnav::atlas::testing {
 
-/// A road in a circle of 16 km, a landmark each 8 m on both sides, driven without a fix: it comes back with an error of a hundred metres.
+/// A road in a circle of 16 km, a landmark each 8 m on both sides, driven with noise. Without fixes it comes back with an
+/// error of a hundred metres.
 class LongRoad {
  public:
   explicit LongRoad(std::uint64_t seed) : random_(seed) {}
@@ -27,6 +28,7 @@ class LongRoad {
     for (int i = 0; i < 9; ++i) log->steps.push_back(step());
     return atlas.add(derive_factor(*log, dead_reckon(*log)), log) + 1;
   }
+  /// Of 1 m, where the vehicle is now, in a map frame that has the world at `T_map_world`.
   void fix(Atlas& atlas, int clone, const core::Pose2& T_map_world = {}) {
     core::AbsoluteFix fix;
     fix.covariance_m2.setIdentity();

@@ -35,7 +35,7 @@ struct Motion {
   Eigen::VectorXd rest;  ///< in the frame linearised in; empty when nothing moved
   double rest_m = 0.0;   ///< largest |rest|, headings weighed by the span
   double bend_m = 0.0;   ///< second-order error of linearising there: max |rest|² / span
-  double reach_m = 0.0;  ///< farthest variable from the centre
+  double reach_m = 0.0;  ///< farthest variable from the centre, the map frame left out
   FarFrame world;        ///< of the map frame, where it is among others
 };
 
