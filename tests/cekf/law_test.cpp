@@ -146,6 +146,53 @@ TEST_P(Law, AllAreActiveAndNoWeightsKeptWhereThatCostsNoMore) {
   EXPECT_GT(filter.snapshot().active.weights(), 0);
 }
 
+TEST_P(Law, AllAreActiveWherePhasesThatSeeLittleCostMore) {
+  FilterOptions options;
+  options.retraction = GetParam();
+  options.max_active_landmarks = 10;
+  const core::Observation observation = core::make_cartesian({1.0, 1.0}, 0.01 * Eigen::Matrix2d::Identity());
+  const auto filter_after_a_phase_of = [&](int updates) {
+    CompressedEkf filter({}, options);
+    for (int i = 0; i < 60; ++i) filter.augment(core::make_cartesian({1.0 + i / 8, 1.0 + i % 8}, observation.R), {});
+    filter.switch_region({0, 1, 2});
+    for (int k = 0; k < updates; ++k) filter.update({{0, observation, {}}});
+    filter.switch_region();
+    return filter;
+  };
+  CompressedEkf few = filter_after_a_phase_of(1);
+  EXPECT_EQ(few.active_count(), 60)
+      << "more than 32 or 48, but two rows of 123 columns are less than what a phase ends with";
+  EXPECT_EQ(few.snapshot().active.weights(), 0);
+  const long phase = few.phase();
+  core::Odometry far;
+  far.T_before_after = core::Pose2(41.0, 0.0, 0.0);
+  few.predict(far);
+  EXPECT_TRUE(few.switch_region_if_due()) << "nothing is near, so that little would be active";
+  EXPECT_EQ(few.active_count(), 0);
+  EXPECT_EQ(few.phase(), phase + 1);
+  CompressedEkf many = filter_after_a_phase_of(200);
+  EXPECT_EQ(many.active_count(), 8);
+  EXPECT_GT(many.snapshot().active.weights(), 0);
+}
+
+TEST_P(Law, WhatIsActiveAltogetherStaysSoWithoutASwitch) {
+  FilterOptions options;
+  options.retraction = GetParam();
+  options.max_active_landmarks = 10;
+  CompressedEkf filter({}, options);
+  const Eigen::Matrix2d R = 0.01 * Eigen::Matrix2d::Identity();
+  for (int i = 0; i < 15; ++i) filter.augment(core::make_cartesian({25.0 + 0.5 * i, 1.0}, R), {});
+  core::Odometry ahead;
+  ahead.T_before_after = core::Pose2(41.0, 0.0, 0.0);
+  filter.predict(ahead);
+  const Snapshot before = filter.snapshot();
+  EXPECT_FALSE(filter.switch_region_if_due()) << "15 are near, and all that there are";
+  EXPECT_EQ(filter.phase(), before.phase);
+  EXPECT_NE(filter.snapshot().active.cell, before.active.cell);
+  filter.restore(before);
+  EXPECT_EQ(filter.snapshot().active.cell, before.active.cell) << "where the region was chosen goes with a restore";
+}
+
 TEST_P(Law, AScanThatSeesManyMayHaveTwiceAsManyActive) {
   FilterOptions options;
   options.retraction = GetParam();

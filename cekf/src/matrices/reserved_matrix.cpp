@@ -14,10 +14,13 @@ ReservedMatrix::ReservedMatrix(ReservedMatrix&& other) noexcept
 ReservedMatrix& ReservedMatrix::operator=(const ReservedMatrix& other) {
   if (this == &other) return *this;
   if (other.padded_rows() > storage_.rows() || other.cols_ > storage_.cols()) {
-    storage_ = Eigen::MatrixXd::Zero(other.padded_rows(), other.cols_);
-  } else {
-    view().setZero();
+    Eigen::MatrixXd copy = other.storage_.topLeftCorner(other.padded_rows(), other.cols_);
+    storage_.swap(copy);
+    rows_ = other.rows_;
+    cols_ = other.cols_;
+    return *this;
   }
+  view().setZero();
   rows_ = other.rows_;
   cols_ = other.cols_;
   view() = other.view();
@@ -42,7 +45,7 @@ void ReservedMatrix::reserve(Eigen::Index rows, Eigen::Index cols) {
 void ReservedMatrix::make_room(Eigen::Index rows, Eigen::Index cols) {
   if (rows <= storage_.rows() && cols <= storage_.cols()) return;
   if (storage_.size() == 0) return reserve(rows, cols);  // only what has grown will grow
-  reserve(rows > storage_.rows() ? rows + rows / 2 : rows, cols > storage_.cols() ? cols + cols / 2 : cols);
+  reserve(rows > storage_.rows() ? rows + rows / 4 : rows, cols > storage_.cols() ? cols + cols / 4 : cols);
 }
 
 void ReservedMatrix::resize(Eigen::Index rows, Eigen::Index cols) {

@@ -49,7 +49,6 @@ CompressedEkf::CompressedEkf(const core::PoseGaussian& start, const FilterOption
   Phase first;
   first.start_m = start.mean.position_m();
   first.start_heading_variance_rad2 = start.covariance(2, 2);
-  first.cell = cell_of(first.start_m);
   open_phase(std::move(first), Eigen::MatrixXd(0, 3), {});
 }
 
@@ -61,7 +60,6 @@ CompressedEkf::CompressedEkf(const core::JointGaussian& start, core::LandmarkId 
   Phase first;
   first.start_m = start.pose.position_m();
   first.start_heading_variance_rad2 = start.covariance(2, 2);
-  first.cell = cell_of(first.start_m);
   name_from(next_name);
   take_in_passive(start, first);
   open_phase(std::move(first), start.covariance.bottomLeftCorner(start.covariance.rows() - 3, 3), {});

@@ -61,7 +61,7 @@ int CompressedEkf::assign_slots(Phase& phase) {
 }
 
 /// Covariance of all slots (rows) with the active part (columns), 2·slots × n.
-Eigen::MatrixXd CompressedEkf::end_columns(const core::Panels& basis, int slots) const {
+ReservedMatrix CompressedEkf::end_columns(const core::Panels& basis, int slots) const {
   const int n = active_.dimension();
   ReservedMatrix columns(2 * slots, n);
   const Eigen::MatrixXd weights = active_.A.view().transpose();
@@ -71,7 +71,7 @@ Eigen::MatrixXd CompressedEkf::end_columns(const core::Panels& basis, int slots)
     columns.view().middleRows<2>(2 * active_.slots[static_cast<std::size_t>(i)]) =
         P.middleRows<2>(ActivePart::column(i));
   }
-  return columns.view();
+  return columns;
 }
 
 /// An own variance that has become negative or is not finite: nothing of such a phase may be written down.
@@ -90,18 +90,18 @@ void CompressedEkf::check_own_covariances(const Phase& next) const {
 }
 
 /// Fills what only a closed phase has, and what the next one freezes.
-Eigen::MatrixXd CompressedEkf::close_phase(Phase& next) {
+std::shared_ptr<const ReservedMatrix> CompressedEkf::close_phase(Phase& next) {
   Phase& phase = phases_.back();
   make_room(phase.taken, active_.slots.size());
   const int slots = assign_slots(phase);
   const core::Panels basis(phase.basis.view(), core::left_width);
-  Eigen::MatrixXd columns = end_columns(basis, slots);
+  auto columns = std::make_shared<const ReservedMatrix>(end_columns(basis, slots));
 
   const Eigen::MatrixXd M = active_.M.view().selfadjointView<Eigen::Lower>();
   phase.touched = columns_not_zero(M);
   phase.response = product_with_symmetric(phase.basis, M, phase.touched);
   phase.written = active_.slots;
-  phase.written_covariance = columns.rightCols(columns.cols() - 3);
+  phase.end_columns = columns;
   phase.dead = active_.dead_slots;
   if (phase.number >= keep_since_) phase.basis = ReservedMatrix(phase.basis);  // compact: a search may keep hundreds
 
@@ -139,7 +139,7 @@ void CompressedEkf::absorb_closed_phases(long until) {
   make_room(free_slots_, dead);
   const bool is_shared = absorbed_.use_count() > 1;
   if (is_shared) absorbed_ = std::make_shared<PassiveCovariance>(*absorbed_);
-  absorbed_->grow(static_cast<int>(phases_[count - 1].written_covariance.rows()));
+  absorbed_->grow(static_cast<int>(phases_[count - 1].end_columns->rows()));
 
   // Nothing below allocates or throws.
   for (; count > 0; --count) {
@@ -147,7 +147,7 @@ void CompressedEkf::absorb_closed_phases(long until) {
     response.pack(phase.response);
     basis.pack(phase.basis.view(), phase.touched);
     absorbed_->add_symmetric_product(response, basis);
-    absorbed_->overwrite(phase.written, phase.written_covariance);
+    absorbed_->overwrite(phase.written, phase.written_covariance());
     free_slots_.insert(free_slots_.end(), phase.dead.begin(), phase.dead.end());
     phases_.erase(phases_.begin());
   }

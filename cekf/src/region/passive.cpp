@@ -63,12 +63,13 @@ void replay_on_columns(const Phase& phase, const std::vector<Carried>& carried, 
     core::add_product(change.col(0), change.stride(), core::Panels(phase.response, core::left_width),
                       core::Panels(basis, core::right_width));
   }
+  const auto written = phase.written_covariance();
   for (std::size_t i = 0; i < carried.size(); ++i) {
     auto own = columns.middleCols<2>(carried[i].column);
     own.topRows(2 * phase.slots) += change.view().middleCols<2>(2 * static_cast<Eigen::Index>(i));
     for (std::size_t k = 0; k < phase.written.size(); ++k) {
       own.middleRows<2>(2 * phase.written[k]) =
-          phase.written_covariance.block<2, 2>(2 * carried[i].slot, 2 * static_cast<Eigen::Index>(k)).transpose();
+          written.block<2, 2>(2 * carried[i].slot, 2 * static_cast<Eigen::Index>(k)).transpose();
     }
   }
 }
@@ -80,12 +81,13 @@ void replay_on_blocks(const Phase& phase, const std::vector<int>& slots, Eigen::
     const Eigen::MatrixXd basis = rows_of(phase.basis.view(), slots, phase.touched);
     blocks.triangularView<Eigen::Lower>() += response * basis.transpose();
   }
+  const auto all_written = phase.written_covariance();
   for (std::size_t k = 0; k < slots.size(); ++k) {
     const int w = written_index(phase, slots[k]);
     if (w < 0) continue;
     for (std::size_t i = 0; i < slots.size(); ++i) {
-      if (2 * slots[i] >= phase.written_covariance.rows()) continue;
-      const Eigen::Matrix2d written = phase.written_covariance.block<2, 2>(2 * slots[i], 2 * w);
+      if (2 * slots[i] >= all_written.rows()) continue;
+      const Eigen::Matrix2d written = all_written.block<2, 2>(2 * slots[i], 2 * w);
       const auto row = 2 * static_cast<Eigen::Index>(std::max(i, k));
       const auto column = 2 * static_cast<Eigen::Index>(std::min(i, k));
       if (i >= k) {
@@ -118,7 +120,7 @@ void CompressedEkf::fill_start_columns(const std::vector<int>& slots, std::size_
     std::size_t p = phase;  // back to the last closed phase that wrote the slot
     while (w < 0 && p > 0) w = written_index(phases_[--p], slots[k]);
     if (w >= 0) {
-      const Eigen::MatrixXd& written = phases_[p++].written_covariance;
+      const auto written = phases_[p++].written_covariance();
       own.topRows(written.rows()) = written.middleCols<2>(2 * w);
     } else if (2 * slots[k] < absorbed_->rows()) {
       absorbed_->copy_columns(slots[k], own.topRows(absorbed_->rows()));

@@ -69,7 +69,7 @@ void CompressedEkf::open_again(Phase& phase) {
   phase.touched.clear();
   phase.response.resize(0, 0);
   phase.written.clear();
-  phase.written_covariance.resize(0, 0);
+  phase.end_columns.reset();
   phase.dead.clear();
 }
 
@@ -79,9 +79,9 @@ std::size_t CompressedEkf::kept_bytes() const {
   std::size_t bytes = 0;
   for (std::size_t p = 0; p + 1 < phases_.size(); ++p) {
     const Phase& phase = phases_[p];
-    bytes += phase.basis.bytes() + phase.passive_slots.size() * sizeof(phase.passive_slots[0]) +
-             static_cast<std::size_t>(phase.response.size() + phase.written_covariance.size() + phase.mean_m.size() +
-                                      phase.own_covariance_m2.size()) *
+    bytes += phase.basis.bytes() + phase.end_columns->bytes() +
+             phase.passive_slots.size() * sizeof(phase.passive_slots[0]) +
+             static_cast<std::size_t>(phase.response.size() + phase.mean_m.size() + phase.own_covariance_m2.size()) *
                  sizeof(double);
   }
   return bytes;

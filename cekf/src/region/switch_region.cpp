@@ -18,14 +18,29 @@ int CompressedEkf::most_active() const { return std::max(options_.max_active_lan
 /// active and w·n weights it costs m·(1 + w)²·n².
 int CompressedEkf::most_when_whole() const { return (1 + weights_per_anchor()) * most_active(); }
 
-bool CompressedEkf::switch_region_if_due() {
+bool CompressedEkf::is_whole_cheaper() const {
+  const int few = most_when_whole() - most_when_whole() / 4;
+  return mapped_count() <= few || active_.costs.is_whole_cheaper(3.0 + 2.0 * mapped_count());
+}
+
+bool CompressedEkf::is_whole() const { return phases_.back().passive_slots.empty(); }
+
+bool CompressedEkf::is_region_due() const {
   const double side_m = options_.cell_side_m;
-  const Eigen::Vector2d middle_m = side_m * (phases_.back().cell.cast<double>() + Eigen::Vector2d::Constant(0.5));
+  const Eigen::Vector2d middle_m = side_m * (active_.cell.cast<double>() + Eigen::Vector2d::Constant(0.5));
   const double outside_m = (active_.pose.position_m() - middle_m).cwiseAbs().maxCoeff() - 0.5 * side_m;
-  const bool is_whole = phases_.back().passive_slots.empty();
-  const bool crowded = active_count() > (is_whole ? most_when_whole() : most_active());
-  if (outside_m <= options_.hysteresis_m && !crowded) return false;
-  switch_region();
+  return outside_m > options_.hysteresis_m || active_count() > (is_whole() ? most_when_whole() : most_active());
+}
+
+/// Where all are active and are to be so again nothing is closed.
+bool CompressedEkf::switch_region_if_due() {
+  if (!is_region_due()) return false;
+  const std::vector<core::LandmarkId> region = region_around_vehicle();
+  if (is_whole() && static_cast<int>(region.size()) == mapped_count()) {
+    active_.cell = cell_of(active_.pose.position_m());
+    return false;
+  }
+  switch_region(region);
   return true;
 }
 
@@ -50,9 +65,8 @@ void CompressedEkf::switch_region(const std::vector<core::LandmarkId>& active) {
     Phase next;
     next.start_m = active_.pose.position_m();
     next.start_heading_variance_rad2 = active_.P.view()(2, 2);
-    next.cell = cell_of(next.start_m);
-    const Eigen::MatrixXd columns = close_phase(next);
-    open_phase(std::move(next), columns, wanted);
+    const std::shared_ptr<const ReservedMatrix> columns = close_phase(next);
+    open_phase(std::move(next), columns->view(), wanted);
   } catch (...) {
     if (phases_.size() > phases) phases_.pop_back();
     reopen_phase(before);
@@ -68,7 +82,7 @@ void CompressedEkf::reopen_phase(BeforeSwitch& before) {
   last_phase_ = before.last_phase;
 }
 
-/// Landmarks of the vehicle's cell and its eight neighbours. When they are too many all of the map, where that costs no more,
+/// Landmarks of the vehicle's cell and its eight neighbours. When they are too many all of the map, where that costs less,
 /// or the nearest, and fewer than may be active, so that the next activation does not make another switch due.
 std::vector<core::LandmarkId> CompressedEkf::region_around_vehicle() const {
   const Eigen::Vector2i cell = cell_of(active_.pose.position_m());
@@ -86,7 +100,7 @@ std::vector<core::LandmarkId> CompressedEkf::region_around_vehicle() const {
   const std::ptrdiff_t most = most_active();
   const std::ptrdiff_t kept = most - most / 4;
   if (static_cast<std::ptrdiff_t>(near.size()) > kept) {
-    if (mapped_count() <= most_when_whole() - most_when_whole() / 4) return landmarks();
+    if (is_whole_cheaper()) return landmarks();
     std::nth_element(near.begin(), near.begin() + kept, near.end());
     near.resize(static_cast<std::size_t>(kept));
   }
@@ -98,7 +112,7 @@ std::vector<core::LandmarkId> CompressedEkf::region_around_vehicle() const {
 /// Begins a phase with these active landmarks. `columns` are the covariances of all slots with the active part so far.
 /// Where the closed phase is absorbed at once, what allocates comes before and cannot fail behind; where it is kept,
 /// nothing but the list of phases has changed until the end.
-void CompressedEkf::open_phase(Phase&& next, const Eigen::MatrixXd& columns,
+void CompressedEkf::open_phase(Phase&& next, const Eigen::Ref<const Eigen::MatrixXd>& columns,
                                const std::vector<core::LandmarkId>& active) {
   std::vector<int> slots;
   std::vector<int> entering;
@@ -163,6 +177,12 @@ ActivePart CompressedEkf::room_for(const Phase& phase, const std::vector<core::L
   part.pose = active_.pose;
   part.next_id = active_.next_id;
   part.last_seen = active_.last_seen;
+  part.cell = cell_of(phase.start_m);
+  part.costs = active_.costs;
+  if (active_.weights() > 0) {
+    const auto touched = static_cast<double>(phases_.back().touched.size());
+    part.costs.note(active_.rows, active_.dimension(), active_.weights(), touched);
+  }
   part.ids = active;
   part.slots = slots;
   for (const int slot : slots) part.points_m.push_back(phase.mean_m.segment<2>(2 * slot));

@@ -180,6 +180,7 @@ void CompressedEkf::apply_correction(UpdateWorkspace& w, const char* verb) {
                     w.left_weights.cols());
   }
   move_means(w);
+  active_.rows += static_cast<double>(w.nu.rows());
 }
 
 /// N = I + n·e_θᵀ with n = J·Δ carries the covariance to the corrected point (THEORY §1b): P' = N·P·Nᵀ = P + n·gᵀ +

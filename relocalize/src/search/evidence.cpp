@@ -59,40 +59,51 @@ struct Counts {
   int missed = 0;     ///< landmarks without a pair, on the question's ground
 };
 
-bool inside(const Disc& disc, const core::Pose2& T, float x_m, float y_m, double rim_m) {
-  const Eigen::Vector2d centre_m = core::transform(T, disc.centre_m);
-  const double radius_m = std::max(0.0, disc.radius_m - rim_m);
-  return (centre_m - Eigen::Vector2d(x_m, y_m)).squaredNorm() <= radius_m * radius_m;
-}
+/// Ground that the question looked at, laid on the map, without a rim of three pair noises.
+class LookedGround {
+ public:
+  LookedGround(const Prepared& asked, const core::Pose2& T) : map_(asked.map) {
+    const double rim_m = 3.0 * map_.options.pair_noise_m;
+    const Eigen::Matrix2d turn = core::rotation(T.heading_rad);
+    discs_.reserve(asked.looked.size());
+    for (const Disc& disc : asked.looked) {
+      discs_.push_back({turn * disc.centre_m + T.position_m(), std::max(0.0, disc.radius_m - rim_m)});
+    }
+  }
 
-/// Landmarks of the map on ground that the question looked at, but for a rim of three pair noises.
-int landmarks_looked_at(const Prepared& asked, const core::Pose2& T, double rim_m) {
-  int count = 0;
-  for (std::size_t k = 0; k < asked.looked.size(); ++k) {
-    const Eigen::Vector2f centre_m = core::transform(T, asked.looked[k].centre_m).cast<float>();
-    const auto radius_m = static_cast<float>(std::max(0.0, asked.looked[k].radius_m - rim_m));
-    asked.map.grid.within(asked.map.nodes, centre_m.x(), centre_m.y(), radius_m, [&](Slot slot, float) {
-      const Node& node = asked.map.nodes[slot];
-      bool counted = false;
-      for (std::size_t earlier = 0; earlier < k && !counted; ++earlier)
-        counted = inside(asked.looked[earlier], T, node.x_m, node.y_m, rim_m);
-      count += counted ? 0 : 1;
+  bool holds(const Node& node) const { return is_in_first(discs_.size(), node); }
+
+  int landmarks() const {
+    int count = 0;
+    for (std::size_t k = 0; k < discs_.size(); ++k) {
+      const Eigen::Vector2f centre_m = discs_[k].centre_m.cast<float>();
+      const auto radius_m = static_cast<float>(discs_[k].radius_m);
+      map_.grid.within(map_.nodes, centre_m.x(), centre_m.y(), radius_m,
+                       [&](Slot slot, float) { count += is_in_first(k, map_.nodes[slot]) ? 0 : 1; });
+    }
+    return count;
+  }
+
+ private:
+  bool is_in_first(std::size_t discs, const Node& node) const {
+    const Eigen::Vector2d at_m(node.x_m, node.y_m);
+    return std::any_of(discs_.begin(), discs_.begin() + static_cast<std::ptrdiff_t>(discs), [&](const Disc& disc) {
+      return (disc.centre_m - at_m).squaredNorm() <= disc.radius_m * disc.radius_m;
     });
   }
-  return count;
-}
+
+  const MapIndex::Parts& map_;
+  std::vector<Disc> discs_;
+};
 
 Counts count(const Prepared& asked, const core::Pose2& T, const std::vector<Match>& matches) {
-  const double rim_m = 3.0 * asked.map.options.pair_noise_m;
+  const LookedGround ground(asked, T);
   std::vector<bool> paired(asked.points.size(), false);
   Counts counts;
-  counts.missed = landmarks_looked_at(asked, T, rim_m);
+  counts.missed = ground.landmarks();
   for (const Match& match : matches) {
     paired[match.point] = true;
-    const Node& node = asked.map.nodes[match.slot];
-    const bool looked_at = std::any_of(asked.looked.begin(), asked.looked.end(),
-                                       [&](const Disc& disc) { return inside(disc, T, node.x_m, node.y_m, rim_m); });
-    counts.missed -= looked_at ? 1 : 0;
+    counts.missed -= ground.holds(asked.map.nodes[match.slot]) ? 1 : 0;
   }
   counts.on_ground = static_cast<int>(matches.size());
   for (std::size_t i = 0; i < paired.size(); ++i) {

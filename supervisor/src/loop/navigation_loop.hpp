@@ -215,7 +215,7 @@ class NavigationLoop {
   void commit();
   void thin_coverage();
   void recover();
-  Search search_from(const Checkpoint& trigger) const;
+  Search search_from(const association::LandmarkLife& existence) const;
 
   const Checkpoint& checkpoint() const;
   Searching* searching() { return std::get_if<Searching>(&mode_); }

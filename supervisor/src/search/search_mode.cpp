@@ -13,17 +13,17 @@ using core::LandmarkId;
 using core::Scan;
 using core::StepReport;
 
-Search NavigationLoop::search_from(const Checkpoint& trigger) const {
+Search NavigationLoop::search_from(const association::LandmarkLife& existence) const {
   const std::uint64_t seed = options_.search.seed + 1000000u * searches_;
-  return Search(old_landmarks(trigger.existence, options_.search.old_after_m), trigger.existence.path_m(), seed,
-                with_extraneous_density(options_.search, trigger.existence.born_per_scan(), view_));
+  return Search(old_landmarks(existence, options_.search.old_after_m), existence.path_m(), seed,
+                with_extraneous_density(options_.search, existence.born_per_scan(), view_));
 }
 
 void NavigationLoop::begin_search() {
   widen_for_search();
   ++searches_;
   Checkpoint trigger = take_checkpoint(belief_, tape_);
-  Search search = search_from(trigger);
+  Search search = search_from(trigger.existence);
   if (!undo_.mode) undo_.mode.emplace(std::move(mode_));
   mode_.emplace<Searching>(Searching{std::move(search), std::move(trigger), questions_});
 }

@@ -118,10 +118,12 @@ void NavigationLoop::ask_whether_new(const core::Scan& scan, core::StepReport& r
   LandmarksAbout about = landmarks_about(belief_, within_m, path_m - within_m);
   constexpr double least_new = 0.5;
   if (!questions_.asked.is_due(about.ids, least_new)) return;
-  const Checkpoint now = take_checkpoint(belief_, tape_);
-  const Search search = search_from(now);
+  const Search search = search_from(belief_.existence);
   AskedWholeMap asked = ask(about, search, scan);
-  if (!asked.is_closed() || !close_at(asked.pairs, search, now, scan, asked.decision, report)) {
+  const auto is_closed_from = [&](const Checkpoint& now) {
+    return close_at(asked.pairs, search, now, scan, asked.decision, report);
+  };
+  if (!asked.is_closed() || !is_closed_from(take_checkpoint(belief_, tape_))) {
     const bool is_news = asked.decision.verdict != WholeMapDecision::Verdict::not_here;
     if (is_news) report.decisions.emplace_back(asked.decision);
     return;

@@ -48,7 +48,7 @@ class Proposer {
     const Eigen::Matrix2d turn = core::rotation(-displacement.z());
     for (std::size_t s = 0; s < seen_.size(); ++s) {
       for (const std::size_t l : in_reach_[s]) {
-        const Candidate one = weigh({s, l}, turn, displacement, covariance);
+        const Candidate one = weigh({s, l}, turn, displacement, covariance, gate);
         if (one.nis < gate && one.nats > 0.0) candidates.push_back(one);
       }
     }
@@ -152,9 +152,21 @@ class Proposer {
     return information.inverse();
   }
 
+  /// Beyond the gate for sure: no direction of S has more variance than its trace, in which (a + b)² counts as 2a² + 2b².
+  bool is_far(const PointPair& pair, const Eigen::Vector2d& nu_m, double range2_m2, const Eigen::Matrix3d& covariance,
+              double gate) const {
+    const double turning_m2 = range2_m2 * covariance(2, 2);
+    const double most_m2 = seen_[pair.seen].covariance_m2.trace() +
+                           geometry_.covariance_of(pair.landmark, pair.landmark).trace() +
+                           2.0 * (covariance(0, 0) + covariance(1, 1) + turning_m2);
+    return nu_m.squaredNorm() > gate * most_m2;
+  }
+
   Candidate weigh(const PointPair& pair, const Eigen::Matrix2d& turn, const Eigen::Vector3d& at,
-                  const Eigen::Matrix3d& covariance) const {
+                  const Eigen::Matrix3d& covariance, double gate) const {
     const Eigen::Vector2d expected = expected_m(pair, turn, at);
+    if (is_far(pair, seen_[pair.seen].point_m - expected, expected.squaredNorm(), covariance, gate))
+      return {pair, gate, 0.0};
     const Eigen::Matrix<double, 2, 3> A = by_displacement(expected, turn);
     const Eigen::Matrix2d S = spread(pair, turn) + A * covariance * A.transpose();
     const Eigen::Vector2d nu = seen_[pair.seen].point_m - expected;

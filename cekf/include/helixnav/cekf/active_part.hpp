@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "helixnav/cekf/phase_costs.hpp"
 #include "helixnav/cekf/reserved_matrix.hpp"
 #include "helixnav/core/landmark_id.hpp"
 #include "helixnav/core/se2.hpp"
@@ -36,7 +37,10 @@ struct ActivePart {
   std::vector<int> dead_slots;                 ///< slots of landmarks removed in this phase
   std::vector<int> late_anchors;  ///< slots activated in this phase, in order: anchors behind the first ones
   core::LandmarkId next_id = 0;
-  int last_seen = 0;  ///< landmarks of the last update
+  int last_seen = 0;                               ///< landmarks of the last update
+  Eigen::Vector2i cell = Eigen::Vector2i::Zero();  ///< of the vehicle when the region was chosen
+  double rows = 0.0;                               ///< of the observations used since the phase began
+  PhaseCosts costs;                                ///< of the phases before
 
   int dimension() const { return 3 + 2 * static_cast<int>(ids.size()); }
   int weights() const { return static_cast<int>(theta.size()); }

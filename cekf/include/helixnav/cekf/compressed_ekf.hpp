@@ -239,12 +239,13 @@ class CompressedEkf {
   // global_update.cpp, switch_region.cpp, snapshot.cpp
   struct BeforeSwitch;
   int assign_slots(Phase& phase);
-  Eigen::MatrixXd end_columns(const core::Panels& basis, int slots) const;
-  Eigen::MatrixXd close_phase(Phase& next);
+  ReservedMatrix end_columns(const core::Panels& basis, int slots) const;
+  std::shared_ptr<const ReservedMatrix> close_phase(Phase& next);
   void absorb_closed_phases(long until);
   void check_own_covariances(const Phase& next) const;
   void reopen_phase(BeforeSwitch& before);
-  void open_phase(Phase&& next, const Eigen::MatrixXd& columns, const std::vector<core::LandmarkId>& active);
+  void open_phase(Phase&& next, const Eigen::Ref<const Eigen::MatrixXd>& columns,
+                  const std::vector<core::LandmarkId>& active);
   void freeze_slots(Phase& phase, const std::vector<core::LandmarkId>& active) const;
   ActivePart room_for(const Phase& phase, const std::vector<core::LandmarkId>& active,
                       const std::vector<int>& slots) const;
@@ -252,6 +253,9 @@ class CompressedEkf {
   std::vector<core::LandmarkId> region_around_vehicle() const;
   int most_active() const;
   int most_when_whole() const;
+  bool is_whole() const;
+  bool is_whole_cheaper() const;
+  bool is_region_due() const;
   Eigen::Vector2i cell_of(const Eigen::Vector2d& point_m) const;
   void return_slots(Phase& phase);
   static void open_again(Phase& phase);

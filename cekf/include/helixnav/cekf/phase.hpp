@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -15,7 +16,6 @@ namespace helixnav::cekf {
 /// passive has a slot s: rows 2s and 2s+1 below.
 struct Phase {
   long number = 0;
-  Eigen::Vector2i cell = Eigen::Vector2i::Zero();               ///< of the vehicle when the phase began
   Eigen::Vector2d start_m = Eigen::Vector2d::Zero();            ///< of the vehicle then
   double start_heading_variance_rad2 = 0.0;                     ///< of the vehicle then
   int slots = 0;                                                ///< known when the phase began
@@ -27,12 +27,15 @@ struct Phase {
   std::vector<int> late_anchors;  ///< slots whose columns were appended, in order
 
   // Filled when the phase closes: P_bb += response·basisᵀ over `touched`, then the rows and columns of `written` are overwritten.
-  std::vector<int> touched;            ///< weights that an update reached: all other columns of M are zero
-  Eigen::MatrixXd response;            ///< those columns of E·M, 2·slots × |touched|
-  std::vector<int> written;            ///< slots of the landmarks active at the end
-  Eigen::MatrixXd written_covariance;  ///< 2·slots_after × 2·|written|
-  std::vector<int> dead;               ///< slots free once the phase can no longer be undone
-  std::vector<int> taken;              ///< slots taken from the free list when the phase closed
+  std::vector<int> touched;  ///< weights that an update reached: all other columns of M are zero
+  Eigen::MatrixXd response;  ///< those columns of E·M, 2·slots × |touched|
+  std::vector<int> written;  ///< slots of the landmarks active at the end
+  std::shared_ptr<const ReservedMatrix> end_columns;  ///< 2·slots_after × (3 + 2·|written|): with vehicle and `written`
+  std::vector<int> dead;                              ///< slots free once the phase can no longer be undone
+  std::vector<int> taken;                             ///< slots taken from the free list when the phase closed
+
+  /// 2·slots_after × 2·|written|.
+  auto written_covariance() const { return end_columns->view().rightCols(end_columns->cols() - 3); }
 };
 
 }  // namespace helixnav::cekf
