@@ -156,6 +156,8 @@ TEST_P(Law, AllAreActiveWherePhasesThatSeeLittleCostMore) {
     for (int i = 0; i < 60; ++i) filter.augment(core::make_cartesian({1.0 + i / 8, 1.0 + i % 8}, observation.R), {});
     filter.switch_region({0, 1, 2});
     for (int k = 0; k < updates; ++k) filter.update({{0, observation, {}}});
+    filter.switch_region();  // what it cost is known once it has ended
+    EXPECT_EQ(filter.active_count(), 8);
     filter.switch_region();
     return filter;
   };
