@@ -264,6 +264,11 @@ bool replay_after_jump(const Input& in, Reconciled& result) {
 
 }  // namespace
 
+double nats_against_odometry(const Closing& as_measured) {
+  constexpr double something_else = 0.01;
+  return std::min(1.5 * std::log(std::max(1.0, factor_from(as_measured))), -std::log(something_else));
+}
+
 bool was_no_noise(const Closing& as_measured) { return factor_from(as_measured) > largest_factor; }
 
 Reconciled close_against_odometry(const cekf::CompressedEkf& filter, const core::PoseGaussian& start,

@@ -34,6 +34,11 @@ struct Reconciled {
 /// Its noise would have to be a thousand times the variance that was assumed.
 bool was_no_noise(const Closing& as_measured);
 
+/// What a place has to be likelier by than without odometry, from how odometry as measured refused it: the likelihood of a scale is
+/// factor^(−3/2), and that something else was wrong, a slip that nobody noticed or a vehicle that was carried, is expected of one
+/// drive to a place in a hundred (ε of docs/relocalize.md). Test: supervisor/placing/whole_map_test.cpp.
+double nats_against_odometry(const Closing& as_measured);
+
 /// Closes the map at a place that odometry forbids. χ² of the pairs at a free pose decides a place; what their cost with
 /// odometry has beyond that, on three degrees of freedom, says only how wrong odometry was since the old landmarks of the
 /// pairs were last seen. Its noise over this loop is taken to be as large as makes that excess what it should be; the drive

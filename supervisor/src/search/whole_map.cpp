@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where odometry was wrong by more than its noise, no prior holds the place where the vehicle is: the whole map is asked.
+#include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -193,6 +194,8 @@ bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair
       pending_.forbidden = pairs;  // a pause says when it was carried, matches only since when nothing fitted
       return false;
     }
+    decision.needed += nats_against_odometry(closing);
+    if (std::min(decision.evidence, decision.lead) < decision.needed) return false;
     place.as_measured = closing;
     Reconciled reconciled = close_against_odometry(belief_.filter, start_, view, place, options_.search);
     if (!reconciled.closing.accepted) {
