@@ -11,8 +11,10 @@
 #include "common/timed.hpp"
 #include "drive/check_drive.hpp"
 #include "drive/drive.hpp"
+#include "drive/drive_again.hpp"
 #include "drive/estimator.hpp"
 #include "drive/given_map.hpp"
+#include "drive/keeping.hpp"
 #include "drive/withholding.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/event_loop.hpp"
@@ -41,6 +43,12 @@ void refuse_contradictions(const Log& log, const ReplayWishes& wishes) {
   refuse(log.fastslam.chosen && wishes.smooth, "smooth needs the associations of one map; FastSLAM has many");
 }
 
+/// Where the run ended, with all that its navigator believed.
+bool goes_on_from_drive(const Log& log, const ReplayWishes& wishes) {
+  return wishes.map && !wishes.map->map && !wishes.localize && !log.known_association &&
+         apps::is_driven_again(wishes.map->path.string(), wishes.start);
+}
+
 runs::RunManifest manifest_of(const Log& log, const ReplayWishes& wishes) {
   runs::RunManifest manifest;
   manifest.version = core::version();
@@ -53,7 +61,9 @@ runs::RunManifest manifest_of(const Log& log, const ReplayWishes& wishes) {
   std::vector<std::string> files = log.files;
   if (wishes.map && !wishes.map->map) {
     const std::string path = wishes.map->path.string();
-    files.push_back(wishes.localize ? apps::map_file(path) : apps::joint_map_file_in(path));
+    files.push_back(wishes.localize                   ? apps::map_file(path)
+                    : goes_on_from_drive(log, wishes) ? apps::drive_file_in(path)
+                                                      : apps::joint_map_file_in(path));
   }
   for (const std::string& file : files) {
     const std::vector<runs::InputFile> inputs = apps::input_files(file);
@@ -85,7 +95,11 @@ apps::Drive job_of(const Log& log, const ReplayWishes& wishes) {
   job.withheld = log.withheld;
   job.smooth = wishes.smooth;
   job.out = wishes.out;
-  take_map(wishes, job);
+  if (goes_on_from_drive(log, wishes)) {
+    apps::put_before(runs::read_drive(apps::drive_file_in(wishes.map->path.string())), job.recording, job.withheld);
+  } else {
+    take_map(wishes, job);
+  }
   job.manifest = manifest_of(log, wishes);
   return job;
 }
@@ -100,8 +114,10 @@ void heed_signals(std::int64_t step) {
 /// Feeds all events. What broke of the mathematics, and where; empty when nothing did.
 std::string navigate(const apps::Drive& job, apps::Estimator& estimator, runs::RunWriter* writer,
                      runs::RunRecorder& recorder) {
+  const std::unique_ptr<runs::DriveFile> file = apps::kept_drive(job);
   apps::Timed timed(estimator);
-  apps::Withholding seen(timed, job.withheld, estimator.pose);
+  apps::Keeping kept(timed, file.get());
+  apps::Withholding seen(kept, job.withheld, estimator.pose);
   core::EventLoop loop(job.recording.events, seen);
   try {
     while (const std::optional<core::StepReport> step = loop.next()) {
@@ -112,6 +128,7 @@ std::string navigate(const apps::Drive& job, apps::Estimator& estimator, runs::R
       if (is_looked_at) recorder.add_map(estimator.sketch ? estimator.sketch() : estimator.map());
       heed_signals(step->step);
     }
+    if (file) file->finish();
   } catch (const core::NumericalError& error) {
     const double t_s = core::seconds(core::time_of(job.recording.events[loop.fed() - 1]));
     return "at step " + std::to_string(loop.steps()) + ", " + std::to_string(t_s) + " s: " + error.what();

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <string_view>
 #include <vector>
 
@@ -14,11 +13,10 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/files/file.hpp"
+#include "little_endian.hpp"
 
 namespace helixnav::runs {
 namespace {
-
-static_assert(sizeof(double) == 8, "map.bin holds IEEE doubles");
 
 constexpr std::string_view magic = "HELIXMAP";
 constexpr std::uint32_t version = 1;
@@ -40,50 +38,6 @@ std::size_t size_for(std::size_t landmarks) {
   return header_bytes + 12 * landmarks + 8 * (rows + rows * (rows + 1) / 2) + digest_bytes;
 }
 
-/// Little-endian, whatever the machine.
-template <class Unsigned>
-void put_unsigned(std::string& bytes, Unsigned value) {
-  std::array<char, sizeof(Unsigned)> little{};
-  for (std::size_t k = 0; k < sizeof(Unsigned); ++k) little[k] = static_cast<char>((value >> (8 * k)) & 0xffU);
-  bytes.append(little.data(), little.size());
-}
-
-void put(std::string& bytes, std::int32_t value) { put_unsigned(bytes, static_cast<std::uint32_t>(value)); }
-
-void put(std::string& bytes, double value) {
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  put_unsigned(bytes, bits);
-}
-
-/// Takes numbers off the front of bytes that are known to suffice.
-class Bytes {
- public:
-  explicit Bytes(std::string_view rest) : rest_(rest) {}
-
-  std::uint32_t small() { return take<std::uint32_t>(); }
-  std::int32_t integer() { return static_cast<std::int32_t>(small()); }
-  double number() {
-    const auto bits = take<std::uint64_t>();
-    double value = 0.0;
-    std::memcpy(&value, &bits, sizeof value);
-    return value;
-  }
-
- private:
-  template <class Unsigned>
-  Unsigned take() {
-    Unsigned value = 0;
-    for (std::size_t k = 0; k < sizeof(Unsigned); ++k) {
-      value |= static_cast<Unsigned>(static_cast<Unsigned>(static_cast<unsigned char>(rest_[k])) << (8 * k));
-    }
-    rest_.remove_prefix(sizeof(Unsigned));
-    return value;
-  }
-
-  std::string_view rest_;
-};
-
 [[noreturn]] void refuse(const std::string& path, const std::string& problem) {
   throw core::InputError(path + ": " + problem);
 }
@@ -94,7 +48,7 @@ std::size_t check_frame(const std::string& path, std::string_view bytes) {
     refuse(path,
            bytes.empty() ? "the file is empty; expected a map.bin" : "no map.bin: it does not begin with HELIXMAP");
   }
-  Bytes header(bytes.substr(magic.size()));
+  LittleEndian header(bytes.substr(magic.size()));
   const std::uint32_t found = header.small();
   if (found != version) {
     refuse(path,
@@ -200,7 +154,7 @@ std::string joint_map_bytes(const core::JointMap& map) {
 core::JointMap read_joint_map(const std::string& path) {
   const std::string file = files::read_whole_file(path);
   const std::size_t n = check_frame(path, file);
-  Bytes bytes(std::string_view(file).substr(magic.size() + 8));
+  LittleEndian bytes(std::string_view(file).substr(magic.size() + 8));
   core::JointMap map;
   map.next_name = bytes.integer();
   map.reach_m = bytes.number();

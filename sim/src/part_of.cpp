@@ -2,8 +2,10 @@
 #include "helixnav/sim/part_of.hpp"
 
 namespace helixnav::sim {
+namespace {
 
-core::Recording part_of(const core::Recording& whole, core::Nanoseconds from_ns, core::Nanoseconds until_ns) {
+core::Recording between(const core::Recording& whole, core::Nanoseconds from_ns, core::Nanoseconds until_ns,
+                        bool begins_with_scan) {
   core::Recording part = whole;
   part.events.clear();
   part.labels.clear();
@@ -14,7 +16,7 @@ core::Recording part_of(const core::Recording& whole, core::Nanoseconds from_ns,
     const std::size_t index = scan;
     scan += is_scan ? 1 : 0;
     const core::Nanoseconds t_ns = core::time_of(event);
-    const bool begins_later = t_ns < from_ns || (part.events.empty() && !is_scan);
+    const bool begins_later = t_ns < from_ns || (begins_with_scan && part.events.empty() && !is_scan);
     if (begins_later || t_ns > until_ns) continue;
     part.events.push_back(event);
     if (!is_scan) continue;
@@ -22,6 +24,16 @@ core::Recording part_of(const core::Recording& whole, core::Nanoseconds from_ns,
     if (!whole.true_poses.empty()) part.true_poses.push_back(whole.true_poses[index]);
   }
   return part;
+}
+
+}  // namespace
+
+core::Recording part_of(const core::Recording& whole, core::Nanoseconds from_ns, core::Nanoseconds until_ns) {
+  return between(whole, from_ns, until_ns, true);
+}
+
+core::Recording rest_of(const core::Recording& whole, core::Nanoseconds from_ns, core::Nanoseconds until_ns) {
+  return between(whole, from_ns, until_ns, false);
 }
 
 }  // namespace helixnav::sim

@@ -281,6 +281,39 @@ TEST_F(StreamProgram, LeavesAFolderThatIsReadWhenItIsKilled) {
   EXPECT_EQ(Json::parse(evaluation.out)["steps"], 1);
 }
 
+/// Its client sends again what it has of the last seconds, the row before the last scan at least.
+TEST_F(StreamProgram, GoesOnWhereItWasKilledAsIfNothingHadHappened) {
+  const Words lines = lines_of(log_, 60.0);
+  const Outcome whole = streamed(lines, {"--out", out_});
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  const Words answers = answers_of(whole.out, "scan");
+  const fs::path killed = folder_.path() / "killed";
+  const std::size_t cut = lines.size() / 2;
+  Talking live = begin({"--out", killed});
+  for (std::size_t i = 0; i < cut; ++i) live.talk->say(lines[i] + '\n');
+  std::size_t heard = 0;
+  while (heard < answers.size() / 3 && !live.talk->hear().is_null()) ++heard;
+  live.program->send(SIGKILL);
+  live.program->wait();
+  const Outcome rest = streamed(Words(lines.begin() + static_cast<std::ptrdiff_t>(cut / 3), lines.end()),
+                                {"--resume", killed, "--out", killed, "--overwrite"});
+  ASSERT_EQ(rest.exit_code, 0) << rest.err;
+  const Words more = answers_of(rest.out, "scan");
+  ASSERT_FALSE(answers_of(rest.out, "note").empty()) << "says how much was driven again";
+  ASSERT_LE(more.size(), answers.size() - heard) << "what was driven before is not answered again";
+  const auto without_line = [](const std::string& answer) {
+    Json scan = Json::parse(answer)["scan"];
+    scan.erase("line");
+    return scan;
+  };
+  for (std::size_t i = 0; i < more.size(); ++i) {
+    EXPECT_EQ(without_line(more[i]), without_line(answers[answers.size() - more.size() + i]));
+  }
+  for (const char* name : {"trajectory.tum", "map.csv", "map.bin", "associations.csv", "decisions.csv", "drive.bin"}) {
+    EXPECT_EQ(text_of(out_ / name), text_of(killed / name)) << name;
+  }
+}
+
 TEST_F(StreamProgram, EndsInOrderWhenNobodyReadsItsAnswers) {
   Talking live = begin({"--out", out_});
   live.talk->stop_hearing();

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "common/interrupt.hpp"
 #include "common/progress_bar.hpp"
 #include "common/timed.hpp"
+#include "drive_again.hpp"
 #include "estimator.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
@@ -24,6 +26,7 @@
 #include "helixnav/reports/summary.hpp"
 #include "helixnav/runs/run_recorder.hpp"
 #include "helixnav/runs/run_writer.hpp"
+#include "keeping.hpp"
 #include "run_warnings.hpp"
 #include "smooth/smooth_drive.hpp"
 #include "withholding.hpp"
@@ -78,8 +81,10 @@ std::optional<core::StepReport> next_step(Loop& loop, const Drive& job, Driven& 
 /// Feeds all events, but for the scans withheld.
 Driven navigate(const Drive& job, Estimator& estimator, runs::RunWriter& writer, runs::RunRecorder& recorder) {
   Driven driven;
+  const std::unique_ptr<runs::DriveFile> file = kept_drive(job);
   Timed timed(estimator);
-  Withholding seen(timed, job.withheld, estimator.pose);
+  Keeping kept(timed, file.get());
+  Withholding seen(kept, job.withheld, estimator.pose);
   core::EventLoop loop(job.recording.events, seen);
   ProgressBar progress(job.given_map ? "localising" : "navigating", job.recording.events.size(), job.quiet);
   while (!interrupted()) {
@@ -97,6 +102,7 @@ Driven navigate(const Drive& job, Estimator& estimator, runs::RunWriter& writer,
       break;
     }
   }
+  if (file) file->finish();
   driven.steps = static_cast<std::size_t>(loop.steps());
   return driven;
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "drive/drive_again.hpp"
 #include "drive/earlier_session.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
@@ -75,8 +76,12 @@ void write_components(const std::string& out, const std::vector<core::JointMap>&
 }  // namespace
 
 void check_independent(const std::vector<std::string>& runs) {
-  std::vector<std::string> digests;
-  for (const std::string& run : runs) digests.push_back(runs::sha256_of_file(joint_map_file_in(run)));
+  std::vector<std::string> digests, drives;
+  for (const std::string& run : runs) {
+    const std::string drive = drive_file_in(run);
+    digests.push_back(runs::sha256_of_file(joint_map_file_in(run)));
+    drives.push_back(fs::exists(drive) ? runs::sha256_of_file(drive) : std::string());
+  }
   for (std::size_t a = 0; a < runs.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       if (digests[a] == digests[b]) throw core::InputError(runs[a] + ": the same map as " + runs[b]);
@@ -84,7 +89,7 @@ void check_independent(const std::vector<std::string>& runs) {
     if (!fs::exists(fs::path(runs[a]) / "manifest.json")) continue;
     for (const runs::InputFile& input : runs::read_manifest(runs[a]).inputs) {
       for (std::size_t b = 0; b < runs.size(); ++b) {
-        if (input.sha256 != digests[b]) continue;
+        if (input.sha256.empty() || (input.sha256 != digests[b] && input.sha256 != drives[b])) continue;
         throw core::InputError(runs[a] + ": went on in the map of " + runs[b] +
                                " and holds it already; leave that out");
       }

@@ -16,6 +16,7 @@
 #include "common/input_files.hpp"
 #include "common/run_options.hpp"
 #include "drive/drive.hpp"
+#include "drive/drive_again.hpp"
 #include "drive/start_option.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/mrclam.hpp"
@@ -53,6 +54,11 @@ void take_map(const ReplayJob& job, Drive& task) {
   } else {
     task.earlier = read_earlier_session(job.map, job.start.value_or(SessionStart{}));
   }
+}
+
+/// Where the run ended, with all that its navigator believed.
+bool goes_on_from_drive(const ReplayJob& job) {
+  return !job.localize && !job.settings.known_association && is_driven_again(job.map, job.start);
 }
 
 void refuse_contradictions(const ReplayJob& job) {
@@ -96,18 +102,21 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   if (log.estimated_range_scale) std::printf("range scale estimated from the log: %.4f\n", *log.estimated_range_scale);
   if (!job.blackouts.empty()) task.withheld = withhold(task.recording, job.blackouts);
   apply_log_settings(task.recording, job.settings);
+  const bool drives_again = goes_on_from_drive(job);
+  if (drives_again) put_before(runs::read_drive(drive_file_in(job.map)), task.recording, task.withheld);
   task.navigator = fit_to_recording(job.settings, task.recording);
   fill_drive(task, job.run, dump_config(command) + in_force_text(job.settings, task.navigator, task.recording));
   task.smooth = job.smooth;
-  take_map(job, task);
+  if (!drives_again) take_map(job, task);
   choose_filter(task, job.settings);
   if (task.fastslam.chosen) task.manifest.seed = task.fastslam.seed;
   task.manifest.inputs = input_files(job.path);
   const bool has_file = !job.vehicle.empty() && std::filesystem::exists(job.vehicle);  // else one that ships
   if (has_file) task.manifest.inputs.push_back(input_files(job.vehicle).front());
   if (!job.map.empty()) {
-    const std::vector<runs::InputFile> of_map =
-        input_files(job.localize ? map_file(job.map) : joint_map_file_in(job.map));
+    const std::vector<runs::InputFile> of_map = input_files(job.localize   ? map_file(job.map)
+                                                            : drives_again ? drive_file_in(job.map)
+                                                                           : joint_map_file_in(job.map));
     task.manifest.inputs.insert(task.manifest.inputs.end(), of_map.begin(), of_map.end());
   }
   task.reading_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

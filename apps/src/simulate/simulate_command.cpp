@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +15,7 @@
 #include "common/input_files.hpp"
 #include "common/run_options.hpp"
 #include "drive/drive.hpp"
+#include "drive/drive_again.hpp"
 #include "drive/start_option.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
@@ -60,14 +63,24 @@ std::string scenario_list() {
          "  team                  robots side by side that see each other and ten landmarks of each neighbour's\n";
 }
 
-/// Another day is another drive through the same world: other noise, other detections.
-core::Recording recording_of(const SimulateJob& job) {
+std::optional<runs::FedDrive> driven_before(const SimulateJob& job) {
+  if (job.settings.known_association || !is_driven_again(job.map, job.start)) return std::nullopt;
+  return runs::read_drive(drive_file_in(job.map));
+}
+
+/// Another day is another drive through the same world: other noise, other detections. Where a drive is gone on with, what comes
+/// after it.
+core::Recording recording_of(const SimulateJob& job, const std::optional<runs::FedDrive>& before) {
   const sim::Scenario scenario = scenario_of(job.scenario, job.scenario_settings);
   core::Recording whole =
       sim::simulate_in(sim::build_world(scenario.world, job.seed), scenario, job.day.value_or(job.seed));
+  const core::Nanoseconds from_ns = core::nanoseconds_from_seconds(job.from_s);
+  const core::Nanoseconds until_ns = core::nanoseconds_from_seconds(job.until_s);
+  if (before && !before->events.empty()) {
+    return sim::rest_of(whole, std::max(from_ns, core::time_of(before->events.back()) + 1), until_ns);
+  }
   if (job.from_s == 0.0 && job.until_s == 1e9) return whole;
-  core::Recording part =
-      sim::part_of(whole, core::nanoseconds_from_seconds(job.from_s), core::nanoseconds_from_seconds(job.until_s));
+  core::Recording part = sim::part_of(whole, from_ns, until_ns);
   if (part.true_poses.empty()) throw core::InputError("--from, --until: no scan of the drive lies between them");
   part.start.mean = part.true_poses.front().T_world_robot;
   return part;
@@ -101,12 +114,16 @@ ExitCode simulate(CLI::App& command, SimulateJob& job) {
   if (job.settings.fastslam.chosen && !job.map.empty())
     throw CLI::ValidationError("--map", "--filter fastslam begins a map of its own");
   Drive task;
-  task.recording = recording_of(job);
+  std::optional<runs::FedDrive> before = driven_before(job);
+  task.recording = recording_of(job, before);
+  if (before) put_before(*std::move(before), task.recording, task.withheld);
   task.navigator = fit_to_recording(job.settings, task.recording);
   fill_drive(task, job.run, dump_config(command) + in_force_text(job.settings, task.navigator, task.recording));
   choose_filter(task, job.settings);
   task.manifest.seed = job.seed;
-  if (!job.map.empty()) {
+  if (before) {
+    task.manifest.inputs = input_files(drive_file_in(job.map));
+  } else if (!job.map.empty()) {
     task.earlier = read_earlier_session(job.map, job.start.value_or(SessionStart{}));
     task.manifest.inputs = input_files(joint_map_file_in(job.map));
   }

@@ -11,7 +11,16 @@ void LiveNavigator::prepare(core::Recording& next) {
   apply_log_settings(next, settings_);
   labels_ = &next.labels;
   scan_ = 0;
-  if (navigator_ || next.events.empty()) return;
+  if (!navigator_ && !next.events.empty()) begin(next);
+}
+
+void LiveNavigator::begin_with(core::Recording& before) {
+  labels_ = &before.labels;
+  scan_ = 0;
+  begin(before);
+}
+
+void LiveNavigator::begin(const core::Recording& next) {
   const supervisor::NavigatorOptions options = fit_to_recording(settings_, next);
   const core::FieldOfView view = logs::field_of_view_of(next);
   lengths_text_ = apps::lengths_text(options, view);

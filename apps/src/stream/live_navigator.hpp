@@ -24,6 +24,9 @@ class LiveNavigator {
   /// Events that come next, with their labels; settings on sensor and covariances are applied to them.
   void prepare(core::Recording& next);
 
+  /// A drive that went before, as it was fed: its events come next, as they are.
+  void begin_with(core::Recording& before);
+
   /// Events of the recording that was prepared last, in order. The report of a scan.
   std::optional<core::StepReport> take(const core::Event& event);
 
@@ -37,6 +40,8 @@ class LiveNavigator {
   const std::string& lengths_text() const { return lengths_text_; }
 
  private:
+  void begin(const core::Recording& next);
+
   using Either = std::variant<supervisor::Navigator, supervisor::NamedNavigator>;
 
   const Settings& settings_;

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -14,6 +15,8 @@
 #include "answer.hpp"
 #include "common/interrupt.hpp"
 #include "common/timed.hpp"
+#include "drive/drive_again.hpp"
+#include "drive/keeping.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/event_loop.hpp"
 #include "helixnav/logs/own_stream.hpp"
@@ -37,6 +40,7 @@ class Stream {
   }
 
   ExitCode run() {
+    if (!job_.resume.empty()) drive_again();
     std::string line;
     while (reader_is_there_ && channel_.next(line)) answer(input_.take(line, channel_.line_number()));
     if (reader_is_there_ && !interrupted()) answer(input_.finish());
@@ -47,15 +51,41 @@ class Stream {
   void answer(logs::StreamedEvents next) {
     for (const std::string& remark : next.remarks) send(note_answer(remark));
     for (const logs::RefusedLine& refused : next.refused) refuse(refused);
+    if (driven_until_ns_) {
+      const std::size_t scans = pass_over(*driven_until_ns_, next.recording);
+      next.lines.erase(next.lines.begin(), next.lines.begin() + static_cast<std::ptrdiff_t>(scans));
+    }
     navigator_.prepare(next.recording);
+    open_folder_if_due(next.recording);
     navigate(next);
+  }
+
+  /// What the drive that is gone on with was fed; into the run folder as well, without answers.
+  void drive_again() {
+    runs::FedDrive fed = runs::read_drive(drive_file_in(job_.resume));
+    core::Recording before;
+    before.start = fed.start;
+    before.events = std::move(fed.events);
+    if (before.events.empty()) return;
+    driven_until_ns_ = core::time_of(before.events.back());
+    navigator_.begin_with(before);
+    open_folder_if_due(before);
+    Timed timed(navigator_);
+    Keeping kept(timed, drive_.get());
+    core::EventLoop loop(before.events, kept);
+    while (const std::optional<core::StepReport> step = loop.next()) {
+      if (writer_) write(*step, 1e6 * timed.last_s());
+    }
+    steps_ = loop.steps();
+    send(note_answer(std::to_string(steps_) + " scans of " + job_.resume + " are driven again"));
   }
 
   /// A scan on which the mathematics breaks down is left out; the navigator stands as before it.
   void navigate(const logs::StreamedEvents& next) {
     const std::vector<core::Event>& events = next.recording.events;
     Timed timed(navigator_);
-    core::EventLoop loop(events, timed, steps_);
+    Keeping kept(timed, drive_.get());
+    core::EventLoop loop(events, kept, steps_);
     std::size_t scan = 0;
     for (std::size_t fed = 0; fed < events.size(); fed = loop.fed()) {
       std::optional<core::StepReport> step;
@@ -79,13 +109,20 @@ class Stream {
   }
 
   void write(const core::StepReport& step, double microseconds) {
-    if (!writer_) open_folder();
     writer_->write(step, microseconds);
     if (std::any_of(step.decisions.begin(), step.decisions.end(), core::begins_part)) {
       solved_before_.insert(solved_before_.end(), solved_.begin(), solved_.end());
       solved_.clear();
     }
     if (!step.solved.empty()) solved_ = step.solved;
+  }
+
+  void open_folder_if_due(const core::Recording& next) {
+    if (job_.out.empty() || writer_ || !navigator_.has_begun()) return;
+    open_folder();
+    if (!job_.settings.known_association) {
+      drive_ = std::make_unique<runs::DriveFile>(drive_file_in(job_.out), next.start);
+    }
   }
 
   void open_folder() {
@@ -108,6 +145,7 @@ class Stream {
   /// The steps are read back from the folder: memory does not grow with the drive.
   void finish_folder() {
     if (!writer_) open_folder();
+    if (drive_) drive_->finish();
     runs::Run run = runs::read_run(job_.out);
     run.map = navigator_.map();
     run.joint_map = navigator_.joint_map();
@@ -138,8 +176,10 @@ class Stream {
   LiveNavigator navigator_;
   LineChannel channel_;
   std::unique_ptr<runs::RunWriter> writer_;
-  std::vector<core::StampedPose> solved_;         ///< the last time
-  std::vector<core::StampedPose> solved_before_;  ///< of parts of the drive before the vehicle was carried
+  std::unique_ptr<runs::DriveFile> drive_;            ///< beside it, for whoever goes on
+  std::vector<core::StampedPose> solved_;             ///< the last time
+  std::vector<core::StampedPose> solved_before_;      ///< of parts of the drive before the vehicle was carried
+  std::optional<core::Nanoseconds> driven_until_ns_;  ///< what comes until then was driven before
   bool reader_is_there_ = true;
   std::int64_t steps_ = 0, refused_ = 0, broken_ = 0;
 };

@@ -14,6 +14,7 @@ struct StreamJob {
   std::string listen;  ///< address of a socket; empty: the standard streams
   std::string out;     ///< run folder; empty: none
   bool overwrite = false;
+  std::string resume;  ///< run folder of the drive that is gone on with; empty: none
   runs::RunManifest manifest;
 };
 

@@ -7,6 +7,7 @@
 #include "common/commands.hpp"
 #include "common/input_files.hpp"
 #include "common/run_options.hpp"
+#include "drive/drive_again.hpp"
 #include "helixnav/core/version.hpp"
 #include "settings/config_file.hpp"
 #include "settings/memory_limit.hpp"
@@ -29,6 +30,9 @@ ExitCode run_stream(CLI::App& command, StreamOptions& options) {
   require_compressed_ekf(command, given, job.settings.fastslam, "a stream is navigated by the compressed EKF");
   refuse_memory_limit(job.settings, "a stream ends when its input does");
   if (job.settings.gps.fuse) throw CLI::ValidationError("--gps fuse", "needs a whole log: a stream uses no fixes");
+  if (!job.resume.empty() && job.settings.known_association)
+    throw CLI::ValidationError("--resume",
+                               "is for streams without identities: a drive by name keeps none of what it was fed");
   apply_vehicle(command, options.vehicle, "", job.settings);
   job.out = options.run.out;
   job.overwrite = options.run.overwrite;
@@ -38,6 +42,7 @@ ExitCode run_stream(CLI::App& command, StreamOptions& options) {
   job.manifest.recording = "stream";
   job.manifest.config = dump_config(command);
   job.manifest.inputs = input_files(options.vehicle);
+  if (!job.resume.empty()) job.manifest.inputs.push_back(input_files(drive_file_in(job.resume)).front());
   return stream(job);
 }
 
@@ -54,6 +59,10 @@ void add_stream_command(CLI::App& app, ExitCode& code) {
       ->type_name("ADDRESS");
   command->add_option("--out", options->run.out, "Run folder to write beside; must be empty or new")->type_name("DIR");
   command->add_flag("--overwrite", options->run.overwrite, "Replace the files of an earlier run in --out");
+  command
+      ->add_option("--resume", options->job.resume,
+                   "First drive again what a stream into this run folder was fed, until it ended or was killed")
+      ->type_name("RUN");
   command->add_option("--config", options->run.config, "INI or TOML file of the settings (helixnav config --dump)")
       ->type_name("FILE");
   add_settings(*command, options->job.settings);
@@ -62,6 +71,7 @@ void add_stream_command(CLI::App& app, ExitCode& code) {
       "Examples:\n"
       "  helixnav stream --vehicle vehicle.toml --out runs/live < drive.jsonl\n"
       "  mkfifo lines; helixnav stream --vehicle vehicle.toml < lines\n"
+      "  helixnav stream --vehicle vehicle.toml --resume runs/live --out runs/live --overwrite < rest.jsonl\n"
       "  helixnav stream --vehicle vehicle.toml --listen unix:/run/user/1000/helixnav\n");
   command->callback([command, options, &code] { code = run_stream(*command, *options); });
 }

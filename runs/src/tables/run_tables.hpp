@@ -45,6 +45,7 @@ inline constexpr RunTable truth_labels_table{"truth_labels.csv", "step,observati
 
 inline constexpr const char* manifest_file = "manifest.json";
 inline constexpr const char* joint_map_file = "map.bin";
+inline constexpr const char* drive_file = "drive.bin";
 inline constexpr const char* summary_file = "summary.json";
 inline constexpr const char* report_file = "report.html";
 
@@ -53,6 +54,6 @@ inline constexpr const char* run_files[] = {
     "associations.csv", "decisions.csv",   "health.csv",           "summary.json",
     "report.html",      "truth_poses.csv", "truth_positions.csv",  "truth_landmarks.csv",
     "truth_labels.csv", "merges.csv",      "clouds.csv",           "map.bin",
-    "particles.csv",    "paths.csv",       "mixture.csv"};
+    "particles.csv",    "paths.csv",       "mixture.csv",          "drive.bin"};
 
 }  // namespace helixnav::runs

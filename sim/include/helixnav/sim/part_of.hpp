@@ -10,4 +10,7 @@ namespace helixnav::sim {
 /// Test: sim/part_of_test.cpp.
 core::Recording part_of(const core::Recording& whole, core::Nanoseconds from_ns, core::Nanoseconds until_ns);
 
+/// The same with the motion to its first scan: what a drive goes on with that was interrupted before from_ns.
+core::Recording rest_of(const core::Recording& whole, core::Nanoseconds from_ns, core::Nanoseconds until_ns);
+
 }  // namespace helixnav::sim

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drive_again.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iterator>
+#include <utility>
+#include <variant>
+
+#include "helixnav/core/errors.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+const core::Scan* first_scan(const std::vector<core::Event>& events) {
+  for (const core::Event& event : events) {
+    const auto* scan = std::get_if<core::Scan>(&event);
+    if (scan != nullptr && !scan->observations.empty()) return scan;
+  }
+  return nullptr;
+}
+
+bool is_same(const core::Scan& one, const core::Scan& other) {
+  return one.t_ns == other.t_ns &&
+         std::equal(
+             one.observations.begin(), one.observations.end(), other.observations.begin(), other.observations.end(),
+             [](const core::Observation& a, const core::Observation& b) { return a.kind == b.kind && a.z == b.z; });
+}
+
+bool holds(const std::vector<core::Event>& events, const core::Scan& scan) {
+  return std::any_of(events.begin(), events.end(), [&](const core::Event& event) {
+    const auto* one = std::get_if<core::Scan>(&event);
+    return one != nullptr && is_same(*one, scan);
+  });
+}
+
+void move_clock(core::Recording& recording, core::Nanoseconds by_ns) {
+  for (core::Event& event : recording.events) std::visit([&](auto& one) { one.t_ns += by_ns; }, event);
+  for (core::TruePose& pose : recording.true_poses) pose.t_ns += by_ns;
+  for (core::TruePosition& position : recording.true_positions) position.t_ns += by_ns;
+  for (core::Nanoseconds& t_ns : recording.true_carries_ns) t_ns += by_ns;
+  for (core::Nanoseconds& t_ns : recording.true_slips_ns) t_ns += by_ns;
+}
+
+/// How many scans of the recording were driven already, and are left out.
+std::size_t begin_behind(const std::vector<core::Event>& before, core::Recording& recording) {
+  if (before.empty() || recording.events.empty()) return 0;
+  const core::Nanoseconds end_ns = core::time_of(before.back());
+  const core::Nanoseconds begin_ns = core::time_of(recording.events.front());
+  const core::Scan* first = first_scan(recording.events);
+  if (first != nullptr && holds(before, *first)) return pass_over(end_ns, recording);
+  if (begin_ns >= end_ns) return 0;
+  move_clock(recording, end_ns - begin_ns);
+  std::fprintf(
+      stderr,
+      "helixnav: note: the log begins %.3f s before the run of --map ended, by another clock: its times are moved\n",
+      core::seconds(end_ns - begin_ns));
+  return 0;
+}
+
+/// The first entries, of scans that were driven already, make way for those of the drive before.
+template <class Entries>
+void exchange_front(Entries& entries, std::size_t driven, Entries before) {
+  entries.erase(entries.begin(), entries.begin() + static_cast<std::ptrdiff_t>(std::min(driven, entries.size())));
+  entries.insert(entries.begin(), before.begin(), before.end());
+}
+
+}  // namespace
+
+std::string drive_file_in(const std::string& folder) { return (std::filesystem::path(folder) / "drive.bin").string(); }
+
+std::unique_ptr<runs::DriveFile> kept_drive(const Drive& job) {
+  if (job.out.empty() || job.known_association || job.fastslam.chosen || job.given_map || job.earlier) return nullptr;
+  return std::make_unique<runs::DriveFile>(drive_file_in(job.out), job.recording.start);
+}
+
+bool is_driven_again(const std::string& folder, const std::optional<SessionStart>& start) {
+  return start && start->kind == SessionStart::Kind::end && std::filesystem::exists(drive_file_in(folder));
+}
+
+std::size_t pass_over(core::Nanoseconds end_ns, core::Recording& recording) {
+  std::vector<core::Event>& events = recording.events;
+  const auto rest = std::find_if(events.begin(), events.end(),
+                                 [&](const core::Event& event) { return core::time_of(event) > end_ns; });
+  const auto scans = static_cast<std::size_t>(std::count_if(
+      events.begin(), rest, [](const core::Event& event) { return std::holds_alternative<core::Scan>(event); }));
+  events.erase(events.begin(), rest);
+  return scans;
+}
+
+void put_before(runs::FedDrive before, core::Recording& recording, std::vector<bool>& withheld) {
+  const std::size_t driven = begin_behind(before.events, recording);
+  std::vector<std::vector<core::Label>> labels;
+  for (const core::Event& event : before.events) {
+    if (const auto* scan = std::get_if<core::Scan>(&event))
+      labels.emplace_back(scan->observations.size(), core::no_label);
+  }
+  if (!withheld.empty()) exchange_front(withheld, driven, std::vector<bool>(labels.size(), false));
+  std::vector<core::SharedObservation>& shared = recording.shared_observations;
+  shared.erase(std::remove_if(shared.begin(), shared.end(), [&](const auto& one) { return one.scan < driven; }),
+               shared.end());
+  for (core::SharedObservation& one : shared) one.scan += labels.size() - driven;
+  if (!recording.labels.empty()) exchange_front(recording.labels, driven, std::move(labels));
+  recording.start = before.start;
+  recording.events.insert(recording.events.begin(), std::make_move_iterator(before.events.begin()),
+                          std::make_move_iterator(before.events.end()));
+}
+
+}  // namespace helixnav::apps
