@@ -36,7 +36,7 @@ int part_of(const State& state) {
     const TreeNode& node = state.nodes[i];
     const auto& all = node.shape->variables;
     const bool has_world = std::find(all.begin() + node.shape->eliminated, all.end(), state.world) != all.end();
-    if (static_cast<int>(i) != state.root && node.leaves >= state.phases.size() / 4 && has_world)
+    if (static_cast<int>(i) != state.root && node.leaves >= static_cast<int>(state.phases.size()) / 4 && has_world)
       return static_cast<int>(i);
   }
   return -1;

@@ -100,7 +100,9 @@ core::Pose2 fitted(const std::vector<Eigen::Vector2d>& a_m, const std::vector<Ei
 }
 
 /// Where the phase begins: at the last clone, or, where a drive comes back to landmarks with an error of more than half a metre,
-/// where these put it. The solution is then looked for from a phase that is in its place and a drive before it that is not.
+/// where these put it, if they agree with each other. The solution is then looked for from a phase that is in its place and a drive before it
+/// that is not. A phase that sees the last landmarks of the drive and old ones tens of metres beside them stays where the drive has it: what fits both
+/// best may be turned by a radian.
 core::Pose2 start_of(const State& state, const PhaseFactor& factor, const core::Pose2& T_atlas_entry) {
   std::vector<Eigen::Vector2d> here_m, known_m;
   for (std::size_t i = 0; i < factor.shape.ids.size(); ++i) {
@@ -113,10 +115,13 @@ core::Pose2 start_of(const State& state, const PhaseFactor& factor, const core::
   constexpr double most_off_m = 0.5, least_spread_m = 3.0;
   if (here_m.size() < least_known) return T_atlas_entry;
   const double off_m2 = misfit_m2(T_atlas_entry, here_m, known_m);
-  const double least_m2 = least_spread_m * least_spread_m * static_cast<double>(here_m.size());
-  if (off_m2 < most_off_m * most_off_m || spread_of(here_m).squared_m2 < least_m2) return T_atlas_entry;
+  const double spread_m2 = spread_of(here_m).squared_m2 / static_cast<double>(here_m.size());
+  if (off_m2 < most_off_m * most_off_m || spread_m2 < least_spread_m * least_spread_m) return T_atlas_entry;
+  constexpr double most_left = 0.25, most_turned_rad = 0.1;  // by what does not fit
   const core::Pose2 T_there = fitted(here_m, known_m);
-  return misfit_m2(T_there, here_m, known_m) < 0.25 * off_m2 ? T_there : T_atlas_entry;
+  const double left_m2 = misfit_m2(T_there, here_m, known_m);
+  const bool agree = left_m2 < std::min(most_left * off_m2, most_turned_rad * most_turned_rad * spread_m2);
+  return agree ? T_there : T_atlas_entry;
 }
 
 /// Variables of the factor in its order, born where the shape puts them.
