@@ -8,8 +8,6 @@
 #include <utility>
 #include <variant>
 
-#include "helixnav/core/errors.hpp"
-
 namespace helixnav::apps {
 namespace {
 
