@@ -97,6 +97,9 @@ TEST_F(DriveAgain, WhatALogHoldsOfTheDriveBeforeIsPassedOver) {
   for (const char* name : {"trajectory.tum", "map.csv", "drive.bin"}) {
     EXPECT_EQ(text_of(folder("whole") / name), text_of(folder("gone_on") / name)) << name;
   }
+  EXPECT_NE(gone_on.err.find("20 scans of the run of --map are driven again first, 20 of the log are among them"),
+            std::string::npos)
+      << gone_on.err;
   EXPECT_NE(text_of(folder("gone_on") / "manifest.json").find("drive.bin"), std::string::npos);
   const Outcome joined = run({"join", folder("half"), folder("gone_on"), "--out", folder("joined")});
   EXPECT_EQ(joined.exit_code, 3);

@@ -2,9 +2,9 @@
 #include "drive_again.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <iterator>
+#include <sstream>
 #include <utility>
 #include <variant>
 
@@ -50,10 +50,10 @@ std::size_t begin_behind(const std::vector<core::Event>& before, core::Recording
   if (first != nullptr && holds(before, *first)) return pass_over(end_ns, recording);
   if (begin_ns >= end_ns) return 0;
   move_clock(recording, end_ns - begin_ns);
-  std::fprintf(
-      stderr,
-      "helixnav: note: the log begins %.3f s before the run of --map ended, by another clock: its times are moved\n",
-      core::seconds(end_ns - begin_ns));
+  std::ostringstream moved;
+  moved << "the log begins " << core::seconds(end_ns - begin_ns)
+        << " s before the run of --map ended, by another clock: its times are moved";
+  recording.remarks.push_back(moved.str());
   return 0;
 }
 
@@ -94,6 +94,8 @@ void put_before(runs::FedDrive before, core::Recording& recording, std::vector<b
     if (const auto* scan = std::get_if<core::Scan>(&event))
       labels.emplace_back(scan->observations.size(), core::no_label);
   }
+  recording.remarks.push_back(std::to_string(labels.size()) + " scans of the run of --map are driven again first" +
+                              (driven > 0 ? ", " + std::to_string(driven) + " of the log are among them" : ""));
   if (!withheld.empty()) exchange_front(withheld, driven, std::vector<bool>(labels.size(), false));
   std::vector<core::SharedObservation>& shared = recording.shared_observations;
   shared.erase(std::remove_if(shared.begin(), shared.end(), [&](const auto& one) { return one.scan < driven; }),

@@ -98,12 +98,12 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   apply_vehicle(command, job.vehicle, job.path, job.settings);
   LogToReplay log = read_to_replay(job.path, job.settings);
   task.recording = std::move(log.recording);
-  print_remarks(task.recording);
   if (log.estimated_range_scale) std::printf("range scale estimated from the log: %.4f\n", *log.estimated_range_scale);
   if (!job.blackouts.empty()) task.withheld = withhold(task.recording, job.blackouts);
   apply_log_settings(task.recording, job.settings);
   const bool drives_again = goes_on_from_drive(job);
   if (drives_again) put_before(runs::read_drive(drive_file_in(job.map)), task.recording, task.withheld);
+  print_remarks(task.recording);
   task.navigator = fit_to_recording(job.settings, task.recording);
   fill_drive(task, job.run, dump_config(command) + in_force_text(job.settings, task.navigator, task.recording));
   task.smooth = job.smooth;

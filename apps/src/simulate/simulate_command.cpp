@@ -25,6 +25,7 @@
 #include "settings/scenario_settings.hpp"
 #include "settings/settings.hpp"
 #include "settings/validators.hpp"
+#include "settings/vehicle_option.hpp"
 #include "team/replay_team.hpp"
 
 namespace helixnav::apps {
@@ -117,6 +118,7 @@ ExitCode simulate(CLI::App& command, SimulateJob& job) {
   std::optional<runs::FedDrive> before = driven_before(job);
   task.recording = recording_of(job, before);
   if (before) put_before(*std::move(before), task.recording, task.withheld);
+  print_remarks(task.recording);
   task.navigator = fit_to_recording(job.settings, task.recording);
   fill_drive(task, job.run, dump_config(command) + in_force_text(job.settings, task.navigator, task.recording));
   choose_filter(task, job.settings);
