@@ -127,13 +127,13 @@ class Block {
   core::Event event() {
     const auto kind = take<std::uint8_t>();
     const auto t_ns = static_cast<core::Nanoseconds>(take<std::uint64_t>());
-    core::Event event = event_of(kind, t_ns);
     try {
+      core::Event event = event_of(kind, t_ns);
       core::check(event);
+      return event;
     } catch (const core::PreconditionError& error) {
       refuse(error.what());
     }
-    return event;
   }
 
  private:

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/runs/drive_file.hpp"
 
+#include <cstdint>
 #include <fstream>
 #include <limits>
 #include <string>
 #include <variant>
 
 #include <gtest/gtest.h>
+#include <boost/crc.hpp>
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/files/file.hpp"
@@ -141,6 +143,27 @@ TEST_F(DriveFileTest, EveryFlippedByteIsFound) {
     std::ofstream(path(), std::ios::binary) << flipped;
     EXPECT_THROW(read_drive(path()), core::InputError) << "byte " << k;
   }
+}
+
+std::uint32_t crc_of(const std::string& bytes) {
+  boost::crc_32_type crc;
+  crc.process_bytes(bytes.data(), bytes.size());
+  return crc.checksum();
+}
+
+/// A name may hold no zero, and comes from another program if it does. Found by fuzzing.
+TEST_F(DriveFileTest, AClassThatIsNoneIsRefusedThoughItsChecksumFits) {
+  std::string bytes = written(drive_of_every_kind());
+  const std::size_t name = bytes.find("a class of");
+  ASSERT_NE(name, std::string::npos);
+  const std::size_t start = written({drive_of_every_kind().start, {}}).size();
+  bytes[name + 1] = '\0';
+  std::uint32_t size = 0;
+  for (int k = 3; k >= 0; --k)
+    size = (size << 8) | static_cast<unsigned char>(bytes[start + static_cast<std::size_t>(k)]);
+  const std::uint32_t crc = crc_of(bytes.substr(start + 12, size));
+  for (int k = 0; k < 4; ++k) bytes[start + 8 + static_cast<std::size_t>(k)] = static_cast<char>(crc >> (8 * k));
+  expect_refused(bytes, "class name");
 }
 
 /// As a process leaves it that is killed: whole scans are read, with what came before them.
