@@ -96,6 +96,7 @@ apps::Drive job_of(const Log& log, const ReplayWishes& wishes) {
   job.smooth = wishes.smooth;
   job.out = wishes.out;
   if (goes_on_from_drive(log, wishes)) {
+    apps::refuse_same_folder(wishes.map->path.string(), wishes.out);
     apps::put_before(runs::read_drive(apps::drive_file_in(wishes.map->path.string())), job.recording, job.withheld);
   } else {
     take_map(wishes, job);

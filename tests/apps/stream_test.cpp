@@ -288,6 +288,7 @@ TEST_F(StreamProgram, GoesOnWhereItWasKilledAsIfNothingHadHappened) {
   ASSERT_EQ(whole.exit_code, 0) << whole.err;
   const Words answers = answers_of(whole.out, "scan");
   const fs::path killed = folder_.path() / "killed";
+  const fs::path again = folder_.path() / "again";
   const std::size_t cut = lines.size() / 2;
   Talking live = begin({"--out", killed});
   for (std::size_t i = 0; i < cut; ++i) live.talk->say(lines[i] + '\n');
@@ -296,7 +297,7 @@ TEST_F(StreamProgram, GoesOnWhereItWasKilledAsIfNothingHadHappened) {
   live.program->send(SIGKILL);
   live.program->wait();
   const Outcome rest = streamed(Words(lines.begin() + static_cast<std::ptrdiff_t>(cut / 3), lines.end()),
-                                {"--resume", killed, "--out", killed, "--overwrite"});
+                                {"--resume", killed, "--out", again});
   ASSERT_EQ(rest.exit_code, 0) << rest.err;
   const Words more = answers_of(rest.out, "scan");
   ASSERT_FALSE(answers_of(rest.out, "note").empty()) << "says how much was driven again";
@@ -310,8 +311,13 @@ TEST_F(StreamProgram, GoesOnWhereItWasKilledAsIfNothingHadHappened) {
     EXPECT_EQ(without_line(more[i]), without_line(answers[answers.size() - more.size() + i]));
   }
   for (const char* name : {"trajectory.tum", "map.csv", "map.bin", "associations.csv", "decisions.csv", "drive.bin"}) {
-    EXPECT_EQ(text_of(out_ / name), text_of(killed / name)) << name;
+    EXPECT_EQ(text_of(out_ / name), text_of(again / name)) << name;
   }
+  const std::string kept = text_of(killed / "drive.bin");
+  const Outcome over = streamed({}, {"--resume", killed, "--out", killed, "--overwrite"});
+  EXPECT_EQ(over.exit_code, 3);
+  EXPECT_NE(over.err.find("another folder"), std::string::npos) << over.err;
+  EXPECT_EQ(text_of(killed / "drive.bin"), kept);
 }
 
 TEST_F(StreamProgram, EndsInOrderWhenNobodyReadsItsAnswers) {

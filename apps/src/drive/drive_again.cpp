@@ -5,8 +5,11 @@
 #include <filesystem>
 #include <iterator>
 #include <sstream>
+#include <system_error>
 #include <utility>
 #include <variant>
+
+#include "helixnav/core/errors.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -75,6 +78,14 @@ std::unique_ptr<runs::DriveFile> kept_drive(const Drive& job) {
 
 bool is_driven_again(const std::string& folder, const std::optional<SessionStart>& start) {
   return start && start->kind == SessionStart::Kind::end && std::filesystem::exists(drive_file_in(folder));
+}
+
+void refuse_same_folder(const std::string& run, const std::string& out) {
+  std::error_code none;  // a folder that is not there yet is another one
+  if (out.empty() || !std::filesystem::equivalent(run, out, none)) return;
+  throw core::InputError(
+      out + ": is the run that is gone on from, and its drive.bin would be lost if this one were killed, too; " +
+      "give --out another folder");
 }
 
 std::size_t pass_over(core::Nanoseconds end_ns, core::Recording& recording) {

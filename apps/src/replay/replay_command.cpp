@@ -102,7 +102,10 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   if (!job.blackouts.empty()) task.withheld = withhold(task.recording, job.blackouts);
   apply_log_settings(task.recording, job.settings);
   const bool drives_again = goes_on_from_drive(job);
-  if (drives_again) put_before(runs::read_drive(drive_file_in(job.map)), task.recording, task.withheld);
+  if (drives_again) {
+    refuse_same_folder(job.map, job.run.out);
+    put_before(runs::read_drive(drive_file_in(job.map)), task.recording, task.withheld);
+  }
   print_remarks(task.recording);
   task.navigator = fit_to_recording(job.settings, task.recording);
   fill_drive(task, job.run, dump_config(command) + in_force_text(job.settings, task.navigator, task.recording));

@@ -66,6 +66,7 @@ std::string scenario_list() {
 
 std::optional<runs::FedDrive> driven_before(const SimulateJob& job) {
   if (job.settings.known_association || !is_driven_again(job.map, job.start)) return std::nullopt;
+  refuse_same_folder(job.map, job.run.out);
   return runs::read_drive(drive_file_in(job.map));
 }
 

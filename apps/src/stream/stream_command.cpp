@@ -33,6 +33,7 @@ ExitCode run_stream(CLI::App& command, StreamOptions& options) {
   if (!job.resume.empty() && job.settings.known_association)
     throw CLI::ValidationError("--resume",
                                "is for streams without identities: a drive by name keeps none of what it was fed");
+  if (!job.resume.empty()) refuse_same_folder(job.resume, options.run.out);
   apply_vehicle(command, options.vehicle, "", job.settings);
   job.out = options.run.out;
   job.overwrite = options.run.overwrite;
@@ -71,7 +72,7 @@ void add_stream_command(CLI::App& app, ExitCode& code) {
       "Examples:\n"
       "  helixnav stream --vehicle vehicle.toml --out runs/live < drive.jsonl\n"
       "  mkfifo lines; helixnav stream --vehicle vehicle.toml < lines\n"
-      "  helixnav stream --vehicle vehicle.toml --resume runs/live --out runs/live --overwrite < rest.jsonl\n"
+      "  helixnav stream --vehicle vehicle.toml --resume runs/live --out runs/live_2 < rest.jsonl\n"
       "  helixnav stream --vehicle vehicle.toml --listen unix:/run/user/1000/helixnav\n");
   command->callback([command, options, &code] { code = run_stream(*command, *options); });
 }

@@ -66,7 +66,7 @@ Closing refused_with(double cost) {
   return closing;
 }
 
-TEST(WholeMap, APlaceThatOdometryForbidsHasToBeSoMuchLikelier) {
+TEST(WholeMap, APlaceThatOdometryForbidsNeedsMoreEvidence) {
   EXPECT_EQ(nats_against_odometry(refused_with(15.0)), 0.0) << "its noise would have to be no larger";
   EXPECT_EQ(nats_against_odometry(refused_with(17.0)), 0.0);
   EXPECT_NEAR(nats_against_odometry(refused_with(15.0 + 3.0 * 4.0)), 1.5 * std::log(4.0), 1e-12)
