@@ -188,7 +188,7 @@ TEST(Guarantee, HoldsForClassesAndSizes) {
 TEST(Guarantee, HoldsWhereTheFilterHoldsAPartOfTheMap) {
   const core::Recording run = sim::simulate(sim::named_scenario("large-loop-changed"), 3);
   NavigatorOptions options = single_threaded(3);
-  options.map.whole = options.map.window = options.map.solve_over_poses = 30;
+  options.map.whole = options.map.window = 30;
   const std::set<Kind> broken = break_drive(run, options, 12);
   for (const Kind kind : {Kind::mapping, Kind::trigger, Kind::searching, Kind::closing}) {
     EXPECT_EQ(broken.count(kind), 1u) << static_cast<int>(kind);

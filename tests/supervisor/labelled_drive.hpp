@@ -39,10 +39,11 @@ class LabelledDrive {
 
   const core::PoseGaussian& start() const { return run_.start; }
 
-  /// Solves the drive; the filter is the solved one when that was accepted.
+  /// Solves the drive in phases of 20 m; the filter is the solved one when that was accepted.
   Smoothing solve() {
-    Smoothing smoothing = smooth_drive(filter, run_.start, tape);
-    if (smoothing.solved) filter = *smoothing.solved;
+    DriveMap map(run_.start, 20.0);
+    Smoothing smoothing = smooth_drive(filter, tape, map);
+    if (smoothing.accepted) filter = filter_at_solution(map, filter);
     return smoothing;
   }
 

@@ -57,7 +57,7 @@ long closed(const evaluation::RunScore& score) {
 TEST(Window, ClosesWhatTheWholeMapCloses) {
   constexpr std::uint64_t seed = 5;
   NavigatorOptions narrow;
-  narrow.map.whole = narrow.map.window = narrow.map.solve_over_poses = 200;
+  narrow.map.whole = narrow.map.window = 200;
   const evaluation::RunScore whole = navigate_and_judge(town_of_3_km(), seed);
   const evaluation::RunScore window = navigate_and_judge(town_of_3_km(), seed, narrow);
   EXPECT_GE(whole.closures.size(), 2u) << "or it shows nothing";

@@ -45,8 +45,6 @@ void add_filter(CLI::App& command, Settings& settings) {
   add_number(command, "--filter.max_active_landmarks", filter.max_active_landmarks, 1, 100000,
              "A region switch is due beyond this number of active landmarks (three times it where all are active)");
   supervisor::MapOptions& map = settings.navigator.map;
-  add_number(command, "--map.solve_over_poses", map.solve_over_poses, 0, 1'000'000,
-             "Landmarks up to which a closing solves the drive over all its poses; of a larger map, on the atlas");
   add_number(
       command, "--map.whole", map.whole, 0, 1'000'000,
       "Landmarks up to which the filter holds the whole map; without names, 20 times what a scan sees if that is more");

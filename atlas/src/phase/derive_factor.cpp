@@ -109,7 +109,10 @@ PhaseFactor derive_factor(const PhaseLog& log, PhaseShape start, const PointPrio
     PhaseEquations equations = linearise(log, start);
     eliminate_chain(equations);
     const Eigen::VectorXd kept = kept_step(equations, information, start);
-    move_by(start, chain_step(equations, kept), kept);
+    const Eigen::VectorXd chain = chain_step(equations, kept);
+    move_by(start, chain, kept);
+    constexpr double still = 1e-7;  // [m, rad]: the next step is smaller by orders of magnitude
+    if (kept.cwiseAbs().maxCoeff() < still && (chain.size() == 0 || chain.cwiseAbs().maxCoeff() < still)) break;
   }
   return factor_about(log, std::move(start));
 }

@@ -94,13 +94,33 @@ std::vector<core::Pose2> Atlas::clones() const {
 
 namespace {
 
-/// From where the phase begins, or the host of one that was condensed.
-std::vector<core::Pose2> poses_along(const Leaf& leaf, const core::Pose2& T_map_begin) {
-  const core::Pose2 T_map_entry = leaf.host < 0 ? T_map_begin : core::compose(T_map_begin, leaf.T_host_entry);
+/// The poses of a phase where it was linearised last, at its entry.
+std::vector<core::Pose2> poses_along(const Leaf& leaf, const core::Pose2& T_map_entry) {
   std::vector<core::Pose2> poses;
   for (const core::Pose2& T_entry_robot : leaf.phase->shape.T_entry_robot) {
     poses.push_back(core::compose(T_map_entry, T_entry_robot));
   }
+  return poses;
+}
+
+/// Since then the exit may have moved by what a phase is derived again for: the poses follow it, each by its share of the steps.
+void follow_exit(const core::Pose2& T_map_exit, std::vector<core::Pose2>& poses) {
+  if (poses.empty()) return;
+  const Eigen::Vector2d moved_m = T_map_exit.position_m() - poses.back().position_m();
+  const double turned_rad = core::wrap_to_pi(T_map_exit.heading_rad - poses.back().heading_rad);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const double share = static_cast<double>(i + 1) / static_cast<double>(poses.size());
+    const Eigen::Vector2d at_m = poses[i].position_m() + share * moved_m;
+    poses[i] = core::Pose2(at_m.x(), at_m.y(), core::wrap_to_pi(poses[i].heading_rad + share * turned_rad));
+  }
+}
+
+/// `clone(k)`: where clone k is. One that was condensed stays as it lies in its host.
+template <class Clone>
+std::vector<core::Pose2> poses_between(const Leaf& leaf, int phase, const Clone& clone) {
+  if (leaf.host >= 0) return poses_along(leaf, core::compose(clone(leaf.host), leaf.T_host_entry));
+  std::vector<core::Pose2> poses = poses_along(leaf, clone(phase));
+  follow_exit(clone(phase + 1), poses);
   return poses;
 }
 
@@ -110,16 +130,14 @@ std::vector<core::Pose2> Atlas::poses_of(int phase) const {
   if (phase < 0 || phase >= phase_count()) {
     throw core::PreconditionError("atlas: no phase " + std::to_string(phase));
   }
-  const Leaf& leaf = settled_->leaf(phase);
-  return poses_along(leaf, clone(leaf.host < 0 ? phase : leaf.host));
+  return poses_between(settled_->leaf(phase), phase, [this](int k) { return clone(k); });
 }
 
 std::vector<std::vector<core::Pose2>> Atlas::poses() const {
   const std::vector<core::Pose2> entries = clones();
   std::vector<std::vector<core::Pose2>> poses;
   for (int phase = 0; phase < phase_count(); ++phase) {
-    const Leaf& leaf = settled_->leaf(phase);
-    poses.push_back(poses_along(leaf, entries[State::index(leaf.host < 0 ? phase : leaf.host)]));
+    poses.push_back(poses_between(settled_->leaf(phase), phase, [&](int k) { return entries[State::index(k)]; }));
   }
   return poses;
 }

@@ -15,7 +15,9 @@
 #include "closing/branch_pairs.hpp"
 #include "closing/close_by_merge.hpp"
 #include "closing/close_by_replay.hpp"
+#include "helixnav/core/errors.hpp"
 #include "helixnav/core/odometry.hpp"
+#include "helixnav/supervisor/lengths.hpp"
 #include "smoothing/smooth_drive.hpp"
 
 namespace helixnav::supervisor {
@@ -50,16 +52,27 @@ double length_of_loop(const ClosingView& view, const std::vector<pf_relocalize::
   return view.life.path_m() - last_seen_m;
 }
 
+double reach_of(const ClosingView& view, double when_unbounded_m) {
+  return view.scan.field_of_view.reach().value_or(when_unbounded_m);
+}
+
 /// The drive solved with the tape, and the branch merged at the place; false when either is refused.
-bool solve_and_merge(const Input& in, Tape tape, const std::set<core::LandmarkId>& displaced, Reconciled& result) {
-  Smoothing smoothing = smooth_drive(in.filter, in.start, tape, displaced);
+bool solve_and_merge(const Input& in, Tape tape, Reconciled& result) {
+  DriveMap drive(in.start, phase_length_m(reach_of(in.view, reference_reach_m)));
+  std::optional<cekf::CompressedEkf> solved;
+  Smoothing smoothing;
   result.closing = {};
-  if (!smoothing.solved) return false;
-  result.closing =
-      close_by_merge(*smoothing.solved, in.place.pairs, in.branch, in.view.search.old_landmarks(), in.options);
+  try {
+    smoothing = smooth_drive(in.filter, tape, drive);
+    if (!smoothing.accepted) return false;
+    solved = filter_at_solution(drive, in.filter);
+  } catch (const core::NumericalError&) {
+    return false;
+  }
+  result.closing = close_by_merge(*solved, in.place.pairs, in.branch, in.view.search.old_landmarks(), in.options);
   if (!result.closing.accepted) return false;
   tape.append(Tape::Solved{smoothing.chi2});
-  result.filter = std::move(smoothing.solved);
+  result.filter = std::move(solved);
   result.tape = std::move(tape);
   return true;
 }
@@ -69,7 +82,7 @@ bool close_with_larger_noise(const Input& in, Reconciled& result) {
   double factor = std::max(1.0, factor_from(in.place.as_measured));
   for (int trial = 0; trial < most_trials && factor <= largest_factor; ++trial) {
     result.odometry_factor = factor;
-    if (solve_and_merge(in, in.view.record.tape.with_larger_noise(factor, result.loop_m), {}, result)) return true;
+    if (solve_and_merge(in, in.view.record.tape.with_larger_noise(factor, result.loop_m), result)) return true;
     if (result.closing.dof == 0) return false;
     factor *= std::max(2.0, factor_from(result.closing));
   }
@@ -90,10 +103,6 @@ core::Odometry jump_from(const core::PoseGaussian& pose, const core::Pose2& T_ma
   jump.covariance.diagonal() << sigma_m * sigma_m + of_pose.x(), sigma_m * sigma_m + of_pose.y(),
       sigma_rad * sigma_rad + of_pose.z();
   return jump;
-}
-
-double reach_of(const ClosingView& view) {
-  return view.scan.field_of_view.reach().value_or(std::numeric_limits<double>::max());
 }
 
 bool is_born_in(const Tape::Scan& scan, core::LandmarkId id) {
@@ -212,12 +221,13 @@ std::optional<Tape::Position> place_with_fewest_across(const Sightings& sighting
 core::Odometry jump_at(const Input& in, const Cut& cut) {
   core::PoseGaussian there = in.filter.pose();
   there.mean = core::compose(there.mean, core::inverse(cut.odometry_since.T_before_after));
-  return jump_from(there, in.place.T_map_branch, cut.driven_since_m, reach_of(in.view));
+  return jump_from(there, in.place.T_map_branch, cut.driven_since_m,
+                   reach_of(in.view, std::numeric_limits<double>::max()));
 }
 
 bool close_at_cut(const Input& in, const Cut& cut, const Tape& tape, Reconciled& result) {
   const core::Odometry jump = jump_at(in, cut);
-  return solve_and_merge(in, tape.with_jump(cut.position, jump), cut.displaced, result);
+  return solve_and_merge(in, tape.with_jump(cut.position, jump), result);
 }
 
 bool close_after_cut(const Input& in, Reconciled& result) {
@@ -258,7 +268,8 @@ bool replay_after_jump(const Input& in, Reconciled& result) {
   cekf::CompressedEkf filter = in.filter;
   filter.restore(record.trigger.filter);
   const double driven_since_m = sightings.driven_m(0, sightings.end());
-  const core::Odometry jump = jump_from(filter.pose(), in.place.T_map_branch, driven_since_m, reach_of(in.view));
+  const core::Odometry jump = jump_from(filter.pose(), in.place.T_map_branch, driven_since_m,
+                                        reach_of(in.view, std::numeric_limits<double>::max()));
   return replay_with_jump(in, record.trigger.position, jump, result);
 }
 

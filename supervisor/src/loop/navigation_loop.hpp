@@ -141,9 +141,7 @@ class NavigationLoop {
   // smoothing/solve_drive.cpp
   void solve_drive(core::StepReport& report);
   void report_unsolved(core::StepReport& report) const;
-  Smoothing solve_by_poses(bool& accepted);
-  Smoothing solve_by_atlas(bool& accepted);
-  bool is_for_atlas() const;
+  Smoothing solve_on_atlas(core::NumericalHealth& numerics);
 
   // window/hand_over.cpp
   bool may_have_window() const;
@@ -155,6 +153,7 @@ class NavigationLoop {
   std::shared_ptr<DriveMap> drive_until_now() const;
   std::shared_ptr<DriveMap> begun_drive() const;
   void begin_window(std::shared_ptr<DriveMap> drive, const WindowNeeds& needs);
+  void begin_drive_if_due();
   bool hand_over(const WindowNeeds& needs);
   void hand_over_if_due();
   void widen_for_search();

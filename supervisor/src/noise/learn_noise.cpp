@@ -2,9 +2,12 @@
 // Noise that is learnt: what a scan says of it, and the drive solved anew once it is known.
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "helixnav/core/errors.hpp"
 #include "loop/navigation_loop.hpp"
 #include "smoothing/smooth_drive.hpp"
 
@@ -50,14 +53,23 @@ void NavigationLoop::solve_with_learnt_noise(core::StepReport& report) {
   noise_.scale.applied_odometry = noise_.scale.odometry();
   if (!tape_.holds_drive()) return;
   Tape again = tape_.rescaled(observations, odometry);
-  Smoothing smoothing = smooth_drive(belief_.filter, start_, again);
-  if (!smoothing.solved) return;
-  if (belief_.drive && !begin_drive_anew(again, *smoothing.solved)) return;
+  auto drive = begun_drive();
+  if (belief_.drive) drive->remember(*belief_.drive);
+  Smoothing smoothing;
+  std::optional<cekf::CompressedEkf> solved;
+  try {
+    smoothing = smooth_drive(belief_.filter, again, *drive);
+    if (!smoothing.accepted) return;
+    solved = filter_at_solution(*drive, belief_.filter);
+  } catch (const core::NumericalError&) {
+    return;
+  }
+  if (belief_.drive) become(std::move(drive), belief_.window);
   again.append(Tape::Solved{smoothing.chi2});
   Checkpoint trusted = take_checkpoint(belief_, again);
-  trusted.filter = smoothing.solved->snapshot();
-  std::swap(belief_.filter, *smoothing.solved);
-  if (!undo_.filter) undo_.filter = std::move(smoothing.solved);
+  trusted.filter = solved->snapshot();
+  std::swap(belief_.filter, *solved);
+  if (!undo_.filter) undo_.filter = std::move(solved);
   std::swap(tape_, again);
   if (!undo_.tape) undo_.tape = std::move(again);
   report.solved = std::move(smoothing.path);

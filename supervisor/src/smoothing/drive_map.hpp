@@ -15,7 +15,7 @@ namespace helixnav::supervisor {
 
 /// The drive up to a position on its tape as an atlas: what was measured until there is in its phases, and the tape need not keep
 /// it. A copy costs O(phases). Errors: core::NumericalError where mathematics breaks; the map is then to be thrown away.
-/// Test: supervisor/smoothing/drive_map_test.cpp (least squares over all poses of the same tape).
+/// Test: supervisor/smoothing/drive_map_test.cpp (taken in by pieces), supervisor/smoothing/smooth_drive_test.cpp (least squares over all poses).
 class DriveMap {
  public:
   /// `phase_m`: length of a phase.

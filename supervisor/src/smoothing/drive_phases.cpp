@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "helixnav/core/odometry.hpp"
-#include "smoothing/smooth_drive.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -84,6 +83,8 @@ std::vector<DrivePhase> phases_of(const std::vector<Stop>& stops, const std::opt
   if (motion) cutter.drive(*motion);
   return std::move(cutter).phases();
 }
+
+Eigen::Vector3d softening() { return {2e-5, 2e-5, 2e-6}; }
 
 core::PoseGaussian softened_start(core::PoseGaussian start) {
   if (!start.covariance.isZero(0.0)) start.covariance.diagonal() += softening().cwiseAbs2();

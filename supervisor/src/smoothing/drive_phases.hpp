@@ -35,9 +35,13 @@ struct PhaseNames {
 /// Cuts a stretch of the drive into phases of at least `length_m`, the last one shorter; a fix ends one. `motion` leads from the
 /// last stop to where the stretch ends. `begins_drive`: what was seen before the first motion belongs to where the first phase
 /// begins; else the vehicle has stood there since the phase before, which is a step of no motion. Odometry is softened
-/// like that of problem_of, so that every covariance has an inverse. Test: supervisor/smoothing/drive_map_test.cpp.
+/// (softening), so that every covariance has an inverse. Test: supervisor/smoothing/drive_map_test.cpp.
 std::vector<DrivePhase> phases_of(const std::vector<Stop>& stops, const std::optional<core::Odometry>& motion,
                                   double length_m, bool begins_drive, const PhaseNames& names);
+
+/// What is added to standard deviations in (x, y, heading) [m, m, rad]: odometry of rank two, a certain start and an exact fix have
+/// no inverse. A few ten-thousandths of what a truck drifts a metre.
+Eigen::Vector3d softening();
 
 /// The start of an atlas: one that is known exactly stands for the map frame itself, any other gets a covariance with an inverse.
 core::PoseGaussian softened_start(core::PoseGaussian start);

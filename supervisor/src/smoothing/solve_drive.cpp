@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// After a closing: the drive is solved as a whole, over all its poses or, where it is long, on the atlas.
+// After a closing: the drive is solved as a whole on its atlas, and the filter begins anew at the solution.
 #include <memory>
 #include <utility>
 
 #include "helixnav/core/errors.hpp"
 #include "loop/navigation_loop.hpp"
-#include "smoothing/solve_on_atlas.hpp"
+#include "smoothing/smooth_drive.hpp"
 
 namespace helixnav::supervisor {
 
@@ -19,21 +19,18 @@ void NavigationLoop::solve_drive(core::StepReport& report) {
   }
   const core::Pose2 before = belief_.filter.pose().mean;
   report.numerics.note(belief_.filter.take_health());
-  bool accepted = false;
-  Smoothing smoothing = is_for_atlas() ? solve_by_atlas(accepted) : solve_by_poses(accepted);
-  if (accepted) {
-    tape_.append(Tape::Solved{smoothing.chi2});
-    report.solved = std::move(smoothing.path);
-  }
-  report.numerics.refused += smoothing.failed ? 1 : 0;
+  Smoothing smoothing = solve_on_atlas(report.numerics);
   core::SmoothingDecision decision;
-  decision.accepted = accepted;
+  decision.accepted = smoothing.accepted;
   decision.chi2 = smoothing.chi2;
   decision.limit = smoothing.limit;
   decision.poses = smoothing.poses;
   decision.iterations = smoothing.iterations;
   decision.moved_m = (belief_.filter.pose().mean.position_m() - before.position_m()).norm();
   report.decisions.emplace_back(decision);
+  if (!smoothing.accepted) return;
+  tape_.append(Tape::Solved{smoothing.chi2});
+  report.solved = std::move(smoothing.path);
 }
 
 /// A drive that was to be solved and was too long to be kept.
@@ -44,40 +41,22 @@ void NavigationLoop::report_unsolved(core::StepReport& report) const {
                                                         static_cast<double>(tape_.stops()), static_cast<double>(most)});
 }
 
-Smoothing NavigationLoop::solve_by_poses(bool& accepted) {
-  Smoothing smoothing = smooth_drive(belief_.filter, start_, tape_);
-  accepted = smoothing.solved.has_value();
-  if (!accepted) return smoothing;
-  std::swap(belief_.filter, *smoothing.solved);
-  if (!undo_.filter) undo_.filter.emplace(std::move(*smoothing.solved));
-  return smoothing;
-}
-
-/// Where the atlas cannot be solved, least squares over all poses has the last word as long as the tape holds them.
-Smoothing NavigationLoop::solve_by_atlas(bool& accepted) {
+/// What cannot be solved leaves everything as it is.
+Smoothing NavigationLoop::solve_on_atlas(core::NumericalHealth& numerics) {
+  Smoothing smoothing;
   try {
     auto drive = belief_.drive ? std::make_shared<DriveMap>(*belief_.drive) : begun_drive();
-    AtlasSolution solution = solve_on_atlas(belief_.filter, tape_, *drive);
-    if (solution.accepted) {
+    smoothing = smooth_drive(belief_.filter, tape_, *drive);
+    if (smoothing.accepted) {
       begin_window(std::move(drive), window_to_map());
     } else {
       become(std::move(drive), belief_.window);
     }
-    accepted = solution.accepted;
-    return solution.figures;
   } catch (const core::NumericalError&) {
-    Smoothing smoothing;
-    smoothing.failed = true;
-    if (!tape_.holds_drive()) return smoothing;
-    smoothing = solve_by_poses(accepted);
-    pending_.numerics.repaired += accepted ? 1 : 0;
-    return smoothing;
+    ++numerics.refused;
+    smoothing = {};
   }
-}
-
-/// Least squares over all poses is the faster one on small maps and short drives.
-bool NavigationLoop::is_for_atlas() const {
-  return belief_.drive != nullptr || belief_.filter.mapped_count() > options_.map.solve_over_poses;
+  return smoothing;
 }
 
 }  // namespace helixnav::supervisor

@@ -117,10 +117,28 @@ bool NavigationLoop::is_hand_over_due() const {
   return held > most_growth * options_.map.window && held > most_growth * would_hold(window_to_map());
 }
 
+/// A long drive, before the tape ceases to hold it from its begin. Where it could not be solved it is tried again a few times.
+void NavigationLoop::begin_drive_if_due() {
+  constexpr double longer = 1.125;
+  const bool is_due = !belief_.drive && 2 * tape_.stops() > options_.search.smooth_up_to_scans &&
+                      belief_.existence.path_m() > longer * belief_.window.begun_path_m;
+  if (!is_due) return;
+  Window tried = belief_.window;
+  tried.begun_path_m = belief_.existence.path_m();
+  std::shared_ptr<DriveMap> drive;
+  try {
+    drive = drive_until_now();
+  } catch (const core::NumericalError&) {
+    ++pending_.numerics.refused;
+  }
+  become(std::move(drive), tried);
+}
+
 /// Where the belief has just become trusted.
 void NavigationLoop::hand_over_if_due() {
   Mapping* mapping = std::get_if<Mapping>(&mode_);
   if (mapping == nullptr || mapping->trusted->position != tape_.end() || !may_have_window()) return;
+  begin_drive_if_due();
   if (!is_hand_over_due()) return;
   if (!undo_.mode) undo_.mode.emplace(Mode(*mapping));
   if (hand_over(window_to_map())) {

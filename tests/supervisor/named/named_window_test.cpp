@@ -10,7 +10,7 @@
 #include "helixnav/smoothing/optimize.hpp"
 #include "helixnav/smoothing/problem.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
-#include "smoothing/smooth_drive.hpp"
+#include "smoothing/drive_phases.hpp"
 
 namespace helixnav::supervisor {
 namespace {

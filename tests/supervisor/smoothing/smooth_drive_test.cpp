@@ -15,13 +15,12 @@
 
 #include "campaign.hpp"
 #include "circuits.hpp"
-#include "filter_along.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/landmark_graph.hpp"
 #include "helixnav/smoothing/marginals.hpp"
 #include "helixnav/smoothing/optimize.hpp"
 #include "labelled_drive.hpp"
-#include "smoothing/drive_graph.hpp"
+#include "smoothing/same_estimate.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -51,78 +50,37 @@ core::Recording circuit(std::uint64_t seed, double odometry_noise = 1.0) {
 }
 
 void expect_solved(const LabelledDrive& drive, const Solved& solved) {
-  std::vector<LandmarkId> ids;
+  core::JointGaussian least_squares;
   std::vector<int> indices;
   const core::LandmarkGraph& graph = solved.problem.graph;
   for (std::size_t k = 0; k < graph.landmarks.size(); ++k) {
-    ids.push_back(drive.id_of(graph.landmarks[k].name));
+    least_squares.ids.push_back(drive.id_of(graph.landmarks[k].name));
+    least_squares.points_m.push_back(graph.landmarks[k].point_m);
     indices.push_back(static_cast<int>(k));
-    EXPECT_LT((drive.filter.landmark_mean(ids.back()) - graph.landmarks[k].point_m).norm(), 2e-4);
   }
-  const core::JointGaussian joint = drive.filter.joint(ids);
-  EXPECT_LT((joint.pose.vector() - graph.poses.back().T_world_robot.vector()).norm(), 2e-4);
+  least_squares.pose = graph.poses.back().T_world_robot;
   const int last = static_cast<int>(graph.poses.size()) - 1;
-  const Eigen::MatrixXd covariance = smoothing::joint_covariance(solved.problem, {last}, indices);
-  const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
-  const Eigen::MatrixXd difference = (joint.covariance - covariance).cwiseQuotient(sigma * sigma.transpose());
-  EXPECT_LT(difference.cwiseAbs().maxCoeff(), 2e-3);
+  least_squares.covariance = smoothing::joint_covariance(solved.problem, {last}, indices);
+  expect_same(drive.filter.joint(least_squares.ids), least_squares);
 }
 
-// One minimum of one cost: mean of pose and map to 0.2 mm, their joint covariance to 0.2 % of its variances, both
-// because odometry is softened by 0.02 mm a pose. The filter itself is off by more.
+// One minimum of one cost: that of the recording, set up without the tape.
 TEST(SmoothDrive, IsLeastSquaresOverTheDrive) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     const core::Recording run = circuit(seed, 2.0);
     LabelledDrive drive(run, false);
-    const core::Pose2 before = drive.filter.pose().mean;
     const Smoothing smoothing = drive.solve();
-    ASSERT_TRUE(smoothing.solved) << smoothing.chi2 << " > " << smoothing.limit;
+    ASSERT_TRUE(smoothing.accepted) << smoothing.chi2 << " > " << smoothing.limit;
     const Solved solved(run);
     expect_solved(drive, solved);
-    EXPECT_NEAR(smoothing.chi2, solved.report.chi2.total(), 0.05);
-    EXPECT_GT((before.vector() - drive.filter.pose().mean.vector()).norm(), 4e-4);
+    EXPECT_NEAR(smoothing.chi2, solved.report.chi2.total(), 0.5);
   }
-}
-
-double relative_variance(const Eigen::MatrixXd& P, Eigen::Index i, Eigen::Index j) {
-  return (P.block<2, 2>(i, i) + P.block<2, 2>(j, j) - P.block<2, 2>(i, j) - P.block<2, 2>(j, i)).trace();
-}
-
-// The covariance that comes out of the factorisation is that of a filter which drives along the solution.
-TEST(SmoothDrive, HasTheCovarianceOfAFilterAlongTheSolution) {
-  core::Recording run = circuit(3, 2.0);
-  core::AbsoluteFix fix;
-  fix.position_world_m = run.true_poses.back().T_world_robot.position_m();
-  fix.covariance_m2 = Eigen::Matrix2d::Identity();
-  fix.antenna_robot_m = {0.5, 0.2};
-  run.events.insert(run.events.begin() + static_cast<std::ptrdiff_t>(run.events.size() * 3 / 4), fix);
-  LabelledDrive drive(run, true);
-  smoothing::Problem problem = problem_of(run.start, graph_of(run.start, drive.tape, drive.filter).graph);
-  drive.filter.remove(drive.trees().begin()->second);
-  smoothing::Options options;
-  options.first_damping = 1e-8;  // as smooth_drive: by where it converges another run is off by some micrometres
-  smoothing::optimize(problem, options);
-  CompressedEkf twin = FilterAlong(problem.graph, problem.pose_priors.front().covariance).run();
-  ASSERT_TRUE(drive.solve().solved);
-  const std::vector<LandmarkId> ids = drive.filter.landmarks();
-  const core::JointGaussian joint = drive.filter.joint(ids);
-  const core::JointGaussian expected = twin.joint(ids);
-  const Eigen::VectorXd sigma = expected.covariance.diagonal().cwiseSqrt();
-  const Eigen::MatrixXd difference = (joint.covariance - expected.covariance).cwiseQuotient(sigma * sigma.transpose());
-  EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-4);
-  EXPECT_LT((joint.pose.vector() - expected.pose.vector()).norm(), 1e-5);
-  for (Eigen::Index i = 3; i + 2 < joint.covariance.rows();
-       i += 2) {  // what one knows of another, far better than of itself
-    const double relative = relative_variance(joint.covariance, i, i + 2);
-    EXPECT_NEAR(relative, relative_variance(expected.covariance, i, i + 2), 1e-6 * relative);
-  }
-  EXPECT_GT(ids.size(), 20u);
 }
 
 TEST(SmoothDrive, CountsObservationsOfBothNamesForTheOneLandmark) {
   const core::Recording run = circuit(4);
   LabelledDrive drive(run, true);
-  ASSERT_TRUE(drive.solve().solved);
+  ASSERT_TRUE(drive.solve().accepted);
   expect_solved(drive, Solved(run));
 }
 
@@ -130,7 +88,7 @@ TEST(SmoothDrive, CountsObservationsOfBothNamesForTheOneLandmark) {
 TEST(SmoothDrive, KeepsTheYoungerNameWhereTheClosingDid) {
   const core::Recording run = circuit(4);
   LabelledDrive drive(run, true, LabelledDrive::Kept::second_name);
-  ASSERT_TRUE(drive.solve().solved);
+  ASSERT_TRUE(drive.solve().accepted);
   expect_solved(drive, Solved(run));
 }
 
@@ -141,7 +99,7 @@ TEST(SmoothDrive, KeepsNamesAndDoesNotBringBackWhatIsLost) {
   drive.filter.remove(lost);
   std::vector<LandmarkId> before = drive.filter.landmarks();
   const LandmarkId next = drive.filter.next_name();
-  ASSERT_TRUE(drive.solve().solved);
+  ASSERT_TRUE(drive.solve().accepted);
   std::vector<LandmarkId> after = drive.filter.landmarks();
   std::sort(before.begin(), before.end());
   std::sort(after.begin(), after.end());
@@ -155,8 +113,8 @@ TEST(SmoothDrive, LosesNothingWithALandmarkThatIsLost) {
   LabelledDrive drive(run, false);
   LabelledDrive poorer(run, false);
   poorer.filter.remove(poorer.trees().begin()->second);
-  ASSERT_TRUE(drive.solve().solved);
-  ASSERT_TRUE(poorer.solve().solved);
+  ASSERT_TRUE(drive.solve().accepted);
+  ASSERT_TRUE(poorer.solve().accepted);
   EXPECT_LT((drive.filter.pose().mean.vector() - poorer.filter.pose().mean.vector()).norm(), 1e-6);
   EXPECT_LT((drive.filter.pose().covariance - poorer.filter.pose().covariance).norm(),
             1e-6 * drive.filter.pose().covariance.norm());
@@ -170,7 +128,7 @@ TEST(SmoothDrive, EndsWhereTheVehicleIs) {
   drive.filter.predict(motion);
   drive.tape.append(Tape::Motion{motion, 0.0});
   const CompressedEkf before = drive.filter;
-  ASSERT_TRUE(drive.solve().solved);
+  ASSERT_TRUE(drive.solve().accepted);
   const double sigma_m = std::sqrt(before.pose().covariance.topLeftCorner<2, 2>().trace());
   EXPECT_LT((drive.filter.pose().mean.position_m() - before.pose().mean.position_m()).norm(), 0.2 * sigma_m);
   EXPECT_LT((drive.filter.pose().covariance - before.pose().covariance).norm(), 0.05 * before.pose().covariance.norm());
@@ -184,7 +142,7 @@ TEST(SmoothDrive, UsesFixes) {
   fix.antenna_robot_m = {0.0, 0.0};
   run.events.emplace_back(fix);
   LabelledDrive drive(run, false);
-  ASSERT_TRUE(drive.solve().solved);
+  ASSERT_TRUE(drive.solve().accepted);
   expect_solved(drive, Solved(run));
 }
 
@@ -210,7 +168,7 @@ TEST(SmoothDrive, RefusesWhatCostsMoreThanTheFilter) {
   const core::PoseGaussian before = drive.filter.pose();
   drive.tape.append(Tape::Solved{drive_cost(drive.tape) - 100.0});
   const Smoothing smoothing = drive.solve();
-  EXPECT_FALSE(smoothing.solved);
+  EXPECT_FALSE(smoothing.accepted);
   EXPECT_GT(smoothing.chi2, smoothing.limit);
   EXPECT_EQ(drive.filter.pose().mean.vector(), before.mean.vector());
   EXPECT_EQ(drive.filter.pose().covariance, before.covariance);
@@ -250,7 +208,7 @@ double nees_at_end_of_figure_of_eight(std::uint64_t seed, bool smoothed) {
   const core::Recording run = figure_of_eight_to_the_second_lobe(seed);
   LabelledDrive drive(run, false);
   if (smoothed) {
-    EXPECT_TRUE(drive.solve().solved) << "seed " << seed;
+    EXPECT_TRUE(drive.solve().accepted) << "seed " << seed;
   }
   return nees(drive.filter.pose(), run.true_poses.back().T_world_robot);
 }

@@ -126,7 +126,7 @@ class Atlas {
   std::vector<Place> landmarks() const;     ///< all with a name, by increasing name. O(N)
   std::vector<core::Pose2> clones() const;  ///< all. O(N)
 
-  /// Poses at every step of a phase, by carrying the shape it was last derived with. Needs no log.
+  /// Poses at every step of a phase: the shape it was last derived with, from its entry to its exit. Needs no log.
   std::vector<core::Pose2> poses_of(int phase) const;
   /// The same of all phases, [phase][step], O(N): one by one each would pay for its path to the root. Test: atlas/joint_test.cpp.
   std::vector<std::vector<core::Pose2>> poses() const;

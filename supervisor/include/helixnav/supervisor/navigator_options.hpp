@@ -14,10 +14,9 @@ namespace helixnav::supervisor {
 
 /// How a map is kept that is too large for one filter.
 struct MapOptions {
-  int solve_over_poses = 650;  ///< landmarks up to which a closing is solved over all poses; beyond, on the atlas
-  int whole = 1000;            ///< landmarks up to which the filter holds all of them; …
-  int window = 400;            ///< … of more those nearest the vehicle, so many or as its drift asks for, …
-  int most = 1000;             ///< … but not more than this
+  int whole = 1000;  ///< landmarks up to which the filter holds all of them; …
+  int window = 400;  ///< … of more those nearest the vehicle, so many or as its drift asks for, …
+  int most = 1000;   ///< … but not more than this
 };
 
 /// Options of Navigator and NamedNavigator; the latter reads filter, delayed and fix_probability only. Every length here is

@@ -91,8 +91,9 @@ struct SearchOptions {
   double stretch_m = 40.0;            ///< length of the segment aligned as a whole; 25 and 60 m work as well
   double stretch_rim_m = 3.0;    ///< rim of the segment: landmarks there may be matched, but do not count as missing
   double stretch_rigid_m = 0.7;  ///< tolerance on the distance of two duplicates against that of their partners
-  int smooth_up_to_scans =
-      20000;  ///< and fixes: a drive is solved over all its poses after a closing; a longer one on the atlas, 0: none
+  /// And fixes: so long the tape keeps a drive from its begin, which can then be solved with another noise or with a jump in it; of a
+  /// longer one the atlas has what was measured. After a closing either is solved; 0: none.
+  int smooth_up_to_scans = 20000;
 };
 
 }  // namespace helixnav::supervisor
