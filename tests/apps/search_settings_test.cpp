@@ -60,7 +60,8 @@ TEST_F(SearchSettings, CanForbidTheSearchOrItsClosing) {
 TEST_F(SearchSettings, CanLeaveADriveUnsolved) {
   EXPECT_TRUE(has(decisions({}), "smoothing,accepted"));
   EXPECT_FALSE(has(decisions({"--search.smooth_up_to_scans", "0"}), "smoothing,accepted"));
-  EXPECT_TRUE(has(decisions({"--search.smooth_up_to_scans", "100"}), "smoothing,accepted"));  // the atlas has it by then
+  EXPECT_TRUE(
+      has(decisions({"--search.smooth_up_to_scans", "100"}), "smoothing,accepted"));  // the atlas has it by then
 }
 
 TEST_F(SearchSettings, OfThePaperCloseWithoutAConstellationAndAreExplained) {
