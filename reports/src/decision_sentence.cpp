@@ -142,7 +142,7 @@ std::string sentence(const core::ClosureDecision& d) {
 
 std::string sentence(const core::SmoothingDecision& d) {
   const std::string cost = short_number(std::round(d.chi2));
-  const std::string work = counted(d.poses, "pose") + ", " + counted(d.iterations, "iteration");
+  const std::string work = counted(d.poses, "pose") + ", " + counted(d.iterations, "front");
   const std::string limit =
       short_number(std::round(d.limit)) + " (the cost of the filter's own solution, with some slack)";
   if (!d.accepted) {

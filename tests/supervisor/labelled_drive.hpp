@@ -40,8 +40,8 @@ class LabelledDrive {
   const core::PoseGaussian& start() const { return run_.start; }
 
   /// Solves the drive in phases of 20 m; the filter is the solved one when that was accepted.
-  Smoothing solve() {
-    DriveMap map(run_.start, 20.0);
+  Smoothing solve(const atlas::Options& options = {}) {
+    DriveMap map(run_.start, 20.0, options);
     Smoothing smoothing = smooth_drive(filter, tape, map);
     if (smoothing.accepted) filter = filter_at_solution(map, filter);
     return smoothing;

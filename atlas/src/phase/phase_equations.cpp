@@ -74,7 +74,7 @@ class Assembly {
   }
 
  private:
-  /// Of an observation with N rows: with sizes that the compiler knows it takes half the time.
+  /// Of an observation with N rows. Inverses of sizes that the compiler did not know were 8 % of a closing of Victoria Park.
   template <int N>
   void add_rows(const core::PredictedObservation& h, const core::ObsVector& innovation, const core::ObsMatrix& R,
                 Index column, Index k) {

@@ -62,6 +62,7 @@ void NavigationLoop::solve_with_learnt_noise(core::StepReport& report) {
     if (!smoothing.accepted) return;
     solved = filter_at_solution(*drive, belief_.filter);
   } catch (const core::NumericalError&) {
+    ++report.numerics.refused;
     return;
   }
   if (belief_.drive) become(std::move(drive), belief_.window);

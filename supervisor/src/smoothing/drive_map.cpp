@@ -22,8 +22,8 @@ std::map<core::LandmarkId, int> sightings(const std::vector<Stop>& stops, const 
 
 }  // namespace
 
-DriveMap::DriveMap(const core::PoseGaussian& start, double phase_m)
-    : phase_m_(phase_m), atlas_(softened_start(start)) {}
+DriveMap::DriveMap(const core::PoseGaussian& start, double phase_m, const atlas::Options& options)
+    : phase_m_(phase_m), atlas_(softened_start(start), options) {}
 
 void DriveMap::take(const Tape& tape, const cekf::CompressedEkf& filter) {
   const std::vector<Stop> stops = stops_of(tape, end_);

@@ -18,8 +18,8 @@ namespace helixnav::supervisor {
 /// Test: supervisor/smoothing/drive_map_test.cpp (taken in by pieces), supervisor/smoothing/smooth_drive_test.cpp (least squares over all poses).
 class DriveMap {
  public:
-  /// `phase_m`: length of a phase.
-  DriveMap(const core::PoseGaussian& start, double phase_m);
+  /// `phase_m`: length of a phase. `options`: how near to the solution the atlas goes; tests go all the way.
+  DriveMap(const core::PoseGaussian& start, double phase_m, const atlas::Options& options = {});
 
   /// Takes in what the tape holds from end() on: scans, fixes, motion and merges. Landmarks lost again after a single look,
   /// which `filter` no longer has, are left out.

@@ -126,14 +126,14 @@ struct NewGroundDecision {
   int landmarks = 0;      ///< asked with
 };
 
-/// The whole drive was solved by least squares after a closing.
+/// The whole drive was solved by least squares after a closing, on its atlas.
 struct SmoothingDecision {
   bool accepted = false;
-  double chi2 = 0.0;
-  double limit = 0.0;
-  int poses = 0;
-  int iterations = 0;
-  double moved_m = 0.0;
+  double chi2 = 0.0;     ///< at the solution
+  double limit = 0.0;    ///< that it must not exceed
+  int poses = 0;         ///< where phases of the drive end
+  int iterations = 0;    ///< fronts of the atlas that were eliminated
+  double moved_m = 0.0;  ///< by which the vehicle's position changed
 };
 
 /// An absolute fix passed its gate or did not.

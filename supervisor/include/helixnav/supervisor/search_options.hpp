@@ -91,8 +91,8 @@ struct SearchOptions {
   double stretch_m = 40.0;            ///< length of the segment aligned as a whole; 25 and 60 m work as well
   double stretch_rim_m = 3.0;    ///< rim of the segment: landmarks there may be matched, but do not count as missing
   double stretch_rigid_m = 0.7;  ///< tolerance on the distance of two duplicates against that of their partners
-  /// And fixes: so long the tape keeps a drive from its begin, which can then be solved with another noise or with a jump in it; of a
-  /// longer one the atlas has what was measured. After a closing either is solved; 0: none.
+  /// Scans and fixes up to which the tape keeps a drive from its begin, so that it can be solved anew with another noise or with a
+  /// jump in it. Of a longer drive the atlas keeps what was measured. After a closing either is solved; 0: none.
   int smooth_up_to_scans = 20000;
 };
 
