@@ -172,8 +172,8 @@ TEST_F(Explain, TellsTheFateOfEveryObservationOfAStep) {
                                 "Observation 1 began landmark 12", "Observation 2 was dropped from landmark 5 (NIS 8",
                                 "joint test", "Observation 3 was dropped: landmark 6 is the nearest (NIS 30",
                                 "Observation 4 was dropped: too far from every landmark", "A search began"});
-  expect_said({"--step", "4"}, {"drive was not solved as a whole", "ended at 4000 (1 pose, 200 fronts)",
-                                "within 3170", "stays as the closing left it"});
+  expect_said({"--step", "4"}, {"drive was not solved as a whole", "ended at 4000 (1 pose, 200 fronts)", "within 3170",
+                                "stays as the closing left it"});
   expect_said({"--step", "0"}, {"Step 0 (0 s), mapping", "Nothing was observed.", "5 landmarks mapped earlier",
                                 "0 were seen, and 2 new ones", "5.5 nats", "rolls back by 31 scans"});
 }
