@@ -143,8 +143,8 @@ void add_closing(CLI::App& command, Settings& settings) {
       ->default_str("true")
       ->group(settings_group);
   add_number(command, "--search.smooth_up_to_scans", search.smooth_up_to_scans, 0, 100'000'000,
-             "Scans up to which a drive is kept as it was measured, so that it can be solved anew with other noise; after "
-             "a closing any drive is solved, with 0 none");
+             "Scans up to which a drive is kept as it was measured, to be solved anew with other noise if need be; "
+             "after a closing any drive is solved, with 0 none");
 }
 
 }  // namespace
