@@ -15,6 +15,11 @@ using core::LandmarkState;
 
 bool before(const LandmarkRecord& record, LandmarkId id) { return record.id < id; }
 
+int most_unseen_at_rest(double detection_probability) {
+  constexpr double chance = 1e-3;
+  return static_cast<int>(std::ceil(std::log(chance) / std::log1p(-0.5 * detection_probability)));
+}
+
 bool is_listed(const std::vector<LandmarkId>& ids, LandmarkId id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
@@ -36,6 +41,7 @@ LandmarkLife::LandmarkLife(const LifeOptions& options)
         "landmark life: 0 < false_hit_probability < detection_probability < 1, death log-odds < birth < mature <= max, "
         "mature_looks >= 1, look_distance_m >= 0 and tentative_patience_m > 0 expected");
   }
+  most_unseen_at_rest_ = most_unseen_at_rest(options.detection_probability);
 }
 
 void LandmarkLife::set_lengths(double look_distance_m, double tentative_patience_m) {
@@ -76,12 +82,14 @@ LifeChanges LandmarkLife::observe(const Eigen::Vector2d& sensor_m, const std::ve
     record.id = id;
     record.log_odds = options_.birth_log_odds;
     record.observations = record.hits = 1;
+    record.unseen_at_rest = -1;
     record.last_hit_at_m = record.last_miss_at_m = sensor_m;
     record.born_path_m = record.last_seen_path_m = path_m_;
     records_.insert(std::lower_bound(records_.begin(), records_.end(), id, before), record);
   }
   LifeChanges changes;
   for (LandmarkRecord& record : records_) {
+    count_unseen_at_rest(record, sensor_m);
     if (record.state == LandmarkState::tentative && record.hits >= options_.mature_looks &&
         record.log_odds >= options_.mature_log_odds) {
       record.state = LandmarkState::mature;
@@ -109,6 +117,7 @@ void LandmarkLife::check_scan(const std::vector<LandmarkId>& seen, const std::ve
 
 void LandmarkLife::hit(LandmarkRecord& record, const Eigen::Vector2d& sensor_m, double appearance_nats) {
   ++record.observations;
+  record.unseen_at_rest = -1;  // this scan is counted, too
   record.last_seen_path_m = path_m_;
   if ((sensor_m - record.last_hit_at_m).norm() < options_.look_distance_m) return;
   ++record.hits;
@@ -123,11 +132,17 @@ void LandmarkLife::miss(LandmarkRecord& record, const Eigen::Vector2d& sensor_m)
   record.log_odds += miss_nats_;
 }
 
+void LandmarkLife::count_unseen_at_rest(LandmarkRecord& record, const Eigen::Vector2d& sensor_m) const {
+  const bool is_at_rest = (sensor_m - record.last_hit_at_m).norm() < options_.look_distance_m;
+  if (is_at_rest || record.unseen_at_rest < 0) ++record.unseen_at_rest;
+}
+
 bool LandmarkLife::is_dying(const LandmarkRecord& record) const {
   if (record.state == LandmarkState::mature) {
     return options_.mature_may_die && record.log_odds <= options_.mature_death_log_odds;
   }
   return record.log_odds <= options_.tentative_death_log_odds ||
+         (record.hits == 1 && record.unseen_at_rest >= most_unseen_at_rest_) ||
          path_m_ - record.last_seen_path_m > options_.tentative_patience_m;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/association/landmark_life.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -32,6 +33,30 @@ TEST(LandmarkLife, LearnsNothingWhileStandingStill) {
   EXPECT_EQ(life.record(4).observations, 501);
   EXPECT_EQ(life.record(4).hits, 1);
   EXPECT_EQ(life.record(4).misses, 0);
+}
+
+// A detector with false alarms on a vehicle that stands: none of it is ever driven past.
+TEST(LandmarkLife, ClutterOfAPauseIsNotGathered) {
+  LandmarkLife life;
+  life.observe(at(0.0), {}, {0, 1}, {});
+  std::size_t most = 0;
+  for (int k = 2; k < 2000; ++k) {  // 0 is a tree that is seen in one scan of three
+    life.observe(at(0.01 * (k % 2)), k % 3 == 0 ? std::vector{0} : std::vector<int>{}, {k}, {});
+    most = std::max(most, life.records().size());
+  }
+  EXPECT_LT(most, 25u);
+  EXPECT_TRUE(life.contains(0));
+  EXPECT_FALSE(life.contains(1));
+}
+
+// What was seen from two places, or is not seen where the vehicle has driven on, is for looks to judge.
+TEST(LandmarkLife, APauseElsewhereRefutesNothing) {
+  LandmarkLife life;
+  life.observe(at(0.0), {}, {4, 5}, {});
+  life.observe(at(1.0), {4}, {}, {});
+  for (int k = 0; k < 1000; ++k) life.observe(at(1.0), {}, {}, {});
+  EXPECT_TRUE(life.contains(4));
+  EXPECT_TRUE(life.contains(5));
 }
 
 TEST(LandmarkLife, TentativeOnesDieUnconfirmedAndLeaveNoTrace) {

@@ -14,7 +14,9 @@
 namespace helixnav::association {
 
 /// Evidence for a landmark's existence, in nats. A look is a scan taken at least `look_distance_m` from where the last
-/// look of the same kind at this landmark was taken: a sensor at rest repeats the same evidence.
+/// look of the same kind at this landmark was taken: a sensor at rest repeats the same evidence. But for clutter: what was seen from
+/// one place only, and from there not again in as many scans as one that is seen half as often as assumed would be missed in once in
+/// a thousand times, dies. A vehicle that stands would gather all the clutter of its pause otherwise.
 struct LifeOptions {
   double detection_probability = 0.7;  ///< that an expected landmark is seen in one look, occlusion included
   double false_hit_probability = 0.1;  ///< that clutter stands in for one that does not exist
@@ -34,9 +36,10 @@ struct LandmarkRecord {
   core::LandmarkId id = core::no_landmark;
   core::LandmarkState state = core::LandmarkState::tentative;
   double log_odds = 0.0;
-  int observations = 0;                                     ///< scans that saw it, looks or not
-  int hits = 0;                                             ///< looks that saw it, birth included
-  int misses = 0;                                           ///< looks that should have seen it
+  int observations = 0;    ///< scans that saw it, looks or not
+  int hits = 0;            ///< looks that saw it, birth included
+  int misses = 0;          ///< looks that should have seen it
+  int unseen_at_rest = 0;  ///< scans since it was last seen, from where it was seen last
   Eigen::Vector2d last_hit_at_m = Eigen::Vector2d::Zero();  ///< place of the sensor
   Eigen::Vector2d last_miss_at_m = Eigen::Vector2d::Zero();
   double born_path_m = 0.0;  ///< length of the drive then
@@ -125,11 +128,13 @@ class LandmarkLife {
                   const std::vector<core::LandmarkId>& expected) const;
   void hit(LandmarkRecord& record, const Eigen::Vector2d& sensor_m, double appearance_nats);
   void miss(LandmarkRecord& record, const Eigen::Vector2d& sensor_m);
+  void count_unseen_at_rest(LandmarkRecord& record, const Eigen::Vector2d& sensor_m) const;
   bool is_dying(const LandmarkRecord& record) const;
 
   LifeOptions options_;
   double hit_nats_;
   double miss_nats_;
+  int most_unseen_at_rest_ = 0;
   std::vector<LandmarkRecord> records_;
   core::MapAppearance appearance_;
   double path_m_ = 0.0;
