@@ -69,6 +69,31 @@ TEST_P(Law, TheCheapMeanIsTheMarginalsAndTheSigmaBoundHolds) {
   EXPECT_GT(passive, 1000);
 }
 
+TEST_P(Law, TheCrossCovarianceIsThatOfTheJoint) {
+  RandomProgram program(45, {GetParam(), 220, 30, false});
+  int pairs_of_passive = 0;
+  for (int k = 0; k < 250; ++k) {
+    program.step();
+    if (k == 120) program.filter.keep_open_phase();  // phases that are closed and not absorbed
+    const CompressedEkf& filter = program.filter;
+    const std::vector<core::LandmarkId> ids = filter.landmarks();
+    if (k % 5 != 0 || ids.size() < 2) continue;
+    std::vector<core::LandmarkId> rows, columns;
+    std::vector<Eigen::Index> joint_rows, joint_columns;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const auto row = 3 + 2 * static_cast<Eigen::Index>(i);
+      (i % 3 == 0 ? rows : columns).push_back(ids[i]);
+      auto& of = i % 3 == 0 ? joint_rows : joint_columns;
+      of.insert(of.end(), {row, row + 1});
+    }
+    const Eigen::MatrixXd P = filter.joint(ids).covariance;
+    const Eigen::MatrixXd C = filter.cross_covariance(rows, columns);
+    ASSERT_LE((C - P(joint_rows, joint_columns)).cwiseAbs().maxCoeff(), 1e-12 * P.cwiseAbs().maxCoeff()) << k;
+    pairs_of_passive += filter.mapped_count() > filter.active_count() + 2 ? filter.phases_kept() : 0;
+  }
+  EXPECT_GT(pairs_of_passive, 100);
+}
+
 TEST_P(Law, TheOutlooksAreWhatIsToldOfEachLandmark) {
   RandomProgram program(44, {GetParam(), 220, 30, false});
   for (int k = 0; k < 250; ++k) {

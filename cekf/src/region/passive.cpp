@@ -74,6 +74,27 @@ void replay_on_columns(const Phase& phase, const std::vector<Carried>& carried, 
   }
 }
 
+/// Blocks of rows and columns whose slots the phase wrote when it closed.
+void overwrite_written(const Phase& phase, const std::vector<int>& rows, const std::vector<int>& columns,
+                       Eigen::MatrixXd& blocks) {
+  const auto written = phase.written_covariance();
+  const auto block = [&](std::size_t i, std::size_t j) {
+    return blocks.block<2, 2>(2 * static_cast<Eigen::Index>(i), 2 * static_cast<Eigen::Index>(j));
+  };
+  for (std::size_t j = 0; j < columns.size(); ++j) {
+    const int w = written_index(phase, columns[j]);
+    for (std::size_t i = 0; w >= 0 && i < rows.size(); ++i) {
+      if (2 * rows[i] < written.rows()) block(i, j) = written.block<2, 2>(2 * rows[i], 2 * w);
+    }
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const int w = written_index(phase, rows[i]);
+    for (std::size_t j = 0; w >= 0 && j < columns.size(); ++j) {
+      if (2 * columns[j] < written.rows()) block(i, j) = written.block<2, 2>(2 * columns[j], 2 * w).transpose();
+    }
+  }
+}
+
 /// Carries the covariance of the slots, its lower triangle, over a closed phase.
 void replay_on_blocks(const Phase& phase, const std::vector<int>& slots, Eigen::MatrixXd& blocks) {
   if (!phase.touched.empty()) {  // a product of no depth ends in a division by zero in Eigen
@@ -81,22 +102,21 @@ void replay_on_blocks(const Phase& phase, const std::vector<int>& slots, Eigen::
     const Eigen::MatrixXd basis = rows_of(phase.basis.view(), slots, phase.touched);
     blocks.triangularView<Eigen::Lower>() += response * basis.transpose();
   }
-  const auto all_written = phase.written_covariance();
-  for (std::size_t k = 0; k < slots.size(); ++k) {
-    const int w = written_index(phase, slots[k]);
-    if (w < 0) continue;
-    for (std::size_t i = 0; i < slots.size(); ++i) {
-      if (2 * slots[i] >= all_written.rows()) continue;
-      const Eigen::Matrix2d written = all_written.block<2, 2>(2 * slots[i], 2 * w);
-      const auto row = 2 * static_cast<Eigen::Index>(std::max(i, k));
-      const auto column = 2 * static_cast<Eigen::Index>(std::min(i, k));
-      if (i >= k) {
-        blocks.block<2, 2>(row, column) = written;
-      } else {
-        blocks.block<2, 2>(row, column) = written.transpose();
-      }
-    }
+  overwrite_written(phase, slots, slots, blocks);
+}
+
+/// Carries the covariance of some slots with others over a closed phase.
+void replay_on_blocks(const Phase& phase, const std::vector<int>& rows, const std::vector<int>& columns,
+                      Eigen::MatrixXd& blocks) {
+  if (!phase.touched.empty()) {
+    const Eigen::MatrixXd response = rows_of(phase.response, rows, all_columns(phase.response.cols()));
+    const Eigen::MatrixXd basis = rows_of(phase.basis.view(), columns, phase.touched);
+    ReservedMatrix change(response.rows(), basis.rows());
+    core::add_product(change.col(0), change.stride(), core::Panels(response, core::left_width),
+                      core::Panels(basis, core::right_width));
+    blocks += change.view();
   }
+  overwrite_written(phase, rows, columns, blocks);
 }
 
 }  // namespace
@@ -147,6 +167,21 @@ Eigen::MatrixXd CompressedEkf::phase_start_blocks(const std::vector<int>& slots)
     }
   }
   for (std::size_t p = 0; p + 1 < phases_.size(); ++p) replay_on_blocks(phases_[p], slots, blocks);
+  return blocks;
+}
+
+Eigen::MatrixXd CompressedEkf::phase_start_blocks(const std::vector<int>& rows, const std::vector<int>& columns) const {
+  const Eigen::Index most = absorbed_->rows();
+  Eigen::MatrixXd blocks =
+      Eigen::MatrixXd::Zero(2 * static_cast<Eigen::Index>(rows.size()), 2 * static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+      if (2 * std::max(rows[i], columns[j]) >= most) continue;
+      blocks.block<2, 2>(2 * static_cast<Eigen::Index>(i), 2 * static_cast<Eigen::Index>(j)) =
+          absorbed_->block(rows[i], columns[j]);
+    }
+  }
+  for (std::size_t p = 0; p + 1 < phases_.size(); ++p) replay_on_blocks(phases_[p], rows, columns, blocks);
   return blocks;
 }
 

@@ -18,16 +18,6 @@ namespace {
 // Of the distance of old landmarks a third says well enough who is whose copy.
 constexpr double reach_share = 0.35;
 
-Leftover compare(const cekf::CompressedEkf& filter, core::LandmarkId kept, core::LandmarkId removed, double sigma_m) {
-  const core::JointGaussian both = filter.joint({kept, removed});
-  const Eigen::MatrixXd& P = both.covariance;
-  const Eigen::Matrix2d S = P.block<2, 2>(3, 3) + P.block<2, 2>(5, 5) - P.block<2, 2>(3, 5) - P.block<2, 2>(5, 3) +
-                            sigma_m * sigma_m * Eigen::Matrix2d::Identity();
-  const Eigen::Matrix2d information = S.inverse();
-  const Eigen::Vector2d d = both.points_m[1] - both.points_m[0];
-  return {kept, removed, d, information, d.dot(information * d)};
-}
-
 /// From an old landmark to its nearest old neighbour, as far as that matters.
 double nearest_old_m(const cekf::CompressedEkf& filter, core::LandmarkId kept, const std::vector<core::LandmarkId>& old,
                      double matters_m) {
@@ -63,21 +53,6 @@ std::optional<cekf::CostByPart> cost_of(const cekf::CompressedEkf& filter, const
   } catch (const core::NumericalError&) {
     return std::nullopt;
   }
-}
-
-/// Old landmarks that `id` may be, as far as one looks, nearest first.
-std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::LandmarkId id,
-                                 const std::vector<core::LandmarkId>& old, double gate, double look_m, double sigma_m,
-                                 const core::MapAppearance& appearance) {
-  const Eigen::Vector2d at_m = filter.landmark_mean(id);
-  std::vector<Leftover> found;
-  for (const core::LandmarkId kept : filter.landmarks_within(at_m, look_m)) {
-    if (!std::binary_search(old.begin(), old.end(), kept)) continue;
-    const Leftover leftover = compare(filter, kept, id, sigma_m);
-    if (leftover.nis < gate && appearance.look_alike(kept, id)) found.push_back(leftover);
-  }
-  std::sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.nis < b.nis; });
-  return found;
 }
 
 KeptRemoved kept_removed(const std::vector<pf_relocalize::ConstellationPair>& pairs) {
@@ -131,11 +106,13 @@ KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core:
                       const std::vector<core::LandmarkId>& old, const SearchOptions& options,
                       const core::MapAppearance& appearance) {
   const double gate = options.leftover_gate;
+  const std::vector<core::LandmarkId> ids = held_by(filter, confirmed);
+  std::vector<double> look_m;
+  for (const core::LandmarkId id : ids) {
+    look_m.push_back(options.leftover_most_m + std::sqrt(gate) * filter.landmark_sigma_bound_m(id));
+  }
   std::vector<Leftover> found;
-  for (const core::LandmarkId id : confirmed) {
-    if (!filter.contains(id)) continue;
-    const double look_m = options.leftover_most_m + std::sqrt(gate) * filter.landmark_sigma_bound_m(id);
-    const std::vector<Leftover> here = compatible(filter, id, old, gate, look_m, options.duplicate_sigma_m, appearance);
+  for (const auto& here : compatible(filter, ids, old, look_m, {gate, options.duplicate_sigma_m, appearance})) {
     if (here.size() != 1) continue;
     const double neighbour_m = nearest_old_m(filter, here.front().kept, old, options.leftover_most_m / reach_share);
     const double reach_m = std::max(options.leftover_least_m, reach_share * neighbour_m);
@@ -154,13 +131,13 @@ KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core:
 void forget_copies(cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& unconfirmed,
                    const std::vector<core::LandmarkId>& old, const SearchOptions& options, Closing& closing,
                    const core::MapAppearance& appearance) {
-  for (const core::LandmarkId id : unconfirmed) {
-    if (!filter.contains(id)) continue;
-    const std::vector<Leftover> here = compatible(filter, id, old, options.leftover_gate, options.leftover_least_m,
-                                                  options.duplicate_sigma_m, appearance);
-    if (here.empty()) continue;
-    filter.remove(id);
-    closing.forgotten.push_back(id);
+  const std::vector<core::LandmarkId> ids = held_by(filter, unconfirmed);
+  const auto found = compatible(filter, ids, old, std::vector<double>(ids.size(), options.leftover_least_m),
+                                {options.leftover_gate, options.duplicate_sigma_m, appearance});
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (found[i].empty()) continue;
+    filter.remove(ids[i]);
+    closing.forgotten.push_back(ids[i]);
   }
 }
 

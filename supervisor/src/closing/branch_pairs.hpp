@@ -27,10 +27,22 @@ struct Leftover {
   double nis;
 };
 
-/// Old landmarks within look_m that `id` may be a duplicate of, nearest first: those that do not look different.
-std::vector<Leftover> compatible(const cekf::CompressedEkf& filter, core::LandmarkId id,
-                                 const std::vector<core::LandmarkId>& old, double gate, double look_m, double sigma_m,
-                                 const core::MapAppearance& appearance);
+/// What a landmark may be a duplicate of: by the difference of the two, and how far from it that is looked for.
+struct Likeness {
+  double gate;  ///< of the difference's NIS
+  double sigma_m;
+  const core::MapAppearance& appearance;
+};
+
+/// Those that the filter holds: others were removed, or are in a part that it leaves out.
+std::vector<core::LandmarkId> held_by(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& ids);
+
+/// For each of `ids` the old landmarks (ascending) within its look_m that it may be a duplicate of, nearest first: those that do not
+/// look different.
+std::vector<std::vector<Leftover>> compatible(const cekf::CompressedEkf& filter,
+                                              const std::vector<core::LandmarkId>& ids,
+                                              const std::vector<core::LandmarkId>& old,
+                                              const std::vector<double>& look_m, const Likeness& likeness);
 
 /// The cost of merging them; nothing where the map is so uncertain, by hundreds of metres and tens of degrees, that rounding of
 /// its covariance is larger than what the pairs are known by.

@@ -36,15 +36,17 @@ struct Copy {
 std::vector<Copy> copies_among(const std::vector<LandmarkId>& confirmed, const cekf::CompressedEkf& filter,
                                const std::vector<LandmarkId>& old, const SearchOptions& options,
                                const core::MapAppearance& appearance) {
+  const std::vector<LandmarkId> ids = held_by(filter, confirmed);
+  std::vector<double> look_m;
+  for (const LandmarkId id : ids) {
+    look_m.push_back(options.leftover_most_m + std::sqrt(wide_gate) * filter.landmark_sigma_bound_m(id));
+  }
+  auto may_be = compatible(filter, ids, old, look_m, {wide_gate, options.duplicate_sigma_m, appearance});
   std::vector<Copy> copies;
-  for (const LandmarkId id : confirmed) {
-    if (!filter.contains(id)) continue;
-    const double look_m = options.leftover_most_m + std::sqrt(wide_gate) * filter.landmark_sigma_bound_m(id);
-    std::vector<Leftover> may_be =
-        compatible(filter, id, old, wide_gate, look_m, options.duplicate_sigma_m, appearance);
-    if (may_be.empty()) continue;
-    const double variance_m2 = may_be.front().information.inverse().trace();
-    copies.push_back({id, std::move(may_be), variance_m2});
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (may_be[i].empty()) continue;
+    const double variance_m2 = may_be[i].front().information.inverse().trace();
+    copies.push_back({ids[i], std::move(may_be[i]), variance_m2});
   }
   std::sort(copies.begin(), copies.end(), [](const Copy& a, const Copy& b) { return a.variance_m2 < b.variance_m2; });
   return copies;
@@ -177,14 +179,10 @@ std::vector<core::Pose2> near(std::vector<core::Pose2> poses, const Eigen::Vecto
 }  // namespace
 
 DuplicateSegment::DuplicateSegment(const cekf::CompressedEkf& filter, const Branch& branch)
-    : confirmed_(branch.confirmed),
+    : confirmed_(held_by(filter, branch.confirmed)),
       old_drive_(branch.old_drive),
       new_drive_(branch.new_drive),
       appearance_(branch.appearance) {
-  const auto is_elsewhere = [&](LandmarkId id) {
-    return !filter.contains(id);
-  };  // in a part that the filter leaves out
-  confirmed_.erase(std::remove_if(confirmed_.begin(), confirmed_.end(), is_elsewhere), confirmed_.end());
   for (const LandmarkId id : confirmed_) before_m_[id] = filter.landmark_mean(id);
 }
 

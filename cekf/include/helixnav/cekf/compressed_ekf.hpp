@@ -132,6 +132,11 @@ class CompressedEkf {
   std::vector<Outlook> outlooks(const std::vector<core::LandmarkId>& ids) const;
   /// Pose and the landmarks in the order given, active or passive, read-only.
   core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;
+  /// Covariance of landmarks (rows) with others (columns), two rows and columns each, active or passive, read-only: for
+  /// differences of many pairs, which a joint of each would cost the phases kept every time. O((r + c)·q·phases kept), and products of
+  /// that depth. Test: cekf/law_test.cpp.
+  Eigen::MatrixXd cross_covariance(const std::vector<core::LandmarkId>& rows,
+                                   const std::vector<core::LandmarkId>& columns) const;
 
   bool contains(core::LandmarkId id) const;
   bool is_active(core::LandmarkId id) const;
@@ -229,12 +234,15 @@ class CompressedEkf {
   Eigen::MatrixXd start_columns(const std::vector<int>& slots, std::size_t phase) const;
   void fill_start_columns(const std::vector<int>& slots, std::size_t phase, Eigen::Ref<Eigen::MatrixXd> columns) const;
   Eigen::MatrixXd phase_start_blocks(const std::vector<int>& slots) const;
+  Eigen::MatrixXd phase_start_blocks(const std::vector<int>& rows, const std::vector<int>& columns) const;
   Eigen::Vector2d passive_mean(int slot) const;
   std::vector<Eigen::Vector2d> moved_m(const std::vector<int>& slots) const;
   std::vector<core::PointGaussian> passive_marginals(const std::vector<int>& slots) const;
   double sigma_bound_m(int slot, double moved_m) const;
   std::vector<core::LandmarkId> passive_in_cells(const Eigen::Vector2d& point_m, double reach_m) const;
   Eigen::MatrixXd basis_rows(const std::vector<int>& slots) const;
+  struct Parts;
+  Parts parts_of(const std::vector<core::LandmarkId>& ids, const char* verb) const;
 
   // global_update.cpp, switch_region.cpp, snapshot.cpp
   struct BeforeSwitch;
