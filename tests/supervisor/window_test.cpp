@@ -8,6 +8,8 @@
 
 #include "circuits.hpp"
 #include "judged_drive.hpp"
+#include "labelled_drive.hpp"
+#include "smoothing/drive_map.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -22,25 +24,46 @@ association::LandmarkLife existence_of(const std::vector<core::LandmarkId>& ids)
   return existence;
 }
 
-/// Landmark i stands i metres from the origin.
-std::vector<atlas::Place> row_of(int count) {
+/// Landmark i stands i metres from the origin; 4 is missing.
+std::vector<atlas::Place> row_of_9() {
   std::vector<atlas::Place> places;
-  for (int i = 0; i < count; ++i) places.push_back({i, {static_cast<double>(i), 0.0}});
+  for (const int i : {0, 1, 2, 3, 5, 6, 7, 8, 9}) places.push_back({i, {static_cast<double>(i), 0.0}});
   return places;
 }
 
 TEST(ChooseWindow, HoldsEverythingNearAndTheNearestOfTheRest) {
-  const auto existence = existence_of({0, 1, 2, 3, 5, 6, 7, 8, 9});
-  const ChosenWindow few = choose_window(row_of(10), existence, {0.0, 0.0}, {6.5, 2, 100});
-  EXPECT_EQ(few.ids, (std::vector<core::LandmarkId>{0, 1, 2, 3, 5, 6}));  // 4 does not exist
+  const ChosenWindow few = choose_window(row_of_9(), {0.0, 0.0}, {6.5, 2, 100});
+  EXPECT_EQ(few.ids, (std::vector<core::LandmarkId>{0, 1, 2, 3, 5, 6}));
   EXPECT_DOUBLE_EQ(few.window.radius_m, 7.0);
   EXPECT_DOUBLE_EQ(few.window.reach_from({3.0, 4.0}), 2.0);
-  EXPECT_EQ(choose_window(row_of(10), existence, {0.0, 0.0}, {6.5, 7, 100}).ids.size(), 7u);
-  EXPECT_EQ(choose_window(row_of(10), existence, {9.0, 0.0}, {6.5, 2, 3}).ids,
-            (std::vector<core::LandmarkId>{7, 8, 9}));
-  const ChosenWindow all = choose_window(row_of(10), existence, {0.0, 0.0}, {6.5, 50, 100});
+  EXPECT_EQ(choose_window(row_of_9(), {0.0, 0.0}, {6.5, 7, 100}).ids.size(), 7u);
+  EXPECT_EQ(choose_window(row_of_9(), {9.0, 0.0}, {6.5, 2, 3}).ids, (std::vector<core::LandmarkId>{7, 8, 9}));
+  const ChosenWindow all = choose_window(row_of_9(), {0.0, 0.0}, {6.5, 50, 100});
   EXPECT_EQ(all.ids.size(), 9u);
   EXPECT_TRUE(std::isinf(all.window.radius_m));
+}
+
+TEST(PlacesAbout, AreAllThatAWindowIsChosenFrom) {
+  const core::Recording run = sim::simulate(wide_circuit(), 3);
+  LabelledDrive drive(run, false);
+  DriveMap map(drive.start(), 20.0);
+  map.take(drive.tape, drive.filter);
+  map.settle();
+  std::vector<core::LandmarkId> ids = drive.filter.landmarks();
+  ASSERT_GT(ids.size(), 15u);
+  ids.erase(ids.begin() + 7);  // one that no longer exists
+  const association::LandmarkLife existence = existence_of(ids);
+  std::vector<atlas::Place> all = map.atlas().places_of(ids);
+  for (const Eigen::Vector2d& center_m : {map.atlas().pose().position_m(), all[4].point_m}) {
+    for (const WindowNeeds& needs : {WindowNeeds{20.0, 3, 100}, WindowNeeds{1.0, 8, 100}, WindowNeeds{60.0, 2, 6},
+                                     WindowNeeds{500.0, 2, 9}, WindowNeeds{0.0, 1000, 1000}}) {
+      const ChosenWindow expected = choose_window(all, center_m, needs);
+      const auto about = places_about(map.atlas(), existence, center_m, needs, 5.0, 2000.0);
+      const ChosenWindow chosen = choose_window(about, center_m, needs);
+      EXPECT_EQ(chosen.ids, expected.ids) << needs.least_radius_m;
+      EXPECT_EQ(chosen.window.radius_m, expected.window.radius_m) << needs.least_radius_m;
+    }
+  }
 }
 
 sim::Scenario town_of_3_km() {

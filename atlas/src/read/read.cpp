@@ -56,11 +56,17 @@ core::Pose2 Atlas::clone(int k) const {
   return core::compose(T_map, T_atlas_clone(state, estimates, k));
 }
 
-Eigen::Vector2d Atlas::landmark(core::LandmarkId id) const {
+Eigen::Vector2d Atlas::landmark(core::LandmarkId id) const { return places_of({id}).front().point_m; }
+
+std::vector<Place> Atlas::places_of(const std::vector<core::LandmarkId>& ids) const {
   Estimates estimates(*settled_);
-  const int v = variable_of_named(*settled_, id);
   const core::Pose2 T_map = T_map_atlas(*settled_, estimates);
-  return core::transform(T_map, estimates.of(v).head<2>());
+  std::vector<Place> places;
+  places.reserve(ids.size());
+  for (const core::LandmarkId id : ids) {
+    places.push_back({id, core::transform(T_map, estimates.of(variable_of_named(*settled_, id)).head<2>())});
+  }
+  return places;
 }
 
 double Atlas::chi2() const { return settled_->root < 0 ? 0.0 : settled_->node(settled_->root).front->message.back(); }

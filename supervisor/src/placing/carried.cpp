@@ -69,11 +69,12 @@ core::JointMap NavigationLoop::map_to_keep(core::CarriedDecision& decision, doub
     if (record.last_seen_path_m > until_m) continue;
     core::MapLandmark& landmark = kept.emplace_back();
     landmark.id = record.id;
-    landmark.point = sketched({record.id}).front();
     landmark.observations = record.observations;
     landmark.state = record.state;
     landmark.appearance = belief_.existence.appearance().of(record.id);
   }
+  const std::vector<core::PointGaussian> points = sketched(ids_of(kept));
+  for (std::size_t i = 0; i < kept.size(); ++i) kept[i].point = points[i];
   kept = nearest(std::move(kept), belief_.filter.pose().mean.position_m());
   if (kept.size() < least_to_keep) kept.clear();
   decision.landmarks = static_cast<int>(kept.size());

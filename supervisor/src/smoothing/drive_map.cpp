@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <map>
-#include <string>
 #include <utility>
 
 #include "helixnav/atlas/phase_factor.hpp"
-#include "helixnav/core/errors.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -75,7 +73,6 @@ bool DriveMap::has_name(core::LandmarkId id) const {
 void DriveMap::settle() {
   atlas_.condense();
   atlas_.settle();
-  places_ = std::make_shared<const std::vector<atlas::Place>>(atlas_.landmarks());
 }
 
 void DriveMap::remember(const cekf::CompressedEkf& filter) {
@@ -86,13 +83,12 @@ void DriveMap::remember(const cekf::CompressedEkf& filter) {
   }
 }
 
-core::PointGaussian DriveMap::remembered(core::LandmarkId id) const {
-  const auto place = std::lower_bound(places_->begin(), places_->end(), id,
-                                      [](const atlas::Place& one, core::LandmarkId name) { return one.id < name; });
-  if (place == places_->end() || place->id != id) {
-    throw core::PreconditionError("landmark " + std::to_string(id) + " is not in the drive's map");
+std::vector<core::PointGaussian> DriveMap::remembered(const std::vector<core::LandmarkId>& ids) const {
+  std::vector<core::PointGaussian> points;
+  for (const atlas::Place& place : atlas_.places_of(ids)) {
+    points.push_back({place.point_m, covariances_m2_.at(static_cast<std::size_t>(place.id))});
   }
-  return {place->point_m, covariances_m2_.at(static_cast<std::size_t>(id))};
+  return points;
 }
 
 std::vector<core::StampedPose> DriveMap::path() const {

@@ -28,15 +28,12 @@ class DriveMap {
   /// Solves what was taken in since it was last solved.
   void settle();
 
-  /// All landmarks where they were solved last, by increasing name.
-  const std::vector<atlas::Place>& places() const { return *places_; }
-
   /// Keeps the covariances of the landmarks of a filter that leaves some of them out.
   void remember(const cekf::CompressedEkf& filter);
   /// The covariances that another map of the same drive has kept.
   void remember(const DriveMap& other) { covariances_m2_ = other.covariances_m2_; }
-  /// Where a landmark was solved last, with the covariance that was remembered of it last. O(log N).
-  core::PointGaussian remembered(core::LandmarkId id) const;
+  /// Where landmarks were solved last, with the covariances that were remembered of them last. O(paths to them).
+  std::vector<core::PointGaussian> remembered(const std::vector<core::LandmarkId>& ids) const;
 
   const atlas::Atlas& atlas() const { return atlas_; }
   Tape::Position end() const { return end_; }
@@ -55,8 +52,7 @@ class DriveMap {
   atlas::Atlas atlas_;
   std::vector<std::shared_ptr<const std::vector<StopInPhase>>> stops_;  ///< of every phase
   std::vector<bool> named_;                                             ///< by id: known to the atlas
-  std::shared_ptr<const std::vector<atlas::Place>> places_ = std::make_shared<const std::vector<atlas::Place>>();
-  std::vector<Eigen::Matrix2d> covariances_m2_;  ///< by id
+  std::vector<Eigen::Matrix2d> covariances_m2_;                         ///< by id
   Tape::Position end_ = 0;
   double cost_ = 0.0;
 };

@@ -67,7 +67,11 @@ std::shared_ptr<DriveMap> NavigationLoop::begun_drive() const {
 /// are remembered as they are now.
 void NavigationLoop::begin_window(std::shared_ptr<DriveMap> drive, const WindowNeeds& needs) {
   const atlas::Atlas& atlas = drive->atlas();
-  ChosenWindow chosen = choose_window(drive->places(), belief_.existence, atlas.pose().position_m(), needs);
+  const Eigen::Vector2d here_m = atlas.pose().position_m();
+  const double last_m = std::isfinite(belief_.window.radius_m) ? belief_.window.radius_m : 0.0;
+  const double farthest_m = belief_.existence.path_m() + view_.reach().value_or(reference_reach_m);
+  ChosenWindow chosen =
+      choose_window(places_about(atlas, belief_.existence, here_m, needs, 1.1 * last_m, farthest_m), here_m, needs);
   cekf::CompressedEkf filter(atlas.joint(chosen.ids), belief_.filter.next_name(), belief_.filter.options());
   chosen.window.begun_path_m = belief_.existence.path_m();
   drive->remember(belief_.filter);

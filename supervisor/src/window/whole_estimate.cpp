@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Questions about the whole map, of which the filter may hold a part.
 #include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include "loop/navigation_loop.hpp"
@@ -17,20 +18,17 @@ std::vector<core::LandmarkId> NavigationLoop::landmarks() const {
 
 /// What the filter does not hold as it was remembered when the filter left it out.
 std::vector<core::PointGaussian> NavigationLoop::sketched(const std::vector<core::LandmarkId>& ids) const {
-  std::vector<core::LandmarkId> held;
-  for (const core::LandmarkId id : ids) {
-    if (belief_.filter.contains(id)) held.push_back(id);
-  }
-  const std::vector<core::PointGaussian> from_filter = belief_.filter.marginals(held);
-  if (held.size() == ids.size()) return from_filter;
+  const auto is_held = [&](core::LandmarkId id) { return belief_.filter.contains(id); };
+  std::vector<core::LandmarkId> held, left_out;
+  std::partition_copy(ids.begin(), ids.end(), std::back_inserter(held), std::back_inserter(left_out), is_held);
+  std::vector<core::PointGaussian> from_filter = belief_.filter.marginals(held);
+  if (left_out.empty()) return from_filter;
+  const std::vector<core::PointGaussian> remembered = belief_.drive->remembered(left_out);
   std::vector<core::PointGaussian> points;
   points.reserve(ids.size());
-  auto next = held.begin();
-  for (const core::LandmarkId id : ids) {
-    const bool is_held = next != held.end() && *next == id;
-    points.push_back(is_held ? from_filter[static_cast<std::size_t>(next++ - held.begin())]
-                             : belief_.drive->remembered(id));
-  }
+  auto next_held = from_filter.begin();
+  auto next_left_out = remembered.begin();
+  for (const core::LandmarkId id : ids) points.push_back(is_held(id) ? *next_held++ : *next_left_out++);
   return points;
 }
 

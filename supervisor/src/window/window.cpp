@@ -2,17 +2,34 @@
 #include "window/window.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 namespace helixnav::supervisor {
 
-ChosenWindow choose_window(const std::vector<atlas::Place>& places, const association::LandmarkLife& existence,
-                           const Eigen::Vector2d& center_m, const WindowNeeds& needs) {
-  std::vector<atlas::Place> existing;
-  std::copy_if(places.begin(), places.end(), std::back_inserter(existing),
-               [&](const atlas::Place& place) { return existence.contains(place.id); });
-  return choose_window(existing, center_m, needs);
+namespace {
+
+std::vector<atlas::Place> existing(std::vector<atlas::Place> places, const association::LandmarkLife& existence) {
+  const auto is_gone = [&](const atlas::Place& place) { return !existence.contains(place.id); };
+  places.erase(std::remove_if(places.begin(), places.end(), is_gone), places.end());
+  return places;
+}
+
+}  // namespace
+
+std::vector<atlas::Place> places_about(const atlas::Atlas& atlas, const association::LandmarkLife& existence,
+                                       const Eigen::Vector2d& center_m, const WindowNeeds& needs, double first_m,
+                                       double farthest_m) {
+  constexpr double wider = 1.4;
+  const auto is_beyond = [&](const atlas::Place& place) {
+    return (place.point_m - center_m).norm() > needs.least_radius_m;
+  };
+  const auto wanted = static_cast<std::size_t>(needs.landmarks);
+  if (wanted >= existence.records().size()) return existing(atlas.landmarks(), existence);
+  for (double radius_m = std::max(first_m, wider * needs.least_radius_m); radius_m < farthest_m; radius_m *= wider) {
+    std::vector<atlas::Place> places = existing(atlas.near(center_m, radius_m), existence);
+    if (places.size() > wanted && std::any_of(places.begin(), places.end(), is_beyond)) return places;
+  }
+  return existing(atlas.landmarks(), existence);
 }
 
 ChosenWindow choose_window(const std::vector<atlas::Place>& places, const Eigen::Vector2d& center_m,

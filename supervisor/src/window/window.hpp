@@ -37,11 +37,14 @@ struct ChosenWindow {
   std::vector<core::LandmarkId> ids;  ///< increasing
 };
 
+/// What choose_window has to be given of the landmarks of an atlas: all within what is needed and those beyond it until one is left out.
+/// `first_m`: what to look in first; nothing is farther than `farthest_m`. O(those). Test: supervisor/window_test.cpp.
+std::vector<atlas::Place> places_about(const atlas::Atlas& atlas, const association::LandmarkLife& existence,
+                                       const Eigen::Vector2d& center_m, const WindowNeeds& needs, double first_m,
+                                       double farthest_m);
+
 /// The window around a place, of the landmarks of `places`. O(places). Test: supervisor/window_test.cpp.
 ChosenWindow choose_window(const std::vector<atlas::Place>& places, const Eigen::Vector2d& center_m,
                            const WindowNeeds& needs);
-/// The same of those that exist.
-ChosenWindow choose_window(const std::vector<atlas::Place>& places, const association::LandmarkLife& existence,
-                           const Eigen::Vector2d& center_m, const WindowNeeds& needs);
 
 }  // namespace helixnav::supervisor

@@ -61,8 +61,11 @@ TEST(DriveMap, GoesOnWithWhatAnotherOfTheDriveRemembers) {
   anew.remember(before);
   anew.take(drive.tape, drive.filter);
   anew.settle();
-  for (const core::LandmarkId id : drive.filter.landmarks()) {
-    EXPECT_EQ(anew.remembered(id).covariance_m2, drive.filter.landmark(id).covariance_m2) << id;
+  const std::vector<core::LandmarkId> ids = drive.filter.landmarks();
+  const std::vector<core::PointGaussian> remembered = anew.remembered(ids);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    EXPECT_EQ(remembered[i].covariance_m2, drive.filter.landmark(ids[i]).covariance_m2) << ids[i];
+    EXPECT_EQ(remembered[i].mean_m, anew.atlas().landmark(ids[i])) << ids[i];
   }
 }
 

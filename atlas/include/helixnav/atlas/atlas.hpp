@@ -123,6 +123,8 @@ class Atlas {
   /// Test: atlas/near_test.cpp (brute force).
   std::vector<Place> near(const Eigen::Vector2d& center_m, double radius_m) const;
 
+  /// Of these landmarks, in their order. O(their paths together).
+  std::vector<Place> places_of(const std::vector<core::LandmarkId>& ids) const;
   std::vector<Place> landmarks() const;     ///< all with a name, by increasing name. O(N)
   std::vector<core::Pose2> clones() const;  ///< all. O(N)
 
