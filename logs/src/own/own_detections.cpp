@@ -33,9 +33,11 @@ double variance(const Row& row, std::size_t column) {
   return sigma * sigma;
 }
 
-/// Both or neither.
+/// Both or neither. Of range and bearing one may have no column: then it is the sensor's.
 void read_two_variances(const Row& row, std::size_t first, std::size_t second, OwnDetection& detection) {
-  if (row.has(first) != row.has(second)) {
+  const bool is_point = detection.kind == OwnDetection::Kind::cartesian;
+  const bool has_both_columns = row.columns().has(first) && row.columns().has(second);
+  if (row.has(first) != row.has(second) && (is_point || has_both_columns)) {
     row.fail(row.has(first) ? second : first,
              "expected both " + row.columns().name_of(first) + " and " + row.columns().name_of(second) + ", found one");
   }

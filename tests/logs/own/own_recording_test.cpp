@@ -117,6 +117,18 @@ TEST(OwnRecording, TakesNoiseFromTheLogBeforeTheVehicle) {
   EXPECT_NEAR(std::sqrt(seen[1].R(1, 1)) * 180.0 / core::pi, 2.0, 1e-12);
 }
 
+TEST(OwnRecording, TakesTheNoiseThatHasNoColumnFromTheSensor) {
+  const OwnLogFolder log;
+  log.write("odometry.csv", "t,dx,dheading,sigma_x,sigma_y,sigma_heading\n0,0,0,0,0,0\n1,1,0,0.1,0.2,0.3\n");
+  log.write("detections.csv", "t,range_m,bearing_deg,sigma_range_m\n1,10,1,0.5\n1,10,5,\n");
+  const core::Recording recording = log.recording();
+  const auto& seen = std::get<core::Scan>(recording.events[1]).observations;
+  ASSERT_EQ(seen.size(), 2u);
+  EXPECT_NEAR(std::sqrt(seen[0].R(0, 0)), 0.5, 1e-12);
+  EXPECT_NEAR(std::sqrt(seen[0].R(1, 1)) * 180.0 / core::pi, 0.2, 1e-12);
+  EXPECT_NEAR(std::sqrt(seen[1].R(0, 0)), 0.05, 1e-12);
+}
+
 TEST(OwnRecording, GivesEachSensorItsMountingViewAndDelay) {
   const OwnLogFolder log;
   log.write("vehicle.toml",

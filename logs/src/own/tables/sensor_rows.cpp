@@ -49,12 +49,12 @@ SensorModel sensor_called(const std::string& name, const std::string& log, const
 }
 
 core::Observation observation_of(const OwnDetection& row, const SensorModel& sensor, const Vehicle& vehicle) {
-  const bool own = row.R[0] > 0.0;
   const auto range_variance = [&] {
-    return own ? row.R[0] : given_variance(sensor.sigma_range_m, sensor, vehicle, "sigma_range_m");
+    return row.R[0] > 0.0 ? row.R[0] : given_variance(sensor.sigma_range_m, sensor, vehicle, "sigma_range_m");
   };
   const auto bearing_variance = [&](double own_variance) {
-    return own ? own_variance : given_variance(sensor.sigma_bearing_rad, sensor, vehicle, "sigma_bearing_deg");
+    return own_variance > 0.0 ? own_variance
+                              : given_variance(sensor.sigma_bearing_rad, sensor, vehicle, "sigma_bearing_deg");
   };
   core::Observation observation;
   if (row.kind == OwnDetection::Kind::range_bearing) {
@@ -67,7 +67,8 @@ core::Observation observation_of(const OwnDetection& row, const SensorModel& sen
   } else {
     Eigen::Matrix2d R;
     R << row.R[0], row.R[1], row.R[1], row.R[2];
-    if (!own) R = given_variance(sensor.sigma_point_m, sensor, vehicle, "sigma_point_m") * Eigen::Matrix2d::Identity();
+    if (!(row.R[0] > 0.0))
+      R = given_variance(sensor.sigma_point_m, sensor, vehicle, "sigma_point_m") * Eigen::Matrix2d::Identity();
     observation = core::make_cartesian(Eigen::Vector2d(row.z[0], row.z[1]) / sensor.range_scale, R);
   }
   observation.R *= sensor.noise_scale * sensor.noise_scale;
