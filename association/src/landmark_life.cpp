@@ -93,8 +93,10 @@ LifeChanges LandmarkLife::observe(const Eigen::Vector2d& sensor_m, const std::ve
     if (record.state == LandmarkState::tentative && record.hits >= options_.mature_looks &&
         record.log_odds >= options_.mature_log_odds) {
       record.state = LandmarkState::mature;
+      ++matured_;
       changes.matured.push_back(record.id);
     } else if (is_dying(record)) {
+      died_tentative_ += record.state == LandmarkState::tentative ? 1 : 0;
       changes.died.push_back(record.id);
     }
   }
@@ -204,6 +206,11 @@ const LandmarkRecord& LandmarkLife::record(LandmarkId id) const {
   const LandmarkRecord* record = find(id);
   if (record == nullptr) throw core::PreconditionError("landmark life: no landmark " + std::to_string(id));
   return *record;
+}
+
+double LandmarkLife::odds(LandmarkId id) const {
+  const double of_begun = static_cast<double>(matured_ + 1) / static_cast<double>(died_tentative_ + 1);
+  return of_begun * std::exp(record(id).log_odds - options_.birth_log_odds);
 }
 
 LandmarkState LandmarkLife::state(LandmarkId id) const {

@@ -59,6 +59,21 @@ TEST(LandmarkLife, APauseElsewhereRefutesNothing) {
   EXPECT_TRUE(life.contains(5));
 }
 
+TEST(LandmarkLife, OddsFollowWhatBecameOfThoseBegun) {
+  LandmarkLife life;
+  life.observe(at(0.0), {}, {0}, {});
+  EXPECT_NEAR(life.odds(0), 1.0, 1e-12);
+  for (int k = 1; k <= 9; ++k) {  // nine that nobody sees again
+    life.observe(at(0.0), {}, {k}, {});
+    life.drive(31.0);
+    life.observe(at(0.0), {0}, {}, {});
+  }
+  EXPECT_NEAR(life.odds(0), 1.0 / 10.0, 1e-12);
+  EXPECT_NEAR(life.born_per_scan(1.0), (10.0 + 10.0) / (19.0 + 10.0), 1e-12);
+  life.observe(at(1.0), {0}, {}, {});
+  EXPECT_NEAR(life.odds(0), 0.1 * 7.0, 1e-9) << "a hit: 0.7 to 0.1";
+}
+
 TEST(LandmarkLife, TentativeOnesDieUnconfirmedAndLeaveNoTrace) {
   LandmarkLife life;
   life.observe(at(0.0), {}, {4, 5}, {});

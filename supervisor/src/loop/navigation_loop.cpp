@@ -10,6 +10,7 @@
 #include "association/appearance_evidence.hpp"
 #include "association/association_report.hpp"
 #include "association/candidates.hpp"
+#include "association/doubtful_matches.hpp"
 #include "association/expected_landmarks.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "helixnav/core/thin_scan.hpp"
@@ -134,7 +135,7 @@ StepReport NavigationLoop::step(const Scan& scan) {
   }
   report_unfinished(gated, report);
   const Confirmation before = belief_.confirmation;
-  report.associations = associate_scan(gated, options_, belief_.existence.path_m(), belief_.confirmation);
+  report.associations = associate_gated(gated, scan);
   const bool slipped = allow_for_slip(scan, before, report);
   const std::vector<SeenPoint> seen = points_to_watch(scan);
   const std::vector<Mover> movers = watch_moving(scan, seen, report);
@@ -185,6 +186,12 @@ GatedScan NavigationLoop::gate(const Scan& scan) const {
   return gated;
 }
 
+std::vector<core::AssociationReport> NavigationLoop::associate_gated(const GatedScan& gated, const Scan& scan) {
+  auto reports = associate_scan(gated, options_, belief_.existence.path_m(), belief_.confirmation);
+  pending_.doubtful = leave_doubtful_unused(gated, belief_.existence, scan, options_, reports);
+  return reports;
+}
+
 void NavigationLoop::report_unfinished(const GatedScan& gated, StepReport& report) const {
   if (!gated.assignment.budget_hit) return;
   report.decisions.emplace_back(core::PostponedDecision{core::PostponedDecision::Work::association,
@@ -215,8 +222,15 @@ void NavigationLoop::augment(const Scan& scan, StepReport& report) {
 
 /// Removes the landmarks whose existence is refuted by what was seen and what should have been seen, and returns them.
 std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const StepReport& report) {
-  const std::vector<LandmarkId> seen = landmarks_with(Outcome::matched, report.associations);
+  std::vector<LandmarkId> seen = landmarks_with(Outcome::matched, report.associations);
   const std::vector<LandmarkId> born = landmarks_with(Outcome::augmented, report.associations);
+  std::vector<double> seen_nats = appearance_nats(belief_.existence.appearance(), scan, report.associations);
+  seen_nats.resize(seen.size(), 0.0);
+  for (const DoubtfulMatch& one : std::exchange(pending_.doubtful, {})) {
+    if (std::find(seen.begin(), seen.end(), one.landmark) != seen.end()) continue;
+    seen.push_back(one.landmark);
+    seen_nats.push_back(std::min(0.0, one.nats - belief_.existence.hit_nats()));
+  }
   std::vector<LandmarkId> expected = expected_unseen(belief_.filter, scan, options_.view_margin_m, report.associations);
   if (Mapping* mapping = std::get_if<Mapping>(&mode_)) {
     mapping->monitor.observe(belief_.existence, expected, seen, options_.search.old_after_m);
@@ -232,8 +246,7 @@ std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const
   belief_.existence.pass(at_rim);
   const core::Pose2 T_world_sensor = core::compose(belief_.filter.pose().mean, scan.T_robot_sensor);
   const association::LifeChanges changes =
-      belief_.existence.observe(T_world_sensor.position_m(), seen, born, expected,
-                                appearance_nats(belief_.existence.appearance(), scan, report.associations));
+      belief_.existence.observe(T_world_sensor.position_m(), seen, born, expected, seen_nats);
   look_at(scan, report.associations, belief_.existence);
   for (const LandmarkId id : changes.died) {
     if (belief_.filter.contains(id)) belief_.filter.remove(id);

@@ -9,10 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "association/doubtful_match.hpp"
 #include "association/gated_scan.hpp"
 #include "closing/closing.hpp"
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/step_report.hpp"
+#include "helixnav/pf_relocalize/constellation.hpp"
 #include "helixnav/supervisor/navigator_options.hpp"
 #include "loop/belief.hpp"
 #include "loop/mode.hpp"
@@ -58,7 +60,8 @@ class NavigationLoop {
     std::optional<core::Odometry> motion;
     double driven_m = 0.0;  ///< length along the road
     std::vector<core::Decision> decisions;
-    core::NumericalHealth numerics = {};  ///< that no report has yet
+    core::NumericalHealth numerics = {};       ///< that no report has yet
+    std::vector<DoubtfulMatch> doubtful = {};  ///< matches of this scan that are left unused
     std::vector<pf_relocalize::ConstellationPair> forbidden =
         {};  ///< of a place that the whole map has and to which it could not be closed in this step
   };
@@ -96,6 +99,7 @@ class NavigationLoop {
   void predict();
   bool use_fix(const core::AbsoluteFix& fix);
   GatedScan gate(const core::Scan& scan) const;
+  std::vector<core::AssociationReport> associate_gated(const GatedScan& gated, const core::Scan& scan);
   void report_unfinished(const GatedScan& gated, core::StepReport& report) const;
   void update(const core::Scan& scan, bool slipped, core::StepReport& report);
   void augment(const core::Scan& scan, core::StepReport& report);
@@ -115,6 +119,7 @@ class NavigationLoop {
   bool allow_for_slip(const core::Scan& scan, const Confirmation& before, core::StepReport& report);
   std::optional<Slip> find_slip(const core::Scan& scan, const std::vector<core::AssociationReport>& fate) const;
   std::vector<core::LandmarkId> landmarks_near(const core::Scan& scan) const;
+  pf_relocalize::Coverage ground_looked_at(const core::FieldOfView& view) const;
   void move_unmeasured(const Eigen::Matrix3d& covariance, core::Nanoseconds t_ns);
 
   // moving/watch_moving.cpp

@@ -23,14 +23,15 @@ bool has(const std::vector<PointPair>& pairs, std::size_t seen) {
 }
 
 /// What the pairs of one place are worth less beside another that leaves their observations over: they are new landmarks
-/// there, of the pattern of the map: ln λ(displacement)/λ₀ each, where that is denser than what is in no map.
+/// there, of the pattern of the map or of ground that was not looked at: ln λ/λ₀ each, where that is denser than what is in no map.
 double nats_of_pattern(const SlipQuestion& question, const Hypothesis& one, const Hypothesis& other) {
   const DensityByPattern pattern(question.geometry,
                                  core::compose(other.T_predicted_here, core::inverse(one.T_predicted_here)));
   double nats = 0.0;
   for (const PointPair& pair : one.pairs) {
     if (has(other.pairs, pair.seen)) continue;
-    const double per_m2 = pattern.per_m2(question.seen[pair.seen].covariance_m2);
+    const double per_m2 =
+        std::max(pattern.per_m2(question.seen[pair.seen].covariance_m2), question.new_per_m2[pair.seen]);
     nats += std::max(0.0, std::log(per_m2 / question.extraneous_per_m2));
   }
   return nats;

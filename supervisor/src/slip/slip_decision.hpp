@@ -29,6 +29,8 @@ struct Slip {
 struct SlipQuestion {
   const RelativeGeometry& geometry;
   const std::vector<SeenPoint>& seen;
+  std::vector<double>
+      new_per_m2;  ///< [seen] density of landmarks not mapped yet where it stands as measured: density_of_new
   std::vector<PointPair> associated;
   double nats_a_pair = 0.0;
   double extraneous_per_m2 = 0.0;  ///< density of what is in no map, as in pair_nats
@@ -36,7 +38,7 @@ struct SlipQuestion {
 };
 
 /// The slip that explains a scan, when it does so better than no slip with new landmarks where the pattern of the map has
-/// them, and than a slip to anywhere else. Test: supervisor/slip/slip_decision_test.cpp.
+/// them or where nobody has looked yet, and than a slip to anywhere else. Test: supervisor/slip/slip_decision_test.cpp.
 std::optional<Slip> decide_slip(const SlipQuestion& question, const SlipOptions& options);
 
 }  // namespace helixnav::supervisor

@@ -11,6 +11,7 @@
 #include "helixnav/association/associate.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "loop/navigation_loop.hpp"
+#include "slip/density_of_new.hpp"
 #include "slip/keep_weighed.hpp"
 #include "slip/slip_decision.hpp"
 #include "slip/slip_places.hpp"
@@ -30,13 +31,17 @@ bool is_among(const std::vector<LandmarkId>& ids, LandmarkId id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
+std::vector<Eigen::Vector2d> means_m(const cekf::CompressedEkf& filter, const std::vector<LandmarkId>& ids) {
+  std::vector<Eigen::Vector2d> points_m;
+  for (const LandmarkId id : ids) points_m.push_back(filter.landmark_mean(id));
+  return points_m;
+}
+
 /// Unmatched observations that have an unmatched landmark beside them, as far as a slip may displace it.
 int contradictions(const cekf::CompressedEkf& filter, const std::vector<LandmarkId>& near,
                    const std::vector<SeenPoint>& seen, const std::vector<AssociationReport>& fate,
                    const SlipComponent& widest) {
-  std::vector<Eigen::Vector2d> means_m;
-  for (const LandmarkId id : near) means_m.push_back(filter.landmark_mean(id));
-  const double spacing_m = median_spacing_m(means_m);
+  const double spacing_m = median_spacing_m(means_m(filter, near));
   const std::vector<LandmarkId> matched = landmarks_with(Outcome::matched, fate);
   const core::Pose2 pose = filter.pose().mean;
   return static_cast<int>(std::count_if(seen.begin(), seen.end(), [&](const SeenPoint& one) {
@@ -109,20 +114,40 @@ std::optional<Slip> NavigationLoop::find_slip(const core::Scan& scan,
   if (contradictions(belief_.filter, near, seen, fate, widest) < 2) return std::nullopt;
 
   const double per_m2 = options_.extraneous_per_scan / view_m2;
-  const auto ask = [&](const std::vector<LandmarkId>& witnesses, bool tentative) -> std::optional<Slip> {
-    if (witnesses.size() < least_observations) return std::nullopt;
-    const RelativeGeometry geometry(belief_.filter.joint(witnesses));
-    return decide_slip({geometry, seen, associated_pairs(geometry, seen, fate),
-                        pair_nats(options_.association.detection_probability, per_m2), per_m2, tentative},
-                       options_.slip);
-  };
   std::vector<LandmarkId> known = near;
   known.erase(std::remove_if(known.begin(), known.end(),
                              [&](LandmarkId id) { return belief_.existence.record(id).hits < least_hits; }),
               known.end());
+  const std::vector<double> new_per_m2 =
+      density_of_new(seen, belief_.filter.pose().mean, ground_looked_at(scan.field_of_view),
+                     local_density_per_m2(means_m(belief_.filter, known)), per_m2);
+  const auto ask = [&](const std::vector<LandmarkId>& witnesses, bool tentative) -> std::optional<Slip> {
+    if (witnesses.size() < least_observations) return std::nullopt;
+    const RelativeGeometry geometry(belief_.filter.joint(witnesses));
+    return decide_slip({geometry, seen, new_per_m2, associated_pairs(geometry, seen, fate),
+                        pair_nats(options_.association.detection_probability, per_m2), per_m2, tentative},
+                       options_.slip);
+  };
   std::optional<Slip> slip = ask(known, false);
   if (!slip && known.size() < near.size()) slip = ask(near, true);
   return slip;
+}
+
+/// What the vehicle has looked at twice from places near where it is now, to the rim of the view.
+pf_relocalize::Coverage NavigationLoop::ground_looked_at(const core::FieldOfView& view) const {
+  pf_relocalize::Coverage looked_at;
+  looked_at.field_of_view = view;
+  looked_at.range_share = 1.0;
+  looked_at.bearing_margin_rad = 0.0;
+  looked_at.least_views = 2;
+  looked_at.T_frame_sensor = belief_.coverage.between(0.0, belief_.existence.path_m());
+  const Eigen::Vector2d here_m = belief_.filter.pose().mean.position_m();
+  const auto is_far = [&](const core::Pose2& pose) {
+    return (pose.position_m() - here_m).norm() > 2.0 * view.max_range_m;
+  };
+  auto& poses = looked_at.T_frame_sensor;
+  poses.erase(std::remove_if(poses.begin(), poses.end(), is_far), poses.end());
+  return looked_at;
 }
 
 /// What was not measured: no motion in the mean, so much covariance. On the tape beside the motion that was.
@@ -158,7 +183,7 @@ bool NavigationLoop::allow_for_slip(const core::Scan& scan, const Confirmation& 
   const GatedScan gated = gate_scan(moved, ids, scan, options_, belief_.existence.appearance());
   report_unfinished(gated, report);
   belief_.confirmation = before;
-  report.associations = associate_scan(gated, options_, belief_.existence.path_m(), belief_.confirmation);
+  report.associations = associate_gated(gated, scan);
   match_pairs(slip->pairs, report.associations);
   return true;
 }

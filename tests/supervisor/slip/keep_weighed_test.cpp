@@ -55,7 +55,8 @@ TEST(KeepWeighed, LeavesOutWhatIsFartherThanAllThatIsWeighed) {
 
   const auto decide = [&](const std::vector<core::LandmarkId>& witnesses) {
     const RelativeGeometry geometry(filter.joint(witnesses));
-    return decide_slip({geometry, seen, {}, pair_nats(0.9, 1e-4), 1e-4, false}, options);
+    const std::vector<double> new_per_m2(seen.size(), 1e-4);
+    return decide_slip({geometry, seen, new_per_m2, {}, pair_nats(0.9, 1e-4), 1e-4, false}, options);
   };
   const std::optional<Slip> of_all = decide(filter.landmarks());
   const std::optional<Slip> of_near = decide(near);

@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 
 #include "helixnav/core/random.hpp"
+#include "slip/density_of_new.hpp"
 #include "slip/slip_record.hpp"
 #include "slip_scene.hpp"
 
@@ -16,8 +17,10 @@ namespace helixnav::supervisor {
 namespace {
 
 std::optional<Slip> decide(const SlipScene& scene, std::vector<PointPair> associated = {}) {
-  return decide_slip({scene.geometry, scene.seen, std::move(associated), a_pair_nats, extraneous_per_m2, false},
-                     SlipOptions{});
+  const std::vector<double> new_per_m2(scene.seen.size(), extraneous_per_m2);
+  return decide_slip(
+      {scene.geometry, scene.seen, new_per_m2, std::move(associated), a_pair_nats, extraneous_per_m2, false},
+      SlipOptions{});
 }
 
 double log_normal(const Eigen::VectorXd& nu, const Eigen::MatrixXd& S) {
@@ -140,8 +143,46 @@ TEST(SlipDecision, NeedsMoreEvidenceFromFewOrTentativeLandmarks) {
   const SlipScene three(scattered(3, 3), {0.5, 0.3, 2.0 * degree}, 3);
   const std::optional<Slip> slip = decide(three);
   EXPECT_TRUE(!slip || slip->figures.nats > 15.0);
-  SlipQuestion question{three.geometry, three.seen, {}, a_pair_nats, extraneous_per_m2, true};
+  const std::vector<double> new_per_m2(three.seen.size(), extraneous_per_m2);
+  SlipQuestion question{three.geometry, three.seen, new_per_m2, {}, a_pair_nats, extraneous_per_m2, true};
   EXPECT_FALSE(decide_slip(question, SlipOptions{}));
+}
+
+// Whoever turns into the next row of an avenue sees new trees, as densely as the known ones stand.
+TEST(SlipDecision, WeighsFewPairsLessWhereNobodyHasLookedYet) {
+  const SlipScene scene(scattered(6, 4), {2.5, 1.0, 8.0 * degree}, 6);
+  const std::optional<Slip> on_known_ground = decide(scene);
+  ASSERT_TRUE(on_known_ground);
+  SlipQuestion question{scene.geometry, scene.seen, {}, {}, a_pair_nats, extraneous_per_m2, false};
+  constexpr double denser = 12.0;
+  question.new_per_m2.assign(scene.seen.size(), denser * extraneous_per_m2);
+  const std::optional<Slip> on_new_ground = decide_slip(question, SlipOptions{});
+  const double nats = on_known_ground->figures.nats - 4.0 * std::log(denser);
+  EXPECT_EQ(on_new_ground.has_value(), nats > SlipOptions{}.nats);
+  if (on_new_ground) EXPECT_NEAR(on_new_ground->figures.nats, nats, 1e-9);
+}
+
+pf_relocalize::Coverage looked_at_along(double length_m) {
+  pf_relocalize::Coverage coverage;
+  coverage.field_of_view = {0.0, 30.0, -0.8, 0.8, 0.0};
+  for (double x_m = 0.0; x_m <= length_m; x_m += 4.0) coverage.T_frame_sensor.emplace_back(x_m, 0.0, 0.0);
+  coverage.least_views = 2;
+  return coverage;
+}
+
+TEST(DensityOfNew, IsThatOfTheMapWhereNobodyHasLooked) {
+  const std::vector<SeenPoint> seen = {{0, {15.0, 0.0}, Eigen::Matrix2d::Identity()},
+                                       {1, {15.0, 40.0}, Eigen::Matrix2d::Identity()}};
+  const std::vector<double> per_m2 = density_of_new(seen, core::Pose2(), looked_at_along(12.0), 0.02, 0.001);
+  EXPECT_EQ(per_m2, (std::vector<double>{0.001, 0.02}));
+}
+
+TEST(DensityOfNew, OfALatticeIsOneInASquareAndSecondStemsChangeLittle) {
+  std::vector<Eigen::Vector2d> points_m = lattice(8.0, 6);
+  EXPECT_NEAR(local_density_per_m2(points_m), 1.0 / 64.0, 0.1 / 64.0);
+  for (std::size_t i = 0; i < 24; ++i) points_m.push_back(points_m[i] + Eigen::Vector2d(0.5, 0.0));
+  EXPECT_NEAR(local_density_per_m2(points_m), 1.0 / 64.0, 0.2 / 64.0);
+  EXPECT_EQ(local_density_per_m2({{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.0}}), 0.0);
 }
 
 TEST(SlipRecord, ExpectsSlipsWhereNoneCanBeSeenOnceThereWereTwo) {

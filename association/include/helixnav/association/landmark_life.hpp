@@ -112,11 +112,22 @@ class LandmarkLife {
 
   /// Landmarks begun in one scan, on average: clutter and new ones together. 0 before the first scan.
   double born_per_scan() const { return scans_ == 0 ? 0.0 : static_cast<double>(born_) / static_cast<double>(scans_); }
+  /// The same, as if ten scans had begun `assumed` each before the drive.
+  double born_per_scan(double assumed) const {
+    constexpr double before = 10.0;
+    return (static_cast<double>(born_) + before * assumed) / (static_cast<double>(scans_) + before);
+  }
   /// Landmarks seen again in one scan, on average. 0 before the first scan.
   double seen_per_scan() const { return scans_ == 0 ? 0.0 : static_cast<double>(seen_) / static_cast<double>(scans_); }
 
   /// Once the sensor is known; what was counted stays.
   void set_lengths(double look_distance_m, double tentative_patience_m);
+
+  double hit_nats() const { return hit_nats_; }  ///< evidence of one hit
+
+  /// Odds that a landmark exists: of those begun on this drive, as many that matured to as many that died tentative (one of
+  /// each before any), times what looks at this one say.
+  double odds(core::LandmarkId id) const;
 
   /// Length of the drive so far, what last_seen_path_m is measured on.
   double path_m() const { return path_m_; }
@@ -139,6 +150,7 @@ class LandmarkLife {
   core::MapAppearance appearance_;
   double path_m_ = 0.0;
   std::size_t scans_ = 0, born_ = 0, seen_ = 0;
+  std::size_t matured_ = 0, died_tentative_ = 0;
 };
 
 }  // namespace helixnav::association
