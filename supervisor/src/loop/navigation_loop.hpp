@@ -50,6 +50,7 @@ class NavigationLoop {
 
   // window/whole_estimate.cpp
   std::vector<core::LandmarkId> landmarks() const;
+  bool is_placed(core::LandmarkId id) const;
   std::vector<core::PointGaussian> sketched(const std::vector<core::LandmarkId>& ids) const;
   std::vector<core::PointGaussian> marginals() const;
   core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;

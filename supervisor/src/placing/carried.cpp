@@ -66,7 +66,7 @@ core::JointMap NavigationLoop::map_to_keep(core::CarriedDecision& decision, doub
   for (const association::LandmarkRecord& record : belief_.existence.records()) {
     begun += record.born_path_m <= until_m;
     if (record.state != core::LandmarkState::mature || record.born_path_m > until_m) continue;
-    if (record.last_seen_path_m > until_m) continue;
+    if (record.last_seen_path_m > until_m || !is_placed(record.id)) continue;
     core::MapLandmark& landmark = kept.emplace_back();
     landmark.id = record.id;
     landmark.observations = record.observations;

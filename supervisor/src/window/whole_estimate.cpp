@@ -9,10 +9,17 @@
 
 namespace helixnav::supervisor {
 
+/// A landmark that only one scan has placed, and that the filter left out, may be in no phase of the drive.
+bool NavigationLoop::is_placed(core::LandmarkId id) const {
+  return belief_.filter.contains(id) || (belief_.drive && belief_.drive->atlas().knows(id));
+}
+
 std::vector<core::LandmarkId> NavigationLoop::landmarks() const {
   if (!belief_.drive) return belief_.filter.landmarks();
   std::vector<core::LandmarkId> ids;
-  for (const association::LandmarkRecord& record : belief_.existence.records()) ids.push_back(record.id);
+  for (const association::LandmarkRecord& record : belief_.existence.records()) {
+    if (is_placed(record.id)) ids.push_back(record.id);
+  }
   return ids;
 }
 
