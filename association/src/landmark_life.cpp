@@ -24,6 +24,10 @@ bool is_listed(const std::vector<LandmarkId>& ids, LandmarkId id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
+bool is_listed(const std::vector<UnusedSighting>& unused, LandmarkId id) {
+  return std::any_of(unused.begin(), unused.end(), [id](const UnusedSighting& one) { return one.id == id; });
+}
+
 }  // namespace
 
 LandmarkLife::LandmarkLife(const LifeOptions& options)
@@ -66,16 +70,17 @@ void LandmarkLife::pass(const std::vector<LandmarkId>& unseen_at_rim) {
 
 LifeChanges LandmarkLife::observe(const Eigen::Vector2d& sensor_m, const std::vector<LandmarkId>& seen,
                                   const std::vector<LandmarkId>& born, const std::vector<LandmarkId>& expected,
-                                  const std::vector<double>& seen_nats) {
-  check_scan(seen, born, expected);
+                                  const std::vector<double>& seen_nats, const std::vector<UnusedSighting>& unused) {
+  check_scan(seen, born, expected, unused);
   if (!seen_nats.empty() && seen_nats.size() != seen.size())
     throw core::PreconditionError("landmark life: evidence of as many landmarks as were seen expected");
   ++scans_;
   born_ += born.size();
   seen_ += seen.size();
   for (std::size_t i = 0; i < seen.size(); ++i) hit(*find(seen[i]), sensor_m, seen_nats.empty() ? 0.0 : seen_nats[i]);
+  for (const UnusedSighting& one : unused) count_unused(*find(one.id), sensor_m, one.nats);
   for (const LandmarkId id : expected) {
-    if (!is_listed(seen, id) && !is_listed(born, id)) miss(*find(id), sensor_m);
+    if (!is_listed(seen, id) && !is_listed(born, id) && !is_listed(unused, id)) miss(*find(id), sensor_m);
   }
   for (const LandmarkId id : born) {
     LandmarkRecord record;
@@ -105,11 +110,13 @@ LifeChanges LandmarkLife::observe(const Eigen::Vector2d& sensor_m, const std::ve
 }
 
 void LandmarkLife::check_scan(const std::vector<LandmarkId>& seen, const std::vector<LandmarkId>& born,
-                              const std::vector<LandmarkId>& expected) const {
+                              const std::vector<LandmarkId>& expected,
+                              const std::vector<UnusedSighting>& unused) const {
   const auto require = [](bool ok, LandmarkId id, const char* what) {
     if (!ok) throw core::PreconditionError("landmark life: landmark " + std::to_string(id) + what);
   };
   for (const LandmarkId id : seen) require(contains(id), id, " was seen but never born");
+  for (const UnusedSighting& one : unused) require(contains(one.id), one.id, " was seen but never born");
   for (const LandmarkId id : expected) require(contains(id) || is_listed(born, id), id, " is expected but unknown");
   for (const LandmarkId id : born) {
     require(!contains(id), id, " is born twice");
@@ -119,12 +126,23 @@ void LandmarkLife::check_scan(const std::vector<LandmarkId>& seen, const std::ve
 
 void LandmarkLife::hit(LandmarkRecord& record, const Eigen::Vector2d& sensor_m, double appearance_nats) {
   ++record.observations;
+  if (!note_look(record, sensor_m)) return;
+  ++record.hits;
+  record.log_odds = std::min(options_.max_log_odds, record.log_odds + hit_nats_ + appearance_nats);
+}
+
+void LandmarkLife::count_unused(LandmarkRecord& record, const Eigen::Vector2d& sensor_m, double nats) const {
+  if (note_look(record, sensor_m))
+    record.log_odds = std::min(options_.max_log_odds, record.log_odds + std::min(hit_nats_, nats));
+}
+
+/// That it was seen; false where a look from about here has counted already.
+bool LandmarkLife::note_look(LandmarkRecord& record, const Eigen::Vector2d& sensor_m) const {
   record.unseen_at_rest = -1;  // this scan is counted, too
   record.last_seen_path_m = path_m_;
-  if ((sensor_m - record.last_hit_at_m).norm() < options_.look_distance_m) return;
-  ++record.hits;
+  if ((sensor_m - record.last_hit_at_m).norm() < options_.look_distance_m) return false;
   record.last_hit_at_m = sensor_m;
-  record.log_odds = std::min(options_.max_log_odds, record.log_odds + hit_nats_ + appearance_nats);
+  return true;
 }
 
 void LandmarkLife::miss(LandmarkRecord& record, const Eigen::Vector2d& sensor_m) {

@@ -26,6 +26,28 @@ TEST(LandmarkLife, MaturesWhenSeenFromSeveralPlaces) {
   EXPECT_EQ(life.record(4).hits, 3);
 }
 
+// A map keeps what several looks have placed: sightings that no estimate used make a landmark likely, but not placed.
+TEST(LandmarkLife, DoesNotMatureBySightingsThatAreLeftUnused) {
+  LandmarkLife life;
+  life.observe(at(0.0), {}, {4}, {});
+  const double hit = life.observe(at(1.0), {4}, {}, {}).matured.empty() ? life.record(4).log_odds : 0.0;
+  for (int k = 2; k <= 9; ++k) life.observe(at(k), {}, {}, {4}, {}, {{4, 0.5}});
+  EXPECT_NEAR(life.record(4).log_odds, hit + 8 * 0.5, 1e-12);
+  EXPECT_EQ(life.record(4).hits, 2);
+  EXPECT_EQ(life.record(4).misses, 0);
+  EXPECT_EQ(life.state(4), LandmarkState::tentative);
+  EXPECT_EQ(life.observe(at(10.0), {4}, {}, {}).matured, std::vector<core::LandmarkId>{4});
+}
+
+TEST(LandmarkLife, AnUnusedSightingSaysNoMoreThanAUsedOne) {
+  LandmarkLife life;
+  life.observe(at(0.0), {}, {4, 5}, {});
+  life.observe(at(1.0), {4}, {}, {}, {}, {{4, 9.0}, {5, 9.0}, {5, 9.0}});
+  EXPECT_EQ(life.record(5).log_odds, life.record(4).log_odds);
+  EXPECT_THROW(life.observe(at(2.0), {4}, {}, {}, {}, {{6, 1.0}}), core::PreconditionError);
+  EXPECT_EQ(life.record(4).hits, 2);
+}
+
 TEST(LandmarkLife, LearnsNothingWhileStandingStill) {
   LandmarkLife life;
   life.observe(at(0.0), {}, {4}, {});

@@ -8,14 +8,15 @@
 
 namespace helixnav::supervisor {
 
-std::vector<DoubtfulMatch> leave_doubtful_unused(const GatedScan& gated, const association::LandmarkLife& existence,
-                                                 const core::Scan& scan, const NavigatorOptions& options,
-                                                 std::vector<core::AssociationReport>& reports) {
+std::vector<association::UnusedSighting> leave_doubtful_unused(const GatedScan& gated,
+                                                               const association::LandmarkLife& existence,
+                                                               const core::Scan& scan, const NavigatorOptions& options,
+                                                               std::vector<core::AssociationReport>& reports) {
   static const double least_nats = std::log(0.95 / 0.05);
   const association::InnovationProblem& problem = gated.gating->problem;
   const association::ExtraneousDensity extraneous = association::density_in_view(
       scan, existence.born_per_scan(options.extraneous_per_scan), options.association.extraneous);
-  std::vector<DoubtfulMatch> doubtful;
+  std::vector<association::UnusedSighting> doubtful;
   for (core::AssociationReport& report : reports) {
     if (report.outcome != core::Outcome::matched) continue;
     if (existence.state(report.landmark) != core::LandmarkState::tentative) continue;

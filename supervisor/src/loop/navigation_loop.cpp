@@ -225,12 +225,7 @@ std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const
   std::vector<LandmarkId> seen = landmarks_with(Outcome::matched, report.associations);
   const std::vector<LandmarkId> born = landmarks_with(Outcome::augmented, report.associations);
   std::vector<double> seen_nats = appearance_nats(belief_.existence.appearance(), scan, report.associations);
-  seen_nats.resize(seen.size(), 0.0);
-  for (const DoubtfulMatch& one : std::exchange(pending_.doubtful, {})) {
-    if (std::find(seen.begin(), seen.end(), one.landmark) != seen.end()) continue;
-    seen.push_back(one.landmark);
-    seen_nats.push_back(std::min(0.0, one.nats - belief_.existence.hit_nats()));
-  }
+  const std::vector<association::UnusedSighting> unused = std::exchange(pending_.doubtful, {});
   std::vector<LandmarkId> expected = expected_unseen(belief_.filter, scan, options_.view_margin_m, report.associations);
   if (Mapping* mapping = std::get_if<Mapping>(&mode_)) {
     mapping->monitor.observe(belief_.existence, expected, seen, options_.search.old_after_m);
@@ -246,7 +241,7 @@ std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const
   belief_.existence.pass(at_rim);
   const core::Pose2 T_world_sensor = core::compose(belief_.filter.pose().mean, scan.T_robot_sensor);
   const association::LifeChanges changes =
-      belief_.existence.observe(T_world_sensor.position_m(), seen, born, expected, seen_nats);
+      belief_.existence.observe(T_world_sensor.position_m(), seen, born, expected, seen_nats, unused);
   look_at(scan, report.associations, belief_.existence);
   for (const LandmarkId id : changes.died) {
     if (belief_.filter.contains(id)) belief_.filter.remove(id);

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "association/doubtful_match.hpp"
 #include "association/gated_scan.hpp"
 #include "closing/closing.hpp"
 #include "helixnav/core/events.hpp"
@@ -61,8 +60,8 @@ class NavigationLoop {
     std::optional<core::Odometry> motion;
     double driven_m = 0.0;  ///< length along the road
     std::vector<core::Decision> decisions;
-    core::NumericalHealth numerics = {};       ///< that no report has yet
-    std::vector<DoubtfulMatch> doubtful = {};  ///< matches of this scan that are left unused
+    core::NumericalHealth numerics = {};                     ///< that no report has yet
+    std::vector<association::UnusedSighting> doubtful = {};  ///< matches of this scan that are left unused
     std::vector<pf_relocalize::ConstellationPair> forbidden =
         {};  ///< of a place that the whole map has and to which it could not be closed in this step
   };

@@ -30,7 +30,7 @@ struct MappedTree {
     life.observe({0.0, 0.0}, {}, {id}, {});
   }
 
-  std::vector<DoubtfulMatch> look(double range_m) {
+  std::vector<association::UnusedSighting> look(double range_m) {
     const core::Scan scan = scan_with(tree_at(range_m));
     const GatedScan gated = gate_scan(filter, {id}, scan, {});
     reports = association_reports(gated.assignment);
@@ -54,9 +54,9 @@ TEST(DoubtfulMatches, AreUsedWhereLandmarksBegunAreTrees) {
 TEST(DoubtfulMatches, AreLeftUnusedWhereMostLandmarksBegunWereFalseAlarms) {
   MappedTree drive(200);
   EXPECT_TRUE(drive.look(10.02).empty()) << "too near to be chance";
-  const std::vector<DoubtfulMatch> doubtful = drive.look(10.8);  // NIS 8
+  const std::vector<association::UnusedSighting> doubtful = drive.look(10.8);  // NIS 8
   ASSERT_EQ(doubtful.size(), 1u);
-  EXPECT_EQ(doubtful.front().landmark, drive.id);
+  EXPECT_EQ(doubtful.front().id, drive.id);
   EXPECT_EQ(drive.reports.front().outcome, core::Outcome::ambiguous);
   // λ: (201 + 10)/(401 + 10) false alarms over 30 m · 2π; S twice the detector's noise.
   const double lambda = 211.0 / 411.0 / (30.0 * 2.0 * core::pi);

@@ -37,7 +37,7 @@ struct LandmarkRecord {
   core::LandmarkState state = core::LandmarkState::tentative;
   double log_odds = 0.0;
   int observations = 0;    ///< scans that saw it, looks or not
-  int hits = 0;            ///< looks that saw it, birth included
+  int hits = 0;            ///< looks that saw it and were used, birth included: what has placed it
   int misses = 0;          ///< looks that should have seen it
   int unseen_at_rest = 0;  ///< scans since it was last seen, from where it was seen last
   Eigen::Vector2d last_hit_at_m = Eigen::Vector2d::Zero();  ///< place of the sensor
@@ -45,6 +45,12 @@ struct LandmarkRecord {
   double born_path_m = 0.0;  ///< length of the drive then
   double last_seen_path_m = 0.0;
   double last_passed_path_m = 0.0;  ///< see LandmarkLife::pass
+};
+
+/// An observation that no estimate uses because it may be of a landmark, or of nothing that is mapped.
+struct UnusedSighting {
+  core::LandmarkId id = core::no_landmark;
+  double nats = 0.0;  ///< by which the landmark explains what was seen better than something in no map
 };
 
 /// What one scan changed. The owner of the filter removes the dead ones from it.
@@ -73,11 +79,12 @@ class LandmarkLife {
   /// One scan taken with the sensor at `sensor_m`, world frame. `seen`: matched landmarks. `born`: those that it began.
   /// `expected`: those it should have seen, with a margin inside the field of view; seen ones may be among them. A
   /// landmark beside an ambiguous observation belongs in neither list. `seen_nats`: [seen] what class and size add to a hit's
-  /// evidence, or empty. PreconditionError, with nothing changed, for a seen or expected id that is not recorded or a born one
-  /// that is.
+  /// evidence, or empty. `unused`: such a look adds its nats to the log-odds, at most those of a hit, and is none of the looks
+  /// that a landmark matures by, because it has not placed it. PreconditionError, with nothing changed, for a
+  /// seen, unused or expected id that is not recorded or a born one that is.
   LifeChanges observe(const Eigen::Vector2d& sensor_m, const std::vector<core::LandmarkId>& seen,
                       const std::vector<core::LandmarkId>& born, const std::vector<core::LandmarkId>& expected,
-                      const std::vector<double>& seen_nats = {});
+                      const std::vector<double>& seen_nats = {}, const std::vector<UnusedSighting>& unused = {});
 
   /// What the landmarks look like. It goes with them: a landmark that dies or is merged takes it along.
   const core::MapAppearance& appearance() const { return appearance_; }
@@ -123,8 +130,6 @@ class LandmarkLife {
   /// Once the sensor is known; what was counted stays.
   void set_lengths(double look_distance_m, double tentative_patience_m);
 
-  double hit_nats() const { return hit_nats_; }  ///< evidence of one hit
-
   /// Odds that a landmark exists: of those begun on this drive, as many that matured to as many that died tentative (one of
   /// each before any), times what looks at this one say.
   double odds(core::LandmarkId id) const;
@@ -136,8 +141,10 @@ class LandmarkLife {
   LandmarkRecord* find(core::LandmarkId id);
   const LandmarkRecord* find(core::LandmarkId id) const;
   void check_scan(const std::vector<core::LandmarkId>& seen, const std::vector<core::LandmarkId>& born,
-                  const std::vector<core::LandmarkId>& expected) const;
+                  const std::vector<core::LandmarkId>& expected, const std::vector<UnusedSighting>& unused) const;
   void hit(LandmarkRecord& record, const Eigen::Vector2d& sensor_m, double appearance_nats);
+  void count_unused(LandmarkRecord& record, const Eigen::Vector2d& sensor_m, double nats) const;
+  bool note_look(LandmarkRecord& record, const Eigen::Vector2d& sensor_m) const;
   void miss(LandmarkRecord& record, const Eigen::Vector2d& sensor_m);
   void count_unseen_at_rest(LandmarkRecord& record, const Eigen::Vector2d& sensor_m) const;
   bool is_dying(const LandmarkRecord& record) const;
