@@ -56,6 +56,8 @@ MapIndex::MapIndex(const IndexOptions& options, const std::vector<Landmark>& lan
   parts.store_all_triangles();
 }
 
+bool MapIndex::has_room_at(const Eigen::Vector2d& point_m) const { return parts_->has_room_at(point_m); }
+
 void MapIndex::insert(const Landmark& landmark) {
   parts_->check(landmark);
   if (contains(landmark.id)) refuse(landmark.id, " is there already");

@@ -19,7 +19,7 @@ IndexOptions checked(const IndexOptions& options) {
   return options;
 }
 
-constexpr double most_extent_in_noises = 4e5;  ///< beyond, the rounding of coordinates would reach a tenth of the noise
+constexpr double most_extent_in_noises = 4e5;
 
 }  // namespace
 
@@ -42,8 +42,11 @@ void MapIndex::Parts::check(const Landmark& landmark) const {
     refuse("its covariance is not symmetric positive definite");
   if (landmark.size && !(std::isfinite(landmark.size->mean_m) && landmark.size->sigma_m > 0.0))
     refuse("its size needs a finite mean and a positive sigma");
-  const double extent_m = placed ? (landmark.point.mean_m - origin_m).cwiseAbs().maxCoeff() : 0.0;
-  if (extent_m > most_extent_in_noises * options.pair_noise_m) refuse("too far from the first one");
+  if (!has_room_at(landmark.point.mean_m)) refuse("too far from the first one");
+}
+
+bool MapIndex::Parts::has_room_at(const Eigen::Vector2d& point_m) const {
+  return !placed || (point_m - origin_m).cwiseAbs().maxCoeff() <= most_extent_in_noises * options.pair_noise_m;
 }
 
 void MapIndex::Parts::place_origin(const Eigen::Vector2d& near_m) {

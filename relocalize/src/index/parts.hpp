@@ -99,6 +99,7 @@ struct MapIndex::Parts {
 
   Slot slot_of(core::LandmarkId id) const { return id < 0 ? no_slot : slots[static_cast<std::size_t>(id)]; }
   void check(const Landmark& landmark) const;
+  bool has_room_at(const Eigen::Vector2d& point_m) const;
   void place_origin(const Eigen::Vector2d& near_m);
 
   Slot add_node(const Landmark& landmark);

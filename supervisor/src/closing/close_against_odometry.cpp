@@ -276,7 +276,7 @@ bool replay_after_jump(const Input& in, Reconciled& result) {
 }  // namespace
 
 double nats_against_odometry(const Closing& as_measured) {
-  constexpr double something_else = 0.01;
+  constexpr double something_else = 1e-6;
   return std::min(1.5 * std::log(std::max(1.0, factor_from(as_measured))), -std::log(something_else));
 }
 

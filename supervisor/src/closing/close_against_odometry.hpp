@@ -35,8 +35,8 @@ struct Reconciled {
 bool was_no_noise(const Closing& as_measured);
 
 /// What a place has to be likelier by than without odometry, from how odometry as measured refused it: the likelihood of a scale is
-/// factor^(−3/2), and that something else was wrong, a slip that nobody noticed or a vehicle that was carried, is expected of one
-/// drive to a place in a hundred (ε of docs/relocalize.md). Test: supervisor/placing/whole_map_test.cpp.
+/// factor^(−3/2), and that something else was wrong, with no pause in which the vehicle may have been carried, is expected of one drive
+/// to a place in a million: rarer than ground that repeats itself, rows of trees and blocks of houses (docs/slips.md). Test: supervisor/placing/whole_map_test.cpp.
 double nats_against_odometry(const Closing& as_measured);
 
 /// Closes the map at a place that odometry forbids. χ² of the pairs at a free pose decides a place; what their cost with

@@ -2,6 +2,7 @@
 #include "search/old_ground_index.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "placing/index_traits.hpp"
@@ -56,7 +57,8 @@ void OldGroundIndex::follow(const cekf::CompressedEkf& filter, const core::MapAp
   ids_.erase(std::remove_if(ids_.begin(), ids_.end(), gone), ids_.end());
   std::vector<LandmarkId> added;
   for (const LandmarkId id : old) {
-    if (!index_.contains(id) && filter.contains(id)) added.push_back(id);
+    if (index_.contains(id) || !filter.contains(id)) continue;
+    if (index_.has_room_at(filter.landmark_mean(id))) added.push_back(id);
   }
   for (std::size_t i = 0; i < added.size(); i += at_once) {
     insert({added.begin() + static_cast<std::ptrdiff_t>(i),
@@ -64,7 +66,8 @@ void OldGroundIndex::follow(const cekf::CompressedEkf& filter, const core::MapAp
            filter, appearance, old);
   }
   if (added.empty()) return;
-  ids_.insert(ids_.end(), added.begin(), added.end());
+  const auto is_held = [&](LandmarkId id) { return index_.contains(id); };
+  std::copy_if(added.begin(), added.end(), std::back_inserter(ids_), is_held);
   std::sort(ids_.begin(), ids_.end());
   index_.look_around_landmarks();
 }
@@ -87,6 +90,7 @@ void OldGroundIndex::insert(const std::vector<LandmarkId>& added, const cekf::Co
     relocalize::Landmark landmark;
     landmark.id = one.front();
     landmark.point = point_of(one, joint);
+    if (!index_.has_room_at(landmark.point.mean_m)) continue;  // of the first ones, that begin the index
     landmark.point.covariance_m2 += half_m2;
     tell_traits(appearance.of(landmark.id), landmark);
     index_.insert(landmark);

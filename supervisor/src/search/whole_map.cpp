@@ -115,7 +115,8 @@ void NavigationLoop::ask_whether_new(const core::Scan& scan, core::StepReport& r
   const double path_m = belief_.existence.path_m();
   if (!asks_whole_map() || std::get_if<Mapping>(&mode_) == nullptr || path_m < questions_.next_path_m) return;
   questions_.next_path_m = path_m + options_.search.ask_again_m;
-  const double within_m = options_.search.branch_seen_within_m;
+  // One that was not seen for longer is old, and would be compared with itself.
+  const double within_m = std::min(options_.search.branch_seen_within_m, options_.search.old_after_m);
   LandmarksAbout about = landmarks_about(belief_, within_m, path_m - within_m);
   constexpr double least_new = 0.5;
   if (!questions_.asked.is_due(about.ids, least_new)) return;
@@ -146,9 +147,12 @@ const relocalize::MapIndex& NavigationLoop::follow_old_ground(const Search& sear
 /// Counts as a question, unless there is nothing to ask.
 AskedWholeMap NavigationLoop::ask(LandmarksAbout& about, const Search& search, const core::Scan& scan) {
   const relocalize::MapIndex& index = follow_old_ground(search);
+  // Where the drive was rolled back behind a question, some that were old then are of the branch now.
+  const auto is_old = [&](LandmarkId id) { return index.contains(id); };
+  about.ids.erase(std::remove_if(about.ids.begin(), about.ids.end(), is_old), about.ids.end());
   const relocalize::Question question =
       session_question(belief_, about, scan.field_of_view, index.options(), options_.search.branch_seen_within_m);
-  if (question.looked.empty() || !(index.looked_at_m2() > 0.0)) return {};
+  if (question.landmarks.empty() || question.looked.empty() || !(index.looked_at_m2() > 0.0)) return {};
   const relocalize::AskOptions how = session_options(questions_.asked.next_alpha());
   const relocalize::Answer answer = relocalize::ask(index, question, how);
   AskedWholeMap asked{figures_of(answer), {}};

@@ -42,6 +42,10 @@ class MapIndex {
   /// that is not positive definite, or a point out of bounds.
   void insert(const Landmark& landmark);
 
+  /// Whether a landmark there is within the bounds: of the first one, 4e5 pair noises along either axis. Beyond, the rounding of
+  /// coordinates would reach a tenth of the noise.
+  bool has_room_at(const Eigen::Vector2d& point_m) const;
+
   /// PreconditionError for an id that the map does not have.
   void erase(core::LandmarkId id);
 
