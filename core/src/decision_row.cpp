@@ -141,7 +141,7 @@ void numbers(CarriedDecision& d, Visit&& visit) {
   visit("dropped", d.dropped);
   visit("apart", d.apart);
   visit("driven_m", d.driven_m);
-  if (d.cause == CarriedDecision::Cause::broken_off) {
+  if (d.cause == CarriedDecision::Cause::broken_off || d.cause == CarriedDecision::Cause::no_odometry) {
     visit("pose_sigma_m", d.pose_sigma_m);
     visit("heading_sigma_deg", d.heading_sigma_deg);
   }
@@ -196,7 +196,7 @@ void numbers(PostponedDecision& d, Visit&& visit) {
   visit("limit", d.limit);
 }
 
-constexpr const char* carried_words[] = {"told", "found-out", "broken-off", "by-place"};
+constexpr const char* carried_words[] = {"told", "found-out", "broken-off", "by-place", "no-odometry"};
 constexpr const char* postponed_words[] = {"association", "window", "drive"};
 constexpr const char* whole_map_words[] = {"accepted", "ambiguous", "refused", "not-here"};
 constexpr const char* placed_words[] = {"sought", "accepted", "ambiguous", "refused", "not-here"};

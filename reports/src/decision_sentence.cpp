@@ -165,6 +165,10 @@ std::string why_carried(const core::CarriedDecision& d) {
     return "The arithmetic could not go on with a pose uncertain by " + short_number(d.pose_sigma_m) + " m and " +
            short_number(d.heading_sigma_deg) + "°.";
   }
+  if (d.cause == Cause::no_odometry) {
+    return "Odometry does not say where the vehicle went since the scan before: uncertain by " +
+           short_number(d.pose_sigma_m) + " m and " + short_number(d.heading_sigma_deg) + "°.";
+  }
   if (d.cause == Cause::by_place) {
     return "The vehicle was carried during the pause " + counted(d.scans, "scan") +
            " ago: what was mapped since stands elsewhere on the map.";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -73,6 +74,18 @@ Motion Motions::stretch(std::size_t row, core::Nanoseconds last_ns) const {
     motion.end_ns = t_ns;
   }
   return motion;
+}
+
+/// The interval before the row, where it says that the vehicle stands through a gap.
+std::optional<core::Nanoseconds> Motions::stands_through_gap(std::size_t row, const Motion& motion) const {
+  if (!holds() || row == 0) return std::nullopt;
+  const Eigen::Vector3d& value = log_.odometry[row].value;
+  const bool is_steered = log_.odometry_kind == OdometryKind::steering;
+  if (is_steered ? value[0] != 0.0 : !value.isZero(0.0)) return std::nullopt;
+  constexpr core::Nanoseconds least_gap_ns = 1'000'000'000;
+  const core::Nanoseconds usual_ns = log_.odometry[row].t_ns - log_.odometry[row - 1].t_ns;
+  const bool is_gap = motion.end_ns - motion.begin_ns > std::max(least_gap_ns, 10 * usual_ns);
+  return is_gap ? std::optional(usual_ns) : std::nullopt;
 }
 
 /// Twist of a held sample of speed and steering; its covariance by the way.
@@ -156,6 +169,9 @@ void Motions::add_sample_noise(Motion& motion, std::size_t row) const {
 std::optional<Motion> Motions::of_row(std::size_t row, core::Nanoseconds last_ns) const {
   if (row == 0 && log_.odometry_kind == OdometryKind::poses) return std::nullopt;
   Motion motion = stretch(row, last_ns);
+  const core::Nanoseconds end_ns = motion.end_ns;
+  const auto usual_ns = stands_through_gap(row, motion);
+  if (usual_ns) motion.end_ns = motion.begin_ns + *usual_ns;
   move(motion, row);
   const bool own = log_.odometry_kind == OdometryKind::increments && !log_.odometry_covariances.empty() &&
                    !log_.odometry_covariances[row].isZero(0.0);
@@ -167,6 +183,8 @@ std::optional<Motion> Motions::of_row(std::size_t row, core::Nanoseconds last_ns
   if (log_.odometry_kind == OdometryKind::velocities || log_.odometry_kind == OdometryKind::wheels) {
     add_sample_noise(motion, row);
   }
+  if (usual_ns) motion.twist.setZero();  // of a bias, too
+  motion.end_ns = end_ns;
   motion.covariance = 0.5 * square(model_.noise_scale) * (motion.covariance + motion.covariance.transpose()).eval();
   return motion;
 }

@@ -30,7 +30,9 @@ class Motions {
   Motions(const OwnLog& log, const Vehicle& vehicle);
 
   /// That of a row: until it (increments, poses) or from it to the next (the others; the last until `last_ns`). Nothing for
-  /// the first pose.
+  /// the first pose. A row of speeds that says that the vehicle stands, and is held through a gap (of more than a second and ten
+  /// times the interval before it), is as uncertain as if it had been held for that interval: what errs at speed does not add up while
+  /// nothing moves.
   std::optional<Motion> of_row(std::size_t row, core::Nanoseconds last_ns) const;
 
   /// Whether a row says what comes after it.
@@ -38,6 +40,7 @@ class Motions {
 
  private:
   Motion stretch(std::size_t row, core::Nanoseconds last_ns) const;
+  std::optional<core::Nanoseconds> stands_through_gap(std::size_t row, const Motion& motion) const;
   void move(Motion& motion, std::size_t row) const;
   void add_model_noise(Motion& motion) const;
   void add_sample_noise(Motion& motion, std::size_t row) const;

@@ -64,16 +64,21 @@ StepReport NavigationLoop::observe(const Scan& scan) {
   const std::optional<double> paused_m = pause_to_weigh(scan);
   const StillThere there = paused_m ? weigh_pause(scan, *paused_m) : StillThere{};
   const double driven_m = pending_.driven_m;
+  const double turn_rad2 = pending_.motion ? pending_.motion->covariance(2, 2) : 0.0;
+  const bool is_open = is_monitored() && rhythm_.leaves_heading_open(turn_rad2);
   const bool is_carried = there.is_elsewhere(limits);
   const bool has_paused = paused_m && rhythm_.is_pause(scan.t_ns, driven_m);
   const UnsurePause pause{paused_m.value_or(0.0), belief_.step};
   pauses_.reserve(pauses_.size() + 1);  // nothing throws once the scan has been taken
-  StepReport report = is_carried ? observe_elsewhere(scan, there) : observe_somewhere(scan);
-  rhythm_.note(scan.t_ns, driven_m);
+  const bool is_elsewhere = is_carried || is_open;
+  StepReport report = is_carried ? observe_elsewhere(scan, there)
+                      : is_open  ? begin_part_with(scan, without_odometry())
+                                 : observe_somewhere(scan);
+  rhythm_.note(scan.t_ns, driven_m, turn_rad2);
   forget_pauses(report);
-  if (is_carried) pauses_.clear();
-  if (has_paused && !is_carried && !there.is_surely_here()) pauses_.push_back(pause);
-  pause_m_ = is_carried || there.is_here(limits) ? std::nullopt : paused_m;
+  if (is_elsewhere) pauses_.clear();
+  if (has_paused && !is_elsewhere && !there.is_surely_here()) pauses_.push_back(pause);
+  pause_m_ = is_elsewhere || there.is_here(limits) ? std::nullopt : paused_m;
   return report;
 }
 

@@ -201,6 +201,7 @@ class NavigationLoop {
   core::StepReport observe_elsewhere(const core::Scan& scan, const StillThere& there);
   core::StepReport begin_part_with(const core::Scan& scan, const core::CarriedDecision& decision);
   core::CarriedDecision broken_off() const;
+  core::CarriedDecision without_odometry() const;
   core::StepReport observe_somewhere(const core::Scan& scan);
 
   // placing/part_at_pause.cpp

@@ -57,6 +57,14 @@ core::CarriedDecision found_out(const StillThere& there) {
   return decision;
 }
 
+core::CarriedDecision with_sigmas(core::CarriedDecision::Cause cause, const Eigen::Matrix3d& covariance) {
+  core::CarriedDecision decision;
+  decision.cause = cause;
+  decision.pose_sigma_m = std::sqrt(std::max(0.0, covariance.topLeftCorner<2, 2>().trace()));
+  decision.heading_sigma_deg = std::sqrt(std::max(0.0, covariance(2, 2))) * 180.0 / core::pi;
+  return decision;
+}
+
 }  // namespace
 
 /// The mature landmarks begun and last seen until then; none where they are too few to be found again.
@@ -214,12 +222,11 @@ StepReport NavigationLoop::observe_somewhere(const core::Scan& scan) {
 }
 
 core::CarriedDecision NavigationLoop::broken_off() const {
-  const Eigen::Matrix3d covariance = belief_.filter.pose().covariance;
-  core::CarriedDecision decision;
-  decision.cause = core::CarriedDecision::Cause::broken_off;
-  decision.pose_sigma_m = std::sqrt(std::max(0.0, covariance.topLeftCorner<2, 2>().trace()));
-  decision.heading_sigma_deg = std::sqrt(std::max(0.0, covariance(2, 2))) * 180.0 / core::pi;
-  return decision;
+  return with_sigmas(core::CarriedDecision::Cause::broken_off, belief_.filter.pose().covariance);
+}
+
+core::CarriedDecision NavigationLoop::without_odometry() const {
+  return with_sigmas(core::CarriedDecision::Cause::no_odometry, pending_.motion->covariance);
 }
 
 }  // namespace helixnav::supervisor

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <variant>
@@ -101,6 +103,40 @@ TEST(OwnRecording, CorrectsOdometryByScaleBiasAndPlace) {
   const core::Odometry way = way_of(log.recording());
   expect_near(way.T_before_after, {1.0 - std::cos(0.5), -std::sin(0.5), 0.5}, 1e-12);
   EXPECT_GT(way.covariance(1, 1), 0.5 * way.covariance(2, 2));
+}
+
+/// Rows every 0.1 s until 1 s; then nothing until 121 s. The last row before says `last`.
+core::Odometry way_through_gap(const std::string& columns, const std::string& driving, const std::string& last) {
+  const OwnLogFolder log;
+  log.write("vehicle.toml",
+            "[odometry]\nwheelbase_m = 1.5\ntrack_m = 0.8\nsigma_v_mps = 0.2\nsigma_omega_deg_per_s = 1.5\n"
+            "sigma_steering_deg = 1\nturn_bias_deg_per_s = 0.5\n"
+            "[[sensor]]\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n");
+  log.write("detections.csv", "t,range_m,bearing_deg\n1,10,1\n121,10,1\n");
+  std::string rows = columns + "\n";
+  for (const char* t : {"0.7", "0.8", "0.9"}) rows += t + std::string(",") + driving + "\n";
+  rows += "1.0," + last + "\n121," + driving + "\n";
+  log.write("odometry.csv", rows);
+  const core::Recording recording = log.recording();
+  const auto is_odometry = [](const core::Event& event) { return std::holds_alternative<core::Odometry>(event); };
+  const auto at = std::find_if(recording.events.rbegin(), recording.events.rend(), is_odometry);
+  return at == recording.events.rend() ? core::no_motion(0) : std::get<core::Odometry>(*at);
+}
+
+// What errs at speed does not add up while nothing moves: a vehicle that was parked for two minutes is not turned by ±180°.
+TEST(OwnRecording, AVehicleThatStandsThroughAGapStaysWhereItIs) {
+  for (const auto& [columns, driving, stands] : {std::array<std::string, 3>{"t,v,omega", "2,0.1", "0,0"},
+                                                 {"t,v,steering_rad", "2,0.1", "0,0.1"},
+                                                 {"t,v_left,v_right", "2,2", "0,0"}}) {
+    SCOPED_TRACE(columns);
+    const core::Odometry stood = way_through_gap(columns, driving, stands);
+    EXPECT_EQ(stood.T_before_after.vector().norm(), 0.0);
+    EXPECT_GT(stood.covariance(0, 0), 0.0);
+    EXPECT_LT(std::sqrt(stood.covariance(0, 0)), 0.1 * 0.2 + 1e-9) << "that of the usual interval";
+    EXPECT_LT(std::sqrt(stood.covariance(2, 2)), 0.1 * 0.4);
+    const core::Odometry moved = way_through_gap(columns, driving, driving);
+    EXPECT_GT(std::sqrt(moved.covariance(0, 0)), 10.0) << "where it went meanwhile nobody knows";
+  }
 }
 
 TEST(OwnRecording, TakesNoiseFromTheLogBeforeTheVehicle) {

@@ -41,5 +41,52 @@ TEST(BrokenOff, IsAPartAndNotTheDrive) {
   EXPECT_LT(error_m.norm(), 0.8);
 }
 
+/// Before some scans, as from speeds held through a gap.
+std::vector<core::CarriedDecision> parts_without_odometry(std::size_t from, std::size_t every, int& placed,
+                                                          double& error_m) {
+  const core::Recording run = sim::simulate(wide_circuit(), 1);
+  Navigator navigator(run.start);
+  std::vector<core::CarriedDecision> parts;
+  std::size_t scans = 0;
+  for (const core::Event& event : run.events) {
+    const auto* scan = std::get_if<core::Scan>(&event);
+    if (scan != nullptr && scans++ >= from && (scans - 1 - from) % every == 0) {
+      core::Odometry gap = core::no_motion(scan->t_ns);
+      gap.T_before_after = {0.0, 0.0, 0.4};
+      gap.covariance = Eigen::Vector3d(30.0, 30.0, 4.0).asDiagonal();
+      navigator.move(gap);
+    }
+    const auto report = navigator.take(event);
+    if (!report) continue;
+    for (const core::Decision& decision : report->decisions) {
+      if (const auto* part = std::get_if<core::CarriedDecision>(&decision)) parts.push_back(*part);
+      const auto* place = std::get_if<core::PlacedDecision>(&decision);
+      placed += place != nullptr && place->verdict == core::PlacedDecision::Verdict::accepted;
+    }
+  }
+  error_m = (navigator.pose().mean.position_m() - run.true_poses.back().T_world_robot.position_m()).norm();
+  return parts;
+}
+
+// Matched to first order, a heading known to ±115° becomes wrong by tens of degrees and is taken for certain.
+TEST(NoOdometry, BeginsAPartThatFindsItsPlace) {
+  int placed = 0;
+  double error_m = 0.0;
+  const auto parts = parts_without_odometry(220, 100'000, placed, error_m);
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_EQ(parts[0].cause, core::CarriedDecision::Cause::no_odometry);
+  EXPECT_NEAR(parts[0].heading_sigma_deg, 2.0 * 180.0 / core::pi, 1.0);
+  EXPECT_NEAR(parts[0].pose_sigma_m, std::sqrt(60.0), 0.2);
+  EXPECT_EQ(placed, 1);
+  EXPECT_LT(error_m, 0.8);
+}
+
+// Odometry that is always so is what this drive has: it is told by what is usual.
+TEST(NoOdometry, IsNoneThatIsUsual) {
+  int placed = 0;
+  double error_m = 0.0;
+  EXPECT_TRUE(parts_without_odometry(0, 1, placed, error_m).empty());
+}
+
 }  // namespace
 }  // namespace helixnav::supervisor

@@ -150,10 +150,11 @@ struct FixDecision {
 /// began on; where that was sought on an earlier map, part 0 is that map and the drive began as part 1.
 struct CarriedDecision {
   enum class Cause {
-    told,        ///< an event said so
-    found_out,   ///< by the scan after a pause: missing to elsewhere_nats
-    broken_off,  ///< it was not carried: the part that ends cannot be computed any further
-    by_place,    ///< landmarks mapped since a pause stand elsewhere on the map: it was carried then
+    told,         ///< an event said so
+    found_out,    ///< by the scan after a pause: missing to elsewhere_nats
+    broken_off,   ///< it was not carried: the part that ends cannot be computed any further
+    by_place,     ///< landmarks mapped since a pause stand elsewhere on the map: it was carried then
+    no_odometry,  ///< it may not have been carried: odometry leaves open which way it turned since the scan before
   };
   int part = 0;           ///< that begins with this scan
   int from_part = 0;      ///< that ends
@@ -166,7 +167,7 @@ struct CarriedDecision {
   int seen = 0;                    ///< those that were after it, too
   int unknown = 0;                 ///< observations after it of something else
   double elsewhere_nats = 0.0;     ///< ln of how much likelier all these are anywhere than where it stopped
-  double pose_sigma_m = 0.0;       ///< where it is broken off
+  double pose_sigma_m = 0.0;       ///< where it is broken off, or of the motion since the scan before
   double heading_sigma_deg = 0.0;  ///< likewise
   int scans = 0;                   ///< before this one, with which the part begins already: those since the pause
 };
