@@ -6,6 +6,7 @@
 #include "closing/close_by_merge.hpp"
 #include "closing/close_by_replay.hpp"
 #include "closing/close_by_restart.hpp"
+#include "closing/tied_pairs.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -38,12 +39,13 @@ Branch branch_of(const ClosingView& view, const SearchOptions& options) {
 }
 
 Closing close_map(cekf::CompressedEkf& filter, const ClosingView& view,
-                  const std::vector<pf_relocalize::ConstellationPair>& pairs, const SearchOptions& options) {
+                  const std::vector<pf_relocalize::ConstellationPair>& all_pairs, const SearchOptions& options) {
   const Search& search = view.search;
   if (options.closing == ClosingMethod::restart) {
     return close_by_restart(filter, mapped_since(search.begun_path_m(), view.life),
                             search.heaviest_mode(filter).value_or(filter.pose()));
   }
+  const std::vector<pf_relocalize::ConstellationPair> pairs = tied_pairs(filter, all_pairs);
   const Branch branch = branch_of(view, options);
   if (options.closing == ClosingMethod::replay) {
     Closing closing = close_by_replay(filter, view.record, pairs, branch, search.old_landmarks(), options);

@@ -5,13 +5,10 @@
 #include <cmath>
 #include <vector>
 
+#include "closing/relative_variance.hpp"
+
 namespace helixnav::supervisor {
 namespace {
-
-/// tr Cov of the difference of two points whose coordinates stand in rows i and j of the joint state.
-double relative_variance_m2(const Eigen::MatrixXd& P, Eigen::Index i, Eigen::Index j) {
-  return P.block<2, 2>(i, i).trace() + P.block<2, 2>(j, j).trace() - 2.0 * P.block<2, 2>(i, j).trace();
-}
 
 Eigen::Index row_of(std::size_t landmark) { return 3 + 2 * static_cast<Eigen::Index>(landmark); }
 
