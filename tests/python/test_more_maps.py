@@ -164,6 +164,16 @@ def test_a_run_that_went_on_is_not_joined_with_what_it_went_on_in(log, first, tm
         helixnav.join([first, tmp_path / "later"])
 
 
+def test_a_joined_map_is_not_joined_with_what_it_is_made_of(log, own_log, first, tmp_path):
+    helixnav.replay(helixnav.read_log(own_log, options={"log.covariance_scale": 1.1}), out=tmp_path / "a")
+    helixnav.join([first, tmp_path / "a"], out=tmp_path / "joined")
+    with pytest.raises(helixnav.InputError, match="was joined from the map of"):
+        helixnav.join([tmp_path / "joined", first])
+    helixnav.replay(log, out=tmp_path / "later", map=first)
+    with pytest.raises(helixnav.InputError, match="both hold the map of"):
+        helixnav.join([tmp_path / "later", tmp_path / "joined"])
+
+
 @pytest.fixture(scope="module")
 def team_log():
     return helixnav.simulate_team(robots=2, seed=1)

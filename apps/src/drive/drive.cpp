@@ -50,8 +50,8 @@ struct Driven {
   std::size_t steps = 0;
   std::vector<double> step_us;          ///< of each scan that was fed
   std::map<std::string, int> closings;  ///< how many of each verdict
-  std::string broken;                   ///< what of the mathematics broke, and where; the run ended there
-  double full_mb = 0.0;                 ///< of memory that were taken where the limit ended the run
+  std::string broken;    ///< what of the mathematics or of the program broke, and where; the run ended there
+  double full_mb = 0.0;  ///< of memory that were taken where the limit ended the run
 };
 
 /// Most that the process has had resident.
@@ -74,6 +74,9 @@ std::optional<core::StepReport> next_step(Loop& loop, const Drive& job, Driven& 
   } catch (const core::NumericalError& error) {
     const double time_s = core::seconds(core::time_of(job.recording.events[loop.fed() - 1]));
     driven.broken = "at step " + std::to_string(loop.steps()) + ", " + std::to_string(time_s) + " s: " + error.what();
+    return std::nullopt;
+  } catch (const core::PreconditionError& error) {
+    driven.broken = std::string("internal error: ") + error.what();
     return std::nullopt;
   }
 }

@@ -82,10 +82,9 @@ bool is_driven_again(const std::string& folder, const std::optional<SessionStart
 
 void refuse_same_folder(const std::string& run, const std::string& out) {
   std::error_code none;  // a folder that is not there yet is another one
-  if (out.empty() || !std::filesystem::equivalent(run, out, none)) return;
-  throw core::InputError(
-      out + ": is the run that is gone on from, and its drive.bin would be lost if this one were killed, too; " +
-      "give --out another folder");
+  if (run.empty() || out.empty() || !std::filesystem::equivalent(run, out, none)) return;
+  throw core::InputError(out +
+                         ": is an earlier run that this one is made of, and would be lost; give --out another folder");
 }
 
 std::size_t pass_over(core::Nanoseconds end_ns, core::Recording& recording) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "joined_folder.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <sstream>
 #include <system_error>
 
 #include "drive/drive_again.hpp"
@@ -20,6 +22,8 @@ namespace helixnav::apps {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* joined_from = "joined_from.csv";
 
 std::string quoted(const std::string& name) {
   std::string text = "\"";
@@ -63,9 +67,13 @@ std::string changes_table(const std::vector<ChangedLandmark>& shared) {
 }
 
 /// The first component in the folder itself, the others below it.
+std::string component_folder(const std::string& out, std::size_t component) {
+  return component == 0 ? out : out + "/component_" + std::to_string(component + 1);
+}
+
 void write_components(const std::string& out, const std::vector<core::JointMap>& components) {
   for (std::size_t k = 0; k < components.size(); ++k) {
-    const std::string folder = k == 0 ? out : out + "/component_" + std::to_string(k + 1);
+    const std::string folder = component_folder(out, k);
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw core::InputError(folder + ": cannot make the folder: " + error.message());
@@ -73,26 +81,84 @@ void write_components(const std::string& out, const std::vector<core::JointMap>&
   }
 }
 
+/// A map that a run holds, by what its file was.
+struct Held {
+  std::string sha256, name;
+  bool joined = false;  ///< by join, else the run went on in it
+};
+
+/// The maps that a run has taken in.
+std::vector<Held> held_in(const std::string& run) {
+  std::vector<Held> held;
+  if (fs::exists(fs::path(run) / "manifest.json")) {
+    for (const runs::InputFile& input : runs::read_manifest(run).inputs) {
+      const std::string file = fs::path(input.name).filename().string();
+      if (file == "map.bin" || file == "drive.bin") held.push_back({input.sha256, input.name});
+    }
+  }
+  const std::string table = run + "/" + joined_from;
+  if (!fs::exists(table)) return held;
+  constexpr std::size_t digits = 64;
+  std::istringstream rows(files::read_whole_file(table));
+  std::string row;
+  while (std::getline(rows, row)) {
+    if (row.size() > digits && row[digits] == ',')
+      held.push_back({row.substr(0, digits), row.substr(digits + 1), true});
+  }
+  return held;
+}
+
+struct Holding {
+  std::vector<std::string> own;  ///< digests of its map.bin and drive.bin
+  std::vector<Held> held;
+};
+
+Holding holding_of(const std::string& run) {
+  Holding holding{{runs::sha256_of_file(joint_map_file_in(run))}, held_in(run)};
+  const std::string drive = drive_file_in(run);
+  if (fs::exists(drive)) holding.own.push_back(runs::sha256_of_file(drive));
+  return holding;
+}
+
+void check_two(const std::string& a, const Holding& of_a, const std::string& b, const Holding& of_b) {
+  if (of_a.own.front() == of_b.own.front()) throw core::InputError(a + ": the same map as " + b);
+  for (const Held& held : of_a.held) {
+    if (std::find(of_b.own.begin(), of_b.own.end(), held.sha256) == of_b.own.end()) continue;
+    throw core::InputError(a + (held.joined ? ": was joined from the map of " : ": went on in the map of ") + b +
+                           " and holds it already; leave that out");
+  }
+  for (const Held& held : of_a.held) {
+    for (const Held& other : of_b.held) {
+      if (held.sha256 != other.sha256) continue;
+      throw core::InputError(a + " and " + b + ": both hold the map of " + held.name + "; leave one of them out");
+    }
+  }
+}
+
+/// What the map of a component is made of, with what that was made of.
+std::string joined_from_table(const std::vector<std::string>& runs, const supervisor::JoinedSessions& joined,
+                              std::size_t component) {
+  std::string text = "sha256,run\n";
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    if (joined.sessions[k].component != component || !fs::exists(joint_map_file_in(runs[k]))) continue;
+    const std::string& run = runs[k];
+    const Holding holding = holding_of(run);
+    for (const std::string& digest : holding.own) text += digest + ',' + quoted(run) + '\n';
+    for (const Held& held : holding.held)
+      text += held.sha256 + ',' + (held.joined ? held.name : quoted(held.name)) + '\n';
+  }
+  return text;
+}
+
 }  // namespace
 
 void check_independent(const std::vector<std::string>& runs) {
-  std::vector<std::string> digests, drives;
-  for (const std::string& run : runs) {
-    const std::string drive = drive_file_in(run);
-    digests.push_back(runs::sha256_of_file(joint_map_file_in(run)));
-    drives.push_back(fs::exists(drive) ? runs::sha256_of_file(drive) : std::string());
-  }
+  std::vector<Holding> holdings;
+  for (const std::string& run : runs) holdings.push_back(holding_of(run));
   for (std::size_t a = 0; a < runs.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
-      if (digests[a] == digests[b]) throw core::InputError(runs[a] + ": the same map as " + runs[b]);
-    }
-    if (!fs::exists(fs::path(runs[a]) / "manifest.json")) continue;
-    for (const runs::InputFile& input : runs::read_manifest(runs[a]).inputs) {
-      for (std::size_t b = 0; b < runs.size(); ++b) {
-        if (input.sha256.empty() || (input.sha256 != digests[b] && input.sha256 != drives[b])) continue;
-        throw core::InputError(runs[a] + ": went on in the map of " + runs[b] +
-                               " and holds it already; leave that out");
-      }
+      check_two(runs[a], holdings[a], runs[b], holdings[b]);
+      check_two(runs[b], holdings[b], runs[a], holdings[a]);
     }
   }
 }
@@ -100,6 +166,9 @@ void check_independent(const std::vector<std::string>& runs) {
 void write_joined(const std::string& out, const std::vector<std::string>& names,
                   const supervisor::JoinedSessions& joined, const std::vector<ChangedLandmark>& shared) {
   write_components(out, joined.components);
+  for (std::size_t k = 0; k < joined.components.size(); ++k) {
+    files::write_whole_file(component_folder(out, k) + "/" + joined_from, joined_from_table(names, joined, k));
+  }
   files::write_whole_file(out + "/joins.csv", joins_table(names, joined));
   files::write_whole_file(out + "/changes.csv", changes_table(shared));
   files::write_whole_file(out + "/report.html", joined_page(names, joined, shared));

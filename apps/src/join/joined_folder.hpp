@@ -9,11 +9,12 @@
 
 namespace helixnav::apps {
 
-/// Joined maps count what they know once: InputError for a run folder that is in the list twice, or within another one.
+/// Joined maps count what they know once: InputError for a run folder that is in the list twice, or whose map another one holds, because it
+/// went on in it or was joined from it, and for two that hold the map of a third.
 void check_independent(const std::vector<std::string>& runs);
 
 /// Writes what became of several sessions: the first component's map into `out`, which is made, the others' below it, and
-/// joins.csv, changes.csv and report.html. `names` are the sessions'.
+/// joined_from.csv, joins.csv, changes.csv and report.html. `names` are the sessions'.
 void write_joined(const std::string& out, const std::vector<std::string>& names,
                   const supervisor::JoinedSessions& joined, const std::vector<ChangedLandmark>& shared);
 

@@ -83,6 +83,7 @@ void refuse_for_team(const CLI::App& command, const ReplayJob& job, const GivenO
 ExitCode replay(CLI::App& command, ReplayJob& job) {
   const GivenOptions given = options_given(command);
   prepare_run(command, job.run);
+  refuse_same_folder(job.map, job.run.out);
   warn_of_deprecated_keys(command);
   const SpooledLog log_file(job.path);
   job.path = log_file.path();
@@ -102,10 +103,7 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   if (!job.blackouts.empty()) task.withheld = withhold(task.recording, job.blackouts);
   apply_log_settings(task.recording, job.settings);
   const bool drives_again = goes_on_from_drive(job);
-  if (drives_again) {
-    refuse_same_folder(job.map, job.run.out);
-    put_before(runs::read_drive(drive_file_in(job.map)), task.recording, task.withheld);
-  }
+  if (drives_again) put_before(runs::read_drive(drive_file_in(job.map)), task.recording, task.withheld);
   print_remarks(task.recording);
   task.navigator = fit_to_recording(job.settings, task.recording);
   fill_drive(task, job.run, dump_config(command) + in_force_text(job.settings, task.navigator, task.recording));

@@ -66,7 +66,6 @@ std::string scenario_list() {
 
 std::optional<runs::FedDrive> driven_before(const SimulateJob& job) {
   if (job.settings.known_association || !is_driven_again(job.map, job.start)) return std::nullopt;
-  refuse_same_folder(job.map, job.run.out);
   return runs::read_drive(drive_file_in(job.map));
 }
 
@@ -110,6 +109,7 @@ ExitCode simulate_robots(const CLI::App& command, const SimulateJob& job, const 
 ExitCode simulate(CLI::App& command, SimulateJob& job) {
   const GivenOptions given = options_given(command);
   prepare_run(command, job.run);
+  refuse_same_folder(job.map, job.run.out);
   if (job.scenario == team_scenario) return simulate_robots(command, job, given);
   refuse_options_of_a_team(command, {"--robots", "--unknown-starts"}, job.settings);
   check_filter(command, given, job.settings.fastslam);
