@@ -8,9 +8,6 @@
 
 namespace helixnav::evaluation {
 
-/// The pose a fraction of the way from one to another along the arc of constant twist.
-core::Pose2 interpolate(const core::Pose2& T_world_a, const core::Pose2& T_world_b, double fraction);
-
 /// Estimate of the run at `t_ns`: pose interpolated between the steps around it, covariance of the step before.
 /// Nothing outside the steps' time. Cost O(log n). Test: evaluation/evaluation_test.cpp.
 std::optional<core::PoseGaussian> estimate_at(const std::vector<core::StepReport>& steps, core::Nanoseconds t_ns);

@@ -73,6 +73,25 @@ std::string nis_text(double mean_per_dof) {
       1.0 / factor, mean_per_dof);
 }
 
+/// Empty unless the gate refused more of the position fixes than outliers of a receiver are.
+std::string fixes_text(const runs::Run& run) {
+  std::size_t used = 0, refused = 0;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::Decision& decision : step.decisions) {
+      const auto* fix = std::get_if<core::FixDecision>(&decision);
+      if (fix != nullptr) ++(fix->accepted ? used : refused);
+    }
+  }
+  constexpr std::size_t enough = 20;
+  constexpr double most_refused = 0.2;
+  if (used + refused < enough || share(refused, used + refused) <= most_refused) return {};
+  return warning(
+      "%zu of %zu position fixes were refused: their noise is larger than they say (sigma, gps.sigma_m), the antenna "
+      "is "
+      "not where [antenna] says, their clock is another, or the first ones, which the start is aligned by, were wrong",
+      refused, used + refused);
+}
+
 bool has_match(const core::StepReport& step) {
   return std::any_of(step.associations.begin(), step.associations.end(),
                      [](const core::AssociationReport& a) { return a.outcome == core::Outcome::matched; });
@@ -131,7 +150,8 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
                 "'helixnav evaluate' takes --truth-offset-s",
                 evaluation.position->fixes_outside));
   }
-  for (const std::string& text : {numerics_text(numerics_of(run)), postponed_text(postponed_in(run))}) {
+  for (const std::string& text :
+       {fixes_text(run), numerics_text(numerics_of(run)), postponed_text(postponed_in(run))}) {
     if (!text.empty()) warnings.push_back(text);
   }
   return warnings;

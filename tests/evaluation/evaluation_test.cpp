@@ -39,19 +39,6 @@ TEST(ErrorStatistics, EqualHandComputedValues) {
   EXPECT_TRUE(std::isnan(error_statistics({}).rmse));
 }
 
-TEST(Interpolation, FollowsTheArcOfAQuarterCircle) {
-  const core::Pose2 end(10.0, 10.0, core::pi / 2);
-  const core::Pose2 middle = interpolate({}, end, 0.5);
-  EXPECT_NEAR(middle.x_m, 10.0 * std::sin(core::pi / 4), 1e-12);
-  EXPECT_NEAR(middle.y_m, 10.0 * (1.0 - std::cos(core::pi / 4)), 1e-12);
-  EXPECT_NEAR(middle.heading_rad, core::pi / 4, 1e-12);
-}
-
-TEST(Interpolation, TakesTheShortWayRoundAtPi) {
-  const core::Pose2 middle = interpolate({0.0, 0.0, 3.1}, {0.0, 0.0, -3.1}, 0.5);
-  EXPECT_NEAR(std::abs(middle.heading_rad), core::pi, 1e-12);
-}
-
 TEST(Interpolation, IsSilentOutsideTheRunAndExactAtItsSteps) {
   const runs::Run run = straight_run();
   EXPECT_FALSE(estimate_at(run.steps, -1));

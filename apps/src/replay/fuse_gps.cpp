@@ -9,11 +9,33 @@
 #include <Eigen/LU>
 
 #include "helixnav/core/errors.hpp"
+#include "helixnav/core/interpolate.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "helixnav/evaluation/alignment.hpp"
 
 namespace helixnav::apps {
 namespace {
+
+/// Increments across a fix become two, so that it is used where the vehicle was then. What began when no event says so stays whole.
+void split_at_fixes(core::Recording& recording) {
+  std::vector<core::Event> events;
+  events.reserve(recording.events.size() + recording.true_positions.size());
+  auto fix = recording.true_positions.begin();
+  for (core::Event& event : recording.events) {
+    auto* odometry = std::get_if<core::Odometry>(&event);
+    while (odometry != nullptr && !events.empty()) {
+      const core::Nanoseconds begin_ns = core::time_of(events.back());
+      while (fix != recording.true_positions.end() && fix->t_ns <= begin_ns) ++fix;
+      if (fix == recording.true_positions.end() || fix->t_ns >= odometry->t_ns) break;
+      const double fraction = core::seconds(fix->t_ns - begin_ns) / core::seconds(odometry->t_ns - begin_ns);
+      const auto [driven, rest] = core::split(*odometry, fraction, fix->t_ns);
+      events.emplace_back(driven);
+      *odometry = rest;
+    }
+    events.push_back(std::move(event));
+  }
+  recording.events = std::move(events);
+}
 
 struct Beginning {
   std::vector<Eigen::Vector2d> gps_m;  ///< the fixes
@@ -61,6 +83,7 @@ core::PoseGaussian start_in_gps_frame(const Beginning& beginning, double sigma_m
 
 void fuse_gps(core::Recording& recording, const GpsSettings& settings) {
   if (recording.true_positions.empty()) throw core::InputError(recording.name + ": --gps fuse needs a log with GPS");
+  split_at_fixes(recording);
   const Beginning beginning = begin(recording, settings.start_m);
   recording.start = start_in_gps_frame(beginning, settings.sigma_m);
 
