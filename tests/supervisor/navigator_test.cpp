@@ -11,6 +11,7 @@
 #include "campaign.hpp"
 #include "circuits.hpp"
 #include "helixnav/core/chi2.hpp"
+#include "helixnav/core/odometry.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -90,6 +91,30 @@ TEST(Navigator, BuriesWhatClutterBegan) {
   EXPECT_GT(born_of_clutter, 500);
   EXPECT_EQ(mature_of_clutter, 0);
   EXPECT_LT(left_of_clutter, 5 * 30);  // those of the last metres, whose time has not come
+}
+
+// Beside a laser that sees where the trees are, a radio measures how far something is.
+TEST(Navigator, LeavesRangesAndBearingsAloneUnused) {
+  Navigator navigator((core::PoseGaussian()));
+  core::Scan laser, radio;
+  laser.field_of_view = radio.field_of_view = {0.0, 30.0, -core::pi, core::pi, 30.0};
+  for (const double bearing_rad : {-1.0, 0.0, 1.0}) {
+    laser.observations.push_back(core::make_range_bearing(10.0, bearing_rad, 0.05, 0.005));
+  }
+  radio.observations = {core::make_range(10.02, 0.05), core::make_bearing(1.001, 0.005)};
+  for (int k = 0; k < 20; ++k) {
+    core::Odometry moved = core::no_motion(1'000'000'000L * (k + 1));
+    moved.covariance = 1e-4 * Eigen::Matrix3d::Identity();
+    laser.t_ns = radio.t_ns = moved.t_ns;
+    navigator.move(moved);
+    navigator.observe(laser);
+    const core::PoseGaussian before = navigator.pose();
+    for (const core::AssociationReport& one : navigator.observe(radio).associations) {
+      EXPECT_EQ(one.outcome, Outcome::ambiguous);
+    }
+    EXPECT_EQ(navigator.pose().mean.vector(), before.mean.vector());
+    EXPECT_EQ(navigator.map().size(), 3U) << "not refuted by what the radio does not tell";
+  }
 }
 
 TEST(Navigator, KeepsNoTraceOfALandmarkThatDied) {

@@ -105,6 +105,19 @@ void look_for_returns(const cekf::CompressedEkf& filter, const association::Land
                                options.search);
 }
 
+bool has_unplaced(const core::Scan& scan) {
+  return std::any_of(scan.observations.begin(), scan.observations.end(),
+                     [](const core::Observation& one) { return core::dimension(one.kind) == 1; });
+}
+
+void leave_unplaced_unused(const core::Scan& scan, std::vector<core::AssociationReport>& reports) {
+  for (core::AssociationReport& report : reports) {
+    const core::Observation& seen = scan.observations[static_cast<std::size_t>(report.observation)];
+    if (core::dimension(seen.kind) == 1 && report.outcome == core::Outcome::matched)
+      report.outcome = core::Outcome::ambiguous;
+  }
+}
+
 void leave_returns_unused(GatedScan& gated) {
   gated.place.loose.clear();
   for (const RevisitAmbiguity& met : gated.returns) gated.place.loose.push_back(met.landmark);

@@ -37,6 +37,12 @@ void look_for_returns(const cekf::CompressedEkf& filter, const association::Land
 /// they would be matched by is in question.
 void leave_returns_unused(GatedScan& gated);
 
+/// A range or a bearing alone is of too many landmarks: without identities it is left unused.
+void leave_unplaced_unused(const core::Scan& scan, std::vector<core::AssociationReport>& reports);
+
+/// Whether something in the scan is a range or a bearing alone: what it did not see is then not known.
+bool has_unplaced(const core::Scan& scan);
+
 /// The outcome of every observation. Two matched old landmarks confirm each other; an isolated match is deferred when other
 /// objects may be in its gate, and, until its second hit, when it would correct the pose by much. So is one that hangs loose
 /// (place_evidence.hpp) however many others are matched.

@@ -193,6 +193,7 @@ GatedScan NavigationLoop::gate(const Scan& scan) const {
 
 std::vector<core::AssociationReport> NavigationLoop::associate_gated(const GatedScan& gated, const Scan& scan) {
   auto reports = associate_scan(gated, options_, belief_.existence.path_m(), belief_.confirmation);
+  leave_unplaced_unused(scan, reports);
   pending_.doubtful = leave_doubtful_unused(gated, belief_.existence, scan, options_, reports);
   return reports;
 }
@@ -231,13 +232,17 @@ std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const
   const std::vector<LandmarkId> born = landmarks_with(Outcome::augmented, report.associations);
   std::vector<double> seen_nats = appearance_nats(belief_.existence.appearance(), scan, report.associations);
   const std::vector<association::UnusedSighting> unused = std::exchange(pending_.doubtful, {});
-  std::vector<LandmarkId> expected = expected_unseen(belief_.filter, scan, options_.view_margin_m, report.associations);
+  std::vector<LandmarkId> expected;
+  if (!has_unplaced(scan)) {
+    expected = expected_unseen(belief_.filter, scan, options_.view_margin_m, report.associations);
+  }
   if (Mapping* mapping = std::get_if<Mapping>(&mode_)) {
     mapping->monitor.observe(belief_.existence, expected, seen, options_.search.old_after_m);
   }
   std::vector<LandmarkId> at_rim;
   constexpr std::int64_t rim_stride = 4;  // a whole drive past is one miss: not every scan need look
-  if (belief_.step % rim_stride == 0) at_rim = unseen_at_rim(belief_.filter, scan, report.associations, expected);
+  if (belief_.step % rim_stride == 0 && !has_unplaced(scan))
+    at_rim = unseen_at_rim(belief_.filter, scan, report.associations, expected);
   const Searching* open = searching();
   for (std::vector<LandmarkId>* ids : {&expected, &at_rim}) {
     drop_what_may_be_elsewhere(belief_.existence, open != nullptr ? &open->search : nullptr,
