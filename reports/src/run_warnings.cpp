@@ -87,8 +87,8 @@ std::string fixes_text(const runs::Run& run) {
   if (used + refused < enough || share(refused, used + refused) <= most_refused) return {};
   return warning(
       "%zu of %zu position fixes were refused: their noise is larger than they say (sigma, gps.sigma_m), the antenna "
-      "is "
-      "not where [antenna] says, their clock is another, or the first ones, which the start is aligned by, were wrong",
+      "stands elsewhere than [antenna] says, their clock is another, or the first ones, which align the start, were "
+      "wrong",
       refused, used + refused);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "numerics_text.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -69,6 +71,24 @@ TEST(Numerics, WorkThatWasLeftOutIsCountedAndSaid) {
   EXPECT_EQ(summary["postponed"]["drives"], 0);
   EXPECT_TRUE(has(warnings_about(run).back(), "work was left out or put off")) << warnings_about(run).back();
   EXPECT_TRUE(has(explain_step(run, 20), "after 30000 hypotheses")) << explain_step(run, 20);
+}
+
+// Outliers of a receiver are a few in a hundred; where the gate refuses more, what the fixes claim is wrong.
+TEST(Fixes, ThatAreMostlyRefusedAreAWarning) {
+  const auto said = [](int used, int refused) {
+    std::vector<core::Decision> decisions;
+    for (int k = 0; k < used + refused; ++k) {
+      core::FixDecision fix;
+      fix.accepted = k < used;
+      decisions.emplace_back(fix);
+    }
+    const std::vector<std::string> warnings = warnings_about(run_of({}, decisions));
+    return std::count_if(warnings.begin(), warnings.end(),
+                         [](const std::string& text) { return has(text, "position fixes were refused"); });
+  };
+  EXPECT_EQ(said(15, 10), 1);
+  EXPECT_EQ(said(95, 5), 0);
+  EXPECT_EQ(said(0, 10), 0) << "too few to say";
 }
 
 }  // namespace

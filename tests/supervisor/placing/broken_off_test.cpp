@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A part of the drive that cannot be computed any further ends, and the drive goes on beside its map until it finds its place there.
+#include <cmath>
+#include <functional>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "circuits.hpp"
@@ -15,77 +19,68 @@ core::Odometry rounded_away(core::Nanoseconds t_ns) {
   return odometry;
 }
 
-TEST(BrokenOff, IsAPartAndNotTheDrive) {
-  const core::Recording run = sim::simulate(wide_circuit(), 1);
-  constexpr std::size_t broken_at = 220;
-  Navigator navigator(run.start);
-  std::vector<core::CarriedDecision> parts;
-  int placed = 0;
-  std::size_t scans = 0;
-  for (const core::Event& event : run.events) {
-    const auto* scan = std::get_if<core::Scan>(&event);
-    if (scan != nullptr && scans++ == broken_at) navigator.move(rounded_away(scan->t_ns));
-    const auto report = navigator.take(event);
-    if (!report) continue;
-    for (const core::Decision& decision : report->decisions) {
-      if (const auto* part = std::get_if<core::CarriedDecision>(&decision)) parts.push_back(*part);
-      const auto* place = std::get_if<core::PlacedDecision>(&decision);
-      placed += place != nullptr && place->verdict == core::PlacedDecision::Verdict::accepted;
-    }
-  }
-  ASSERT_EQ(parts.size(), 1U);
-  EXPECT_EQ(parts[0].cause, core::CarriedDecision::Cause::broken_off);
-  EXPECT_GE(parts[0].landmarks, 15);
-  EXPECT_EQ(placed, 1);
-  const Eigen::Vector2d error_m = navigator.pose().mean.position_m() - run.true_poses.back().T_world_robot.position_m();
-  EXPECT_LT(error_m.norm(), 0.8);
+/// As from speeds held through a gap.
+core::Odometry through_gap(core::Nanoseconds t_ns) {
+  core::Odometry odometry = core::no_motion(t_ns);
+  odometry.T_before_after = {0.0, 0.0, 0.4};
+  odometry.covariance = Eigen::Vector3d(30.0, 30.0, 4.0).asDiagonal();
+  return odometry;
 }
 
-/// Before some scans, as from speeds held through a gap.
-std::vector<core::CarriedDecision> parts_without_odometry(std::size_t from, std::size_t every, int& placed,
-                                                          double& error_m) {
+struct Parted {
+  std::vector<core::CarriedDecision> parts;
+  int placed = 0;
+  double error_at_end_m = 0.0;
+};
+
+/// Round the circuit, with a motion that was not made before some of its scans.
+Parted drive_parted(core::Odometry (*motion)(core::Nanoseconds),
+                    const std::function<bool(std::size_t scan)>& is_before) {
   const core::Recording run = sim::simulate(wide_circuit(), 1);
   Navigator navigator(run.start);
-  std::vector<core::CarriedDecision> parts;
+  Parted result;
   std::size_t scans = 0;
   for (const core::Event& event : run.events) {
     const auto* scan = std::get_if<core::Scan>(&event);
-    if (scan != nullptr && scans++ >= from && (scans - 1 - from) % every == 0) {
-      core::Odometry gap = core::no_motion(scan->t_ns);
-      gap.T_before_after = {0.0, 0.0, 0.4};
-      gap.covariance = Eigen::Vector3d(30.0, 30.0, 4.0).asDiagonal();
-      navigator.move(gap);
-    }
+    if (scan != nullptr && is_before(scans++)) navigator.move(motion(scan->t_ns));
     const auto report = navigator.take(event);
     if (!report) continue;
     for (const core::Decision& decision : report->decisions) {
-      if (const auto* part = std::get_if<core::CarriedDecision>(&decision)) parts.push_back(*part);
+      if (const auto* part = std::get_if<core::CarriedDecision>(&decision)) result.parts.push_back(*part);
       const auto* place = std::get_if<core::PlacedDecision>(&decision);
-      placed += place != nullptr && place->verdict == core::PlacedDecision::Verdict::accepted;
+      result.placed += place != nullptr && place->verdict == core::PlacedDecision::Verdict::accepted;
     }
   }
-  error_m = (navigator.pose().mean.position_m() - run.true_poses.back().T_world_robot.position_m()).norm();
-  return parts;
+  const core::Pose2& truth = run.true_poses.back().T_world_robot;
+  result.error_at_end_m = (navigator.pose().mean.position_m() - truth.position_m()).norm();
+  return result;
+}
+
+bool is_scan_220(std::size_t scan) { return scan == 220; }
+
+TEST(BrokenOff, IsAPartAndNotTheDrive) {
+  const Parted drive = drive_parted(rounded_away, is_scan_220);
+  ASSERT_EQ(drive.parts.size(), 1U);
+  EXPECT_EQ(drive.parts[0].cause, core::CarriedDecision::Cause::broken_off);
+  EXPECT_GE(drive.parts[0].landmarks, 15);
+  EXPECT_EQ(drive.placed, 1);
+  EXPECT_LT(drive.error_at_end_m, 0.8);
 }
 
 // Matched to first order, a heading known to ±115° becomes wrong by tens of degrees and is taken for certain.
 TEST(NoOdometry, BeginsAPartThatFindsItsPlace) {
-  int placed = 0;
-  double error_m = 0.0;
-  const auto parts = parts_without_odometry(220, 100'000, placed, error_m);
-  ASSERT_EQ(parts.size(), 1U);
-  EXPECT_EQ(parts[0].cause, core::CarriedDecision::Cause::no_odometry);
-  EXPECT_NEAR(parts[0].heading_sigma_deg, 2.0 * 180.0 / core::pi, 1.0);
-  EXPECT_NEAR(parts[0].pose_sigma_m, std::sqrt(60.0), 0.2);
-  EXPECT_EQ(placed, 1);
-  EXPECT_LT(error_m, 0.8);
+  const Parted drive = drive_parted(through_gap, is_scan_220);
+  ASSERT_EQ(drive.parts.size(), 1U);
+  EXPECT_EQ(drive.parts[0].cause, core::CarriedDecision::Cause::no_odometry);
+  EXPECT_NEAR(drive.parts[0].heading_sigma_deg, 2.0 * 180.0 / core::pi, 1.0);
+  EXPECT_NEAR(drive.parts[0].pose_sigma_m, std::sqrt(60.0), 0.2);
+  EXPECT_EQ(drive.placed, 1);
+  EXPECT_LT(drive.error_at_end_m, 0.8);
 }
 
 // Odometry that is always so is what this drive has: it is told by what is usual.
 TEST(NoOdometry, IsNoneThatIsUsual) {
-  int placed = 0;
-  double error_m = 0.0;
-  EXPECT_TRUE(parts_without_odometry(0, 1, placed, error_m).empty());
+  EXPECT_TRUE(drive_parted(through_gap, [](std::size_t) { return true; }).parts.empty());
 }
 
 }  // namespace
