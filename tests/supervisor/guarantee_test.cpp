@@ -13,6 +13,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
 #include "pauses.hpp"
+#include "wrong_names.hpp"
 
 namespace {
 
@@ -325,6 +326,11 @@ BrokenByName break_named_drive(const core::Recording& run, const NavigatorOption
 
 TEST(Guarantee, HoldsForObservationsKnownByName) {
   EXPECT_GT(break_named_drive(sim::simulate(wide_circuit(), 5), {}, 37).calls, 50);
+}
+
+TEST(Guarantee, HoldsForNamesThatAreWrong) {
+  const core::Recording run = with_a_wrong_first_name(with_wrong_names(sim::simulate(wide_circuit(), 5), 0.03, 5));
+  EXPECT_GT(break_named_drive(run, {}, 37).calls, 50);
 }
 
 TEST(Guarantee, HoldsWhereTheFilterHoldsAPartOfAMapKnownByName) {

@@ -55,6 +55,7 @@ supervisor::NavigatorOptions fit_to_recording(const Settings& settings, const co
   } else if (recording.extraneous_per_scan) {
     options.search.learn_extraneous = true;
   }
+  if (recording.labels_are_given) options.names.wrong = 0.0;
   return options;
 }
 

@@ -2,6 +2,8 @@
 #include "run_warnings.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <map>
 
 #include "helixnav/reports/run_warnings.hpp"
 
@@ -13,6 +15,25 @@ bool has_match(const core::StepReport& step) {
                      [](const core::AssociationReport& a) { return a.outcome == core::Outcome::matched; });
 }
 
+/// Empty unless sightings were left out of the landmark that they name.
+std::string names_text(const runs::Run& run) {
+  std::map<core::LandmarkId, std::size_t> contradicted;
+  std::size_t all = 0;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::AssociationReport& a : step.associations) {
+      if (a.outcome != core::Outcome::rejected || a.landmark == core::no_landmark) continue;
+      ++contradicted[a.landmark];
+      ++all;
+    }
+  }
+  if (all == 0) return {};
+  const auto most = std::max_element(contradicted.begin(), contradicted.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  return std::to_string(all) + " sightings contradict their names and were left out, most of them (" +
+         std::to_string(most->second) + ") of landmark " + std::to_string(most->first) +
+         ": identities are wrong at times, or landmarks were moved. 'helixnav explain --step N' shows a scan";
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const Drive& job, const runs::Run& run, const evaluation::Evaluation& evaluation) {
@@ -22,6 +43,10 @@ std::vector<std::string> warnings_of(const Drive& job, const runs::Run& run, con
   });
   if (job.known_association && mature && std::none_of(run.steps.begin(), run.steps.end(), has_match)) {
     warnings.emplace_back("no identity was seen twice: --association known needs identities that last");
+  }
+  if (job.known_association) {
+    const std::string text = names_text(run);
+    if (!text.empty()) warnings.push_back(text);
   }
   return warnings;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <limits>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "update/innovation.hpp"
@@ -18,8 +19,12 @@ bool CompressedEkf::are_active(const std::vector<Match>& matches) const {
 }
 
 UpdateResult CompressedEkf::update(const std::vector<Match>& matches) {
+  return *update_within(matches, std::numeric_limits<double>::infinity());
+}
+
+std::optional<UpdateResult> CompressedEkf::update_within(const std::vector<Match>& matches, double most_nis) {
   check_matches(matches, "update");
-  if (matches.empty()) return {};
+  if (matches.empty()) return UpdateResult{};
   BeforeActivations before = before_activations(are_active(matches));
   try {
     for (const Match& match : matches) activate(match.landmark);
@@ -28,13 +33,28 @@ UpdateResult CompressedEkf::update(const std::vector<Match>& matches) {
     gather_involved(w);
     linearise_sightings(matches, w, "update");
     const double nis = solve_innovation(w, "update");
+    if (nis > most_nis) {
+      undo_activations(before);
+      return std::nullopt;
+    }
     apply_correction(w, "update");
     active_.last_seen = static_cast<int>(w.ids.size());
-    return {nis, static_cast<int>(w.nu.rows())};
+    return UpdateResult{nis, static_cast<int>(w.nu.rows())};
   } catch (...) {
     undo_activations(before);
     throw;
   }
+}
+
+Innovation CompressedEkf::innovation(const std::vector<Match>& matches) const {
+  const char* const verb = "innovation";
+  check_matches(matches, verb);
+  UpdateWorkspace w;
+  name_landmarks(matches, w);
+  gather_involved_unactivated(w);
+  linearise_sightings(matches, w, verb);
+  const auto H = w.H.view();
+  return {w.nu.view(), H * w.P.view() * H.transpose() + Eigen::MatrixXd(w.R.view())};
 }
 
 /// Mean and covariance of the vehicle and of the landmarks named in w.ids, all active.

@@ -66,6 +66,7 @@ void add_scan(const Graph& graph, const std::vector<std::size_t>& edges_here, co
 core::Recording recording_from_graph(const core::LandmarkGraph& graph, std::string name) {
   core::Recording recording;
   recording.name = std::move(name);
+  recording.labels_are_given = true;
   if (graph.poses.empty()) throw core::InputError(recording.name + ": a graph without poses");
   const std::vector<std::size_t> chain = odometry_chain(graph, recording.name);
   std::vector<std::vector<std::size_t>> edges_at(graph.poses.size());

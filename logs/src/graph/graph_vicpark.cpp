@@ -23,6 +23,7 @@ class VicParkReader {
     if (rows_.columns != 12)
       file_.fail(std::string(variable) + ": expected 12 columns, found " + std::to_string(rows_.columns));
     recording_.name = path.filename().string();
+    recording_.labels_are_given = true;
   }
 
   core::Recording read() {

@@ -123,6 +123,7 @@ class Reader {
 
   core::Recording recording() {
     core::Recording recording;
+    recording.labels_are_given = true;
     for (std::size_t pose = 0; pose < scans_.size(); ++pose) {
       if (pose > 0) {
         recording.events.emplace_back(odometry_[pose - 1]);

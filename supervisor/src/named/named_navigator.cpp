@@ -2,6 +2,7 @@
 #include "helixnav/supervisor/named_navigator.hpp"
 
 #include <iterator>
+#include <limits>
 #include <set>
 #include <string>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "helixnav/supervisor/lengths.hpp"
 #include "loop/fit_to_sensor.hpp"
 #include "loop/judge_fix.hpp"
+#include "named/contradicting_names.hpp"
 #include "named/named_drive.hpp"
 
 namespace helixnav::supervisor {
@@ -160,7 +162,7 @@ std::vector<AssociationReport> NamedNavigator::associate(const NamedScan& named)
     const auto known = landmark_of_identity_.find(identity);
     if (identity < 0) {
       reports[i].outcome = Outcome::rejected;
-    } else if (known == landmark_of_identity_.end()) {
+    } else if (known == landmark_of_identity_.end() || integrity_.is_misplaced(known->second)) {
       reports[i].outcome = born.insert(identity).second ? Outcome::augmented : Outcome::rejected;
     } else {
       reports[i].outcome = Outcome::matched;
@@ -170,13 +172,54 @@ std::vector<AssociationReport> NamedNavigator::associate(const NamedScan& named)
   return reports;
 }
 
-void NamedNavigator::update(const core::Scan& scan, StepReport& report) {
-  std::vector<cekf::Match> matched = matches(scan, report.associations);
-  if (matched.empty()) return;
+std::vector<cekf::Match> NamedNavigator::matches_in_filter(const core::Scan& scan,
+                                                           const std::vector<AssociationReport>& associations) const {
+  std::vector<cekf::Match> matched = matches(scan, associations);
   for (cekf::Match& match : matched) match.landmark = names_.in_filter(match.landmark);
-  const cekf::UpdateResult result = filter_.update(matched);
-  report.joint_nis = result.nis;
-  report.joint_dof = result.dof;
+  return matched;
+}
+
+void NamedNavigator::update(const core::Scan& scan, StepReport& report) {
+  std::vector<cekf::Match> matched = matches_in_filter(scan, report.associations);
+  if (matched.empty()) return;
+  const double most_nis = options_.names.wrong > 0.0 ? integrity_.noise_scale() * usual_nis(matched)
+                                                     : std::numeric_limits<double>::infinity();
+  std::optional<cekf::UpdateResult> result = filter_.update_within(matched, most_nis);
+  if (result) {
+    integrity_.note_nis(result->nis, result->dof);
+    integrity_.agree(landmarks_with(Outcome::matched, report.associations));
+  } else {
+    leave_wrong_names_out(scan, matched, report.associations);
+    matched = matches_in_filter(scan, report.associations);
+    result = filter_.update(matched);
+  }
+  report.joint_nis = result->nis;
+  report.joint_dof = result->dof;
+}
+
+void NamedNavigator::leave_wrong_names_out(const core::Scan& scan, const std::vector<cekf::Match>& matched,
+                                           std::vector<AssociationReport>& associations) {
+  const AssumedOfNames assumed{scan.field_of_view, reach_m_, options_.names.wrong, integrity_.noise_scale()};
+  std::vector<AssociationReport> left_out = associations;
+  std::vector<std::size_t> of_match;
+  for (std::size_t i = 0; i < left_out.size(); ++i) {
+    if (left_out[i].outcome == Outcome::matched) of_match.push_back(i);
+  }
+  const std::vector<ContradictingName> wrong = contradicting_names(filter_, matched, assumed);
+  std::vector<LandmarkId> contradicting;
+  for (const ContradictingName& name : wrong) {
+    AssociationReport& one = left_out[of_match[name.match]];
+    contradicting.push_back(one.landmark);
+    one.outcome = Outcome::rejected;
+    one.nis = name.nis;
+    one.dof = name.dof;
+  }
+  integrity_.note_unusual();
+  const std::vector<LandmarkId> agreeing = landmarks_with(Outcome::matched, left_out);
+  if (wrong.empty()) return integrity_.agree(agreeing);
+  const NameIntegrity::AboutMotion about_motion{nats_for_slip(filter_, matched, wrong, assumed, options_.slip),
+                                                agree_about_a_pose(filter_, matched, assumed)};
+  if (integrity_.blames_names(contradicting, agreeing, about_motion)) associations = std::move(left_out);
 }
 
 void NamedNavigator::augment(const NamedScan& named, StepReport& report) {
@@ -207,15 +250,22 @@ void NamedNavigator::enter_names(const NamedScan& named, const StepReport& repor
   counted.reserve(report.associations.size());
   for (const AssociationReport& association : report.associations) {
     const std::int64_t identity = named.identities[static_cast<std::size_t>(association.observation)];
-    if (association.outcome == Outcome::augmented) landmark_of_identity_[identity] = association.landmark;
-    if (association.landmark == core::no_landmark) continue;
+    if (association.outcome == Outcome::augmented) enter_name(identity, association.landmark);
+    if (association.landmark == core::no_landmark || association.outcome == Outcome::rejected) continue;
     ++observations_[association.landmark];
     counted.push_back(association.landmark);
   }
 }
 
+void NamedNavigator::enter_name(std::int64_t identity, LandmarkId landmark) {
+  const auto [name, is_new] = landmark_of_identity_.try_emplace(identity, landmark);
+  if (is_new) return;
+  integrity_.begin_anew(identity, name->second);
+  name->second = landmark;
+}
+
 void NamedNavigator::checkpoint() {
-  checkpoint_.emplace(Checkpoint{filter_.snapshot(), delayed_, step_});
+  checkpoint_.emplace(Checkpoint{filter_.snapshot(), delayed_, integrity_, step_});
   taken_.clear();
 }
 
@@ -232,6 +282,10 @@ void NamedNavigator::forget_names() {
   for (auto name = landmark_of_identity_.begin(); name != landmark_of_identity_.end();) {
     name = name->second >= first ? landmark_of_identity_.erase(name) : std::next(name);
   }
+  const std::vector<NameIntegrity::BegunAnew>& begun = integrity_.begun_anew();
+  for (std::size_t i = begun.size(); i > checkpoint_->integrity.begun_anew().size(); --i) {
+    if (begun[i - 1].from < first) landmark_of_identity_[begun[i - 1].identity] = begun[i - 1].from;
+  }
 }
 
 void NamedNavigator::recover(std::size_t events, Pending pending) {
@@ -240,6 +294,7 @@ void NamedNavigator::recover(std::size_t events, Pending pending) {
   again.resize(events);
   filter_.restore(checkpoint_->filter);
   delayed_ = checkpoint_->delayed;
+  integrity_ = checkpoint_->integrity;
   step_ = checkpoint_->step;
   pending_ = {};
   recovering_ = true;

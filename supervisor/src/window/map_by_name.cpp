@@ -26,6 +26,7 @@ std::vector<core::MapLandmark> NamedNavigator::map_with(const PointOf& point_of)
   std::vector<core::MapLandmark> landmarks;
   landmarks.reserve(observations_.size());
   for (const auto& [id, observations] : observations_) {
+    if (integrity_.is_superseded(id)) continue;
     core::MapLandmark landmark;
     landmark.id = id;
     landmark.point = point_of(id);
@@ -40,7 +41,9 @@ std::vector<core::MapLandmark> NamedNavigator::map() const {
   if (!names_.is_part) return map_with([this](LandmarkId id) { return filter_.landmark(id); });
   const NamedDrive drive = solved(*drive_, reach_m_);
   std::vector<LandmarkId> ids;
-  for (const auto& [id, observations] : observations_) ids.push_back(id);
+  for (const auto& [id, observations] : observations_) {
+    if (!integrity_.is_superseded(id)) ids.push_back(id);
+  }
   const std::vector<core::PointGaussian> points = marginals_of(drive.atlas(), ids);
   std::size_t at = 0;
   return map_with([&](LandmarkId) { return points[at++]; });

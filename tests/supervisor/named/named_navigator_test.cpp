@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/supervisor/named_navigator.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <vector>
@@ -10,6 +12,7 @@
 #include "circuits.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/odometry.hpp"
+#include "wrong_names.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -66,6 +69,60 @@ TEST(NamedNavigator, IsTheCompressedEkfBitForBit) {
     EXPECT_EQ(landmark.point.covariance_m2, by_hand.landmark(landmark.id).covariance_m2);
     EXPECT_EQ(landmark.state, core::LandmarkState::mature);
   }
+}
+
+struct DrivenByName {
+  double largest_error_m = 0.0;
+  int left_out = 0;
+  std::vector<core::MapLandmark> map;
+};
+
+DrivenByName drive_by(const core::Recording& run, const NavigatorOptions& options = {}) {
+  NamedNavigator navigator(run.start, options);
+  DrivenByName driven;
+  drive(run, navigator, [&](const core::Scan& scan, std::size_t i) {
+    const core::StepReport report = navigator.observe(scan, run.labels[i]);
+    const auto truth = std::find_if(run.true_poses.begin(), run.true_poses.end(),
+                                    [&](const core::TruePose& pose) { return pose.t_ns == scan.t_ns; });
+    if (truth != run.true_poses.end()) {
+      const double error_m = (report.pose.mean.position_m() - truth->T_world_robot.position_m()).norm();
+      driven.largest_error_m = std::max(driven.largest_error_m, error_m);
+    }
+    for (const core::AssociationReport& one : report.associations) {
+      driven.left_out += one.outcome == Outcome::rejected && one.landmark != core::no_landmark ? 1 : 0;
+    }
+  });
+  driven.map = navigator.map();
+  return driven;
+}
+
+/// One name in fifty. A drive may be as far off as with right names, and a metre; of ten, one may be farther.
+TEST(NamedNavigator, LeavesWrongNamesOut) {
+  int right = 0;
+  constexpr int drives = 10;
+  for (int seed = 101; seed < 101 + drives; ++seed) {
+    const core::Recording run = sim::simulate(wide_circuit(), static_cast<std::uint64_t>(seed));
+    const DrivenByName by_right_names = drive_by(run);
+    EXPECT_EQ(by_right_names.left_out, 0) << seed;
+    const core::Recording wrong = with_wrong_names(run, 0.02, static_cast<std::uint64_t>(seed));
+    const DrivenByName weighed = drive_by(wrong);
+    EXPECT_GT(weighed.left_out, 3) << seed;
+    right += weighed.largest_error_m < by_right_names.largest_error_m + 1.0 ? 1 : 0;
+    NavigatorOptions believing;
+    believing.names.wrong = 0.0;
+    EXPECT_GT(drive_by(wrong, believing).largest_error_m, by_right_names.largest_error_m + 3.0) << seed;
+  }
+  EXPECT_GE(right, drives - 1);
+}
+
+/// The landmark stands where it was seen by its own name, and once.
+TEST(NamedNavigator, BeginsALandmarkAnewThatWasFirstSeenByAnothersName) {
+  const core::Recording run = sim::simulate(wide_circuit(), 3);
+  const DrivenByName right = drive_by(run);
+  const DrivenByName wrong = drive_by(with_a_wrong_first_name(run));
+  EXPECT_GE(wrong.left_out, 4);
+  EXPECT_EQ(wrong.map.size(), right.map.size());
+  EXPECT_LT(wrong.largest_error_m, right.largest_error_m + 1.0);
 }
 
 /// One scan of one landmark ahead.

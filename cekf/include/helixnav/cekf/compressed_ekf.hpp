@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -60,6 +61,11 @@ class CompressedEkf {
 
   /// Joint EKF update with all matches. Passive landmarks are activated first: nothing is discarded. O((n + q)²·m).
   UpdateResult update(const std::vector<Match>& matches);
+  /// The same, unless νᵀS⁻¹ν is above `most_nis`: then nothing, and nothing has changed. Test: cekf/update_within_test.cpp.
+  std::optional<UpdateResult> update_within(const std::vector<Match>& matches, double most_nis);
+  /// What update would see, for a caller who weighs its matches one by one; read-only. O(m²·n).
+  /// Test: cekf/update_within_test.cpp.
+  Innovation innovation(const std::vector<Match>& matches) const;
   /// Joint Gauss-Newton update to the minimum of J = |x ⊖ x̂|²_P + |ν|²_R, for closings where one linearisation is not
   /// enough; the covariance is that of an update linearised at the minimum. Result: J and its degrees of freedom.
   /// NumericalError when the iteration has not settled (step below 1e-9) after max_iterations.

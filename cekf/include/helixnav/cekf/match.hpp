@@ -34,6 +34,12 @@ struct UpdateResult {
   int dof = 0;
 };
 
+/// What the filter did not expect of sightings: ν and its covariance S = H·P·Hᵀ + R, one or two rows a match in turn.
+struct Innovation {
+  Eigen::VectorXd nu;
+  Eigen::MatrixXd S;
+};
+
 /// The same with the share of each match (or pair) in the cost, for a caller who wants to drop the worst.
 struct CostByPart {
   double cost = 0.0;

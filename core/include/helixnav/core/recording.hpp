@@ -53,6 +53,7 @@ struct Recording {
 
   std::vector<std::vector<Label>> labels;              ///< [scan][observation]; empty when the log has no labels
   std::vector<SharedObservation> shared_observations;  ///< `labels` holds the first label of each
+  bool labels_are_given = false;  ///< what is seen is part of the problem, as in a graph, and not in question
   std::vector<TruePose> true_poses;
   std::vector<TrueLandmark> true_landmarks;
   std::vector<Nanoseconds>

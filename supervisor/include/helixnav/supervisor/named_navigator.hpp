@@ -14,6 +14,7 @@
 #include "helixnav/core/landmark_id.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/supervisor/delayed_landmarks.hpp"
+#include "helixnav/supervisor/name_integrity.hpp"
 #include "helixnav/supervisor/navigator_options.hpp"
 
 namespace helixnav::supervisor {
@@ -21,7 +22,8 @@ namespace helixnav::supervisor {
 class NamedDrive;
 
 /// The Navigator's counterpart for observations that are known by name: the same identity is the same landmark, nothing is
-/// ambiguous, and no search is ever needed. Landmarks seen as a range or a bearing only enter when their sightings fix them
+/// ambiguous, and no search is ever needed. A sighting that contradicts its name is left out (Outcome::rejected), and a landmark
+/// that its own sightings contradict is begun anew (docs/names.md). Landmarks seen as a range or a bearing only enter when their sightings fix them
 /// (DelayedLandmarks).
 ///
 /// Of a map of more than MapOptions::whole landmarks the filter holds those near the vehicle. It begins anew, from the atlas of
@@ -111,6 +113,7 @@ class NamedNavigator {
   struct Checkpoint {
     cekf::Snapshot filter;
     DelayedLandmarks delayed;
+    NameIntegrity integrity;
     std::int64_t step;
   };
   /// What a hand-over has replaced, for recover().
@@ -129,10 +132,15 @@ class NamedNavigator {
   void predict();
   std::vector<core::AssociationReport> associate(const NamedScan& scan) const;
   void update(const core::Scan& scan, core::StepReport& report);
+  void leave_wrong_names_out(const core::Scan& scan, const std::vector<cekf::Match>& matched,
+                             std::vector<core::AssociationReport>& associations);
+  std::vector<cekf::Match> matches_in_filter(const core::Scan& scan,
+                                             const std::vector<core::AssociationReport>& associations) const;
   void augment(const NamedScan& scan, core::StepReport& report);
   void enter_names(const NamedScan& scan, const core::StepReport& report);
   template <class Call>
   auto all_or_nothing(const Call& call);
+  void enter_name(std::int64_t identity, core::LandmarkId landmark);
   void checkpoint();
   void forget_names();
   void recover(std::size_t events, Pending pending);
@@ -158,6 +166,7 @@ class NamedNavigator {
   DelayedLandmarks delayed_;
   std::map<std::int64_t, core::LandmarkId> landmark_of_identity_;
   std::map<core::LandmarkId, int> observations_;
+  NameIntegrity integrity_;
   std::int64_t step_ = 0;
   Pending pending_;
   std::optional<Checkpoint> checkpoint_;

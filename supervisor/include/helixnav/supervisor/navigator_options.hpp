@@ -19,7 +19,12 @@ struct MapOptions {
   int most = 1000;   ///< … but not more than this
 };
 
-/// Options of Navigator and NamedNavigator; the latter reads filter, delayed and fix_probability only. Every length here is
+/// How far identities are trusted.
+struct NameOptions {
+  double wrong = 1e-3;  ///< share of sightings that are of another landmark than their name says; 0: none can be
+};
+
+/// Options of Navigator and NamedNavigator; the latter reads filter, delayed, names, slip, map and fix_probability only. Every length here is
 /// for a sensor with a reach of reference_reach_m; the navigator scales it to the sensor of the first scan (lengths.hpp).
 struct NavigatorOptions {
   bool fit_lengths = true;  ///< false: they are used as they stand
@@ -33,6 +38,7 @@ struct NavigatorOptions {
   NoiseOptions noise;
   MovingOptions moving;
   MapOptions map;
+  NameOptions names;
   DelayedOptions delayed;            ///< of landmarks known by name and seen as a range or a bearing only
   double fix_probability = 0.999;    ///< χ² gate of an absolute fix
   double extraneous_per_scan = 1.0;  ///< observations of no mapped landmark: clutter and new ones together
