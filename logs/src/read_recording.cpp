@@ -9,6 +9,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/acfr_log.hpp"
 #include "helixnav/logs/graph_files.hpp"
+#include "helixnav/logs/mrclam.hpp"
 #include "helixnav/logs/own_log.hpp"
 #include "input_files.hpp"
 #include "mat_file.hpp"
@@ -152,6 +153,9 @@ LogFormat recognise(const fs::path& path) {
     throw core::InputError(path.string() + ": expected a file or folder, found nothing there");
   }
   refuse_rawlog(path);
+  if (is_mrclam(path)) {
+    throw core::InputError(path.string() + ": a log of several robots (MRCLAM), which replay alone reads");
+  }
   if (is_own_log(path)) return LogFormat::own;
   const std::optional<LogFormat> format = fs::is_directory(path) ? of_folder(path) : of_file(path);
   if (!format) {

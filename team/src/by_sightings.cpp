@@ -35,26 +35,33 @@ core::Pose2 pose_from(const SightingRow& there, const SightingRow& back, const S
 
 }  // namespace
 
-std::optional<Candidate> by_sightings(std::size_t into, std::size_t from, core::Nanoseconds t_ns,
-                                      const JoinOptions& options, const State& state) {
+std::vector<Candidate> by_sightings(std::size_t into, std::size_t from, core::Nanoseconds t_ns,
+                                    const JoinOptions& options, const std::set<SightingKey>& refused,
+                                    const State& state) {
+  constexpr std::size_t most = 3;
   const core::Nanoseconds since_ns = t_ns - core::nanoseconds_from_seconds(options.window_s);
   const core::Nanoseconds pair_ns = core::nanoseconds_from_seconds(options.pair_s);
   const std::vector<SightingRow>& rows = state.sighting_rows;
-  const auto leads = [&](const SightingRow& row, std::size_t a, std::size_t b) {
+  std::set<std::size_t> taken;
+  const auto leads = [&](std::size_t i, std::size_t a, std::size_t b) {
+    const SightingRow& row = rows[i];
     return row.use == SightingRow::Use::apart && state.robots[row.robot].component == a &&
-           state.robots[row.seen].component == b;
+           state.robots[row.seen].component == b && taken.count(i) == 0 && refused.count(key_of(row)) == 0;
   };
+  std::vector<Candidate> candidates;
   for (std::size_t i = rows.size(); i-- > 0 && sees(rows[i], state).t_ns >= since_ns;) {
-    if (!leads(rows[i], into, from)) continue;
+    if (!leads(i, into, from)) continue;
     for (std::size_t k = rows.size(); k-- > 0 && sees(rows[k], state).t_ns >= since_ns - pair_ns;) {
-      const bool back = rows[k].robot == rows[i].seen && rows[k].seen == rows[i].robot && leads(rows[k], from, into);
+      const bool back = rows[k].robot == rows[i].seen && rows[k].seen == rows[i].robot && leads(k, from, into);
       if (!back || std::abs(sees(rows[k], state).t_ns - sees(rows[i], state).t_ns) > pair_ns) continue;
-      Candidate candidate{into, from, TeamJoin::By::sightings, {}, {}, {i, k}};
-      candidate.T_into_from.mean = pose_from(rows[i], rows[k], state);
-      return candidate;
+      candidates.push_back({into, from, TeamJoin::By::sightings, {}, {}, {i, k}});
+      candidates.back().T_into_from.mean = pose_from(rows[i], rows[k], state);
+      taken.insert({i, k});
+      break;
     }
+    if (candidates.size() == most) break;
   }
-  return std::nullopt;
+  return candidates;
 }
 
 }  // namespace helixnav::team

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <optional>
+#include <set>
+#include <vector>
 
 #include "helixnav/team/team_options.hpp"
 #include "join_components.hpp"
@@ -13,9 +15,11 @@ namespace helixnav::team {
 /// squares over both maps' covariances. Nothing while χ² objects.
 std::optional<Candidate> by_names(std::size_t into, std::size_t from, const JoinOptions& options, const State& state);
 
-/// By the last two sightings, one each way, of a robot of each.
-std::optional<Candidate> by_sightings(std::size_t into, std::size_t from, core::Nanoseconds t_ns,
-                                      const JoinOptions& options, const State& state);
+/// By two sightings, one each way, of a robot of each: the last two, then the last two before those, a few times; any may be of
+/// another robot than was taken for it. `refused`: are no evidence.
+std::vector<Candidate> by_sightings(std::size_t into, std::size_t from, core::Nanoseconds t_ns,
+                                    const JoinOptions& options, const std::set<SightingKey>& refused,
+                                    const State& state);
 
 /// By where the landmarks stand, without names (supervisor::join_sessions).
 std::optional<Candidate> by_constellation(std::size_t into, std::size_t from, const JoinOptions& options,

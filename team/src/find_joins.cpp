@@ -26,15 +26,19 @@ bool has_grown(std::size_t into, std::size_t from, State& state) {
 bool join_pair(std::size_t into, std::size_t from, core::Nanoseconds t_ns, const TeamOptions& options,
                const RefusedJoins& refused, State& state) {
   const auto may = [&](TeamJoin::By by) {
-    return refused.count({by, static_cast<int>(state.components[into].robots.front()),
-                          static_cast<int>(state.components[from].robots.front())}) == 0;
+    return refused.joins.count({by, static_cast<int>(state.components[into].robots.front()),
+                                static_cast<int>(state.components[from].robots.front())}) == 0;
   };
   const auto join = [&](const std::optional<Candidate>& candidate) {
     return candidate && join_components(*candidate, t_ns, options, state);
   };
   using By = TeamJoin::By;
   const JoinOptions& by = options.join;
-  if (by.by_sightings && may(By::sightings) && join(by_sightings(into, from, t_ns, by, state))) return true;
+  if (by.by_sightings && may(By::sightings)) {
+    for (const Candidate& candidate : by_sightings(into, from, t_ns, by, refused.sightings, state)) {
+      if (join_components(candidate, t_ns, options, state)) return true;
+    }
+  }
   if (by.by_names && may(By::names) && join(by_names(into, from, by, state))) return true;
   return by.by_constellation && may(By::constellation) && has_grown(into, from, state) &&
          join(by_constellation(into, from, by, state));

@@ -9,8 +9,12 @@
 
 namespace helixnav::team {
 
-/// Joins taken back: by which evidence, which two robots.
-using RefusedJoins = std::set<std::tuple<TeamJoin::By, int, int>>;
+/// What is no evidence: joins taken back, by their kind and the two robots, and sightings that a wrong join rested on, by time, robot
+/// and robot seen.
+struct RefusedJoins {
+  std::set<std::tuple<TeamJoin::By, int, int>> joins;
+  std::set<SightingKey> sightings;
+};
 
 /// Looks at all pairs of components for what places one in the other's frame, and joins those of which χ² of the joint
 /// solution does not object. Components are solved when this is called.

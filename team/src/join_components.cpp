@@ -66,9 +66,14 @@ void lay_together(const Candidate& candidate, State& state) {
   into.filter = JointFilter(poses, ids, points_m, Eigen::MatrixXd::Zero(columns, columns));
 }
 
-/// Sightings that were between the two: those that the solution explains become rows of it.
-int use_sightings(std::size_t component, double gate_probability, State& state) {
+struct Explained {
   int used = 0;
+  int refused = 0;
+};
+
+/// Sightings that were between the two: those that the solution explains become rows of it.
+Explained use_sightings(std::size_t component, double gate_probability, State& state) {
+  Explained explained;
   for (SightingRow& row : state.sighting_rows) {
     const bool inside = state.robots[row.robot].component == component && state.robots[row.seen].component == component;
     if (!inside || row.use != Use::apart) continue;
@@ -80,9 +85,9 @@ int use_sightings(std::size_t component, double gate_probability, State& state) 
     row.nis = nu.dot(row.observation.R.inverse() * nu);
     const bool fits = row.nis <= core::chi2_quantile(gate_probability, static_cast<int>(nu.size()));
     row.use = fits ? Use::used : Use::refused;
-    used += fits ? 1 : 0;
+    ++(fits ? explained.used : explained.refused);
   }
-  return used;
+  return explained;
 }
 
 /// χ² of the joint solution over that of both apart, with the rows that tie them.
@@ -139,8 +144,9 @@ bool join_components(Candidate candidate, core::Nanoseconds t_ns, const TeamOpti
     if (!solve(candidate.into, trial)) return false;
     if (!passes(apart_chi2, 2 * (join.merged + join.sightings), trial, options, join)) return false;
     if (join.by == TeamJoin::By::names && !is_placed(join, trial, options.join)) return false;
-    const int more = use_sightings(candidate.into, options.gate_probability, trial);
-    if (more > 0 && !solve(candidate.into, trial)) return false;
+    const Explained others = use_sightings(candidate.into, options.gate_probability, trial);
+    if (others.refused > others.used) return false;
+    if (others.used > 0 && !solve(candidate.into, trial)) return false;
   } catch (const core::NumericalError&) {
     return false;
   }
@@ -148,6 +154,7 @@ bool join_components(Candidate candidate, core::Nanoseconds t_ns, const TeamOpti
   const core::Pose2 T_into = trial.robots[from.robots.front()].clones.front().T_component_robot;
   join.T_component_other = core::compose(T_into, core::inverse(T_from));
   trial.joins.push_back(join);
+  trial.evidence.push_back({into.robots, from.robots, candidate.sightings, state.sighting_rows.size()});
   state = std::move(trial);
   return true;
 }

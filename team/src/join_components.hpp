@@ -20,7 +20,8 @@ struct Candidate {
 };
 
 /// Joins the components where χ² of the joint least squares exceeds both apart by no more than its quantile; no change
-/// otherwise. With JoinOptions::by_names what both call by the same name is merged, whatever the candidate rests on. Sightings between the two that the solution explains are used from then on, the others refused.
+/// otherwise. With JoinOptions::by_names what both call by the same name is merged, whatever the candidate rests on.
+/// Sightings between the two that the solution explains are used from then on, the others refused; where these are more, nothing is joined.
 bool join_components(Candidate candidate, core::Nanoseconds t_ns, const TeamOptions& options, State& state);
 
 }  // namespace helixnav::team

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <tuple>
 
@@ -60,6 +61,7 @@ LandmarkId new_id(const Birth& birth, State& state) {
   const auto id = static_cast<LandmarkId>(state.merged_into.size());
   state.merged_into.push_back(id);
   state.observations.push_back(0);
+  state.refusals.push_back(0);
   state.births.push_back(birth);
   return id;
 }
@@ -113,6 +115,27 @@ core::AssociationReport unused(int index, core::Outcome outcome) {
 
 using Reports = std::vector<core::AssociationReport>;
 
+/// Forgets landmarks and all that was seen of them.
+void forget(const std::set<LandmarkId>& forgotten, State& state) {
+  for (const LandmarkId id : forgotten) state.observations[static_cast<std::size_t>(id)] = 0;
+  std::vector<LandmarkRow>& rows = state.landmark_rows;
+  const auto is_of_them = [&](const LandmarkRow& row) { return forgotten.count(state.resolve(row.landmark)) > 0; };
+  rows.erase(std::remove_if(rows.begin(), rows.end(), is_of_them), rows.end());
+  for (Component& component : state.components) component.filter.remove({forgotten.begin(), forgotten.end()});
+}
+
+/// A landmark that was first seen under another's name is where nobody sees it again: more than twice as many sightings of
+/// it are refused as it has. It is begun anew with the next one.
+void forget_if_misplaced(LandmarkId id, State& state) {
+  constexpr int least = 3;
+  const auto at = static_cast<std::size_t>(id);
+  if (++state.refusals[at] <= 2 * state.observations[at] + least) return;
+  for (auto name = state.id_of_name.begin(); name != state.id_of_name.end();) {
+    name = state.resolve(name->second) == id ? state.id_of_name.erase(name) : std::next(name);
+  }
+  forget({id}, state);
+}
+
 Reports observe_by_name(std::size_t robot, const NamedScan& named, const TeamOptions& options, State& state) {
   Reports reports;
   std::set<std::int64_t> seen;
@@ -125,6 +148,7 @@ Reports observe_by_name(std::size_t robot, const NamedScan& named, const TeamOpt
     const LandmarkId known = known_id(robot, name, options, state);
     reports.push_back(observe(robot, named.scan, i, true, known, options, state));
     if (reports.back().outcome == core::Outcome::augmented) state.id_of_name[{robot, name}] = reports.back().landmark;
+    if (reports.back().outcome == core::Outcome::rejected) forget_if_misplaced(known, state);
   }
   return reports;
 }
@@ -166,6 +190,7 @@ void take(std::size_t robot, const core::RobotSighting& sighting, const TeamOpti
   SightingRow row;
   row.robot = robot;
   row.seen = static_cast<std::size_t>(sighting.seen);
+  row.t_ns = sighting.t_ns;
   row.clone = clone_now(row.robot, state);
   row.seen_clone = clone_now(row.seen, state);
   row.T_robot_sensor = sighting.T_robot_sensor;
@@ -177,6 +202,7 @@ void take(std::size_t robot, const core::RobotSighting& sighting, const TeamOpti
                                                               row.T_robot_sensor, row.observation, gate);
     row.nis = judged.nis;
     row.use = judged.accepted ? SightingRow::Use::used : SightingRow::Use::refused;
+    state.news_of_joins = state.news_of_joins || !judged.accepted;
     component.news = component.news || judged.accepted;
   }
   state.sighting_rows.push_back(row);
@@ -251,16 +277,10 @@ void drop_seen_once(State& state) {
     if (!state.births[id].named && state.observations[id] == 1 &&
         state.merged_into[id] == static_cast<LandmarkId>(id)) {
       dropped.insert(static_cast<LandmarkId>(id));
-      state.observations[id] = 0;
     }
   }
   state.born_before_solution = ids;
-  if (dropped.empty()) return;
-  std::vector<LandmarkRow>& rows = state.landmark_rows;
-  rows.erase(
-      std::remove_if(rows.begin(), rows.end(), [&](const LandmarkRow& row) { return dropped.count(row.landmark) > 0; }),
-      rows.end());
-  for (Component& component : state.components) component.filter.remove({dropped.begin(), dropped.end()});
+  if (!dropped.empty()) forget(dropped, state);
 }
 
 std::size_t clone_now(std::size_t robot, State& state) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "helixnav/core/events.hpp"
@@ -56,11 +57,16 @@ struct SightingRow {
   enum class Use { used, apart, refused };
   std::size_t robot = 0, clone = 0;
   std::size_t seen = 0, seen_clone = 0;
+  core::Nanoseconds t_ns = 0;
   core::Pose2 T_robot_sensor;
   core::Observation observation;
   Use use = Use::apart;  ///< apart: between two components
   double nis = 0.0;      ///< of the innovation, where it was in one component
 };
+
+/// A sighting by what it was, whatever came late: time, robot, robot seen.
+using SightingKey = std::tuple<core::Nanoseconds, std::size_t, std::size_t>;
+inline SightingKey key_of(const SightingRow& row) { return {row.t_ns, row.robot, row.seen}; }
 
 /// Robots in one frame, that of the first of them or the one where starts are known.
 struct Component {
@@ -68,6 +74,13 @@ struct Component {
   JointFilter filter;
   double chi2 = 0.0;  ///< of the graph at the last solution
   bool news = false;  ///< since then
+};
+
+/// Two components became one.
+struct JoinEvidence {
+  std::vector<std::size_t> into, from;  ///< robots of either
+  std::vector<std::size_t> sightings;   ///< rows that it rests on
+  std::size_t rows_before = 0;          ///< sightings until then
 };
 
 /// Everything that follows from the events so far. A value: a copy is a checkpoint.
@@ -81,10 +94,13 @@ struct State {
   std::map<std::pair<std::size_t, std::int64_t>, core::LandmarkId> id_of_name;  ///< by (robot, name)
   std::vector<core::LandmarkId> merged_into;                                    ///< [id] itself, or the one it became
   std::vector<int> observations;                                                ///< [id]
+  std::vector<int> refusals;                                                    ///< [id] sightings by name
   std::vector<Birth> births;                                                    ///< [id]
   std::size_t born_before_solution = 0;                                         ///< landmarks, by id
   double reach_m = 0.0;                                                         ///< farthest landmark seen
   std::vector<TeamJoin> joins;
+  std::vector<JoinEvidence> evidence;  ///< [join]
+  bool news_of_joins = false;          ///< a sighting was refused since it was asked whether a join is wrong
   std::vector<SameLandmarks> same;
   std::map<std::pair<std::size_t, std::size_t>, int>
       observations_asked;                                   ///< at the last question, by pair of components

@@ -15,6 +15,7 @@
 #include "process.hpp"
 #include "solve.hpp"
 #include "split_motion.hpp"
+#include "wrong_join.hpp"
 
 namespace helixnav::team {
 
@@ -37,7 +38,8 @@ struct Team::Book {
   void solve_if_due(core::Nanoseconds t_ns);
   void solve_all(core::Nanoseconds t_ns);
   void rewind(std::size_t entries);
-  void replay();
+  std::optional<core::StepReport> replay();
+  bool take_back_wrong_join();
   void start_again();
   void move(std::size_t robot, const core::Odometry& motion);
   void sight(std::size_t robot, const core::RobotSighting& sighting);
@@ -77,7 +79,8 @@ std::optional<core::StepReport> Team::Book::enter(Entry entry) {
   try {
     if (!late) {
       done = index + 1;
-      return step(entries[index]);
+      std::optional<core::StepReport> report = step(entries[index]);
+      return take_back_wrong_join() ? replay() : report;
     }
     rewind(index);
     replay();
@@ -141,11 +144,26 @@ void Team::Book::rewind(std::size_t entries_kept) {
   done = from.entries;
 }
 
-void Team::Book::replay() {
+std::optional<core::StepReport> Team::Book::replay() {
+  std::optional<core::StepReport> report;
   while (done < entries.size()) {
     ++done;
-    step(entries[done - 1]);
+    report = step(entries[done - 1]);
+    take_back_wrong_join();
   }
+  return report;
+}
+
+/// True where one was found: what came of it is gone, and everything is to be gone through again.
+bool Team::Book::take_back_wrong_join() {
+  if (!state.news_of_joins) return false;
+  state.news_of_joins = false;
+  const std::optional<std::size_t> wrong = find_wrong_join(state);
+  if (!wrong) return false;
+  refuse(*wrong, state, refused);
+  checkpoints.clear();
+  rewind(0);
+  return true;
 }
 
 /// Motion, and the sightings that waited for it.
@@ -316,7 +334,7 @@ std::vector<JudgedSighting> Team::sightings() const {
 void Team::remove_join(std::size_t join) {
   if (join >= joins().size()) throw core::PreconditionError("remove_join: there is no join " + std::to_string(join));
   const TeamJoin removed = joins()[join];
-  book_->refused.insert({removed.by, removed.robot, removed.other});
+  book_->refused.joins.insert({removed.by, removed.robot, removed.other});
   book_->start_again();
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <unistd.h>
+#include <csignal>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -65,6 +67,18 @@ TEST_F(TeamWholeReplay, KeepsFiveRobotsWithin20CentimetresWithoutNames) {
     sum_m += rmse_m;
   }
   EXPECT_LT(sum_m / 5.0, 0.16);
+}
+
+TEST_F(TeamReplay, LeavesTheFoldersOfWhatWasDrivenWhenInterrupted) {
+  Program program({"replay", path_.string(), "--out", (folder_.path() / "team").string()});
+  constexpr int patience_ms = 30'000;
+  for (int ms = 0; ms < patience_ms && !program.catches(SIGINT); ++ms) ::usleep(1000);
+  program.send(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
+  EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(fs::exists(folder_.path() / "team" / "summary.json"));
+  EXPECT_TRUE(fs::exists(folder_.path() / "team" / "robot_1"));
 }
 
 TEST_F(TeamReplay, FindsOneFrameFromUnknownStarts) {

@@ -238,6 +238,84 @@ TEST(Team, JoinsComeOutTheSameOfMessagesOutOfOrder) {
   }
 }
 
+bool is_sighting_of(const Message& message, int robot) {
+  return message.robot == robot && std::holds_alternative<core::RobotSighting>(message.what);
+}
+
+/// Only the sightings of one another for which `keep` holds.
+template <class Keep>
+SmallTeam with_sightings(SmallTeam small, const Keep& keep) {
+  std::vector<Message>& all = small.messages;
+  const auto goes = [&](const Message& message) {
+    return std::holds_alternative<core::RobotSighting>(message.what) && !keep(message);
+  };
+  all.erase(std::remove_if(all.begin(), all.end(), goes), all.end());
+  return small;
+}
+
+/// As of another robot that stands as far away in another direction.
+void make_false(Message& message) { std::get<core::RobotSighting>(message.what).observation.z[1] += 1.5; }
+
+constexpr core::Nanoseconds second_ns = 1'000'000'000;
+
+/// Two sightings agree with any two directions: one degree of freedom, that of the range.
+TEST(Team, AJoinThatAllLaterSightingsContradictIsTakenBack) {
+  SmallTeam small = with_sightings(small_team(), [](const Message& message) {
+    return message.t_ns == 5 * second_ns || message.t_ns > 12 * second_ns;
+  });
+  for (Message& message : small.messages) {
+    if (is_sighting_of(message, 0) && message.t_ns == 5 * second_ns) make_false(message);
+  }
+  TeamOptions options;
+  options.join.by_names = false;
+  Team at_first(unknown_starts(small), options);
+  for (const Message& message : small.messages) {
+    if (message.t_ns <= 12 * second_ns) testing::give(at_first, message);
+  }
+  ASSERT_EQ(at_first.joins().size(), 1u) << "nothing contradicts it yet";
+  const Team team = testing::run(small, unknown_starts(small), options);
+  ASSERT_EQ(team.joins().size(), 1u);
+  EXPECT_GT(team.joins()[0].t_ns, 12 * second_ns);
+  const core::Pose2 truth = core::between(small.last[0], small.last[1]);
+  EXPECT_LT(difference(core::between(team.pose(0).mean, team.pose(1).mean), truth).head<2>().norm(), 0.2);
+}
+
+TEST(Team, DoesNotJoinWhatSightingsBeforeContradict) {
+  SmallTeam small = with_sightings(small_team(), [](const Message& message) {
+    return message.t_ns <= 15 * second_ns && (message.robot == 1 || message.t_ns == 14 * second_ns);
+  });
+  TeamOptions options;
+  options.join.by_names = false;
+  EXPECT_EQ(testing::run(small, unknown_starts(small), options).joins().size(), 1u);
+  for (Message& message : small.messages) {
+    if (is_sighting_of(message, 0)) make_false(message);
+  }
+  EXPECT_TRUE(testing::run(small, unknown_starts(small), options).joins().empty());
+}
+
+TEST(Team, ALandmarkFirstSeenUnderAnothersNameIsBegunAnew) {
+  SmallTeam small = small_team();
+  constexpr std::int64_t name = 3;
+  const auto first = std::find_if(small.messages.begin(), small.messages.end(), [&](const Message& message) {
+    return std::find(message.names.begin(), message.names.end(), name) != message.names.end();
+  });
+  const auto at = std::find(first->names.begin(), first->names.end(), name) - first->names.begin();
+  std::get<core::Scan>(first->what).observations[static_cast<std::size_t>(at)].z[1] += 2.0;
+  Team right = testing::run(small_team(), known_starts(small));
+  right.solve();
+  Team team = testing::run(small, known_starts(small));
+  team.solve();
+  const core::LandmarkId id = team.landmark_of(0, name);
+  ASSERT_NE(id, core::no_landmark);
+  const std::vector<core::MapLandmark> map = team.map(0);
+  EXPECT_EQ(map.size(), right.map(0).size());
+  const auto found =
+      std::find_if(map.begin(), map.end(), [&](const core::MapLandmark& landmark) { return landmark.id == id; });
+  ASSERT_NE(found, map.end());
+  EXPECT_LT((found->point.mean_m - small.landmarks[name]).norm(), 0.2);
+  EXPECT_GE(found->observations, 10);
+}
+
 TEST(Team, AFalseSightingIsGatedOut) {
   SmallTeam small = small_team();
   Team team = testing::run(small, known_starts(small));

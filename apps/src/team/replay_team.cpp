@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/input_files.hpp"
+#include "common/interrupt.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
 #include "helixnav/logs/mrclam.hpp"
@@ -15,6 +16,7 @@
 #include "team/team_drive.hpp"
 #include "team/team_evaluation.hpp"
 #include "team/team_folder.hpp"
+#include "team/team_warnings.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -33,13 +35,20 @@ ExitCode navigate(const TeamTask& task, runs::RunManifest manifest, const RunOpt
   manifest.commit = core::commit();
   manifest.command = command_line_text();
   manifest.config = config;
+  catch_interrupts();
   const TeamDrive drive = drive_team(task);
+  const bool whole = !interrupted();
   const TeamEvaluation evaluation = evaluate_team(task, drive);
   write_team(run.out, run.overwrite, manifest, task, drive, evaluation);
   std::fputs(team_text(task, drive, evaluation).c_str(), stdout);
   std::printf("navigated in %.1f s; run folder: %s   report: %s/report.html\n", drive.seconds, run.out.c_str(),
               run.out.c_str());
-  return ExitCode::ok;
+  for (const std::string& warning : team_warnings(task, drive)) {
+    std::fprintf(stderr, "helixnav: warning: %s\n", warning.c_str());
+  }
+  if (whole) return ExitCode::ok;
+  std::fprintf(stderr, "helixnav: interrupted; the run folder is complete up to there\n");
+  return ExitCode::interrupted;
 }
 
 }  // namespace

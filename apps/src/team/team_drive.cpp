@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "common/interrupt.hpp"
 #include "common/progress_bar.hpp"
 #include "team/own_names.hpp"
 
@@ -109,7 +110,7 @@ TeamDrive drive_team(const TeamTask& task) {
   std::vector<core::Nanoseconds> last_sighting_ns(members.size(), -1);
   const std::vector<Fed> all = in_order(task.recording);
   ProgressBar progress("navigating", all.size(), task.quiet);
-  for (std::size_t k = 0; k < all.size(); ++k) {
+  for (std::size_t k = 0; k < all.size() && !interrupted(); ++k) {
     const Fed& fed = all[k];
     const auto r = static_cast<std::size_t>(fed.robot);
     const core::TeamMember& member = members[r];

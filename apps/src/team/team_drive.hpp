@@ -35,7 +35,7 @@ struct TeamTask {
   bool quiet = false;
 };
 
-/// Feeds all robots' events in order of time.
+/// Feeds all robots' events in order of time, until the program is interrupted.
 TeamDrive drive_team(const TeamTask& task);
 
 }  // namespace helixnav::apps

@@ -59,15 +59,48 @@ void check_gaps(const Robot& robot, const std::string& name) {
   }
 }
 
-void check(const MrclamTables& tables, const std::vector<int>& chosen) {
+bool is_seen(const MrclamTables& tables, const std::vector<int>& chosen, int number) {
+  return std::any_of(chosen.begin(), chosen.end(), [&](int other) {
+    const std::vector<MrclamTables::Sighting>& sightings = tables.robots.at(other).sightings;
+    return std::any_of(sightings.begin(), sightings.end(), [&](const auto& one) { return one.subject == number; });
+  });
+}
+
+/// The longest time that a command was held for, up to the last sighting, where it is out of all proportion: somebody lost rows.
+void remark_on_longest_gap(const Robot& robot, int number, std::vector<std::string>& remarks) {
+  std::vector<core::Nanoseconds> gaps_ns;
+  core::Nanoseconds longest_ns = 0, from_ns = 0;
+  const auto note = [&](core::Nanoseconds begin_ns, core::Nanoseconds end_ns) {
+    if (end_ns - begin_ns <= longest_ns) return;
+    longest_ns = end_ns - begin_ns;
+    from_ns = begin_ns;
+  };
+  for (std::size_t k = 1; k < robot.commands.size(); ++k) {
+    gaps_ns.push_back(robot.commands[k].t_ns - robot.commands[k - 1].t_ns);
+    note(robot.commands[k - 1].t_ns, robot.commands[k].t_ns);
+  }
+  if (!robot.sightings.empty()) note(robot.commands.back().t_ns, robot.sightings.back().t_ns);
+  if (gaps_ns.empty()) return;
+  const auto middle = gaps_ns.begin() + static_cast<std::ptrdiff_t>(gaps_ns.size() / 2);
+  std::nth_element(gaps_ns.begin(), middle, gaps_ns.end());
+  constexpr core::Nanoseconds long_ns = 5'000'000'000, usual = 50;
+  if (longest_ns < long_ns || longest_ns < usual * *middle) return;
+  remarks.push_back("robot " + std::to_string(number) + " has no command from " +
+                    span_text(from_ns, from_ns + longest_ns) + ": the last one is taken to hold");
+}
+
+void check(const fs::path& path, const MrclamTables& tables, const std::vector<int>& chosen) {
   const Robot& first = tables.robots.at(chosen.front());
   for (const int number : chosen) {
     const Robot& robot = tables.robots.at(number);
     const std::string name = "robot " + std::to_string(number);
     if (robot.commands.empty()) throw core::InputError(robot.file + ": expected commands of " + name + ", found none");
     check_gaps(robot, name);
-    if (robot.sightings.empty()) throw core::InputError(robot.file + ": " + name + " has no sightings");
-    check_span(robot, number, robot.sightings.front().t_ns, robot.sightings.back().t_ns, "its sightings");
+    if (!robot.sightings.empty()) {
+      check_span(robot, number, robot.sightings.front().t_ns, robot.sightings.back().t_ns, "its sightings");
+    } else if (!is_seen(tables, chosen, number)) {
+      throw core::InputError(path.string() + ": " + name + " has no sightings, and no other sees it");
+    }
     check_span(robot, number, first.commands.front().t_ns, first.commands.back().t_ns, "those of another robot");
     if (robot.truth.empty()) continue;
     check_span(robot, number, robot.truth.front().t_ns, robot.truth.back().t_ns, "its truth");
@@ -232,13 +265,16 @@ core::TeamRecording read_mrclam(const fs::path& path, const std::vector<int>& ro
   }
   const std::vector<int> chosen = chosen_robots(path, tables, robots);
   if (chosen.empty()) throw core::InputError(path.string() + ": expected commands of robots, found none");
-  check(tables, chosen);
+  check(path, tables, chosen);
   core::TeamRecording team;
   team.name = (path.has_filename() ? path : path.parent_path()).filename().string();
   team.true_landmarks = tables.landmarks;
   team.starts_known = true;
   team.looks_as_one = settings.looks_as_one;
-  for (const int number : chosen) team.robots.push_back(member_of(tables, chosen, number, settings, team));
+  for (const int number : chosen) {
+    remark_on_longest_gap(tables.robots.at(number), number, team.remarks);
+    team.robots.push_back(member_of(tables, chosen, number, settings, team));
+  }
   return team;
 }
 

@@ -84,9 +84,51 @@ TEST_F(TeamLog, WithASubjectOfNobodyIsRefused) {
   is_refused_with("measurements.csv:14: subject 21 is neither");
 }
 
-TEST_F(TeamLog, WithARobotThatSeesNothingIsRefused) {
+TEST_F(TeamLog, WithARobotThatNeitherSeesNorIsSeenIsRefused) {
   write("measurements.csv", "1,0.5,63,6,2.0,0.1\n");
-  is_refused_with("odometry.csv:4: robot 2 has no sightings");
+  is_refused_with("log: robot 2 has no sightings, and no other sees it");
+}
+
+TEST_F(TeamLog, WithARobotThatSeesNothingButIsSeenIsNavigated) {
+  write("measurements.csv", "1,0.5,63,6,2.0,0.1\n1,1.0,14,2,4.0,0.0\n1,2.0,14,2,4.0,0.0\n");
+  const Outcome outcome = replay();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(fs::exists(out() / "robot_2"));
+}
+
+TEST_F(TeamLog, WhoseCommandsStopIsRemarkedOn) {
+  std::string commands;
+  for (int k = 0; k < 40; ++k) commands += "1," + std::to_string(0.1 * k) + ",0.0,0.0\n";
+  for (const char* t : {"0.0", "0.1", "0.2", "0.3", "20.0"}) commands += std::string("2,") + t + ",0.0,0.0\n";
+  write("odometry.csv", commands);
+  const Outcome outcome = replay();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("robot 2 has no command from 0.300000 to 20.000000 s"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("robot 1 has no command"), std::string::npos) << outcome.err;
+}
+
+/// Landmark 6 is seen at two places in turn by one name.
+TEST_F(TeamLog, OfWhichMuchIsRefusedIsWarnedOf) {
+  std::string text;
+  for (int k = 1; k < 80; ++k) {
+    const std::string t = std::to_string(0.05 * k);
+    text += "1," + t + (k % 3 == 0 ? ",63,6,6.0,1.5\n" : ",63,6,2.0,0.1\n") + "2," + t + ",25,7,1.5,0.3\n";
+  }
+  write("measurements.csv", text);
+  const Outcome outcome = replay();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: robot 1: 26 of its 79 sightings"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("warning: robot 2"), std::string::npos) << outcome.err;
+}
+
+TEST_F(TeamLog, IsForReplayAlone) {
+  const std::string log = (folder_.path() / "log").string();
+  for (const Words& words :
+       {Words{"check", log}, Words{"smooth", log, "--out", out().string()}, Words{"associate", log}}) {
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.exit_code, 3) << words[0];
+    EXPECT_NE(outcome.err.find("a log of several robots"), std::string::npos) << words[0] << ": " << outcome.err;
+  }
 }
 
 TEST_F(TeamLog, WithARobotTwiceIsRefused) {
