@@ -17,6 +17,7 @@
 #include "common/run_options.hpp"
 #include "drive/drive.hpp"
 #include "drive/drive_again.hpp"
+#include "drive/kept_inputs.hpp"
 #include "drive/start_option.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/mrclam.hpp"
@@ -83,7 +84,7 @@ void refuse_for_team(const CLI::App& command, const ReplayJob& job, const GivenO
 ExitCode replay(CLI::App& command, ReplayJob& job) {
   const GivenOptions given = options_given(command);
   prepare_run(command, job.run);
-  refuse_same_folder(job.map, job.run.out);
+  refuse_to_replace({job.path, job.vehicle, job.map, job.run.config}, job.run.out);
   warn_of_deprecated_keys(command);
   const SpooledLog log_file(job.path);
   job.path = log_file.path();

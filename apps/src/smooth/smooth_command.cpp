@@ -14,6 +14,7 @@
 #include "common/input_files.hpp"
 #include "common/run_options.hpp"
 #include "drive/drive.hpp"
+#include "drive/kept_inputs.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/graph_files.hpp"
 #include "helixnav/logs/read_recording.hpp"
@@ -84,6 +85,7 @@ smoothing::SmoothOptions options_of(const SmoothJob& job) {
 
 ExitCode smooth(CLI::App& command, SmoothJob& job) {
   prepare_run(command, job.run);
+  refuse_to_replace({job.path, starts_from_run(job.start) ? job.start : ""}, job.run.out);
   const Clock::time_point begin = Clock::now();
   Drive task_info;  // for its manifest
   SmoothingTask task = read_task(job.path, task_info.recording);
