@@ -94,7 +94,7 @@ core::JointMap read_joint_map_in(const std::string& folder) {
 }
 
 EarlierSession earlier_session(core::JointMap map, const SessionStart& start, const std::string& name) {
-  EarlierSession session{std::move(map), {}, start};
+  EarlierSession session{std::move(map), {}, start, {}};
   check_size(name, session);
   return session;
 }
@@ -103,7 +103,9 @@ EarlierSession read_earlier_session(const std::string& folder, const SessionStar
   EarlierSession session = earlier_session(read_joint_map_in(folder), start, joint_map_file_in(folder));
   if (!std::filesystem::exists(std::filesystem::path(folder) / "manifest.json")) return session;
   const std::vector<core::LandmarkId>& ids = session.map.joint.ids;
-  for (const auto& [label, id] : landmarks_by_label(runs::read_run(folder))) {
+  const runs::Run run = runs::read_run(folder);
+  session.missing = run.missing;
+  for (const auto& [label, id] : landmarks_by_label(run)) {
     if (std::binary_search(ids.begin(), ids.end(), id)) session.landmark_of[label] = id;
   }
   return session;

@@ -14,6 +14,7 @@
 #include "common/commands.hpp"
 #include "common/fit_to_recording.hpp"
 #include "common/input_files.hpp"
+#include "common/missing_warnings.hpp"
 #include "common/run_options.hpp"
 #include "drive/drive.hpp"
 #include "drive/drive_again.hpp"
@@ -52,8 +53,10 @@ void take_map(const ReplayJob& job, Drive& task) {
     task.given_map = read_given_map(job.map);
     task.given_map->start = job.start;
     check_start(*task.given_map);
+    warn_of_missing(task.given_map->missing);
   } else {
     task.earlier = read_earlier_session(job.map, job.start.value_or(SessionStart{}));
+    warn_of_missing(task.earlier->missing);
   }
 }
 

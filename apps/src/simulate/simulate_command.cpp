@@ -13,6 +13,7 @@
 #include "common/commands.hpp"
 #include "common/fit_to_recording.hpp"
 #include "common/input_files.hpp"
+#include "common/missing_warnings.hpp"
 #include "common/run_options.hpp"
 #include "drive/drive.hpp"
 #include "drive/drive_again.hpp"
@@ -129,6 +130,7 @@ ExitCode simulate(CLI::App& command, SimulateJob& job) {
     task.manifest.inputs = input_files(drive_file_in(job.map));
   } else if (!job.map.empty()) {
     task.earlier = read_earlier_session(job.map, job.start.value_or(SessionStart{}));
+    warn_of_missing(task.earlier->missing);
     task.manifest.inputs = input_files(joint_map_file_in(job.map));
   }
   return drive(task);

@@ -12,6 +12,7 @@
 
 #include "common/commands.hpp"
 #include "common/input_files.hpp"
+#include "common/missing_warnings.hpp"
 #include "common/run_options.hpp"
 #include "drive/drive.hpp"
 #include "drive/kept_inputs.hpp"
@@ -60,6 +61,7 @@ bool starts_from_run(const std::string& start) {
 
 void start_from_folder(const std::string& folder, SmoothingTask& task) {
   const runs::Run run = runs::read_run(folder);
+  warn_of_missing(run.missing);
   std::vector<core::Pose2> poses;
   for (const core::StepReport& step : run.steps) poses.push_back(step.pose.mean);
   start_from_run(folder, run.steps, poses, run.map, task);

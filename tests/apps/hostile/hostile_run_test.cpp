@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -65,6 +67,55 @@ TEST_F(HostileRun, WithAFolderInPlaceOfTheDriveIsRefusedByWhatGoesOnThere) {
   put_folder_in_place_of(in("first") / "drive.bin");
   expect_refused(run({"replay", in("robot"), "--map", in("first"), "--start", "end", "--out", in("second")}),
                  "drive.bin: expected a file, found a folder");
+}
+
+/// The header and the first rows of a table.
+void cut_table(const fs::path& file, int rows) {
+  std::istringstream whole(text_of(file));
+  std::string kept, line;
+  for (int k = 0; k <= rows && std::getline(whole, line); ++k) kept += line + '\n';
+  std::ofstream(file, std::ios::binary) << kept;
+}
+
+TEST_F(HostileRun, WhoseTablesWereCutIsJudgedWithAWarning) {
+  EXPECT_EQ(run({"evaluate", run_}).err, "");
+  EXPECT_EQ(localise(run_).err.find("rows"), std::string::npos);
+  cut_table(run_ / "associations.csv", 20);
+  for (const char* command : {"evaluate", "explain"}) {
+    const Outcome outcome = run({command, run_});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("warning: " + (run_ / "associations.csv").string() + ": 20 of 61 rows"),
+              std::string::npos)
+        << outcome.err;
+  }
+  EXPECT_NE(localise(run_).err.find("associations.csv: 20 of 61 rows"), std::string::npos);
+}
+
+TEST(HostileMapOfAJoin, ThatWasCutIsUsedWithAWarning) {
+  const testing::TemporaryFolder folder;
+  const fs::path log = folder.path() / "robot", first = folder.path() / "run", map = folder.path() / "map";
+  ASSERT_EQ(run({"new-vehicle", log}).exit_code, 0);
+  ASSERT_EQ(run({"replay", log, "--quiet", "--out", first}).exit_code, 0);
+  fs::create_directory(map);
+  for (const char* name : {"map.csv", "map.bin"}) fs::copy_file(first / name, map / name);
+  const auto localise = [&](const fs::path& in) {
+    return run({"replay", log, "--localize", "--map", in, "--quiet", "--overwrite", "--out", folder.path() / "out"});
+  };
+  const std::size_t landmarks = complete_lines(map / "map.csv") - 1;
+  EXPECT_EQ(localise(map).err.find("map.csv"), std::string::npos);
+  cut_table(map / "map.csv", static_cast<int>(landmarks / 2));
+  const std::string numbers = std::to_string(landmarks / 2) + " of the " + std::to_string(landmarks) + " landmarks";
+  for (const fs::path& given : {map, map / "map.csv"}) {
+    const Outcome outcome = localise(given);
+    EXPECT_NE(outcome.err.find("map.csv: " + numbers + " that map.bin beside it has"), std::string::npos)
+        << outcome.err;
+  }
+  cut_table(first / "map.csv", static_cast<int>(landmarks / 2));
+  const Outcome outcome = localise(first);
+  EXPECT_NE(
+      outcome.err.find("map.csv: " + std::to_string(landmarks / 2) + " of " + std::to_string(landmarks) + " rows"),
+      std::string::npos)
+      << outcome.err;
 }
 
 /// A gigabyte and a half.
