@@ -89,6 +89,21 @@ void write_whole_file(const std::string& path, std::string_view bytes) {
   }
 }
 
+void check_writable(const std::string& path) {
+  constexpr std::size_t small_file = 4096;
+  const std::string temporary = path + ".part";
+  ::unlink(temporary.c_str());
+  try {
+    AppendFile(temporary).append(std::string(small_file, ' '));
+  } catch (const core::InputError&) {
+    const int why = errno;
+    ::unlink(temporary.c_str());
+    errno = why;
+    refuse(path, "write");
+  }
+  ::unlink(temporary.c_str());
+}
+
 std::string read_whole_file(const std::string& path, std::size_t most_bytes) {
   const OpenFile file(path);
   const std::size_t most = std::min(most_bytes, file.is_regular() ? most_bytes : most_device_bytes);
