@@ -131,8 +131,7 @@ std::string navigate(const apps::Drive& job, apps::Estimator& estimator, runs::R
     }
     if (file) file->finish();
   } catch (const core::NumericalError& error) {
-    const double t_s = core::seconds(core::time_of(job.recording.events[loop.fed() - 1]));
-    return "at step " + std::to_string(loop.steps()) + ", " + std::to_string(t_s) + " s: " + error.what();
+    return error.what();  // with step and time
   }
   return {};
 }
