@@ -18,6 +18,7 @@
 namespace helixnav::apps {
 namespace {
 
+constexpr double most_coordinate = 1e8;          ///< of a pose, as in logs and maps
 constexpr std::ptrdiff_t least_to_be_found = 5;  ///< pairs of a place, see relocalize::ask
 
 void check_size(const std::string& file, const EarlierSession& session) {
@@ -59,12 +60,12 @@ SessionStart session_start_from(const std::string& word, std::string& objection)
   for (double& number : numbers) {
     const std::string_view cell = rest.substr(0, rest.find(','));
     const auto value = files::parse_number(cell);
-    fine = fine && value && std::isfinite(*value);
+    fine = fine && value && std::abs(*value) <= most_coordinate;
     number = value.value_or(0.0);
     rest.remove_prefix(std::min(cell.size() + 1, rest.size()));
   }
   if (!fine) {
-    objection = "'" + word + "': expected unknown, end, or a pose x,y,heading in metres and radians";
+    objection = "'" + word + "': expected unknown, end, or a pose x,y,heading in metres and radians, within 1e8";
     return {};
   }
   start.T_map_robot = core::Pose2(numbers[0], numbers[1], numbers[2]);
