@@ -139,5 +139,11 @@ TEST_F(HostileRun, FilesWithoutEndAreRefusedBeforeTheyFillTheMemory) {
   }
 }
 
+TEST(HostileVehicle, WithoutEndIsRefusedBeforeItIsDigested) {
+  const Outcome outcome = run({"stream", "--vehicle", "/dev/zero"}, [] { ::alarm(20); });
+  EXPECT_EQ(outcome.exit_code, 3) << "ended by signal " << outcome.signal;
+  EXPECT_NE(outcome.err.find("/dev/zero: expected a file, found a device"), std::string::npos) << outcome.err;
+}
+
 }  // namespace
 }  // namespace helixnav::apps
