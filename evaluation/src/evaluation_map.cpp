@@ -53,12 +53,17 @@ core::Label most_frequent(const std::map<core::Label, int>& counts) {
   return most == counts.end() ? core::no_label : most->first;
 }
 
-MapEvaluation evaluate_by_label(const runs::Run& run, const runs::RunTruth& truth,
+/// Whether an observation of the run carries the label of a true landmark.
+bool can_be_paired(const LabelCounts& counts, const runs::RunTruth& truth) {
+  return std::any_of(truth.landmarks.begin(), truth.landmarks.end(),
+                     [&](const core::TrueLandmark& known) { return counts.in_all.count(known.label) > 0; });
+}
+
+MapEvaluation evaluate_by_label(LabelCounts counts, const runs::RunTruth& truth,
                                 const std::vector<MovedLandmark>& landmarks) {
   constexpr int seen_often = 10;
   MapEvaluation result;
   result.by_label = true;
-  LabelCounts counts = count_labels(run, truth);
   std::map<core::Label, std::vector<const MovedLandmark*>> of_label;
   for (const MovedLandmark& landmark : landmarks) {
     of_label[most_frequent(counts.by_landmark[landmark.id])].push_back(&landmark);
@@ -142,8 +147,9 @@ MapEvaluation evaluate_by_distance(const runs::RunTruth& truth, const std::vecto
 MapEvaluation evaluate_map(const runs::Run& run, const runs::RunTruth& truth, const core::Pose2& T_truth_map,
                            double limit_m) {
   const std::vector<MovedLandmark> landmarks = mature_landmarks(run, T_truth_map);
-  return truth.labels.empty() ? evaluate_by_distance(truth, landmarks, limit_m)
-                              : evaluate_by_label(run, truth, landmarks);
+  LabelCounts counts = count_labels(run, truth);
+  return can_be_paired(counts, truth) ? evaluate_by_label(std::move(counts), truth, landmarks)
+                                      : evaluate_by_distance(truth, landmarks, limit_m);
 }
 
 }  // namespace helixnav::evaluation

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace helixnav::fastslam {
 namespace {
@@ -112,7 +113,9 @@ Associator::Innovation Associator::innovation(const Hypothesis& h, const Eigen::
 
 double Associator::nis(const Hypothesis& h, LineageId id, std::size_t observation) const {
   const LandmarkRecord* landmark = maps_[h.parent].find(id);
-  return innovation(h, place_m(id, *landmark), landmark->covariance_m2(), scan_.observations[observation]).nis;
+  const Innovation i =
+      innovation(h, place_m(id, *landmark), landmark->covariance_m2(), scan_.observations[observation]);
+  return i.can_be_told() ? i.nis : std::numeric_limits<double>::quiet_NaN();
 }
 
 Eigen::Vector2d Associator::normalised_innovation(const Hypothesis& h, LineageId id, std::size_t observation) const {
@@ -138,7 +141,7 @@ void Associator::find_candidates(const Hypothesis& h, std::size_t observation, d
     const Symmetric2 P = landmark->covariance_m2();
     if ((at_m - seen_m).squaredNorm() > slack_gate * (spread + P.trace())) continue;
     const Innovation i = innovation(h, at_m, P, z);
-    if (!(i.nis <= gate)) continue;
+    if (!i.can_be_told() || i.nis > gate) continue;
     const double log_likelihood = likelihood ? -0.5 * (i.nis + std::log(i.determinant)) - log_two_pi : 0.0;
     scratch.candidates.push_back({n.id, static_cast<std::uint32_t>(observation), i.nis, log_likelihood});
   }
@@ -153,6 +156,10 @@ void Associator::take(Hypothesis& h, const Candidate& candidate, bool known) con
   const LandmarkRecord& landmark = *maps_[h.parent].find(candidate.id);
   const Innovation i = innovation(h, place_m(candidate.id, landmark), landmark.covariance_m2(),
                                   scan_.observations[candidate.observation]);
+  if (!i.can_be_told()) {
+    h.log_weight = -HUGE_VAL;  // the pose stays as it was
+    return;
+  }
   h.log_weight += -0.5 * (i.nis + std::log(i.determinant)) - log_two_pi;
   if (!known) h.log_weight += log_detection_odds_;
   if (!moves) return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -63,7 +64,7 @@ class Associator {
   /// Appends the children of one hypothesis by one observation to scratch.children.
   void split(const Hypothesis& h, const Choice* choices, std::size_t observation, AssociationScratch& scratch) const;
 
-  /// νᵀS⁻¹ν of a landmark that h's particle holds, seen from (x, P).
+  /// νᵀS⁻¹ν of a landmark that h's particle holds, seen from (x, P); NaN where it cannot be told.
   double nis(const Hypothesis& h, LineageId id, std::size_t observation) const;
 
   /// ν of the same, each row by its standard deviation.
@@ -77,6 +78,9 @@ class Associator {
     Pair pair;
     Symmetric2 S;
     double determinant, nis;
+
+    /// False where noise out of all proportion to the spread of the pose leaves nothing of S but rounding.
+    bool can_be_told() const { return determinant > 1e-14 * S.xx * S.yy && nis >= 0.0 && std::isfinite(nis); }
   };
   Innovation innovation(const Hypothesis& h, const Eigen::Vector2d& landmark_m, const Symmetric2& landmark_m2,
                         const PreparedObservation& z) const;

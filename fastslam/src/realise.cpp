@@ -74,6 +74,8 @@ void MapUpdate::update(const TurnedPose& pose, LineageId id, const PreparedObser
   const Eigen::Matrix2d K = PHt * S.inverse();
   const Eigen::Vector2d step = K * pair.nu;
   const Eigen::Matrix2d after = P - K * PHt.transpose();
+  const bool can_be_told = step.norm() < Lineages::farthest_m && after.diagonal().minCoeff() > 0.0;
+  if (!can_be_told) return;  // of S nothing was left but rounding
   landmark.dx_m += static_cast<float>(step.x());
   landmark.dy_m += static_cast<float>(step.y());
   landmark.set_covariance_m2({after(0, 0), 0.5 * (after(0, 1) + after(1, 0)), after(1, 1)});

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <limits>
 
 #include "impl.hpp"
@@ -25,8 +26,11 @@ core::StepReport FastSlam::Impl::report(const core::Scan& scan, const Associator
     a.landmark = choice;
     a.dof = 2;
     a.nis = associator.nis(before, id, j);
-    out.joint_nis += associator.nis(moving, id, j);
-    out.joint_dof += a.dof;
+    const double added_nis = associator.nis(moving, id, j);
+    if (!std::isnan(added_nis)) {
+      out.joint_nis += added_nis;
+      out.joint_dof += a.dof;
+    }
     associator.take(moving, {id, static_cast<std::uint32_t>(j), 0.0, 0.0}, true);
   }
   return out;

@@ -23,6 +23,18 @@ void refuse_out_of_bounds(const PreparedScan& scan) {
   }
 }
 
+/// As core::normalise, but weights that vanish all, or cannot be told, are equal from now on: a scan that fits no particle says
+/// nothing of which is better. How badly it fits is for NIS to say. Weights that alone cannot be told vanish.
+double normalise_or_equal(std::vector<double>& log_weight) {
+  for (double& lw : log_weight) {
+    if (!std::isfinite(lw)) lw = -HUGE_VAL;
+  }
+  const auto is_finite = [](double lw) { return std::isfinite(lw); };
+  if (std::any_of(log_weight.begin(), log_weight.end(), is_finite)) return core::normalise(log_weight);
+  std::fill(log_weight.begin(), log_weight.end(), -std::log(static_cast<double>(log_weight.size())));
+  return -HUGE_VAL;
+}
+
 core::StepReport FastSlam::Impl::update(const core::Scan& scan, const std::vector<KnownName>* names,
                                         std::size_t robot) {
   const core::RandomStream random_before = random;
@@ -176,7 +188,7 @@ void FastSlam::Impl::append_children(const Associator& associator, std::size_t o
 void FastSlam::Impl::prune() {
   set_log_weight.clear();
   for (const Hypothesis& h : set.all) set_log_weight.push_back(h.log_weight);
-  const double log_sum = core::normalise(set_log_weight);
+  const double log_sum = normalise_or_equal(set_log_weight);
   core::systematic_parents(set_log_weight, options.particles, random.uniform(), chosen);
   HypothesisSet kept;
   kept.observations = set.observations;
@@ -194,7 +206,8 @@ void FastSlam::Impl::count_repeated(const Associator& associator, std::size_t he
     const Choice choice = set.choices_of(heaviest)[j];
     if (choice < 0) continue;
     const auto id = static_cast<LineageId>(choice);
-    innovations.emplace_back(id, associator.normalised_innovation(before, id, j));
+    const Eigen::Vector2d innovation = associator.normalised_innovation(before, id, j);
+    if (innovation.allFinite()) innovations.emplace_back(id, innovation);
   }
   if (!innovations.empty()) robot.repeated.count(innovations);
 }
@@ -211,7 +224,7 @@ void FastSlam::Impl::weigh(std::size_t robot) {
   }
   set_log_weight.clear();
   for (const Hypothesis& h : set.all) set_log_weight.push_back(h.log_weight);
-  const double log_sum = core::normalise(set_log_weight);
+  const double log_sum = normalise_or_equal(set_log_weight);
   cloud.hypotheses = set.size();
   cloud.log_evidence = log_sum;
   cloud.effective_size = core::effective_sample_size(set_log_weight);

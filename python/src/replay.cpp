@@ -15,6 +15,7 @@
 #include "drive/estimator.hpp"
 #include "drive/given_map.hpp"
 #include "drive/keeping.hpp"
+#include "drive/kept_inputs.hpp"
 #include "drive/withholding.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/event_loop.hpp"
@@ -96,7 +97,6 @@ apps::Drive job_of(const Log& log, const ReplayWishes& wishes) {
   job.smooth = wishes.smooth;
   job.out = wishes.out;
   if (goes_on_from_drive(log, wishes)) {
-    apps::refuse_same_folder(wishes.map->path.string(), wishes.out);
     apps::put_before(runs::read_drive(apps::drive_file_in(wishes.map->path.string())), job.recording, job.withheld);
   } else {
     take_map(wishes, job);
@@ -131,8 +131,7 @@ std::string navigate(const apps::Drive& job, apps::Estimator& estimator, runs::R
     }
     if (file) file->finish();
   } catch (const core::NumericalError& error) {
-    const double t_s = core::seconds(core::time_of(job.recording.events[loop.fed() - 1]));
-    return "at step " + std::to_string(loop.steps()) + ", " + std::to_string(t_s) + " s: " + error.what();
+    return error.what();  // with step and time
   }
   return {};
 }
@@ -142,6 +141,8 @@ std::string navigate(const apps::Drive& job, apps::Estimator& estimator, runs::R
 runs::Run replay(const Log& log, const ReplayWishes& wishes) {
   refuse_contradictions(log, wishes);
   const apps::Drive job = job_of(log, wishes);
+  apps::refuse_to_replace(log.files, job.out);
+  if (wishes.map && !wishes.map->map) apps::refuse_to_replace({wishes.map->path.string()}, job.out);
   apps::check_drive(job);
   using IfNotEmpty = runs::RunWriter::IfNotEmpty;
   std::unique_ptr<runs::RunWriter> writer;

@@ -14,6 +14,7 @@
 #include "helixnav/files/number_text.hpp"
 #include "helixnav/runs/words.hpp"
 #include "manifest_json.hpp"
+#include "missing_rows.hpp"
 #include "tables/appearance_cells.hpp"
 #include "tables/put_association.hpp"
 #include "tables/run_rows.hpp"
@@ -213,12 +214,35 @@ void assemble(RunTables& tables, Run& run) {
   }
 }
 
-/// Step by step, or not at all.
-void read_final_path(const std::string& path, Run& run) {
-  if (!fs::exists(path)) return;
+/// Step by step, or not at all. How many rows there are.
+std::size_t read_final_path(const std::string& path, Run& run) {
+  if (!fs::exists(path)) return 0;
   for_each_row(path, final_trajectory_table,
                [&](const RunRow& row) { run.final_path.push_back(read_stamped_pose(row).T_world_robot); });
-  if (run.final_path.size() != run.steps.size()) run.final_path.clear();
+  const std::size_t rows = run.final_path.size();
+  if (rows != run.steps.size()) run.final_path.clear();
+  return rows;
+}
+
+/// Where the tables that grow have fewer rows than the steps say, of which health.csv says how many there were.
+void tell_missing_steps(const std::string& folder, const RunTables& tables, std::size_t steps,
+                        std::vector<std::string>& missing) {
+  std::size_t associations = 0, decisions = 0, merges = 0, clouds = 0;
+  for (const HealthRow& health : tables.health) {
+    associations += health.association_rows;
+    decisions += health.decision_rows;
+    merges += health.merge_rows;
+    clouds += health.cloud_rows;
+  }
+  const auto tell = [&](const RunTable& table, std::size_t found, std::size_t expected) {
+    tell_missing(folder, table.file, found, expected, missing);
+  };
+  tell(health_table, tables.health.size(), steps);
+  tell(trajectory_table, tables.trajectory.size(), steps);
+  tell(associations_table, tables.associations.size(), associations);
+  tell(decisions_table, tables.decisions.size(), decisions);
+  tell(merges_table, tables.merges.size(), merges);
+  tell(clouds_table, tables.particles.size(), clouds);
 }
 
 bool has_truth(const std::string& folder) {
@@ -258,12 +282,18 @@ Run read_run(const std::string& path) {
   run.path = path;
   run.manifest = read_manifest(path);
   RunTables tables = read_tables(path);
+  run.finished = fs::exists(path + '/' + summary_file);
+  const SaidOfRun said = run.finished ? read_said(path + '/' + summary_file) : SaidOfRun{};
+  if (run.finished) tell_missing_steps(path, tables, said.steps.value_or(0), run.missing);
   assemble(tables, run);
   bring_into_map(run);
-  read_final_path(path + '/' + std::string(final_trajectory_table.file), run);
+  const std::string final_file(final_trajectory_table.file);
+  const std::size_t final_rows = read_final_path(path + '/' + final_file, run);
+  if (fs::exists(path + '/' + final_file))
+    tell_missing(path, final_file, final_rows, said.steps.value_or(0), run.missing);
   if (fs::exists(path + "/map.csv")) run.map = read_map(path + "/map.csv");
+  tell_missing(path, "map.csv", run.map.size(), said.landmarks.value_or(0), run.missing);
   if (has_truth(path)) run.truth = read_truth(path);
-  run.finished = fs::exists(path + '/' + summary_file);
   return run;
 }
 

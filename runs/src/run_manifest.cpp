@@ -5,8 +5,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <memory>
+#include <system_error>
 
 #include <openssl/evp.h>
 
@@ -39,6 +41,10 @@ bool starts_with(const std::string& word, const char* beginning) { return word.r
 }  // namespace
 
 std::string sha256_of_file(const std::string& path) {
+  std::error_code unknown;
+  if (std::filesystem::is_character_file(path, unknown)) {
+    throw core::InputError(path + ": expected a file, found a device, which may have no end");
+  }
   std::ifstream file(path, std::ios::binary);
   const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
   bool fine = file.good() && context && EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 
 #include "cloud_choice.hpp"
@@ -165,6 +166,10 @@ struct Table {
 };
 
 }  // namespace
+
+bool is_run_file(std::string_view name) {
+  return std::find(std::begin(run_files), std::end(run_files), name) != std::end(run_files);
+}
 
 struct RunWriter::Files {
   Table associations;

@@ -117,6 +117,9 @@ TEST_F(Localize, IsToldHowToBeAskedFor) {
   usage({"--map", "somewhere", "--smooth"}, "--smooth");
   usage({"--map", "somewhere", "--start", "here"}, "expected unknown, end, or a pose");
   usage({"--map", "somewhere", "--start", "1,2"}, "expected unknown, end, or a pose");
+  for (const char* start : {"1e300,0,0", "0,-2e8,0", "0,0,1e300", "nan,0,0", "0,inf,0"}) {
+    usage({"--map", "somewhere", "--start", start}, "within 1e8");
+  }
   usage({"--localize", "--map", "somewhere", "--start", "end"}, "--start end");
   usage({"--localize", "--map", "somewhere", "--smooth"}, "--smooth");
   usage({"--localize", "--map", "somewhere", "--gps", "fuse"}, "--gps fuse");

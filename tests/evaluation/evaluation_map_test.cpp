@@ -40,6 +40,22 @@ TEST(MapEvaluation, MovesTheMapIntoTheFrameOfTheTruthFirst) {
   EXPECT_NEAR(evaluate_map(run, truth, T_truth_map, 2.0).error_m.max, 0.0, 1e-12);
 }
 
+TEST(MapEvaluation, PairsByDistanceWhereNoObservationCarriesATrueLabel) {
+  runs::Run run;
+  run.map = {landmark(0, 0.1, 0.0)};
+  run.truth.landmarks = {{7, {0.0, 0.0}}};
+  core::StepReport& step = run.steps.emplace_back();
+  step.associations = {{0, core::Outcome::matched, 0, 1.0, 2, 1.0}};
+  for (const core::Label label : {core::no_label, core::Label{3}}) {
+    run.truth.labels = {{label}};
+    const MapEvaluation map = evaluate_map(run, run.truth, {}, 2.0);
+    EXPECT_FALSE(map.by_label) << label;
+    EXPECT_EQ(map.error_m.count, 1u) << label;
+  }
+  run.truth.labels = {{7}};
+  EXPECT_TRUE(evaluate_map(run, run.truth, {}, 2.0).by_label);
+}
+
 TEST(MapEvaluation, PairsByLabelWhateverTheDistance) {
   runs::Run run;
   run.map = {landmark(0, 5.0, 0.0, 20), landmark(1, 0.0, 0.5, 12), landmark(2, 9.0, 9.0)};

@@ -120,6 +120,51 @@ TEST(RunFolder, ReadsToTheLastCompleteStepWhereverAnyTableIsCut) {
   EXPECT_EQ(read_run(path).steps.size(), static_cast<std::size_t>(written));
 }
 
+/// The first lines of a file.
+void keep_lines(const std::string& file, int lines) {
+  std::istringstream whole(files::read_whole_file(file));
+  std::string kept, line;
+  for (int k = 0; k < lines && std::getline(whole, line); ++k) kept += line + '\n';
+  std::ofstream(file, std::ios::binary) << kept;
+}
+
+TEST(RunFolder, ThatCameToItsEndTellsWhichTableWasCutSince) {
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "run").string();
+  write_example(path, 100);
+  EXPECT_EQ(read_run(path).missing, std::vector<std::string>{});
+  const std::string end = " rows: the run came to its end, and the file was cut since";
+  using Cut = std::pair<const char*, std::string>;
+  for (const auto& [table, rows] :
+       {Cut{"health.csv", "40 of 100"}, Cut{"trajectory.tum", "40 of 100"}, Cut{"associations.csv", "40 of 342"}}) {
+    const std::string file = path + '/' + table, whole = files::read_whole_file(file);
+    keep_lines(file, 41);
+    EXPECT_EQ(read_run(path).missing, std::vector<std::string>{file + ": " + rows + end}) << table;
+    std::ofstream(file, std::ios::binary) << whole;
+  }
+  keep_lines(path + "/map.csv", 2);
+  EXPECT_EQ(read_run(path).missing, std::vector<std::string>{path + "/map.csv: 1 of 3" + end});
+  fs::remove(path + "/summary.json");  // as a run that was killed
+  EXPECT_EQ(read_run(path).missing, std::vector<std::string>{});
+}
+
+TEST(RunFolder, NamesAFolderThatIsThereInPlaceOfAFile) {
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "run").string();
+  write_example(path, 20);
+  for (const char* name : {"manifest.json", "health.csv", "trajectory.tum", "associations.csv", "decisions.csv",
+                           "merges.csv", "clouds.csv", "map.csv", "truth_poses.csv", "summary.json"}) {
+    const std::string file = path + '/' + name;
+    const std::string whole = files::read_whole_file(file);
+    fs::remove(file);
+    fs::create_directory(file);
+    EXPECT_EQ(input_error_of([&] { read_run(path); }), file + ": expected a file, found a folder");
+    fs::remove(file);
+    std::ofstream(file, std::ios::binary) << whole;
+  }
+  EXPECT_EQ(read_run(path).steps.size(), 20u);
+}
+
 TEST(RunFolder, HasTheCloudReportsOfTheStepsThatHaveThem) {
   const TemporaryFolder folder;
   const std::string path = (folder.path() / "run").string();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 
@@ -10,6 +9,7 @@
 #include "calibration.hpp"
 #include "common/commands.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/files/file.hpp"
 #include "helixnav/logs/mrclam.hpp"
 #include "helixnav/logs/read_recording.hpp"
 #include "helixnav/logs/shipped_vehicle.hpp"
@@ -100,6 +100,7 @@ ExitCode calibrate(CLI::App& command, CalibrateJob& job) {
   if (!job.out.empty() && std::filesystem::exists(job.out)) {
     throw core::InputError(job.out + ": is there already; choose another --out");
   }
+  if (!job.out.empty()) files::check_writable(job.out);
   const Calibration result = calibrate_log(job.path, job.settings, vehicle);
   print_scale("odometry", result.scales.odometry);
   print_scale("detections", result.scales.landmarks);
@@ -116,10 +117,7 @@ ExitCode calibrate(CLI::App& command, CalibrateJob& job) {
         result.closings, result.first_closings);
   }
   if (job.out.empty()) return ExitCode::ok;
-  std::ofstream file(job.out);
-  file << calibrated_text(vehicle, result);
-  file.close();
-  if (!file) throw core::InputError(job.out + ": cannot be written");
+  files::write_whole_file(job.out, calibrated_text(vehicle, result));
   std::printf("written: %s\n", job.out.c_str());
   return ExitCode::ok;
 }

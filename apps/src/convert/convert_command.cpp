@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -70,6 +71,18 @@ bool is_rawlog(const std::string& path) { return std::filesystem::path(path).ext
   hand_over("helixnav-rawlog", arguments);
 }
 
+/// OUT must be neither IN nor a table of the folder IN; what convert wrote there by an extension of its own is no table.
+void refuse_to_replace_log(const ConvertJob& job) {
+  namespace fs = std::filesystem;
+  std::error_code none;  // a file that is not there yet is another one
+  const bool is_log = fs::equivalent(job.in, job.out, none);
+  const bool is_in_log = fs::exists(job.out) && fs::is_directory(job.in) &&
+                         fs::equivalent(job.in, fs::canonical(job.out).parent_path(), none) &&
+                         !format_by_extension(fs::path(job.out).extension().string());
+  if (!is_log && !is_in_log) return;
+  throw core::InputError(job.out + ": " + job.in + " is read, and would be lost by writing there; choose another name");
+}
+
 ExitCode convert(const ConvertJob& job) {
   if (is_rawlog(job.in) || (is_rawlog(job.out) && job.to.empty())) convert_rawlog(job);
   const GraphFormat format = format_of(job);
@@ -80,6 +93,7 @@ ExitCode convert(const ConvertJob& job) {
   if (fs::exists(job.out) && !job.overwrite) {
     throw core::InputError(job.out + ": the file is there already; choose another name, or --overwrite to replace it");
   }
+  refuse_to_replace_log(job);
   const Converted converted = convert_log(job.in, job.out, format, noises, job.seed);
   std::fputs(text_of(converted).c_str(), stdout);
   std::printf("written: %s (%s)\n", job.out.c_str(), name_of(format).c_str());

@@ -68,12 +68,11 @@ void count_closings(const core::StepReport& report, Driven& driven) {
 
 /// What comes next, or nothing at the end and where the mathematics broke.
 template <class Loop>
-std::optional<core::StepReport> next_step(Loop& loop, const Drive& job, Driven& driven) {
+std::optional<core::StepReport> next_step(Loop& loop, Driven& driven) {
   try {
     return loop.next();
   } catch (const core::NumericalError& error) {
-    const double time_s = core::seconds(core::time_of(job.recording.events[loop.fed() - 1]));
-    driven.broken = "at step " + std::to_string(loop.steps()) + ", " + std::to_string(time_s) + " s: " + error.what();
+    driven.broken = error.what();  // with step and time
     return std::nullopt;
   } catch (const core::PreconditionError& error) {
     driven.broken = std::string("internal error: ") + error.what();
@@ -91,7 +90,7 @@ Driven navigate(const Drive& job, Estimator& estimator, runs::RunWriter& writer,
   core::EventLoop loop(job.recording.events, seen);
   ProgressBar progress(job.given_map ? "localising" : "navigating", job.recording.events.size(), job.quiet);
   while (!interrupted()) {
-    const std::optional<core::StepReport> step = next_step(loop, job, driven);
+    const std::optional<core::StepReport> step = next_step(loop, driven);
     progress.advance_to(loop.fed() - 1);
     if (!step) break;
     const double microseconds = seen.last_scan_was_withheld() ? 0.0 : 1e6 * timed.last_s();

@@ -5,11 +5,8 @@
 #include <filesystem>
 #include <iterator>
 #include <sstream>
-#include <system_error>
 #include <utility>
 #include <variant>
-
-#include "helixnav/core/errors.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -78,13 +75,6 @@ std::unique_ptr<runs::DriveFile> kept_drive(const Drive& job) {
 
 bool is_driven_again(const std::string& folder, const std::optional<SessionStart>& start) {
   return start && start->kind == SessionStart::Kind::end && std::filesystem::exists(drive_file_in(folder));
-}
-
-void refuse_same_folder(const std::string& run, const std::string& out) {
-  std::error_code none;  // a folder that is not there yet is another one
-  if (run.empty() || out.empty() || !std::filesystem::equivalent(run, out, none)) return;
-  throw core::InputError(out +
-                         ": is an earlier run that this one is made of, and would be lost; give --out another folder");
 }
 
 std::size_t pass_over(core::Nanoseconds end_ns, core::Recording& recording) {

@@ -23,10 +23,6 @@ std::unique_ptr<runs::DriveFile> kept_drive(const Drive& job);
 /// Whether a session begins by driving again what the run in that folder drove: it begins where that ended, and the run has kept it.
 bool is_driven_again(const std::string& folder, const std::optional<SessionStart>& start);
 
-/// InputError where the new run would be written over an earlier one that it is made of: killed meanwhile, it would leave neither. Nothing for an
-/// empty `run` or `out`.
-void refuse_same_folder(const std::string& run, const std::string& out);
-
 /// Takes the events up to end_ns off the front of the recording, and returns how many scans they were; labels stay.
 std::size_t pass_over(core::Nanoseconds end_ns, core::Recording& recording);
 

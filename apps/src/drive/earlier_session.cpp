@@ -18,6 +18,7 @@
 namespace helixnav::apps {
 namespace {
 
+constexpr double most_coordinate = 1e8;          ///< of a pose, as in logs and maps
 constexpr std::ptrdiff_t least_to_be_found = 5;  ///< pairs of a place, see relocalize::ask
 
 void check_size(const std::string& file, const EarlierSession& session) {
@@ -59,12 +60,12 @@ SessionStart session_start_from(const std::string& word, std::string& objection)
   for (double& number : numbers) {
     const std::string_view cell = rest.substr(0, rest.find(','));
     const auto value = files::parse_number(cell);
-    fine = fine && value && std::isfinite(*value);
+    fine = fine && value && std::abs(*value) <= most_coordinate;
     number = value.value_or(0.0);
     rest.remove_prefix(std::min(cell.size() + 1, rest.size()));
   }
   if (!fine) {
-    objection = "'" + word + "': expected unknown, end, or a pose x,y,heading in metres and radians";
+    objection = "'" + word + "': expected unknown, end, or a pose x,y,heading in metres and radians, within 1e8";
     return {};
   }
   start.T_map_robot = core::Pose2(numbers[0], numbers[1], numbers[2]);
@@ -94,7 +95,7 @@ core::JointMap read_joint_map_in(const std::string& folder) {
 }
 
 EarlierSession earlier_session(core::JointMap map, const SessionStart& start, const std::string& name) {
-  EarlierSession session{std::move(map), {}, start};
+  EarlierSession session{std::move(map), {}, start, {}};
   check_size(name, session);
   return session;
 }
@@ -103,7 +104,9 @@ EarlierSession read_earlier_session(const std::string& folder, const SessionStar
   EarlierSession session = earlier_session(read_joint_map_in(folder), start, joint_map_file_in(folder));
   if (!std::filesystem::exists(std::filesystem::path(folder) / "manifest.json")) return session;
   const std::vector<core::LandmarkId>& ids = session.map.joint.ids;
-  for (const auto& [label, id] : landmarks_by_label(runs::read_run(folder))) {
+  const runs::Run run = runs::read_run(folder);
+  session.missing = run.missing;
+  for (const auto& [label, id] : landmarks_by_label(run)) {
     if (std::binary_search(ids.begin(), ids.end(), id)) session.landmark_of[label] = id;
   }
   return session;

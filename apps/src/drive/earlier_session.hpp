@@ -28,6 +28,7 @@ struct EarlierSession {
   core::JointMap map;
   std::map<core::Label, core::LandmarkId> landmark_of;  ///< by label; empty when that run had no labels
   SessionStart start;
+  std::vector<std::string> missing;  ///< of that run: lost since it was written
 };
 
 /// From a map itself, `name` in messages. InputError where it holds too few mature landmarks to begin so.

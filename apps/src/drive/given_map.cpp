@@ -19,6 +19,16 @@ double ratio(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
+/// A map that no single run made, as of join: map.bin beside map.csv holds the same landmarks.
+void tell_missing_landmarks(const std::filesystem::path& table, const std::filesystem::path& whole, std::size_t found,
+                            std::vector<std::string>& missing) {
+  if (table.filename() != "map.csv" || !std::filesystem::exists(whole)) return;
+  const std::size_t expected = runs::read_joint_map(whole.string()).joint.ids.size();
+  if (found >= expected) return;
+  missing.push_back(table.string() + ": " + std::to_string(found) + " of the " + std::to_string(expected) +
+                    " landmarks that map.bin beside it has: the file was cut since");
+}
+
 }  // namespace
 
 std::map<core::Label, core::LandmarkId> landmarks_by_label(const runs::Run& run) {
@@ -72,7 +82,8 @@ GivenMap read_given_map(const std::string& path) {
   }
   GivenMap map;
   std::set<core::LandmarkId> ids;
-  for (const core::MapLandmark& landmark : runs::read_map(file.string())) {
+  const std::vector<core::MapLandmark> rows = runs::read_map(file.string());
+  for (const core::MapLandmark& landmark : rows) {
     if (landmark.state != core::LandmarkState::mature) continue;
     if (!ids.insert(landmark.id).second) {
       throw core::InputError(file.string() + ": landmark " + std::to_string(landmark.id) + " is there twice");
@@ -81,8 +92,13 @@ GivenMap read_given_map(const std::string& path) {
   }
   if (map.landmarks.empty()) throw core::InputError(file.string() + ": expected mature landmarks, found none");
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  if (!fs::exists(folder / "manifest.json")) return map;
-  for (const auto& [label, id] : landmarks_by_label(runs::read_run(folder.string()))) {
+  if (!fs::exists(folder / "manifest.json")) {
+    tell_missing_landmarks(file, folder / "map.bin", rows.size(), map.missing);
+    return map;
+  }
+  const runs::Run run = runs::read_run(folder.string());
+  map.missing = run.missing;
+  for (const auto& [label, id] : landmarks_by_label(run)) {
     if (ids.count(id) > 0) map.landmark_of[label] = id;
   }
   return map;

@@ -21,6 +21,7 @@ struct GivenMap {
   std::vector<core::MapLandmark> landmarks;             ///< mature ones
   std::map<core::Label, core::LandmarkId> landmark_of;  ///< by label; empty when the run had no labels
   std::optional<SessionStart> start;                    ///< on it; nothing: as the log says
+  std::vector<std::string> missing;                     ///< of the run or the map: lost since it was written
 };
 
 /// The landmark that most observations of a label were matched with.

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/commands.hpp"
+#include "common/missing_warnings.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/evaluation/evaluation.hpp"
 #include "helixnav/reports/summary.hpp"
@@ -26,6 +27,7 @@ struct EvaluateJob {
 
 void evaluate(const EvaluateJob& job) {
   runs::Run run = runs::read_run(job.folder);
+  warn_of_missing(run.missing);
   if (!job.truth.empty()) run.truth = read_truth_file(job.truth, job.truth_offset_s, run.truth);
   const evaluation::Evaluation evaluation = evaluation::evaluate(run, job.options);
   if (!job.truth.empty() && evaluation.position && evaluation.position->error_m.count == 0) {

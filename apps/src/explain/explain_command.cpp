@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/commands.hpp"
+#include "common/missing_warnings.hpp"
 #include "helixnav/reports/explanation.hpp"
 #include "helixnav/runs/run_folder.hpp"
 #include "settings/validators.hpp"
@@ -23,6 +24,7 @@ struct ExplainJob {
 
 void explain(const ExplainJob& job) {
   const runs::Run run = runs::read_run(job.folder);
+  warn_of_missing(run.missing);
   const std::string text = job.step >= 0     ? reports::explain_step(run, job.step)
                            : job.closure > 0 ? reports::explain_closure(run, job.closure)
                                              : reports::explain_run(run);

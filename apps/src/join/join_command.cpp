@@ -9,8 +9,8 @@
 
 #include "common/commands.hpp"
 #include "common/run_options.hpp"
-#include "drive/drive_again.hpp"
 #include "drive/earlier_session.hpp"
+#include "drive/kept_inputs.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "joined_folder.hpp"
 #include "session_changes.hpp"
@@ -62,7 +62,7 @@ void say(const JoinJob& job, const supervisor::JoinedSessions& joined, const std
 
 void join(CLI::App& command, const JoinJob& job) {
   prepare_run(command, job.folder);
-  for (const std::string& run : job.runs) refuse_same_folder(run, job.folder.out);
+  refuse_to_replace(job.runs, job.folder.out);
   const std::vector<core::JointMap> maps = read_maps(job.runs);
   check_independent(job.runs);
   supervisor::JoinedSessions joined = supervisor::join_sessions(maps);

@@ -3,23 +3,13 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "helixnav/core/errors.hpp"
+#include "helixnav/files/file.hpp"
 #include "helixnav/files/json_nesting.hpp"
 
 namespace helixnav::apps {
 namespace {
-
-namespace fs = std::filesystem;
-
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw core::InputError(file.string() + ": cannot be read");
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
 
 /// Of what the summary asks a row for; numbers of any other type count as none.
 void check_row(const std::string& file, std::size_t line, const Json& row) {
@@ -45,7 +35,7 @@ void check_row(const std::string& file, std::size_t line, const Json& row) {
 
 Json campaign_manifest(const std::string& folder) {
   const std::string file = folder + '/' + manifest_name;
-  const std::string text = text_of(file);
+  const std::string text = files::read_whole_file(file);
   files::check_json_nesting(file, text);
   Json manifest = Json::parse(text, nullptr, false);
   if (!manifest.is_object() || manifest.value("format", Json()) != campaign_format) {
@@ -56,7 +46,7 @@ Json campaign_manifest(const std::string& folder) {
 
 std::vector<Json> campaign_rows(const std::string& folder) {
   const std::string file = folder + '/' + rows_name;
-  const std::string text = text_of(file);
+  const std::string text = files::read_whole_file(file);
   files::check_json_nesting(file, text);
   std::vector<Json> rows;
   std::size_t begin = 0;

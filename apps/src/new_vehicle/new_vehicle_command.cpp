@@ -1,46 +1,59 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "common/commands.hpp"
 #include "example_log.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/files/file.hpp"
 #include "helixnav/logs/shipped_vehicle.hpp"
 #include "settings/validators.hpp"
 
 namespace helixnav::apps {
 namespace {
 
-void write_file(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw core::InputError(path.string() + ": cannot be written");
-}
-
-void make_folder(const std::filesystem::path& folder) {
+/// Whether the folder was not there before.
+bool make_folder(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
   std::error_code error;
-  if (fs::exists(folder) && (!fs::is_directory(folder) || !fs::is_empty(folder))) {
+  const bool is_there = fs::exists(folder);
+  if (is_there && (!fs::is_directory(folder) || !fs::is_empty(folder))) {
     throw core::InputError(folder.string() + ": expected a folder that is empty or not there");
   }
   fs::create_directories(folder, error);
   if (error) throw core::InputError(folder.string() + ": " + error.message());
+  return !is_there;
+}
+
+using NamedFiles = std::vector<std::pair<const char*, std::string>>;
+
+/// All of them or none, and then no folder that was not there before.
+void write_files(const std::filesystem::path& folder, const NamedFiles& texts) {
+  const bool is_new = make_folder(folder);
+  try {
+    for (const auto& [name, text] : texts) files::write_whole_file((folder / name).string(), text);
+  } catch (const core::InputError&) {
+    std::error_code ignored;
+    for (const auto& named : texts) std::filesystem::remove(folder / named.first, ignored);
+    if (is_new) std::filesystem::remove(folder, ignored);
+    throw;
+  }
 }
 
 void write_example(const std::filesystem::path& folder) {
-  make_folder(folder);
-  const ExampleLog example = make_example_log();
-  write_file(folder / "vehicle.toml", example.vehicle);
-  write_file(folder / "odometry.csv", example.odometry);
-  write_file(folder / "detections.csv", example.detections);
-  write_file(folder / "truth_poses.csv", example.truth_poses);
-  write_file(folder / "truth_landmarks.csv", example.truth_landmarks);
+  ExampleLog example = make_example_log();
+  write_files(folder, {{"vehicle.toml", std::move(example.vehicle)},
+                       {"odometry.csv", std::move(example.odometry)},
+                       {"detections.csv", std::move(example.detections)},
+                       {"truth_poses.csv", std::move(example.truth_poses)},
+                       {"truth_landmarks.csv", std::move(example.truth_landmarks)}});
 }
 
 }  // namespace
@@ -62,8 +75,7 @@ void add_new_vehicle_command(CLI::App& app, ExitCode&) {
       ->check(one_of(logs::shipped_vehicle_names()));
   command->callback([folder, like] {
     if (!like->empty()) {
-      make_folder(*folder);
-      write_file(std::filesystem::path(*folder) / "vehicle.toml", std::string(logs::shipped_vehicle_text(*like)));
+      write_files(*folder, {{"vehicle.toml", std::string(logs::shipped_vehicle_text(*like))}});
       std::printf("%s/vehicle.toml: as replay takes it for such a log\n", folder->c_str());
       return;
     }

@@ -14,9 +14,11 @@
 #include "common/commands.hpp"
 #include "common/fit_to_recording.hpp"
 #include "common/input_files.hpp"
+#include "common/missing_warnings.hpp"
 #include "common/run_options.hpp"
 #include "drive/drive.hpp"
 #include "drive/drive_again.hpp"
+#include "drive/kept_inputs.hpp"
 #include "drive/start_option.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/mrclam.hpp"
@@ -51,8 +53,10 @@ void take_map(const ReplayJob& job, Drive& task) {
     task.given_map = read_given_map(job.map);
     task.given_map->start = job.start;
     check_start(*task.given_map);
+    warn_of_missing(task.given_map->missing);
   } else {
     task.earlier = read_earlier_session(job.map, job.start.value_or(SessionStart{}));
+    warn_of_missing(task.earlier->missing);
   }
 }
 
@@ -83,7 +87,7 @@ void refuse_for_team(const CLI::App& command, const ReplayJob& job, const GivenO
 ExitCode replay(CLI::App& command, ReplayJob& job) {
   const GivenOptions given = options_given(command);
   prepare_run(command, job.run);
-  refuse_same_folder(job.map, job.run.out);
+  refuse_to_replace({job.path, job.vehicle, job.map, job.run.config}, job.run.out);
   warn_of_deprecated_keys(command);
   const SpooledLog log_file(job.path);
   job.path = log_file.path();

@@ -2,23 +2,23 @@
 #include "config_file.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <sstream>
 
 #include <CLI/CLI.hpp>
 
+#include "helixnav/core/errors.hpp"
 #include "helixnav/core/nearest_name.hpp"
+#include "helixnav/files/file.hpp"
 
 namespace helixnav::apps {
 namespace {
 
 std::string section_of(const std::string& key) { return key.substr(0, key.find('.')); }
 
-/// Line of the file, from 1, that begins with the last part of `key`: CLI11's parser keeps no line numbers.
-int line_of(const std::string& path, const std::string& section, const std::string& name) {
-  std::ifstream file(path);
+/// Line of the text, from 1, that begins with the last part of `key`: CLI11's parser keeps no line numbers.
+int line_of(const std::string& text, const std::string& section, const std::string& name) {
+  std::istringstream file(text);
   std::string line;
   std::string current;
   for (int number = 1; std::getline(file, line); ++number) {
@@ -35,6 +35,17 @@ CLI::ValidationError config_error(const std::string& path, int line, const std::
   return CLI::ValidationError(path + ":" + std::to_string(line), what);
 }
 
+/// All settings at once are 20 kB.
+constexpr std::size_t most_config_bytes = 1u << 20;
+
+std::string config_text(const std::string& path) {
+  try {
+    return files::read_whole_file(path, most_config_bytes);
+  } catch (const core::InputError& error) {
+    throw CLI::FileError(std::string("cannot read this configuration file: ") + error.what());
+  }
+}
+
 /// As it may stand in a message.
 std::string shortened(const std::string& key) {
   constexpr std::size_t longest = 60;
@@ -43,7 +54,7 @@ std::string shortened(const std::string& key) {
 
 /// `given`: by the command line, which wins, or by the file so far, which may say a thing once.
 void apply_item(const std::vector<CLI::Option*>& options, const CLI::ConfigItem& item, const std::string& path,
-                std::map<const CLI::Option*, bool>& given) {
+                const std::string& text, std::map<const CLI::Option*, bool>& given) {
   const std::string key = shortened(item.fullname());
   const std::string section = item.parents.empty() ? "" : item.parents.front();
   const auto is_called = [&](const CLI::Option* option) {  // now or in an earlier version
@@ -60,20 +71,20 @@ void apply_item(const std::vector<CLI::Option*>& options, const CLI::ConfigItem&
     for (const CLI::Option* option : options) {
       if (!known_section || section_of(key_of(*option)) == section) keys.push_back(key_of(*option));
     }
-    throw config_error(path, line_of(path, section, item.name),
+    throw config_error(path, line_of(text, section, item.name),
                        "unknown key '" + key + "'; the nearest is '" + core::nearest_name(key, keys) + "'");
   }
   CLI::Option& option = **found;
   const auto [known, fresh] = given.emplace(&option, true);
   if (!fresh && known->second) {
-    throw config_error(path, line_of(path, section, item.name), "'" + key + "' is given a second time");
+    throw config_error(path, line_of(text, section, item.name), "'" + key + "' is given a second time");
   }
   if (!fresh) return;
   try {
     option.add_result(item.inputs);
     option.run_callback();
   } catch (const CLI::ParseError& error) {
-    throw config_error(path, line_of(path, section, item.name), error.what());
+    throw config_error(path, line_of(text, section, item.name), error.what());
   }
 }
 
@@ -98,9 +109,8 @@ std::set<const CLI::Option*> options_given(const CLI::App& app) {
 }
 
 void apply_config_file(CLI::App& app, const std::string& path) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path))
-    throw CLI::FileError(path + ": cannot read this configuration file");
+  const std::string text = config_text(path);
+  std::istringstream file(text);
   const std::vector<CLI::Option*> options = configurable_options(app);
   std::vector<CLI::ConfigItem> items;
   try {
@@ -114,7 +124,7 @@ void apply_config_file(CLI::App& app, const std::string& path) {
   }
   for (const CLI::ConfigItem& item : items) {
     if (item.name == "++" || item.name == "--") continue;  // CLI11's marks of section begin and end
-    apply_item(options, item, path, given);
+    apply_item(options, item, path, text, given);
   }
 }
 

@@ -13,9 +13,11 @@
 #include "common/commands.hpp"
 #include "common/fit_to_recording.hpp"
 #include "common/input_files.hpp"
+#include "common/missing_warnings.hpp"
 #include "common/run_options.hpp"
 #include "drive/drive.hpp"
 #include "drive/drive_again.hpp"
+#include "drive/kept_inputs.hpp"
 #include "drive/start_option.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
@@ -109,7 +111,7 @@ ExitCode simulate_robots(const CLI::App& command, const SimulateJob& job, const 
 ExitCode simulate(CLI::App& command, SimulateJob& job) {
   const GivenOptions given = options_given(command);
   prepare_run(command, job.run);
-  refuse_same_folder(job.map, job.run.out);
+  refuse_to_replace({job.map, job.run.config}, job.run.out);
   if (job.scenario == team_scenario) return simulate_robots(command, job, given);
   refuse_options_of_a_team(command, {"--robots", "--unknown-starts"}, job.settings);
   check_filter(command, given, job.settings.fastslam);
@@ -128,6 +130,7 @@ ExitCode simulate(CLI::App& command, SimulateJob& job) {
     task.manifest.inputs = input_files(drive_file_in(job.map));
   } else if (!job.map.empty()) {
     task.earlier = read_earlier_session(job.map, job.start.value_or(SessionStart{}));
+    warn_of_missing(task.earlier->missing);
     task.manifest.inputs = input_files(joint_map_file_in(job.map));
   }
   return drive(task);

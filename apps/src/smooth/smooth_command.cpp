@@ -12,8 +12,10 @@
 
 #include "common/commands.hpp"
 #include "common/input_files.hpp"
+#include "common/missing_warnings.hpp"
 #include "common/run_options.hpp"
 #include "drive/drive.hpp"
+#include "drive/kept_inputs.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/graph_files.hpp"
 #include "helixnav/logs/read_recording.hpp"
@@ -59,6 +61,7 @@ bool starts_from_run(const std::string& start) {
 
 void start_from_folder(const std::string& folder, SmoothingTask& task) {
   const runs::Run run = runs::read_run(folder);
+  warn_of_missing(run.missing);
   std::vector<core::Pose2> poses;
   for (const core::StepReport& step : run.steps) poses.push_back(step.pose.mean);
   start_from_run(folder, run.steps, poses, run.map, task);
@@ -84,6 +87,7 @@ smoothing::SmoothOptions options_of(const SmoothJob& job) {
 
 ExitCode smooth(CLI::App& command, SmoothJob& job) {
   prepare_run(command, job.run);
+  refuse_to_replace({job.path, starts_from_run(job.start) ? job.start : ""}, job.run.out);
   const Clock::time_point begin = Clock::now();
   Drive task_info;  // for its manifest
   SmoothingTask task = read_task(job.path, task_info.recording);

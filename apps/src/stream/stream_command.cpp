@@ -8,6 +8,7 @@
 #include "common/input_files.hpp"
 #include "common/run_options.hpp"
 #include "drive/drive_again.hpp"
+#include "drive/kept_inputs.hpp"
 #include "helixnav/core/version.hpp"
 #include "settings/config_file.hpp"
 #include "settings/memory_limit.hpp"
@@ -33,7 +34,7 @@ ExitCode run_stream(CLI::App& command, StreamOptions& options) {
   if (!job.resume.empty() && job.settings.known_association)
     throw CLI::ValidationError("--resume",
                                "is for streams without identities: a drive by name keeps none of what it was fed");
-  if (!job.resume.empty()) refuse_same_folder(job.resume, options.run.out);
+  refuse_to_replace({job.resume, options.vehicle, options.run.config}, options.run.out);
   apply_vehicle(command, options.vehicle, "", job.settings);
   job.out = options.run.out;
   job.overwrite = options.run.overwrite;

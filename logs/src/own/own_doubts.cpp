@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <variant>
 
 #include "helixnav/core/angle.hpp"
@@ -80,6 +81,46 @@ void doubt_speeds(const core::Recording& recording, Doubts& doubts) {
   }
 }
 
+/// How far the vehicle came until the row from the one before it, as the rows say; 0 where that takes its geometry.
+double length_m(const OwnLog& log, std::size_t row) {
+  const Eigen::Vector3d& value = log.odometry[row].value;
+  if (log.odometry_kind == OdometryKind::increments) return value.head<2>().norm();
+  if (log.odometry_kind == OdometryKind::poses) return (value - log.odometry[row - 1].value).head<2>().norm();
+  if (log.odometry_kind != OdometryKind::velocities) return 0.0;
+  const core::Nanoseconds before_ns = log.odometry[row - 1].t_ns;
+  return log.odometry[row - 1].value.head<2>().norm() * core::seconds(log.odometry[row].t_ns - before_ns);
+}
+
+/// A row that goes beyond what the log itself drives: a slipped digit, or a vehicle that was put elsewhere.
+void doubt_jumps(const OwnLog& log, Doubts& doubts) {
+  constexpr std::size_t least_rows = 20;
+  constexpr double beyond = 10.0, least_m = 1.0;
+  std::vector<double> speeds_mps;
+  for (std::size_t i = 1; i < log.odometry.size(); ++i) {
+    const double duration_s = core::seconds(log.odometry[i].t_ns - log.odometry[i - 1].t_ns);
+    speeds_mps.push_back(duration_s > 0.0 ? length_m(log, i) / duration_s : 0.0);
+  }
+  if (speeds_mps.size() < least_rows) return;
+  std::vector<double> sorted = speeds_mps;
+  const auto most = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sorted.size() - 1));  // never the fastest
+  std::nth_element(sorted.begin(), sorted.begin() + most, sorted.end());
+  const double usual_mps = sorted[static_cast<std::size_t>(most)];
+  const auto is_jump = [&](std::size_t i) {
+    return usual_mps > 0.0 && speeds_mps[i] > beyond * usual_mps && length_m(log, i + 1) > least_m;
+  };
+  std::size_t count = 0, farthest = 0;
+  for (std::size_t i = 0; i < speeds_mps.size(); ++i) {
+    if (!is_jump(i)) continue;
+    if (count++ == 0 || speeds_mps[i] > speeds_mps[farthest]) farthest = i;
+  }
+  if (count == 0) return;
+  doubts.push_back(sentence(
+      "odometry: %zu %s faster than ten times what 99 %% of them are (%.3g m/s); at %.9g s the vehicle moves %.4g m at "
+      "%.4g m/s",
+      count, count == 1 ? "row is" : "rows are", usual_mps, core::seconds(log.odometry[farthest + 1].t_ns),
+      length_m(log, farthest + 1), speeds_mps[farthest]));
+}
+
 /// The turn that a row speaks of, against the one before it: an angle, or a rate.
 double turn_of(const OwnLog& log, std::size_t row) {
   const Eigen::Vector3d& value = log.odometry[row].value;
@@ -128,6 +169,38 @@ void doubt_overlap(const OwnLog& log, const core::Recording& recording, Doubts& 
   }
 }
 
+void doubt_few_detections(const OwnLog& log, Doubts& doubts) {
+  const auto count = std::count_if(log.detections.begin(), log.detections.end(),
+                                   [](const OwnDetection& row) { return row.kind != OwnDetection::Kind::nothing; });
+  if (count >= 2) return;
+  doubts.push_back(sentence("detections: %td in all of the log; there is nothing to be seen again in it", count));
+}
+
+/// 0 for a bearing alone.
+double range_of(const core::Observation& z) {
+  if (z.kind == core::ObservationKind::bearing) return 0.0;
+  return z.kind == core::ObservationKind::cartesian ? z.z.norm() : z.z[0];
+}
+
+/// All lengths of the navigator follow from the reach.
+void doubt_reach(const Vehicle& vehicle, const core::Recording& recording, Doubts& doubts) {
+  constexpr double beyond = 10.0;
+  std::map<double, double> farthest_m;  // [reach]
+  for (const core::Event& event : recording.events) {
+    const auto* scan = std::get_if<core::Scan>(&event);
+    if (scan == nullptr || !scan->field_of_view.reach()) continue;
+    double& farthest = farthest_m[*scan->field_of_view.reach()];
+    for (const core::Observation& z : scan->observations) farthest = std::max(farthest, range_of(z));
+  }
+  for (const SensorModel& sensor : vehicle.sensors) {
+    const auto seen = sensor.reach_m ? farthest_m.find(*sensor.reach_m) : farthest_m.end();
+    if (seen == farthest_m.end() || !(seen->second > 0.0) || seen->first <= beyond * seen->second) continue;
+    doubts.push_back(
+        sentence("%s: a reach of %.4g m, and the farthest of the detections is at %.4g m; is it in metres?",
+                 vehicle.path.c_str(), seen->first, seen->second));
+  }
+}
+
 bool is_outside(const core::Observation& z, const core::FieldOfView& view) {
   const bool polar = z.kind == core::ObservationKind::range_bearing, point = z.kind == core::ObservationKind::cartesian;
   constexpr double slack = 1.05, slack_rad = 0.05;
@@ -165,9 +238,12 @@ Doubts doubts_of(const OwnLog& log, const Vehicle& vehicle, const core::Recordin
   Doubts doubts;
   doubt_times(log, doubts);
   doubt_speeds(recording, doubts);
+  doubt_jumps(log, doubts);
   doubt_turns(log, doubts);
   doubt_bearings(log, doubts);
+  doubt_few_detections(log, doubts);
   doubt_overlap(log, recording, doubts);
+  doubt_reach(vehicle, recording, doubts);
   doubt_vehicle(vehicle, recording, doubts);
   return doubts;
 }

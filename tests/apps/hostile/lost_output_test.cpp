@@ -52,6 +52,41 @@ TEST_F(LostOutput, EndsInAnErrorWhoeverPrints) {
   }
 }
 
+/// No file grows beyond: as a disk that is full. The error of a signal would end the program.
+void allow_small_files() {
+  const rlimit small{3000, 3000};
+  ::signal(SIGXFSZ, SIG_IGN);
+  if (::setrlimit(RLIMIT_FSIZE, &small) != 0) ::_exit(125);
+}
+
+TEST(FullDisk, CalibrateSaysSoBeforeItBeginsAndLeavesNothing) {
+  const testing::TemporaryFolder folder;
+  ASSERT_EQ(run({"new-vehicle", folder.path() / "robot"}).exit_code, 0);
+  const auto calibrate = [&](const fs::path& out, const std::function<void()>& prepare) {
+    const Outcome outcome = run({"calibrate", folder.path() / "robot", "--out", out}, prepare);
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+    EXPECT_EQ(outcome.out, "") << "the log was calibrated first";
+    return outcome.err;
+  };
+  const std::string full = calibrate(folder.path() / "cart.toml", allow_small_files);
+  EXPECT_NE(full.find("cart.toml: cannot write: File too large"), std::string::npos) << full;
+  const std::string nowhere = calibrate(folder.path() / "nowhere" / "cart.toml", {});
+  EXPECT_NE(nowhere.find("cart.toml: cannot write: No such file or directory"), std::string::npos) << nowhere;
+  EXPECT_EQ(names_in(folder.path()), std::set<std::string>{"robot"});
+}
+
+TEST(FullDisk, NewVehicleTakesBackWhatItWrote) {
+  const testing::TemporaryFolder folder;
+  fs::create_directory(folder.path() / "empty");
+  for (const char* name : {"robot", "empty"}) {
+    const Outcome outcome = run({"new-vehicle", folder.path() / name}, allow_small_files);
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+    EXPECT_NE(outcome.err.find("File too large"), std::string::npos) << outcome.err;
+  }
+  EXPECT_EQ(names_in(folder.path()), std::set<std::string>{"empty"});
+  EXPECT_TRUE(fs::is_empty(folder.path() / "empty"));
+}
+
 TEST(Interrupt, EndsAProgramThatDoesNotAskInTime) {
   EXPECT_EXIT(
       {

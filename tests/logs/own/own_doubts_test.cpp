@@ -42,6 +42,48 @@ TEST(OwnDoubts, TellGapsWithTheirLengthAndPlace) {
       << all;
 }
 
+/// A drive at 3 m/s, a row every 0.1 s, of which row 20 goes as far as given.
+std::string drive_with_jump(double jump_m) {
+  std::string rows = "t_s,dx_m,dy_m,dheading_rad\n";
+  for (int i = 0; i < 40; ++i) {
+    rows += std::to_string(0.1 * i) + ',' + std::to_string(i == 20 ? jump_m : 0.3) + ",0,0\n";
+  }
+  return rows;
+}
+
+TEST(OwnDoubts, TellARowThatLeavesAllOthersBehind) {
+  const std::string all = remarks("odometry.csv", drive_with_jump(50.0));
+  EXPECT_TRUE(says(all,
+                   "1 row is faster than ten times what 99 % of them are (3 m/s); at 2 s the vehicle moves 50 m at "
+                   "500 m/s"))
+      << all;
+  EXPECT_EQ(remarks("odometry.csv", drive_with_jump(2.9)), "") << "less than ten times";
+}
+
+TEST(OwnDoubts, TellAJumpOfPosesAndOfVelocities) {
+  std::string poses = "t,x,y,heading\n", velocities = "t,v,omega\n";
+  for (int i = 0; i < 40; ++i) {
+    poses += std::to_string(0.1 * i) + ',' + std::to_string(0.3 * i + (i >= 20 ? 50.0 : 0.0)) + ",0,0\n";
+    velocities += std::to_string(0.1 * i) + (i == 20 ? ",60,0\n" : ",3,0\n");
+  }
+  EXPECT_TRUE(says(remarks("odometry.csv", poses), "at 2 s the vehicle moves 50.3 m"));
+  EXPECT_TRUE(says(remarks("odometry.csv", velocities), "the vehicle moves 6 m at 60 m/s"));
+}
+
+TEST(OwnDoubts, TellAReachThatNoDetectionComesNear) {
+  const auto with_reach = [](const std::string& reach_m) {
+    return remarks("vehicle.toml", "[odometry]\nsigma_along_m_per_sqrt_m = 0.02\n[[sensor]]\nreach_m = " + reach_m +
+                                       "\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n");
+  };
+  EXPECT_TRUE(says(with_reach("300"), "a reach of 300 m, and the farthest of the detections is at 20 m"));
+  EXPECT_EQ(with_reach("190"), "");
+}
+
+TEST(OwnDoubts, TellThatHardlyAnythingWasDetected) {
+  EXPECT_TRUE(says(remarks("detections.csv", "t,range_m,bearing_deg\n0.5,10,90\n"), "detections: 1 in all of the log"));
+  EXPECT_TRUE(says(remarks("detections.csv", "t,range_m,bearing_deg\n0.5,,\n1.5,,\n"), "detections: 0 in all"));
+}
+
 TEST(OwnDoubts, TellTheVehicleOfAnotherRobot) {
   const std::string all = remarks("vehicle.toml",
                                   "[odometry]\nsigma_along_m_per_sqrt_m = 0.02\n"

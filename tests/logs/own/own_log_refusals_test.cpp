@@ -103,7 +103,9 @@ TEST_F(OwnLogRefusal, OfAVehicleThatDoesNotTellWhatIsNeeded) {
   expect("odometry.csv", "t,v,steering_deg\n0,1,0\n2,1,0\n", "needs wheelbase_m");
   expect("odometry.csv", "t,v_left,v_right\n0,1,0\n2,1,0\n", "needs track_m");
   expect("detections.csv", "t,range_m,bearing_deg,sensor\n0,1,1,left\n0,1,1,right\n", "nothing thrown");
-  expect("vehicle.toml", "[[sensor]]\nname='a'\n[[sensor]]\nname='b'\n", "no [[sensor]] is called ''");
+  expect("vehicle.toml", "[[sensor]]\nname='a'\n[[sensor]]\nname='b'\n",
+         "the column sensor of the detections is missing, or empty in a row, and the vehicle (");
+  expect("vehicle.toml", "[[sensor]]\nname='a'\n[[sensor]]\nname='b'\n", "has the sensors a, b: expected one of them");
 }
 
 TEST_F(OwnLogRefusal, OfAFolderWithoutATableSaysWhatIsThere) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -26,7 +27,12 @@ class AppendFile {
 /// name is replaced, not followed. InputError, after which the temporary name is gone. Test: runs/run_writer_test.cpp.
 void write_whole_file(const std::string& path, std::string_view bytes);
 
-/// The file's bytes. InputError when it cannot be read.
-std::string read_whole_file(const std::string& path);
+/// InputError with the reason where write_whole_file could not write a small file of this name now; leaves nothing behind.
+/// Test: apps/hostile/lost_output_test.cpp.
+void check_writable(const std::string& path);
+
+/// The file's bytes. InputError when it cannot be read, is a folder, or has more than `most_bytes`; of what has no size, such
+/// as a device or a pipe, never more than 64 MiB are taken. Test: apps/hostile/hostile_run_test.cpp.
+std::string read_whole_file(const std::string& path, std::size_t most_bytes = std::size_t{4} << 30);
 
 }  // namespace helixnav::files

@@ -41,6 +41,11 @@ SensorModel sensor_called(const std::string& name, const std::string& log, const
     if (sensor.name == name || (vehicle.sensors.size() == 1 && (name.empty() || sensor.name.empty()))) found = &sensor;
     known += (known.empty() ? "" : ", ") + sensor.name;
   }
+  if (found == nullptr && name.empty() && !vehicle.sensors.empty()) {
+    throw core::InputError(log +
+                           ": the column sensor of the detections is missing, or empty in a row, and the vehicle (" +
+                           where(vehicle) + ") has the sensors " + known + ": expected one of them in each row");
+  }
   if (found == nullptr && !vehicle.sensors.empty()) {
     throw core::InputError(where(vehicle) + ": no [[sensor]] is called '" + name + "' as in the column sensor of " +
                            log + "; there are: " + known);

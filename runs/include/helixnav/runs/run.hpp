@@ -55,6 +55,8 @@ struct Run {
   std::vector<core::Pose2> final_path;
   RunTruth truth;
   bool finished = false;  ///< the run finished
+  /// What a run that finished wrote and read_run did not find, a sentence with file and numbers each: the steps are fewer.
+  std::vector<std::string> missing;
 
   // Known in memory only; read_run leaves them empty.
   /// Into summary.json, such as chi2 and dof of a smoother. Keys with dots nest: ("closures.pending", 2) becomes

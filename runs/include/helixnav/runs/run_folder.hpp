@@ -9,7 +9,7 @@
 namespace helixnav::runs {
 
 /// Reads a run folder, also one whose run was killed: an incomplete last line of a table is dropped, and so is a step
-/// of which any part is missing. InputError (file:line, what was expected) for anything else that is wrong, such as a
+/// of which any part is missing. Where a run that came to its end has lost rows since, `missing` says so. InputError (file:line, what was expected) for anything else that is wrong, such as a
 /// folder without manifest.json. Cost: about 0.1 s for 7000 steps with 50 000 associations.
 /// Test: runs/run_folder_test.cpp (tables cut at every kind of byte).
 Run read_run(const std::string& path);

@@ -3,12 +3,17 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "helixnav/core/recording.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/runs/run.hpp"
 
 namespace helixnav::runs {
+
+/// Whether a run folder may hold a file of this name, which a run that overwrites it replaces or removes.
+/// Test: apps/kept_inputs_test.cpp.
+bool is_run_file(std::string_view name);
 
 /// Writes a run folder (docs/run-folder.md) as the run goes. After the constructor the manifest, the headers and the
 /// truth are on disk; after each `write` the step is. A process killed at any instant leaves a folder that read_run

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "missing_rows.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "helixnav/files/file.hpp"
+#include "helixnav/files/json_nesting.hpp"
+
+namespace helixnav::runs {
+namespace {
+
+using SummaryJson = nlohmann::json;
+
+/// Of an object, and nothing of anything else.
+std::optional<std::size_t> count_in(const SummaryJson& json, const char* key) {
+  if (!json.is_object() || !json.contains(key) || !json.at(key).is_number_unsigned()) return std::nullopt;
+  return json.at(key).get<std::size_t>();
+}
+
+}  // namespace
+
+SaidOfRun read_said(const std::string& path) {
+  const std::string text = files::read_whole_file(path);
+  files::check_json_nesting(path, text);
+  const SummaryJson json = SummaryJson::parse(text, nullptr, false);
+  SaidOfRun said{count_in(json, "steps"), std::nullopt};
+  if (!json.is_object() || !json.contains("landmarks")) return said;
+  const auto mature = count_in(json.at("landmarks"), "mature"), tentative = count_in(json.at("landmarks"), "tentative");
+  if (mature && tentative) said.landmarks = *mature + *tentative;
+  return said;
+}
+
+void tell_missing(const std::string& folder, std::string_view table, std::size_t found, std::size_t expected,
+                  std::vector<std::string>& missing) {
+  if (found >= expected) return;
+  missing.push_back(folder + '/' + std::string(table) + ": " + std::to_string(found) + " of " +
+                    std::to_string(expected) + " rows: the run came to its end, and the file was cut since");
+}
+
+}  // namespace helixnav::runs
