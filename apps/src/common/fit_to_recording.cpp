@@ -45,6 +45,7 @@ supervisor::NavigatorOptions fit_to_sensor(const Settings& settings, const core:
   supervisor::NavigatorOptions options = supervisor::fit_lengths(settings.navigator, view);
   for (const auto& [name, length_m] : settings.given_lengths_m) supervisor::set_length(options, name, length_m);
   options.fit_lengths = false;
+  if (settings.names_wrong) options.names.wrong = *settings.names_wrong;
   return options;
 }
 
@@ -55,7 +56,7 @@ supervisor::NavigatorOptions fit_to_recording(const Settings& settings, const co
   } else if (recording.extraneous_per_scan) {
     options.search.learn_extraneous = true;
   }
-  if (recording.labels_are_given) options.names.wrong = 0.0;
+  if (recording.labels_are_given && !settings.names_wrong) options.names.wrong = 0.0;
   return options;
 }
 

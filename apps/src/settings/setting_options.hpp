@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -22,6 +23,10 @@ CLI::Option* add_number(CLI::App& command, const char* name, T& value, T low, T 
 /// A length that is a multiple of the sensor's reach ("auto") unless it is given in metres.
 CLI::Option* add_length(CLI::App& command, Settings& settings, const std::string& key, double low, double high,
                         const std::string& help);
+
+/// A number that something else decides unless it is given ("auto").
+CLI::Option* add_automatic(CLI::App& command, const char* name, std::optional<double>& value, double low, double high,
+                           const char* help);
 
 /// Parts of add_settings, in their order in help and configuration files.
 void add_sensor_settings(CLI::App& command, Settings& settings);

@@ -71,10 +71,10 @@ void add_association(CLI::App& command, Settings& settings) {
   supervisor::NavigatorOptions& navigator = settings.navigator;
   add_number(command, "--association.detection_probability", navigator.association.detection_probability, 0.01, 0.999,
              "P_D that a landmark in view is seen in one scan");
-  add_number(
-      command, "--names.wrong", navigator.names.wrong, 0.0, 0.5,
-      "With --association known: share of sightings that are of another landmark than their name says; 0: names are "
-      "never in question (graphs)");
+  add_automatic(
+      command, "--names.wrong", settings.names_wrong, 0.0, 0.5,
+      "With --association known: share of sightings that are of another landmark than their name says; 0: none can "
+      "be; auto: 0.001, 0 where names are part of the problem (graphs, DLR)");
   add_number(command, "--association.extraneous_per_scan", navigator.extraneous_per_scan, 0.01, 100.0,
              "Expected observations of no mapped landmark in a scan: clutter and new ones");
   add_number(command, "--association.match_probability", navigator.gates.match_probability, 0.5, 0.999999,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,8 @@ struct Settings {
   double covariance_scale = 1.0;   ///< on the covariances that the log itself states or its sensor settings give
   double plaza_range_scale = 0.0;  ///< 0: estimate it from the log
   GpsSettings gps;
-  double memory_mb = 0.0;  ///< that a drive may take until it ends there; 0: any
+  std::optional<double> names_wrong;  ///< NavigatorOptions::names; nothing: by the log
+  double memory_mb = 0.0;             ///< that a drive may take until it ends there; 0: any
 };
 
 /// Whether the filter chosen takes the labels of the log for identities.
