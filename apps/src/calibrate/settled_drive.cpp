@@ -9,6 +9,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/event_loop.hpp"
 #include "smooth/smoothing_run.hpp"
+#include "without_fixes.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -38,16 +39,6 @@ double nis_per_dof(const std::vector<core::StepReport>& steps, double from_share
 }
 
 }  // namespace
-
-core::Recording without_fixes(const core::Recording& recording) {
-  core::Recording rest;
-  rest.start = recording.start;
-  rest.name = recording.name;
-  for (const core::Event& event : recording.events) {
-    if (!std::holds_alternative<core::AbsoluteFix>(event)) rest.events.push_back(event);
-  }
-  return rest;
-}
 
 SettledDrive drive_through(const core::Recording& recording, const supervisor::NavigatorOptions& options,
                            bool known_association) {

@@ -5,9 +5,11 @@
 #include <map>
 #include <variant>
 
+#include "drifting_level.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/smoothing/optimize.hpp"
 #include "helixnav/smoothing/residuals.hpp"
+#include "without_fixes.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -87,29 +89,68 @@ smoothing::ConstantDerivative by_reading(const NudgedLog& log, std::size_t c, co
   return derivative;
 }
 
-/// (x, y, heading) a second in the frame of the pose, from the solved poses beside it.
-Eigen::Vector3d rate_at(const NudgedLog& log, const SmoothingTask& task, const std::vector<int>& first, int pose) {
-  const int last = static_cast<int>(first.size()) - 1;
-  constexpr int window = 3;  // so wide that what is left of the noise in it says nothing of a delay
-  int before = std::max(pose - window, 0);
-  while (first[at(before)] < 0) ++before;
-  const int after = std::min(pose + window, last);
-  const double duration_s = core::seconds(log.told.times[at(first[at(after)])] - log.told.times[at(first[at(before)])]);
-  if (!(duration_s > 0.0)) return Eigen::Vector3d::Zero();
+/// (x, y, heading) a second in the frame of the vehicle, at times.
+struct Rates {
+  std::vector<core::Nanoseconds> times;
+  std::vector<Eigen::Vector3d> values;
+};
+
+/// Between every sixth of the solved poses that have a scan.
+Rates solved_rates(const NudgedLog& log, const SmoothingTask& task, const std::vector<int>& first) {
+  constexpr std::size_t every = 6;  // so far apart that what is left of the noise is white
   const auto& poses = task.problem.graph.poses;
-  const core::Pose2& here = poses[at(pose)].T_world_robot;
-  const core::Pose2 from = core::between(here, poses[at(before)].T_world_robot);
-  const core::Pose2 to = core::between(here, poses[at(after)].T_world_robot);
-  return slope(from, to, duration_s);
+  std::vector<std::size_t> with_scan;
+  for (std::size_t pose = 0; pose < first.size(); ++pose) {
+    if (first[pose] >= 0) with_scan.push_back(pose);
+  }
+  const auto time_of = [&](std::size_t i) { return log.told.times[at(first[with_scan[i]])]; };
+  Rates rates;
+  for (std::size_t i = 0; i + every < with_scan.size(); i += every) {
+    const double duration_s = core::seconds(time_of(i + every) - time_of(i));
+    if (!(duration_s > 0.0)) continue;
+    const core::Pose2& here = poses[with_scan[i + every / 2]].T_world_robot;
+    const core::Pose2 from = core::between(here, poses[with_scan[i]].T_world_robot);
+    const core::Pose2 to = core::between(here, poses[with_scan[i + every]].T_world_robot);
+    rates.times.push_back(time_of(i) + (time_of(i + every) - time_of(i)) / 2);
+    rates.values.push_back(slope(from, to, duration_s));
+  }
+  return rates;
+}
+
+/// As the vehicle is expected to have gone: what noise makes of a steady speed would tell of a delay that nobody can see.
+void take_out_noise(Rates& rates) {
+  const auto n = static_cast<Eigen::Index>(rates.values.size());
+  Eigen::VectorXd apart_s(std::max<Eigen::Index>(n - 1, 0));
+  for (Eigen::Index i = 0; i + 1 < n; ++i)
+    apart_s[i] = core::seconds(rates.times[static_cast<std::size_t>(i) + 1] - rates.times[static_cast<std::size_t>(i)]);
+  for (int axis = 0; axis < 3; ++axis) {
+    Eigen::VectorXd seen(n);
+    for (Eigen::Index i = 0; i < n; ++i) seen[i] = rates.values[static_cast<std::size_t>(i)][axis];
+    const Eigen::VectorXd level = drifting_level(seen, apart_s);
+    for (Eigen::Index i = 0; i < n; ++i) rates.values[static_cast<std::size_t>(i)][axis] = level[i];
+  }
+}
+
+/// Between the two beside it.
+Eigen::Vector3d rate_at(const Rates& rates, core::Nanoseconds t_ns) {
+  if (rates.times.empty()) return Eigen::Vector3d::Zero();
+  const auto after = std::upper_bound(rates.times.begin(), rates.times.end(), t_ns);
+  if (after == rates.times.begin()) return rates.values.front();
+  if (after == rates.times.end()) return rates.values.back();
+  const auto i = static_cast<std::size_t>(after - rates.times.begin());
+  const double share = core::seconds(t_ns - rates.times[i - 1]) / core::seconds(rates.times[i] - rates.times[i - 1]);
+  return (1.0 - share) * rates.values[i - 1] + share * rates.values[i];
 }
 
 smoothing::ConstantDerivative by_delay(const NudgedLog& log, const SmoothingTask& task) {
   smoothing::ConstantDerivative derivative = none_of(task);
   const std::vector<int> first = first_scans(task);
+  Rates rates = solved_rates(log, task, first);
+  take_out_noise(rates);
   for (std::size_t k = 0; k < task.edge_of.size(); ++k) {
     const int pose = task.pose_of_step[k];
     if (first[at(pose)] < 0) continue;
-    const Eigen::Vector3d rate = rate_at(log, task, first, pose);
+    const Eigen::Vector3d rate = rate_at(rates, log.told.times[k]);
     const core::Pose2& mounting = log.told.mounting[k];
     const Eigen::Vector3d back(-rate.x() + rate.z() * mounting.y_m, -rate.y() - rate.z() * mounting.x_m, -rate.z());
     for (const int edge : task.edge_of[k]) {

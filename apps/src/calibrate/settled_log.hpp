@@ -50,7 +50,8 @@ NudgedLog nudge(const ReadLog& read, const Settings& settings, const std::vector
 /// delay acts through the speed: both are taken of the solution, whose errors have nothing to do with what is left of the
 /// measurements; of the increments measured, they would pull the constant (a noisy regressor). And a delay is the sensor's place
 /// along the path rather than other ends of the increments: where these cut a sample in two, its noise averages out, which
-/// least squares takes for a better fit.
+/// least squares takes for a better fit. The speed is that of drifting_level(): of a steady drive the noise of the solved poses
+/// would be all that changes, and each step of a fit would go where it happens to point.
 std::vector<smoothing::ConstantDerivative> derivatives_of(const NudgedLog& log, const SmoothingTask& task);
 
 }  // namespace helixnav::apps
