@@ -160,6 +160,46 @@ smoothing::ConstantDerivative by_delay(const NudgedLog& log, const SmoothingTask
   return derivative;
 }
 
+SmoothingTask solve_once(const core::Recording& driven, const Ids& ids, const core::LandmarkGraph& from,
+                         const smoothing::RobustKernel& kernel) {
+  SmoothingTask task = task_from_recording(driven, ids);
+  core::LandmarkGraph& graph = task.problem.graph;
+  if (graph.poses.size() == from.poses.size()) {
+    graph.poses = from.poses;
+    core::locate_landmarks(graph);
+  }
+  std::map<std::int64_t, Eigen::Vector2d> point_of;
+  for (const auto& landmark : from.landmarks) point_of[landmark.name] = landmark.point_m;
+  for (auto& landmark : graph.landmarks) {
+    if (const auto known = point_of.find(landmark.name); known != point_of.end()) landmark.point_m = known->second;
+  }
+  smoothing::Options solver;
+  solver.first_damping = 1e-8;
+  solver.kernel = kernel;
+  smoothing::optimize(task.problem, solver);
+  return task;
+}
+
+/// Takes out of `ids` what was seen of a landmark where it stands in the sensor; whether there was any. Where wrong associations
+/// contradict each other the sum of squares may be least there, and it has no derivative.
+bool leave_out_at_sensors(const SmoothingTask& solved, Ids& ids) {
+  constexpr double nearest_m = 1e-3;  // nothing is seen from so near
+  const core::LandmarkGraph& graph = solved.problem.graph;
+  bool left_out = false;
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    for (std::size_t i = 0; i < ids[k].size(); ++i) {
+      if (solved.edge_of[k][i] < 0) continue;
+      const auto& edge = graph.landmark_edges[at(solved.edge_of[k][i])];
+      if (edge.observation.kind == core::ObservationKind::cartesian) continue;
+      const core::Pose2 sensor = core::compose(graph.poses[at(edge.pose)].T_world_robot, edge.T_robot_sensor);
+      if ((graph.landmarks[at(edge.landmark)].point_m - sensor.position_m()).norm() > nearest_m) continue;
+      ids[k][i] = core::no_label;
+      left_out = true;
+    }
+  }
+  return left_out;
+}
+
 }  // namespace
 
 Ids without_returns(const Ids& ids) {
@@ -208,23 +248,11 @@ Ids without_outliers(const Ids& ids, const SmoothingTask& solved) {
   return kept;
 }
 
-SmoothingTask solve_log(const core::Recording& recording, const Ids& ids, const core::LandmarkGraph& from,
+SmoothingTask solve_log(const core::Recording& recording, Ids ids, const core::LandmarkGraph& from,
                         const smoothing::RobustKernel& kernel) {
-  SmoothingTask task = task_from_recording(without_fixes(recording), ids);
-  core::LandmarkGraph& graph = task.problem.graph;
-  if (graph.poses.size() == from.poses.size()) {
-    graph.poses = from.poses;
-    core::locate_landmarks(graph);
-  }
-  std::map<std::int64_t, Eigen::Vector2d> point_of;
-  for (const auto& landmark : from.landmarks) point_of[landmark.name] = landmark.point_m;
-  for (auto& landmark : graph.landmarks) {
-    if (const auto known = point_of.find(landmark.name); known != point_of.end()) landmark.point_m = known->second;
-  }
-  smoothing::Options solver;
-  solver.first_damping = 1e-8;
-  solver.kernel = kernel;
-  smoothing::optimize(task.problem, solver);
+  const core::Recording driven = without_fixes(recording);
+  SmoothingTask task = solve_once(driven, ids, from, kernel);
+  while (leave_out_at_sensors(task, ids)) task = solve_once(driven, ids, task.problem.graph, kernel);
   return task;
 }
 

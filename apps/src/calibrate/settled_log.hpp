@@ -22,8 +22,9 @@ Ids without_returns(const Ids& ids);
 Ids without_outliers(const Ids& ids, const SmoothingTask& solved);
 
 /// The least-squares problem of a log read by the settings, with the associations of a drive through it, solved from where
-/// the drive stands.
-SmoothingTask solve_log(const core::Recording& recording, const Ids& ids, const core::LandmarkGraph& from,
+/// the drive stands. An observation of a landmark that comes to stand in the sensor is left out (edge_of −1). Test:
+/// apps/calibrate/settled_log_test.cpp
+SmoothingTask solve_log(const core::Recording& recording, Ids ids, const core::LandmarkGraph& from,
                         const smoothing::RobustKernel& kernel = {});
 
 /// What a log measures between its scans and at them.
