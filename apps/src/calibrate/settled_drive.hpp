@@ -24,7 +24,7 @@ struct SettledDrive {
 inline constexpr int parts_held_out = 4;
 
 /// Navigates; observations of mature landmarks are used. core::InputError when the run maps no landmark,
-/// core::NumericalError where the mathematics breaks.
+/// core::NumericalError where the mathematics breaks, Interrupted on SIGINT.
 SettledDrive drive_through(const core::Recording& recording, const supervisor::NavigatorOptions& options,
                            bool known_association);
 

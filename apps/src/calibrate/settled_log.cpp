@@ -9,6 +9,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/smoothing/optimize.hpp"
 #include "helixnav/smoothing/residuals.hpp"
+#include "stop_if_interrupted.hpp"
 #include "without_fixes.hpp"
 
 namespace helixnav::apps {
@@ -173,8 +174,7 @@ SmoothingTask solve_once(const core::Recording& driven, const Ids& ids, const co
   for (auto& landmark : graph.landmarks) {
     if (const auto known = point_of.find(landmark.name); known != point_of.end()) landmark.point_m = known->second;
   }
-  smoothing::Options solver;
-  solver.first_damping = 1e-8;
+  smoothing::Options solver = patient_solver(1e-4);
   solver.kernel = kernel;
   smoothing::optimize(task.problem, solver);
   return task;
@@ -246,6 +246,17 @@ Ids without_outliers(const Ids& ids, const SmoothingTask& solved) {
     }
   }
   return kept;
+}
+
+smoothing::Options patient_solver(double tolerance_chi2) {
+  smoothing::Options solver;
+  solver.first_damping = 1e-8;
+  solver.tolerance_chi2 = tolerance_chi2;
+  solver.go_on = [](const std::vector<smoothing::Iteration>&) {
+    stop_if_interrupted();
+    return true;
+  };
+  return solver;
 }
 
 SmoothingTask solve_log(const core::Recording& recording, Ids ids, const core::LandmarkGraph& from,

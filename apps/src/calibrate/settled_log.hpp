@@ -5,6 +5,7 @@
 
 #include "helixnav/core/recording.hpp"
 #include "helixnav/smoothing/constants.hpp"
+#include "helixnav/smoothing/optimize.hpp"
 #include "helixnav/smoothing/robust_kernel.hpp"
 #include "settled_drive.hpp"
 #include "vehicle_constants.hpp"
@@ -20,6 +21,10 @@ Ids without_returns(const Ids& ids);
 
 /// Associations but for those that a solved task contradicts: whose squared residual, by its covariance, is 15 times the median.
 Ids without_outliers(const Ids& ids, const SmoothingTask& solved);
+
+/// From a start that is good, until no more than this is promised [χ²]; Interrupted from it on SIGINT. A drive along an open road
+/// creeps to its minimum in 100 steps and more, of which the last halves are worth 1e-4 of a χ² of 20 000.
+smoothing::Options patient_solver(double tolerance_chi2);
 
 /// The least-squares problem of a log read by the settings, with the associations of a drive through it, solved from where
 /// the drive stands. An observation of a landmark that comes to stand in the sensor is left out (edge_of −1). Test:
