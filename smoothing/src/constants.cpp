@@ -9,6 +9,16 @@
 namespace helixnav::smoothing {
 namespace {
 
+/// How a landmark would have to move for a sensor that stays to see what one sees that moves on the vehicle.
+Eigen::Matrix<double, 2, 3> point_by_mounting(const core::Pose2& T_world_robot, const core::Pose2& T_robot_sensor,
+                                              const Eigen::Vector2d& point_m) {
+  const Eigen::Vector2d from_sensor_m = point_m - core::compose(T_world_robot, T_robot_sensor).position_m();
+  Eigen::Matrix<double, 2, 3> J;
+  J.leftCols<2>() = -core::rotation(T_world_robot.heading_rad);
+  J.col(2) << from_sensor_m.y(), -from_sensor_m.x();
+  return J;
+}
+
 /// The rows of the constants in the normal equations of poses, landmarks and constants.
 class BorderedEquations {
  public:
@@ -52,10 +62,8 @@ class BorderedEquations {
     const core::Pose2& T_world_robot = session_.state.poses[pose];
     const Eigen::Vector2d& point_m = session_.state.landmarks[landmark];
     const auto factor = observation_factor<D>(edge, T_world_robot, point_m);
-    const core::Pose2 T_world_sensor = core::compose(T_world_robot, edge.T_robot_sensor);
     const Eigen::Matrix<double, D, 3> by_mounting =
-        core::predict_observation(edge.observation.kind, T_world_sensor, core::Pose2(), point_m).H_pose *
-        core::compose_jacobians(T_world_robot, edge.T_robot_sensor).J_second;
+        factor.J_b * point_by_mounting(T_world_robot, edge.T_robot_sensor, point_m);
     Eigen::Matrix<double, D, Eigen::Dynamic> J(D, corner.cols());
     for (Eigen::Index c = 0; c < J.cols(); ++c)
       J.col(c) = by_mounting * constants_[static_cast<std::size_t>(c)].mountings[i];

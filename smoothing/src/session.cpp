@@ -35,17 +35,17 @@ void Session::factorize_undamped() {
 }
 
 Chi2 Session::try_step(const Eigen::VectorXd& step) {
-  Chi2 trial_chi2;
-  trial_chi2.cost = std::numeric_limits<double>::infinity();
-  if (!step.allFinite()) return trial_chi2;
+  Chi2 none;
+  none.cost = std::numeric_limits<double>::infinity();
+  if (!step.allFinite()) return none;
   add_step(layout, step, state, trial_);
   try {
-    trial_chi2 = equations.evaluate(trial_);
-  } catch (const core::NumericalError&) {
-    return trial_chi2;  // a landmark came to stand at a sensor: no step to take
+    // An object of its own: GCC lets evaluate() write into what it is assigned to, where half a sum stays when it throws.
+    const Chi2 found = equations.evaluate(trial_);
+    if (std::isfinite(found.cost)) return found;
+  } catch (const core::NumericalError&) {  // a landmark came to stand at a sensor: no step to take
   }
-  if (!std::isfinite(trial_chi2.cost)) trial_chi2.cost = std::numeric_limits<double>::infinity();
-  return trial_chi2;
+  return none;
 }
 
 void Session::accept(const Chi2& trial_chi2, const Eigen::VectorXd& step, double damping) {

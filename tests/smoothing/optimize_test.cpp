@@ -62,6 +62,33 @@ TEST(Optimize, LeavesChi2InItsBand) {
   }
 }
 
+/// A landmark that one pose says to be 1 m ahead, where another pose is, which says with next to no weight that it is not.
+Problem landmark_at_a_sensor() {
+  Problem problem;
+  core::LandmarkGraph& graph = problem.graph;
+  graph.poses.resize(2);
+  graph.poses[1].T_world_robot = core::Pose2(1.0, 0.0, 0.0);
+  graph.landmarks.resize(1);
+  graph.landmarks[0].point_m = Eigen::Vector2d(1.0, 0.7);
+  graph.landmark_edges.resize(2);
+  graph.landmark_edges[0].observation =
+      core::make_cartesian(Eigen::Vector2d(1.0, 0.0), 1e-4 * Eigen::Matrix2d::Identity());
+  graph.landmark_edges[1].pose = 1;
+  graph.landmark_edges[1].observation = core::make_range(0.5, 1e3);
+  problem.fixed_poses = {0, 1};
+  return problem;
+}
+
+// Of such a step half of the sum is known when the sum breaks off, and half of a cost is less than the cost.
+TEST(Optimize, TakesNoStepThatPutsALandmarkIntoASensor) {
+  Problem problem = landmark_at_a_sensor();
+  Options options;
+  options.first_damping = 1e-9;
+  const Report report = optimize(problem, options);
+  EXPECT_LT(report.chi2.cost, 1e-5) << "0.25e-6 from the range alone";
+  EXPECT_LT((problem.graph.landmarks[0].point_m - Eigen::Vector2d(1.0, 0.0)).norm(), 1e-3);
+}
+
 TEST(Optimize, ReportsAFallingCostThatEndsAtTheSolution) {
   RandomProblem made = random_problem(4);
   const Chi2 start = evaluate_chi2(made.problem);

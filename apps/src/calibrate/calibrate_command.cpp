@@ -8,6 +8,7 @@
 
 #include "calibration.hpp"
 #include "common/commands.hpp"
+#include "common/interrupt.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/files/file.hpp"
 #include "helixnav/logs/mrclam.hpp"
@@ -18,6 +19,7 @@
 #include "settings/memory_limit.hpp"
 #include "settings/settings.hpp"
 #include "settings/vehicle_option.hpp"
+#include "stop_if_interrupted.hpp"
 #include "vehicle_text.hpp"
 
 namespace helixnav::apps {
@@ -87,6 +89,35 @@ void print_constants(const Calibration& found) {
       found.held_out_gain, found.nis_told, found.nis_found);
 }
 
+void print_result(const Calibration& result) {
+  print_scale("odometry", result.scales.odometry);
+  print_scale("detections", result.scales.landmarks);
+  print_constants(result);
+  if (!result.settled) std::printf("not settled after %d rounds: the intervals are not to be trusted\n", result.rounds);
+  if (result.without_returns) {
+    std::printf("the returns of this drive do not fit the rest of it, and are not used: some associations are wrong\n");
+  }
+  if (result.closings < result.first_closings) {
+    std::printf(
+        "warning: with what was found %zu loops are closed, with what was assumed %zu; see in the report which were "
+        "right\n"
+        "before you keep it\n",
+        result.closings, result.first_closings);
+  }
+}
+
+/// What goes to and fro for eight rounds is no calibration.
+void write_out(const std::string& out, const logs::Vehicle& vehicle, const Calibration& result) {
+  if (!result.settled) {
+    std::fflush(stdout);
+    throw core::InputError(out + ": not written, since nothing settled after " + std::to_string(result.rounds) +
+                           " rounds: some associations or what the vehicle file says are far off; see to mounting, "
+                           "units, signs and gaps first ('helixnav check')");
+  }
+  files::write_whole_file(out, calibrated_text(vehicle, result));
+  std::printf("written: %s\n", out.c_str());
+}
+
 ExitCode calibrate(CLI::App& command, CalibrateJob& job) {
   const GivenOptions given = options_given(command);
   if (!job.config.empty()) apply_config_file(command, job.config);
@@ -102,24 +133,19 @@ ExitCode calibrate(CLI::App& command, CalibrateJob& job) {
   }
   if (!job.out.empty()) files::check_writable(job.out);
   const Calibration result = calibrate_log(job.path, job.settings, vehicle);
-  print_scale("odometry", result.scales.odometry);
-  print_scale("detections", result.scales.landmarks);
-  print_constants(result);
-  if (!result.settled) std::printf("not settled after %d rounds: the intervals are not to be trusted\n", result.rounds);
-  if (result.without_returns) {
-    std::printf("the returns of this drive do not fit the rest of it, and are not used: some associations are wrong\n");
-  }
-  if (result.closings < result.first_closings) {
-    std::printf(
-        "warning: with what was found %zu loops are closed, with what was assumed %zu; see in the report which were "
-        "right\n"
-        "before you keep it\n",
-        result.closings, result.first_closings);
-  }
-  if (job.out.empty()) return ExitCode::ok;
-  files::write_whole_file(job.out, calibrated_text(vehicle, result));
-  std::printf("written: %s\n", job.out.c_str());
+  print_result(result);
+  if (!job.out.empty()) write_out(job.out, vehicle, result);
   return ExitCode::ok;
+}
+
+ExitCode calibrate_until_interrupted(CLI::App& command, CalibrateJob& job) {
+  catch_interrupts();
+  try {
+    return calibrate(command, job);
+  } catch (const Interrupted&) {
+    std::fprintf(stderr, "helixnav: interrupted; nothing is written\n");
+    return ExitCode::interrupted;
+  }
 }
 
 }  // namespace
@@ -141,12 +167,13 @@ void add_calibrate_command(CLI::App& app, ExitCode& code) {
       "again with what was found, until it stays. A constant of which the log says too little is left as told, and so "
       "is one\n"
       "that, fitted to three quarters of the log, does not explain the fourth better. Noise goes into vehicle.toml as\n"
-      "noise_scale. Of a published log it begins with the vehicle that ships.\n\n"
+      "noise_scale. Of a published log it begins with the vehicle that ships. What does not settle is printed, not "
+      "written (exit code 3).\n\n"
       "Examples:\n"
       "  helixnav calibrate my_drive --out calibrated.toml\n"
       "  helixnav replay my_drive --vehicle calibrated.toml --out runs/calibrated\n"
       "  helixnav calibrate victoria_park_ascii.zip --out truck.toml\n");
-  command->callback([command, job, &code] { code = calibrate(*command, *job); });
+  command->callback([command, job, &code] { code = calibrate_until_interrupted(*command, *job); });
 }
 
 }  // namespace helixnav::apps

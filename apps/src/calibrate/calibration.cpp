@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/fit_to_recording.hpp"
+#include "common/progress_bar.hpp"
 #include "constants_fit.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
@@ -15,6 +16,7 @@
 #include "replay/read_to_replay.hpp"
 #include "settings/vehicle_option.hpp"
 #include "settled_log.hpp"
+#include "stop_if_interrupted.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -64,6 +66,7 @@ class Calibrator {
 
  private:
   core::Recording plain(const Settings& settings) const {
+    stop_if_interrupted();
     Settings copy = settings;
     core::Recording log = read_to_replay(path_, copy).recording;
     apply_log_settings(log, copy);
@@ -113,6 +116,8 @@ class Calibrator {
     constexpr double settled = 0.02, settled_sigmas = 0.4, far_sigmas = 3.0;  // a match or two go to and fro
     const bool final_associations = !far_off_;
     far_off_ = fit.step > far_sigmas;
+    // Away again from where the fit without returns is, and back: the returns contradict the rest, and would for ever.
+    if (final_associations && far_off_ && ++times_thrown_back_ > 1) result_.without_returns = true;
     result_.settled = final_associations && std::abs(std::log(fit.noise.odometry.factor)) < settled &&
                       std::abs(std::log(fit.noise.landmarks.factor)) < settled && fit.step < settled_sigmas;
     std::printf(
@@ -149,10 +154,24 @@ class Calibrator {
   Fit fit_all(SettledDrive& drive) {
     Fit fit;
     fit.step = fit_constants(drive);
-    fit.noise = smoothing::estimate_noise_scales(drive.task.problem, 1);
+    fit.noise = noise_of(drive);
     limit(fit.noise.odometry);
     limit(fit.noise.landmarks);
     return fit;
+  }
+
+  /// A drive that is nonsense from beginning to end leaves nothing to judge noise by.
+  smoothing::NoiseScales noise_of(const SettledDrive& drive) const {
+    constexpr int draws = 3;
+    constexpr double tolerance_chi2 = 0.01;  // of thousands, to be known to a per cent
+    try {
+      return smoothing::estimate_noise_scales(drive.task.problem, 1, draws, patient_solver(tolerance_chi2));
+    } catch (const core::NumericalError& error) {
+      throw core::InputError(path_ + ": no noise can be judged by this drive (" + error.what() + "), of which " +
+                             std::to_string(drive.used) + " of " + std::to_string(drive.observations) +
+                             " detections are used: see to the mounting of the sensor (heading_deg), the sign of its "
+                             "bearings and the units first; 'helixnav check' shows what was understood");
+    }
   }
 
   Eigen::VectorXd usual() const {
@@ -179,7 +198,9 @@ class Calibrator {
     const Settings before = result_.settings;
     Eigen::VectorXd sigmas;
     constexpr int most_steps = 4;
+    ProgressBar progress("fitting constants", most_steps, false);
     for (int i = 0; i < most_steps && !constants_.empty(); ++i) {
+      progress.advance_to(static_cast<std::size_t>(i));
       const core::Recording recording = read(result_.settings);
       if (far_off_ || result_.without_returns) {
         const smoothing::RobustKernel robust{smoothing::RobustKernel::Shape::cauchy};
@@ -247,8 +268,11 @@ class Calibrator {
     const core::Recording recording = read(result_.settings);
     const NudgedLog log = nudged(recording);
     std::vector<Fold> folds;
-    for (int part = 0; part < parts_held_out; ++part)
+    ProgressBar progress("judging by what is held out", parts_held_out + 1, false);
+    for (int part = 0; part < parts_held_out; ++part) {
+      progress.advance_to(static_cast<std::size_t>(part));
       folds.push_back({evidence_of(recording, log, part, false), evidence_of(recording, log, part, true)});
+    }
     const auto all = evidence_of(recording, log, parts_held_out, false);
     const Eigen::VectorXd told = back(result_.settings);
     const std::vector<bool> none(constants_.size(), false);
@@ -283,6 +307,7 @@ class Calibrator {
   Settings known_;
   std::vector<VehicleConstant> constants_;
   bool far_off_;               ///< the constants may be, so that returns cannot be believed
+  int times_thrown_back_ = 0;  ///< far off after they were not
   Ids ids_;                    ///< of the last round
   core::LandmarkGraph graph_;  ///< solved with them
   Calibration result_;

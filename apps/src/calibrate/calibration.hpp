@@ -38,7 +38,7 @@ struct Calibration {
 };
 
 /// Navigates with what is known, fits constants and noise to the drive solved as a whole, and again until nothing changes;
-/// prints a line for each round. Errors as drive_through().
+/// prints a line for each round. Errors as drive_through(); InputError where no noise can be judged.
 Calibration calibrate_log(const std::string& path, const Settings& settings, const logs::Vehicle& vehicle);
 
 }  // namespace helixnav::apps

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "settled_drive.hpp"
 
+#include <algorithm>
 #include <set>
+#include <variant>
 #include <vector>
 
 #include "common/chosen_navigator.hpp"
+#include "common/progress_bar.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/event_loop.hpp"
 #include "smooth/smoothing_run.hpp"
+#include "stop_if_interrupted.hpp"
+#include "without_fixes.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -37,17 +42,12 @@ double nis_per_dof(const std::vector<core::StepReport>& steps, double from_share
   return rows > 0 ? nis / rows : 0.0;
 }
 
-}  // namespace
-
-core::Recording without_fixes(const core::Recording& recording) {
-  core::Recording rest;
-  rest.start = recording.start;
-  rest.name = recording.name;
-  for (const core::Event& event : recording.events) {
-    if (!std::holds_alternative<core::AbsoluteFix>(event)) rest.events.push_back(event);
-  }
-  return rest;
+std::size_t scans_in(const core::Recording& recording) {
+  const auto is_scan = [](const core::Event& event) { return std::holds_alternative<core::Scan>(event); };
+  return static_cast<std::size_t>(std::count_if(recording.events.begin(), recording.events.end(), is_scan));
 }
+
+}  // namespace
 
 SettledDrive drive_through(const core::Recording& recording, const supervisor::NavigatorOptions& options,
                            bool known_association) {
@@ -55,7 +55,10 @@ SettledDrive drive_through(const core::Recording& recording, const supervisor::N
   core::EventLoop loop(recording.events, navigator);
   std::vector<core::StepReport> steps;
   SettledDrive drive;
+  ProgressBar progress("navigating", scans_in(recording), false);
   while (std::optional<core::StepReport> step = loop.next()) {
+    stop_if_interrupted();
+    progress.advance_to(steps.size());
     for (const core::Decision& decision : step->decisions) {
       drive.closings += core::is_closure(decision) && core::row_of(decision).verdict == std::string("accepted") ? 1 : 0;
     }

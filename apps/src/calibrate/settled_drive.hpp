@@ -23,11 +23,8 @@ struct SettledDrive {
 /// Parts of a log, of which each judges the constants that are fitted to the others; the last judges by a run, too.
 inline constexpr int parts_held_out = 4;
 
-/// The events but for fixes: what calibrate may see.
-core::Recording without_fixes(const core::Recording& recording);
-
 /// Navigates; observations of mature landmarks are used. core::InputError when the run maps no landmark,
-/// core::NumericalError where the mathematics breaks.
+/// core::NumericalError where the mathematics breaks, Interrupted on SIGINT.
 SettledDrive drive_through(const core::Recording& recording, const supervisor::NavigatorOptions& options,
                            bool known_association);
 

@@ -5,9 +5,12 @@
 #include <map>
 #include <variant>
 
+#include "drifting_level.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/smoothing/optimize.hpp"
 #include "helixnav/smoothing/residuals.hpp"
+#include "stop_if_interrupted.hpp"
+#include "without_fixes.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -87,29 +90,68 @@ smoothing::ConstantDerivative by_reading(const NudgedLog& log, std::size_t c, co
   return derivative;
 }
 
-/// (x, y, heading) a second in the frame of the pose, from the solved poses beside it.
-Eigen::Vector3d rate_at(const NudgedLog& log, const SmoothingTask& task, const std::vector<int>& first, int pose) {
-  const int last = static_cast<int>(first.size()) - 1;
-  constexpr int window = 3;  // so wide that what is left of the noise in it says nothing of a delay
-  int before = std::max(pose - window, 0);
-  while (first[at(before)] < 0) ++before;
-  const int after = std::min(pose + window, last);
-  const double duration_s = core::seconds(log.told.times[at(first[at(after)])] - log.told.times[at(first[at(before)])]);
-  if (!(duration_s > 0.0)) return Eigen::Vector3d::Zero();
+/// (x, y, heading) a second in the frame of the vehicle, at times.
+struct Rates {
+  std::vector<core::Nanoseconds> times;
+  std::vector<Eigen::Vector3d> values;
+};
+
+/// Between every sixth of the solved poses that have a scan.
+Rates solved_rates(const NudgedLog& log, const SmoothingTask& task, const std::vector<int>& first) {
+  constexpr std::size_t every = 6;  // so far apart that what is left of the noise is white
   const auto& poses = task.problem.graph.poses;
-  const core::Pose2& here = poses[at(pose)].T_world_robot;
-  const core::Pose2 from = core::between(here, poses[at(before)].T_world_robot);
-  const core::Pose2 to = core::between(here, poses[at(after)].T_world_robot);
-  return slope(from, to, duration_s);
+  std::vector<std::size_t> with_scan;
+  for (std::size_t pose = 0; pose < first.size(); ++pose) {
+    if (first[pose] >= 0) with_scan.push_back(pose);
+  }
+  const auto time_of = [&](std::size_t i) { return log.told.times[at(first[with_scan[i]])]; };
+  Rates rates;
+  for (std::size_t i = 0; i + every < with_scan.size(); i += every) {
+    const double duration_s = core::seconds(time_of(i + every) - time_of(i));
+    if (!(duration_s > 0.0)) continue;
+    const core::Pose2& here = poses[with_scan[i + every / 2]].T_world_robot;
+    const core::Pose2 from = core::between(here, poses[with_scan[i]].T_world_robot);
+    const core::Pose2 to = core::between(here, poses[with_scan[i + every]].T_world_robot);
+    rates.times.push_back(time_of(i) + (time_of(i + every) - time_of(i)) / 2);
+    rates.values.push_back(slope(from, to, duration_s));
+  }
+  return rates;
+}
+
+/// As the vehicle is expected to have gone: what noise makes of a steady speed would tell of a delay that nobody can see.
+void take_out_noise(Rates& rates) {
+  const auto n = static_cast<Eigen::Index>(rates.values.size());
+  Eigen::VectorXd apart_s(std::max<Eigen::Index>(n - 1, 0));
+  for (Eigen::Index i = 0; i + 1 < n; ++i)
+    apart_s[i] = core::seconds(rates.times[static_cast<std::size_t>(i) + 1] - rates.times[static_cast<std::size_t>(i)]);
+  for (int axis = 0; axis < 3; ++axis) {
+    Eigen::VectorXd seen(n);
+    for (Eigen::Index i = 0; i < n; ++i) seen[i] = rates.values[static_cast<std::size_t>(i)][axis];
+    const Eigen::VectorXd level = drifting_level(seen, apart_s);
+    for (Eigen::Index i = 0; i < n; ++i) rates.values[static_cast<std::size_t>(i)][axis] = level[i];
+  }
+}
+
+/// Between the two beside it.
+Eigen::Vector3d rate_at(const Rates& rates, core::Nanoseconds t_ns) {
+  if (rates.times.empty()) return Eigen::Vector3d::Zero();
+  const auto after = std::upper_bound(rates.times.begin(), rates.times.end(), t_ns);
+  if (after == rates.times.begin()) return rates.values.front();
+  if (after == rates.times.end()) return rates.values.back();
+  const auto i = static_cast<std::size_t>(after - rates.times.begin());
+  const double share = core::seconds(t_ns - rates.times[i - 1]) / core::seconds(rates.times[i] - rates.times[i - 1]);
+  return (1.0 - share) * rates.values[i - 1] + share * rates.values[i];
 }
 
 smoothing::ConstantDerivative by_delay(const NudgedLog& log, const SmoothingTask& task) {
   smoothing::ConstantDerivative derivative = none_of(task);
   const std::vector<int> first = first_scans(task);
+  Rates rates = solved_rates(log, task, first);
+  take_out_noise(rates);
   for (std::size_t k = 0; k < task.edge_of.size(); ++k) {
     const int pose = task.pose_of_step[k];
     if (first[at(pose)] < 0) continue;
-    const Eigen::Vector3d rate = rate_at(log, task, first, pose);
+    const Eigen::Vector3d rate = rate_at(rates, log.told.times[k]);
     const core::Pose2& mounting = log.told.mounting[k];
     const Eigen::Vector3d back(-rate.x() + rate.z() * mounting.y_m, -rate.y() - rate.z() * mounting.x_m, -rate.z());
     for (const int edge : task.edge_of[k]) {
@@ -117,6 +159,45 @@ smoothing::ConstantDerivative by_delay(const NudgedLog& log, const SmoothingTask
     }
   }
   return derivative;
+}
+
+SmoothingTask solve_once(const core::Recording& driven, const Ids& ids, const core::LandmarkGraph& from,
+                         const smoothing::RobustKernel& kernel) {
+  SmoothingTask task = task_from_recording(driven, ids);
+  core::LandmarkGraph& graph = task.problem.graph;
+  if (graph.poses.size() == from.poses.size()) {
+    graph.poses = from.poses;
+    core::locate_landmarks(graph);
+  }
+  std::map<std::int64_t, Eigen::Vector2d> point_of;
+  for (const auto& landmark : from.landmarks) point_of[landmark.name] = landmark.point_m;
+  for (auto& landmark : graph.landmarks) {
+    if (const auto known = point_of.find(landmark.name); known != point_of.end()) landmark.point_m = known->second;
+  }
+  smoothing::Options solver = patient_solver(1e-4);
+  solver.kernel = kernel;
+  smoothing::optimize(task.problem, solver);
+  return task;
+}
+
+/// Takes out of `ids` what was seen of a landmark where it stands in the sensor; whether there was any. Where wrong associations
+/// contradict each other the sum of squares may be least there, and it has no derivative.
+bool leave_out_at_sensors(const SmoothingTask& solved, Ids& ids) {
+  constexpr double nearest_m = 1e-3;  // nothing is seen from so near
+  const core::LandmarkGraph& graph = solved.problem.graph;
+  bool left_out = false;
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    for (std::size_t i = 0; i < ids[k].size(); ++i) {
+      if (solved.edge_of[k][i] < 0) continue;
+      const auto& edge = graph.landmark_edges[at(solved.edge_of[k][i])];
+      if (edge.observation.kind == core::ObservationKind::cartesian) continue;
+      const core::Pose2 sensor = core::compose(graph.poses[at(edge.pose)].T_world_robot, edge.T_robot_sensor);
+      if ((graph.landmarks[at(edge.landmark)].point_m - sensor.position_m()).norm() > nearest_m) continue;
+      ids[k][i] = core::no_label;
+      left_out = true;
+    }
+  }
+  return left_out;
 }
 
 }  // namespace
@@ -167,23 +248,22 @@ Ids without_outliers(const Ids& ids, const SmoothingTask& solved) {
   return kept;
 }
 
-SmoothingTask solve_log(const core::Recording& recording, const Ids& ids, const core::LandmarkGraph& from,
-                        const smoothing::RobustKernel& kernel) {
-  SmoothingTask task = task_from_recording(without_fixes(recording), ids);
-  core::LandmarkGraph& graph = task.problem.graph;
-  if (graph.poses.size() == from.poses.size()) {
-    graph.poses = from.poses;
-    core::locate_landmarks(graph);
-  }
-  std::map<std::int64_t, Eigen::Vector2d> point_of;
-  for (const auto& landmark : from.landmarks) point_of[landmark.name] = landmark.point_m;
-  for (auto& landmark : graph.landmarks) {
-    if (const auto known = point_of.find(landmark.name); known != point_of.end()) landmark.point_m = known->second;
-  }
+smoothing::Options patient_solver(double tolerance_chi2) {
   smoothing::Options solver;
   solver.first_damping = 1e-8;
-  solver.kernel = kernel;
-  smoothing::optimize(task.problem, solver);
+  solver.tolerance_chi2 = tolerance_chi2;
+  solver.go_on = [](const std::vector<smoothing::Iteration>&) {
+    stop_if_interrupted();
+    return true;
+  };
+  return solver;
+}
+
+SmoothingTask solve_log(const core::Recording& recording, Ids ids, const core::LandmarkGraph& from,
+                        const smoothing::RobustKernel& kernel) {
+  const core::Recording driven = without_fixes(recording);
+  SmoothingTask task = solve_once(driven, ids, from, kernel);
+  while (leave_out_at_sensors(task, ids)) task = solve_once(driven, ids, task.problem.graph, kernel);
   return task;
 }
 

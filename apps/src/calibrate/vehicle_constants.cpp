@@ -6,7 +6,7 @@
 namespace helixnav::apps {
 namespace {
 
-constexpr double degree = core::pi / 180.0;
+constexpr double degree_rad = core::pi / 180.0;
 
 using Places = std::function<std::vector<double*>(Settings&)>;
 
@@ -15,7 +15,8 @@ VehicleConstant factor(const char* key, const Eigen::Vector3d& of, Places places
 }
 
 VehicleConstant angle(const char* key, const char* stem, int sensor, double usual_rad, double most_rad, Places places) {
-  return {key, stem, sensor, degree, usual_rad, 1e-5, -most_rad, most_rad, std::move(places), Eigen::Vector3d::Zero()};
+  return {key,  stem,      sensor,   degree_rad,        usual_rad,
+          1e-5, -most_rad, most_rad, std::move(places), Eigen::Vector3d::Zero()};
 }
 
 VehicleConstant length(const char* key, int sensor, double usual_m, Places places) {
@@ -39,9 +40,9 @@ std::vector<VehicleConstant> of_truck(Truck truck, double reach_m) {
       factor("scale", Eigen::Vector3d::Ones(), place([truck](Settings& s) -> double& { return truck(s).speed_scale; })),
       factor("steering_scale", Eigen::Vector3d::UnitZ(),
              place([truck](Settings& s) -> double& { return truck(s).steering_scale; })),
-      angle("steering_offset_deg", "steering_offset", -1, 2.0 * degree, 0.5,
+      angle("steering_offset_deg", "steering_offset", -1, 2.0 * degree_rad, 0.5,
             place([truck](Settings& s) -> double& { return truck(s).steering_offset_rad; })),
-      angle("heading_deg", "heading", 0, 3.0 * degree, core::pi,
+      angle("heading_deg", "heading", 0, 3.0 * degree_rad, core::pi,
             place([truck](Settings& s) -> double& { return truck(s).T_robot_laser.heading_rad; })),
       length("x_m", 0, reach_m / 50.0, place([truck](Settings& s) -> double& { return truck(s).T_robot_laser.x_m; })),
       length("y_m", 0, reach_m / 50.0, place([truck](Settings& s) -> double& { return truck(s).T_robot_laser.y_m; })),
@@ -58,11 +59,11 @@ std::vector<VehicleConstant> of_own_odometry(bool steered) {
       factor("scale", steered ? Eigen::Vector3d(1.0, 1.0, 1.0) : Eigen::Vector3d(1.0, 1.0, 0.0),
              odometry([](Model& m) -> double& { return m.scale; })),
       factor("turn_scale", Eigen::Vector3d::UnitZ(), odometry([](Model& m) -> double& { return m.turn_scale; })),
-      angle("turn_bias_deg_per_s", "turn_bias", -1, 0.5 * degree, 10.0,
+      angle("turn_bias_deg_per_s", "turn_bias", -1, 0.5 * degree_rad, 10.0,
             odometry([](Model& m) -> double& { return m.turn_bias_radps; })),
       factor("steering_scale", Eigen::Vector3d::UnitZ(),
              odometry([](Model& m) -> double& { return m.steering_scale; })),
-      angle("steering_offset_deg", "steering_offset", -1, 2.0 * degree, 1.0,
+      angle("steering_offset_deg", "steering_offset", -1, 2.0 * degree_rad, 1.0,
             odometry([](Model& m) -> double& { return m.steering_offset_rad; })),
   };
 }
@@ -73,7 +74,7 @@ void add_own_sensors(std::size_t sensors, double reach_m, std::vector<VehicleCon
       return place([i, get](Settings& s) -> double& { return get(s.logs.vehicle->sensors[i].T_vehicle_sensor); });
     };
     const int sensor = static_cast<int>(i);
-    constants.push_back(angle("heading_deg", "heading", sensor, 3.0 * degree, 2.0 * core::pi,
+    constants.push_back(angle("heading_deg", "heading", sensor, 3.0 * degree_rad, 2.0 * core::pi,
                               mounting([](core::Pose2& T) -> double& { return T.heading_rad; })));
     constants.push_back(
         length("x_m", sensor, reach_m / 50.0, mounting([](core::Pose2& T) -> double& { return T.x_m; })));

@@ -44,6 +44,7 @@ sigma_heading_deg_per_sqrt_m = 0.16
 # sigma_steering_deg = 1.0
 # Two driven wheels, whose odometry.csv has v_left_mps and v_right_mps:
 # track_m = 0.5
+# sigma_v_mps = 0.1                      # of each wheel; with sigma_omega_deg_per_s beside it: of the speed of both
 
 [[sensor]]                               # one section for each; several are told apart by their names
 name = "laser"

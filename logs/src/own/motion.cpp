@@ -144,20 +144,25 @@ void Motions::add_model_noise(Motion& motion) const {
   motion.covariance += R * variances.asDiagonal() * R.transpose();
 }
 
-/// Of speed and turn rate, constant over the sample.
-void Motions::add_sample_noise(Motion& motion, std::size_t row) const {
-  const double duration_s = core::seconds(motion.end_ns - motion.begin_ns);
-  Eigen::Matrix3d rates = Eigen::Matrix3d::Zero();
-  if (!log_.odometry_covariances.empty()) rates = log_.odometry_covariances[row];
-  const bool given = !rates.isZero(0.0);
+/// Variances of speed and turn rate. Two wheels err each by itself where no noise of the turn rate is told.
+Eigen::Matrix3d Motions::sample_noise() const {
   const double v = square(model_.sigma_v_mps.value_or(0.0));
-  if (log_.odometry_kind == OdometryKind::wheels) {
+  Eigen::Matrix3d rates = Eigen::Matrix3d::Zero();
+  if (log_.odometry_kind == OdometryKind::wheels && !model_.sigma_omega_radps) {
     rates(0, 0) = 0.5 * v;
     rates(2, 2) = 2.0 * v / square(*model_.track_m);
-  } else if (!given) {
+  } else {
     rates(0, 0) = v;
     rates(2, 2) = square(model_.sigma_omega_radps.value_or(0.0));
   }
+  return rates;
+}
+
+/// Constant over the sample.
+void Motions::add_sample_noise(Motion& motion, std::size_t row) const {
+  const double duration_s = core::seconds(motion.end_ns - motion.begin_ns);
+  const bool given = !log_.odometry_covariances.empty() && !log_.odometry_covariances[row].isZero(0.0);
+  const Eigen::Matrix3d rates = given ? log_.odometry_covariances[row] : sample_noise();
   Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
   J(0, 2) = -0.5 * motion.twist.y();
   J(1, 2) = 0.5 * motion.twist.x();

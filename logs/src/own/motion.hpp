@@ -43,6 +43,7 @@ class Motions {
   std::optional<core::Nanoseconds> stands_through_gap(std::size_t row, const Motion& motion) const;
   void move(Motion& motion, std::size_t row) const;
   void add_model_noise(Motion& motion) const;
+  Eigen::Matrix3d sample_noise() const;
   void add_sample_noise(Motion& motion, std::size_t row) const;
   Eigen::Vector3d steered(Motion& motion, const Eigen::Vector3d& value) const;
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <unistd.h>
+
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -68,6 +72,47 @@ TEST_F(CalibrateProgram, SaysWhatIsMissingOrWrong) {
   const Outcome noise_beside = run({"calibrate", log_, "--log.covariance_scale", "2"});
   EXPECT_EQ(noise_beside.exit_code, 2);
   EXPECT_NE(noise_beside.err.find("calibrate judges the vehicle file"), std::string::npos) << noise_beside.err;
+}
+
+/// The first two minutes of a log, with bearings clockwise.
+void mirror_and_cut(const fs::path& log) {
+  const std::string odometry = text_of(log / "odometry.csv"), seen = text_of(log / "detections.csv");
+  constexpr double last_s = 120.0;
+  const auto write = [&](const char* file, const std::string& text, bool mirror) {
+    std::istringstream lines(text);
+    std::ofstream out(log / file);
+    std::string line;
+    std::getline(lines, line);
+    out << line << '\n';
+    while (std::getline(lines, line) && std::stod(line) < last_s) {
+      const std::size_t comma = line.rfind(',');
+      const bool seen_there = mirror && comma + 1 < line.size();
+      out << (seen_there ? line.substr(0, comma + 1) + std::to_string(-std::stod(line.substr(comma + 1))) : line)
+          << '\n';
+    }
+  };
+  write("odometry.csv", odometry, false);
+  write("detections.csv", seen, true);
+}
+
+TEST_F(CalibrateProgram, WritesNothingThatHasNotSettled) {
+  mirror_and_cut(log_);
+  const Outcome outcome = run({"calibrate", log_, "--out", out_});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.out;
+  EXPECT_NE(outcome.out.find("not settled"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("not written"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(out_));
+}
+
+TEST_F(CalibrateProgram, WritesNothingWhenInterrupted) {
+  Program program({"calibrate", log_, "--out", out_});
+  constexpr int patience_ms = 30'000;
+  for (int ms = 0; ms < patience_ms && !program.catches(SIGINT); ++ms) ::usleep(1000);
+  program.send(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
+  EXPECT_NE(outcome.err.find("nothing is written"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(out_));
 }
 
 /// Straight on past poles at a steady speed.

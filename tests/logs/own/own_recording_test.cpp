@@ -77,6 +77,25 @@ TEST(OwnRecording, OfEveryKindOfOdometryIsTheSameWay) {
   }
 }
 
+/// Straight on for a second at 2 m/s, by two wheels.
+core::Odometry way_by_wheels(const std::string& noise) {
+  const OwnLogFolder log;
+  log.write("vehicle.toml",
+            "[odometry]\ntrack_m = 0.8\n" + noise + "[[sensor]]\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n");
+  log.write("detections.csv", "t,range_m,bearing_deg\n0,10,1\n1,10,1\n");
+  log.write("odometry.csv", "t,v_left,v_right\n0,2,2\n1,2,2\n");
+  return way_of(log.recording());
+}
+
+TEST(OwnRecording, TakesTheNoiseOfSpeedForThatOfEachWheelUnlessThatOfTheTurnRateIsTold) {
+  const core::Odometry each = way_by_wheels("sigma_v_mps = 0.2\n");
+  EXPECT_NEAR(each.covariance(0, 0), 0.5 * 0.2 * 0.2, 1e-12);
+  EXPECT_NEAR(each.covariance(2, 2), 2.0 * 0.2 * 0.2 / (0.8 * 0.8), 1e-12);
+  const core::Odometry both = way_by_wheels("sigma_v_mps = 0.2\nsigma_omega_rad_per_s = 0.03\n");
+  EXPECT_NEAR(both.covariance(0, 0), 0.2 * 0.2, 1e-12);
+  EXPECT_NEAR(both.covariance(2, 2), 0.03 * 0.03, 1e-12);
+}
+
 TEST(OwnRecording, SplitsMotionAtScansInProportionToTime) {
   const OwnLogFolder log;
   log.write("odometry.csv", "t,dx,dheading\n0,0,0\n1,1,0\n");

@@ -32,7 +32,8 @@ struct OdometryModel {
   std::optional<double> sigma_heading_rad_per_sqrt_m;
   std::optional<double> sigma_heading_rad_per_sqrt_s;
   // Noise of a sample.
-  std::optional<double> sigma_v_mps;  ///< of v, v_left and v_right
+  /// Of v; of v_left and of v_right each, unless sigma_omega is told: then of their mean. Test: logs/own/own_recording_test.cpp
+  std::optional<double> sigma_v_mps;
   std::optional<double> sigma_omega_radps;
   std::optional<double> sigma_steering_rad;
 
