@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "chi2_table.hpp"
+#include "helixnav/association/chi2_table.hpp"
 
 #include <utility>
 #include <vector>

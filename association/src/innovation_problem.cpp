@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
-#include "chi2_table.hpp"
 #include "costs.hpp"
+#include "helixnav/association/chi2_table.hpp"
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/errors.hpp"
 

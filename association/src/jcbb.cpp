@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "chi2_table.hpp"
+#include "helixnav/association/chi2_table.hpp"
 #include "joint_factor.hpp"
 #include "matching.hpp"
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "chi2_table.hpp"
 #include "costs.hpp"
+#include "helixnav/association/chi2_table.hpp"
 #include "helixnav/association/joint_innovation.hpp"
 #include "helixnav/association/k_best.hpp"
 #include "joint_factor.hpp"

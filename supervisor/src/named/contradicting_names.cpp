@@ -7,7 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "helixnav/core/chi2.hpp"
+#include "helixnav/association/chi2_table.hpp"
 #include "helixnav/core/errors.hpp"
 
 namespace helixnav::supervisor {
@@ -112,7 +112,7 @@ class GivenOthers {
 }  // namespace
 
 double usual_nis(const std::vector<cekf::Match>& matches) {
-  return core::chi2_quantile(usual, std::max(1, rows_of(matches)));
+  return association::chi2_threshold(usual, std::max(1, rows_of(matches)));
 }
 
 std::vector<ContradictingName> contradicting_names(const cekf::CompressedEkf& filter,
@@ -131,7 +131,7 @@ std::vector<ContradictingName> contradicting_names(const cekf::CompressedEkf& fi
     const auto worst = std::max_element(
         left.begin(), left.end(), [&](std::size_t a, std::size_t b) { return nats_for_other(a) < nats_for_other(b); });
     const double nis = given.nis(*worst);
-    if (nats_for_other(*worst) <= 0.0 || nis <= core::chi2_quantile(usual, given.dof(*worst))) break;
+    if (nats_for_other(*worst) <= 0.0 || nis <= association::chi2_threshold(usual, given.dof(*worst))) break;
     contradicting.push_back({*worst, nis, given.dof(*worst)});
     given.leave_out(*worst);
     left.erase(worst);
