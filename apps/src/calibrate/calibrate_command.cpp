@@ -106,15 +106,19 @@ void print_result(const Calibration& result) {
   }
 }
 
-/// What goes to and fro for eight rounds is no calibration.
+/// What goes to and fro and leaves out more than a quarter of the log is no calibration; where most is used it is one, of
+/// which the file says that it has not settled.
 void write_out(const std::string& out, const logs::Vehicle& vehicle, const Calibration& result) {
-  if (!result.settled) {
+  if (!result.settled && 4 * result.used < 3 * result.observations) {
     std::fflush(stdout);
     throw core::InputError(out + ": not written, since nothing settled after " + std::to_string(result.rounds) +
-                           " rounds: some associations or what the vehicle file says are far off; see to mounting, "
-                           "units, signs and gaps first ('helixnav check')");
+                           " rounds, and of " + std::to_string(result.observations) + " detections " +
+                           std::to_string(result.used) +
+                           " are used: associations or what the vehicle file says are far off; see to mounting, units, "
+                           "signs and gaps first ('helixnav check')");
   }
-  files::write_whole_file(out, calibrated_text(vehicle, result));
+  const std::string head = result.settled ? "" : "# calibrate had not settled: the intervals are not to be trusted\n";
+  files::write_whole_file(out, head + calibrated_text(vehicle, result));
   std::printf("written: %s\n", out.c_str());
 }
 

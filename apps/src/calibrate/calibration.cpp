@@ -112,6 +112,8 @@ class Calibrator {
     multiply(result_.scales.landmarks, fit.noise.landmarks);
     if (result_.rounds == 0) result_.first_closings = drive.closings;
     result_.closings = drive.closings;
+    result_.observations = drive.observations;
+    result_.used = drive.used;
     ++result_.rounds;
     constexpr double settled = 0.02, settled_sigmas = 0.4, far_sigmas = 3.0;  // a match or two go to and fro
     const bool final_associations = !far_off_;

@@ -95,7 +95,7 @@ void mirror_and_cut(const fs::path& log) {
   write("detections.csv", seen, true);
 }
 
-TEST_F(CalibrateProgram, WritesNothingThatHasNotSettled) {
+TEST_F(CalibrateProgram, WritesNothingThatHasNotSettledAndUsesLittle) {
   mirror_and_cut(log_);
   const Outcome outcome = run({"calibrate", log_, "--out", out_});
   EXPECT_EQ(outcome.exit_code, 3) << outcome.out;

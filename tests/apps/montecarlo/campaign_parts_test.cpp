@@ -99,7 +99,7 @@ TEST_F(CampaignParts, ThatWereNotDrivenToTheirEndAreNotMerged) {
 }
 
 TEST_F(CampaignParts, ThatAreNoneAreSaid) {
-  expect_refused(merge({"nowhere"}), "nowhere/manifest.json: cannot be read");
+  expect_refused(merge({"nowhere"}), "nowhere/manifest.json: cannot read");
   ASSERT_EQ(drive("a", "1:1").exit_code, 0);
   files::write_whole_file(out("a") + "/manifest.json", "{\"format\": \"other\"}");
   expect_refused(merge({"a"}), "not the manifest of a campaign");
