@@ -45,7 +45,9 @@ void divide_ranges(core::Recording& recording, double scale) {
 }
 
 double estimate_range_scale(const core::Recording& recording, const supervisor::NavigatorOptions& options) {
-  const auto cost = [&](double scale) { return mean_nis(recording, scale, options); };
+  supervisor::NavigatorOptions believing = options;
+  believing.names.wrong = 0.0;  // what a wrong scale contradicts is its cost, and not to be left out
+  const auto cost = [&](double scale) { return mean_nis(recording, scale, believing); };
   constexpr double step = 0.02;
   double best = 1.0;
   double best_cost = std::numeric_limits<double>::infinity();
