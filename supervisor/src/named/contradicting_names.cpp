@@ -131,7 +131,7 @@ std::vector<ContradictingName> contradicting_names(const cekf::CompressedEkf& fi
     const auto worst = std::max_element(
         left.begin(), left.end(), [&](std::size_t a, std::size_t b) { return nats_for_other(a) < nats_for_other(b); });
     const double nis = given.nis(*worst);
-    if (nats_for_other(*worst) <= 0.0 || nis <= association::chi2_threshold(usual, given.dof(*worst))) break;
+    if (!(nats_for_other(*worst) > 0.0 && nis > association::chi2_threshold(usual, given.dof(*worst)))) break;
     contradicting.push_back({*worst, nis, given.dof(*worst)});
     given.leave_out(*worst);
     left.erase(worst);
