@@ -96,22 +96,35 @@ TEST(IntegrityMonitor, AClosingConfirmsThePoseByTheLandmarksThatItRecognised) {
   const Ids recognised{0, 1, 2, 3, 4};
   spawn(life, 10, 2);
   life.observe({110.0, 0.0}, recognised, {}, {});  // as merging enters them
+  association::LandmarkLife later = life;
   const auto drive_on = [&](IntegrityMonitor monitor) {
-    association::LandmarkLife existence = life;
+    later = life;
     EXPECT_TRUE(monitor.is_clear());
-    look(monitor, existence, 3, {0, 1, 5, 6, 7, 8}, {0, 1});
+    look(monitor, later, 3, {0, 1, 5, 6, 7, 8}, {0, 1});
+    spawn(later, 20, 2);
     return monitor;
   };
-  EXPECT_TRUE(drive_on(IntegrityMonitor()).is_lost(life, {})) << "those that were felled are all that it knows of";
+  EXPECT_TRUE(drive_on(IntegrityMonitor()).is_lost(later, {})) << "those that were felled are all that it knows of";
   IntegrityMonitor closed;
   closed.close(life.path_m(), recognised);
-  EXPECT_FALSE(drive_on(closed).is_lost(life, {}));
+  EXPECT_FALSE(drive_on(closed).is_lost(later, {}));
   EXPECT_TRUE(drive_on(closed).is_clear());
   EXPECT_EQ(closed.evidence(life, {}).spawned, 0) << "what was born in the search is not held against the closing";
   association::LandmarkLife existence = life;
   look(closed, existence, 3, {0, 1, 2, 5, 6}, {});
   spawn(existence, 20, 2);
   EXPECT_TRUE(closed.is_lost(existence, {})) << "and it may be wrong";
+}
+
+TEST(IntegrityMonitor, CountsNothingAsSpawnedThatWasThereWhenItBegan) {
+  association::LandmarkLife life = existence_of(6, 100.0);
+  IntegrityMonitor monitor;
+  look(monitor, life, 5, {0, 1, 2, 3}, {});  // never clear
+  EXPECT_EQ(monitor.evidence(life, {}).spawned, 0);
+  EXPECT_FALSE(monitor.is_lost(life, {}));
+  spawn(life, 20, 2);
+  EXPECT_EQ(monitor.evidence(life, {}).spawned, 2);
+  EXPECT_TRUE(monitor.is_lost(life, {}));
 }
 
 TEST(IntegrityMonitor, WhatWasSeenLatelyTellsNothingOfAReturn) {

@@ -116,6 +116,68 @@ TEST(Window, HalvesTheFilterWhenItBegins) {
   EXPECT_LT(held[first], 0.6 * held[first - 1]);
 }
 
+/// An exact drive past trees, which a sensor sees 19 m far all around.
+class LongWay {
+ public:
+  explicit LongWay(std::vector<Eigen::Vector2d> trees_m, const NavigatorOptions& options)
+      : trees_m_(std::move(trees_m)), navigator_(core::PoseGaussian{}, options) {}
+
+  void drive_to(const Eigen::Vector2d& goal_m) {
+    const Eigen::Vector2d way_m = goal_m - at_.position_m();
+    const double heading_rad = std::atan2(way_m.y(), way_m.x());
+    const int steps = static_cast<int>(std::lround(way_m.norm()));
+    for (int k = 0; k < steps; ++k) {
+      const core::Pose2 next(at_.x_m + way_m.x() / steps, at_.y_m + way_m.y() / steps, heading_rad);
+      core::Odometry odometry;
+      odometry.T_before_after = core::between(at_, next);
+      odometry.covariance.diagonal() << 1e-6, 1e-6, 1e-9;
+      navigator_.move(odometry);
+      at_ = next;
+      navigator_.observe(scan());
+    }
+  }
+  const Navigator& navigator() const { return navigator_; }
+
+ private:
+  core::Scan scan() const {
+    core::Scan scan;
+    scan.field_of_view = {0.5, 20.0, -core::pi, core::pi};
+    for (const Eigen::Vector2d& tree_m : trees_m_) {
+      const Eigen::Vector2d seen_m = core::transform(core::inverse(at_), tree_m);
+      if (seen_m.norm() < 19.0)
+        scan.observations.push_back(
+            core::make_range_bearing(seen_m.norm(), std::atan2(seen_m.y(), seen_m.x()), 0.05, 0.003));
+    }
+    return scan;
+  }
+
+  std::vector<Eigen::Vector2d> trees_m_;
+  core::Pose2 at_{-60.0, 100.0, 0.0};
+  Navigator navigator_;
+};
+
+// A lone tree is met again, which confirms nothing, and then a bare stretch leads to a road that was mapped at the begin and is not in
+// the window any more.
+TEST(Window, IsHandedOverAtItsEdgeWhereNothingHasConfirmedThePose) {
+  std::vector<Eigen::Vector2d> trees_m{{-60.0, 104.0}};
+  for (int i = 0; i < 21; ++i) trees_m.emplace_back(10.0 * i, -5.0);
+  for (int i = 1; i < 30; ++i) trees_m.emplace_back(205.0, 10.0 * i);
+  for (int i = 0; i < 26; ++i) trees_m.emplace_back(200.0 - 10.0 * i, 305.0);
+  for (int i = 0; i < 14; ++i) trees_m.emplace_back(-65.0, 290.0 - 10.0 * i);
+  NavigatorOptions narrow;
+  narrow.map.whole = narrow.map.window = 30;
+  LongWay way(trees_m, narrow);
+  const Eigen::Vector2d lone_m(-60.0, 100.0), begin_m(0.0, 0.0);
+  way.drive_to(begin_m);
+  for (const Eigen::Vector2d& corner_m :
+       {Eigen::Vector2d(200.0, 0.0), Eigen::Vector2d(200.0, 300.0), Eigen::Vector2d(-60.0, 300.0), lone_m, begin_m}) {
+    way.drive_to(corner_m);
+  }
+  EXPECT_LT(way.navigator().filter().mapped_count(), 60) << "or there is no window";
+  way.drive_to({200.0, 0.0});
+  EXPECT_EQ(way.navigator().map().size(), trees_m.size());
+}
+
 TEST(Window, BeginsNotWhereAScanSeesATwentiethOfTheMap) {
   NavigatorOptions narrow;
   narrow.map.whole = narrow.map.window = 6;

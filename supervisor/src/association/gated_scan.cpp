@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "association/association_report.hpp"
 #include "helixnav/association/likelihood_ratio.hpp"
@@ -15,6 +16,21 @@ const RevisitAmbiguity* find_return(const std::vector<RevisitAmbiguity>& returns
   const auto found = std::find_if(returns.begin(), returns.end(),
                                   [&](const RevisitAmbiguity& one) { return one.landmark == landmark; });
   return found == returns.end() ? nullptr : &*found;
+}
+
+std::vector<core::LandmarkId> returned_to(const std::vector<core::LandmarkId>& a,
+                                          const std::vector<core::LandmarkId>& b) {
+  std::vector<core::LandmarkId> both;
+  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+  return both;
+}
+
+/// What is seen where the vehicle returns to may be of something that changed meanwhile, or of ground beside that which it takes it
+/// for: as much may stand there that is in no map as there is in it.
+double extraneous_on_return(const association::LandmarkLife& existence, const SearchOptions& search,
+                            const core::FieldOfView& view) {
+  const double begun = with_extraneous_density(search, existence.born_per_scan(), view).extraneous_per_scan;
+  return std::max(begun, existence.seen_per_scan());
 }
 
 void defer_isolated_match(const std::vector<RevisitAmbiguity>& returns, const SearchOptions& options, double path_m,
@@ -33,8 +49,8 @@ void defer_isolated_match(const std::vector<RevisitAmbiguity>& returns, const Se
   if (ambiguous || (informative && !met_again)) isolated->outcome = core::Outcome::ambiguous;
 }
 
-/// The others say where the vehicle is, but not where this one is.
-void defer_loose_matches(const std::vector<core::LandmarkId>& loose, std::vector<core::AssociationReport>& reports) {
+/// The others say where the vehicle is, but not where these are.
+void defer_matches(const std::vector<core::LandmarkId>& loose, std::vector<core::AssociationReport>& reports) {
   for (core::AssociationReport& report : reports) {
     if (report.outcome == core::Outcome::matched && std::binary_search(loose.begin(), loose.end(), report.landmark)) {
       report.outcome = core::Outcome::ambiguous;
@@ -94,11 +110,16 @@ GatedScan gate_scan(const cekf::CompressedEkf& filter, const std::vector<core::L
 void look_for_returns(const cekf::CompressedEkf& filter, const association::LandmarkLife& existence,
                       const core::Scan& scan, const NavigatorOptions& options, const core::FieldOfView& view,
                       GatedScan& gated) {
-  const std::vector<core::LandmarkId> old = old_landmarks(existence, options.search.old_after_m);
-  const double extraneous_per_scan =
-      with_extraneous_density(options.search, existence.born_per_scan(), view).extraneous_per_scan;
   const association::InnovationProblem& problem = gated.gating->problem;
+  const std::vector<core::LandmarkId> old =
+      returned_to(old_landmarks(existence, options.search.old_after_m), drifted_from(problem, scan));
+  const double extraneous_per_scan = extraneous_on_return(existence, options.search, view);
   gated.returns = returns_in_gate(filter, problem, scan, old, extraneous_per_scan, existence.appearance());
+  for (RevisitAmbiguity& met : gated.returns) {
+    met.is_mature = existence.state(met.landmark) == core::LandmarkState::mature;
+    const bool is_doubtful = !met.is_mature && met.expected_confusers > options.search.defer_confusers;
+    if (is_doubtful) gated.doubtful.push_back(met.landmark);
+  }
   const RevisitAmbiguity* worst = most_ambiguous(gated.returns);
   if (worst == nullptr || worst->expected_confusers <= options.search.expected_confusers) return;
   gated.place = place_evidence(filter, problem, gated.assignment, scan, old, extraneous_per_scan, options.view_margin_m,
@@ -126,7 +147,8 @@ void leave_returns_unused(GatedScan& gated) {
 std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, const NavigatorOptions& options,
                                                     double path_m, Confirmation& confirmation) {
   std::vector<core::AssociationReport> reports = association_reports(gated.assignment);
-  defer_loose_matches(gated.place.loose, reports);
+  defer_matches(gated.place.loose, reports);
+  defer_matches(gated.doubtful, reports);
   defer_isolated_match(gated.returns, options.search, path_m, confirmation, reports);
   return reports;
 }

@@ -14,6 +14,7 @@ namespace helixnav::supervisor {
 namespace {
 
 constexpr double gate_probability = 0.95;  // of the gate in which confusers are counted
+constexpr double too_near_m = 1e-3;        // at the sensor itself there is no bearing
 
 double confuser_gate() {
   static const double gate = core::chi2_quantile(gate_probability, 2);
@@ -33,6 +34,23 @@ double density_at(const association::Prediction& prediction, const core::FieldOf
 /// By how much the gate is larger than the sensor's noise makes it.
 double widened_area(const Eigen::Matrix2d& S, const Eigen::Matrix2d& R) {
   return core::pi * confuser_gate() * (std::sqrt(std::max(0.0, S.determinant())) - std::sqrt(R.determinant()));
+}
+
+bool is_wide(const Eigen::Matrix2d& S, const Eigen::Matrix2d& R) {
+  return S.determinant() > drifted_widening * drifted_widening * R.determinant();
+}
+
+/// S of an observation of the landmark with the noise of `like`, wherever it is predicted.
+Eigen::Matrix2d innovation_covariance(const cekf::CompressedEkf& filter, core::LandmarkId id,
+                                      const core::Observation& like, const core::Pose2& T_robot_sensor) {
+  const core::JointGaussian joint = filter.joint({id});
+  const Eigen::Vector2d sensor_m = core::transform(joint.pose, T_robot_sensor.position_m());
+  if ((joint.points_m.front() - sensor_m).norm() < too_near_m) return like.R;
+  const core::PredictedObservation predicted =
+      core::predict_observation(like.kind, joint.pose, T_robot_sensor, joint.points_m.front());
+  Eigen::Matrix<double, 2, 5> H;
+  H << predicted.H_pose, predicted.H_landmark;
+  return H * joint.covariance * H.transpose() + Eigen::Matrix2d(like.R);
 }
 
 /// Old landmarks that the sensor may have in view.
@@ -81,7 +99,6 @@ Neighbours neighbours_in_gate(const cekf::CompressedEkf& filter, const core::Sca
   Neighbours neighbours;
   for (const core::LandmarkId other : others) {
     const Eigen::Vector2d point_m = filter.landmark_mean(other);
-    constexpr double too_near_m = 1e-3;  // at the sensor itself there is no bearing
     if (other == self || (point_m - sensor_m).norm() < too_near_m) continue;
     const core::ObsVector z_hat = core::predict_observation(prediction.kind, pose, scan.T_robot_sensor, point_m).z_hat;
     const Eigen::Vector2d nu = core::innovation(prediction.kind, z_hat, core::ObsVector(prediction.z_hat));
@@ -140,6 +157,36 @@ std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
   return returns;
 }
 
+std::vector<core::LandmarkId> drifted_from(const association::InnovationProblem& problem, const core::Scan& scan) {
+  std::vector<core::LandmarkId> drifted;
+  for (const association::GatedPair& pair : problem.pairs) {
+    const core::ObsMatrix& R = scan.observations[static_cast<std::size_t>(pair.observation)].R;
+    if (pair.dof != 2 || !is_wide(pair.S, R)) continue;
+    drifted.push_back(problem.ids[static_cast<std::size_t>(pair.candidate)]);
+  }
+  std::sort(drifted.begin(), drifted.end());
+  drifted.erase(std::unique(drifted.begin(), drifted.end()), drifted.end());
+  return drifted;
+}
+
+std::vector<core::LandmarkId> old_or_drifted(const cekf::CompressedEkf& filter, const association::LandmarkLife& life,
+                                             const core::Scan& scan, double old_after_m) {
+  std::vector<core::LandmarkId> old = old_landmarks(life, old_after_m);
+  const auto seen = std::find_if(scan.observations.begin(), scan.observations.end(),
+                                 [](const core::Observation& one) { return core::dimension(one.kind) == 2; });
+  if (seen == scan.observations.end()) return old;
+  std::vector<core::LandmarkId> drifted;
+  for (const association::LandmarkRecord& record : life.records()) {
+    if (record.state != core::LandmarkState::mature || !filter.contains(record.id)) continue;
+    if (is_in_sorted(old, record.id)) continue;
+    if (is_wide(innovation_covariance(filter, record.id, *seen, scan.T_robot_sensor), seen->R))
+      drifted.push_back(record.id);
+  }
+  const auto middle = old.insert(old.end(), drifted.begin(), drifted.end());
+  std::inplace_merge(old.begin(), middle, old.end());
+  return old;
+}
+
 double extraneous_in_gate(const association::InnovationProblem& problem, const association::GatedPair& pair,
                           const Eigen::Matrix2d& S, const core::Scan& scan, double extraneous_per_scan) {
   const association::Prediction& prediction = problem.predictions[static_cast<std::size_t>(pair.prediction)];
@@ -148,10 +195,11 @@ double extraneous_in_gate(const association::InnovationProblem& problem, const a
 }
 
 const RevisitAmbiguity* most_ambiguous(const std::vector<RevisitAmbiguity>& returns) {
-  const auto worst = std::max_element(
-      returns.begin(), returns.end(),
-      [](const RevisitAmbiguity& a, const RevisitAmbiguity& b) { return a.expected_confusers < b.expected_confusers; });
-  return worst == returns.end() ? nullptr : &*worst;
+  const RevisitAmbiguity* worst = nullptr;
+  for (const RevisitAmbiguity& met : returns) {
+    if (met.is_mature && (worst == nullptr || worst->expected_confusers < met.expected_confusers)) worst = &met;
+  }
+  return worst;
 }
 
 }  // namespace helixnav::supervisor

@@ -24,7 +24,23 @@ struct RevisitAmbiguity {
   /// part due to the sensor's noise does not depend on the pose.
   double gate_area = 0.0;
   double widening = 1.0;  ///< √(|S|/|R|): how much wider the gate is than the sensor's noise makes it
+  bool is_mature = true;  ///< only for such a one a search can begin
 };
+
+/// √(|S|/|R|) above which a landmark counts as old, however short the way since it was seen: a vehicle that turns on the spot drives
+/// no metre, and yet may no longer know where it looks. It is what old_after_m of driving makes of it with usual odometry.
+/// Measured: docs/adr/0014-ambiguous-pose.md.
+inline constexpr double drifted_widening = 8.0;
+
+/// Landmarks with a pair whose gate is wider than that, mature or not. Ascending. O(pairs).
+/// Test: supervisor/association/revisit_ambiguity_test.cpp.
+std::vector<core::LandmarkId> drifted_from(const association::InnovationProblem& problem, const core::Scan& scan);
+
+/// Mature landmarks that a search leaves out which begins with this scan: old ones, and those of which one observation with the
+/// noise of the scan's first would have such a gate. Ascending. O(q) for each landmark that is not old.
+/// Test: supervisor/association/revisit_ambiguity_test.cpp.
+std::vector<core::LandmarkId> old_or_drifted(const cekf::CompressedEkf& filter, const association::LandmarkLife& life,
+                                             const core::Scan& scan, double old_after_m);
 
 /// Every old landmark that has an observation in its gate, ascending. P(wrong | matched) is about η/(P_D + η): η
 /// is the risk of associating scan by scan. `old` ascending.
@@ -40,7 +56,7 @@ std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
 double extraneous_in_gate(const association::InnovationProblem& problem, const association::GatedPair& pair,
                           const Eigen::Matrix2d& S, const core::Scan& scan, double extraneous_per_scan);
 
-/// The one with the largest η; null when there is none.
+/// Of the mature ones that with the largest η; null when there is none.
 const RevisitAmbiguity* most_ambiguous(const std::vector<RevisitAmbiguity>& returns);
 
 }  // namespace helixnav::supervisor

@@ -35,7 +35,7 @@ void IntegrityMonitor::observe(const association::LandmarkLife& life, const std:
   const bool confirmed = hits >= enough && hits_before_ >= enough;
   hits_before_ = hits;
   clear_ = confirmed || (clear_ && looks == 0);
-  if (clear_) clear_path_m_ = path_m;
+  if (clear_ || !clear_path_m_) clear_path_m_ = path_m;
   for (auto it = returned_.begin(); it != returned_.end();) {
     if (confirmed) it->second.looks = it->second.hits = 0;
     const bool forgotten = clear_ && path_m - it->second.last_look_path_m > old_after_m;
@@ -70,7 +70,8 @@ IntegrityMonitor::Evidence IntegrityMonitor::evidence(const association::Landmar
     }
   }
   for (const association::LandmarkRecord& record : life.records()) {
-    evidence.spawned += record.born_path_m > clear_path_m_ && record.state == core::LandmarkState::mature;
+    evidence.spawned +=
+        clear_path_m_ && record.born_path_m > *clear_path_m_ && record.state == core::LandmarkState::mature;
   }
   evidence.nats = limits.missing_nats * evidence.missing - limits.seen_nats * evidence.seen;
   return evidence;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "helixnav/association/landmark_life.hpp"
@@ -53,7 +54,7 @@ class IntegrityMonitor {
   std::map<core::LandmarkId, Returned> returned_;
   int hits_before_ = 0;  ///< revisited landmarks matched in the scan before
   bool clear_ = true;
-  double clear_path_m_ = 0.0;  ///< when clear_ was true last
+  std::optional<double> clear_path_m_;  ///< when clear_ was true last, or the first scan came
 };
 
 }  // namespace helixnav::supervisor

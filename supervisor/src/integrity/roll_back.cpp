@@ -16,7 +16,7 @@ bool NavigationLoop::has_lost_its_place() const {
   return mapping != nullptr && is_monitored() && mapping->monitor.is_lost(belief_.existence, options_.search.integrity);
 }
 
-StepReport NavigationLoop::roll_back_and_relocalise(StepReport report) {
+StepReport NavigationLoop::roll_back_and_relocalise(const core::Scan& scan, StepReport report) {
   const Mapping& mapping = std::get<Mapping>(mode_);
   const IntegrityMonitor::Evidence evidence = mapping.monitor.evidence(belief_.existence, options_.search.integrity);
   const Checkpoint trusted = *mapping.trusted;
@@ -28,7 +28,7 @@ StepReport NavigationLoop::roll_back_and_relocalise(StepReport report) {
   pending_.decisions = std::move(report.decisions);
   pending_.decisions.emplace_back(
       core::RollbackDecision{evidence.missing, evidence.seen, evidence.spawned, evidence.nats, scans});
-  begin_search();
+  begin_search(scan);
   StepReport through;
   through.numerics = report.numerics;
   const auto after_fix = [&](const Tape::Fix& fix, bool accepted) {

@@ -101,7 +101,7 @@ StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* not
     checkpoint_if_settled();
     hand_over_if_due();
     report_late(report);
-    if (has_lost_its_place()) return roll_back_and_relocalise(std::move(report));
+    if (has_lost_its_place()) return roll_back_and_relocalise(scan, std::move(report));
     ask_whether_new(scan, report);
     solve_with_learnt_noise(report);
     report.pose = belief_.filter.pose();
@@ -132,7 +132,7 @@ StepReport NavigationLoop::step(const Scan& scan) {
   if (const auto trigger = find_trigger(gated, belief_.filter.pose(), options_.search)) {
     if (searching() == nullptr) {
       report.decisions.emplace_back(*trigger);
-      begin_search();
+      begin_search(scan);
       gated = gate(scan);
     } else {
       leave_returns_unused(gated);

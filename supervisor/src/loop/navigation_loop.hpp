@@ -131,7 +131,7 @@ class NavigationLoop {
   void solve_with_learnt_noise(core::StepReport& report);
 
   // search/search_mode.cpp
-  void begin_search();
+  void begin_search(const core::Scan& scan);
   void search(const core::Scan& scan, core::StepReport& report);
   void close(const core::Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
              core::StepReport& report);
@@ -154,6 +154,7 @@ class NavigationLoop {
   WindowNeeds window_to_map() const;
   int would_hold(const WindowNeeds& needs) const;
   bool is_hand_over_due() const;
+  bool is_at_edge() const;
   WindowNeeds window_to_search() const;
   std::shared_ptr<DriveMap> drive_until_now() const;
   std::shared_ptr<DriveMap> begun_drive() const;
@@ -180,7 +181,7 @@ class NavigationLoop {
 
   // integrity/roll_back.cpp
   bool has_lost_its_place() const;
-  core::StepReport roll_back_and_relocalise(core::StepReport report);
+  core::StepReport roll_back_and_relocalise(const core::Scan& scan, core::StepReport report);
 
   // placing/find_place.cpp
   relocalize::IndexOptions index_lengths() const;
@@ -220,7 +221,7 @@ class NavigationLoop {
   void commit();
   void thin_coverage();
   void recover();
-  Search search_from(const association::LandmarkLife& existence) const;
+  Search search_from(const association::LandmarkLife& existence, std::vector<core::LandmarkId> old) const;
 
   const Checkpoint& checkpoint() const;
   Searching* searching() { return std::get_if<Searching>(&mode_); }

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "association/revisit_ambiguity.hpp"
 #include "closing/close_map.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 #include "loop/navigation_loop.hpp"
@@ -13,17 +14,18 @@ using core::LandmarkId;
 using core::Scan;
 using core::StepReport;
 
-Search NavigationLoop::search_from(const association::LandmarkLife& existence) const {
+Search NavigationLoop::search_from(const association::LandmarkLife& existence, std::vector<LandmarkId> old) const {
   const std::uint64_t seed = options_.search.seed + 1000000u * searches_;
-  return Search(old_landmarks(existence, options_.search.old_after_m), existence.path_m(), seed,
+  return Search(std::move(old), existence.path_m(), seed,
                 with_extraneous_density(options_.search, existence.born_per_scan(), view_));
 }
 
-void NavigationLoop::begin_search() {
+void NavigationLoop::begin_search(const core::Scan& scan) {
   widen_for_search();
   ++searches_;
   Checkpoint trigger = take_checkpoint(belief_, tape_);
-  Search search = search_from(trigger.existence);
+  Search search = search_from(trigger.existence,
+                              old_or_drifted(belief_.filter, belief_.existence, scan, options_.search.old_after_m));
   if (!undo_.mode) undo_.mode.emplace(std::move(mode_));
   mode_.emplace<Searching>(Searching{std::move(search), std::move(trigger), questions_});
 }

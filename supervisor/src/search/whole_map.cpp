@@ -120,7 +120,7 @@ void NavigationLoop::ask_whether_new(const core::Scan& scan, core::StepReport& r
   LandmarksAbout about = landmarks_about(belief_, within_m, path_m - within_m);
   constexpr double least_new = 0.5;
   if (!questions_.asked.is_due(about.ids, least_new)) return;
-  const Search search = search_from(belief_.existence);
+  const Search search = search_from(belief_.existence, old_landmarks(belief_.existence, options_.search.old_after_m));
   AskedWholeMap asked = ask(about, search, scan);
   const auto is_closed_from = [&](const Checkpoint& now) {
     return close_at(asked.pairs, search, now, scan, asked.decision, report);

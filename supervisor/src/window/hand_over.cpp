@@ -138,11 +138,21 @@ void NavigationLoop::begin_drive_if_due() {
   become(std::move(drive), tried);
 }
 
-/// Where the belief has just become trusted.
+/// The vehicle may soon see what the filter does not hold, and would map it a second time.
+bool NavigationLoop::is_at_edge() const {
+  constexpr double most_share = 0.3;
+  const double needed_m = std::min(1.5 * view_.reach().value_or(reference_reach_m) + 0.5 * drift_m(belief_.filter),
+                                   most_share * belief_.window.radius_m);
+  return belief_.window.reach_from(belief_.filter.pose().mean.position_m()) < needed_m;
+}
+
+/// Where the belief has just become trusted; at the edge of the window as it is, and then nothing rolls back over it.
 void NavigationLoop::hand_over_if_due() {
   Mapping* mapping = std::get_if<Mapping>(&mode_);
-  if (mapping == nullptr || mapping->trusted->position != tape_.end() || !may_have_window()) return;
-  begin_drive_if_due();
+  if (mapping == nullptr || !may_have_window()) return;
+  const bool is_trusted = mapping->trusted->position == tape_.end();
+  if (!is_trusted && !is_at_edge()) return;
+  if (is_trusted) begin_drive_if_due();
   if (!is_hand_over_due()) return;
   if (!undo_.mode) undo_.mode.emplace(Mode(*mapping));
   if (hand_over(window_to_map())) {
