@@ -58,7 +58,8 @@ void doubt_times(const OwnLog& log, Doubts& doubts) {
   const bool held = log.odometry_kind != OdometryKind::increments && log.odometry_kind != OdometryKind::poses;
   doubts.push_back(sentence("odometry: %zu gaps longer than %.3g s, the longest %.4g s from %.9g s on; %s", count,
                             long_s, intervals[longest], core::seconds(log.odometry[longest].t_ns),
-                            held ? "the row before a gap is held through it" : "motion in it is spread evenly"));
+                            held ? "the row before a gap is held through it, as uncertain as its changes so far"
+                                 : "motion in it is spread evenly"));
 }
 
 /// Of the motion that was made.

@@ -96,7 +96,7 @@ void check_clocks(const OwnLog& log, const std::vector<LabelledScan>& scans) {
 /// motion begins.
 core::Nanoseconds weave(const OwnLog& log, const Vehicle& vehicle, std::vector<LabelledScan>& scans,
                         core::Recording& recording) {
-  const Motions motions(log, vehicle);
+  Motions motions(log, vehicle);
   Weaver weaver(vehicle.odometry.T_vehicle_odometry, recording.events);
   auto lost = log.lost_ns.begin();
   std::size_t next = 0;

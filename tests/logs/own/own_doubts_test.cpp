@@ -38,7 +38,8 @@ TEST(OwnDoubts, TellDegreesTakenForRadians) {
 TEST(OwnDoubts, TellGapsWithTheirLengthAndPlace) {
   const std::string all = remarks("odometry.csv", "t,v,omega\n0,1,0\n0.1,1,0\n0.2,1,0\n5.2,1,0\n5.3,1,0\n");
   EXPECT_TRUE(
-      says(all, "1 gaps longer than 1 s, the longest 5 s from 0.2 s on; the row before a gap is held through it"))
+      says(all, "1 gaps longer than 1 s, the longest 5 s from 0.2 s on; the row before a gap is held through it, as "
+                "uncertain as its changes so far"))
       << all;
 }
 

@@ -95,6 +95,7 @@ void LiveMotion::drop_woven() {
   const auto count = static_cast<std::ptrdiff_t>(next_ - 1);
   rows_.odometry.erase(rows_.odometry.begin(), rows_.odometry.begin() + count);
   rows_.odometry_covariances.erase(rows_.odometry_covariances.begin(), rows_.odometry_covariances.begin() + count);
+  motions_->forget(next_ - 1);
   next_ = 1;
 }
 
