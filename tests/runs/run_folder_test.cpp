@@ -299,6 +299,15 @@ TEST(HostileRunFolder, LabelsMakeRoomForWhatIsThereOnly) {
   EXPECT_EQ(error("5,3,7\n100,0,1\n2,0,1\n"), "nothing thrown") << "steps and observations may be left out";
 }
 
+TEST(RunFolder, OfATeamNamesThoseOfItsRobots) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path().string();
+  for (const char* robot : {"/robot_1", "/robot_3"}) write_example(path + robot, 3);
+  EXPECT_EQ(input_error_of([&] { read_run(path); }),
+            path + ": the folder of a team of robots; each has a run folder of its own: " + path + "/robot_1, " + path +
+                "/robot_3");
+}
+
 TEST(HostileRunFolder, ManifestsThatNestDeeperThanOursAreRefused) {
   const TemporaryFolder folder;
   const std::string run = (folder.path() / "run").string();
