@@ -312,6 +312,8 @@ Run read_run(const std::string& path) {
     tell_missing(path, final_file, final_rows, said.steps.value_or(0), run.missing);
   if (fs::exists(path + "/map.csv")) run.map = read_map(path + "/map.csv");
   tell_missing(path, "map.csv", run.map.size(), said.landmarks.value_or(0), run.missing);
+  tell_missing_rows(path, said, run.missing);
+  if (run.finished) tell_cut_drive(path, said.steps.value_or(0), run.missing);
   if (has_truth(path)) run.truth = read_truth(path);
   return run;
 }
