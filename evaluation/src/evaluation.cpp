@@ -98,7 +98,8 @@ void summarize_poses(PoseEvaluation& result) {
   result.nees_inside_95 = fraction_of(inside, result.nees_count);
 }
 
-std::pair<PositionEvaluation, PoseEvaluation> evaluate_poses(const Steps& steps, const runs::RunTruth& truth) {
+std::pair<PositionEvaluation, PoseEvaluation> evaluate_poses(const Steps& steps, const runs::RunTruth& truth,
+                                                             core::Nanoseconds nees_from_ns) {
   PositionEvaluation position;
   position.limit_m = std::numeric_limits<double>::infinity();
   PoseEvaluation pose;
@@ -112,7 +113,8 @@ std::pair<PositionEvaluation, PoseEvaluation> evaluate_poses(const Steps& steps,
     error.z() = core::wrap_to_pi(error.z());
     const Eigen::Vector3d sigma = estimate->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
     position.errors.push_back({known.t_ns, known.T_world_robot.position_m(), error.head<2>(), sigma.head<2>(), true});
-    pose.errors.push_back({known.t_ns, error.z(), sigma.z(), nees(*estimate, known.T_world_robot)});
+    const double told = known.t_ns < nees_from_ns ? nan : nees(*estimate, known.T_world_robot);
+    pose.errors.push_back({known.t_ns, error.z(), sigma.z(), told});
   }
   position.fixes_used = position.errors.size();
   position.error_m = statistics_of_used(position.errors);
@@ -135,7 +137,7 @@ std::optional<PositionEvaluation> evaluate_final(const runs::Run& run, const run
   const Steps steps = final_steps(run);
   if (!truth.positions.empty()) return evaluate_positions(steps, truth, limit_m);
   if (truth.poses.empty()) return std::nullopt;
-  return evaluate_poses(steps, truth).first;
+  return evaluate_poses(steps, truth, EvaluationOptions().nees_from_ns).first;
 }
 
 NisEvaluation evaluate_nis(const std::vector<core::StepReport>& steps) {
@@ -226,7 +228,7 @@ Evaluation evaluate(const runs::Run& run, const runs::RunTruth& truth, const Eva
   evaluation.steps = run.steps.size();
   if (!truth.positions.empty()) evaluation.position = evaluate_positions(run.steps, truth, options.fix_limit_m);
   if (!truth.poses.empty()) {
-    auto [position, pose] = evaluate_poses(run.steps, truth);
+    auto [position, pose] = evaluate_poses(run.steps, truth, options.nees_from_ns);
     evaluation.pose = std::move(pose);
     if (!evaluation.position) evaluation.position = std::move(position);
   }

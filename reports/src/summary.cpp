@@ -106,6 +106,23 @@ Json observations_to_json(const runs::Run& run) {
   return json;
 }
 
+/// Of the tables whose rows nothing else counts, so that one that was cut is noticed.
+Json rows_to_json(const runs::Run& run) {
+  std::size_t labels = 0, particles = 0;
+  for (const auto& of_step : run.truth.labels) labels += of_step.size();
+  for (const core::StepReport& step : run.steps) particles += step.particles ? 1 : 0;
+  Json json = Json::object();
+  const auto put_rows = [&](const char* table, std::size_t rows) {
+    if (rows > 0) json[table] = rows;
+  };
+  put_rows("truth_poses", run.truth.poses.size());
+  put_rows("truth_positions", run.truth.positions.size());
+  put_rows("truth_landmarks", run.truth.landmarks.size());
+  put_rows("truth_labels", labels);
+  put_rows("particles", particles);
+  return json;
+}
+
 }  // namespace
 
 std::string json_text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n'; }
@@ -136,6 +153,7 @@ Json summary_to_json(const runs::Run& run, const evaluation::Evaluation& evaluat
   if (const PostponedWork postponed = postponed_in(run); postponed.any()) {
     json["postponed"] = postponed_to_json(postponed);
   }
+  if (const Json rows = rows_to_json(run); !rows.empty()) json["rows"] = rows;
   json.update(evaluation_to_json(evaluation));
   return json;
 }

@@ -269,9 +269,28 @@ std::vector<core::MapLandmark> read_map(const std::string& path) {
   return map;
 }
 
+namespace {
+
+/// [folder] of the robots of a team, whose run folder this is; few enough for a message.
+std::string robot_folders(const std::string& path) {
+  std::string text;
+  constexpr int most = 100;
+  for (int robot = 1; robot <= most; ++robot) {
+    const std::string folder = path + "/robot_" + std::to_string(robot);
+    if (fs::exists(folder + '/' + manifest_file)) text += (text.empty() ? "" : ", ") + folder;
+  }
+  return text;
+}
+
+}  // namespace
+
 RunManifest read_manifest(const std::string& path) {
   const std::string manifest = path + '/' + manifest_file;
   if (!fs::exists(manifest)) {
+    const std::string robots = robot_folders(path);
+    if (!robots.empty()) {
+      throw core::InputError(path + ": the folder of a team of robots; each has a run folder of its own: " + robots);
+    }
     throw core::InputError(path + ": not a run folder: expected a file " + manifest_file + " in it");
   }
   return manifest_from_text(manifest, files::read_whole_file(manifest));
@@ -293,6 +312,8 @@ Run read_run(const std::string& path) {
     tell_missing(path, final_file, final_rows, said.steps.value_or(0), run.missing);
   if (fs::exists(path + "/map.csv")) run.map = read_map(path + "/map.csv");
   tell_missing(path, "map.csv", run.map.size(), said.landmarks.value_or(0), run.missing);
+  tell_missing_rows(path, said, run.missing);
+  if (run.finished) tell_cut_drive(path, said.steps.value_or(0), run.missing);
   if (has_truth(path)) run.truth = read_truth(path);
   return run;
 }

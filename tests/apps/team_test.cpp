@@ -133,6 +133,15 @@ TEST(TeamSimulation, BringsFourRobotsOfUnknownStartIntoOneFrame) {
     EXPECT_EQ(robot["alone"], false);
   }
   EXPECT_LT(figures["landmarks"][0]["aligned_rmse_m"], 0.2);
+  EXPECT_FALSE(figures["robots"][0].contains("in_frame_since_s"));
+  const Outcome team = run({"evaluate", out.string()});
+  EXPECT_EQ(team.exit_code, 3);
+  EXPECT_NE(team.err.find("each has a run folder of its own: " + (out / "robot_1").string()), std::string::npos);
+  EXPECT_EQ(run({"evaluate", (out / "robot_1").string()}).err, "");
+  // Before it came into the frame of robot 1 its covariances are of another.
+  const Outcome robot = run({"evaluate", (out / "robot_2").string(), "--json"});
+  EXPECT_NE(robot.err.find("when the robot came into the frame of its team"), std::string::npos) << robot.err;
+  EXPECT_LT(json::parse(robot.out)["nees"]["mean"], 2.0 * figures["robots"][1]["nees_mean"].get<double>());
 }
 
 TEST(TeamSimulation, RefusesOptionsOfOneRobotAndOthersThoseOfATeam) {

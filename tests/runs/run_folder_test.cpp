@@ -13,6 +13,7 @@
 
 #include "helixnav/core/random.hpp"
 #include "helixnav/files/file.hpp"
+#include "helixnav/runs/drive_file.hpp"
 #include "input_error.hpp"
 #include "run_example.hpp"
 #include "tables/put_association.hpp"
@@ -297,6 +298,79 @@ TEST(HostileRunFolder, LabelsMakeRoomForWhatIsThereOnly) {
   EXPECT_NE(error("99999999,0,1\n").find("truth_labels.csv:2: step is \"99999999\""), std::string::npos);
   EXPECT_NE(error("0,0,1\n0,99999999,1\n").find("truth_labels.csv:3: observation is \"99999999\""), std::string::npos);
   EXPECT_EQ(error("5,3,7\n100,0,1\n2,0,1\n"), "nothing thrown") << "steps and observations may be left out";
+}
+
+TEST(RunFolder, ThatCameToItsEndTellsWhichTruthWasCutSince) {
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "run").string();
+  write_example(path, 100);
+  int cut = 0;
+  for (const char* table : {"truth_poses.csv", "truth_positions.csv", "truth_landmarks.csv", "truth_labels.csv"}) {
+    const std::string file = path + '/' + table;
+    if (!fs::exists(file)) continue;
+    ++cut;
+    const std::string whole = files::read_whole_file(file);
+    keep_lines(file, 2);
+    const std::vector<std::string> missing = read_run(path).missing;
+    ASSERT_EQ(missing.size(), 1U) << table;
+    EXPECT_EQ(missing[0].rfind(file + ": 1 of ", 0), 0U) << missing[0];
+    std::ofstream(file, std::ios::binary) << whole;
+  }
+  EXPECT_GE(cut, 2);
+}
+
+TEST(RunFolder, ThatCameToItsEndTellsWhetherItsDriveWasCutSince) {
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "run").string(), file = path + "/drive.bin";
+  write_example(path, 3);
+  {
+    DriveFile drive(file, core::PoseGaussian());
+    for (core::Nanoseconds t_ns = 1; t_ns <= 3; ++t_ns) {
+      core::Scan scan;
+      scan.t_ns = t_ns;
+      drive.add(scan);
+    }
+    drive.finish();
+  }
+  EXPECT_EQ(read_run(path).missing, std::vector<std::string>{});
+  const std::string whole = files::read_whole_file(file);
+  for (std::size_t bytes = whole.size(); bytes-- > 0;) {
+    fs::resize_file(file, bytes);
+    const std::vector<std::string> missing = read_run(path).missing;
+    ASSERT_EQ(missing.size(), 1U) << bytes;
+    EXPECT_NE(missing[0].find("of 3 scans: the run came to its end, and the file was cut since"), std::string::npos);
+  }
+  fs::remove(path + "/summary.json");  // as a run that was killed
+  EXPECT_EQ(read_run(path).missing, std::vector<std::string>{});
+}
+
+TEST(HostileRunFolder, ManifestsOfWhichAValueIsWrongAreRefusedByItsKey) {
+  const TemporaryFolder folder;
+  const std::string run = (folder.path() / "run").string();
+  write_example(run, 3);
+  const std::string file = run + "/manifest.json", whole = files::read_whole_file(file);
+  const auto error = [&](const std::string& from, const std::string& to) {
+    std::string text = whole;
+    text.replace(text.find(from), from.size(), to);
+    folder.write("run/manifest.json", text);
+    return input_error_of([&] { read_run(run); });
+  };
+  const std::string begin = file + ": not a manifest of a run: ";
+  EXPECT_EQ(error("\"seed\": ", "\"seed\": -1, \"was\": "),
+            begin + "\"seed\" is -1, expected a whole number from 0 on");
+  EXPECT_EQ(error("\"command\": ", "\"command\": [2], \"was\": "), begin + "\"command\" is [2], expected a text");
+  EXPECT_EQ(error("\"recording\"", "\"other\""), begin + "\"recording\" is missing");
+  EXPECT_EQ(error("\"inputs\": ", "\"inputs\": [7], \"was\": "), begin + "\"inputs\": \"name\" is missing");
+  EXPECT_EQ(error("{", "{{"), begin + "no JSON");
+}
+
+TEST(RunFolder, OfATeamNamesThoseOfItsRobots) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path().string();
+  for (const char* robot : {"/robot_1", "/robot_3"}) write_example(path + robot, 3);
+  EXPECT_EQ(input_error_of([&] { read_run(path); }),
+            path + ": the folder of a team of robots; each has a run folder of its own: " + path + "/robot_1, " + path +
+                "/robot_3");
 }
 
 TEST(HostileRunFolder, ManifestsThatNestDeeperThanOursAreRefused) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -12,6 +13,7 @@
 #include "helixnav/reports/summary.hpp"
 #include "helixnav/runs/run_folder.hpp"
 #include "settings/validators.hpp"
+#include "team_frame.hpp"
 #include "truth_file.hpp"
 
 namespace helixnav::apps {
@@ -25,9 +27,19 @@ struct EvaluateJob {
   evaluation::EvaluationOptions options;
 };
 
-void evaluate(const EvaluateJob& job) {
+/// Of a team's robot, from when on its covariances are of the frame that its truth is in.
+void choose_nees(const runs::Run& run, EvaluateJob& job) {
+  const std::optional<double> since_s = in_frame_since_s(job.folder);
+  if (!since_s || run.steps.empty() || *since_s <= core::seconds(run.steps.front().t_ns)) return;
+  job.options.nees_from_ns = core::nanoseconds_from_seconds(*since_s);
+  std::fprintf(stderr, "helixnav: note: NEES from %.9g s on, when the robot came into the frame of its team\n",
+               *since_s);
+}
+
+void evaluate(EvaluateJob& job) {
   runs::Run run = runs::read_run(job.folder);
   warn_of_missing(run.missing);
+  choose_nees(run, job);
   if (!job.truth.empty()) run.truth = read_truth_file(job.truth, job.truth_offset_s, run.truth);
   const evaluation::Evaluation evaluation = evaluation::evaluate(run, job.options);
   if (!job.truth.empty() && evaluation.position && evaluation.position->error_m.count == 0) {

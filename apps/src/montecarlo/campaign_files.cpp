@@ -31,6 +31,26 @@ void check_row(const std::string& file, std::size_t line, const Json& row) {
   }
 }
 
+/// What others ask a manifest for. Seeds are missing in those of earlier versions.
+void check_manifest(const std::string& file, const Json& manifest) {
+  const auto require = [&](const char* key, bool right, const char* expected) {
+    if (right) return;
+    const std::string found = manifest.contains(key) ? "is " + manifest.at(key).dump().substr(0, 60) : "is missing";
+    throw core::InputError(file + ": \"" + key + "\" " + found + ", expected " + expected);
+  };
+  for (const char* key : {"version", "commit", "scenario"}) {
+    require(key, manifest.contains(key) && manifest.at(key).is_string(), "a text");
+  }
+  require("config", manifest.contains("config") && manifest.at("config").is_array(), "a list of lines");
+  const Json seeds = manifest.value("seeds", Json::array());
+  const auto is_range = [](const Json& range) {
+    return range.is_array() && range.size() == 2 && range[0].is_number_unsigned() && range[1].is_number_unsigned() &&
+           range[0].get<std::uint64_t>() <= range[1].get<std::uint64_t>();
+  };
+  require("seeds", seeds.is_array() && std::all_of(seeds.begin(), seeds.end(), is_range),
+          "pairs of a first and a last seed");
+}
+
 }  // namespace
 
 Json campaign_manifest(const std::string& folder) {
@@ -41,6 +61,7 @@ Json campaign_manifest(const std::string& folder) {
   if (!manifest.is_object() || manifest.value("format", Json()) != campaign_format) {
     throw core::InputError(file + ": not the manifest of a campaign; choose another folder");
   }
+  check_manifest(file, manifest);
   return manifest;
 }
 
@@ -89,9 +110,6 @@ std::string first_difference(const Json& held, const Json& wanted) {
 SeedRanges seed_ranges(const Json& manifest) {
   SeedRanges ranges;
   for (const Json& range : manifest.value("seeds", Json::array())) {
-    const bool two = range.is_array() && range.size() == 2 && range[0].is_number_unsigned() &&
-                     range[1].is_number_unsigned() && range[0].get<std::uint64_t>() <= range[1].get<std::uint64_t>();
-    if (!two) throw core::InputError("manifest of a campaign: seeds: expected pairs, found " + range.dump());
     ranges.emplace_back(range[0].get<std::uint64_t>(), range[1].get<std::uint64_t>());
   }
   return ranges;

@@ -32,7 +32,7 @@ void sort_by_seed(std::vector<Json>& rows);
 /// What of two manifests is not the same campaign, in words; empty when nothing is. Seeds do not count.
 std::string first_difference(const Json& held, const Json& wanted);
 
-/// The seeds that the folder was asked for; none in a manifest of versions before they were noted. InputError for others.
+/// The seeds that the folder was asked for; none in a manifest of versions before they were noted. campaign_manifest has checked them.
 SeedRanges seed_ranges(const Json& manifest);
 
 /// In order, neighbours and overlapping ones as one.

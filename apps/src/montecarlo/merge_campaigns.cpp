@@ -65,6 +65,15 @@ void add_part(const std::string& part, Merged& merged) {
   }
 }
 
+/// Read first and written over then, a part would be lost.
+void check_is_none_of(const std::vector<std::string>& parts, const std::string& out) {
+  std::error_code unknown;
+  for (const std::string& part : parts) {
+    if (!fs::equivalent(part, out, unknown)) continue;
+    throw core::InputError(out + ": --out is one of the parts to merge; choose another folder");
+  }
+}
+
 void check_out(const std::string& out, bool overwrite) {
   if (fs::exists(out) && !fs::is_directory(out)) throw core::InputError(out + ": expected a folder, found a file");
   if (!fs::exists(out) || overwrite || fs::is_empty(out)) return;
@@ -74,6 +83,7 @@ void check_out(const std::string& out, bool overwrite) {
 }  // namespace
 
 void merge_campaigns(const std::vector<std::string>& parts, const std::string& out, bool overwrite) {
+  check_is_none_of(parts, out);
   check_out(out, overwrite);
   if (!parts.empty() && campaign_manifest(parts.front()).value("scenario", std::string()) == team_scenario) {
     merge_team_campaigns(parts, out);

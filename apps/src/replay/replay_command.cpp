@@ -26,6 +26,7 @@
 #include "settings/config_file.hpp"
 #include "settings/deprecated_keys.hpp"
 #include "settings/settings.hpp"
+#include "settings/validators.hpp"
 #include "settings/vehicle_option.hpp"
 #include "spooled_log.hpp"
 #include "team/replay_team.hpp"
@@ -168,6 +169,7 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
   add_blackouts(*command, *job);
   command->add_option("--robots", job->team.robots, "Of a log of several robots: those with these numbers alone")
       ->delimiter(',')
+      ->check(robot_number())
       ->type_name("N,N");
   command->add_flag("--unknown-starts", job->team.unknown_starts,
                     "Of a log of several robots: where they start is not taken from the truth");

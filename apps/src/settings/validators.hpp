@@ -29,6 +29,17 @@ CLI::Validator number_between(T low, T high) {
   return CLI::Validator(objection, range.str());
 }
 
+/// The number of a robot of a log. An empty word would be taken for 0.
+inline CLI::Validator robot_number() {
+  const auto objection = [](std::string& word) -> std::string {
+    constexpr std::size_t most_digits = 6;
+    const bool digits = !word.empty() && word.size() <= most_digits &&
+                        std::all_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
+    return digits ? std::string() : "expected numbers of robots, as 1,3, found '" + word + "'";
+  };
+  return CLI::Validator(objection, "");
+}
+
 /// One of these words; the objection names the nearest.
 inline CLI::Validator one_of(const std::vector<std::string>& words) {
   const auto objection = [words](std::string& word) -> std::string {

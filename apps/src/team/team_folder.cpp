@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <set>
 
 #include <nlohmann/json.hpp>
@@ -130,6 +131,8 @@ std::string team_summary(const TeamTask& task, const TeamDrive& drive, const Tea
                {"component", number_of(task, drive.robots[r].component)},
                {"alone", is_alone(drive, r)},
                {"scans", drive.robots[r].steps.size()}};
+    const core::Nanoseconds since_ns = drive.robots[r].in_frame_since_ns;
+    if (since_ns > std::numeric_limits<core::Nanoseconds>::min()) robot["in_frame_since_s"] = core::seconds(since_ns);
     if (evaluation.robots[r]) {
       robot["position_error_m"] = json_of(evaluation.robots[r]->raw_m);
       robot["aligned_position_error_m"] = json_of(evaluation.robots[r]->aligned_m);

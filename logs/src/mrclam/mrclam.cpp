@@ -269,6 +269,7 @@ core::TeamRecording read_mrclam(const fs::path& path, const std::vector<int>& ro
   core::TeamRecording team;
   team.name = (path.has_filename() ? path : path.parent_path()).filename().string();
   team.true_landmarks = tables.landmarks;
+  if (robots.empty()) team.remarks = tables.remarks;  // else it is left out by choice
   team.starts_known = true;
   team.looks_as_one = settings.looks_as_one;
   for (const int number : chosen) {

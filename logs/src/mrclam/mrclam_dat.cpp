@@ -68,7 +68,20 @@ std::map<std::int64_t, int> read_barcodes(const DatFiles& files, const Subjects&
       cursor.fail("barcode " + std::to_string(barcode) + " is another subject's already");
     }
   });
+  if (subject_of.empty()) {
+    throw core::InputError(files.full_name(barcodes_file) + ": expected rows of a subject and its barcode, found none");
+  }
   return subject_of;
+}
+
+/// A robot without commands is none of the team; other files of it say that it was meant to be one.
+void remark_on_missing(const DatFiles& files, int number, std::vector<std::string>& remarks) {
+  for (const char* what : {"Measurement", "Groundtruth"}) {
+    if (!files.has(name_of(number, what))) continue;
+    remarks.push_back("warning: robot " + std::to_string(number) + " is left out: " + name_of(number, what) +
+                      " is there, and " + files.full_name(name_of(number, "Odometry")) + " is missing");
+    return;
+  }
 }
 
 MrclamTables::Robot read_robot(const DatFiles& files, int number, const std::map<std::int64_t, int>& subject_of) {
@@ -102,7 +115,11 @@ MrclamTables read_mrclam_dat(const fs::path& folder_or_archive) {
   }
   const std::map<std::int64_t, int> subject_of = read_barcodes(files, Subjects(tables.landmarks));
   for (int robot = 1; robot <= most_robots; ++robot) {
-    if (files.has(name_of(robot, "Odometry"))) tables.robots[robot] = read_robot(files, robot, subject_of);
+    if (files.has(name_of(robot, "Odometry"))) {
+      tables.robots[robot] = read_robot(files, robot, subject_of);
+    } else {
+      remark_on_missing(files, robot, tables.remarks);
+    }
   }
   return tables;
 }

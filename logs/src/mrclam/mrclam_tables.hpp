@@ -36,6 +36,7 @@ struct MrclamTables {
   };
   std::map<int, Robot> robots;
   std::vector<core::TrueLandmark> landmarks;
+  std::vector<std::string> remarks;  ///< what was left out, a sentence each
 };
 
 inline constexpr int most_robots = 5;

@@ -39,6 +39,33 @@ Eigen::Matrix3d half_turned(double turn_rad) {
   return R;
 }
 
+/// How an increment changes with the rates that it is made by, to first order.
+Eigen::Matrix3d by_rates(const Eigen::Vector3d& twist, double duration_s) {
+  if (!(square(duration_s) > 0.0)) return Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
+  J(0, 2) = -0.5 * twist.y();
+  J(1, 2) = 0.5 * twist.x();
+  return duration_s * half_turned(twist.z()) * J;
+}
+
+/// Of what a random walk of variance 1 a second has come to, s seconds after its begin: ∫ t² dt. No rate changes without
+/// end: after ten seconds it grows no faster.
+double walked_s3(double s) {
+  constexpr double most_s = 10.0;
+  const double walking_s = std::min(s, most_s);
+  return square(walking_s) * (walking_s / 3.0 + (s - walking_s));
+}
+
+/// What rates that may change add to the covariance of a part of a motion.
+Eigen::Matrix3d change_of_rates(const Motion& motion, double share, core::Nanoseconds from_ns,
+                                core::Nanoseconds to_ns) {
+  const double duration_s = core::seconds(to_ns - from_ns);
+  const double s3 =
+      walked_s3(core::seconds(to_ns - motion.begin_ns)) - walked_s3(core::seconds(from_ns - motion.begin_ns));
+  const Eigen::Matrix3d J = by_rates(share * motion.twist, duration_s) / duration_s;
+  return J * (s3 * motion.rate_walk).asDiagonal() * J.transpose();
+}
+
 }  // namespace
 
 core::Pose2 exponential(const Eigen::Vector3d& twist) {
@@ -163,15 +190,21 @@ void Motions::add_sample_noise(Motion& motion, std::size_t row) const {
   const double duration_s = core::seconds(motion.end_ns - motion.begin_ns);
   const bool given = !log_.odometry_covariances.empty() && !log_.odometry_covariances[row].isZero(0.0);
   const Eigen::Matrix3d rates = given ? log_.odometry_covariances[row] : sample_noise();
-  Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
-  J(0, 2) = -0.5 * motion.twist.y();
-  J(1, 2) = 0.5 * motion.twist.x();
-  J = square(duration_s) > 0.0 ? Eigen::Matrix3d(duration_s * half_turned(motion.twist.z()) * J)
-                               : Eigen::Matrix3d::Zero();
+  const Eigen::Matrix3d J = by_rates(motion.twist, duration_s);
   motion.covariance += J * rates * J.transpose();
 }
 
-std::optional<Motion> Motions::of_row(std::size_t row, core::Nanoseconds last_ns) const {
+/// Of the rows up to this one.
+void Motions::take_rates(std::size_t row) {
+  for (; taken_ <= row; ++taken_) {
+    Motion second;
+    second.end_ns = 1'000'000'000;
+    move(second, taken_);
+    changes_.take(log_.odometry[taken_].t_ns, second.twist);
+  }
+}
+
+std::optional<Motion> Motions::of_row(std::size_t row, core::Nanoseconds last_ns) {
   if (row == 0 && log_.odometry_kind == OdometryKind::poses) return std::nullopt;
   Motion motion = stretch(row, last_ns);
   const core::Nanoseconds end_ns = motion.end_ns;
@@ -190,19 +223,25 @@ std::optional<Motion> Motions::of_row(std::size_t row, core::Nanoseconds last_ns
   }
   if (usual_ns) motion.twist.setZero();  // of a bias, too
   motion.end_ns = end_ns;
+  if (holds()) take_rates(row);
+  if (holds() && !usual_ns && changes_.is_gap(end_ns - motion.begin_ns)) motion.rate_walk = changes_.variance_per_s();
   motion.covariance = 0.5 * square(model_.noise_scale) * (motion.covariance + motion.covariance.transpose()).eval();
   return motion;
 }
 
-core::Odometry part_of(const Motion& motion, double share, core::Nanoseconds t_ns,
+core::Odometry part_of(const Motion& motion, core::Nanoseconds from_ns, core::Nanoseconds to_ns,
                        const core::Pose2& T_vehicle_odometry) {
+  const bool instantaneous = motion.end_ns == motion.begin_ns;
+  const double share =
+      instantaneous ? 1.0 : core::seconds(to_ns - from_ns) / core::seconds(motion.end_ns - motion.begin_ns);
   core::Odometry part;
-  part.t_ns = t_ns;
+  part.t_ns = to_ns;
+  Eigen::Matrix3d Q = share * motion.covariance;
+  if (motion.may_change()) Q += change_of_rates(motion, share, from_ns, to_ns);
   const core::Pose2 moved = exponential(share * motion.twist);
-  const bool in_place = T_vehicle_odometry.vector().isZero(0.0);
-  if (in_place) {
+  if (T_vehicle_odometry.vector().isZero(0.0)) {
     part.T_before_after = moved;
-    part.covariance = share * motion.covariance;
+    part.covariance = Q;
     return part;
   }
   const core::Pose2 T_odometry_vehicle = core::inverse(T_vehicle_odometry);
@@ -210,7 +249,7 @@ core::Odometry part_of(const Motion& motion, double share, core::Nanoseconds t_n
   const Eigen::Matrix3d J = core::compose_jacobians(T_vehicle_moved, T_odometry_vehicle).J_first *
                             core::compose_jacobians(T_vehicle_odometry, moved).J_second;
   part.T_before_after = core::compose(T_vehicle_moved, T_odometry_vehicle);
-  const Eigen::Matrix3d Q = share * (J * motion.covariance * J.transpose());
+  Q = motion.may_change() ? (J * Q * J.transpose()).eval() : (share * (J * motion.covariance * J.transpose())).eval();
   part.covariance = 0.5 * (Q + Q.transpose());
   return part;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 
@@ -8,6 +9,7 @@
 
 #include "helixnav/core/events.hpp"
 #include "helixnav/logs/own_log.hpp"
+#include "rate_changes.hpp"
 
 namespace helixnav::logs {
 
@@ -16,6 +18,11 @@ struct Motion {
   core::Nanoseconds begin_ns = 0, end_ns = 0;
   Eigen::Vector3d twist = Eigen::Vector3d::Zero();  ///< (x, y, heading) whose exponential is the increment
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  /// Where rows are missing: variance of the changes of (speed ahead, to the left, turn rate) in a second, (m/s)²/s and (rad/s)²/s.
+  Eigen::Vector3d rate_walk = Eigen::Vector3d::Zero();
+
+  /// Whether speeds are held through a gap in which they may have changed.
+  bool may_change() const { return !rate_walk.isZero(0.0); }
 };
 
 /// The increment of a twist: an arc. Test: logs/own/own_recording_test.cpp (against fine integration).
@@ -32,13 +39,18 @@ class Motions {
   /// That of a row: until it (increments, poses) or from it to the next (the others; the last until `last_ns`). Nothing for
   /// the first pose. A row of speeds that says that the vehicle stands, and is held through a gap (of more than a second and ten
   /// times the interval before it), is as uncertain as if it had been held for that interval: what errs at speed does not add up while
-  /// nothing moves.
-  std::optional<Motion> of_row(std::size_t row, core::Nanoseconds last_ns) const;
+  /// nothing moves. One that says that it drives, and is held through a gap (RateChanges::is_gap), may change meanwhile as the rows up
+  /// to it did. Rows must be asked for in order; one may be asked for again.
+  std::optional<Motion> of_row(std::size_t row, core::Nanoseconds last_ns);
 
   /// Whether a row says what comes after it.
   bool holds() const;
 
+  /// The first rows of the log were taken out of it, all of them asked for before.
+  void forget(std::size_t rows) { taken_ -= std::min(taken_, rows); }
+
  private:
+  void take_rates(std::size_t row);
   Motion stretch(std::size_t row, core::Nanoseconds last_ns) const;
   std::optional<core::Nanoseconds> stands_through_gap(std::size_t row, const Motion& motion) const;
   void move(Motion& motion, std::size_t row) const;
@@ -49,10 +61,14 @@ class Motions {
 
   const OwnLog& log_;
   const OdometryModel& model_;
+  RateChanges changes_;
+  std::size_t taken_ = 0;  ///< rows that changes_ knows
 };
 
-/// A part of a motion, in (0, 1], as an increment of the vehicle that ends at t_ns.
-core::Odometry part_of(const Motion& motion, double share, core::Nanoseconds t_ns,
+/// A part of a motion as an increment of the vehicle. Where rates may change, s seconds into the gap, the error of a heading grows by
+/// rate_walk·s² a second: the variance of a heading at s is then that of a random walk of the turn rate, rate_walk·s³/3, however often
+/// scans divide the gap; so with the way. Test: logs/own/own_gap_test.cpp.
+core::Odometry part_of(const Motion& motion, core::Nanoseconds from_ns, core::Nanoseconds to_ns,
                        const core::Pose2& T_vehicle_odometry);
 
 }  // namespace helixnav::logs

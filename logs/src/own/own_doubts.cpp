@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "helixnav/core/angle.hpp"
+#include "own/own_overlap.hpp"
 #include "own/vehicle/units.hpp"
 
 namespace helixnav::logs {
@@ -58,7 +59,8 @@ void doubt_times(const OwnLog& log, Doubts& doubts) {
   const bool held = log.odometry_kind != OdometryKind::increments && log.odometry_kind != OdometryKind::poses;
   doubts.push_back(sentence("odometry: %zu gaps longer than %.3g s, the longest %.4g s from %.9g s on; %s", count,
                             long_s, intervals[longest], core::seconds(log.odometry[longest].t_ns),
-                            held ? "the row before a gap is held through it" : "motion in it is spread evenly"));
+                            held ? "the row before a gap is held through it, as uncertain as its changes so far"
+                                 : "motion in it is spread evenly"));
 }
 
 /// Of the motion that was made.
@@ -152,20 +154,6 @@ void doubt_bearings(const OwnLog& log, Doubts& doubts) {
   if (count > 100 && most_rad < 2.0 * core::pi * rad_per_deg) {
     doubts.push_back(sentence("detections: all %zu bearings lie within ±%.3g degrees; are they in radians?", count,
                               most_rad / rad_per_deg));
-  }
-}
-
-void doubt_overlap(const OwnLog& log, const core::Recording& recording, Doubts& doubts) {
-  std::size_t scans = 0, outside = 0;
-  for (const core::Event& event : recording.events) {
-    if (!std::holds_alternative<core::Scan>(event)) continue;
-    ++scans;
-    const core::Nanoseconds t_ns = core::time_of(event);
-    outside += t_ns < log.odometry.front().t_ns || t_ns > log.odometry.back().t_ns ? 1 : 0;
-  }
-  if (outside * 50 > scans) {
-    doubts.push_back(
-        sentence("%zu of %zu scans were taken before the odometry begins or after it ends", outside, scans));
   }
 }
 

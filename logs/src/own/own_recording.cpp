@@ -11,6 +11,7 @@
 #include "motion.hpp"
 #include "own/tables/sensor_rows.hpp"
 #include "own_doubts.hpp"
+#include "own_overlap.hpp"
 #include "own_truth.hpp"
 #include "plausible.hpp"
 #include "weaver.hpp"
@@ -92,11 +93,28 @@ void check_clocks(const OwnLog& log, const std::vector<LabelledScan>& scans) {
   fail(log, text);
 }
 
+/// Increments and poses say nothing of where a scan was taken after their end: such scans are left out, and counted in a remark.
+void leave_out_untold(const OwnLog& log, std::vector<LabelledScan>& scans, std::vector<std::string>& remarks) {
+  if (log.odometry_kind != OdometryKind::increments && log.odometry_kind != OdometryKind::poses) return;
+  const core::Nanoseconds end_ns =
+      told_until_ns(log.odometry.front().t_ns, log.odometry.back().t_ns, log.odometry.size());
+  const auto is_untold = [&](const LabelledScan& scan) { return scan.scan.t_ns > end_ns; };
+  const auto first = std::find_if(scans.begin(), scans.end(), is_untold);
+  if (first == scans.end()) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%td of %zu scans were taken after the odometry ends at %.9g s (%.9g to %.9g s); they are not used",
+                scans.end() - first, scans.size(), core::seconds(log.odometry.back().t_ns),
+                core::seconds(first->scan.t_ns), core::seconds(scans.back().scan.t_ns));
+  remarks.emplace_back(text);
+  scans.erase(first, scans.end());
+}
+
 /// Lets motion and scans of the whole log come in; that the vehicle was carried, before the first scan after it. When the first
 /// motion begins.
 core::Nanoseconds weave(const OwnLog& log, const Vehicle& vehicle, std::vector<LabelledScan>& scans,
                         core::Recording& recording) {
-  const Motions motions(log, vehicle);
+  Motions motions(log, vehicle);
   Weaver weaver(vehicle.odometry.T_vehicle_odometry, recording.events);
   auto lost = log.lost_ns.begin();
   std::size_t next = 0;
@@ -134,12 +152,13 @@ core::Recording make_recording(const OwnLog& log, const Vehicle& vehicle) {
   const std::vector<SensorModel> sensors = sensors_of(log, vehicle);
   std::vector<LabelledScan> scans = scans_of(log, sensors, vehicle);
   check_clocks(log, scans);
-  add_views(scans, sensors);
   core::Recording recording;
+  recording.remarks = log.remarks;
+  leave_out_untold(log, scans, recording.remarks);
+  add_views(scans, sensors);
   recording.name = log.name;
   recording.extraneous_per_scan = 0.0;
   recording.antenna_robot_m = vehicle.antenna_m;
-  recording.remarks = log.remarks;
   const core::Nanoseconds first_scan_ns = scans.front().scan.t_ns;
   const core::Nanoseconds first_motion_ns = weave(log, vehicle, scans, recording);
   add_truth(log, std::min(first_scan_ns, first_motion_ns), recording);

@@ -29,6 +29,8 @@ class Weaver {
   void flush();
 
  private:
+  void append(const core::Odometry& part);
+
   core::Pose2 T_vehicle_odometry_;
   std::vector<core::Event>& events_;
   std::optional<core::Nanoseconds> now_ns_;

@@ -36,8 +36,11 @@ class ScanRhythm {
 
   double driven_mean_m() const { return intervals_ > 0 ? sum_m_ / intervals_ : 0.0; }
 
+  /// A gap in the odometry is not what is usual, and one that counted would hide the next; two in succession are.
   void note(core::Nanoseconds t_ns, double driven_m, double heading_variance_rad2) {
-    if (last_ns_ && !is_pause(t_ns, driven_m)) {
+    const bool was_open = was_open_;
+    was_open_ = leaves_heading_open(heading_variance_rad2);
+    if (last_ns_ && !is_pause(t_ns, driven_m) && (was_open || !was_open_)) {
       sum_ns_ += static_cast<double>(std::max<core::Nanoseconds>(0, t_ns - *last_ns_));
       sum_m_ += driven_m;
       sum_rad2_ += heading_variance_rad2;
@@ -57,6 +60,7 @@ class ScanRhythm {
   double sum_m_ = 0.0;
   double sum_rad2_ = 0.0;
   int intervals_ = 0;
+  bool was_open_ = false;  ///< the interval before
 };
 
 }  // namespace helixnav::supervisor

@@ -141,6 +141,50 @@ TEST_F(TeamLog, IsRefusedToWhoAsksForRobotsTwiceOrForOneThatIsNotThere) {
   is_refused_with("no robot 4", {"--robots", "4"});
 }
 
+TEST_F(TeamLog, IsRefusedToWhoNamesNoRobot) {
+  for (const char* robots : {"", "one", "1,-2"}) {
+    const Outcome outcome = replay({"--robots", robots});
+    EXPECT_EQ(outcome.exit_code, 2) << robots;
+    EXPECT_NE(outcome.err.find("expected numbers of robots, as 1,3, found '"), std::string::npos) << outcome.err;
+    EXPECT_FALSE(fs::exists(out()));
+  }
+}
+
+/// The same robots in the original files.
+class TeamDatFiles : public TeamLog {
+ protected:
+  void SetUp() override {
+    write("Barcodes.dat", "1 5\n2 14\n6 63\n7 25\n");
+    write("Landmark_Groundtruth.dat", "6 1.0 2.0 1e-4 1e-4\n7 3.0 2.0 1e-4 1e-4\n");
+    for (const std::string robot : {"Robot1", "Robot2"}) {
+      write(robot + "_Odometry.dat", "0.0 0.0 0.0\n4.0 0.0 0.0\n");
+      write(robot + "_Measurement.dat", "1.0 63 2.0 0.1\n2.0 25 1.5 0.3\n");
+    }
+  }
+};
+
+TEST_F(TeamDatFiles, OfWhichOneIsMissingNameIt) {
+  EXPECT_EQ(replay().err, "");
+  fs::remove(folder_.path() / "log" / "Robot2_Odometry.dat");
+  const Outcome outcome = replay({"--overwrite"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: robot 2 is left out: Robot2_Measurement.dat is there, and "), std::string::npos);
+  EXPECT_NE(outcome.err.find("Robot2_Odometry.dat is missing"), std::string::npos) << outcome.err;
+  EXPECT_EQ(replay({"--overwrite", "--robots", "1"}).err, "") << "by choice";
+}
+
+TEST_F(TeamDatFiles, WithoutMeasurementsOfARobotAreRefusedByName) {
+  fs::remove(folder_.path() / "log" / "Robot2_Measurement.dat");
+  is_refused_with("Robot2_Measurement.dat: expected this file, found none");
+}
+
+TEST_F(TeamDatFiles, WithoutABarcodeAreRefused) {
+  for (const char* text : {"", "# subject barcode\n"}) {
+    write("Barcodes.dat", text);
+    is_refused_with("Barcodes.dat: expected rows of a subject and its barcode, found none");
+  }
+}
+
 TEST_F(TeamLog, WithoutTrueStartsAsksForUnknownOnes) {
   const Outcome outcome = run({"replay", (folder_.path() / "log").string(), "--quiet", "--out", out().string()});
   EXPECT_EQ(outcome.exit_code, 3);

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -103,6 +104,32 @@ TEST_F(CampaignParts, ThatAreNoneAreSaid) {
   ASSERT_EQ(drive("a", "1:1").exit_code, 0);
   files::write_whole_file(out("a") + "/manifest.json", "{\"format\": \"other\"}");
   expect_refused(merge({"a"}), "not the manifest of a campaign");
+}
+
+TEST_F(CampaignParts, AreNotWrittenOver) {
+  ASSERT_EQ(drive("a", "1:1").exit_code, 0);
+  ASSERT_EQ(drive("b", "2:2").exit_code, 0);
+  const std::string rows = text_of(out("a") + "/runs.jsonl");
+  for (const std::string& into : {out("a"), out("b/../a/")}) {
+    const Outcome outcome = run({"montecarlo", "--merge", out("a"), out("b"), "--out", into, "--overwrite"});
+    expect_refused(outcome, "--out is one of the parts to merge");
+  }
+  EXPECT_EQ(text_of(out("a") + "/runs.jsonl"), rows);
+}
+
+TEST_F(CampaignParts, WhoseManifestHasAWrongValueAreRefusedByItsKey) {
+  ASSERT_EQ(drive("a", "1:1").exit_code, 0);
+  const std::string file = out("a") + "/manifest.json";
+  const OrderedJson whole = OrderedJson::parse(text_of(file));
+  for (const auto& [key, value, why] : {std::tuple<const char*, OrderedJson, const char*>{"scenario", 3, "a text"},
+                                        {"config", "none", "a list of lines"},
+                                        {"seeds", 5, "pairs of a first and a last seed"},
+                                        {"seeds", {{4, 2}}, "pairs of a first and a last seed"}}) {
+    OrderedJson wrong = whole;
+    wrong[key] = value;
+    files::write_whole_file(file, wrong.dump());
+    expect_refused(merge({"a"}), file + ": \"" + key + "\" is " + value.dump() + ", expected " + why);
+  }
 }
 
 TEST_F(CampaignParts, WordsThatDoNotGoTogetherAreRefused) {

@@ -37,8 +37,9 @@ TEST(OwnDoubts, TellDegreesTakenForRadians) {
 
 TEST(OwnDoubts, TellGapsWithTheirLengthAndPlace) {
   const std::string all = remarks("odometry.csv", "t,v,omega\n0,1,0\n0.1,1,0\n0.2,1,0\n5.2,1,0\n5.3,1,0\n");
-  EXPECT_TRUE(
-      says(all, "1 gaps longer than 1 s, the longest 5 s from 0.2 s on; the row before a gap is held through it"))
+  EXPECT_TRUE(says(all,
+                   "1 gaps longer than 1 s, the longest 5 s from 0.2 s on; the row before a gap is held through it, as "
+                   "uncertain as its changes so far"))
       << all;
 }
 
@@ -89,11 +90,6 @@ TEST(OwnDoubts, TellTheVehicleOfAnotherRobot) {
                                   "[odometry]\nsigma_along_m_per_sqrt_m = 0.02\n"
                                   "[[sensor]]\nreach_m = 3\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n");
   EXPECT_TRUE(says(all, "3 of 3 detections (100 %) lie outside the reach and view that")) << all;
-}
-
-TEST(OwnDoubts, TellScansOutsideTheTimeOfTheOdometry) {
-  EXPECT_TRUE(
-      says(remarks("detections.csv", "t,range_m,bearing_deg\n1,10,90\n7,20,-45\n"), "1 of 2 scans were taken before"));
 }
 
 }  // namespace

@@ -82,6 +82,19 @@ TEST(OwnLog, LeavesOutDetectionsThatRepeatAnotherAndCountsThem) {
   EXPECT_EQ(read.remarks.at(0), "detections: 1 row that repeat another, left out");
 }
 
+// Row against row, 160 000 of them in eight scans took 24 s.
+TEST(OwnLog, FindsWhatIsRepeatedInScansOfThousands) {
+  const OwnLogFolder log;
+  std::string rows = "t_s,range_m,bearing_deg\n";
+  for (int i = 0; i < 20'000; ++i) rows += "0.5," + std::to_string(1.0 + 0.001 * (i * 7919 % 20'000)) + ",10\n";
+  for (int i = 0; i < 100; ++i) rows += "0.5," + std::to_string(1.0 + 0.001 * i) + ",10\n";
+  log.write("detections.csv", rows + "1.5,1.000000,10\n");
+  const OwnLog read = log.read();
+  EXPECT_EQ(read.remarks.at(0), "detections: 100 rows that repeat another, left out");
+  ASSERT_EQ(read.detections.size(), 20'001U);
+  EXPECT_DOUBLE_EQ(read.detections[1].z[0], 8.919) << "in the order of the rows";
+}
+
 TEST(OwnLog, TellsOfColumnsThatItDoesNotUse) {
   const OwnLogFolder log;
   log.write("detections.csv", "t,range_m,bearing_deg,quality,class\n0,10,1,7,oak\n");

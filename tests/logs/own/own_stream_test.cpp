@@ -25,7 +25,7 @@ constexpr const char* vehicle_text =
     "sigma_bearing_deg = 0.3\ndelay_s = 0.125\n";
 
 /// A drive of random steps as lines in order of time, odometry given in one of its ways.
-Lines lines_of_drive(const std::string& kind, unsigned seed) {
+Lines lines_of_drive(const std::string& kind, unsigned seed, int rows = 120) {
   std::mt19937 random(seed);
   const auto uniform = [&](double low, double high) {
     return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
@@ -33,7 +33,7 @@ Lines lines_of_drive(const std::string& kind, unsigned seed) {
   Lines lines;
   double x = 0.0, heading = 0.0;
   double t = uniform(0.0, 0.1);
-  for (int i = 0; i < 120; ++i) {
+  for (int i = 0; i < rows; ++i) {
     std::ostringstream odometry, near, far;
     odometry.precision(17);
     near.precision(17);
@@ -125,6 +125,30 @@ TEST_P(OwnStreamOf, EachKindOfOdometryGivesTheEventsOfTheLogToTheLastBit) {
     for (std::size_t i = 0; i < whole.events.size(); ++i) expect_same(live.recording.events[i], whole.events[i]);
     EXPECT_EQ(live.recording.labels, whole.labels);
   }
+}
+
+/// Without the odometry of three times of some seconds, which scans divide.
+Lines with_gaps(const Lines& lines) {
+  Lines kept;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const bool in_gap = (i / 60) % 4 == 2;
+    if (!in_gap || lines[i].rfind(R"({"odometry")", 0) != 0) kept.push_back(lines[i]);
+  }
+  return kept;
+}
+
+// What a gap leaves open is told by the rows before it alone; some of them the stream has dropped.
+TEST_P(OwnStreamOf, GapsInTheOdometryGiveTheEventsOfTheLogToTheLastBit) {
+  const testing::TemporaryFolder folder;
+  const Vehicle vehicle = read_vehicle(folder.write("vehicle.toml", vehicle_text));
+  const Lines lines = with_gaps(lines_of_drive(GetParam(), 11, 900));
+  core::Recording whole = make_recording(read_own_log(folder.write("log.jsonl", text_of(lines))), vehicle);
+  while (!std::holds_alternative<core::Scan>(whole.events.back())) whole.events.pop_back();
+  OwnStream stream(vehicle, true);
+  const StreamedEvents live = streamed(stream, lines);
+  ASSERT_TRUE(live.refused.empty()) << live.refused.front().why;
+  ASSERT_EQ(live.recording.events.size(), whole.events.size());
+  for (std::size_t i = 0; i < whole.events.size(); ++i) expect_same(live.recording.events[i], whole.events[i]);
 }
 
 TEST_P(OwnStreamOf, AVehicleThatWasCarriedIsInBothBeforeTheNextScan) {

@@ -78,6 +78,15 @@ TEST(NoOdometry, BeginsAPartThatFindsItsPlace) {
   EXPECT_LT(drive.error_at_end_m, 0.8);
 }
 
+// A gap is no measure of what is usual: the next one is found as well.
+TEST(NoOdometry, BeginsAPartAtEachGap) {
+  const Parted drive = drive_parted(through_gap, [](std::size_t scan) { return scan == 200 || scan == 300; });
+  ASSERT_EQ(drive.parts.size(), 2U);
+  EXPECT_EQ(drive.parts[1].cause, core::CarriedDecision::Cause::no_odometry);
+  EXPECT_EQ(drive.placed, 2);
+  EXPECT_LT(drive.error_at_end_m, 0.8);
+}
+
 // Odometry that is always so is what this drive has: it is told by what is usual.
 TEST(NoOdometry, IsNoneThatIsUsual) {
   EXPECT_TRUE(drive_parted(through_gap, [](std::size_t) { return true; }).parts.empty());

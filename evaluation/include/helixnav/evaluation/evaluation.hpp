@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -116,6 +117,9 @@ struct Evaluation {
 struct EvaluationOptions {
   double fix_limit_m = 10.0;
   double landmark_limit_m = 2.0;
+  /// NEES counts from here on, as of a robot that came into the common frame of its team then: what its covariances said before was of
+  /// another frame.
+  core::Nanoseconds nees_from_ns = std::numeric_limits<core::Nanoseconds>::min();
 };
 
 /// Compares a run with `truth`. The estimate is interpolated at the instants of the truth along arcs of constant twist.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "own/own_overlap.hpp"
+
 namespace helixnav::logs {
 namespace {
 
@@ -49,7 +51,14 @@ void LiveMotion::add(const OwnLog& log) {
   rows_.odometry_covariances.insert(rows_.odometry_covariances.end(), log.odometry_covariances.begin(),
                                     log.odometry_covariances.end());
   rows_.odometry_covariances.resize(rows_.odometry.size(), Eigen::Matrix3d::Zero());
+  if (first) first_ns_ = rows_.odometry.front().t_ns;
+  count_ += log.odometry.size();
   if (first) motions_.emplace(rows_, vehicle_);
+}
+
+bool LiveMotion::tells(core::Nanoseconds t_ns) const {
+  if (!motions_ || motions_->holds()) return true;
+  return t_ns <= told_until_ns(first_ns_, rows_.odometry.back().t_ns, count_);
 }
 
 bool LiveMotion::is_known(std::size_t row) const {
@@ -95,6 +104,7 @@ void LiveMotion::drop_woven() {
   const auto count = static_cast<std::ptrdiff_t>(next_ - 1);
   rows_.odometry.erase(rows_.odometry.begin(), rows_.odometry.begin() + count);
   rows_.odometry_covariances.erase(rows_.odometry_covariances.begin(), rows_.odometry_covariances.begin() + count);
+  motions_->forget(next_ - 1);
   next_ = 1;
 }
 

@@ -37,6 +37,10 @@ class LiveMotion {
   /// Whether a row at or after that time has come.
   bool covers(core::Nanoseconds t_ns) const { return !rows_.odometry.empty() && rows_.odometry.back().t_ns >= t_ns; }
 
+  /// Whether, at the end of all rows, the odometry tells where a scan of that time was taken: speeds are held, and without any rows
+  /// the vehicle stands.
+  bool tells(core::Nanoseconds t_ns) const;
+
   /// The motion up to t_ns, which is covered or at the end, appended to the events. Times must not go back.
   void weave_to(core::Nanoseconds t_ns, std::vector<core::Event>& events);
 
@@ -57,7 +61,9 @@ class LiveMotion {
   core::Nanoseconds late_ns_;
   OwnLog rows_;  ///< from the one before next_ on, always with covariances
   std::optional<Motions> motions_;
-  std::size_t next_ = 0;  ///< row whose motion is not all woven
+  std::size_t count_ = 0;           ///< rows that came
+  core::Nanoseconds first_ns_ = 0;  ///< of the first
+  std::size_t next_ = 0;            ///< row whose motion is not all woven
   std::optional<core::Nanoseconds> last_ns_;
   core::Nanoseconds woven_ns_ = std::numeric_limits<core::Nanoseconds>::min();
   std::vector<core::Event> woven_;

@@ -154,6 +154,11 @@ void OwnStream::State::weave(bool at_end) {
   std::vector<core::Event>& events = out.recording.events;
   while (scans.first_is_closed() && (at_end || motion.covers(scans.first_ns()))) {
     LiveScan scan = scans.pop();
+    if (at_end && !motion.tells(scan.scan.t_ns)) {
+      refuse(scan.line, "t",
+             "the odometry ended before the time of this scan, " + LiveScans::text_of(scan.scan.t_ns) + " s");
+      continue;
+    }
     weave_lost(scan.scan.t_ns);
     motion.weave_to(scan.scan.t_ns, events);
     events.emplace_back(std::move(scan.scan));

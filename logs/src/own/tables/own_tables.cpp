@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <numeric>
 #include <tuple>
 
 #include "helixnav/core/errors.hpp"
@@ -35,6 +36,16 @@ void sort_odometry(OwnLog& log) {
   }
   log.odometry = std::move(rows);
   log.odometry_covariances = std::move(covariances);
+}
+
+/// Which rows of a scan, from `begin` to `end`, say the same as one before. By order: a scan may have thousands of rows.
+void mark_repeated(const std::vector<OwnDetection>& rows, std::size_t begin, std::size_t end,
+                   std::vector<std::size_t>& order, std::vector<bool>& repeated) {
+  const auto said = [&](std::size_t i) { return std::tie(rows[i].kind, rows[i].z, rows[i].label); };
+  order.resize(end - begin);
+  std::iota(order.begin(), order.end(), begin);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return said(a) < said(b); });
+  for (std::size_t k = 1; k < order.size(); ++k) repeated[order[k]] = said(order[k]) == said(order[k - 1]);
 }
 
 }  // namespace
@@ -167,17 +178,19 @@ void OwnTables::sort_all() {
 }
 
 void OwnTables::drop_repeated_detections() {
-  const auto same = [](const OwnDetection& a, const OwnDetection& b) {
-    return a.t_ns == b.t_ns && a.sensor == b.sensor && a.kind == b.kind && a.z == b.z && a.label == b.label;
-  };
   std::vector<OwnDetection>& rows = log_.detections;
-  std::size_t kept = 0, begin = 0;  // of those kept of this scan
+  std::vector<bool> repeated(rows.size(), false);
+  std::vector<std::size_t> order;
+  for (std::size_t begin = 0, end = 0; begin < rows.size(); begin = end) {
+    const auto is_same_scan = [&](const OwnDetection& row) {
+      return row.t_ns == rows[begin].t_ns && row.sensor == rows[begin].sensor;
+    };
+    while (end < rows.size() && is_same_scan(rows[end])) ++end;
+    mark_repeated(rows, begin, end, order, repeated);
+  }
+  std::size_t kept = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (begin < kept && (rows[begin].t_ns != rows[i].t_ns || rows[begin].sensor != rows[i].sensor)) begin = kept;
-    const bool repeated =
-        std::any_of(rows.begin() + static_cast<std::ptrdiff_t>(begin), rows.begin() + static_cast<std::ptrdiff_t>(kept),
-                    [&](const OwnDetection& other) { return same(other, rows[i]); });
-    if (!repeated) rows[kept++] = rows[i];
+    if (!repeated[i]) rows[kept++] = rows[i];
   }
   if (kept == rows.size()) return;
   log_.remarks.push_back("detections: " + counted(rows.size() - kept, "row") + " that repeat another, left out");
