@@ -16,6 +16,7 @@
 #include "drive/given_map.hpp"
 #include "drive/keeping.hpp"
 #include "drive/kept_inputs.hpp"
+#include "drive/truth_on_map.hpp"
 #include "drive/withholding.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/event_loop.hpp"
@@ -97,10 +98,14 @@ apps::Drive job_of(const Log& log, const ReplayWishes& wishes) {
   job.smooth = wishes.smooth;
   job.out = wishes.out;
   if (goes_on_from_drive(log, wishes)) {
-    apps::put_before(runs::read_drive(apps::drive_file_in(wishes.map->path.string())), job.recording, job.withheld);
+    const std::string folder = wishes.map->path.string();
+    const std::size_t driven =
+        apps::put_before(runs::read_drive(apps::drive_file_in(folder)), job.recording, job.withheld);
+    apps::put_truth_behind(folder, driven, job.recording);
   } else {
     take_map(wishes, job);
   }
+    apps::put_truth_on_map(job);
   job.manifest = manifest_of(log, wishes);
   return job;
 }

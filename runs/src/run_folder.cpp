@@ -294,6 +294,7 @@ Run read_run(const std::string& path) {
   if (fs::exists(path + "/map.csv")) run.map = read_map(path + "/map.csv");
   tell_missing(path, "map.csv", run.map.size(), said.landmarks.value_or(0), run.missing);
   if (has_truth(path)) run.truth = read_truth(path);
+  bring_truth_into_map(run);
   return run;
 }
 

@@ -87,7 +87,7 @@ std::size_t pass_over(core::Nanoseconds end_ns, core::Recording& recording) {
   return scans;
 }
 
-void put_before(runs::FedDrive before, core::Recording& recording, std::vector<bool>& withheld) {
+std::size_t put_before(runs::FedDrive before, core::Recording& recording, std::vector<bool>& withheld) {
   const std::size_t driven = begin_behind(before.events, recording);
   std::vector<std::vector<core::Label>> labels;
   for (const core::Event& event : before.events) {
@@ -105,6 +105,7 @@ void put_before(runs::FedDrive before, core::Recording& recording, std::vector<b
   recording.start = before.start;
   recording.events.insert(recording.events.begin(), std::make_move_iterator(before.events.begin()),
                           std::make_move_iterator(before.events.end()));
+  return driven;
 }
 
 }  // namespace helixnav::apps

@@ -28,7 +28,7 @@ std::size_t pass_over(core::Nanoseconds end_ns, core::Recording& recording);
 
 /// Puts the drive of an earlier run before a recording that goes on where it ended (docs/yesterdays_map.md): its start, its events, no
 /// labels for them. What the recording holds of that drive is passed over; a recording whose clock began anew is moved behind
-/// it. `withheld` is [scan], empty or as many as there are. Test: apps/go_on_test.cpp, apps/drive_again_test.cpp.
-void put_before(runs::FedDrive before, core::Recording& recording, std::vector<bool>& withheld);
+/// it. `withheld` is [scan], empty or as many as there are. Returns how many scans were passed over. Test: apps/go_on_test.cpp, apps/drive_again_test.cpp.
+std::size_t put_before(runs::FedDrive before, core::Recording& recording, std::vector<bool>& withheld);
 
 }  // namespace helixnav::apps

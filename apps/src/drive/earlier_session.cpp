@@ -95,7 +95,7 @@ core::JointMap read_joint_map_in(const std::string& folder) {
 }
 
 EarlierSession earlier_session(core::JointMap map, const SessionStart& start, const std::string& name) {
-  EarlierSession session{std::move(map), {}, start, {}};
+  EarlierSession session{std::move(map), {}, start, {}, {}};
   check_size(name, session);
   return session;
 }
@@ -108,6 +108,7 @@ EarlierSession read_earlier_session(const std::string& folder, const SessionStar
   session.missing = run.missing;
   for (const auto& [label, id] : landmarks_by_label(run)) {
     if (std::binary_search(ids.begin(), ids.end(), id)) session.landmark_of[label] = id;
+  session.T_truth_map = run.truth.frame.T_truth_map;
   }
   return session;
 }

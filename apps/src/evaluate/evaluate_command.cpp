@@ -29,6 +29,7 @@ void evaluate(const EvaluateJob& job) {
   runs::Run run = runs::read_run(job.folder);
   warn_of_missing(run.missing);
   if (!job.truth.empty()) run.truth = read_truth_file(job.truth, job.truth_offset_s, run.truth);
+  if (!job.truth.empty() && run.truth.frame_when_placed) runs::bring_truth_into_map(run);
   const evaluation::Evaluation evaluation = evaluation::evaluate(run, job.options);
   if (!job.truth.empty() && evaluation.position && evaluation.position->error_m.count == 0) {
     throw core::InputError(job.truth + ": none of its " + std::to_string(evaluation.position->fixes_outside) +

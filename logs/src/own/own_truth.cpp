@@ -58,6 +58,7 @@ void add_truth(const OwnLog& log, const Beginning& beginning, core::Recording& r
     recording.antenna_robot_m.setZero();
     return;
   }
+  recording.truth_frame.T_truth_map = *start;
   const core::Pose2 T_map_truth = core::inverse(*start);
   for (const core::TruePose& pose : log.true_poses) {
     recording.true_poses.push_back({pose.t_ns, core::compose(T_map_truth, pose.T_world_robot)});

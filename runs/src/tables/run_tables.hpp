@@ -39,6 +39,7 @@ inline constexpr RunTable map_table{"map.csv", "id,x,y,sxx,sxy,syy,observations,
 inline constexpr RunTable map_table_with_appearance{
     "map.csv", "id,x,y,sxx,sxy,syy,observations,state,class,class_nats,size,sigma_size"};
 inline constexpr RunTable truth_poses_table{"truth_poses.csv", "t_s,x,y,heading"};
+inline constexpr RunTable truth_frame_table{"truth_frame.csv", "when,known,x,y,heading"};
 inline constexpr RunTable truth_positions_table{"truth_positions.csv", "t_s,x,y,antenna_x,antenna_y"};
 inline constexpr RunTable truth_landmarks_table{"truth_landmarks.csv", "label,x,y"};
 inline constexpr RunTable truth_labels_table{"truth_labels.csv", "step,observation,label"};
@@ -54,6 +55,7 @@ inline constexpr const char* run_files[] = {
     "associations.csv", "decisions.csv",   "health.csv",           "summary.json",
     "report.html",      "truth_poses.csv", "truth_positions.csv",  "truth_landmarks.csv",
     "truth_labels.csv", "merges.csv",      "clouds.csv",           "map.bin",
-    "particles.csv",    "paths.csv",       "mixture.csv",          "drive.bin"};
+    "particles.csv",    "paths.csv",       "mixture.csv",          "drive.bin",
+    "truth_frame.csv"};
 
 }  // namespace helixnav::runs
