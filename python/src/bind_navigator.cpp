@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -29,12 +30,14 @@ using supervisor::NamedNavigator;
 using supervisor::Navigator;
 
 /// Options without a log; the navigator fits its lengths to the sensor of the first scan, but for those given.
-supervisor::NavigatorOptions options_of(const py::dict& options) {
+supervisor::NavigatorOptions options_of(const py::dict& options, const char* navigates, bool by_identities) {
   const Configuration configuration = configuration_of(options);
+  refuse_unheeded(configuration, navigates, by_identities);
   supervisor::NavigatorOptions navigator = configuration.settings.navigator;
   for (const auto& [name, length_m] : configuration.settings.given_lengths_m) {
     supervisor::set_length(navigator, name, length_m);
   }
+  if (configuration.settings.names_wrong) navigator.names.wrong = *configuration.settings.names_wrong;
   return navigator;
 }
 
@@ -119,7 +122,9 @@ std::unique_ptr<Locked<AnyNavigator>> of_log(const Log& log) {
 
 template <class AnyNavigator>
 std::unique_ptr<Locked<AnyNavigator>> of_options(const core::PoseGaussian& start, const py::dict& options) {
-  return std::make_unique<Locked<AnyNavigator>>(start, options_of(options));
+  constexpr bool named = std::is_same_v<AnyNavigator, NamedNavigator>;
+  return std::make_unique<Locked<AnyNavigator>>(start,
+                                                options_of(options, named ? "NamedNavigator" : "Navigator", named));
 }
 
 core::StepReport observe_named(Locked<NamedNavigator>& self, const core::Scan& scan, const py::object& identities) {
@@ -149,13 +154,14 @@ std::optional<core::JointMap> joint_map_of(Locked<AnyNavigator>& self, double re
 }
 
 std::unique_ptr<Locked<Navigator>> go_on(const core::JointMap& earlier, const py::dict& options) {
-  return std::make_unique<Locked<Navigator>>(Navigator::go_on_in(earlier, options_of(options)));
+  return std::make_unique<Locked<Navigator>>(Navigator::go_on_in(earlier, options_of(options, "Navigator", false)));
 }
 
 std::unique_ptr<Locked<NamedNavigator>> go_on_named(const core::JointMap& earlier,
                                                     const std::map<std::int64_t, core::LandmarkId>& landmark_of,
                                                     const py::dict& options) {
-  return std::make_unique<Locked<NamedNavigator>>(NamedNavigator(earlier, landmark_of, options_of(options)));
+  return std::make_unique<Locked<NamedNavigator>>(
+      NamedNavigator(earlier, landmark_of, options_of(options, "NamedNavigator", true)));
 }
 
 void look_for_place(Locked<Navigator>& self, const core::JointMap& earlier) {

@@ -8,6 +8,26 @@ import helixnav
 VIEW = helixnav.FieldOfView(max_range=20.0)
 
 
+def scan(t=0.0, z=((3.0, 0.0), (5.0, 1.0), (7.0, -1.0)), **options):
+    return helixnav.Scan(t, "range_bearing", np.array(z), np.diag([0.01, 1e-4]), view=VIEW, **options)
+
+
+@pytest.mark.parametrize("options, named", [
+    ({"filter.method": "fastslam"}, "FastSlam"), ({"association.method": "known"}, "NamedNavigator"),
+    ({"log.max_range_m": 3}, "log.max_range_m"), ({"log": {"covariance_scale": 4}}, "log.covariance_scale"),
+    ({"gps.use": "fuse"}, "gps.use"), ({"victoria_park.sigma_range_m": 3}, "victoria_park.sigma_range_m")])
+def test_options_that_a_navigator_cannot_heed_are_refused(options, named):
+    with pytest.raises(helixnav.InputError, match=named):
+        helixnav.Navigator(options=options)
+
+
+def test_options_of_any_fix_and_of_names_are_heeded():
+    helixnav.Navigator(options={"gps.gate_probability": 0.9})
+    helixnav.NamedNavigator(options={"association.method": "known"})
+    with pytest.raises(helixnav.InputError, match="log.view_deg"):
+        helixnav.FastSlam(options={"log.view_deg": 60})
+
+
 def circle_with_wrong_names(share, seed, steps=240):
     """Events round a circle of twenty landmarks, some of them named as others."""
     random = np.random.default_rng(seed)
@@ -55,3 +75,28 @@ def test_a_scan_that_cannot_be_computed_with_is_left_out_with_a_decision():
     navigator.move(helixnav.Odometry(2.0, [-1.0, 0.0, 0.0], 1e-4 * np.eye(3)))
     report = navigator.observe(seen[2], [7])
     assert report.associations[0].outcome == "matched" and not report.decisions and report.step == 2
+
+
+def test_names_wrong_changes_what_a_named_navigator_does():
+    default = end_of({}, 0.05, 1)
+    assert not np.array_equal(default, end_of({"names.wrong": 0}, 0.05, 1))
+    assert np.array_equal(default, end_of({"names.wrong": 0.001}, 0.05, 1))
+
+
+def test_fastslam_takes_a_negative_identity_for_no_landmark():
+    slam = helixnav.FastSlam(options={"fastslam.association": "known"})
+    report = slam.observe(scan(), [-1, 4, -3])
+    assert [a.outcome for a in report.associations] == ["rejected", "augmented", "rejected"]
+    assert len(slam.map) == 1
+
+
+def test_identities_beyond_64_bits_with_sign_are_refused():
+    for ids in (np.array([2**63 + 5, 7, 8], np.uint64), [2**63 + 5, 7, 8]):
+        with pytest.raises((helixnav.PreconditionError, TypeError)):
+            helixnav.NamedNavigator().observe(scan(), ids)
+    helixnav.NamedNavigator().observe(scan(), np.array([2**63 - 1, 7, 8], np.uint64))
+
+
+def test_classes_are_names():
+    with pytest.raises(TypeError, match="classes"):
+        scan(classes=[1, None, "oak"])
