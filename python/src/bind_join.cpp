@@ -14,6 +14,7 @@
 #include "join/joined_folder.hpp"
 #include "join/session_changes.hpp"
 #include "map.hpp"
+#include "signals.hpp"
 
 namespace helixnav::python {
 namespace {
@@ -60,7 +61,8 @@ Joined join(const py::sequence& list, const std::optional<fs::path>& out, bool o
   const py::gil_scoped_release released;
   apps::check_independent(sessions.folders);
   Joined result;
-  result.joined = supervisor::join_sessions(sessions.maps);
+  SignalWatch signals;
+  result.joined = supervisor::join_sessions(sessions.maps, [&] { signals.heed(); });
   result.changes = apps::shared_landmarks(sessions.maps, result.joined);
   apps::make_gone_tentative(result.changes, result.joined.components);
   if (out) apps::write_joined(out->string(), sessions.names, result.joined, result.changes);

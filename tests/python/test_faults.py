@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What nonsense, signals and wrong options come to."""
+import signal
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -100,3 +104,46 @@ def test_identities_beyond_64_bits_with_sign_are_refused():
 def test_classes_are_names():
     with pytest.raises(TypeError, match="classes"):
         scan(classes=[1, None, "oak"])
+
+
+REPLAY = """
+import sys, helixnav
+log = helixnav.simulate("town", seed=1, options={options})
+print("begun", flush=True)
+try:
+    helixnav.replay(log, out=sys.argv[1])
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+
+
+def interrupted(code, *words, after_s):
+    child = subprocess.Popen([sys.executable, "-c", code, *map(str, words)], stdout=subprocess.PIPE, text=True)
+    assert child.stdout.readline() == "begun\n"
+    try:
+        child.wait(timeout=after_s)
+    except subprocess.TimeoutExpired:
+        child.send_signal(signal.SIGINT)
+    return child.communicate(timeout=60)[0]
+
+
+def test_ctrl_c_leaves_a_whole_run_folder(tmp_path):
+    assert interrupted(REPLAY.replace("{options}", "{}"), tmp_path / "run", after_s=0.7) == "interrupted\n"
+    for name in ("map.csv", "map.bin", "summary.json", "report.html", "drive.bin"):
+        assert (tmp_path / "run" / name).exists(), name
+    run = helixnav.read_run(tmp_path / "run")
+    assert 0 < len(run) and len(helixnav.read_map(tmp_path / "run")) > 0
+
+
+def test_ctrl_c_ends_join_before_it_writes(tmp_path):
+    code = """
+import sys, helixnav
+drives = [helixnav.replay(helixnav.simulate("large-loop", seed=k)).joint_map for k in range(1, 9)]
+print("begun", flush=True)
+try:
+    helixnav.join(drives, out=sys.argv[1])
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+    assert interrupted(code, tmp_path / "out", after_s=0.1) == "interrupted\n"
+    assert not (tmp_path / "out").exists()
