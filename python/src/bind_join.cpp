@@ -82,9 +82,9 @@ void bind_parts(py::module_& module) {
       .def_readonly("landmark_of", &JoinedSession::name_of, "Ids in the component by the session's own; mature ones.");
   using apps::ChangedLandmark;
   py::class_<ChangedLandmark>(module, "ChangedLandmark", "A landmark on ground that several sessions looked at.")
-      .def_readonly("component", &ChangedLandmark::component)
-      .def_readonly("landmark", &ChangedLandmark::id)
-      .def_readonly("position", &ChangedLandmark::point_m)
+      .def_readonly("component", &ChangedLandmark::component, "Index in Joined.components.")
+      .def_readonly("landmark", &ChangedLandmark::id, "Id in the component.")
+      .def_readonly("position", &ChangedLandmark::point_m, "(2,): in the frame of the component [m].")
       .def_property_readonly(
           "change", [](const ChangedLandmark& l) { return apps::name_of(l.change()); },
           "'kept', 'gone', 'new', 'both' (it went and came) or 'moved'.")

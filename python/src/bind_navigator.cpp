@@ -54,19 +54,26 @@ py::dict numbers_of(const Decided& decided) {
 
 void bind_report_parts(py::module_& module) {
   py::class_<core::AssociationReport>(module, "Association", "What became of one observation of a scan.")
-      .def_readonly("observation", &core::AssociationReport::observation)
+      .def_readonly("observation", &core::AssociationReport::observation, "Index in the scan.")
       .def_property_readonly(
           "outcome", [](const core::AssociationReport& a) { return runs::word_of(runs::outcome_words, a.outcome); },
           "'matched', 'augmented', 'ambiguous' or 'rejected'")
       .def_property_readonly("landmark", &landmark_of, "Its id, or None.")
-      .def_readonly("nis", &core::AssociationReport::nis)
-      .def_readonly("dof", &core::AssociationReport::dof)
-      .def_readonly("margin_nats", &core::AssociationReport::margin_nats);
+      .def_readonly("nis", &core::AssociationReport::nis,
+                    "Squared innovation by its covariance; NaN without a landmark.")
+      .def_readonly("dof", &core::AssociationReport::dof, "Degrees of freedom of the nis.")
+      .def_readonly("margin_nats", &core::AssociationReport::margin_nats,
+                    "ln of the likelihood ratio to the best alternative.");
   py::class_<Decided>(module, "Decision", "A row of decisions.csv.")
-      .def_property_readonly("kind", [](const Decided& d) { return core::row_of(d.decision).kind; })
-      .def_property_readonly("verdict", [](const Decided& d) { return core::row_of(d.decision).verdict; })
+      .def_property_readonly(
+          "kind", [](const Decided& d) { return core::row_of(d.decision).kind; },
+          "As in decisions.csv: closure, search, slip, fix …")
+      .def_property_readonly(
+          "verdict", [](const Decided& d) { return core::row_of(d.decision).verdict; },
+          "As in decisions.csv: accepted, refused …")
       .def_property_readonly("numbers", &numbers_of, "Name with unit: value.")
-      .def_property_readonly("sentence", [](const Decided& d) { return reports::sentence_of(d.decision); })
+      .def_property_readonly(
+          "sentence", [](const Decided& d) { return reports::sentence_of(d.decision); }, "The same in words.")
       .def("__repr__", [](const Decided& d) { return "<Decision: " + reports::sentence_of(d.decision) + ">"; });
 }
 
@@ -96,21 +103,24 @@ void bind_report(py::module_& module) {
       .def_readonly("repaired", &core::NumericalHealth::repaired, "Failed as asked, done in another way.")
       .def_readonly("refused", &core::NumericalHealth::refused, "Failed and left undone.");
   py::class_<core::StepReport>(module, "StepReport", "What one scan did to the map and the pose.")
-      .def_readonly("step", &core::StepReport::step)
-      .def_readonly("t_ns", &core::StepReport::t_ns)
-      .def_property_readonly("t", [](const core::StepReport& r) { return core::seconds(r.t_ns); })
-      .def_property_readonly("mode", [](const core::StepReport& r) { return runs::word_of(runs::mode_words, r.mode); })
-      .def_readonly("pose", &core::StepReport::pose)
-      .def_readonly("associations", &core::StepReport::associations)
-      .def_property_readonly("decisions", &decisions_of)
+      .def_readonly("step", &core::StepReport::step, "Number of the scan, from 0 on.")
+      .def_readonly("t_ns", &core::StepReport::t_ns, "Time of the scan [ns].")
+      .def_property_readonly(
+          "t", [](const core::StepReport& r) { return core::seconds(r.t_ns); }, "Time of the scan [s].")
+      .def_property_readonly(
+          "mode", [](const core::StepReport& r) { return runs::word_of(runs::mode_words, r.mode); },
+          "'mapping' or 'searching'.")
+      .def_readonly("pose", &core::StepReport::pose, "A Pose in the map frame, after the scan.")
+      .def_readonly("associations", &core::StepReport::associations, "An Association for each observation.")
+      .def_property_readonly("decisions", &decisions_of, "What was decided with this scan.")
       .def_property_readonly("merged", &merged_of, "(kept, removed) of landmarks that became one.")
       .def_property_readonly("revised", &revised_of,
                              "(step, associations) of earlier scans gone through again: these hold, not what their own "
                              "reports say.")
-      .def_readonly("joint_nis", &core::StepReport::joint_nis)
-      .def_readonly("joint_dof", &core::StepReport::joint_dof)
-      .def_readonly("numerics", &core::StepReport::numerics)
-      .def_readonly("landmarks", &core::StepReport::mapped_landmarks);
+      .def_readonly("joint_nis", &core::StepReport::joint_nis, "Of all matched observations together.")
+      .def_readonly("joint_dof", &core::StepReport::joint_dof, "Degrees of freedom of joint_nis; 0 without an update.")
+      .def_readonly("numerics", &core::StepReport::numerics, "The NumericalHealth.")
+      .def_readonly("landmarks", &core::StepReport::mapped_landmarks, "How many are on the map.");
 }
 
 using Released = py::call_guard<py::gil_scoped_release>;

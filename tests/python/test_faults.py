@@ -106,6 +106,35 @@ def test_classes_are_names():
         scan(classes=[1, None, "oak"])
 
 
+def test_new_without_init_makes_nothing():
+    for name in helixnav.__all__:
+        made = getattr(helixnav, name)
+        if isinstance(made, type) and not issubclass(made, BaseException):
+            with pytest.raises(TypeError):
+                made.__new__(made)
+
+
+def test_classes_of_the_module_can_be_derived_from():
+    class Mine(helixnav.Navigator):
+        def __init__(self):
+            super().__init__()
+            self.scans = 0
+
+    mine = Mine()
+    mine.observe(scan())
+    assert mine.scans == 0 and len(mine.map) == 3
+
+
+def test_every_property_is_explained():
+    for name in helixnav.__all__:
+        made = getattr(helixnav, name)
+        if not isinstance(made, type) or issubclass(made, BaseException):
+            continue
+        for key, value in vars(made).items():
+            if isinstance(value, property):
+                assert (value.__doc__ or "").strip(), f"{name}.{key}"
+
+
 REPLAY = """
 import sys, helixnav
 log = helixnav.simulate("town", seed=1, options={options})
