@@ -137,17 +137,40 @@ std::unique_ptr<Locked<AnyNavigator>> of_options(const core::PoseGaussian& start
                                                 options_of(options, named ? "NamedNavigator" : "Navigator", named));
 }
 
+/// One scan, by which the drive may be known later.
+template <class AnyNavigator, class... Identities>
+core::StepReport observe(Locked<AnyNavigator>& self, const core::Scan& scan, const Identities&... identities) {
+  const std::lock_guard hold(self.mutex);
+  core::StepReport report = self.navigator.observe(scan, identities...);
+  self.drive.add(scan);
+  return report;
+}
+
+template <class AnyNavigator, class... Identities>
+std::optional<core::StepReport> take(Locked<AnyNavigator>& self, const core::Event& event,
+                                     const Identities&... identities) {
+  if (const auto* scan = std::get_if<core::Scan>(&event)) return observe(self, *scan, identities...);
+  const std::lock_guard hold(self.mutex);
+  return self.navigator.take(event, identities...);
+}
+
+core::StepReport observe_unnamed(Locked<Navigator>& self, const core::Scan& scan) { return observe(self, scan); }
+
+std::optional<core::StepReport> take_unnamed(Locked<Navigator>& self, const core::Event& event) {
+  return take(self, event);
+}
+
 core::StepReport observe_named(Locked<NamedNavigator>& self, const core::Scan& scan, const py::object& identities) {
   const std::vector<std::int64_t> names = identities_from(identities);
   const py::gil_scoped_release released;
-  return locked(&NamedNavigator::observe)(self, scan, names);
+  return observe(self, scan, names);
 }
 
 std::optional<core::StepReport> take_named(Locked<NamedNavigator>& self, const core::Event& event,
                                            const py::object& identities) {
   const std::vector<std::int64_t> names = identities_from(identities);
   const py::gil_scoped_release released;
-  return locked(&NamedNavigator::take)(self, event, names);
+  return take(self, event, names);
 }
 
 template <class AnyNavigator>
@@ -155,28 +178,56 @@ Map map_of(Locked<AnyNavigator>& self) {
   return {locked(&AnyNavigator::map)(self)};
 }
 
+/// Whether it is not known how its map lies to the earlier one.
+bool is_apart(const Navigator& navigator) { return navigator.maps_apart().count(0) > 0; }
+bool is_apart(const NamedNavigator&) { return false; }
+
+template <class AnyNavigator>
+std::vector<std::string> drives_of(const Locked<AnyNavigator>& self) {
+  std::vector<std::string> drives;
+  if (std::string own = self.drive.text(); !own.empty()) drives.push_back(std::move(own));
+  if (self.earlier_drives.empty() || is_apart(self.navigator)) return drives;
+  return runs::united_drives(std::move(drives), self.earlier_drives);
+}
+
+/// Of an earlier map that is still apart it is known what went into it.
+std::map<int, core::JointMap> maps_apart(Locked<Navigator>& self) {
+  const std::lock_guard hold(self.mutex);
+  std::map<int, core::JointMap> maps = self.navigator.maps_apart();
+  if (const auto earlier = maps.find(0); earlier != maps.end()) earlier->second.drives = self.earlier_drives;
+  return maps;
+}
+
 /// To go on in; None where it is too large to be saved.
 template <class AnyNavigator>
 std::optional<core::JointMap> joint_map_of(Locked<AnyNavigator>& self, double reach_m) {
   if (!(reach_m >= 0.0)) throw core::PreconditionError("reach: expected metres, 0 where it is unknown");
   const std::lock_guard hold(self.mutex);
-  return apps::joint_map_of(self.navigator, reach_m);
+  std::optional<core::JointMap> map = apps::joint_map_of(self.navigator, reach_m);
+  if (map) map->drives = drives_of(self);
+  return map;
 }
 
 std::unique_ptr<Locked<Navigator>> go_on(const core::JointMap& earlier, const py::dict& options) {
-  return std::make_unique<Locked<Navigator>>(Navigator::go_on_in(earlier, options_of(options, "Navigator", false)));
+  auto begun =
+      std::make_unique<Locked<Navigator>>(Navigator::go_on_in(earlier, options_of(options, "Navigator", false)));
+  begun->earlier_drives = earlier.drives;
+  return begun;
 }
 
 std::unique_ptr<Locked<NamedNavigator>> go_on_named(const core::JointMap& earlier,
                                                     const std::map<std::int64_t, core::LandmarkId>& landmark_of,
                                                     const py::dict& options) {
-  return std::make_unique<Locked<NamedNavigator>>(
+  auto begun = std::make_unique<Locked<NamedNavigator>>(
       NamedNavigator(earlier, landmark_of, options_of(options, "NamedNavigator", true)));
+  begun->earlier_drives = earlier.drives;
+  return begun;
 }
 
 void look_for_place(Locked<Navigator>& self, const core::JointMap& earlier) {
   const std::lock_guard hold(self.mutex);
   self.navigator.look_for_place_in(earlier);
+  self.earlier_drives = earlier.drives;
 }
 
 template <class AnyNavigator>
@@ -204,18 +255,17 @@ void bind_navigator(py::module_& module) {
   py::class_<Locked<Navigator>> unnamed(module, "Navigator",
                                         "Navigates with unknown data association; searches and closes loops.");
   bind_common(unnamed);
-  unnamed.def("observe", locked(&Navigator::observe), py::arg("scan"), Released(), "One scan.")
+  unnamed.def("observe", &observe_unnamed, py::arg("scan"), Released(), "One scan.")
       .def("lose", locked(&Navigator::lose), py::arg("lost"), Released(),
            "The vehicle was carried: its place is sought on what was mapped so far.")
-      .def("take", locked(&Navigator::take), py::arg("event"), Released(),
-           "Any event; the report of a scan, None for others.")
+      .def("take", &take_unnamed, py::arg("event"), Released(), "Any event; the report of a scan, None for others.")
       .def_static("go_on_in", &go_on, py::arg("earlier"), py::arg("options") = py::dict(),
                   "Goes on in the JointMap of an earlier session, from the pose in it.")
       .def("look_for_place_in", &look_for_place, py::arg("earlier"), Released(),
            "This session begins somewhere on the JointMap, or elsewhere: it maps on its own until the place is found, "
            "and "
            "then goes on in the frame of that map. Before the first scan only.")
-      .def_property_readonly("maps_apart", py::cpp_function(locked(&Navigator::maps_apart), Released()),
+      .def_property_readonly("maps_apart", py::cpp_function(&maps_apart, Released()),
                              "JointMaps of which it is not known how the present one lies to them, by part of the "
                              "drive; 0: the earlier map of look_for_place_in.");
   py::class_<Locked<NamedNavigator>> named(module, "NamedNavigator", "For observations that are known by an identity.");

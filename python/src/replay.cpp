@@ -167,6 +167,7 @@ runs::Run replay(const Log& log, const ReplayWishes& wishes) {
   if (ended.interrupted && !writer) std::rethrow_exception(ended.interrupted);
   runs::Run run = recorder.finish(estimator.map());
   run.joint_map = estimator.joint_map();
+  if (run.joint_map) run.joint_map->drives = apps::drives_in_map(job, run);
   if (estimator.parts_apart) run.parts_apart = estimator.parts_apart();
   if (estimator.particle_end) run.particle_end = estimator.particle_end();
   run.numbers = apps::numbers_of(agreement);

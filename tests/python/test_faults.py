@@ -9,11 +9,33 @@ import pytest
 
 import helixnav
 
+EYE3 = np.eye(3)
 VIEW = helixnav.FieldOfView(max_range=20.0)
 
 
 def scan(t=0.0, z=((3.0, 0.0), (5.0, 1.0), (7.0, -1.0)), **options):
     return helixnav.Scan(t, "range_bearing", np.array(z), np.diag([0.01, 1e-4]), view=VIEW, **options)
+
+
+@pytest.mark.parametrize("made", [
+    lambda: scan(mounting=[1e160, 0, 0]),
+    lambda: scan(z=[[1e100, 0]]),
+    lambda: helixnav.Scan(0.0, "cartesian", [[1e160, 0]], 0.01 * np.eye(2)),
+    lambda: helixnav.Scan(0.0, "range_bearing", [[3.0, 0]], 1e150 * np.eye(2)),
+    lambda: helixnav.Odometry(0.0, [1e100, 0, 0], 1e-4 * EYE3),
+    lambda: helixnav.Odometry(0.0, [0, 0, 0], 1e100 * EYE3),
+    lambda: helixnav.AbsoluteFix(0.0, [1e9, 0], np.eye(2)),
+])
+def test_what_is_beyond_any_vehicle_is_refused(made):
+    with pytest.raises(helixnav.PreconditionError):
+        made()
+
+
+def test_a_mounting_far_beyond_the_vehicle_hangs_nothing():
+    navigator = helixnav.Navigator()
+    for k in range(6):
+        navigator.move(helixnav.Odometry(0.1 * k, [0.1, 0, 0], 1e-4 * EYE3))
+        navigator.observe(scan(0.1 * k, mounting=[9e7 if k == 2 else 0.0, 0, 0]))
 
 
 @pytest.mark.parametrize("options, named", [

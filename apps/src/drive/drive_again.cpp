@@ -8,6 +8,8 @@
 #include <utility>
 #include <variant>
 
+#include "helixnav/runs/drive_digest.hpp"
+
 namespace helixnav::apps {
 namespace {
 
@@ -85,6 +87,13 @@ std::size_t pass_over(core::Nanoseconds end_ns, core::Recording& recording) {
       events.begin(), rest, [](const core::Event& event) { return std::holds_alternative<core::Scan>(event); }));
   events.erase(events.begin(), rest);
   return scans;
+}
+
+std::vector<std::string> drives_in_map(const Drive& job, const runs::Run& run) {
+  std::vector<std::string> own = runs::drives_of(job.recording.events);
+  const bool is_on_earlier =
+      job.earlier && (job.earlier->start.kind != SessionStart::Kind::unknown || runs::is_on_earlier_map(run));
+  return is_on_earlier ? runs::united_drives(std::move(own), job.earlier->map.drives) : own;
 }
 
 std::size_t put_before(runs::FedDrive before, core::Recording& recording, std::vector<bool>& withheld) {

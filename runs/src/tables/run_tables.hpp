@@ -46,6 +46,7 @@ inline constexpr RunTable truth_labels_table{"truth_labels.csv", "step,observati
 
 inline constexpr const char* manifest_file = "manifest.json";
 inline constexpr const char* joint_map_file = "map.bin";
+inline constexpr const char* drives_file = "drives.csv";
 inline constexpr const char* drive_file = "drive.bin";
 inline constexpr const char* summary_file = "summary.json";
 inline constexpr const char* report_file = "report.html";
@@ -56,6 +57,6 @@ inline constexpr const char* run_files[] = {
     "report.html",      "truth_poses.csv", "truth_positions.csv",  "truth_landmarks.csv",
     "truth_labels.csv", "merges.csv",      "clouds.csv",           "map.bin",
     "particles.csv",    "paths.csv",       "mixture.csv",          "drive.bin",
-    "truth_frame.csv"};
+    "truth_frame.csv",  "drives.csv"};
 
 }  // namespace helixnav::runs
