@@ -13,11 +13,32 @@
 namespace helixnav::core {
 namespace {
 
+constexpr double most_m = 1e8;  // northings of UTM go up to 1e7
+constexpr double most_heading_rad = 1e6;
+constexpr double most_covariance = most_m * most_m;
+
+bool is_plausible(const Eigen::Vector2d& lengths_m) {
+  return lengths_m.allFinite() && lengths_m.cwiseAbs().maxCoeff() <= most_m;
+}
+
+bool is_plausible(const Pose2& pose) {
+  return is_plausible(pose.position_m()) && std::abs(pose.heading_rad) <= most_heading_rad;  // no, where it is NaN
+}
+
+template <class Matrix>
+bool is_covariance_plausible(const Matrix& C) {
+  return C.cwiseAbs().maxCoeff() <= most_covariance;
+}
+
+/// Bearings are bounded by check_observation.
+bool is_plausible(const Observation& observation) {
+  return observation.z.cwiseAbs().maxCoeff() <= most_m && is_covariance_plausible(observation.R);
+}
+
 /// Positive semidefinite 3×3 by its principal minors, to round-off; no allocation.
 bool is_covariance(const Eigen::Matrix3d& Q) {
   if (!Q.allFinite()) return false;
   const double scale = Q.cwiseAbs().maxCoeff();
-  if (!std::isfinite(scale * scale * scale)) return false;  // its determinant says nothing
   const double tiny = 1e-9 * scale;
   if ((Q - Q.transpose()).cwiseAbs().maxCoeff() > tiny || Q.diagonal().minCoeff() < -tiny) return false;
   const auto minor = [&](int i, int j) { return Q(i, i) * Q(j, j) - Q(i, j) * Q(j, i); };
@@ -49,7 +70,12 @@ template <class Values>
 
 void check(const Odometry& odometry) {
   const Eigen::Vector3d increment = odometry.T_before_after.vector();
-  if (!increment.allFinite()) refuse("odometry", odometry.t_ns, "the increment is not finite", increment);
+  if (!is_plausible(odometry.T_before_after)) {
+    refuse("odometry", odometry.t_ns, "the increment is not finite, or beyond 1e8 m or 1e6 rad", increment);
+  }
+  if (!is_covariance_plausible(odometry.covariance)) {
+    refuse("odometry", odometry.t_ns, "the covariance is not finite, or beyond 1e16", odometry.covariance);
+  }
   if (!is_covariance(odometry.covariance)) {
     refuse("odometry", odometry.t_ns, "the covariance is not symmetric positive semidefinite", odometry.covariance);
   }
@@ -57,7 +83,9 @@ void check(const Odometry& odometry) {
 
 void check(const Scan& scan) {
   const Eigen::Vector3d mounting = scan.T_robot_sensor.vector();
-  if (!mounting.allFinite()) refuse("scan", scan.t_ns, "T_robot_sensor is not finite", mounting);
+  if (!is_plausible(scan.T_robot_sensor)) {
+    refuse("scan", scan.t_ns, "T_robot_sensor is not finite, or beyond 1e8 m or 1e6 rad", mounting);
+  }
   const FieldOfView& view = scan.field_of_view;
   if (!is_in_order(view)) {
     refuse("scan", scan.t_ns, "the field of view is not finite or its bounds are not in order",
@@ -66,6 +94,7 @@ void check(const Scan& scan) {
   for (std::size_t i = 0; i < scan.observations.size(); ++i) {
     try {
       check_observation(scan.observations[i]);
+      if (!is_plausible(scan.observations[i])) throw PreconditionError("beyond 1e8 m, or its R beyond 1e16");
     } catch (const PreconditionError& error) {
       throw PreconditionError("scan at t_ns = " + std::to_string(scan.t_ns) + ": observation " + std::to_string(i) +
                               ": " + error.what());
@@ -74,12 +103,14 @@ void check(const Scan& scan) {
 }
 
 void check(const AbsoluteFix& fix) {
-  if (!fix.position_world_m.allFinite()) {
-    refuse("fix", fix.t_ns, "the position is not finite", fix.position_world_m);
+  if (!is_plausible(fix.position_world_m)) {
+    refuse("fix", fix.t_ns, "the position is not finite, or beyond 1e8 m", fix.position_world_m);
   }
-  if (!fix.antenna_robot_m.allFinite()) refuse("fix", fix.t_ns, "the antenna is not finite", fix.antenna_robot_m);
-  if (!is_positive_definite(fix.covariance_m2)) {
-    refuse("fix", fix.t_ns, "the covariance is not symmetric positive definite", fix.covariance_m2);
+  if (!is_plausible(fix.antenna_robot_m)) {
+    refuse("fix", fix.t_ns, "the antenna is not finite, or beyond 1e8 m", fix.antenna_robot_m);
+  }
+  if (!is_covariance_plausible(fix.covariance_m2) || !is_positive_definite(fix.covariance_m2)) {
+    refuse("fix", fix.t_ns, "the covariance is not symmetric positive definite, or beyond 1e16", fix.covariance_m2);
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "evaluation_map.hpp"
 #include "helixnav/core/chi2.hpp"
+#include "helixnav/core/rigid_fit.hpp"
 #include "helixnav/evaluation/alignment.hpp"
 #include "helixnav/evaluation/nees.hpp"
 #include "run_interpolation.hpp"
@@ -98,23 +99,59 @@ void summarize_poses(PoseEvaluation& result) {
   result.nees_inside_95 = fraction_of(inside, result.nees_count);
 }
 
+/// A true pose and the estimate of its time.
+struct PosePair {
+  core::TruePose known;
+  core::PoseGaussian estimate;
+};
+
+std::vector<PosePair> pose_pairs(const Steps& steps, const std::vector<core::TruePose>& poses) {
+  std::vector<PosePair> pairs;
+  for (const core::TruePose& known : poses) {
+    const auto estimate = estimate_at(steps, known.t_ns);
+    if (estimate) pairs.push_back({known, *estimate});
+  }
+  return pairs;
+}
+
+/// Rigid alignment of all; of the position errors that it leaves, the RMSE.
+std::pair<core::Pose2, double> align_poses(const std::vector<PosePair>& pairs) {
+  std::vector<Eigen::Vector2d> known_m;
+  std::vector<Eigen::Vector2d> estimated_m;
+  for (const PosePair& pair : pairs) {
+    known_m.push_back(pair.known.T_world_robot.position_m());
+    estimated_m.push_back(pair.estimate.mean.position_m());
+  }
+  const core::Pose2 T_truth_map = core::fit_rigidly(known_m, estimated_m);
+  std::vector<double> left_m;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    left_m.push_back((known_m[i] - core::transform(T_truth_map, estimated_m[i])).norm());
+  }
+  return {T_truth_map, error_statistics(std::move(left_m)).rmse};
+}
+
 std::pair<PositionEvaluation, PoseEvaluation> evaluate_poses(const Steps& steps, const runs::RunTruth& truth,
                                                              core::Nanoseconds nees_from_ns) {
   PositionEvaluation position;
   position.limit_m = std::numeric_limits<double>::infinity();
+  position.against_poses = true;
+  position.aligned = !truth.frame.is_map;
   PoseEvaluation pose;
-  for (const core::TruePose& known : truth.poses) {
-    const auto estimate = estimate_at(steps, known.t_ns);
-    if (!estimate) {
-      ++position.fixes_outside;
-      continue;
-    }
-    Eigen::Vector3d error = estimate->mean.vector() - known.T_world_robot.vector();
+  const std::vector<PosePair> pairs = pose_pairs(steps, truth.poses);
+  position.fixes_outside = truth.poses.size() - pairs.size();
+  const auto [T_truth_map, rmse_m] = align_poses(pairs);
+  position.rmse_aligned_m = rmse_m;
+  if (position.aligned) position.T_truth_map = T_truth_map;
+  const core::Pose2 T_map_truth = core::inverse(position.T_truth_map);
+  for (const PosePair& pair : pairs) {
+    const core::Pose2 known =
+        position.aligned ? core::compose(T_map_truth, pair.known.T_world_robot) : pair.known.T_world_robot;
+    Eigen::Vector3d error = pair.estimate.mean.vector() - known.vector();
     error.z() = core::wrap_to_pi(error.z());
-    const Eigen::Vector3d sigma = estimate->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-    position.errors.push_back({known.t_ns, known.T_world_robot.position_m(), error.head<2>(), sigma.head<2>(), true});
-    const double told = known.t_ns < nees_from_ns ? nan : nees(*estimate, known.T_world_robot);
-    pose.errors.push_back({known.t_ns, error.z(), sigma.z(), told});
+    const Eigen::Vector3d sigma = pair.estimate.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    position.errors.push_back({pair.known.t_ns, known.position_m(), error.head<2>(), sigma.head<2>(), true});
+    const double told = pair.known.t_ns < nees_from_ns ? nan : nees(pair.estimate, known);
+    pose.errors.push_back({pair.known.t_ns, error.z(), sigma.z(), told});
   }
   position.fixes_used = position.errors.size();
   position.error_m = statistics_of_used(position.errors);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "helixnav/core/errors.hpp"
+#include "helixnav/core/in_view.hpp"
 
 namespace helixnav::localization {
 namespace {
@@ -21,10 +22,8 @@ bool is_in_view(const Eigen::Vector2d& point_sensor_m, const core::FieldOfView& 
   const double range_m = point_sensor_m.norm();
   if (range_m < view.min_range_m || range_m > surely_seen * reach_m) return false;
   const double margin_rad = 0.05 * (view.max_bearing_rad - view.min_bearing_rad);
-  const bool all_around = view.max_bearing_rad - view.min_bearing_rad >= 2.0 * core::pi - 1e-6;
   const double bearing_rad = std::atan2(point_sensor_m.y(), point_sensor_m.x());
-  return all_around ||
-         (bearing_rad > view.min_bearing_rad + margin_rad && bearing_rad < view.max_bearing_rad - margin_rad);
+  return core::is_between_bearings(view, bearing_rad, margin_rad);
 }
 
 }  // namespace

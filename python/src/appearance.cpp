@@ -31,6 +31,7 @@ void tell_appearance(const py::object& classes, const py::object& sizes, const p
                                     std::to_string(names.size()));
     for (std::size_t i = 0; i < count; ++i) {
       if (names[i].is_none()) continue;
+      if (!py::isinstance<py::str>(names[i])) throw py::type_error("classes: expected names or None");
       scan.observations[i].appearance.name = core::ClassName(names[i].cast<std::string>());
       scan.observations[i].appearance.class_error = class_error;
     }

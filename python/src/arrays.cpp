@@ -5,12 +5,15 @@
 #include <cmath>
 #include <cstring>
 #include <initializer_list>
+#include <limits>
 #include <string>
 
 #include "helixnav/core/errors.hpp"
 
 namespace helixnav::python {
 namespace {
+
+constexpr auto most_identity = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
 
 std::string tuple_text(const py::ssize_t* shape, py::ssize_t dimensions) {
   std::string text = "(";
@@ -57,6 +60,13 @@ std::vector<std::int64_t> identities_from(const py::handle& value) {
   const py::array array = py::array::ensure(value);
   const bool whole = array && (array.size() == 0 || std::strchr("iu", array.dtype().kind()) != nullptr);
   if (!whole || array.ndim() != 1) throw py::type_error("identities: expected a row of whole numbers");
+  if (array.dtype().kind() == 'u' && array.itemsize() == 8) {
+    const py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast> unsigned_numbers(array);
+    const std::uint64_t* const begin = unsigned_numbers.data();
+    const bool fit =
+        std::all_of(begin, begin + array.size(), [](std::uint64_t number) { return number <= most_identity; });
+    if (!fit) throw core::PreconditionError("identities: expected whole numbers below 2**63");
+  }
   const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> numbers(array);
   return {numbers.data(), numbers.data() + numbers.size()};
 }

@@ -109,11 +109,14 @@ void bind_view(py::module_& module) {
            }),
            py::arg("max_range") = std::numeric_limits<double>::infinity(), py::arg("min_range") = 0.0,
            py::arg("min_bearing") = -core::pi, py::arg("max_bearing") = core::pi, py::arg("reach") = 0.0)
-      .def_readwrite("max_range", &core::FieldOfView::max_range_m)
-      .def_readwrite("min_range", &core::FieldOfView::min_range_m)
-      .def_readwrite("min_bearing", &core::FieldOfView::min_bearing_rad)
-      .def_readwrite("max_bearing", &core::FieldOfView::max_bearing_rad)
-      .def_readwrite("reach", &core::FieldOfView::reach_m);
+      .def_readwrite("max_range", &core::FieldOfView::max_range_m,
+                     "Up to where landmarks are surely seen [m]; infinite: nobody knows.")
+      .def_readwrite("min_range", &core::FieldOfView::min_range_m, "From where on [m].")
+      .def_readwrite("min_bearing", &core::FieldOfView::min_bearing_rad,
+                     "On the right, in the frame of the sensor [rad].")
+      .def_readwrite("max_bearing", &core::FieldOfView::max_bearing_rad,
+                     "On the left [rad]; from pi/2 to 3 pi/2 is across the back.")
+      .def_readwrite("reach", &core::FieldOfView::reach_m, "Up to where they are seen at all [m]; 0: up to max_range.");
 }
 
 void bind_odometry(py::module_& module) {
@@ -130,8 +133,10 @@ void bind_odometry(py::module_& module) {
            py::arg("t"), py::arg("increment"), py::arg("covariance"),
            "At the end of the increment (x, y, heading) [m, m, rad]; covariance 3×3. PreconditionError for NaN or no "
            "covariance.")
-      .def_property_readonly("increment", [](const core::Odometry& o) { return o.T_before_after.vector(); })
-      .def_readonly("covariance", &core::Odometry::covariance);
+      .def_property_readonly(
+          "increment", [](const core::Odometry& o) { return o.T_before_after.vector(); },
+          "(3,): x, y, heading [m, m, rad].")
+      .def_readonly("covariance", &core::Odometry::covariance, "(3, 3) of x, y, heading.");
   bind_times(odometry);
 }
 
@@ -163,9 +168,11 @@ void bind_scan(py::module_& module) {
           "sigma_sizes", [](const core::Scan& s) { return sizes_of(s, &core::Appearance::sigma_size_m); }, "(N,) [m].")
       .def_property_readonly("z", &z_of, "(N, 2); NaN in the second column of a bearing or range alone.")
       .def_property_readonly("R", &R_of, "(N, 2, 2); NaN in the second row and column of a bearing or range alone.")
-      .def_property_readonly("kinds", &kinds_of)
-      .def_property_readonly("mounting", [](const core::Scan& s) { return s.T_robot_sensor.vector(); })
-      .def_readonly("view", &core::Scan::field_of_view)
+      .def_property_readonly("kinds", &kinds_of, "Of each observation, as the argument kind.")
+      .def_property_readonly(
+          "mounting", [](const core::Scan& s) { return s.T_robot_sensor.vector(); },
+          "(3,): x, y, heading of the sensor on the robot [m, m, rad].")
+      .def_readonly("view", &core::Scan::field_of_view, "The FieldOfView.")
       .def("__len__", [](const core::Scan& s) { return s.observations.size(); });
   bind_times(scan);
 }
@@ -180,9 +187,9 @@ void bind_fix(py::module_& module) {
           }),
           py::arg("t"), py::arg("position"), py::arg("covariance"), py::arg("antenna") = py::make_tuple(0.0, 0.0),
           "Of the antenna, which stands there on the robot; covariance 2×2.")
-      .def_readonly("position", &core::AbsoluteFix::position_world_m)
-      .def_readonly("covariance", &core::AbsoluteFix::covariance_m2)
-      .def_readonly("antenna", &core::AbsoluteFix::antenna_robot_m);
+      .def_readonly("position", &core::AbsoluteFix::position_world_m, "(2,): of the antenna in the map frame [m].")
+      .def_readonly("covariance", &core::AbsoluteFix::covariance_m2, "(2, 2) [m²].")
+      .def_readonly("antenna", &core::AbsoluteFix::antenna_robot_m, "(2,): where it stands on the robot [m].");
   bind_times(fix);
 }
 
@@ -208,11 +215,16 @@ void bind_pose(py::module_& module) {
   py::class_<core::PoseGaussian>(module, "Pose", "A pose (x, y, heading) [m, m, rad] with its covariance.")
       .def(py::init(&make_pose), py::arg("mean") = py::make_tuple(0.0, 0.0, 0.0), py::arg("covariance") = py::none(),
            "Covariance 3×3, zero unless given. PreconditionError for NaN or no covariance.")
-      .def_property_readonly("mean", [](const core::PoseGaussian& pose) { return pose.mean.vector(); })
-      .def_readonly("covariance", &core::PoseGaussian::covariance)
-      .def_property_readonly("x", [](const core::PoseGaussian& pose) { return pose.mean.x_m; })
-      .def_property_readonly("y", [](const core::PoseGaussian& pose) { return pose.mean.y_m; })
-      .def_property_readonly("heading", [](const core::PoseGaussian& pose) { return pose.mean.heading_rad; })
+      .def_property_readonly(
+          "mean", [](const core::PoseGaussian& pose) { return pose.mean.vector(); }, "(3,): x, y, heading [m, m, rad].")
+      .def_readonly("covariance", &core::PoseGaussian::covariance, "(3, 3) of x, y, heading.")
+      .def_property_readonly(
+          "x", [](const core::PoseGaussian& pose) { return pose.mean.x_m; }, "[m]")
+      .def_property_readonly(
+          "y", [](const core::PoseGaussian& pose) { return pose.mean.y_m; }, "[m]")
+      .def_property_readonly(
+          "heading", [](const core::PoseGaussian& pose) { return pose.mean.heading_rad; },
+          "[rad], counter-clockwise from x.")
       .def("__repr__", [](const core::PoseGaussian& pose) {
         std::ostringstream text;
         text << "Pose(x=" << pose.mean.x_m << ", y=" << pose.mean.y_m << ", heading=" << pose.mean.heading_rad << ")";

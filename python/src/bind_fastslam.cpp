@@ -13,6 +13,7 @@
 #include "configuration.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/fastslam/fast_slam.hpp"
+#include "helixnav/fastslam/observe.hpp"
 #include "locked.hpp"
 #include "log.hpp"
 #include "map.hpp"
@@ -30,7 +31,9 @@ fastslam::Options fitted(fastslam::Options options) {
 }
 
 std::unique_ptr<LockedSlam> slam_of_options(const core::PoseGaussian& start, const py::dict& options) {
-  const apps::FastSlamSettings settings = configuration_of(options, {}, {}, Filter::fastslam).settings.fastslam;
+  const Configuration configuration = configuration_of(options, {}, {}, Filter::fastslam);
+  refuse_unheeded(configuration, "FastSlam", true);
+  const apps::FastSlamSettings& settings = configuration.settings.fastslam;
   return std::make_unique<LockedSlam>(FastSlam(start, fitted(settings.options), settings.seed));
 }
 
@@ -48,7 +51,7 @@ core::StepReport observe_slam(LockedSlam& self, const core::Scan& scan, const py
   if (!identities.is_none()) names = identities_from(identities);
   const py::gil_scoped_release released;
   const std::lock_guard hold(self.mutex);
-  return names ? self.navigator.update_known(scan, *names) : self.navigator.update(scan);
+  return names ? fastslam::observe_known(self.navigator, scan, *names) : fastslam::observe(self.navigator, scan);
 }
 
 std::optional<core::StepReport> take_slam(LockedSlam& self, const core::Event& event, const py::object& identities) {
@@ -110,7 +113,10 @@ void bind_fastslam(py::module_& module) {
            "One scan; a negative identity is no landmark.")
       .def("take", &take_slam, py::arg("event"), py::arg("identities") = py::none(),
            "Odometry or a scan; the report of a scan, None for odometry.")
-      .def_property_readonly("pose", py::cpp_function(&pose_of_slam, Released()), "Mean and covariance of the cloud.")
+      .def_property_readonly(
+          "pose", py::cpp_function(&pose_of_slam, Released()),
+          "Mean and covariance of the cloud, moved on by the odometry since the last scan (that of a "
+          "navigator is as of the scan).")
       .def_property_readonly(
           "map", py::cpp_function([](LockedSlam& self) { return Map{locked(&FastSlam::map)(self)}; }, Released()),
           "Landmarks of the heaviest particle.")

@@ -14,6 +14,7 @@
 #include "join/joined_folder.hpp"
 #include "join/session_changes.hpp"
 #include "map.hpp"
+#include "signals.hpp"
 
 namespace helixnav::python {
 namespace {
@@ -59,8 +60,11 @@ Joined join(const py::sequence& list, const std::optional<fs::path>& out, bool o
   const Sessions sessions = sessions_from(list);
   const py::gil_scoped_release released;
   apps::check_independent(sessions.folders);
+  apps::check_independent(sessions.maps, sessions.names);
   Joined result;
-  result.joined = supervisor::join_sessions(sessions.maps);
+  SignalWatch signals;
+  result.joined = supervisor::join_sessions(sessions.maps, [&] { signals.heed(); });
+  apps::tell_drives(sessions.maps, result.joined);
   result.changes = apps::shared_landmarks(sessions.maps, result.joined);
   apps::make_gone_tentative(result.changes, result.joined.components);
   if (out) apps::write_joined(out->string(), sessions.names, result.joined, result.changes);
@@ -80,9 +84,9 @@ void bind_parts(py::module_& module) {
       .def_readonly("landmark_of", &JoinedSession::name_of, "Ids in the component by the session's own; mature ones.");
   using apps::ChangedLandmark;
   py::class_<ChangedLandmark>(module, "ChangedLandmark", "A landmark on ground that several sessions looked at.")
-      .def_readonly("component", &ChangedLandmark::component)
-      .def_readonly("landmark", &ChangedLandmark::id)
-      .def_readonly("position", &ChangedLandmark::point_m)
+      .def_readonly("component", &ChangedLandmark::component, "Index in Joined.components.")
+      .def_readonly("landmark", &ChangedLandmark::id, "Id in the component.")
+      .def_readonly("position", &ChangedLandmark::point_m, "(2,): in the frame of the component [m].")
       .def_property_readonly(
           "change", [](const ChangedLandmark& l) { return apps::name_of(l.change()); },
           "'kept', 'gone', 'new', 'both' (it went and came) or 'moved'.")
@@ -111,7 +115,7 @@ void bind_join(py::module_& module) {
       "join", &join, py::arg("sessions"), py::arg("out") = py::none(), py::arg("overwrite") = false,
       "One map of several sessions that began anywhere: JointMaps or run folders, oldest first. Each is found on "
       "the others by its landmarks, or stays a component of its own. With `out`, the folder of helixnav join is "
-      "written. InputError for a folder that is in the list twice or within another one.");
+      "written. InputError for a map that is in the list twice, and for two that hold what one drive saw.");
 }
 
 }  // namespace helixnav::python

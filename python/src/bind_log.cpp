@@ -96,8 +96,11 @@ Rows true_landmarks_of(const Log& log) {
 void bind_log(py::module_& module) {
   py::class_<Log>(module, "Log",
                   "A drive as it was recorded or simulated, with the navigator's options for its sensor.")
-      .def_property_readonly("name", [](const Log& log) { return log.recording.name; })
-      .def_property_readonly("start", [](const Log& log) { return log.recording.start; })
+      .def_property_readonly(
+          "name", [](const Log& log) { return log.recording.name; }, "Of the file or the scenario.")
+      .def_property_readonly(
+          "start", [](const Log& log) { return log.recording.start; },
+          "The Pose that the drive begins with, in the map frame.")
       .def_property_readonly(
           "events", [](const Log& log) { return log.recording.events; },
           "Odometry, Scan, AbsoluteFix and Lost in order; a copy.")
@@ -110,7 +113,7 @@ void bind_log(py::module_& module) {
       .def_property_readonly(
           "remarks", [](const Log& log) { return log.recording.remarks; },
           "What was mended, left out or is doubtful, a sentence each.")
-      .def_readonly("known_association", &Log::known_association)
+      .def_readonly("known_association", &Log::known_association, "Whether replay takes the labels for identities.")
       .def_readonly("config", &Log::config, "The configuration in force, as helixnav config --dump writes it.")
       .def("__len__", [](const Log& log) { return log.recording.events.size(); });
   module.def("read_log", &read_log, py::arg("path"), py::arg("vehicle") = py::none(), py::arg("options") = py::dict(),

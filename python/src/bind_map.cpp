@@ -120,8 +120,11 @@ void bind_joint_map(py::module_& module) {
           "covariance", [](const core::JointMap& map) { return map.joint.covariance; },
           "(3 + 2 N, 3 + 2 N) of x, y, heading and the landmarks' x, y.")
       .def_readonly("reach", &core::JointMap::reach_m, "Of the sensor that drew it [m]; 0: unknown.")
+      .def_readonly("drives", &core::JointMap::drives,
+                    "Digests of the drives that went into it; maps that have one in common are not joined. Empty: "
+                    "unknown.")
       .def("save", &save, py::arg("folder"), py::call_guard<py::gil_scoped_release>(),
-           "Writes map.csv and, up to 2000 landmarks, map.bin; replay goes on in the folder.")
+           "Writes map.csv and, up to 2000 landmarks, map.bin with drives.csv; replay goes on in the folder.")
       .def("__len__", [](const core::JointMap& map) { return map.joint.ids.size(); });
 }
 

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -29,12 +30,14 @@ using supervisor::NamedNavigator;
 using supervisor::Navigator;
 
 /// Options without a log; the navigator fits its lengths to the sensor of the first scan, but for those given.
-supervisor::NavigatorOptions options_of(const py::dict& options) {
+supervisor::NavigatorOptions options_of(const py::dict& options, const char* navigates, bool by_identities) {
   const Configuration configuration = configuration_of(options);
+  refuse_unheeded(configuration, navigates, by_identities);
   supervisor::NavigatorOptions navigator = configuration.settings.navigator;
   for (const auto& [name, length_m] : configuration.settings.given_lengths_m) {
     supervisor::set_length(navigator, name, length_m);
   }
+  if (configuration.settings.names_wrong) navigator.names.wrong = *configuration.settings.names_wrong;
   return navigator;
 }
 
@@ -51,19 +54,26 @@ py::dict numbers_of(const Decided& decided) {
 
 void bind_report_parts(py::module_& module) {
   py::class_<core::AssociationReport>(module, "Association", "What became of one observation of a scan.")
-      .def_readonly("observation", &core::AssociationReport::observation)
+      .def_readonly("observation", &core::AssociationReport::observation, "Index in the scan.")
       .def_property_readonly(
           "outcome", [](const core::AssociationReport& a) { return runs::word_of(runs::outcome_words, a.outcome); },
           "'matched', 'augmented', 'ambiguous' or 'rejected'")
       .def_property_readonly("landmark", &landmark_of, "Its id, or None.")
-      .def_readonly("nis", &core::AssociationReport::nis)
-      .def_readonly("dof", &core::AssociationReport::dof)
-      .def_readonly("margin_nats", &core::AssociationReport::margin_nats);
+      .def_readonly("nis", &core::AssociationReport::nis,
+                    "Squared innovation by its covariance; NaN without a landmark.")
+      .def_readonly("dof", &core::AssociationReport::dof, "Degrees of freedom of the nis.")
+      .def_readonly("margin_nats", &core::AssociationReport::margin_nats,
+                    "ln of the likelihood ratio to the best alternative.");
   py::class_<Decided>(module, "Decision", "A row of decisions.csv.")
-      .def_property_readonly("kind", [](const Decided& d) { return core::row_of(d.decision).kind; })
-      .def_property_readonly("verdict", [](const Decided& d) { return core::row_of(d.decision).verdict; })
+      .def_property_readonly(
+          "kind", [](const Decided& d) { return core::row_of(d.decision).kind; },
+          "As in decisions.csv: closure, search, slip, fix …")
+      .def_property_readonly(
+          "verdict", [](const Decided& d) { return core::row_of(d.decision).verdict; },
+          "As in decisions.csv: accepted, refused …")
       .def_property_readonly("numbers", &numbers_of, "Name with unit: value.")
-      .def_property_readonly("sentence", [](const Decided& d) { return reports::sentence_of(d.decision); })
+      .def_property_readonly(
+          "sentence", [](const Decided& d) { return reports::sentence_of(d.decision); }, "The same in words.")
       .def("__repr__", [](const Decided& d) { return "<Decision: " + reports::sentence_of(d.decision) + ">"; });
 }
 
@@ -93,21 +103,24 @@ void bind_report(py::module_& module) {
       .def_readonly("repaired", &core::NumericalHealth::repaired, "Failed as asked, done in another way.")
       .def_readonly("refused", &core::NumericalHealth::refused, "Failed and left undone.");
   py::class_<core::StepReport>(module, "StepReport", "What one scan did to the map and the pose.")
-      .def_readonly("step", &core::StepReport::step)
-      .def_readonly("t_ns", &core::StepReport::t_ns)
-      .def_property_readonly("t", [](const core::StepReport& r) { return core::seconds(r.t_ns); })
-      .def_property_readonly("mode", [](const core::StepReport& r) { return runs::word_of(runs::mode_words, r.mode); })
-      .def_readonly("pose", &core::StepReport::pose)
-      .def_readonly("associations", &core::StepReport::associations)
-      .def_property_readonly("decisions", &decisions_of)
+      .def_readonly("step", &core::StepReport::step, "Number of the scan, from 0 on.")
+      .def_readonly("t_ns", &core::StepReport::t_ns, "Time of the scan [ns].")
+      .def_property_readonly(
+          "t", [](const core::StepReport& r) { return core::seconds(r.t_ns); }, "Time of the scan [s].")
+      .def_property_readonly(
+          "mode", [](const core::StepReport& r) { return runs::word_of(runs::mode_words, r.mode); },
+          "'mapping' or 'searching'.")
+      .def_readonly("pose", &core::StepReport::pose, "A Pose in the map frame, after the scan.")
+      .def_readonly("associations", &core::StepReport::associations, "An Association for each observation.")
+      .def_property_readonly("decisions", &decisions_of, "What was decided with this scan.")
       .def_property_readonly("merged", &merged_of, "(kept, removed) of landmarks that became one.")
       .def_property_readonly("revised", &revised_of,
                              "(step, associations) of earlier scans gone through again: these hold, not what their own "
                              "reports say.")
-      .def_readonly("joint_nis", &core::StepReport::joint_nis)
-      .def_readonly("joint_dof", &core::StepReport::joint_dof)
-      .def_readonly("numerics", &core::StepReport::numerics)
-      .def_readonly("landmarks", &core::StepReport::mapped_landmarks);
+      .def_readonly("joint_nis", &core::StepReport::joint_nis, "Of all matched observations together.")
+      .def_readonly("joint_dof", &core::StepReport::joint_dof, "Degrees of freedom of joint_nis; 0 without an update.")
+      .def_readonly("numerics", &core::StepReport::numerics, "The NumericalHealth.")
+      .def_readonly("landmarks", &core::StepReport::mapped_landmarks, "How many are on the map.");
 }
 
 using Released = py::call_guard<py::gil_scoped_release>;
@@ -119,20 +132,45 @@ std::unique_ptr<Locked<AnyNavigator>> of_log(const Log& log) {
 
 template <class AnyNavigator>
 std::unique_ptr<Locked<AnyNavigator>> of_options(const core::PoseGaussian& start, const py::dict& options) {
-  return std::make_unique<Locked<AnyNavigator>>(start, options_of(options));
+  constexpr bool named = std::is_same_v<AnyNavigator, NamedNavigator>;
+  return std::make_unique<Locked<AnyNavigator>>(start,
+                                                options_of(options, named ? "NamedNavigator" : "Navigator", named));
+}
+
+/// One scan, by which the drive may be known later.
+template <class AnyNavigator, class... Identities>
+core::StepReport observe(Locked<AnyNavigator>& self, const core::Scan& scan, const Identities&... identities) {
+  const std::lock_guard hold(self.mutex);
+  core::StepReport report = self.navigator.observe(scan, identities...);
+  self.drive.add(scan);
+  return report;
+}
+
+template <class AnyNavigator, class... Identities>
+std::optional<core::StepReport> take(Locked<AnyNavigator>& self, const core::Event& event,
+                                     const Identities&... identities) {
+  if (const auto* scan = std::get_if<core::Scan>(&event)) return observe(self, *scan, identities...);
+  const std::lock_guard hold(self.mutex);
+  return self.navigator.take(event, identities...);
+}
+
+core::StepReport observe_unnamed(Locked<Navigator>& self, const core::Scan& scan) { return observe(self, scan); }
+
+std::optional<core::StepReport> take_unnamed(Locked<Navigator>& self, const core::Event& event) {
+  return take(self, event);
 }
 
 core::StepReport observe_named(Locked<NamedNavigator>& self, const core::Scan& scan, const py::object& identities) {
   const std::vector<std::int64_t> names = identities_from(identities);
   const py::gil_scoped_release released;
-  return locked(&NamedNavigator::observe)(self, scan, names);
+  return observe(self, scan, names);
 }
 
 std::optional<core::StepReport> take_named(Locked<NamedNavigator>& self, const core::Event& event,
                                            const py::object& identities) {
   const std::vector<std::int64_t> names = identities_from(identities);
   const py::gil_scoped_release released;
-  return locked(&NamedNavigator::take)(self, event, names);
+  return take(self, event, names);
 }
 
 template <class AnyNavigator>
@@ -140,27 +178,56 @@ Map map_of(Locked<AnyNavigator>& self) {
   return {locked(&AnyNavigator::map)(self)};
 }
 
+/// Whether it is not known how its map lies to the earlier one.
+bool is_apart(const Navigator& navigator) { return navigator.maps_apart().count(0) > 0; }
+bool is_apart(const NamedNavigator&) { return false; }
+
+template <class AnyNavigator>
+std::vector<std::string> drives_of(const Locked<AnyNavigator>& self) {
+  std::vector<std::string> drives;
+  if (std::string own = self.drive.text(); !own.empty()) drives.push_back(std::move(own));
+  if (self.earlier_drives.empty() || is_apart(self.navigator)) return drives;
+  return runs::united_drives(std::move(drives), self.earlier_drives);
+}
+
+/// Of an earlier map that is still apart it is known what went into it.
+std::map<int, core::JointMap> maps_apart(Locked<Navigator>& self) {
+  const std::lock_guard hold(self.mutex);
+  std::map<int, core::JointMap> maps = self.navigator.maps_apart();
+  if (const auto earlier = maps.find(0); earlier != maps.end()) earlier->second.drives = self.earlier_drives;
+  return maps;
+}
+
 /// To go on in; None where it is too large to be saved.
 template <class AnyNavigator>
 std::optional<core::JointMap> joint_map_of(Locked<AnyNavigator>& self, double reach_m) {
   if (!(reach_m >= 0.0)) throw core::PreconditionError("reach: expected metres, 0 where it is unknown");
   const std::lock_guard hold(self.mutex);
-  return apps::joint_map_of(self.navigator, reach_m);
+  std::optional<core::JointMap> map = apps::joint_map_of(self.navigator, reach_m);
+  if (map) map->drives = drives_of(self);
+  return map;
 }
 
 std::unique_ptr<Locked<Navigator>> go_on(const core::JointMap& earlier, const py::dict& options) {
-  return std::make_unique<Locked<Navigator>>(Navigator::go_on_in(earlier, options_of(options)));
+  auto begun =
+      std::make_unique<Locked<Navigator>>(Navigator::go_on_in(earlier, options_of(options, "Navigator", false)));
+  begun->earlier_drives = earlier.drives;
+  return begun;
 }
 
 std::unique_ptr<Locked<NamedNavigator>> go_on_named(const core::JointMap& earlier,
                                                     const std::map<std::int64_t, core::LandmarkId>& landmark_of,
                                                     const py::dict& options) {
-  return std::make_unique<Locked<NamedNavigator>>(NamedNavigator(earlier, landmark_of, options_of(options)));
+  auto begun = std::make_unique<Locked<NamedNavigator>>(
+      NamedNavigator(earlier, landmark_of, options_of(options, "NamedNavigator", true)));
+  begun->earlier_drives = earlier.drives;
+  return begun;
 }
 
 void look_for_place(Locked<Navigator>& self, const core::JointMap& earlier) {
   const std::lock_guard hold(self.mutex);
   self.navigator.look_for_place_in(earlier);
+  self.earlier_drives = earlier.drives;
 }
 
 template <class AnyNavigator>
@@ -188,18 +255,17 @@ void bind_navigator(py::module_& module) {
   py::class_<Locked<Navigator>> unnamed(module, "Navigator",
                                         "Navigates with unknown data association; searches and closes loops.");
   bind_common(unnamed);
-  unnamed.def("observe", locked(&Navigator::observe), py::arg("scan"), Released(), "One scan.")
+  unnamed.def("observe", &observe_unnamed, py::arg("scan"), Released(), "One scan.")
       .def("lose", locked(&Navigator::lose), py::arg("lost"), Released(),
            "The vehicle was carried: its place is sought on what was mapped so far.")
-      .def("take", locked(&Navigator::take), py::arg("event"), Released(),
-           "Any event; the report of a scan, None for others.")
+      .def("take", &take_unnamed, py::arg("event"), Released(), "Any event; the report of a scan, None for others.")
       .def_static("go_on_in", &go_on, py::arg("earlier"), py::arg("options") = py::dict(),
                   "Goes on in the JointMap of an earlier session, from the pose in it.")
       .def("look_for_place_in", &look_for_place, py::arg("earlier"), Released(),
            "This session begins somewhere on the JointMap, or elsewhere: it maps on its own until the place is found, "
            "and "
            "then goes on in the frame of that map. Before the first scan only.")
-      .def_property_readonly("maps_apart", py::cpp_function(locked(&Navigator::maps_apart), Released()),
+      .def_property_readonly("maps_apart", py::cpp_function(&maps_apart, Released()),
                              "JointMaps of which it is not known how the present one lies to them, by part of the "
                              "drive; 0: the earlier map of look_for_place_in.");
   py::class_<Locked<NamedNavigator>> named(module, "NamedNavigator", "For observations that are known by an identity.");

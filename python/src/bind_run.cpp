@@ -102,7 +102,8 @@ void bind_run(py::module_& module) {
       .def_readonly("path", &runs::Run::path, "Its folder; empty without one.")
       .def_readonly("steps", &runs::Run::steps, "A StepReport for each scan.")
       .def_property_readonly("trajectory", &trajectory_of, "(N, 4): t, x, y, heading at each scan, as estimated then.")
-      .def_property_readonly("map", [](const runs::Run& run) { return Map{run.map}; })
+      .def_property_readonly(
+          "map", [](const runs::Run& run) { return Map{run.map}; }, "The landmarks at its end, in the map frame.")
       .def_readonly("joint_map", &runs::Run::joint_map,
                     "The map to go on in, a JointMap; None of a run that was read (read_map reads it), that only "
                     "localized, of FastSLAM and above 2000 landmarks.")

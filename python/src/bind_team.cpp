@@ -105,16 +105,21 @@ void bind_sightings(py::module_& module) {
       .def(py::init(&make_sighting), py::arg("t"), py::arg("seen"), py::arg("kind"), py::arg("z"), py::arg("R"),
            py::arg("mounting") = py::make_tuple(0.0, 0.0, 0.0),
            "seen: index of the robot in the team; kind 'range_bearing' or 'cartesian'; z (2,), R (2, 2).")
-      .def_property_readonly("t", [](const RobotSighting& s) { return core::seconds(s.t_ns); })
-      .def_readonly("t_ns", &RobotSighting::t_ns)
-      .def_readonly("seen", &RobotSighting::seen)
-      .def_property_readonly("z", [](const RobotSighting& s) { return Eigen::Vector2d(s.observation.z); })
-      .def_property_readonly("R", [](const RobotSighting& s) { return Eigen::Matrix2d(s.observation.R); });
+      .def_property_readonly(
+          "t", [](const RobotSighting& s) { return core::seconds(s.t_ns); }, "Time [s].")
+      .def_readonly("t_ns", &RobotSighting::t_ns, "Time [ns].")
+      .def_readonly("seen", &RobotSighting::seen, "Index of the robot that is seen.")
+      .def_property_readonly(
+          "z", [](const RobotSighting& s) { return Eigen::Vector2d(s.observation.z); },
+          "(2,): range and bearing [m, rad], or x and y [m], in the frame of the sensor.")
+      .def_property_readonly(
+          "R", [](const RobotSighting& s) { return Eigen::Matrix2d(s.observation.R); }, "(2, 2): covariance of z.");
   py::class_<JudgedSighting>(module, "JudgedSighting", "A robot that was seen, and what came of it.")
-      .def_property_readonly("t", [](const JudgedSighting& s) { return core::seconds(s.t_ns); })
-      .def_readonly("robot", &JudgedSighting::robot)
-      .def_readonly("seen", &JudgedSighting::seen)
-      .def_readonly("used", &JudgedSighting::used)
+      .def_property_readonly(
+          "t", [](const JudgedSighting& s) { return core::seconds(s.t_ns); }, "Time [s].")
+      .def_readonly("robot", &JudgedSighting::robot, "Index of the one that saw.")
+      .def_readonly("seen", &JudgedSighting::seen, "Index of the one that was seen.")
+      .def_readonly("used", &JudgedSighting::used, "Whether it is in the solution.")
       .def_readonly("residual", &JudgedSighting::residual,
                     "Against the last solution; None between robots that have no common frame.");
 }
@@ -123,27 +128,29 @@ void bind_joins(py::module_& module) {
   py::class_<TeamJoin>(module, "TeamJoin", "Two components of a team became one.")
       .def_property_readonly(
           "by", [](const TeamJoin& j) { return team::name_of(j.by); }, "'names', 'sightings' or 'constellation'.")
-      .def_property_readonly("t", [](const TeamJoin& j) { return core::seconds(j.t_ns); })
+      .def_property_readonly(
+          "t", [](const TeamJoin& j) { return core::seconds(j.t_ns); }, "Time [s].")
       .def_readonly("robot", &TeamJoin::robot, "First robot of the component that kept its frame.")
       .def_readonly("other", &TeamJoin::other, "First robot of the one that came into it.")
       .def_property_readonly(
           "transform", [](const TeamJoin& j) { return j.T_component_other.vector(); }, "(x, y, heading) of its frame.")
-      .def_readonly("merged", &TeamJoin::merged)
-      .def_readonly("sightings", &TeamJoin::sightings)
-      .def_readonly("cost", &TeamJoin::cost)
-      .def_readonly("dof", &TeamJoin::dof)
-      .def_readonly("limit", &TeamJoin::limit);
+      .def_readonly("merged", &TeamJoin::merged, "Landmarks of the two that became one.")
+      .def_readonly("sightings", &TeamJoin::sightings, "Of robots by each other, where these joined.")
+      .def_readonly("cost", &TeamJoin::cost, "Chi squared of what joined.")
+      .def_readonly("dof", &TeamJoin::dof, "Its degrees of freedom.")
+      .def_readonly("limit", &TeamJoin::limit, "That the cost had to stay below.");
 }
 
 void bind_same_landmarks(py::module_& module) {
   py::class_<SameLandmarks>(module, "SameLandmarks", "Two landmarks of a team became one by where they stand.")
-      .def_property_readonly("t", [](const SameLandmarks& s) { return core::seconds(s.t_ns); })
-      .def_readonly("kept", &SameLandmarks::kept)
-      .def_readonly("removed", &SameLandmarks::removed)
+      .def_property_readonly(
+          "t", [](const SameLandmarks& s) { return core::seconds(s.t_ns); }, "Time [s].")
+      .def_readonly("kept", &SameLandmarks::kept, "Id that stays.")
+      .def_readonly("removed", &SameLandmarks::removed, "Id that went.")
       .def_readonly("nats", &SameLandmarks::nats, "ln of the likelihood ratio against another one that stands there.")
-      .def_readonly("cost", &SameLandmarks::cost)
-      .def_readonly("dof", &SameLandmarks::dof)
-      .def_readonly("limit", &SameLandmarks::limit);
+      .def_readonly("cost", &SameLandmarks::cost, "Chi squared of the two as one.")
+      .def_readonly("dof", &SameLandmarks::dof, "Its degrees of freedom.")
+      .def_readonly("limit", &SameLandmarks::limit, "That the cost had to stay below.");
 }
 
 }  // namespace

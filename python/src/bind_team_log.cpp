@@ -84,7 +84,8 @@ void bind_log_parts(py::module_& module) {
   using core::TeamMember;
   py::class_<TeamMember>(module, "TeamMember", "One robot of a team: its own drive, and whom it saw.")
       .def_readonly("number", &TeamMember::number, "What the log calls it.")
-      .def_property_readonly("start", [](const TeamMember& m) { return m.recording.start; })
+      .def_property_readonly(
+          "start", [](const TeamMember& m) { return m.recording.start; }, "The Pose that its drive begins with.")
       .def_property_readonly(
           "events", [](const TeamMember& m) { return m.recording.events; }, "Odometry and Scan in order; a copy.")
       .def_property_readonly(
@@ -93,11 +94,16 @@ void bind_log_parts(py::module_& module) {
       .def_readonly("sightings", &TeamMember::sightings, "RobotSightings in order of time.")
       .def_property_readonly("true_poses", &true_poses_of_member, "(N, 4): t, x, y, heading.");
   py::class_<TeamLog>(module, "TeamLog", "The drives of several robots in one world, by one clock.")
-      .def_property_readonly("name", [](const TeamLog& log) { return log.recording.name; })
+      .def_property_readonly(
+          "name", [](const TeamLog& log) { return log.recording.name; }, "Of the log or the scenario.")
       .def_property_readonly(
           "robots", [](const TeamLog& log) { return log.recording.robots; }, "TeamMembers; a copy.")
-      .def_property_readonly("starts_known", [](const TeamLog& log) { return log.recording.starts_known; })
-      .def_property_readonly("remarks", [](const TeamLog& log) { return log.recording.remarks; })
+      .def_property_readonly(
+          "starts_known", [](const TeamLog& log) { return log.recording.starts_known; },
+          "Whether the starts lie in one frame.")
+      .def_property_readonly(
+          "remarks", [](const TeamLog& log) { return log.recording.remarks; },
+          "What was mended, left out or is doubtful, a sentence each.")
       .def("__len__", [](const TeamLog& log) { return log.recording.robots.size(); });
 }
 

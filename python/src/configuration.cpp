@@ -2,6 +2,7 @@
 #include "configuration.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -46,7 +47,32 @@ void refuse_unknown(const CLI::App& app, const std::vector<std::string>& words) 
   }
 }
 
+/// What it is read with, and nothing else.
+bool is_of_log(const std::string& key) {
+  constexpr const char* sections[] = {"log.", "victoria_park.", "car_park.", "plaza.", "mrclam.", "gps."};
+  if (key == "gps.gate_probability") return false;  // of any fix
+  return std::any_of(std::begin(sections), std::end(sections),
+                     [&](const char* section) { return key.rfind(section, 0) == 0; });
+}
+
 }  // namespace
+
+void refuse_unheeded(const Configuration& configuration, const std::string& navigates, bool by_identities) {
+  for (const std::string& key : configuration.keys) {
+    if (is_of_log(key)) {
+      throw core::InputError(key + ": is for reading a log; " + navigates +
+                             " takes events as they are (read_log and simulate take the option)");
+    }
+  }
+  const apps::Settings& settings = configuration.settings;
+  const bool is_filter = navigates == "FastSlam";
+  if (settings.fastslam.chosen && !is_filter) {
+    throw core::InputError("filter.method: " + navigates + " is no particle filter; helixnav.FastSlam is");
+  }
+  if (settings.known_association && !by_identities) {
+    throw core::InputError("association.method: " + navigates + " takes no identities; helixnav.NamedNavigator does");
+  }
+}
 
 Configuration configuration_of(const py::dict& options, const std::string& vehicle, const std::string& log,
                                Filter filter) {
@@ -56,6 +82,7 @@ Configuration configuration_of(const py::dict& options, const std::string& vehic
   std::vector<std::string> words;
   add_words(options, "", words);
   refuse_unknown(app, words);
+  for (const std::string& word : words) configuration.keys.push_back(word.substr(2, word.find('=') - 2));
   if (filter == Filter::fastslam) words.emplace_back("--filter=fastslam");
   std::reverse(words.begin(), words.end());  // as parse wants them
   try {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "bind.hpp"
 #include "settings/settings.hpp"
@@ -12,6 +13,7 @@ namespace helixnav::python {
 struct Configuration {
   apps::Settings settings;
   std::string text;
+  std::vector<std::string> keys;  ///< given, with their sections
 };
 
 enum class Filter { as_chosen, fastslam };
@@ -21,5 +23,9 @@ enum class Filter { as_chosen, fastslam };
 /// of the filter chosen, or of FastSLAM where the caller is one. core::InputError naming the key.
 Configuration configuration_of(const py::dict& options, const std::string& vehicle = {}, const std::string& log = {},
                                Filter filter = Filter::as_chosen);
+
+/// core::InputError naming the first key given that only the reader of a log heeds, or that chooses what navigates: a navigator
+/// that is made without a log would pass over it in silence. `association.method` 'known' is for `navigates` that goes by identities.
+void refuse_unheeded(const Configuration& configuration, const std::string& navigates, bool by_identities);
 
 }  // namespace helixnav::python

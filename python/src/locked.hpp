@@ -2,9 +2,12 @@
 #pragma once
 
 #include <mutex>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "bind.hpp"
+#include "helixnav/runs/drive_digest.hpp"
 
 namespace helixnav::python {
 
@@ -19,6 +22,8 @@ struct Locked {
 
   AnyNavigator navigator;
   std::mutex mutex;
+  runs::DriveDigest drive = {};                  ///< of the scans taken
+  std::vector<std::string> earlier_drives = {};  ///< of the map that it goes on in, or looks for its place in
 };
 
 /// A method as a function of a Locked: to be called without the GIL, which a thread that waits would else keep.

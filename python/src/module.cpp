@@ -16,6 +16,29 @@ void bind_errors(py::module_& module) {
       "The mathematics broke down; the object is as it was before the call.";
 }
 
+/// `Class.__new__(Class)` would hand out an object that nothing has begun, and that ends the process when it is used. Classes made
+/// from ours still get theirs by it, and pybind11 sees to it that these call __init__.
+py::object new_of(const py::args& arguments, const py::kwargs&) {
+  auto* const made = arguments.empty() ? nullptr : reinterpret_cast<PyTypeObject*>(arguments[0].ptr());
+  const bool is_derived = made != nullptr && PyType_Check(made) && (made->tp_flags & Py_TPFLAGS_HEAPTYPE) != 0 &&
+                          made->tp_new != py::detail::pybind11_object_new;
+  if (!is_derived) throw py::type_error("__new__ alone makes no object that could be used: call the class");
+  return py::reinterpret_steal<py::object>(py::detail::pybind11_object_new(made, nullptr, nullptr));
+}
+
+/// Beside the slot, which calling the class goes by.
+void hide_new(py::module_& module) {
+  const py::object hidden =
+      py::reinterpret_steal<py::object>(PyStaticMethod_New(py::cpp_function(&new_of, py::name("__new__")).ptr()));
+  const PyTypeObject* const metaclass = py::detail::get_internals().default_metaclass;
+  for (const auto& [name, value] : py::dict(module.attr("__dict__"))) {
+    if (Py_TYPE(value.ptr()) != metaclass) continue;
+    auto* const type = reinterpret_cast<PyTypeObject*>(value.ptr());
+    PyDict_SetItemString(type->tp_dict, "__new__", hidden.ptr());
+    PyType_Modified(type);
+  }
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_helixnav, module) {
@@ -31,6 +54,7 @@ PYBIND11_MODULE(_helixnav, module) {
   bind_join(module);
   bind_team(module);
   bind_team_log(module);
+  hide_new(module);
 }
 
 }  // namespace helixnav::python

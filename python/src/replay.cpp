@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "replay.hpp"
 
-#include <cstdint>
+#include <exception>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -16,6 +16,7 @@
 #include "drive/given_map.hpp"
 #include "drive/keeping.hpp"
 #include "drive/kept_inputs.hpp"
+#include "drive/truth_on_map.hpp"
 #include "drive/withholding.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/event_loop.hpp"
@@ -23,6 +24,7 @@
 #include "helixnav/reports/finish_run.hpp"
 #include "helixnav/runs/run_recorder.hpp"
 #include "helixnav/runs/run_writer.hpp"
+#include "signals.hpp"
 #include "smooth/smooth_drive.hpp"
 
 namespace helixnav::python {
@@ -97,29 +99,35 @@ apps::Drive job_of(const Log& log, const ReplayWishes& wishes) {
   job.smooth = wishes.smooth;
   job.out = wishes.out;
   if (goes_on_from_drive(log, wishes)) {
-    apps::put_before(runs::read_drive(apps::drive_file_in(wishes.map->path.string())), job.recording, job.withheld);
+    const std::string folder = wishes.map->path.string();
+    const std::size_t driven =
+        apps::put_before(runs::read_drive(apps::drive_file_in(folder)), job.recording, job.withheld);
+    apps::put_truth_behind(folder, driven, job.recording);
   } else {
     take_map(wishes, job);
+    apps::put_truth_on_map(job);
   }
   job.manifest = manifest_of(log, wishes);
   return job;
 }
 
-/// Ctrl-C, now and then.
-void heed_signals(std::int64_t step) {
-  if (step % 256 != 0) return;
-  const py::gil_scoped_acquire acquired;
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-}
+/// How a drive came to its end.
+struct Ended {
+  std::string broken;              ///< what broke of the mathematics, and where; empty when nothing did
+  std::exception_ptr interrupted;  ///< by what a signal raised, such as KeyboardInterrupt
+  bool is_whole() const { return broken.empty() && !interrupted; }
+};
 
-/// Feeds all events. What broke of the mathematics, and where; empty when nothing did.
-std::string navigate(const apps::Drive& job, apps::Estimator& estimator, runs::RunWriter* writer,
-                     runs::RunRecorder& recorder) {
+/// Feeds all events.
+Ended navigate(const apps::Drive& job, apps::Estimator& estimator, runs::RunWriter* writer,
+               runs::RunRecorder& recorder) {
   const std::unique_ptr<runs::DriveFile> file = apps::kept_drive(job);
   apps::Timed timed(estimator);
   apps::Keeping kept(timed, file.get());
   apps::Withholding seen(kept, job.withheld, estimator.pose);
   core::EventLoop loop(job.recording.events, seen);
+  SignalWatch signals;
+  Ended ended;
   try {
     while (const std::optional<core::StepReport> step = loop.next()) {
       const double microseconds = seen.last_scan_was_withheld() ? 0.0 : 1e6 * timed.last_s();
@@ -127,13 +135,15 @@ std::string navigate(const apps::Drive& job, apps::Estimator& estimator, runs::R
       recorder.add(*step, microseconds);
       const bool is_looked_at = writer != nullptr && recorder.wants_map();
       if (is_looked_at) recorder.add_map(estimator.sketch ? estimator.sketch() : estimator.map());
-      heed_signals(step->step);
+      signals.heed();
     }
-    if (file) file->finish();
   } catch (const core::NumericalError& error) {
-    return error.what();  // with step and time
+    ended.broken = error.what();  // with step and time
+  } catch (const py::error_already_set&) {
+    ended.interrupted = std::current_exception();
   }
-  return {};
+  if (file) file->finish();
+  return ended;
 }
 
 }  // namespace
@@ -153,15 +163,18 @@ runs::Run replay(const Log& log, const ReplayWishes& wishes) {
   runs::RunRecorder recorder(job.out, job.manifest, job.recording);
   apps::LabelAgreement agreement;
   apps::Estimator estimator = apps::estimator_of(job, agreement);
-  const std::string broken = navigate(job, estimator, writer.get(), recorder);
+  const Ended ended = navigate(job, estimator, writer.get(), recorder);
+  if (ended.interrupted && !writer) std::rethrow_exception(ended.interrupted);
   runs::Run run = recorder.finish(estimator.map());
   run.joint_map = estimator.joint_map();
+  if (run.joint_map) run.joint_map->drives = apps::drives_in_map(job, run);
   if (estimator.parts_apart) run.parts_apart = estimator.parts_apart();
   if (estimator.particle_end) run.particle_end = estimator.particle_end();
   run.numbers = apps::numbers_of(agreement);
-  if (job.smooth && broken.empty()) apps::smooth(job, run);
+  if (job.smooth && ended.is_whole()) apps::smooth(job, run);
   if (writer) reports::finish_run(run, *writer);
-  if (!broken.empty()) throw core::NumericalError(broken);
+  if (ended.interrupted) std::rethrow_exception(ended.interrupted);
+  if (!ended.broken.empty()) throw core::NumericalError(ended.broken);
   return run;
 }
 

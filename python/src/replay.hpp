@@ -27,7 +27,8 @@ struct ReplayWishes {
   bool smooth = false;
 };
 
-/// As the program's replay, to the last digit. Without the GIL, which it takes now and then to heed Ctrl-C.
+/// As the program's replay, to the last digit. Without the GIL, which it takes now and then to heed Ctrl-C: the folder is then whole
+/// up to there, and what the signal raised is raised.
 /// PreconditionError for wishes that exclude each other, InputError for a log or map that they cannot be had of.
 runs::Run replay(const Log& log, const ReplayWishes& wishes);
 

@@ -24,6 +24,27 @@ bool too_many_left_out(const evaluation::PositionEvaluation& position) {
   return 10 * position.fixes_left_out > position.fixes_used + position.fixes_left_out;
 }
 
+/// Nearly all of the error is one of place and heading: the truth may be of another frame, or the run lie elsewhere.
+bool is_displaced(const evaluation::PositionEvaluation& position) {
+  constexpr double least_m = 1.0;
+  constexpr double times = 10.0;
+  return position.against_poses && !position.aligned && position.error_m.rmse > least_m &&
+         position.error_m.rmse > times * position.rmse_aligned_m;
+}
+
+std::string against_text(const evaluation::PositionEvaluation& position) {
+  if (!position.against_poses) return "  against            position fixes, after rigid alignment\n";
+  if (position.aligned) {
+    return "  against            true poses, after rigid alignment: where the map lies in their frame is not known\n";
+  }
+  std::string text = "  against            true poses, in the map frame as it is\n";
+  if (!is_displaced(position)) return text;
+  return text + format(
+                    "  after alignment    RMSE %.3f m: map and truth lie apart; is the truth given in the frame of the "
+                    "earlier map's, or of the start?\n",
+                    position.rmse_aligned_m);
+}
+
 std::string position_text(const evaluation::PositionEvaluation& position) {
   const evaluation::ErrorStatistics& e = position.error_m;
   if (e.count == 0) {
@@ -32,16 +53,18 @@ std::string position_text(const evaluation::PositionEvaluation& position) {
   }
   std::string text = format("position error       RMSE %.3f m, median %.3f m, 95 %% %.3f m, maximum %.3f m\n", e.rmse,
                             e.median, e.p95, e.max);
-  text += position.aligned ? "  against            position fixes, after rigid alignment\n"
-                           : "  against            true poses, in the map frame as it is\n";
+  text += against_text(position);
   text += format("  fixes used         %zu\n", position.fixes_used);
-  if (position.aligned) {
+  if (position.aligned && !position.against_poses) {
     text += format("  fixes left out     %zu (farther than %g m)%s\n", position.fixes_left_out, position.limit_m,
                    too_many_left_out(position) ? ": too many to be outliers, so that the errors above are too small; "
                                                  "helixnav evaluate RUN --fix-limit-m takes more"
                                                : "");
-    text += format("  alignment          x %.3f m, y %.3f m, heading %.3f deg (map in the frame of the fixes)\n",
-                   position.T_truth_map.x_m, position.T_truth_map.y_m, in_degrees(position.T_truth_map.heading_rad));
+  }
+  if (position.aligned) {
+    text += format("  alignment          x %.3f m, y %.3f m, heading %.3f deg (map in the frame of the %s)\n",
+                   position.T_truth_map.x_m, position.T_truth_map.y_m, in_degrees(position.T_truth_map.heading_rad),
+                   position.against_poses ? "true poses" : "fixes");
   }
   if (position.fixes_outside > 0) text += format("  outside the run    %zu\n", position.fixes_outside);
   return text;
@@ -109,9 +132,11 @@ Json position_to_json(const evaluation::PositionEvaluation& position) {
   json["fixes_used"] = position.fixes_used;
   json["fixes_left_out"] = position.fixes_left_out;
   json["fixes_outside"] = position.fixes_outside;
-  json["against"] = position.aligned ? "positions" : "poses";
+  json["against"] = position.against_poses ? "poses" : "positions";
+  json["aligned"] = position.aligned;
+  if (position.against_poses) json["rmse_aligned_m"] = position.rmse_aligned_m;
+  if (!position.against_poses) json["limit_m"] = position.limit_m;
   if (position.aligned) {
-    json["limit_m"] = position.limit_m;
     json["alignment"] = {{"x_m", position.T_truth_map.x_m},
                          {"y_m", position.T_truth_map.y_m},
                          {"heading_rad", position.T_truth_map.heading_rad}};

@@ -35,6 +35,7 @@ PostponedWork postponed_in(const runs::Run& run) {
     for (const core::Decision& decision : step.decisions) {
       const core::DecisionRow row = core::row_of(decision);
       postponed.scans_thinned += row.kind == "scan" && row.verdict == "thinned";
+      postponed.scans_left_out += row.kind == "scan" && row.verdict == "left-out";
       const auto* work = std::get_if<core::PostponedDecision>(&decision);
       if (work == nullptr) continue;
       postponed.associations += work->work == core::PostponedDecision::Work::association;
@@ -60,6 +61,7 @@ std::string numerics_text(const core::NumericalHealth& numerics) {
 std::string postponed_text(const PostponedWork& postponed) {
   std::vector<std::string> parts;
   add(postponed.scans_thinned, "scans were thinned out", parts);
+  add(postponed.scans_left_out, "scans had names that could not be computed with", parts);
   add(postponed.associations, "associations were ended before their search was", parts);
   add(postponed.windows, "hand-overs of the filter were put off", parts);
   add(postponed.drives, "solutions of the whole drive were left out", parts);

@@ -15,11 +15,12 @@ core::NumericalHealth numerics_of(const runs::Run& run);
 /// How often budgets left work out or put it off.
 struct PostponedWork {
   std::int64_t scans_thinned = 0;
+  std::int64_t scans_left_out = 0;  ///< their names
   std::int64_t associations = 0;
   std::int64_t windows = 0;
   std::int64_t drives = 0;
 
-  bool any() const { return scans_thinned + associations + windows + drives > 0; }
+  bool any() const { return scans_thinned + scans_left_out + associations + windows + drives > 0; }
 };
 PostponedWork postponed_in(const runs::Run& run);
 

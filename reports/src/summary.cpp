@@ -86,6 +86,7 @@ Json numerics_to_json(const runs::Run& run) {
 
 Json postponed_to_json(const PostponedWork& postponed) {
   return {{"scans_thinned", postponed.scans_thinned},
+          {"scans_left_out", postponed.scans_left_out},
           {"associations", postponed.associations},
           {"windows", postponed.windows},
           {"drives", postponed.drives}};

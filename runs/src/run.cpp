@@ -10,6 +10,8 @@ namespace helixnav::runs {
 RunTruth truth_of(const core::Recording& recording) {
   RunTruth truth;
   truth.poses = recording.true_poses;
+  truth.frame = recording.truth_frame;
+  truth.frame_when_placed = recording.truth_frame_when_placed;
   truth.positions = recording.true_positions;
   if (!truth.positions.empty()) truth.antenna_robot_m = recording.antenna_robot_m;
   truth.landmarks = recording.true_landmarks;

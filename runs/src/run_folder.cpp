@@ -315,6 +315,7 @@ Run read_run(const std::string& path) {
   tell_missing_rows(path, said, run.missing);
   if (run.finished) tell_cut_drive(path, said.steps.value_or(0), run.missing);
   if (has_truth(path)) run.truth = read_truth(path);
+  bring_truth_into_map(run);
   return run;
 }
 

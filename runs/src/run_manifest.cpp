@@ -61,6 +61,15 @@ std::string sha256_of_file(const std::string& path) {
   return hexadecimal(digest.data(), length);
 }
 
+std::string sha256_of_bytes(std::string_view bytes) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned length = 0;
+  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1) {
+    throw core::NumericalError("SHA-256 is not to be had");
+  }
+  return hexadecimal(digest.data(), length);
+}
+
 std::string command_text(const std::vector<std::string>& arguments) {
   std::string text;
   for (std::size_t i = 0; i < arguments.size(); ++i) {

@@ -100,6 +100,7 @@ Run RunRecorder::finish(const std::vector<core::MapLandmark>& map) {
   for (core::MapLandmark& landmark : run.map) mirror_upper_triangle(landmark.point.covariance_m2);
   run.finished = true;
   bring_into_map(run);
+  bring_truth_into_map(run);
   std::vector<core::StampedPose>& solved = book_->solved_before;
   solved.insert(solved.end(), book_->solved.begin(), book_->solved.end());
   correct_path(run, solved);

@@ -86,6 +86,39 @@ void read_labels(const std::string& path, RunTruth& truth) {
   });
 }
 
+void read_frames(const std::string& path, RunTruth& truth) {
+  for_each_row(path, truth_frame_table, [&](const RunRow& row) {
+    const bool is_known = row.integer_in(1, 0, 1) == 1;
+    core::TruthFrame frame{is_known, std::nullopt};
+    if (is_known) frame.T_truth_map = core::Pose2(row.finite(2), row.finite(3), row.finite(4));
+    if (row.text(0) == "begin") {
+      truth.frame = frame;
+    } else if (row.text(0) == "placed") {
+      truth.frame_when_placed = frame;
+    } else {
+      row.refuse(0, "begin or placed");
+    }
+  });
+}
+
+void append_frame(const char* when, const core::TruthFrame& frame, std::string& text) {
+  const core::Pose2 T_truth_map = frame.T_truth_map.value_or(core::Pose2());
+  text += when;
+  text += frame.T_truth_map ? ",1" : ",0";
+  append_row(text, {T_truth_map.x_m, T_truth_map.y_m, T_truth_map.heading_rad});
+}
+
+/// Nothing of a drive of which only the poses in the map frame are known.
+void write_frames(const std::string& folder, const core::Recording& recording) {
+  const core::TruthFrame& begin = recording.truth_frame;
+  const std::optional<core::TruthFrame>& placed = recording.truth_frame_when_placed;
+  if (recording.true_poses.empty() || (begin.is_map && !begin.T_truth_map && !placed)) return;
+  std::string text = std::string(truth_frame_table.header) + '\n';
+  if (begin.T_truth_map || !begin.is_map) append_frame("begin", begin, text);
+  if (placed) append_frame("placed", *placed, text);
+  files::write_whole_file(folder + '/' + std::string(truth_frame_table.file), text);
+}
+
 struct TruthReader {
   const RunTable& table;
   void (*read)(const std::string& path, RunTruth& truth);
@@ -94,7 +127,8 @@ struct TruthReader {
 constexpr TruthReader readers[] = {{truth_poses_table, &read_poses},
                                    {truth_positions_table, &read_positions},
                                    {truth_landmarks_table, &read_landmarks},
-                                   {truth_labels_table, &read_labels}};
+                                   {truth_labels_table, &read_labels},
+                                   {truth_frame_table, &read_frames}};
 
 RunTruth read_truth_file(const std::string& path) {
   const std::string text = files::read_whole_file(path);
@@ -118,6 +152,7 @@ void write_truth(const std::string& folder, const core::Recording& recording) {
     files::append_seconds(text, pose.t_ns);
     append_row(text, {pose.T_world_robot.x_m, pose.T_world_robot.y_m, pose.T_world_robot.heading_rad});
   });
+  write_frames(folder, recording);
   const Eigen::Vector2d& antenna = recording.antenna_robot_m;
   write_table(folder, truth_positions_table, recording.true_positions,
               [&](std::string& text, const core::TruePosition& fix) {

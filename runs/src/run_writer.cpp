@@ -40,7 +40,7 @@ void make_folder(const std::string& folder, RunWriter::IfNotEmpty if_not_empty) 
   for (const char* name : run_files) fs::remove(fs::path(folder) / name, error);
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (entry.path().filename().string().rfind("part_", 0) != 0) continue;
-    for (const char* name : {"map.csv", joint_map_file}) fs::remove(entry.path() / name, error);
+    for (const char* name : {"map.csv", joint_map_file, drives_file}) fs::remove(entry.path() / name, error);
     fs::remove(entry.path(), error);  // unless something else is in it
   }
 }
@@ -236,9 +236,7 @@ void RunWriter::finish(const Run& run, const std::string& report_page, const std
     files::write_whole_file(folder_ + '/' + std::string(final_trajectory_table.file),
                             final_trajectory_text(run.steps, run.final_path));
   }
-  if (run.joint_map && run.joint_map->joint.ids.size() <= most_joint_landmarks) {
-    files::write_whole_file(folder_ + '/' + joint_map_file, joint_map_bytes(*run.joint_map));
-  }
+  if (run.joint_map) write_joint_map(folder_, *run.joint_map);
   for (const auto& [part, map] : run.parts_apart) write_part(folder_ + "/part_" + std::to_string(part), map);
   if (run.particle_end) {
     files::write_whole_file(folder_ + '/' + std::string(paths_table.file), paths_text(run.particle_end->paths));

@@ -39,6 +39,7 @@ core::Recording simulate_in(const World& world, const Scenario& scenario, std::u
   core::Recording recording;
   recording.name = scenario.name;
   recording.true_landmarks = true_landmarks(world);
+  recording.truth_frame.T_truth_map = core::Pose2();
 
   Odometer odometer(scenario, seed);
   Scanner scanner(scenario, world, seed);

@@ -68,6 +68,43 @@ TEST(CheckEvent, AcceptsACovarianceOfRankOneToThree) {
   }
 }
 
+TEST(CheckEvent, RefusesWhatIsBeyondAnyVehicle) {
+  for (const double wrong : {1.1e8, 1e100, 1e160, 1e300}) {
+    SCOPED_TRACE(wrong);
+    Odometry odometry = good_odometry();
+    odometry.T_before_after.x_m = -wrong;
+    expect_refused(odometry, "increment");
+    odometry = good_odometry();
+    odometry.covariance(0, 0) = wrong * wrong;
+    expect_refused(odometry, "covariance");
+    Scan scan = good_scan();
+    scan.T_robot_sensor.x_m = wrong;
+    expect_refused(scan, "T_robot_sensor");
+    scan = good_scan();
+    scan.observations[1].z[0] = wrong;
+    expect_refused(scan, "observation 1");
+    scan = good_scan();
+    scan.observations[0].R(0, 0) = wrong * wrong;
+    expect_refused(scan, "observation 0");
+    AbsoluteFix fix;
+    fix.t_ns = 42;
+    fix.position_world_m.y() = wrong;
+    expect_refused(fix, "position");
+  }
+  Odometry odometry = good_odometry();
+  odometry.T_before_after.heading_rad = 1e7;
+  expect_refused(odometry, "increment");
+}
+
+TEST(CheckEvent, AcceptsCoordinatesOfAGridAndWhatNobodyKnows) {
+  AbsoluteFix fix;
+  fix.position_world_m = {5e5, 9.9e6};
+  EXPECT_NO_THROW(check(fix));
+  Odometry odometry = good_odometry();
+  odometry.covariance = Eigen::Vector3d(1e12, 1e12, 10.0).asDiagonal();
+  EXPECT_NO_THROW(check(odometry));
+}
+
 TEST(CheckEvent, RefusesOdometryThatIsNotFiniteOrHasNoCovariance) {
   for (const double wrong : {not_a_number, infinite, -infinite}) {
     Odometry odometry = good_odometry();

@@ -89,6 +89,26 @@ TEST(Evaluation, AgainstTruePosesEqualsHandComputedValues) {
   EXPECT_EQ(evaluation.pose->nees_inside_95, 1.0);
 }
 
+TEST(Evaluation, AlignsTruePosesThatAreInAFrameOfTheirOwn) {
+  runs::Run run = straight_run();
+  const core::Pose2 T_truth_map(30.0, -20.0, 1.2);
+  for (int k = 0; k <= 10; ++k) {
+    const core::Pose2 displaced(k, k % 2 == 0 ? 0.1 : -0.1, 0.0);
+    run.truth.poses.push_back({run.steps[static_cast<std::size_t>(k)].t_ns, core::compose(T_truth_map, displaced)});
+  }
+  Evaluation evaluation = evaluate(run);
+  EXPECT_GT(evaluation.position->error_m.rmse, 10.0);
+  EXPECT_NEAR(evaluation.position->rmse_aligned_m, 0.1, 0.01);
+  run.truth.frame.is_map = false;
+  evaluation = evaluate(run);
+  EXPECT_TRUE(evaluation.position->aligned);
+  EXPECT_TRUE(evaluation.position->against_poses);
+  EXPECT_NEAR(evaluation.position->error_m.rmse, 0.1, 0.01);
+  EXPECT_NEAR(evaluation.position->T_truth_map.heading_rad, 1.2, 0.02);
+  EXPECT_LT(evaluation.pose->heading_error_rad.rmse, 0.02);
+  EXPECT_EQ(evaluation.position->fixes_left_out, 0u);
+}
+
 TEST(Evaluation, LeavesNeesOutWhereTheCovarianceIsSingular) {
   runs::Run run = straight_run();
   run.steps[0].pose.covariance.setZero();

@@ -38,6 +38,15 @@ TEST_F(VehicleFile, TakesAnglesInDegreesOrRadians) {
   EXPECT_DOUBLE_EQ(*vehicle.sensors[0].sigma_bearing_rad, 0.25);
 }
 
+TEST_F(VehicleFile, TakesAViewAcrossTheBack) {
+  const Vehicle behind = read("[[sensor]]\nview_deg = [90, 270]\n");
+  EXPECT_DOUBLE_EQ(*behind.sensors[0].min_bearing_rad, 0.5 * core::pi);
+  EXPECT_DOUBLE_EQ(*behind.sensors[0].max_bearing_rad, 1.5 * core::pi);
+  const Vehicle all_around = read("[[sensor]]\nview_deg = [0, 360]\n");
+  EXPECT_DOUBLE_EQ(*all_around.sensors[0].min_bearing_rad, -core::pi);
+  EXPECT_DOUBLE_EQ(*all_around.sensors[0].max_bearing_rad, core::pi);
+}
+
 TEST_F(VehicleFile, OfNothingTellsNothing) {
   const Vehicle vehicle = read("");
   EXPECT_TRUE(vehicle.sensors.empty());

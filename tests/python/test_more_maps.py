@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Earlier maps, FastSLAM, joined runs and teams: as the program, to the last digit, and the errors of each."""
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -135,9 +136,25 @@ def test_a_map_that_is_not_there_is_said(log, tmp_path):
         helixnav.join([1, 2])
 
 
+def another_day(own_log, tmp_path):
+    """The same way again: other noise in its ranges."""
+    folder = tmp_path / "another_day"
+    shutil.copytree(own_log, folder)
+    header, *rows = (folder / "detections.csv").read_text().splitlines()
+    column = header.split(",").index("range_m")
+    noise = np.random.default_rng(2).normal(0.0, 0.01, len(rows))
+    for k, row in enumerate(rows):
+        cells = row.split(",")
+        if cells[column]:
+            cells[column] = f"{float(cells[column]) + noise[k]:.4f}"
+        rows[k] = ",".join(cells)
+    (folder / "detections.csv").write_text("\n".join([header, *rows]) + "\n")
+    return folder
+
+
 def test_runs_are_joined_as_the_program_joins_them(program, own_log, first, tmp_path):
     other = tmp_path / "other"
-    helixnav.replay(helixnav.read_log(own_log, options={"log.covariance_scale": 1.1}), out=tmp_path / "a")
+    helixnav.replay(helixnav.read_log(another_day(own_log, tmp_path)), out=tmp_path / "a")
     program("simulate", "circuit", "--seed", 1, "--out", tmp_path / "b", "--quiet")
     program("join", first, tmp_path / "a", tmp_path / "b", "--out", other, "--quiet")
     joined = helixnav.join([first, tmp_path / "a", tmp_path / "b"], out=tmp_path / "here")
@@ -165,7 +182,7 @@ def test_a_run_that_went_on_is_not_joined_with_what_it_went_on_in(log, first, tm
 
 
 def test_a_joined_map_is_not_joined_with_what_it_is_made_of(log, own_log, first, tmp_path):
-    helixnav.replay(helixnav.read_log(own_log, options={"log.covariance_scale": 1.1}), out=tmp_path / "a")
+    helixnav.replay(helixnav.read_log(another_day(own_log, tmp_path)), out=tmp_path / "a")
     helixnav.join([first, tmp_path / "a"], out=tmp_path / "joined")
     with pytest.raises(helixnav.InputError, match="was joined from the map of"):
         helixnav.join([tmp_path / "joined", first])

@@ -153,6 +153,7 @@ ExitCode drive(const Drive& job) {
 
   runs::Run run = recorder.finish(estimator.map());
   run.joint_map = estimator.joint_map();
+  if (run.joint_map) run.joint_map->drives = drives_in_map(job, run);
   if (estimator.parts_apart) run.parts_apart = estimator.parts_apart();
   run.timing = {{"median_us", quantile(step_us, 0.5)},
                 {"p99_us", quantile(step_us, 0.99)},

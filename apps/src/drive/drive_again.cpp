@@ -8,6 +8,8 @@
 #include <utility>
 #include <variant>
 
+#include "helixnav/runs/drive_digest.hpp"
+
 namespace helixnav::apps {
 namespace {
 
@@ -87,7 +89,14 @@ std::size_t pass_over(core::Nanoseconds end_ns, core::Recording& recording) {
   return scans;
 }
 
-void put_before(runs::FedDrive before, core::Recording& recording, std::vector<bool>& withheld) {
+std::vector<std::string> drives_in_map(const Drive& job, const runs::Run& run) {
+  std::vector<std::string> own = runs::drives_of(job.recording.events);
+  const bool is_on_earlier =
+      job.earlier && (job.earlier->start.kind != SessionStart::Kind::unknown || runs::is_on_earlier_map(run));
+  return is_on_earlier ? runs::united_drives(std::move(own), job.earlier->map.drives) : own;
+}
+
+std::size_t put_before(runs::FedDrive before, core::Recording& recording, std::vector<bool>& withheld) {
   const std::size_t driven = begin_behind(before.events, recording);
   std::vector<std::vector<core::Label>> labels;
   for (const core::Event& event : before.events) {
@@ -105,6 +114,7 @@ void put_before(runs::FedDrive before, core::Recording& recording, std::vector<b
   recording.start = before.start;
   recording.events.insert(recording.events.begin(), std::make_move_iterator(before.events.begin()),
                           std::make_move_iterator(before.events.end()));
+  return driven;
 }
 
 }  // namespace helixnav::apps

@@ -11,6 +11,7 @@
 #include "earlier_session.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/runs/drive_file.hpp"
+#include "helixnav/runs/run.hpp"
 
 namespace helixnav::apps {
 
@@ -28,7 +29,11 @@ std::size_t pass_over(core::Nanoseconds end_ns, core::Recording& recording);
 
 /// Puts the drive of an earlier run before a recording that goes on where it ended (docs/yesterdays_map.md): its start, its events, no
 /// labels for them. What the recording holds of that drive is passed over; a recording whose clock began anew is moved behind
-/// it. `withheld` is [scan], empty or as many as there are. Test: apps/go_on_test.cpp, apps/drive_again_test.cpp.
-void put_before(runs::FedDrive before, core::Recording& recording, std::vector<bool>& withheld);
+/// it. `withheld` is [scan], empty or as many as there are. Returns how many scans were passed over. Test: apps/go_on_test.cpp, apps/drive_again_test.cpp.
+std::size_t put_before(runs::FedDrive before, core::Recording& recording, std::vector<bool>& withheld);
+
+/// What went into the map that a run of the job leaves (core::JointMap::drives): its own drive and, where it went on in an earlier map or
+/// was placed on it, what that holds.
+std::vector<std::string> drives_in_map(const Drive& job, const runs::Run& run);
 
 }  // namespace helixnav::apps

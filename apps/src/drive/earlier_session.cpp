@@ -13,6 +13,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/files/number_text.hpp"
 #include "helixnav/runs/joint_map_file.hpp"
+#include "helixnav/runs/map_folder.hpp"
 #include "helixnav/runs/run_folder.hpp"
 
 namespace helixnav::apps {
@@ -89,13 +90,14 @@ core::JointMap read_joint_map_in(const std::string& folder) {
                            " landmarks, only localised, or is of version 0.1");
   }
   core::JointMap map = runs::read_joint_map(file);
+  map.drives = runs::read_drives(folder);
   const fs::path table = fs::path(folder) / "map.csv";
   if (fs::exists(table)) tell_appearances(runs::read_map(table.string()), map);
   return map;
 }
 
 EarlierSession earlier_session(core::JointMap map, const SessionStart& start, const std::string& name) {
-  EarlierSession session{std::move(map), {}, start, {}};
+  EarlierSession session{std::move(map), {}, start, {}, {}};
   check_size(name, session);
   return session;
 }
@@ -106,6 +108,7 @@ EarlierSession read_earlier_session(const std::string& folder, const SessionStar
   const std::vector<core::LandmarkId>& ids = session.map.joint.ids;
   const runs::Run run = runs::read_run(folder);
   session.missing = run.missing;
+  session.T_truth_map = run.truth.frame.T_truth_map;
   for (const auto& [label, id] : landmarks_by_label(run)) {
     if (std::binary_search(ids.begin(), ids.end(), id)) session.landmark_of[label] = id;
   }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "helixnav/core/joint_map.hpp"
 #include "helixnav/core/recording.hpp"
@@ -28,7 +30,8 @@ struct EarlierSession {
   core::JointMap map;
   std::map<core::Label, core::LandmarkId> landmark_of;  ///< by label; empty when that run had no labels
   SessionStart start;
-  std::vector<std::string> missing;  ///< of that run: lost since it was written
+  std::vector<std::string> missing;        ///< of that run: lost since it was written
+  std::optional<core::Pose2> T_truth_map;  ///< where its map lies in the frame of its truth, where that run knows
 };
 
 /// From a map itself, `name` in messages. InputError where it holds too few mature landmarks to begin so.

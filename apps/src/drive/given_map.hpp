@@ -22,6 +22,7 @@ struct GivenMap {
   std::map<core::Label, core::LandmarkId> landmark_of;  ///< by label; empty when the run had no labels
   std::optional<SessionStart> start;                    ///< on it; nothing: as the log says
   std::vector<std::string> missing;                     ///< of the run or the map: lost since it was written
+  std::optional<core::Pose2> T_truth_map;  ///< where it lies in the frame of its truth, where its run knows
 };
 
 /// The landmark that most observations of a label were matched with.

@@ -41,6 +41,7 @@ void evaluate(EvaluateJob& job) {
   warn_of_missing(run.missing);
   choose_nees(run, job);
   if (!job.truth.empty()) run.truth = read_truth_file(job.truth, job.truth_offset_s, run.truth);
+  if (!job.truth.empty() && run.truth.frame_when_placed) runs::bring_truth_into_map(run);
   const evaluation::Evaluation evaluation = evaluation::evaluate(run, job.options);
   if (!job.truth.empty() && evaluation.position && evaluation.position->error_m.count == 0) {
     throw core::InputError(job.truth + ": none of its " + std::to_string(evaluation.position->fixes_outside) +

@@ -65,7 +65,9 @@ void join(CLI::App& command, const JoinJob& job) {
   refuse_to_replace(job.runs, job.folder.out);
   const std::vector<core::JointMap> maps = read_maps(job.runs);
   check_independent(job.runs);
+  check_independent(maps, job.runs);
   supervisor::JoinedSessions joined = supervisor::join_sessions(maps);
+  tell_drives(maps, joined);
   const std::vector<ChangedLandmark> shared = shared_landmarks(maps, joined);
   make_gone_tentative(shared, joined.components);
   write_joined(job.folder.out, job.runs, joined, shared);

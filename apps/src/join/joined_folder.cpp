@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <iterator>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include "drive/drive_again.hpp"
 #include "drive/earlier_session.hpp"
@@ -13,6 +15,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/files/append_cells.hpp"
 #include "helixnav/files/file.hpp"
+#include "helixnav/runs/drive_digest.hpp"
 #include "helixnav/runs/map_folder.hpp"
 #include "helixnav/runs/run_folder.hpp"
 #include "helixnav/runs/run_manifest.hpp"
@@ -150,6 +153,19 @@ std::string joined_from_table(const std::vector<std::string>& runs, const superv
   return text;
 }
 
+bool are_same(const core::JointMap& a, const core::JointMap& b) {
+  return !a.joint.ids.empty() && a.joint.points_m == b.joint.points_m &&
+         a.joint.pose.vector() == b.joint.pose.vector() && a.joint.covariance.rows() == b.joint.covariance.rows() &&
+         a.joint.covariance == b.joint.covariance;
+}
+
+/// Both sorted.
+bool have_drive_in_common(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+  std::vector<std::string> common;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
+  return !common.empty();
+}
+
 }  // namespace
 
 void check_independent(const std::vector<std::string>& runs) {
@@ -160,6 +176,25 @@ void check_independent(const std::vector<std::string>& runs) {
       check_two(runs[a], holdings[a], runs[b], holdings[b]);
       check_two(runs[b], holdings[b], runs[a], holdings[a]);
     }
+  }
+}
+
+void check_independent(const std::vector<core::JointMap>& maps, const std::vector<std::string>& names) {
+  for (std::size_t a = 0; a < maps.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      if (are_same(maps[a], maps[b])) throw core::InputError(names[a] + ": the same map as " + names[b]);
+      if (!have_drive_in_common(maps[a].drives, maps[b].drives)) continue;
+      throw core::InputError(names[a] + " and " + names[b] +
+                             ": both hold what one drive saw, which would count twice; leave one of them out");
+    }
+  }
+}
+
+void tell_drives(const std::vector<core::JointMap>& maps, supervisor::JoinedSessions& joined) {
+  for (core::JointMap& component : joined.components) component.drives.clear();
+  for (std::size_t k = 0; k < maps.size(); ++k) {
+    std::vector<std::string>& drives = joined.components[joined.sessions[k].component].drives;
+    drives = runs::united_drives(std::move(drives), maps[k].drives);
   }
 }
 

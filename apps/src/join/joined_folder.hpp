@@ -13,6 +13,12 @@ namespace helixnav::apps {
 /// went on in it or was joined from it, and for two that hold the map of a third.
 void check_independent(const std::vector<std::string>& runs);
 
+/// Likewise of the maps themselves, `names` in messages: the same map twice, or two that hold one drive.
+void check_independent(const std::vector<core::JointMap>& maps, const std::vector<std::string>& names);
+
+/// Tells the components what drives went into them.
+void tell_drives(const std::vector<core::JointMap>& maps, supervisor::JoinedSessions& joined);
+
 /// Writes what became of several sessions: the first component's map into `out`, which is made, the others' below it, and
 /// joined_from.csv, joins.csv, changes.csv and report.html. `names` are the sessions'.
 void write_joined(const std::string& out, const std::vector<std::string>& names,

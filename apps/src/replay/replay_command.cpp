@@ -20,6 +20,7 @@
 #include "drive/drive_again.hpp"
 #include "drive/kept_inputs.hpp"
 #include "drive/start_option.hpp"
+#include "drive/truth_on_map.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/mrclam.hpp"
 #include "read_to_replay.hpp"
@@ -46,6 +47,11 @@ struct ReplayJob {
   Settings settings;
   TeamChoice team;
 };
+
+void take_drive_before(const std::string& folder, Drive& task) {
+  const std::size_t driven = put_before(runs::read_drive(drive_file_in(folder)), task.recording, task.withheld);
+  put_truth_behind(folder, driven, task.recording);
+}
 
 /// To localise in, or to go on in.
 void take_map(const ReplayJob& job, Drive& task) {
@@ -108,12 +114,13 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   if (!job.blackouts.empty()) task.withheld = withhold(task.recording, job.blackouts);
   apply_log_settings(task.recording, job.settings);
   const bool drives_again = goes_on_from_drive(job);
-  if (drives_again) put_before(runs::read_drive(drive_file_in(job.map)), task.recording, task.withheld);
+  if (drives_again) take_drive_before(job.map, task);
   print_remarks(task.recording);
   task.navigator = fit_to_recording(job.settings, task.recording);
   fill_drive(task, job.run, dump_config(command) + in_force_text(job.settings, task.navigator, task.recording));
   task.smooth = job.smooth;
   if (!drives_again) take_map(job, task);
+  put_truth_on_map(task);
   choose_filter(task, job.settings);
   if (task.fastslam.chosen) task.manifest.seed = task.fastslam.seed;
   task.manifest.inputs = input_files(job.path);

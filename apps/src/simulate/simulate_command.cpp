@@ -19,6 +19,7 @@
 #include "drive/drive_again.hpp"
 #include "drive/kept_inputs.hpp"
 #include "drive/start_option.hpp"
+#include "drive/truth_on_map.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/sim/part_of.hpp"
@@ -120,7 +121,7 @@ ExitCode simulate(CLI::App& command, SimulateJob& job) {
   Drive task;
   std::optional<runs::FedDrive> before = driven_before(job);
   task.recording = recording_of(job, before);
-  if (before) put_before(*std::move(before), task.recording, task.withheld);
+  if (before) put_truth_behind(job.map, put_before(*std::move(before), task.recording, task.withheld), task.recording);
   print_remarks(task.recording);
   task.navigator = fit_to_recording(job.settings, task.recording);
   fill_drive(task, job.run, dump_config(command) + in_force_text(job.settings, task.navigator, task.recording));
@@ -132,6 +133,7 @@ ExitCode simulate(CLI::App& command, SimulateJob& job) {
     task.earlier = read_earlier_session(job.map, job.start.value_or(SessionStart{}));
     warn_of_missing(task.earlier->missing);
     task.manifest.inputs = input_files(joint_map_file_in(job.map));
+    put_truth_on_map(task);
   }
   return drive(task);
 }

@@ -33,7 +33,9 @@ void LiveNavigator::begin(const core::Recording& next) {
 }
 
 std::optional<core::StepReport> LiveNavigator::take(const core::Event& event) {
-  const bool is_scan = std::holds_alternative<core::Scan>(event);
+  const auto* seen = std::get_if<core::Scan>(&event);
+  const bool is_scan = seen != nullptr;
+  if (is_scan) drive_.add(*seen);
   const std::size_t scan = is_scan ? scan_++ : 0;
   if (auto* unnamed = std::get_if<supervisor::Navigator>(&*navigator_)) return unnamed->take(event);
   auto& named = std::get<supervisor::NamedNavigator>(*navigator_);
@@ -52,7 +54,10 @@ std::map<int, core::JointMap> LiveNavigator::maps_apart() const {
 
 std::optional<core::JointMap> LiveNavigator::joint_map() const {
   if (!navigator_) return std::nullopt;
-  return std::visit([this](const auto& navigator) { return joint_map_of(navigator, reach_m_); }, *navigator_);
+  std::optional<core::JointMap> map =
+      std::visit([this](const auto& navigator) { return joint_map_of(navigator, reach_m_); }, *navigator_);
+  if (const std::string drive = drive_.text(); map && !drive.empty()) map->drives = {drive};
+  return map;
 }
 
 }  // namespace helixnav::apps

@@ -9,6 +9,7 @@
 
 #include "helixnav/core/joint_map.hpp"
 #include "helixnav/core/recording.hpp"
+#include "helixnav/runs/drive_digest.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
 #include "helixnav/supervisor/navigator.hpp"
 #include "settings/settings.hpp"
@@ -48,6 +49,7 @@ class LiveNavigator {
   std::optional<Either> navigator_;
   std::string lengths_text_;
   double reach_m_ = 0.0;  ///< 0: unknown
+  runs::DriveDigest drive_;
   const std::vector<std::vector<core::Label>>* labels_ = nullptr;
   std::size_t scan_ = 0;
 };

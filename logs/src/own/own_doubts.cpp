@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "helixnav/core/angle.hpp"
+#include "helixnav/core/in_view.hpp"
 #include "own/own_overlap.hpp"
 #include "own/vehicle/units.hpp"
 
@@ -196,7 +197,7 @@ bool is_outside(const core::Observation& z, const core::FieldOfView& view) {
   if (view.reach() && range_m > slack * *view.reach()) return true;
   if (z.kind == core::ObservationKind::range) return false;
   const double bearing_rad = point ? std::atan2(z.z[1], z.z[0]) : core::wrap_to_pi(z.z[polar ? 1 : 0]);
-  return bearing_rad < view.min_bearing_rad - slack_rad || bearing_rad > view.max_bearing_rad + slack_rad;
+  return !core::is_between_bearings(view, bearing_rad, -slack_rad);
 }
 
 void doubt_vehicle(const Vehicle& vehicle, const core::Recording& recording, Doubts& doubts) {

@@ -104,10 +104,12 @@ void append(const core::Scan& scan, const std::vector<core::Label>* labels, std:
   text += "]}\n";
 }
 
+/// In the frame in which it was given, so that truths of several logs stay in one.
 void append_truth(const core::Recording& recording, std::string& text) {
+  const core::Pose2 T_truth_map = recording.truth_frame.T_truth_map.value_or(core::Pose2());
   for (const core::TruePose& pose : recording.true_poses) {
     text += "{\"truth_poses\": ";
-    const core::Pose2& at = pose.T_world_robot;
+    const core::Pose2 at = core::compose(T_truth_map, pose.T_world_robot);
     Line(text).add("t_ns", pose.t_ns).add("x", at.x_m).add("y", at.y_m).add("heading", at.heading_rad).end();
     text += "}\n";
   }
@@ -115,7 +117,8 @@ void append_truth(const core::Recording& recording, std::string& text) {
     text += "{\"truth_landmarks\": ";
     Line line(text);
     if (landmark.label != core::no_label) line.add("id", std::int64_t{landmark.label});
-    line.add("x", landmark.point_m.x()).add("y", landmark.point_m.y()).end();
+    const Eigen::Vector2d at_m = core::transform(T_truth_map, landmark.point_m);
+    line.add("x", at_m.x()).add("y", at_m.y()).end();
     text += "}\n";
   }
 }

@@ -146,6 +146,18 @@ core::Nanoseconds weave(const OwnLog& log, const Vehicle& vehicle, std::vector<L
   return first_ns;
 }
 
+/// The first row of increments says what was driven until its time.
+Beginning beginning_of(const OwnLog& log, const Vehicle& vehicle, core::Nanoseconds first_ns) {
+  Beginning beginning;
+  beginning.t_ns = first_ns;
+  const core::Nanoseconds row_ns = log.odometry.front().t_ns;
+  if (log.odometry_kind != OdometryKind::increments || row_ns != first_ns) return beginning;
+  const std::optional<Motion> first = Motions(log, vehicle).of_row(0, first_ns);
+  beginning.T_start_first = part_of(*first, 1.0, row_ns, vehicle.odometry.T_vehicle_odometry).T_before_after;
+  if (log.odometry.size() > 1) beginning.lasted_ns = log.odometry[1].t_ns - row_ns;
+  return beginning;
+}
+
 }  // namespace
 
 core::Recording make_recording(const OwnLog& log, const Vehicle& vehicle) {
@@ -161,7 +173,7 @@ core::Recording make_recording(const OwnLog& log, const Vehicle& vehicle) {
   recording.antenna_robot_m = vehicle.antenna_m;
   const core::Nanoseconds first_scan_ns = scans.front().scan.t_ns;
   const core::Nanoseconds first_motion_ns = weave(log, vehicle, scans, recording);
-  add_truth(log, std::min(first_scan_ns, first_motion_ns), recording);
+  add_truth(log, beginning_of(log, vehicle, std::min(first_scan_ns, first_motion_ns)), recording);
   for (std::string& doubt : doubts_of(log, vehicle, recording)) recording.remarks.push_back(std::move(doubt));
   return recording;
 }

@@ -24,9 +24,20 @@ std::optional<core::Pose2> pose_at(const std::vector<core::TruePose>& poses, cor
   return core::compose(before.T_world_robot, core::Pose2(Eigen::Vector3d(share * way)));
 }
 
+/// Where the vehicle stood before the first event. Without truth of that time, where it stood after the first increment, less that.
+std::optional<core::Pose2> start_of(const std::vector<core::TruePose>& poses, const Beginning& beginning) {
+  if (beginning.T_start_first.vector().isZero(0.0)) return pose_at(poses, beginning.t_ns);
+  const core::Nanoseconds start_ns = beginning.t_ns - beginning.lasted_ns;
+  const bool is_known = beginning.lasted_ns > 0 && poses.front().t_ns <= start_ns + beginning.lasted_ns / 2;
+  if (is_known) return pose_at(poses, start_ns);
+  const std::optional<core::Pose2> after = pose_at(poses, beginning.t_ns);
+  if (!after) return std::nullopt;
+  return core::compose(*after, core::inverse(beginning.T_start_first));
+}
+
 }  // namespace
 
-void add_truth(const OwnLog& log, core::Nanoseconds start_ns, core::Recording& recording) {
+void add_truth(const OwnLog& log, const Beginning& beginning, core::Recording& recording) {
   recording.true_landmarks = log.true_landmarks;
   recording.true_positions = log.true_positions;
   for (const OwnFix& fix : log.fixes) recording.true_positions.push_back({fix.t_ns, fix.position_m, fix.sigma_m});
@@ -37,7 +48,7 @@ void add_truth(const OwnLog& log, core::Nanoseconds start_ns, core::Recording& r
     recording.remarks.emplace_back("truth_poses: without headings, and there are fixes: the fixes are compared with");
   }
   if (log.true_poses.empty()) return;
-  const std::optional<core::Pose2> start = pose_at(log.true_poses, start_ns);
+  const std::optional<core::Pose2> start = start_of(log.true_poses, beginning);
   if (!start) {
     recording.remarks.emplace_back(
         "truth_poses: none within a second of the first event, so that the frames are aligned by positions");
@@ -47,6 +58,7 @@ void add_truth(const OwnLog& log, core::Nanoseconds start_ns, core::Recording& r
     recording.antenna_robot_m.setZero();
     return;
   }
+  recording.truth_frame.T_truth_map = *start;
   const core::Pose2 T_map_truth = core::inverse(*start);
   for (const core::TruePose& pose : log.true_poses) {
     recording.true_poses.push_back({pose.t_ns, core::compose(T_map_truth, pose.T_world_robot)});

@@ -31,6 +31,7 @@ std::size_t attempt_begin(const std::vector<core::StepReport>& steps, std::size_
 }
 
 Json true_pose_json(const runs::RunTruth& truth, core::Nanoseconds t_ns) {
+  if (!truth.frame.is_map) return nullptr;
   const auto found = std::lower_bound(truth.poses.begin(), truth.poses.end(), t_ns,
                                       [](const core::TruePose& pose, core::Nanoseconds t) { return pose.t_ns < t; });
   return found != truth.poses.end() && found->t_ns == t_ns ? pose_json(found->T_world_robot) : Json(nullptr);

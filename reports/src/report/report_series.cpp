@@ -87,18 +87,20 @@ Json final_path_json(const runs::Run& run) {
 
 Json truth_json(const evaluation::PositionEvaluation& position) {
   const std::vector<evaluation::PositionError> used = errors_with(position, true);
-  Json json = columns(used, stride_for(used.size(), position.aligned ? most_dots : most_line_points), point_columns);
+  Json json =
+      columns(used, stride_for(used.size(), !position.against_poses ? most_dots : most_line_points), point_columns);
   const Json left_out = columns(errors_with(position, false), 1, point_columns);
   json["left_out_x"] = left_out["x"];
   json["left_out_y"] = left_out["y"];
-  json["aligned"] = position.aligned;
+  json["aligned"] = !position.against_poses;
   return json;
 }
 
 Json errors_json(const evaluation::PositionEvaluation& position) {
   const std::vector<evaluation::PositionError> used = errors_with(position, true);
-  Json json = columns(used, stride_for(used.size(), position.aligned ? most_dots : most_line_points), error_columns);
-  json["aligned"] = position.aligned;
+  Json json =
+      columns(used, stride_for(used.size(), !position.against_poses ? most_dots : most_line_points), error_columns);
+  json["aligned"] = !position.against_poses;
   return json;
 }
 

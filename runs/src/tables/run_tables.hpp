@@ -39,12 +39,14 @@ inline constexpr RunTable map_table{"map.csv", "id,x,y,sxx,sxy,syy,observations,
 inline constexpr RunTable map_table_with_appearance{
     "map.csv", "id,x,y,sxx,sxy,syy,observations,state,class,class_nats,size,sigma_size"};
 inline constexpr RunTable truth_poses_table{"truth_poses.csv", "t_s,x,y,heading"};
+inline constexpr RunTable truth_frame_table{"truth_frame.csv", "when,known,x,y,heading"};
 inline constexpr RunTable truth_positions_table{"truth_positions.csv", "t_s,x,y,antenna_x,antenna_y"};
 inline constexpr RunTable truth_landmarks_table{"truth_landmarks.csv", "label,x,y"};
 inline constexpr RunTable truth_labels_table{"truth_labels.csv", "step,observation,label"};
 
 inline constexpr const char* manifest_file = "manifest.json";
 inline constexpr const char* joint_map_file = "map.bin";
+inline constexpr const char* drives_file = "drives.csv";
 inline constexpr const char* drive_file = "drive.bin";
 inline constexpr const char* summary_file = "summary.json";
 inline constexpr const char* report_file = "report.html";
@@ -54,6 +56,7 @@ inline constexpr const char* run_files[] = {
     "associations.csv", "decisions.csv",   "health.csv",           "summary.json",
     "report.html",      "truth_poses.csv", "truth_positions.csv",  "truth_landmarks.csv",
     "truth_labels.csv", "merges.csv",      "clouds.csv",           "map.bin",
-    "particles.csv",    "paths.csv",       "mixture.csv",          "drive.bin"};
+    "particles.csv",    "paths.csv",       "mixture.csv",          "drive.bin",
+    "truth_frame.csv",  "drives.csv"};
 
 }  // namespace helixnav::runs

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "helixnav/core/in_view.hpp"
+
 namespace helixnav::supervisor {
 namespace {
 
@@ -112,9 +114,7 @@ std::vector<core::LandmarkId> expected_in_view(const cekf::CompressedEkf& filter
     const double range_m = point_m.norm();
     const double bearing_rad = std::atan2(point_m.y(), point_m.x());
     const double margin_rad = margin_m / std::max(range_m, margin_m);
-    const bool full_circle = view.max_bearing_rad - view.min_bearing_rad > 2.0 * core::pi - 1e-9;
-    const bool inside = full_circle || (bearing_rad > view.min_bearing_rad + margin_rad &&
-                                        bearing_rad < view.max_bearing_rad - margin_rad);
+    const bool inside = core::is_between_bearings(view, bearing_rad, margin_rad);
     if (inside && range_m > view.min_range_m + margin_m) expected.push_back(id);
   }
   return expected;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "helixnav/core/in_view.hpp"
+
 namespace helixnav::supervisor {
 namespace {
 
@@ -66,8 +68,7 @@ bool is_expected(const Track& track, const SightingRates& rates) {
   const double range_m = at_m.norm();
   const double bearing_rad = std::atan2(at_m.y(), at_m.x());
   const core::FieldOfView& view = rates.sure_view;
-  return range_m >= view.min_range_m && range_m <= view.max_range_m && bearing_rad >= view.min_bearing_rad &&
-         bearing_rad <= view.max_bearing_rad;
+  return range_m >= view.min_range_m && range_m <= view.max_range_m && core::is_between_bearings(view, bearing_rad);
 }
 
 }  // namespace

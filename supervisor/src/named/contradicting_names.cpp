@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -109,6 +110,16 @@ class GivenOthers {
   Eigen::VectorXd residual_;
 };
 
+/// At the minimum over pose and landmarks. Infinite where the way there leads onto a landmark, which nothing can be seen from: no
+/// pose explains the sightings then.
+double least_cost(const cekf::CompressedEkf& filter, const std::vector<cekf::Match>& matches) {
+  try {
+    return filter.iterated_cost(matches).cost;
+  } catch (const core::NumericalError&) {
+    return std::numeric_limits<double>::infinity();
+  }
+}
+
 }  // namespace
 
 double usual_nis(const std::vector<cekf::Match>& matches) {
@@ -118,7 +129,7 @@ double usual_nis(const std::vector<cekf::Match>& matches) {
 std::vector<ContradictingName> contradicting_names(const cekf::CompressedEkf& filter,
                                                    const std::vector<cekf::Match>& matches,
                                                    const AssumedOfNames& assumed) {
-  if (filter.iterated_cost(matches).cost <= assumed.noise_scale * usual_nis(matches)) return {};
+  if (least_cost(filter, matches) <= assumed.noise_scale * usual_nis(matches)) return {};
   GivenOthers given(filter.innovation(matches), matches, assumed.noise_scale);
   std::vector<std::size_t> left(matches.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
@@ -163,7 +174,7 @@ bool agree_about_a_pose(const cekf::CompressedEkf& filter, const std::vector<cek
   if (rows_of(matches) <= 3) return false;
   const cekf::CompressedEkf anywhere =
       moved_by_up_to(filter, assumed.view.reach().value_or(assumed.reach_m), turned_rad);
-  return anywhere.iterated_cost(matches).cost <= assumed.noise_scale * usual_nis(matches);
+  return least_cost(anywhere, matches) <= assumed.noise_scale * usual_nis(matches);
 }
 
 }  // namespace helixnav::supervisor

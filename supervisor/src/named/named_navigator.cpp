@@ -25,6 +25,26 @@ using core::LandmarkId;
 using core::Outcome;
 using core::StepReport;
 
+namespace {
+
+core::Decision left_out_decision(std::size_t observations) {
+  return core::OtherDecision{"scan", "left-out", {{"observations", static_cast<double>(observations)}}};
+}
+
+/// One step with a scan's identities. Where the mathematics breaks on what they claim, one without any: no scan ends a drive.
+template <class StepWith>
+StepReport with_identities_or_none(const std::vector<std::int64_t>& identities, const StepWith& step_with) {
+  try {
+    return step_with(identities, std::vector<core::Decision>());
+  } catch (const core::NumericalError&) {
+    constexpr std::int64_t no_identity = -1;
+    return step_with(std::vector<std::int64_t>(identities.size(), no_identity),
+                     std::vector<core::Decision>{left_out_decision(identities.size())});
+  }
+}
+
+}  // namespace
+
 NamedNavigator::NamedNavigator(const core::PoseGaussian& start, const NavigatorOptions& options)
     : options_(options),
       reach_m_(reference_reach_m),
@@ -79,19 +99,29 @@ StepReport NamedNavigator::observe(const core::Scan& scan, const std::vector<std
   }
   fit_to(scan.field_of_view);
   if (scan.observations.size() > core::most_observations_used) return observe_thinned(scan, identities);
-  return all_or_nothing([&] { return step({scan, identities, {}}); });
+  return with_identities_or_none(identities, [&](const auto& used, const std::vector<core::Decision>& decisions) {
+    return all_or_nothing([&] {
+      pending_.decisions.insert(pending_.decisions.end(), decisions.begin(), decisions.end());
+      return step({scan, used, {}});
+    });
+  });
 }
 
 /// As the Navigator's.
 StepReport NamedNavigator::observe_thinned(const core::Scan& scan, const std::vector<std::int64_t>& identities) {
   const std::vector<std::size_t> used = core::observations_to_use(scan);
   std::vector<AssociationReport> all = core::reports_of_none(identities.size());
-  NamedScan thin{core::thinned(scan, used), {}, {}};
-  for (const std::size_t i : used) thin.identities.push_back(identities[i]);
-  StepReport report = all_or_nothing([&] {
-    pending_.decisions.push_back(core::thinning_decision(identities.size(), used.size()));
-    return step(thin);
-  });
+  const core::Scan thin = core::thinned(scan, used);
+  std::vector<std::int64_t> of_thin;
+  for (const std::size_t i : used) of_thin.push_back(identities[i]);
+  StepReport report =
+      with_identities_or_none(of_thin, [&](const auto& taken, const std::vector<core::Decision>& decisions) {
+        return all_or_nothing([&] {
+          pending_.decisions.push_back(core::thinning_decision(identities.size(), used.size()));
+          pending_.decisions.insert(pending_.decisions.end(), decisions.begin(), decisions.end());
+          return step({thin, taken, {}});
+        });
+      });
   core::name_in_whole_scan(used, all, report.associations);
   return report;
 }

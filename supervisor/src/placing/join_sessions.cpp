@@ -30,11 +30,15 @@ relocalize::AskOptions options_for(std::size_t questions) {
 }
 
 /// Answers that were closed, the surest first.
-std::vector<relocalize::Answer> ask_for(const EarlierMap& session, const relocalize::MapIndex& index) {
+std::vector<relocalize::Answer> ask_for(const EarlierMap& session, const relocalize::MapIndex& index,
+                                        const std::function<void()>& now_and_then) {
   const std::vector<relocalize::Question> questions = map_questions(session, index.options());
   const relocalize::AskOptions options = options_for(questions.size());
   std::vector<relocalize::Answer> answers;
-  for (const relocalize::Question& question : questions) answers.push_back(relocalize::ask(index, question, options));
+  for (const relocalize::Question& question : questions) {
+    now_and_then();
+    answers.push_back(relocalize::ask(index, question, options));
+  }
   std::stable_sort(answers.begin(), answers.end(), [](const relocalize::Answer& a, const relocalize::Answer& b) {
     const auto rank = [](const relocalize::Answer& answer) {
       return std::make_pair(static_cast<int>(answer.verdict), -answer.gap);
@@ -121,7 +125,8 @@ void take_in(const EarlierMap& session, const JoinedMaps& joined, JoinedSession&
 }
 
 /// Tries the surest places until one is accepted.
-bool place_in(const core::JointMap& session_map, JoinedSession& result, core::JointMap& component) {
+bool place_in(const core::JointMap& session_map, const std::function<void()>& now_and_then, JoinedSession& result,
+              core::JointMap& component) {
   const EarlierMap session(session_map);
   const EarlierMap earlier(component);
   const double reach_m = component.reach_m > 0.0 ? component.reach_m : reference_reach_m;
@@ -129,7 +134,7 @@ bool place_in(const core::JointMap& session_map, JoinedSession& result, core::Jo
   view.max_range_m = reach_m;
   const NavigatorOptions options = fit_lengths(NavigatorOptions{}, view);
   const relocalize::IndexOptions lengths = lengths_of(options, reach_m);
-  const std::vector<relocalize::Answer> answers = ask_for(session, earlier.index(lengths));
+  const std::vector<relocalize::Answer> answers = ask_for(session, earlier.index(lengths), now_and_then);
   result.decision = decision_of(answers, component);
   if (answers.empty() || answers.front().verdict != relocalize::Verdict::closed) return false;
   const LandmarkId offset = component.next_name;
@@ -192,7 +197,7 @@ std::vector<std::size_t> largest_first(const std::vector<core::JointMap>& sessio
 
 }  // namespace
 
-JoinedSessions join_sessions(const std::vector<core::JointMap>& sessions) {
+JoinedSessions join_sessions(const std::vector<core::JointMap>& sessions, const std::function<void()>& now_and_then) {
   JoinedSessions result;
   result.sessions.resize(sessions.size());
   std::vector<std::size_t> apart = largest_first(sessions);
@@ -203,7 +208,7 @@ JoinedSessions join_sessions(const std::vector<core::JointMap>& sessions) {
     apart.erase(apart.begin());
     for (std::size_t k = 0; k < apart.size();) {
       JoinedSession& session = result.sessions[apart[k]];
-      if (!place_in(sessions[apart[k]], session, component)) {
+      if (!place_in(sessions[apart[k]], now_and_then, session, component)) {
         ++k;
         continue;
       }

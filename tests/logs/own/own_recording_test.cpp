@@ -218,6 +218,28 @@ TEST(OwnRecording, PutsTruthIntoTheFrameOfTheStart) {
   EXPECT_NEAR(recording.true_landmarks.at(0).point_m.x(), 20.0, 1e-9);
 }
 
+TEST(OwnRecording, BeginsTheTruthBeforeTheFirstIncrementWhoseTimeIsItsEnd) {
+  const char* const known_before = "t,x,y,heading_deg\n0,100,50,90\n1,100,51,90\n2,100,52,90\n";
+  const char* const not_known_before = "t,x,y,heading_deg\n1,100,51,90\n2,100,52,90\n";
+  for (const char* truth : {known_before, not_known_before}) {
+    const OwnLogFolder log;
+    log.write("odometry.csv", "t,dx,dheading\n1,1,0\n2,1,0\n");
+    log.write("detections.csv", "t,range_m,bearing_deg\n1,10,0\n2,9,0\n");
+    log.write("truth_poses.csv", truth);
+    const core::Recording recording = log.recording();
+    SCOPED_TRACE(truth);
+    expect_near(recording.true_poses.back().T_world_robot, {2.0, 0.0, 0.0}, 1e-9);
+  }
+}
+
+TEST(OwnRecording, BeginsTheTruthAtTheScanThatComesBeforeTheFirstIncrement) {
+  const OwnLogFolder log;
+  log.write("odometry.csv", "t,dx,dheading\n1,1,0\n2,1,0\n");
+  log.write("detections.csv", "t,range_m,bearing_deg\n0.5,10,0\n1.5,9,0\n");
+  log.write("truth_poses.csv", "t,x,y,heading_deg\n0.5,100,50,90\n2,100,52,90\n");
+  expect_near(log.recording().true_poses.back().T_world_robot, {2.0, 0.0, 0.0}, 1e-9);
+}
+
 TEST(OwnRecording, HandsOutFixesForComparison) {
   const OwnLogFolder log;
   log.write("fixes.csv", "t,x,y,sigma\n0,100,50,0.5\n2,100,60,\n");

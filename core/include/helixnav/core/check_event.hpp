@@ -8,6 +8,9 @@ namespace helixnav::core {
 /// The precondition of every estimator on an event, checked before anything changes; PreconditionError names the time and
 /// the value. No allocation unless it throws. Test: core/check_event_test.cpp.
 ///
+/// Beyond 1e8 metres, 1e6 radians and covariances of 1e16 (m², rad²) a number is garbage, whose squares and cells leave
+/// what can be computed with: such a length, heading or covariance is refused like one that is not finite.
+///
 /// Odometry: finite increment, covariance finite, symmetric and positive semidefinite to 1e-9 of its largest element.
 void check(const Odometry& odometry);
 /// Scan: finite mounting, a field of view whose bounds are in order (its range may be infinite, or zero where it is

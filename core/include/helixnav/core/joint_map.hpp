@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "helixnav/core/gaussian.hpp"
@@ -16,6 +17,7 @@ struct JointMap {
   LandmarkId next_name = 0;                          ///< landmarks named later are this one and above
   double reach_m = 0.0;                              ///< of the sensor that drew it; 0: unknown
   std::vector<LandmarkAppearance> appearances = {};  ///< [landmark], or empty: nothing is known
+  std::vector<std::string> drives = {};              ///< what went into it, runs::DriveDigest each; sorted
 };
 
 }  // namespace helixnav::core

@@ -23,6 +23,14 @@ struct TruePose {
   Pose2 T_world_robot;
 };
 
+/// The frame that true poses are in. Truths of several drives are taken to be given in one frame, that of one motion capture
+/// room or of one grid, so that a drive on the map of another can be judged.
+struct TruthFrame {
+  bool is_map = true;  ///< they are in the map frame; false: nobody knows where the map lies in theirs
+  std::optional<Pose2>
+      T_truth_map;  ///< of the map frame in the frame in which the truth was given, where that is known
+};
+
 /// A landmark position known from elsewhere (simulator, survey).
 struct TrueLandmark {
   Label label = no_label;
@@ -55,6 +63,8 @@ struct Recording {
   std::vector<SharedObservation> shared_observations;  ///< `labels` holds the first label of each
   bool labels_are_given = false;  ///< what is seen is part of the problem, as in a graph, and not in question
   std::vector<TruePose> true_poses;
+  TruthFrame truth_frame;  ///< of true_poses, and of true_landmarks where there are no true_positions
+  std::optional<TruthFrame> truth_frame_when_placed;  ///< likewise, once the drive finds its place on an earlier map
   std::vector<TrueLandmark> true_landmarks;
   std::vector<Nanoseconds>
       true_carries_ns;  ///< of the first measurement after each time that it was carried, ascending (simulator)

@@ -40,10 +40,13 @@ struct PositionError {
 
 /// Position of the reference point (against true poses) or of the antenna (against true positions).
 struct PositionEvaluation {
-  bool aligned = false;     ///< a rigid alignment stands between the frames; false: the truth is in the map frame
+  bool aligned = false;  ///< a rigid alignment stands between the frames; false: the truth is in the map frame
+  bool against_poses = false;
   core::Pose2 T_truth_map;  ///< identity when not aligned
   double limit_m = 0.0;     ///< beyond it a fix is left out; infinite against true poses
   ErrorStatistics error_m;  ///< over the fixes used
+  double rmse_aligned_m =
+      0.0;  ///< against poses: what a rigid alignment leaves of it, whether it stands between or not
   std::size_t fixes_used = 0;
   std::size_t fixes_left_out = 0;  ///< farther than limit_m after the alignment
   std::size_t fixes_outside = 0;   ///< before the first or after the last step: nothing to compare with
@@ -124,7 +127,8 @@ struct EvaluationOptions {
 
 /// Compares a run with `truth`. The estimate is interpolated at the instants of the truth along arcs of constant twist.
 /// True positions: the antenna's estimated position (pose ∘ lever arm), rigid alignment with outliers left out. True
-/// poses: no alignment, the map frame is theirs; NEES at the same instants with the covariance of the step before.
+/// poses: no alignment where the map frame is theirs (runs::RunTruth::frame), else a rigid one of all; NEES at the same instants
+/// with the covariance of the step before.
 /// Landmarks: after the same alignment. Test: evaluation/evaluation_test.cpp (hand-computed values).
 Evaluation evaluate(const runs::Run& run, const runs::RunTruth& truth, const EvaluationOptions& options = {});
 inline Evaluation evaluate(const runs::Run& run, const EvaluationOptions& options = {}) {

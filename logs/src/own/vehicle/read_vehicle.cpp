@@ -51,9 +51,10 @@ void read_view(TomlSection& section, SensorModel& sensor) {
   sensor.reach_m = section.number("reach_m", 1e-3, most_mounting_m);
   sensor.reliable_range_m = section.number("reliable_range_m", 1e-3, most_mounting_m);
   sensor.min_range_m = section.number("min_range_m", 0.0, most_mounting_m).value_or(0.0);
-  if (const auto view = section.angles("view", -core::pi - 1e-6, core::pi + 1e-6)) {
-    sensor.min_bearing_rad = std::max(view->first, -core::pi);
-    sensor.max_bearing_rad = std::min(view->second, core::pi);
+  if (const auto view = section.angles("view", -2.0 * core::pi, 2.0 * core::pi)) {
+    const bool is_all_around = view->second - view->first >= 2.0 * core::pi;
+    sensor.min_bearing_rad = is_all_around ? -core::pi : view->first;
+    sensor.max_bearing_rad = is_all_around ? core::pi : view->second;
   }
   if (sensor.reach_m && sensor.reliable_range_m && *sensor.reliable_range_m > *sensor.reach_m) {
     section.fail("reliable_range_m", "sensor.reliable_range_m: expected no more than reach_m");

@@ -12,8 +12,15 @@ namespace helixnav::runs {
 /// Its landmarks one by one, without what they have in common.
 std::vector<core::MapLandmark> landmarks_of(const core::JointMap& map);
 
-/// Writes map.csv and, for up to most_joint_landmarks, map.bin into a folder that is there: a map to go on in that no single
+/// Writes map.csv and, for up to most_joint_landmarks, map.bin with drives.csv into a folder that is there: a map to go on in that no single
 /// drive made. InputError where the file system refuses. Test: apps/go_on_test.cpp (replay --map goes on in it).
 void write_map(const std::string& folder, const core::JointMap& map);
+
+/// Writes map.bin and, where the map knows, drives.csv beside it: what of drives went into it. Nothing for a map that is too large.
+void write_joint_map(const std::string& folder, const core::JointMap& map);
+
+/// The drives of the map in a folder, as core::JointMap::drives; none where nobody wrote them. InputError naming the file and the line
+/// of what is no digest.
+std::vector<std::string> read_drives(const std::string& folder);
 
 }  // namespace helixnav::runs

@@ -18,10 +18,13 @@ namespace helixnav::runs {
 
 /// What is known from elsewhere about a run; any part may be empty.
 struct RunTruth {
-  std::vector<core::TruePose> poses;          ///< of the reference point, in the map frame
+  std::vector<core::TruePose> poses;          ///< of the reference point, in the map frame, if `frame` says so
   std::vector<core::TruePosition> positions;  ///< of the antenna, in a frame of their own
   Eigen::Vector2d antenna_robot_m = Eigen::Vector2d::Zero();
-  std::vector<core::TrueLandmark> landmarks;     ///< in the frame of the poses, or of the positions if there are any
+  core::TruthFrame frame;  ///< of the poses
+  std::optional<core::TruthFrame>
+      frame_when_placed;                      ///< that they belong into once the run finds its place on an earlier map
+  std::vector<core::TrueLandmark> landmarks;  ///< in the frame of the poses, or of the positions if there are any
   std::vector<std::vector<core::Label>> labels;  ///< [step][observation]
 };
 
@@ -75,6 +78,19 @@ struct Run {
 /// steps stands, after the last one of a part the steps.
 /// Without poses the path is that of the steps where a session found its place, and none elsewhere. Test: runs/final_path_test.cpp.
 void correct_path(Run& run, const std::vector<core::StampedPose>& solved);
+
+/// Whether a session that looked for its place on an earlier map found it.
+bool is_on_earlier_map(const Run& run);
+
+/// Brings true poses and landmarks of a run that found its place on an earlier map into the frame of that map, which its poses
+/// are in; where nobody knows how that lies in the frame of the truth, says that they are not in the map frame.
+/// Test: runs/truth_frame_test.cpp.
+void bring_truth_into_map(Run& run);
+
+/// Takes truth into the map frame that lies at T_truth_map in the frame in which the truth was given. Where either is not known,
+/// the truth is in a frame of its own from now on.
+void move_truth(const std::optional<core::Pose2>& T_truth_map, core::TruthFrame& frame,
+                std::vector<core::TruePose>& poses, std::vector<core::TrueLandmark>& landmarks);
 
 /// Adds what a smoother made of the run. Where it ran alone, its poses are the run's from now on.
 void add_smoothed(Run& run, SmoothedRun smoothed);

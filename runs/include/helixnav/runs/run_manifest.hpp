@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace helixnav::runs {
@@ -31,6 +32,7 @@ std::string manifest_json(const RunManifest& manifest);
 /// SHA-256 of the file's bytes in lower-case hexadecimal (OpenSSL). Cost: one pass in blocks of 64 KiB. InputError when
 /// the file cannot be read. Test: runs/run_manifest_test.cpp (published digests).
 std::string sha256_of_file(const std::string& path);
+std::string sha256_of_bytes(std::string_view bytes);
 
 /// `arguments` (program first, path of the program dropped) as one line that a POSIX shell reads back as the same
 /// words, without `--out X`, `--out=X`, `-o X` and `--overwrite`: where a run is kept does not change what it is.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <vector>
 
@@ -33,7 +34,9 @@ struct JoinedSessions {
 /// apart begin the next component. α = 1e-5 bounds the probability of a false answer for each pair of sessions. The result
 /// does not depend on the order of the sessions, but for the numbering of those as large as each other.
 /// PreconditionError for a map of which the parts do not fit each other. Cost: for each pair of sessions an index and a
-/// question every 20 landmarks, and O(N²·pairs) for each join. Test: supervisor/placing/join_sessions_test.cpp.
-JoinedSessions join_sessions(const std::vector<core::JointMap>& sessions);
+/// question every 20 landmarks, and O(N²·pairs) for each join. `now_and_then` is called before each question; what it throws
+/// ends the call. Test: supervisor/placing/join_sessions_test.cpp.
+JoinedSessions join_sessions(
+    const std::vector<core::JointMap>& sessions, const std::function<void()>& now_and_then = [] {});
 
 }  // namespace helixnav::supervisor
