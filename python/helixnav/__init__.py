@@ -12,6 +12,9 @@
         report = navigator.take(event)
     print(navigator.pose, navigator.map.means)
 
+    stream = helixnav.Stream("vehicle.toml")         # or live, by times: scans may come late, rows need not be divided
+    reports = stream.take({"odometry": {"t": 0.1, "v": 1.2, "omega_degps": 3}})
+
     tuesday = helixnav.replay(helixnav.read_log("tuesday"), map="runs/mine")      # goes on in that map
     week = helixnav.join(["runs/robot_1", "runs/robot_2"], out="runs/week")       # one map of several
     slam = helixnav.FastSlam(options={"fastslam.particles": 200})                 # to compare with
@@ -46,6 +49,7 @@ from ._helixnav import (
     SameLandmarks,
     Scan,
     StepReport,
+    Stream,
     Team,
     TeamJoin,
     TeamLog,
@@ -92,6 +96,7 @@ __all__ = [
     "SameLandmarks",
     "Scan",
     "StepReport",
+    "Stream",
     "Team",
     "TeamJoin",
     "TeamLog",

@@ -17,6 +17,7 @@ void bind_log(py::module_& module);        // bind_log.cpp: Log, read_log, simul
 void bind_map(py::module_& module);        // bind_map.cpp: Map, JointMap, read_map
 void bind_navigator(py::module_& module);  // bind_navigator.cpp: navigators, reports, decisions
 void bind_fastslam(py::module_& module);   // bind_fastslam.cpp: FastSlam
+void bind_stream(py::module_& module);     // bind_stream.cpp: Stream
 void bind_run(py::module_& module);        // bind_run.cpp: replay, Run, evaluate
 void bind_join(py::module_& module);       // bind_join.cpp: join
 void bind_team(py::module_& module);       // bind_team.cpp: Team, sightings, joins

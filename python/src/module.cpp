@@ -50,6 +50,7 @@ PYBIND11_MODULE(_helixnav, module) {
   bind_map(module);
   bind_navigator(module);
   bind_fastslam(module);
+  bind_stream(module);
   bind_run(module);
   bind_join(module);
   bind_team(module);

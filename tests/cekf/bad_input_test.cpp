@@ -130,11 +130,11 @@ TEST_P(BadInput, ABearingBeyondATurnIsRefused) {
   expect_refused<core::PreconditionError>([&] { filter_.update({{active_, z, {}}}); }, std::to_string(active_));
 }
 
-TEST_P(BadInput, MotionBeyondAllNumbersIsANumericalErrorWithItsTime) {
+TEST_P(BadInput, MotionBeyondAllNumbersIsRefusedWithItsTime) {
   core::Odometry odometry;
   odometry.t_ns = 4711;
   odometry.T_before_after = core::Pose2(1e308, 1e308, 0.0);
-  expect_refused<core::NumericalError>([&] { filter_.predict(odometry); }, "t_ns = 4711");
+  expect_refused<core::PreconditionError>([&] { filter_.predict(odometry); }, "t_ns = 4711");
   odometry.T_before_after = core::Pose2();
   odometry.covariance.diagonal().setConstant(1e300);
   expect_refused<core::PreconditionError>([&] { filter_.predict(odometry); }, "4711");

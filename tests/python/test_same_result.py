@@ -53,6 +53,53 @@ def test_program_stream_and_python_agree_to_the_last_digit(program, own_log, lin
     assert np.array_equal(navigator.map.ids, run.map.ids)
 
 
+def poses_of(reports):
+    return [(report.step, report.pose.x, report.pose.y, report.pose.heading) for report in reports]
+
+
+def stepwise(vehicle, lines):
+    """By the Stream of the module."""
+    stream = helixnav.Stream(vehicle)
+    reports = [report for line in lines for report in stream.take(line)]
+    return stream, reports + stream.finish()
+
+
+def test_a_stream_fed_from_python_is_the_program_s(program, own_log, lines):
+    vehicle = own_log / "vehicle.toml"
+    with open(lines, encoding="utf-8") as stdin:
+        answers = program("stream", "--vehicle", vehicle, stdin=stdin)
+    scans = [json.loads(line)["scan"] for line in answers.splitlines() if line.startswith('{"scan"')]
+    stream, reports = stepwise(vehicle, lines.read_text().splitlines())
+    assert [pose[1:] for pose in poses_of(reports)] == [(s["x"], s["y"], s["heading"]) for s in scans]
+    assert not stream.take_refused()
+    assert len(stream.map) > 10 and len(stream.joint_map()) == len(stream.map)
+
+
+def test_a_stream_puts_late_scans_where_they_were_taken(own_log, lines):
+    vehicle = own_log / "vehicle.toml"
+    rows = [json.loads(line) for line in lines.read_text().splitlines()]
+    times = [float(next(iter(row.values()))[0]["t_s"]) for row in rows]
+    arrival = [t + (0.45 if "detections" in row else 0.0) for t, row in zip(times, rows)]
+    late = [rows[i] for i in sorted(range(len(rows)), key=lambda i: (arrival[i], i))]
+    assert late != rows
+    in_order, late_stream = stepwise(vehicle, rows), stepwise(vehicle, late)
+    assert poses_of(late_stream[1]) == poses_of(in_order[1])
+
+
+def test_a_stream_refuses_by_line_and_goes_on(own_log, lines):
+    rows = lines.read_text().splitlines()
+    stream, reports = stepwise(own_log / "vehicle.toml", [*rows[:200], "{nonsense", {"odometry": {"t": -1e9}}, *rows[200:]])
+    assert [line for line, _, _ in stream.take_refused()] == [201, 202]
+    assert stream.take_refused() == []
+    assert poses_of(reports) == poses_of(stepwise(own_log / "vehicle.toml", rows)[1])
+    with pytest.raises(TypeError):
+        stream.take(17)
+    with pytest.raises(helixnav.InputError):
+        helixnav.Stream(own_log / "no.toml")
+    with pytest.raises(helixnav.InputError):
+        helixnav.Stream(own_log / "vehicle.toml", options={"search.particle": 3})
+
+
 def test_a_folder_of_tables_is_read_as_the_program_reads_it(program, own_log, tmp_path):
     program("replay", own_log, "--out", tmp_path / "program", "--quiet", "--search.particles", 500)
     log = helixnav.read_log(own_log, options={"search.particles": 500})  # with the vehicle.toml in it

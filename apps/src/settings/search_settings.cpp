@@ -108,8 +108,8 @@ void add_trigger(CLI::App& command, Settings& settings) {
              "Seed of the particle filter and of the rivals tried; apart from the seed of a simulated world");
   add_length(
       command, settings, "search.old_after_m", 1e-3, 1e6,
-      "A mature landmark unseen over this driven distance is old: seeing it again may begin a search; auto: twice the "
-      "sensor's reach");
+      "A mature landmark unseen over this driven distance is old, and so is one of which the vehicle has lost the "
+      "direction: seeing it again may begin a search; auto: twice the sensor's reach");
   add_number(command, "--search.expected_confusers,--search.foreign_objects", search.expected_confusers, 1e-6, 1e3,
              "A search begins at this expected number of other objects that may have caused the observation");
 }

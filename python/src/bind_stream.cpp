@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "bind.hpp"
+#include "configuration.hpp"
+#include "helixnav/core/errors.hpp"
+#include "helixnav/core/event_loop.hpp"
+#include "helixnav/logs/own_stream.hpp"
+#include "map.hpp"
+#include "stream/live_navigator.hpp"
+
+namespace helixnav::python {
+namespace {
+
+using Refused = std::tuple<std::size_t, std::string, std::string>;
+
+/// What `helixnav stream` makes of its lines, for a program that has them itself. Calls take turns.
+class Stream {
+ public:
+  explicit Stream(Configuration configuration)
+      : configuration_(std::move(configuration)),
+        input_(*configuration_.settings.logs.vehicle, configuration_.settings.known_association),
+        navigator_(configuration_.settings) {}
+
+  std::vector<core::StepReport> take(const std::string& line) {
+    const std::lock_guard hold(mutex_);
+    return navigate(input_.take(line, ++lines_));
+  }
+
+  std::vector<core::StepReport> finish() {
+    const std::lock_guard hold(mutex_);
+    return navigate(input_.finish());
+  }
+
+  std::vector<Refused> take_refused() {
+    const std::lock_guard hold(mutex_);
+    return std::exchange(refused_, {});
+  }
+
+  std::vector<std::string> take_remarks() {
+    const std::lock_guard hold(mutex_);
+    return std::exchange(remarks_, {});
+  }
+
+  Map map() {
+    const std::lock_guard hold(mutex_);
+    return Map{navigator_.map()};
+  }
+
+  std::optional<core::JointMap> joint_map() {
+    const std::lock_guard hold(mutex_);
+    return navigator_.joint_map();
+  }
+
+ private:
+  /// A scan on which the mathematics breaks is left out, as the program leaves it out.
+  std::vector<core::StepReport> navigate(logs::StreamedEvents next) {
+    for (const logs::RefusedLine& one : next.refused) refused_.emplace_back(one.line, one.key, one.why);
+    remarks_.insert(remarks_.end(), next.remarks.begin(), next.remarks.end());
+    navigator_.prepare(next.recording);
+    const std::vector<core::Event>& events = next.recording.events;
+    core::EventLoop loop(events, navigator_, steps_);
+    std::vector<core::StepReport> reports;
+    std::size_t scan = 0;
+    for (std::size_t fed = 0; fed < events.size(); fed = loop.fed()) {
+      try {
+        if (std::optional<core::StepReport> report = loop.next()) reports.push_back(*std::move(report));
+      } catch (const core::NumericalError& error) {
+        refused_.emplace_back(next.lines[scan], "", error.what());
+      } catch (const core::PreconditionError& error) {
+        refused_.emplace_back(next.lines[scan], "", error.what());
+      }
+      if (std::holds_alternative<core::Scan>(events[loop.fed() - 1])) ++scan;
+      steps_ = loop.steps();
+    }
+    return reports;
+  }
+
+  const Configuration configuration_;
+  logs::OwnStream input_;
+  apps::LiveNavigator navigator_;
+  std::vector<Refused> refused_;
+  std::vector<std::string> remarks_;
+  std::size_t lines_ = 0;
+  std::int64_t steps_ = 0;
+  std::mutex mutex_;
+};
+
+std::unique_ptr<Stream> stream_of(const std::filesystem::path& vehicle, const py::dict& options) {
+  Configuration configuration = configuration_of(options, vehicle.string());
+  if (!configuration.settings.logs.vehicle) throw core::InputError("Stream: expected a vehicle.toml");
+  return std::make_unique<Stream>(std::move(configuration));
+}
+
+/// A line as it is, or the JSON of a dictionary.
+std::string line_of(const py::object& line) {
+  if (py::isinstance<py::str>(line)) return line.cast<std::string>();
+  if (py::isinstance<py::dict>(line)) return py::module_::import("json").attr("dumps")(line).cast<std::string>();
+  throw py::type_error("line: expected a text or a dictionary");
+}
+
+}  // namespace
+
+void bind_stream(py::module_& module) {
+  py::class_<Stream>(
+      module, "Stream",
+      "helixnav stream for a program of one's own: rows of odometry and detections with their times, as "
+      "they come. A scan is put where it was taken: the motion is divided there, and one that comes up to "
+      "a second late is waited for.")
+      .def(py::init(&stream_of), py::arg("vehicle"), py::arg("options") = py::dict(),
+           "`vehicle`: a vehicle.toml, which says reach and view of each sensor. Options as in a configuration file.")
+      .def(
+          "take",
+          [](Stream& self, const py::object& line) {
+            const std::string text = line_of(line);
+            const py::gil_scoped_release released;
+            return self.take(text);
+          },
+          py::arg("line"),
+          "A line of JSON Lines, or the dictionary of one, as {'odometry': {'t': 0.1, 'v': 1.2, 'omega_degps': 3}}. "
+          "The "
+          "StepReports of the scans that became due by it: a scan is once the odometry has reached its time.")
+      .def("finish", &Stream::finish, py::call_guard<py::gil_scoped_release>(),
+           "Nothing comes any more: StepReports of what still waits.")
+      .def("take_refused", &Stream::take_refused, py::call_guard<py::gil_scoped_release>(),
+           "(line, key, why) of what was not used since this was called last.")
+      .def("take_remarks", &Stream::take_remarks, py::call_guard<py::gil_scoped_release>(),
+           "Sentences on what is doubtful, since this was called last.")
+      .def_property_readonly(
+          "map",
+          [](Stream& self) {
+            const py::gil_scoped_release released;
+            return self.map();
+          },
+          "The Map now.")
+      .def("joint_map", &Stream::joint_map, py::call_guard<py::gil_scoped_release>(),
+           "The JointMap for another session; None before the first scan, or where the map is too large.");
+}
+
+}  // namespace helixnav::python
