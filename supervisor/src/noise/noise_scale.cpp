@@ -107,14 +107,15 @@ bool NoiseScale::motion_is_as_assumed_at_most() const {
   return biased_motion_.weight > least_weight && biased_motion_.scale() + doubt < dead_band;
 }
 
-/// Likewise; down by what is left with the mean in it.
+/// Likewise; down by what is left with the mean in it, and never by more than it is sure of: what little odometry has moved in few scans may
+/// seem to be less than nothing, and 25 times less variance was believed and withdrawn in turn, the drive solved anew each time.
 double NoiseScale::odometry_factor() const {
   const double sigmas = most_sigmas(odometry_);
   const double rise = quick_motion_.scale() * (1.0 - sure_sigmas * quick_motion_.sigma());
   const double slow = slow_motion_.scale();
   const double up = std::max(rise, slow > 1.0 + sigmas * slow_motion_.sigma() ? slow : 1.0);
   if (up > dead_band) return bounded(up);
-  const double with_mean = biased_motion_.scale() + biased_motion_.sigma();
+  const double with_mean = std::max(0.0, biased_motion_.scale()) + biased_motion_.sigma();
   const bool is_less = with_mean < 1.0 / dead_band && with_mean < 1.0 - (sigmas - 1.0) * biased_motion_.sigma();
   return is_less ? bounded(with_mean) : 1.0;
 }

@@ -69,6 +69,30 @@ struct NoisyDrive {
   RelativeGeometry geometry_{core::JointGaussian{{}, {}, {}, Eigen::MatrixXd::Identity(3, 3)}};
 };
 
+/// Six landmarks are seen exactly where they are expected but for a rest as large as the detector's errors, as if nothing had displaced the
+/// vehicle.
+void observe_too_little(double share, NoiseScale& scale) {
+  RelativeGeometry geometry(core::JointGaussian{{}, {}, {}, Eigen::MatrixXd::Identity(3, 3)});
+  geometry.points_m = {{8, 0}, {4, 7}, {-4, 7}, {-8, 0}, {-4, -7}, {4, -7}};
+  geometry.ids = {0, 1, 2, 3, 4, 5};
+  std::vector<SeenPoint> seen;
+  std::vector<PointPair> pairs;
+  for (std::size_t i = 0; i < geometry.points_m.size(); ++i) {
+    const double outward = i % 2 == 0 ? 1.02 : 0.98;  // sums to no displacement
+    seen.push_back({static_cast<int>(i), outward * geometry.points_m[i], 0.01 * Eigen::Matrix2d::Identity()});
+    pairs.push_back({i, i});
+  }
+  const double q_m2 = scale.odometry() * share / (1.0 - share) * 0.01 / 6.0;
+  const Eigen::Matrix3d Q = Eigen::Vector3d(q_m2, q_m2, q_m2 / 64.0).asDiagonal();
+  Eigen::MatrixXd by_pose(12, 3);
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    const Eigen::Vector2d& p = geometry.points_m[static_cast<std::size_t>(i)];
+    by_pose.middleRows<2>(2 * i) << -1.0, 0.0, p.y(), 0.0, -1.0, -p.x();
+  }
+  geometry.covariance_m2 = by_pose * Q * by_pose.transpose();
+  scale.observe(PairEquations(geometry, seen, pairs, Eigen::Vector3d::Zero()), std::vector<bool>(6, false), Q);
+}
+
 TEST(NoiseScale, StaysAtOneWhereTheNoiseIsAsClaimed) {
   const NoiseScale scale = NoisyDrive(1.0, 1.0).learn(2000);
   EXPECT_EQ(scale.odometry(), 1.0);
@@ -108,6 +132,22 @@ TEST(NoiseScale, DoesNotBelieveInTurnsInLessNoiseAndInNone) {
   NoisyDrive drive(1.45, 0.25);  // where displacements are about as large as just contradicts it
   drive.learn(6000);
   EXPECT_LE(drive.withdrawn, 2);
+}
+
+/// Displacements that are smaller than the detector's errors alone explain say nothing of odometry that has hardly moved it.
+TEST(NoiseScale, BelievesNoLessThanItIsSureOf) {
+  constexpr double share = 0.25;  // of odometry in a displacement
+  NoiseScale scale;
+  double least = 1.0;
+  int changes = 0;
+  for (int scan = 0; scan < 400; ++scan) {
+    const double before = scale.odometry();
+    observe_too_little(share, scale);
+    least = std::min(least, scale.odometry());
+    changes += scale.odometry() != before && (before == 1.0 || scale.odometry() == 1.0) ? 1 : 0;
+  }
+  EXPECT_GT(least, 0.1) << "25 times less";
+  EXPECT_LE(changes, 1) << "believed and withdrawn in turn";
 }
 
 TEST(NoiseScale, RisesWithinAMinuteOfScans) {
