@@ -22,6 +22,8 @@ OdometryKind kind_of(const std::string& header, const std::string& row) {
 TEST(OwnLog, KnowsFiveKindsOfOdometryByTheirColumns) {
   EXPECT_EQ(kind_of("t,dx_m,dy_m,dheading_rad", "0,1,0,0"), OdometryKind::increments);
   EXPECT_EQ(kind_of("t,v_mps,omega_degps", "0,1,0"), OdometryKind::velocities);
+  EXPECT_EQ(kind_of("t,v_m_per_s,omega_rad_per_s", "0,1,0"), OdometryKind::velocities) << "as vehicle.toml writes them";
+  EXPECT_EQ(kind_of("t,v_km_per_h,omega_deg_per_s", "0,1,0"), OdometryKind::velocities);
   EXPECT_EQ(kind_of("t,speed_kmh,steering_deg", "0,1,0"), OdometryKind::steering);
   EXPECT_EQ(kind_of("t,v_left_mps,v_right_mps", "0,1,0"), OdometryKind::wheels);
   EXPECT_EQ(kind_of("t,x_m,y_m,yaw_rad", "0,1,0,0"), OdometryKind::poses);

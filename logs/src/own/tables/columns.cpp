@@ -25,9 +25,11 @@ struct Unit {
 constexpr std::array time_units{Unit{"s", 1.0}, Unit{"sec", 1.0}, Unit{"ms", 1e-3}, Unit{"us", 1e-6}, Unit{"ns", 1e-9}};
 constexpr std::array length_units{Unit{"m", 1.0}, Unit{"cm", 1e-2}, Unit{"mm", 1e-3}};
 constexpr std::array angle_units{Unit{"rad", 1.0}, Unit{"deg", rad_per_deg}};
-constexpr std::array speed_units{Unit{"mps", 1.0}, Unit{"m_s", 1.0}, Unit{"kmh", 1.0 / 3.6}, Unit{"km_h", 1.0 / 3.6}};
-constexpr std::array turn_rate_units{Unit{"radps", 1.0}, Unit{"rad_s", 1.0}, Unit{"degps", rad_per_deg},
-                                     Unit{"dps", rad_per_deg}, Unit{"deg_s", rad_per_deg}};
+constexpr std::array speed_units{Unit{"mps", 1.0},       Unit{"m_s", 1.0},        Unit{"m_per_s", 1.0},
+                                 Unit{"kmh", 1.0 / 3.6}, Unit{"km_h", 1.0 / 3.6}, Unit{"km_per_h", 1.0 / 3.6}};
+constexpr std::array turn_rate_units{
+    Unit{"radps", 1.0},       Unit{"rad_s", 1.0},         Unit{"rad_per_s", 1.0},        Unit{"degps", rad_per_deg},
+    Unit{"dps", rad_per_deg}, Unit{"deg_s", rad_per_deg}, Unit{"deg_per_s", rad_per_deg}};
 
 std::pair<const Unit*, std::size_t> units_of(Measure measure) {
   switch (measure) {
