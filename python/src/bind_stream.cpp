@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstddef>
+#include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -7,13 +9,11 @@
 #include <string>
 #include <tuple>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "bind.hpp"
 #include "configuration.hpp"
 #include "helixnav/core/errors.hpp"
-#include "helixnav/core/event_loop.hpp"
 #include "helixnav/logs/own_stream.hpp"
 #include "map.hpp"
 #include "stream/live_navigator.hpp"
@@ -67,21 +67,10 @@ class Stream {
     for (const logs::RefusedLine& one : next.refused) refused_.emplace_back(one.line, one.key, one.why);
     remarks_.insert(remarks_.end(), next.remarks.begin(), next.remarks.end());
     navigator_.prepare(next.recording);
-    const std::vector<core::Event>& events = next.recording.events;
-    core::EventLoop loop(events, navigator_, steps_);
     std::vector<core::StepReport> reports;
-    std::size_t scan = 0;
-    for (std::size_t fed = 0; fed < events.size(); fed = loop.fed()) {
-      try {
-        if (std::optional<core::StepReport> report = loop.next()) reports.push_back(*std::move(report));
-      } catch (const core::NumericalError& error) {
-        refused_.emplace_back(next.lines[scan], "", error.what());
-      } catch (const core::PreconditionError& error) {
-        refused_.emplace_back(next.lines[scan], "", error.what());
-      }
-      if (std::holds_alternative<core::Scan>(events[loop.fed() - 1])) ++scan;
-      steps_ = loop.steps();
-    }
+    apps::feed_live(
+        next, navigator_, steps_, [&](core::StepReport report, std::size_t) { reports.push_back(std::move(report)); },
+        [&](std::size_t line, const std::exception& error, bool) { refused_.emplace_back(line, "", error.what()); });
     return reports;
   }
 

@@ -27,7 +27,7 @@ void tell_missing_rows(const std::string& folder, const SaidOfRun& said, std::ve
 /// looked at. Test: runs/drive_file_test.cpp.
 void tell_cut_drive(const std::string& folder, std::size_t steps, std::vector<std::string>& missing);
 
-/// Adds a sentence with file and numbers where a table has fewer rows than there must be. Test: runs/run_folder_test.cpp.
+/// Adds a sentence with file and numbers where a table has fewer rows than there must be. Test: runs/cut_run_folder_test.cpp.
 void tell_missing(const std::string& folder, std::string_view table, std::size_t found, std::size_t expected,
                   std::vector<std::string>& missing);
 

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <exception>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
+#include "helixnav/core/errors.hpp"
+#include "helixnav/core/event_loop.hpp"
 #include "helixnav/core/joint_map.hpp"
 #include "helixnav/core/recording.hpp"
+#include "helixnav/logs/own_stream.hpp"
 #include "helixnav/runs/drive_digest.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
 #include "helixnav/supervisor/navigator.hpp"
@@ -53,5 +60,29 @@ class LiveNavigator {
   const std::vector<std::vector<core::Label>>* labels_ = nullptr;
   std::size_t scan_ = 0;
 };
+
+/// Feeds the estimator with the events that became known, numbering steps on from `steps`. on_step(report, line) for each scan;
+/// on_refused(line, error, is_numerical) for one that is left out: the estimator stands as before it.
+/// Test: apps/stream_test.cpp, python/test_same_result.py.
+template <class Estimator, class OnStep, class OnRefused>
+void feed_live(const logs::StreamedEvents& next, Estimator& estimator, std::int64_t& steps, const OnStep& on_step,
+               const OnRefused& on_refused) {
+  const std::vector<core::Event>& events = next.recording.events;
+  core::EventLoop loop(events, estimator, steps);
+  std::size_t scan = 0;
+  for (std::size_t fed = 0; fed < events.size(); fed = loop.fed()) {
+    std::optional<core::StepReport> step;
+    try {
+      step = loop.next();
+    } catch (const core::NumericalError& error) {
+      on_refused(next.lines[scan], error, true);
+    } catch (const core::PreconditionError& error) {
+      on_refused(next.lines[scan], error, false);
+    }
+    if (step) on_step(*std::move(step), next.lines[scan]);
+    if (std::holds_alternative<core::Scan>(events[loop.fed() - 1])) ++scan;
+    steps = loop.steps();
+  }
+}
 
 }  // namespace helixnav::apps

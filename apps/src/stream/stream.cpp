@@ -82,25 +82,15 @@ class Stream {
 
   /// A scan on which the mathematics breaks down is left out; the navigator stands as before it.
   void navigate(const logs::StreamedEvents& next) {
-    const std::vector<core::Event>& events = next.recording.events;
     Timed timed(navigator_);
     Keeping kept(timed, drive_.get());
-    core::EventLoop loop(events, kept, steps_);
-    std::size_t scan = 0;
-    for (std::size_t fed = 0; fed < events.size(); fed = loop.fed()) {
-      std::optional<core::StepReport> step;
-      try {
-        step = loop.next();
-      } catch (const core::NumericalError& error) {
-        ++broken_;
-        refuse({next.lines[scan], "", error.what()});
-      } catch (const core::PreconditionError& error) {
-        refuse({next.lines[scan], "", error.what()});
-      }
-      if (step) answer(*step, next.lines[scan], 1e6 * timed.last_s());
-      if (std::holds_alternative<core::Scan>(events[loop.fed() - 1])) ++scan;
-      steps_ = loop.steps();
-    }
+    feed_live(
+        next, kept, steps_,
+        [&](const core::StepReport& step, std::size_t line) { answer(step, line, 1e6 * timed.last_s()); },
+        [&](std::size_t line, const std::exception& error, bool is_numerical) {
+          broken_ += is_numerical ? 1 : 0;
+          refuse({line, "", error.what()});
+        });
   }
 
   void answer(const core::StepReport& step, std::size_t line, double microseconds) {

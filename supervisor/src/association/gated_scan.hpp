@@ -21,8 +21,8 @@ struct GatedScan {
   association::Assignment assignment;
   std::vector<RevisitAmbiguity> returns;
   PlaceEvidence place;  ///< weighed where a return alone is too ambiguous
-  std::vector<core::LandmarkId>
-      doubtful;  ///< tentative landmarks that the vehicle drifted from, ascending: left unused
+  /// Tentative landmarks that the vehicle has drifted from, ascending: left unused.
+  std::vector<core::LandmarkId> doubtful;
 };
 
 /// `appearance`: class and size of the landmarks.

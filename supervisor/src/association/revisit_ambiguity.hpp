@@ -33,12 +33,12 @@ struct RevisitAmbiguity {
 inline constexpr double drifted_widening = 8.0;
 
 /// Landmarks with a pair whose gate is wider than that, mature or not. Ascending. O(pairs).
-/// Test: supervisor/association/revisit_ambiguity_test.cpp.
+/// Test: supervisor/association/drifted_test.cpp.
 std::vector<core::LandmarkId> drifted_from(const association::InnovationProblem& problem, const core::Scan& scan);
 
 /// Mature landmarks that a search leaves out which begins with this scan: old ones, and those of which one observation with the
 /// noise of the scan's first would have such a gate. Ascending. O(q) for each landmark that is not old.
-/// Test: supervisor/association/revisit_ambiguity_test.cpp.
+/// Test: supervisor/association/drifted_test.cpp.
 std::vector<core::LandmarkId> old_or_drifted(const cekf::CompressedEkf& filter, const association::LandmarkLife& life,
                                              const core::Scan& scan, double old_after_m);
 

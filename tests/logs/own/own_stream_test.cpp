@@ -109,6 +109,12 @@ std::string text_of(const Lines& lines) {
   return text;
 }
 
+void expect_events_of(const core::Recording& whole, const StreamedEvents& live) {
+  ASSERT_TRUE(live.refused.empty()) << live.refused.front().why;
+  ASSERT_EQ(live.recording.events.size(), whole.events.size());
+  for (std::size_t i = 0; i < whole.events.size(); ++i) expect_same(live.recording.events[i], whole.events[i]);
+}
+
 class OwnStreamOf : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(OwnStreamOf, EachKindOfOdometryGivesTheEventsOfTheLogToTheLastBit) {
@@ -120,9 +126,7 @@ TEST_P(OwnStreamOf, EachKindOfOdometryGivesTheEventsOfTheLogToTheLastBit) {
     while (!std::holds_alternative<core::Scan>(whole.events.back())) whole.events.pop_back();
     OwnStream stream(vehicle, true);
     const StreamedEvents live = streamed(stream, lines);
-    ASSERT_TRUE(live.refused.empty()) << live.refused.front().why;
-    ASSERT_EQ(live.recording.events.size(), whole.events.size());
-    for (std::size_t i = 0; i < whole.events.size(); ++i) expect_same(live.recording.events[i], whole.events[i]);
+    expect_events_of(whole, live);
     EXPECT_EQ(live.recording.labels, whole.labels);
   }
 }
@@ -146,9 +150,7 @@ TEST_P(OwnStreamOf, GapsInTheOdometryGiveTheEventsOfTheLogToTheLastBit) {
   while (!std::holds_alternative<core::Scan>(whole.events.back())) whole.events.pop_back();
   OwnStream stream(vehicle, true);
   const StreamedEvents live = streamed(stream, lines);
-  ASSERT_TRUE(live.refused.empty()) << live.refused.front().why;
-  ASSERT_EQ(live.recording.events.size(), whole.events.size());
-  for (std::size_t i = 0; i < whole.events.size(); ++i) expect_same(live.recording.events[i], whole.events[i]);
+  expect_events_of(whole, live);
 }
 
 TEST_P(OwnStreamOf, AVehicleThatWasCarriedIsInBothBeforeTheNextScan) {
