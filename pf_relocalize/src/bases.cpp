@@ -2,6 +2,7 @@
 #include "helixnav/pf_relocalize/bases.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -158,6 +159,37 @@ Bases choose_bases(const core::JointGaussian& joint) {
     }
   }
   return best;
+}
+
+MarginalsInBaseFrame marginals_in_base_frame(const core::JointGaussian& joint, const Bases& bases) {
+  check(joint, bases);
+  const core::Pose2 T_base_world = core::inverse(base_frame(joint, bases));
+  const Matrix2d R_base_world = core::rotation(T_base_world.heading_rad);
+  const Vector2d lever = heading_lever(joint, bases);
+  const Eigen::Index a = 3 + 2 * bases.a, b = 3 + 2 * bases.b;
+  // Rows of a point by itself, A and B; a pose has its heading besides.
+  const auto rows_of_point = [&](const Vector2d& point_m) {
+    const Matrix2d turned = turned_left(point_m) * lever.transpose();
+    Eigen::Matrix<double, 2, 6> J;
+    J << R_base_world, turned - R_base_world, -turned;
+    return J;
+  };
+  MarginalsInBaseFrame marginals;
+  marginals.pose.mean = core::compose(T_base_world, joint.pose);
+  const Eigen::Matrix<double, 2, 6> of_position = rows_of_point(marginals.pose.mean.position_m());
+  Eigen::Matrix<double, 3, 7> J;
+  J << of_position.leftCols<2>(), Vector2d::Zero(), of_position.rightCols<4>(),  //
+      0.0, 0.0, 1.0, lever.transpose(), -lever.transpose();
+  const std::array<Eigen::Index, 7> with_pose{0, 1, 2, a, a + 1, b, b + 1};
+  marginals.pose.covariance = J * joint.covariance(with_pose, with_pose) * J.transpose();
+  for (int i = 0; i < landmark_count(joint); ++i) {
+    const Vector2d point_m = core::transform(T_base_world, point(joint, i));
+    const Eigen::Matrix<double, 2, 6> of_point = rows_of_point(point_m);
+    const Eigen::Index own = 3 + 2 * i;
+    const std::array<Eigen::Index, 6> with_own{own, own + 1, a, a + 1, b, b + 1};
+    marginals.points.push_back({point_m, of_point * joint.covariance(with_own, with_own) * of_point.transpose()});
+  }
+  return marginals;
 }
 
 core::JointGaussian in_base_frame(const core::JointGaussian& joint, const Bases& bases) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -71,9 +72,9 @@ std::string unusable(const core::JointGaussian& joint) {
                       std::all_of(joint.points_m.begin(), joint.points_m.end(),
                                   [](const Eigen::Vector2d& point) { return point.allFinite(); });
   if (!finite) return "the joint estimate is not finite";
-  const double asymmetry = (P - P.transpose()).cwiseAbs().maxCoeff();
-  if (asymmetry > rounding * P.cwiseAbs().maxCoeff()) {
-    return "the joint covariance is not symmetric: off by " + in_digits(asymmetry);
+  const double off = core::asymmetry(P);
+  if (off > rounding * P.cwiseAbs().maxCoeff()) {
+    return "the joint covariance is not symmetric: off by " + in_digits(off);
   }
   return {};
 }
@@ -98,8 +99,34 @@ double raise_to_zero(double tolerance, Eigen::MatrixXd& P) {
   return least;
 }
 
+bool is_sound(const MarginalsInBaseFrame& marginals) {
+  return core::is_symmetric_positive_semidefinite(marginals.pose.covariance) &&
+         std::all_of(marginals.points.begin(), marginals.points.end(), [](const core::PointGaussian& point) {
+           return core::is_symmetric_positive_semidefinite(point.covariance_m2);
+         });
+}
+
+/// Of the marginals nothing needs the covariances between landmarks, nor a test of all together, O(n³).
+std::optional<ReferenceMap> of_marginals(const core::JointGaussian& joint, const Bases& bases) {
+  MarginalsInBaseFrame marginals = marginals_in_base_frame(joint, bases);
+  if (!is_sound(marginals)) return std::nullopt;
+  ReferenceMap map;
+  map.T_world_base = base_frame(joint, bases);
+  map.bases = bases;
+  map.ids = joint.ids;
+  map.prior = marginals.pose;
+  map.latent.resize(2 * static_cast<Eigen::Index>(joint.points_m.size()), 0);
+  map.prior_by_latent.resize(3, 0);
+  map.landmarks = std::move(marginals.points);
+  return map;
+}
+
 ReferenceMapResult on_bases(const core::JointGaussian& joint, const Bases& bases, const ReferenceMapOptions& options) {
   ReferenceMapResult result;
+  if (options.decorrelation == Decorrelation::relative_marginals) {
+    result.map = of_marginals(joint, bases);
+    if (result.map) return result;
+  }
   core::JointGaussian relative = in_base_frame(joint, bases);
   if (!core::is_symmetric_positive_semidefinite(relative.covariance)) {
     const double tolerance = rounding * joint.covariance.cwiseAbs().maxCoeff() * enlargement(relative, bases);

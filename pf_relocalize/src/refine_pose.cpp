@@ -20,10 +20,13 @@ core::Pose2 refine_pose(const LandmarkTable& table, const std::vector<RobotPoint
     double total = 1.0;
     Eigen::Matrix2d weights = Eigen::Matrix2d::Zero();
     Eigen::Vector2d pull = Eigen::Vector2d::Zero();
-    const double reach_m = 3.5 * std::sqrt(largest_variance(noise) + table.largest);
+    constexpr double sigmas = 3.5;
+    const double noise_m2 = largest_variance(noise);
+    const double reach_m = sigmas * std::sqrt(noise_m2 + table.largest);
     const Eigen::Vector2d reach(reach_m, reach_m);
     table.grid.visit(placed - reach, placed + reach, [&](std::uint32_t i) {
       const Eigen::Vector2d d(table.x[i] - placed.x(), table.y[i] - placed.y());
+      if (d.squaredNorm() > sigmas * sigmas * (noise_m2 + table.variance[i])) return;
       Eigen::Matrix2d S = noise;
       S(0, 0) += table.sxx[i];
       S(1, 1) += table.syy[i];

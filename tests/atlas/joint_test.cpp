@@ -95,6 +95,16 @@ TEST(Joint, EqualsTheMarginalsOfTheOptimumInTheMapFrame) {
   EXPECT_THROW(atlas.joint({1000}), core::PreconditionError);
 }
 
+TEST(Joint, HoldsALandmarkAsOftenAsItIsAskedFor) {
+  const Atlas atlas = testing::driven(testing::make_small_drive(11));
+  const core::JointGaussian once = atlas.joint({3, 20});
+  const core::JointGaussian twice = atlas.joint({20, 3, 20});
+  ASSERT_EQ(twice.ids, (std::vector<core::LandmarkId>{20, 3, 20}));
+  EXPECT_EQ(twice.points_m[2], once.points_m[1]);
+  const std::vector<Eigen::Index> rows{0, 1, 2, 5, 6, 3, 4, 5, 6};
+  EXPECT_EQ(twice.covariance, Eigen::MatrixXd(once.covariance(rows, rows)));
+}
+
 TEST(Joint, OfAnUncertainStartHasItsCovarianceToo) {
   testing::SmallDrive drive = testing::make_small_drive(12);
   core::PoseGaussian start;

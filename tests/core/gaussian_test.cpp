@@ -21,6 +21,16 @@ Eigen::MatrixXd with_eigenvalues(const Eigen::VectorXd& eigenvalues, RandomStrea
   return 0.5 * (M + M.transpose());
 }
 
+TEST(Asymmetry, IsTheLargestDifferenceAcrossTheDiagonal) {
+  core::RandomStream random(5, "asymmetry");
+  for (const Eigen::Index n : {1, 2, 63, 64, 65, 130}) {
+    Eigen::MatrixXd M(n, n);
+    for (Eigen::Index i = 0; i < n * n; ++i) M(i) = random.normal(0.0, 1.0);
+    EXPECT_EQ(asymmetry(M), (M - M.transpose()).cwiseAbs().maxCoeff()) << n;
+  }
+  EXPECT_EQ(asymmetry(Eigen::MatrixXd()), 0.0);
+}
+
 TEST(PositiveDefinite, IsDecidedByTheSmallestEigenvalue) {
   RandomStream random(1, "gaussian");
   for (const Eigen::Index n : {1, 2, 3, 8, 40}) {

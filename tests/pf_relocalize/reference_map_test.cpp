@@ -49,6 +49,24 @@ TEST(BaseFrame, TransformsTheCovarianceByTheJacobianThatCentralDifferencesGive) 
   EXPECT_LT((relative.covariance - expected).norm(), 1e-6 * expected.norm());
 }
 
+TEST(BaseFrame, MarginalsByThemselvesAreThoseOfTheWhole) {
+  for (const Bases bases : {Bases{2, 5}, Bases{6, 0}}) {
+    const core::JointGaussian joint = test::drive_map(7, 4);
+    const core::JointGaussian relative = in_base_frame(joint, bases);
+    const MarginalsInBaseFrame marginals = marginals_in_base_frame(joint, bases);
+    const double rounding = 1e-12 * joint.covariance.cwiseAbs().maxCoeff();
+    EXPECT_LT((marginals.pose.covariance - relative.covariance.topLeftCorner<3, 3>()).cwiseAbs().maxCoeff(), rounding);
+    EXPECT_EQ(marginals.pose.mean.vector(), relative.pose.vector());
+    ASSERT_EQ(marginals.points.size(), relative.points_m.size());
+    for (std::size_t i = 0; i < relative.points_m.size(); ++i) {
+      const Eigen::Index row = 3 + 2 * static_cast<Eigen::Index>(i);
+      const Eigen::Matrix2d whole = relative.covariance.block<2, 2>(row, row);
+      EXPECT_LT((marginals.points[i].covariance_m2 - whole).cwiseAbs().maxCoeff(), rounding) << i;
+      EXPECT_EQ(marginals.points[i].mean_m, relative.points_m[i]);
+    }
+  }
+}
+
 TEST(BaseFrame, MakesTheFirstBaseExactAndTheSecondExactAcrossTheAxis) {
   const core::JointGaussian relative = in_base_frame(test::drive_map(7, 2), {2, 5});
   EXPECT_LT(relative.points_m[2].norm(), 1e-12);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "helixnav/core/errors.hpp"
+#include "helixnav/core/packed_product.hpp"
 #include "read/joint.hpp"
 #include "read/read.hpp"
 #include "solve/partial_cholesky.hpp"
@@ -26,8 +27,8 @@ void for_lower_tiles(Index size, const Act& act) {
   }
 }
 
-/// The upper triangle becomes that below. P may have rows to spare.
-void mirror_lower(MatrixXd& P) {
+/// The upper triangle becomes that below.
+void mirror_lower(Eigen::Ref<MatrixXd> P) {
   for_lower_tiles(P.cols(), [&](const auto& rows, const auto& columns) {
     const MatrixXd lower = P(rows, columns);
     auto upper = P(columns, rows);
@@ -39,44 +40,86 @@ void mirror_lower(MatrixXd& P) {
   });
 }
 
-/// Both triangles become their mean.
-void make_symmetric(MatrixXd& P) {
-  for_lower_tiles(P.rows(), [&](const auto& rows, const auto& columns) {
-    const MatrixXd mean = 0.5 * (P(columns, rows) + P(rows, columns).transpose());
-    P(columns, rows) = mean;
-    P(rows, columns) = mean.transpose();
-  });
-}
+/// A covariance of the map frame and of others, in memory that the covariance of the others alone can stay in: of a large map, the
+/// largest thing there is, there is room for one.
+class Joint {
+ public:
+  explicit Joint(Index size) : size_(size), memory_(size - 3, (size * size + spare_rows) / (size - 3) + 1) {
+    memory_.setZero();
+  }
+
+  Index size() const { return size_; }
+  double* at(Index row, Index column) { return memory_.data() + row + column * size_; }
+  Eigen::Map<MatrixXd> matrix() { return {memory_.data(), size_, size_}; }
+
+  /// Rows and columns in another order, [new] to old.
+  void reorder(const std::vector<Index>& old) {
+    Eigen::Map<MatrixXd> P = matrix();
+    std::vector<bool> is_done(old.size(), false);
+    Eigen::VectorXd first(size_), next(size_);
+    for (Index begin = 0; begin < size_; ++begin) {
+      if (is_done[State::index(begin)]) continue;
+      first = P.col(begin)(old);
+      Index to = begin;
+      while (true) {  // round the cycle of columns
+        is_done[State::index(to)] = true;
+        const Index from = old[State::index(to)];
+        if (from == begin) break;
+        next = P.col(from)(old);
+        P.col(to) = next;
+        to = from;
+      }
+      P.col(to) = first;
+    }
+  }
+
+  /// Leaves out the first three rows and columns.
+  void drop_first() {
+    const Index n = size_ - 3;
+    for (Index column = 0; column < n; ++column) {
+      const double* from = at(3, column + 3);
+      std::copy(from, from + n, memory_.data() + column * n);
+    }
+    size_ = n;
+  }
+
+  /// After drop_first().
+  MatrixXd take() {
+    memory_.conservativeResize(size_, size_);  // as many rows: nothing moves
+    return std::move(memory_);
+  }
+
+ private:
+  Index size_;
+  MatrixXd memory_;
+};
 
 /// Forward solves on the union of some paths. Columns are laid out in the order in which the tree comes to their variables,
 /// so that those below a node are next to each other.
 class PathSolve {
  public:
-  PathSolve(const State& state, const std::vector<int>& variables) : state_(state) {
+  /// `variables`: each once.
+  PathSolve(const State& state, const std::vector<int>& variables)
+      : state_(state), wanted_(variables), P_(rows_of(state, variables)) {
     for (const int v : variables) {
-      wanted_.push_back(v);
       for (int node = state.variable(v).at; node >= 0; node = state.node(node).parent) marked_.push_back(node);
     }
     std::sort(wanted_.begin(), wanted_.end());
-    wanted_.erase(std::unique(wanted_.begin(), wanted_.end()), wanted_.end());
-    for (const int v : wanted_) columns_ += state.variable(v).dim;
     std::sort(marked_.begin(), marked_.end());
     marked_.erase(std::unique(marked_.begin(), marked_.end()), marked_.end());
   }
 
-  /// Covariance with rows and columns in the order of `variables`.
-  MatrixXd covariance(const std::vector<int>& variables) {
-    P_.setZero(columns_ + spare_rows, columns_);
+  /// Covariance with rows and columns in the order of `variables`, the same as at construction.
+  Joint covariance(const std::vector<int>& variables) && {
     solve(state_.root, 0.0);
     std::vector<Index> rows;
     for (const int v : variables) {
       const auto found = std::lower_bound(column_of_.begin(), column_of_.end(), std::make_pair(v, Index{-1}));
       for (int i = 0; i < state_.variable(v).dim; ++i) rows.push_back(found->second + i);
     }
-    mirror_lower(P_);
-    MatrixXd picked = P_(rows, rows);
-    P_.resize(0, 0);  // of a large map there is room for two
-    return picked;
+    mirror_lower(P_.matrix());
+    P_.reorder(rows);
+    return std::move(P_);
   }
 
  private:
@@ -84,6 +127,12 @@ class PathSolve {
     Index first = 0;  ///< column
     MatrixXd rows;    ///< on the node's boundary, in its frame
   };
+
+  static Index rows_of(const State& state, const std::vector<int>& variables) {
+    Index rows = 0;
+    for (const int v : variables) rows += state.variable(v).dim;
+    return rows;
+  }
 
   bool is_marked(int node) const { return std::binary_search(marked_.begin(), marked_.end(), node); }
 
@@ -105,7 +154,7 @@ class PathSolve {
     place(own, shape, turn_rad, first, F);
     if (shape.ne > 0 && F.cols() > 0) {
       solve_down_columns(node.front->L.topRows(shape.ne + shape.nb), F);
-      add_gram(F.topRows(shape.ne), &P_(first, first), P_.outerStride());
+      add_gram(F.topRows(shape.ne), P_.at(first, first), P_.size());
     }
     return {first, F.middleRows(shape.ne, shape.nb)};
   }
@@ -157,9 +206,8 @@ class PathSolve {
   std::vector<int> wanted_;
   std::vector<int> marked_;
   std::vector<std::pair<int, Index>> column_of_;  ///< increasing by variable
-  Index columns_ = 0;
   Index next_column_ = 0;
-  MatrixXd P_;
+  Joint P_;
 };
 
 /// How values given in the order of rows move with the map frame's own variable: [I, J] for positions, [0, 1] for the heading.
@@ -175,7 +223,8 @@ Eigen::Matrix<double, Eigen::Dynamic, 3> carried(const Eigen::Vector3d& world, c
   return G;
 }
 
-void turn(MatrixXd& P, const Eigen::Matrix2d& R) {
+/// Errors in another frame.
+void turn(Eigen::Ref<MatrixXd> P, const Eigen::Matrix2d& R) {
   for (Index column = 0; column < P.cols(); ++column) {
     for (Index row = 0; row < P.rows(); row += row == 0 ? 3 : 2) {
       P.block<2, 1>(row, column) = (R * P.block<2, 1>(row, column)).eval();
@@ -187,26 +236,53 @@ void turn(MatrixXd& P, const Eigen::Matrix2d& R) {
 }
 
 /// Covariance of what is seen from the map frame: errors δ − G·δ_world, turned.
-MatrixXd seen_from_world(MatrixXd P, const Eigen::Vector3d& world, const Values& values, double turn_rad) {
-  const Index n = P.rows() - 3;
+MatrixXd seen_from_world(Joint joint, const Eigen::Vector3d& world, const Values& values, double turn_rad) {
+  const Index n = joint.size() - 3;
   const auto G = carried(world, values);
-  const MatrixXd cross = P.bottomLeftCorner(n, 3) - 0.5 * G * P.topLeftCorner<3, 3>();
-  MatrixXd rest = P.bottomRightCorner(n, n);
-  P.resize(0, 0);
-  rest.noalias() -= cross * G.transpose();
-  rest.noalias() -= G * cross.transpose();
-  turn(rest, core::rotation(turn_rad));
-  make_symmetric(rest);
-  return rest;
+  const MatrixXd cross = joint.matrix().bottomLeftCorner(n, 3) - 0.5 * G * joint.matrix().topLeftCorner<3, 3>();
+  joint.drop_first();
+  MatrixXd of_pairs(n, 6), with(n, 6);
+  of_pairs << -cross, -G;
+  with << G, cross;
+  core::add_product_lower(joint.at(0, 0), n, core::Panels(of_pairs, core::left_width),
+                          core::Panels(with, core::right_width));
+  mirror_lower(joint.matrix());
+  turn(joint.matrix(), core::rotation(turn_rad));
+  mirror_lower(joint.matrix());
+  return joint.take();
+}
+
+/// With rows and columns of landmarks as often as they are asked for, `places` among those of `joint`.
+core::JointGaussian repeated(const core::JointGaussian& joint, const std::vector<std::size_t>& places) {
+  core::JointGaussian all;
+  all.pose = joint.pose;
+  std::vector<Index> rows{0, 1, 2};
+  for (const std::size_t place : places) {
+    all.ids.push_back(joint.ids[place]);
+    all.points_m.push_back(joint.points_m[place]);
+    for (int i = 0; i < 2; ++i) rows.push_back(3 + 2 * static_cast<Index>(place) + i);
+  }
+  all.covariance = joint.covariance(rows, rows);
+  return all;
 }
 
 }  // namespace
 
 MatrixXd covariance_of(const State& state, const std::vector<int>& variables) {
-  return PathSolve(state, variables).covariance(variables);
+  return PathSolve(state, variables).covariance(variables).matrix();
 }
 
 core::JointGaussian Atlas::joint(const std::vector<core::LandmarkId>& ids) const {
+  std::vector<core::LandmarkId> once = ids;
+  std::sort(once.begin(), once.end());
+  once.erase(std::unique(once.begin(), once.end()), once.end());
+  if (once.size() < ids.size()) {
+    std::vector<std::size_t> places;
+    for (const core::LandmarkId id : ids) {
+      places.push_back(static_cast<std::size_t>(std::lower_bound(once.begin(), once.end(), id) - once.begin()));
+    }
+    return repeated(joint(once), places);
+  }
   const State& state = *settled_;
   std::vector<int> variables{state.variable_of_clone[State::index(phase_count())]};
   for (const core::LandmarkId id : ids) variables.push_back(variable_of_named(state, id));
@@ -224,9 +300,9 @@ core::JointGaussian Atlas::joint(const std::vector<core::LandmarkId>& ids) const
     joint.covariance = state.start.covariance;
     return joint;
   }
-  std::vector<int> distinct = variables;
-  distinct.insert(distinct.begin(), state.world);
-  joint.covariance = seen_from_world(covariance_of(state, distinct), estimates(state.world), values, T_map.heading_rad);
+  variables.insert(variables.begin(), state.world);
+  joint.covariance = seen_from_world(PathSolve(state, variables).covariance(variables), estimates(state.world), values,
+                                     T_map.heading_rad);
   return joint;
 }
 

@@ -65,21 +65,33 @@ double reach_of(const std::vector<LocatedObservation>& seen, const Eigen::Vector
   return reach_m;
 }
 
+std::vector<core::LandmarkId> within(const cekf::CompressedEkf& filter, const Eigen::Vector2d& sensor_m, double reach_m,
+                                     const std::vector<core::LandmarkId>& excluded) {
+  std::vector<core::LandmarkId> about = filter.landmarks_within(sensor_m, reach_m);
+  if (excluded.empty()) return about;
+  const auto is_excluded = [&](core::LandmarkId id) {
+    return std::binary_search(excluded.begin(), excluded.end(), id);
+  };
+  about.erase(std::remove_if(about.begin(), about.end(), is_excluded), about.end());
+  return about;
+}
+
 }  // namespace
 
-std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, const core::Scan& scan, double sigmas) {
+std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, const core::Scan& scan, double sigmas,
+                                         const std::vector<core::LandmarkId>& excluded) {
   if (scan.observations.empty()) return {};
   const core::PoseGaussian pose = filter.pose();
   const Eigen::Vector2d sensor_m = core::transform(pose.mean, scan.T_robot_sensor.position_m());
   if (!fixes_points(scan)) {
     const double reach_m = scan.field_of_view.max_range_m;
     const bool is_known = reach_m > 0.0;
-    return filter.landmarks_within(sensor_m, is_known ? reach_m : std::numeric_limits<double>::infinity());
+    return within(filter, sensor_m, is_known ? reach_m : std::numeric_limits<double>::infinity(), excluded);
   }
 
   constexpr double wider = 1.5;  // the gate is by the Mahalanobis distance, this by the trace and a linear step
   const std::vector<LocatedObservation> seen = seen_points(pose, scan);
-  const std::vector<core::LandmarkId> about = filter.landmarks_within(sensor_m, reach_of(seen, sensor_m, sigmas));
+  const std::vector<core::LandmarkId> about = within(filter, sensor_m, reach_of(seen, sensor_m, sigmas), excluded);
   const std::vector<cekf::Outlook> outlooks = filter.outlooks(about);
   const double least_sigma_m = std::min_element(seen.begin(), seen.end(), sharper)->sigma_m;
   const auto near_with = [&](const cekf::Outlook& landmark, double sigma_m) {

@@ -14,9 +14,10 @@ namespace helixnav::supervisor {
 /// difference, correlations included. The first bounds the second whatever the correlation; but far from the start the
 /// deviations of pose and landmark are large and nearly the same error, their sum takes in hundreds of landmarks, and a joint
 /// covariance of these would cost more than all else. Nothing inside the exact gate is lost. Observations that fix no point
-/// (one row) take every landmark within the range of the field of view. O(landmarks about · q), and O(q²) for each chosen.
-/// Test: supervisor/association/candidates_test.cpp.
-std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, const core::Scan& scan, double sigmas);
+/// (one row) take every landmark within the range of the field of view. None of `excluded` (ascending), which cost nothing.
+/// O(landmarks about · q), and O(q²) for each chosen. Test: supervisor/association/candidates_test.cpp.
+std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, const core::Scan& scan, double sigmas,
+                                         const std::vector<core::LandmarkId>& excluded = {});
 
 /// Landmarks whose estimated position lies inside the field of view, at least `margin_m` from its edge: those that
 /// should have been seen.

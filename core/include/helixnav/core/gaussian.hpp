@@ -31,6 +31,9 @@ struct JointGaussian {
   Eigen::MatrixXd covariance;
 };
 
+/// Largest |M_ij − M_ji| of a square matrix, 0 of an empty one. Cost O(n²). Test: core/gaussian_test.cpp.
+double asymmetry(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
+
 /// True when `matrix` is square, finite, symmetric to 1e-9 of its largest element and positive definite.
 /// Cost O(n³). Test: core/gaussian_test.cpp.
 bool is_symmetric_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "helixnav/core/gaussian.hpp"
@@ -31,5 +33,14 @@ core::Pose2 base_frame(const core::JointGaussian& joint, const Bases& bases);
 /// (errors of the bases move everything). The blocks of A, and B across the axis, become zero. Cost O(n²).
 /// Test: pf_relocalize/reference_map_test.cpp (J against central differences).
 core::JointGaussian in_base_frame(const core::JointGaussian& joint, const Bases& bases);
+
+/// Pose and landmarks in the frame of the bases, each by itself.
+struct MarginalsInBaseFrame {
+  core::PoseGaussian pose;
+  std::vector<core::PointGaussian> points;
+};
+
+/// The blocks on the diagonal of in_base_frame, O(n). Test: pf_relocalize/reference_map_test.cpp (the same to rounding).
+MarginalsInBaseFrame marginals_in_base_frame(const core::JointGaussian& joint, const Bases& bases);
 
 }  // namespace helixnav::pf_relocalize

@@ -61,8 +61,9 @@ struct ReferenceMapResult {
 /// Builds the map from a joint estimate (pose and n ≥ 3 landmarks). The covariance is judged in the base frame, where the
 /// drift that all share is gone: eigenvalues down to minus the rounding of the input (1e-9 of its largest element, as
 /// core::is_symmetric_positive_semidefinite has it, times the square of the change of frame) are raised to zero; what is not
-/// finite, not symmetric or further below zero gives a reason and no map. Throws nothing of its own. Cost: bound O(n²),
-/// latent modes, and raising eigenvalues, O(n³). Test: pf_relocalize/reference_map_test.cpp.
+/// finite, not symmetric or further below zero gives a reason and no map. Of relative marginals each is judged by itself, and all
+/// together only where one is not a covariance. Throws nothing of its own. Cost: relative marginals O(n) after the choice
+/// of bases, bound O(n²), latent modes, and raising eigenvalues, O(n³). Test: pf_relocalize/reference_map_test.cpp.
 ReferenceMapResult try_reference_map(const core::JointGaussian& joint, const ReferenceMapOptions& options = {});
 
 /// The same for callers whose input is a covariance by construction: PreconditionError with the reason where
