@@ -178,14 +178,15 @@ bool NavigationLoop::use_fix(const core::AbsoluteFix& fix) {
   return decision.accepted;
 }
 
+const std::vector<LandmarkId>& NavigationLoop::excluded() const {
+  static const std::vector<LandmarkId> none;
+  const Searching* open = searching();
+  return open != nullptr ? open->search.old_landmarks() : none;
+}
+
 /// While a search is open the landmarks that were old when it began are no candidates. Others become old while it lasts.
 GatedScan NavigationLoop::gate(const Scan& scan) const {
-  const Searching* open = searching();
-  std::vector<LandmarkId> ids = candidates(belief_.filter, scan, options_.candidate_sigmas);
-  if (open != nullptr) {
-    const auto excluded = [&](LandmarkId id) { return open->search.excludes(id); };
-    ids.erase(std::remove_if(ids.begin(), ids.end(), excluded), ids.end());
-  }
+  const std::vector<LandmarkId> ids = candidates(belief_.filter, scan, options_.candidate_sigmas, excluded());
   GatedScan gated = gate_scan(belief_.filter, ids, scan, options_, belief_.existence.appearance());
   if (options_.search.enabled) look_for_returns(belief_.filter, belief_.existence, scan, options_, view_, gated);
   return gated;

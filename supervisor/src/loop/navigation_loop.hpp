@@ -118,6 +118,8 @@ class NavigationLoop {
   // slip/slip_in_scan.cpp
   bool allow_for_slip(const core::Scan& scan, const Confirmation& before, core::StepReport& report);
   std::optional<Slip> find_slip(const core::Scan& scan, const std::vector<core::AssociationReport>& fate) const;
+  std::optional<Slip> find_slip_within(SlipReach reach, const core::Scan& scan,
+                                       const std::vector<core::AssociationReport>& fate) const;
   std::vector<core::LandmarkId> landmarks_near(const core::Scan& scan) const;
   pf_relocalize::Coverage ground_looked_at(const core::FieldOfView& view) const;
   void move_unmeasured(const Eigen::Matrix3d& covariance, core::Nanoseconds t_ns);
@@ -226,6 +228,8 @@ class NavigationLoop {
   const Checkpoint& checkpoint() const;
   Searching* searching() { return std::get_if<Searching>(&mode_); }
   const Searching* searching() const { return std::get_if<Searching>(&mode_); }
+  /// Landmarks that an open search leaves out, ascending; none without one.
+  const std::vector<core::LandmarkId>& excluded() const;
 
   NavigatorOptions options_;
   core::FieldOfView view_;  ///< of the first scan that states one

@@ -7,6 +7,7 @@
 #include "helixnav/core/events.hpp"
 #include "slip/relative_geometry.hpp"
 #include "slip/slip_evidence.hpp"
+#include "slip/slip_places.hpp"
 
 namespace helixnav::supervisor {
 
@@ -17,6 +18,6 @@ constexpr std::size_t most_weighed = 24;
 /// their neighbours. What is left out would be paired with nothing. `seen`: nearest first.
 /// Test: supervisor/slip/keep_weighed_test.cpp (the same slips as without).
 void keep_weighed(const cekf::CompressedEkf& filter, const core::Scan& scan, const std::vector<SeenPoint>& seen,
-                  const SlipComponent& widest, std::vector<core::LandmarkId>& near);
+                  const SlipComponent& widest, SlipReach reach, std::vector<core::LandmarkId>& near);
 
 }  // namespace helixnav::supervisor

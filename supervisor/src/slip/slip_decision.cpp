@@ -79,8 +79,8 @@ SlipPair pair_at(const SlipQuestion& question, const SlipPlace& place, const Poi
 }  // namespace
 
 std::optional<Slip> decide_slip(const SlipQuestion& question, const SlipOptions& options) {
-  const std::vector<SlipPlace> places =
-      slip_places(question.geometry, question.seen, question.nats_a_pair, slip_components(options), options.distinct_m);
+  const std::vector<SlipPlace> places = slip_places(question.geometry, question.seen, question.nats_a_pair,
+                                                    slip_components(options), options.distinct_m, question.reach);
   if (places.empty()) return std::nullopt;
   Slip slip;
   slip.figures = figures_of(question, places, options);

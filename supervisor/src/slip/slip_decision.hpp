@@ -35,6 +35,7 @@ struct SlipQuestion {
   double nats_a_pair = 0.0;
   double extraneous_per_m2 = 0.0;  ///< density of what is in no map, as in pair_nats
   bool tentative = false;
+  SlipReach reach = SlipReach::next_neighbour;
 };
 
 /// The slip that explains a scan, when it does so better than no slip with new landmarks where the pattern of the map has

@@ -40,8 +40,8 @@ std::vector<Eigen::Vector2d> means_m(const cekf::CompressedEkf& filter, const st
 /// Unmatched observations that have an unmatched landmark beside them, as far as a slip may displace it.
 int contradictions(const cekf::CompressedEkf& filter, const std::vector<LandmarkId>& near,
                    const std::vector<SeenPoint>& seen, const std::vector<AssociationReport>& fate,
-                   const SlipComponent& widest) {
-  const double spacing_m = median_spacing_m(means_m(filter, near));
+                   const SlipComponent& widest, SlipReach reach) {
+  const double spacing_m = spacing_in(reach, means_m(filter, near));
   const std::vector<LandmarkId> matched = landmarks_with(Outcome::matched, fate);
   const core::Pose2 pose = filter.pose().mean;
   return static_cast<int>(std::count_if(seen.begin(), seen.end(), [&](const SeenPoint& one) {
@@ -91,29 +91,40 @@ std::vector<LandmarkId> NavigationLoop::landmarks_near(const core::Scan& scan) c
   const Eigen::Vector2d sensor_m = core::transform(belief_.filter.pose().mean, scan.T_robot_sensor.position_m());
   std::vector<LandmarkId> near =
       belief_.filter.landmarks_within(sensor_m, scan.field_of_view.max_range_m + options_.view_margin_m);
-  const Searching* open = searching();
+  const std::vector<LandmarkId>& not_asked = excluded();
   near.erase(std::remove_if(near.begin(), near.end(),
                             [&](LandmarkId id) {
-                              return (open != nullptr && open->search.excludes(id)) || !belief_.existence.contains(id);
+                              return std::binary_search(not_asked.begin(), not_asked.end(), id) ||
+                                     !belief_.existence.contains(id);
                             }),
              near.end());
   return near;
 }
 
+/// Landmarks stand closer to each other than a slip displaces where stems are in clumps; there nobody would look at the one that an
+/// observation is of. Only where nothing that is seen is where it should be: it takes ten times as long.
 std::optional<Slip> NavigationLoop::find_slip(const core::Scan& scan,
                                               const std::vector<AssociationReport>& fate) const {
   const double view_m2 = view_area_m2(scan.field_of_view);
   if (!options_.slip.enabled || !std::isfinite(view_m2) || !(view_m2 > 0.0)) return std::nullopt;
-  const auto unmatched =
-      std::count_if(fate.begin(), fate.end(), [](const auto& one) { return one.outcome != Outcome::matched; });
+  const auto unmatched = static_cast<std::size_t>(
+      std::count_if(fate.begin(), fate.end(), [](const auto& one) { return one.outcome != Outcome::matched; }));
   if (unmatched < 2 || fate.size() < least_observations) return std::nullopt;
+  std::optional<Slip> slip = find_slip_within(SlipReach::next_neighbour, scan, fate);
+  const bool is_nearly_all = 4 * unmatched >= 3 * fate.size() && unmatched >= 2 * least_observations;
+  if (!slip && is_nearly_all) slip = find_slip_within(SlipReach::any_neighbour, scan, fate);
+  return slip;
+}
+
+std::optional<Slip> NavigationLoop::find_slip_within(SlipReach reach, const core::Scan& scan,
+                                                     const std::vector<AssociationReport>& fate) const {
   const std::vector<SeenPoint> seen = seen_points(scan, most_weighed);
   std::vector<LandmarkId> near = landmarks_near(scan);
   const SlipComponent widest = slip_components(options_.slip).back();
-  keep_weighed(belief_.filter, scan, seen, widest, near);
-  if (contradictions(belief_.filter, near, seen, fate, widest) < 2) return std::nullopt;
+  keep_weighed(belief_.filter, scan, seen, widest, reach, near);
+  if (contradictions(belief_.filter, near, seen, fate, widest, reach) < 2) return std::nullopt;
 
-  const double per_m2 = options_.extraneous_per_scan / view_m2;
+  const double per_m2 = options_.extraneous_per_scan / view_area_m2(scan.field_of_view);
   std::vector<LandmarkId> known = near;
   known.erase(std::remove_if(known.begin(), known.end(),
                              [&](LandmarkId id) { return belief_.existence.record(id).hits < least_hits; }),
@@ -125,7 +136,7 @@ std::optional<Slip> NavigationLoop::find_slip(const core::Scan& scan,
     if (witnesses.size() < least_observations) return std::nullopt;
     const RelativeGeometry geometry(belief_.filter.joint(witnesses));
     return decide_slip({geometry, seen, new_per_m2, associated_pairs(geometry, seen, fate),
-                        pair_nats(options_.association.detection_probability, per_m2), per_m2, tentative},
+                        pair_nats(options_.association.detection_probability, per_m2), per_m2, tentative, reach},
                        options_.slip);
   };
   std::optional<Slip> slip = ask(known, false);
@@ -176,10 +187,7 @@ bool NavigationLoop::allow_for_slip(const core::Scan& scan, const Confirmation& 
   }
   cekf::CompressedEkf moved = belief_.filter;
   update_after_slip(moved, pairs, report.numerics);
-  std::vector<LandmarkId> ids = candidates(moved, scan, options_.candidate_sigmas);
-  const Searching* open = searching();
-  const auto excluded = [&](LandmarkId id) { return open != nullptr && open->search.excludes(id); };
-  ids.erase(std::remove_if(ids.begin(), ids.end(), excluded), ids.end());
+  const std::vector<LandmarkId> ids = candidates(moved, scan, options_.candidate_sigmas, excluded());
   const GatedScan gated = gate_scan(moved, ids, scan, options_, belief_.existence.appearance());
   report_unfinished(gated, report);
   belief_.confirmation = before;

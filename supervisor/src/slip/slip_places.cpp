@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/LU>
 
@@ -30,8 +31,12 @@ struct Proposal {
 class Proposer {
  public:
   Proposer(const RelativeGeometry& geometry, const std::vector<SeenPoint>& seen, double nats_a_pair,
-           const SlipComponent& widest)
-      : geometry_(geometry), seen_(seen), nats_a_pair_(nats_a_pair), widest_(widest), in_reach_(landmarks_in_reach()) {}
+           const SlipComponent& widest, SlipReach reach)
+      : geometry_(geometry),
+        seen_(seen),
+        nats_a_pair_(nats_a_pair),
+        widest_(widest),
+        in_reach_(landmarks_in_reach(spacing_in(reach, geometry.points_m))) {}
 
   std::vector<Proposal> proposals() const {
     std::vector<Proposal> found;
@@ -73,8 +78,7 @@ class Proposer {
     double nats;
   };
 
-  std::vector<std::vector<std::size_t>> landmarks_in_reach() const {
-    const double spacing_m = median_spacing_m(geometry_.points_m);
+  std::vector<std::vector<std::size_t>> landmarks_in_reach(double spacing_m) const {
     std::vector<std::vector<std::size_t>> in_reach(seen_.size());
     for (std::size_t s = 0; s < seen_.size(); ++s) {
       const double reach_m = slip_reach_m(widest_, seen_[s], spacing_m);
@@ -206,6 +210,10 @@ std::vector<Proposal> best_distinct(std::vector<Proposal> proposals, double dist
 
 }  // namespace
 
+double spacing_in(SlipReach reach, const std::vector<Eigen::Vector2d>& points_m) {
+  return reach == SlipReach::next_neighbour ? median_spacing_m(points_m) : std::numeric_limits<double>::infinity();
+}
+
 double slip_reach_m(const SlipComponent& widest, const SeenPoint& seen, double spacing_m) {
   return std::min(neighbours * spacing_m, reach_sigmas * (widest.sigma_m + widest.sigma_rad * seen.point_m.norm()));
 }
@@ -215,9 +223,9 @@ bool is_same_place(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double di
 }
 
 std::vector<SlipPlace> slip_places(const RelativeGeometry& geometry, const std::vector<SeenPoint>& seen,
-                                   double nats_a_pair, const std::vector<SlipComponent>& components,
-                                   double distinct_m) {
-  const Proposer proposer(geometry, seen, nats_a_pair, components.back());
+                                   double nats_a_pair, const std::vector<SlipComponent>& components, double distinct_m,
+                                   SlipReach reach) {
+  const Proposer proposer(geometry, seen, nats_a_pair, components.back(), reach);
   std::vector<SlipPlace> places;
   for (Proposal& proposal : best_distinct(proposer.proposals(), distinct_m)) {
     SlipPlace place{std::move(proposal.pairs), {}};

@@ -18,6 +18,13 @@ struct SlipPlace {
 /// Two displacements that are one, as far as anybody can tell.
 bool is_same_place(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double distinct_m);
 
+/// Up to where the landmark may stand that an observation is of after a slip: beside the one that is seen there, or anywhere
+/// that the widest slip may displace it to.
+enum class SlipReach { next_neighbour, any_neighbour };
+
+/// The spacing of landmarks that bounds slip_reach_m: their median, or none.
+double spacing_in(SlipReach reach, const std::vector<Eigen::Vector2d>& points_m);
+
 /// How far beside an observation the landmark may stand that it is of, after a slip of the widest component; farther than its
 /// neighbour no landmark is worth a look: displaced so far, nobody knows which is which.
 double slip_reach_m(const SlipComponent& widest, const SeenPoint& seen, double spacing_m);
@@ -27,6 +34,7 @@ double slip_reach_m(const SlipComponent& widest, const SeenPoint& seen, double s
 /// in reach of each.
 /// Test: supervisor/slip/slip_places_test.cpp.
 std::vector<SlipPlace> slip_places(const RelativeGeometry& geometry, const std::vector<SeenPoint>& seen,
-                                   double nats_a_pair, const std::vector<SlipComponent>& components, double distinct_m);
+                                   double nats_a_pair, const std::vector<SlipComponent>& components, double distinct_m,
+                                   SlipReach reach = SlipReach::next_neighbour);
 
 }  // namespace helixnav::supervisor

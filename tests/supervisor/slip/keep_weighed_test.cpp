@@ -49,7 +49,7 @@ TEST(KeepWeighed, LeavesOutWhatIsFartherThanAllThatIsWeighed) {
   ASSERT_EQ(seen.size(), most_weighed);
   const SlipOptions options;
   std::vector<core::LandmarkId> near = filter.landmarks();
-  keep_weighed(filter, scan, seen, slip_components(options).back(), near);
+  keep_weighed(filter, scan, seen, slip_components(options).back(), SlipReach::next_neighbour, near);
   EXPECT_LT(2 * near.size(), filter.landmarks().size());
   EXPECT_GE(near.size(), most_weighed);
 
@@ -73,7 +73,8 @@ TEST(KeepWeighed, OfAScanThatIsWeighedAsAWholeEveryLandmarkStays) {
   core::Scan scan = scan_of(forest(120), {});
   scan.observations.resize(most_weighed - 1);
   std::vector<core::LandmarkId> near = filter.landmarks();
-  keep_weighed(filter, scan, seen_points(scan, most_weighed), slip_components({}).back(), near);
+  keep_weighed(filter, scan, seen_points(scan, most_weighed), slip_components({}).back(), SlipReach::next_neighbour,
+               near);
   EXPECT_EQ(near, filter.landmarks());
 }
 
