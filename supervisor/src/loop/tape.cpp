@@ -96,6 +96,22 @@ Tape Tape::without_matches_since(Position position, const std::set<core::Landmar
   return tape;
 }
 
+Tape Tape::without_last_merges() const {
+  Tape tape = *this;
+  while (!tape.entries_.empty() && std::holds_alternative<Merge>(tape.entries_.back())) tape.entries_.pop_back();
+  return tape;
+}
+
+double Tape::cost_of_last_merges() const {
+  double cost = 0.0;
+  for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry) {
+    const auto* merge = std::get_if<Merge>(&*entry);
+    if (merge == nullptr) break;
+    cost += merge->cost;
+  }
+  return cost;
+}
+
 std::vector<Tape::Entry> Tape::cut(Position position) {
   const auto from = entries_.begin() + static_cast<std::ptrdiff_t>(position - forgotten_);
   std::vector<Entry> taken(std::make_move_iterator(from), std::make_move_iterator(entries_.end()));

@@ -77,6 +77,10 @@ class Tape {
   /// is what they are at most.
   Tape without_matches_since(Position position, const std::set<core::LandmarkId>& but_with) const;
 
+  /// The tape as it was before the merges at its end, and what these may cost.
+  Tape without_last_merges() const;
+  double cost_of_last_merges() const;
+
   /// Takes off everything from `position` on and returns it.
   std::vector<Entry> cut(Position position);
 

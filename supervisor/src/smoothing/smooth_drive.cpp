@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "smoothing/smooth_drive.hpp"
 
+#include <algorithm>
+
 #include "helixnav/core/chi2.hpp"
 
 namespace helixnav::supervisor {
@@ -10,17 +12,30 @@ namespace {
 /// if everything were linear. Measured: −12 to 17 (docs/adr/0010-solving-the-drive.md).
 double slack() { return core::chi2_quantile(0.999999, 3); }
 
+/// What the drive may cost by what it costs without the closing that has just been made. Assumed noise of half its size, and errors that
+/// last, make right closings cost several times what they should; another minimum costs more than that.
+double limit_by_closing(const cekf::CompressedEkf& filter, const Tape& tape, DriveMap without) {
+  without.take(tape.without_last_merges(), filter);
+  without.settle();
+  constexpr double of_half_noise = 4.0;
+  return without.atlas().chi2() + of_half_noise * tape.cost_of_last_merges() + slack();
+}
+
 }  // namespace
 
 Smoothing smooth_drive(const cekf::CompressedEkf& filter, const Tape& tape, DriveMap& map) {
   Smoothing smoothing;
+  const DriveMap before_closing = map;
   map.take(tape, filter);
-  const int before = map.atlas().nodes_redone();
+  const int redone = map.atlas().nodes_redone();
   map.settle();
   smoothing.limit = map.cost() + slack();
   smoothing.chi2 = map.atlas().chi2();
   smoothing.poses = map.atlas().phase_count() + 1;
-  smoothing.iterations = map.atlas().nodes_redone() - before;
+  smoothing.iterations = map.atlas().nodes_redone() - redone;
+  if (smoothing.chi2 > smoothing.limit) {
+    smoothing.limit = std::max(smoothing.limit, limit_by_closing(filter, tape, before_closing));
+  }
   smoothing.accepted = smoothing.chi2 <= smoothing.limit;
   if (smoothing.accepted) smoothing.path = map.path();
   return smoothing;
