@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "closing_warnings.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
 #include "numerics_text.hpp"
 
@@ -154,6 +155,7 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
        {fixes_text(run), numerics_text(numerics_of(run)), postponed_text(postponed_in(run))}) {
     if (!text.empty()) warnings.push_back(text);
   }
+  for (const std::string& text : closing_warnings(run)) warnings.push_back(text);
   return warnings;
 }
 

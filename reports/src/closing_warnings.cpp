@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "closing_warnings.hpp"
+
+#include <variant>
+
+#include "helixnav/core/decision.hpp"
+#include "helixnav/reports/decision_sentence.hpp"
+
+namespace helixnav::reports {
+namespace {
+
+struct Closings {
+  int accepted = 0, refused = 0, undecided = 0;
+  bool is_path_solved = true;  ///< after the last that was accepted
+};
+
+Closings closings_of(const runs::Run& run) {
+  Closings closings;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::Decision& decision : step.decisions) {
+      if (const auto* closure = std::get_if<core::ClosureDecision>(&decision)) {
+        ++(closure->accepted ? closings.accepted : closings.refused);
+      }
+      closings.undecided += std::holds_alternative<core::UndecidedDecision>(decision);
+      if (const auto* solved = std::get_if<core::SmoothingDecision>(&decision)) {
+        closings.is_path_solved = solved->accepted;
+      }
+    }
+  }
+  return closings;
+}
+
+}  // namespace
+
+std::vector<std::string> closing_warnings(const runs::Run& run) {
+  const Closings closings = closings_of(run);
+  std::vector<std::string> warnings;
+  constexpr int several = 3;
+  const bool is_mostly_refused = closings.refused >= several && closings.refused > closings.accepted;
+  const bool is_mostly_undecided = closings.undecided >= 2 && closings.undecided > closings.accepted;
+  if (is_mostly_refused || is_mostly_undecided) {
+    warnings.push_back(
+        "returns to old ground stayed open (" + counted(closings.accepted, "closing") + " accepted, " +
+        std::to_string(closings.refused) +
+        " refused; searches that ended undecided: " + std::to_string(closings.undecided) +
+        "): what stands there may be in the map twice, and the path is off by what it drifted. "
+        "Slips, noise assumed too small, and errors of the detector that last (a trunk's near side taken "
+        "for its middle) do that; 'helixnav calibrate' estimates the noise from the log");
+  }
+  if (!closings.is_path_solved) {
+    warnings.emplace_back(
+        "after the last closing the drive could not be solved as a whole: trajectory_final.tum is the path as it was "
+        "known "
+        "before; 'helixnav explain --closure N' has the numbers");
+  }
+  return warnings;
+}
+
+}  // namespace helixnav::reports

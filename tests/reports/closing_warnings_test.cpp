@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "closing_warnings.hpp"
+
+#include <gtest/gtest.h>
+
+namespace helixnav::reports {
+namespace {
+
+core::ClosureDecision closure(bool accepted) {
+  core::ClosureDecision decision;
+  decision.accepted = accepted;
+  return decision;
+}
+
+core::SmoothingDecision solved(bool accepted) {
+  core::SmoothingDecision decision;
+  decision.accepted = accepted;
+  return decision;
+}
+
+runs::Run run_of(const std::vector<core::Decision>& decisions) {
+  runs::Run run;
+  for (const core::Decision& decision : decisions) run.steps.emplace_back().decisions = {decision};
+  return run;
+}
+
+TEST(ClosingWarnings, SayThatReturnsStayedOpenWhereMostClosingsWereRefused) {
+  const auto texts =
+      closing_warnings(run_of({closure(true), solved(true), closure(false), closure(false), closure(false)}));
+  ASSERT_EQ(texts.size(), 1u);
+  EXPECT_NE(texts[0].find("1 closing accepted, 3 refused"), std::string::npos) << texts[0];
+}
+
+TEST(ClosingWarnings, SayThatSearchesEndedUndecided) {
+  EXPECT_EQ(closing_warnings(run_of({core::UndecidedDecision{}, core::UndecidedDecision{}})).size(), 1u);
+}
+
+TEST(ClosingWarnings, SayNothingWhereMostReturnsAreClosed) {
+  EXPECT_TRUE(closing_warnings(run_of({closure(true), solved(true), closure(false), core::UndecidedDecision{},
+                                       closure(true), solved(true)}))
+                  .empty());
+  EXPECT_TRUE(closing_warnings(run_of({})).empty());
+}
+
+TEST(ClosingWarnings, SayThatThePathIsNotSolvedOnlyOfTheLastClosing) {
+  EXPECT_TRUE(closing_warnings(run_of({closure(true), solved(false), closure(true), solved(true)})).empty());
+  const auto texts = closing_warnings(run_of({closure(true), solved(true), closure(true), solved(false)}));
+  ASSERT_EQ(texts.size(), 1u);
+  EXPECT_NE(texts[0].find("trajectory_final.tum"), std::string::npos) << texts[0];
+}
+
+}  // namespace
+}  // namespace helixnav::reports
