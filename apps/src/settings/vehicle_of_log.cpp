@@ -35,6 +35,7 @@ void refuse_of_truck(const logs::Vehicle& vehicle, const logs::SensorModel& sens
              odometry.sigma_heading_rad_per_sqrt_s || odometry.sigma_omega_radps,
          vehicle, "noise along the way or of the heading (sigma_v_mps and sigma_steering are)");
   refuse(sensor.range_scale != 1.0, vehicle, "sensor.range_scale");
+  refuse(sensor.range_offset_m != 0.0, vehicle, "sensor.range_offset_m");
   refuse(sensor.sigma_point_m.has_value(), vehicle, "sensor.sigma_point_m");
 }
 
@@ -82,6 +83,7 @@ void take_plaza(CLI::App& command, const logs::Vehicle& vehicle, Settings& setti
              odometry.sigma_steering_rad,
          vehicle, "noise by the time or of a sample");
   refuse(is_mounted(sensor), vehicle, "a mounting or delay of the sensor");
+  refuse(sensor.range_offset_m != 0.0, vehicle, "sensor.range_offset_m");
   logs::PlazaSettings& plaza = settings.logs.plaza;
   const double factor = odometry.noise_scale;
   const auto take = [factor](const std::optional<double>& value, double& to) { to = value.value_or(to) * factor; };

@@ -42,8 +42,8 @@ void refuse_what_goes_nowhere(const logs::Vehicle& vehicle) {
   const logs::OdometryModel& odometry = vehicle.odometry;
   const bool moves = odometry.tells_noise() || odometry.scale != 1.0 || odometry.turn_scale != 1.0 ||
                      odometry.turn_bias_radps != 0.0 || !odometry.T_vehicle_odometry.vector().isZero(0.0);
-  const bool mounts =
-      !sensor.T_vehicle_sensor.vector().isZero(0.0) || sensor.delay_s != 0.0 || sensor.range_scale != 1.0;
+  const bool mounts = !sensor.T_vehicle_sensor.vector().isZero(0.0) || sensor.delay_s != 0.0 ||
+                      sensor.range_scale != 1.0 || sensor.range_offset_m != 0.0;
   if (!moves && !mounts) return;
   throw core::InputError(vehicle.path + ": a log of this format brings its own " +
                          (moves ? "odometry and its noise" : "mounting and times") +

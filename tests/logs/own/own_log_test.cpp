@@ -137,5 +137,28 @@ TEST(OwnLog, AsJsonLinesMayHaveScansThatSawNothing) {
   EXPECT_EQ(read_own_log(path).detections.at(0).kind, Kind::nothing);
 }
 
+TEST(OwnLog, RangesBecomeLongerByTheOffsetOfTheSensorAndPointsAlongTheLineOfSight) {
+  const OwnLogFolder log;
+  const std::string sensor =
+      "[odometry]\nsigma_along_m_per_sqrt_m = 0.02\n[[sensor]]\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n"
+      "sigma_point_m = 0.1\nrange_scale = 2.0\nrange_offset_m = 0.15\n";
+  log.write("vehicle.toml", sensor);
+  const auto first = [&] {
+    const core::Recording recording = log.recording();
+    for (const core::Event& event : recording.events) {
+      if (const auto* scan = std::get_if<core::Scan>(&event)) return scan->observations.at(0);
+    }
+    return core::Observation();
+  };
+  log.write("detections.csv", "t,range_m,bearing_deg\n0.5,10,90\n");
+  EXPECT_DOUBLE_EQ(first().z[0], 5.15);
+  log.write("detections.csv", "t,x,y\n0.5,6,-8\n");
+  EXPECT_NEAR(first().z[0], 3.09, 1e-12);
+  EXPECT_NEAR(first().z[1], -4.12, 1e-12);
+  log.write("vehicle.toml", sensor + "x_m = 0\n");
+  log.write("detections.csv", "t,x,y\n0.5,0,0\n");
+  EXPECT_EQ(first().z[0], 0.0) << "a point at the sensor has no direction";
+}
+
 }  // namespace
 }  // namespace helixnav::logs

@@ -57,8 +57,9 @@ struct SensorModel {
   std::optional<double> sigma_bearing_rad;
   std::optional<double> sigma_point_m;  ///< of x and of y, for detections as points
   double range_scale = 1.0;             ///< recorded range over true one
-  double delay_s = 0.0;                 ///< a scan was taken so long before its stamp
-  double noise_scale = 1.0;             ///< times every standard deviation, of the log or of these keys
+  double range_offset_m = 0.0;  ///< by which ranges are too short then: half a trunk where its near side is seen
+  double delay_s = 0.0;         ///< a scan was taken so long before its stamp
+  double noise_scale = 1.0;     ///< times every standard deviation, of the log or of these keys
   std::optional<double> detection_probability;
   std::optional<double> clutter_per_scan;
   std::optional<double> class_error;   ///< probability that a class is named wrongly

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sensor_rows.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -30,6 +31,19 @@ core::Appearance appearance_of(const OwnDetection& row, const SensorModel& senso
                           ? row.sigma_size_m
                           : std::sqrt(given_variance(sensor.sigma_size_m, sensor, vehicle, "sigma_size_m"));
   return seen;
+}
+
+/// Of a recorded range.
+double true_range_m(double recorded_m, const SensorModel& sensor) {
+  constexpr double least_m = 1e-3;
+  return std::max(recorded_m / sensor.range_scale + sensor.range_offset_m, std::min(recorded_m, least_m));
+}
+
+/// Of a recorded point.
+Eigen::Vector2d true_point_m(const Eigen::Vector2d& recorded_m, const SensorModel& sensor) {
+  const double range_m = recorded_m.norm();
+  if (range_m == 0.0 || sensor.range_offset_m == 0.0) return recorded_m / sensor.range_scale;
+  return recorded_m * (true_range_m(range_m, sensor) / range_m);
 }
 
 }  // namespace
@@ -63,10 +77,10 @@ core::Observation observation_of(const OwnDetection& row, const SensorModel& sen
   };
   core::Observation observation;
   if (row.kind == OwnDetection::Kind::range_bearing) {
-    observation = core::make_range_bearing(row.z[0] / sensor.range_scale, row.z[1], std::sqrt(range_variance()),
+    observation = core::make_range_bearing(true_range_m(row.z[0], sensor), row.z[1], std::sqrt(range_variance()),
                                            std::sqrt(bearing_variance(row.R[2])));
   } else if (row.kind == OwnDetection::Kind::range) {
-    observation = core::make_range(row.z[0] / sensor.range_scale, std::sqrt(range_variance()));
+    observation = core::make_range(true_range_m(row.z[0], sensor), std::sqrt(range_variance()));
   } else if (row.kind == OwnDetection::Kind::bearing) {
     observation = core::make_bearing(row.z[0], std::sqrt(bearing_variance(row.R[0])));
   } else {
@@ -74,7 +88,7 @@ core::Observation observation_of(const OwnDetection& row, const SensorModel& sen
     R << row.R[0], row.R[1], row.R[1], row.R[2];
     if (!(row.R[0] > 0.0))
       R = given_variance(sensor.sigma_point_m, sensor, vehicle, "sigma_point_m") * Eigen::Matrix2d::Identity();
-    observation = core::make_cartesian(Eigen::Vector2d(row.z[0], row.z[1]) / sensor.range_scale, R);
+    observation = core::make_cartesian(true_point_m({row.z[0], row.z[1]}, sensor), R);
   }
   observation.R *= sensor.noise_scale * sensor.noise_scale;
   observation.appearance = appearance_of(row, sensor, vehicle);
