@@ -43,7 +43,11 @@ void LostMonitor::observe(const core::Scan& scan, const core::StepReport& report
       std::count_if(report.associations.begin(), report.associations.end(),
                     [](const core::AssociationReport& a) { return a.outcome == core::Outcome::matched; }));
   const int expected = std::max(seen, count_expected(scan, report.pose.mean));
-  if (seen >= 2 && 2 * seen >= expected) return reset();
+  if (seen >= 2 && 2 * seen >= expected) {
+    reset();
+    is_confirmed_ = true;
+    return;
+  }
   if (expected >= few && 5 * seen <= expected) missing_nats_ += missed_nats * (expected - seen);
   if (static_cast<int>(report.associations.size()) - seen >= few) ++looks_at_unknown_;
 }
@@ -57,6 +61,7 @@ bool LostMonitor::is_lost() const {
 void LostMonitor::reset() {
   since_look_m_ = since_confirmed_m_ = missing_nats_ = 0.0;
   looks_at_unknown_ = 0;
+  is_confirmed_ = false;
 }
 
 int LostMonitor::count_expected(const core::Scan& scan, const core::Pose2& T_world_robot) const {

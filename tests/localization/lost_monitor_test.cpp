@@ -58,6 +58,7 @@ TEST(LostMonitor, IsLostWhereEverythingExpectedIsMissingForAThirdOfTheReach) {
   Drive drive;
   for (int k = 0; k < 50; ++k) drive.step(8, 8);
   int lost_after = 0;
+  EXPECT_TRUE(drive.monitor.is_confirmed());
   while (!drive.monitor.is_lost() && lost_after < 100) {
     drive.step(3, 0);
     ++lost_after;
@@ -66,6 +67,7 @@ TEST(LostMonitor, IsLostWhereEverythingExpectedIsMissingForAThirdOfTheReach) {
   EXPECT_LE(lost_after, 12);
   drive.monitor.reset();
   EXPECT_FALSE(drive.monitor.is_lost());
+  EXPECT_FALSE(drive.monitor.is_confirmed());
 }
 
 TEST(LostMonitor, OneScanWithoutASightIsNoLoss) {

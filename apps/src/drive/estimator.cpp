@@ -11,6 +11,7 @@
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 #include "localizer_feed.hpp"
+#include "navigator_on_map.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -63,10 +64,21 @@ Estimator navigator_of(const Drive& job) {
           [drive] { return drive->navigator.sketch(); }};
 }
 
-Estimator localizer_of(const Drive& job, LabelAgreement& agreement) {
-  const auto feed = std::make_shared<LocalizerFeed>(job, labels_fed(job), agreement);
+namespace {
+
+template <class Feed>
+Estimator on_given_map(std::shared_ptr<Feed> feed, const Drive& job) {
   return {[feed](const core::Event& event) { return feed->take(event); }, [feed] { return feed->pose(); },
           [&job] { return job.given_map->landmarks; }, [] { return std::nullopt; }};
+}
+
+}  // namespace
+
+Estimator localizer_of(const Drive& job, LabelAgreement& agreement) {
+  if (!job.known_association && can_be_searched(*job.given_map)) {
+    return on_given_map(std::make_shared<NavigatorOnMap>(job, labels_fed(job), agreement), job);
+  }
+  return on_given_map(std::make_shared<LocalizerFeed>(job, labels_fed(job), agreement), job);
 }
 
 Estimator estimator_of(const Drive& job, LabelAgreement& agreement) {

@@ -11,12 +11,30 @@
 #include "helixnav/runs/joint_map_file.hpp"
 #include "helixnav/runs/map_folder.hpp"
 #include "helixnav/runs/run_folder.hpp"
+#include "helixnav/supervisor/joint_map.hpp"
+#include "helixnav/supervisor/lengths.hpp"
 
 namespace helixnav::apps {
 namespace {
 
 double ratio(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+void sort_by_id(std::vector<core::MapLandmark>& landmarks) {
+  std::sort(landmarks.begin(), landmarks.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+}
+
+/// Nothing where the map holds one that `joint` does not.
+Eigen::MatrixXd covariance_of(const std::vector<core::MapLandmark>& landmarks, const core::JointGaussian& joint) {
+  std::vector<Eigen::Index> rows;
+  for (const core::MapLandmark& landmark : landmarks) {
+    const auto found = std::lower_bound(joint.ids.begin(), joint.ids.end(), landmark.id);
+    if (found == joint.ids.end() || *found != landmark.id) return {};
+    const auto row = 3 + 2 * static_cast<Eigen::Index>(found - joint.ids.begin());
+    rows.insert(rows.end(), {row, row + 1});
+  }
+  return joint.covariance(rows, rows);
 }
 
 /// A map that no single run made, as of join: map.bin beside map.csv holds the same landmarks.
@@ -54,6 +72,25 @@ bool can_be_searched(const GivenMap& map) {
   return map.landmarks.size() >= least_searched && map.landmarks.size() <= runs::most_joint_landmarks;
 }
 
+core::JointMap as_drawn(const GivenMap& map, const supervisor::NavigatorOptions& options,
+                        const core::FieldOfView& view) {
+  core::JointMap given;
+  const auto rows = static_cast<Eigen::Index>(2 * map.landmarks.size());
+  given.joint.covariance = Eigen::MatrixXd::Zero(3 + rows, 3 + rows);
+  if (map.covariance_m2.rows() == rows) given.joint.covariance.bottomRightCorner(rows, rows) = map.covariance_m2;
+  for (const core::MapLandmark& landmark : map.landmarks) {
+    given.joint.ids.push_back(landmark.id);
+    given.joint.points_m.push_back(landmark.point.mean_m);
+    given.states.push_back(core::LandmarkState::mature);
+    given.observations.push_back(landmark.observations);
+    given.appearances.push_back(landmark.appearance);
+    given.next_name = landmark.id + 1;
+  }
+  const double reach_m = view.reach().value_or(supervisor::reference_reach_m);
+  const double pair_noise_m = supervisor::fit_lengths(options, view).search.constellation.branch_sigma_m;
+  return supervisor::as_drawn(given, reach_m, pair_noise_m);
+}
+
 void check_start(const GivenMap& map) {
   if (!map.start || map.start->kind != SessionStart::Kind::unknown || can_be_searched(map)) return;
   throw core::InputError("--start unknown: a map of " + std::to_string(map.landmarks.size()) +
@@ -71,6 +108,8 @@ GivenMap given_map(const core::JointMap& map) {
     if (landmark.state == core::LandmarkState::mature) given.landmarks.push_back(landmark);
   }
   if (given.landmarks.empty()) throw core::InputError("map: expected mature landmarks, found none");
+  sort_by_id(given.landmarks);
+  given.covariance_m2 = covariance_of(given.landmarks, map.joint);
   return given;
 }
 
@@ -91,7 +130,11 @@ GivenMap read_given_map(const std::string& path) {
     map.landmarks.push_back(landmark);
   }
   if (map.landmarks.empty()) throw core::InputError(file.string() + ": expected mature landmarks, found none");
+  sort_by_id(map.landmarks);
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  if (file.filename() == "map.csv" && fs::exists(folder / "map.bin")) {
+    map.covariance_m2 = covariance_of(map.landmarks, runs::read_joint_map((folder / "map.bin").string()).joint);
+  }
   if (!fs::exists(folder / "manifest.json")) {
     tell_missing_landmarks(file, folder / "map.bin", rows.size(), map.missing);
     return map;

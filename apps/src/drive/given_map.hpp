@@ -8,17 +8,21 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "earlier_session.hpp"
 #include "helixnav/core/joint_map.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/runs/run.hpp"
+#include "helixnav/supervisor/navigator_options.hpp"
 
 namespace helixnav::apps {
 
 /// A map that a run made, to localise in.
 struct GivenMap {
-  std::vector<core::MapLandmark> landmarks;             ///< mature ones
+  std::vector<core::MapLandmark> landmarks;             ///< mature ones, by increasing id
+  Eigen::MatrixXd covariance_m2;                        ///< of their places in that order; empty where nobody knows it
   std::map<core::Label, core::LandmarkId> landmark_of;  ///< by label; empty when the run had no labels
   std::optional<SessionStart> start;                    ///< on it; nothing: as the log says
   std::vector<std::string> missing;                     ///< of the run or the map: lost since it was written
@@ -40,6 +44,11 @@ bool can_be_searched(const GivenMap& map);
 
 /// InputError where the start on it is unknown and cannot be looked for.
 void check_start(const GivenMap& map);
+
+/// The map as it is drawn (supervisor::as_drawn) with these landmarks alone, for a sensor of this view; where their joint covariance
+/// is unknown, they are taken to be where they are, but for what two drives see of one landmark.
+core::JointMap as_drawn(const GivenMap& map, const supervisor::NavigatorOptions& options,
+                        const core::FieldOfView& view);
 
 /// The map.csv meant by what read_given_map takes.
 std::string map_file(const std::string& path);

@@ -32,31 +32,14 @@ std::vector<core::LandmarkId> landmarks_of(const std::vector<core::Label>& label
   return landmarks;
 }
 
-/// As the localizer takes it: its landmarks are where they are.
-core::JointMap exact(const std::vector<core::MapLandmark>& landmarks) {
-  core::JointMap map;
-  std::vector<core::MapLandmark> sorted = landmarks;
-  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
-  for (const core::MapLandmark& landmark : sorted) {
-    map.joint.ids.push_back(landmark.id);
-    map.joint.points_m.push_back(landmark.point.mean_m);
-    map.states.push_back(core::LandmarkState::mature);
-    map.observations.push_back(landmark.observations);
-    map.next_name = landmark.id + 1;
-  }
-  const auto rows = static_cast<Eigen::Index>(3 + 2 * sorted.size());
-  map.joint.covariance = Eigen::MatrixXd::Zero(rows, rows);
-  return map;
-}
-
-double reach_of(const Drive& job) {
-  return logs::field_of_view_of(job.recording).reach().value_or(supervisor::reference_reach_m);
-}
-
 core::PoseGaussian start_of(const Drive& job) {
   const std::optional<SessionStart>& start = job.given_map->start;
   if (!start) return job.recording.start;
-  const core::JointGaussian seen = seen_from(exact({}), start->T_map_robot, reach_of(job)).joint;
+  core::JointMap nothing;
+  nothing.joint.covariance = Eigen::Matrix3d::Zero();
+  const core::FieldOfView view = logs::field_of_view_of(job.recording);
+  const double reach_m = view.reach().value_or(supervisor::reference_reach_m);
+  const core::JointGaussian seen = seen_from(nothing, start->T_map_robot, reach_m).joint;
   return {seen.pose, seen.covariance.topLeftCorner<3, 3>()};
 }
 
@@ -96,24 +79,13 @@ core::StepReport on_no_map(const core::StepReport& own, std::size_t landmarks) {
 
 LocalizerFeed::LocalizerFeed(const Drive& job, std::vector<std::vector<core::Label>> labels_fed,
                              LabelAgreement& agreement)
-    : job_(job),
-      labels_of_(std::move(labels_fed)),
-      agreement_(agreement),
-      monitor_(job.given_map->landmarks, reach_of(job)) {
-  const std::optional<SessionStart>& start = job.given_map->start;
-  const bool unknown = start && start->kind == SessionStart::Kind::unknown;
-  if (unknown) {
-    part_ = 1;
-    next_part_ = 2;
-    begin_to_look();
-  } else {
-    localizer_.emplace(start_of(job), job.given_map->landmarks, options_of(job.navigator));
-  }
+    : job_(job), labels_of_(std::move(labels_fed)), agreement_(agreement) {
+  localizer_.emplace(start_of(job), job.given_map->landmarks, options_of(job.navigator));
 }
 
 void LocalizerFeed::begin_to_look() {
   finder_.emplace(core::PoseGaussian{}, job_.navigator);
-  finder_->look_for_place_in(exact(job_.given_map->landmarks));
+  finder_->look_for_place_in(as_drawn(*job_.given_map, job_.navigator, logs::field_of_view_of(job_.recording)));
 }
 
 std::optional<core::StepReport> LocalizerFeed::take(const core::Event& event) {
@@ -121,7 +93,6 @@ std::optional<core::StepReport> LocalizerFeed::take(const core::Event& event) {
     if (localizer_) localizer_->move(*odometry);
     if (finder_) finder_->move(*odometry);
     driven_in_part_m_ += odometry->T_before_after.position_m().norm();
-    driven_m_ += odometry->T_before_after.position_m().norm();
   }
   if (std::holds_alternative<core::Lost>(event)) lose();
   const auto* scan = std::get_if<core::Scan>(&event);
@@ -139,7 +110,6 @@ void LocalizerFeed::lose() {
   carried_.push_back(carried);
   driven_in_part_m_ = 0.0;
   localizer_.reset();
-  monitor_.reset();
   begin_to_look();
 }
 
@@ -151,8 +121,6 @@ core::StepReport LocalizerFeed::observe(const core::Scan& scan, std::size_t i) {
     if (!localizer_) report = on_no_map(own, job_.given_map->landmarks.size());
     take_place(std::move(own), report);
   }
-  if (localizer_ && !job_.known_association) watch(scan, report);
-  driven_m_ = 0.0;
   report.decisions.insert(report.decisions.begin(), carried_.begin(), carried_.end());
   carried_.clear();
   return report;
@@ -168,13 +136,6 @@ core::StepReport LocalizerFeed::localize(const core::Scan& scan, std::size_t i) 
   return report;
 }
 
-/// Whether the finder is needed from now on, or no longer.
-void LocalizerFeed::watch(const core::Scan& scan, core::StepReport& report) {
-  monitor_.observe(scan, report, driven_m_);
-  if (finder_ && !monitor_.is_lost()) finder_.reset();
-  if (!finder_ && monitor_.is_lost() && can_be_searched(*job_.given_map)) begin_to_look();
-}
-
 void LocalizerFeed::take_place(core::StepReport&& found, core::StepReport& report) {
   const bool has_place = has_found(found);
   const core::PoseGaussian pose = found.pose;
@@ -184,7 +145,6 @@ void LocalizerFeed::take_place(core::StepReport&& found, core::StepReport& repor
   report.pose = pose;
   report.mode = core::Mode::mapping;
   localizer_.emplace(pose, job_.given_map->landmarks, options_of(job_.navigator));
-  monitor_.reset();
   finder_.reset();
 }
 

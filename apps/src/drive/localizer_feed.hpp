@@ -7,14 +7,13 @@
 
 #include "drive.hpp"
 #include "helixnav/localization/localizer.hpp"
-#include "helixnav/localization/lost_monitor.hpp"
 #include "helixnav/supervisor/navigator.hpp"
 
 namespace helixnav::apps {
 
-/// The localizer as core::EventLoop wants it, and beside it, while the place on the map is unknown or lost, a navigator that
-/// maps on its own from there and asks the map. When that has found its place, localization goes on from there.
-/// Fixes are not used. The job must outlive it.
+/// The localizer as core::EventLoop wants it, for logs that name landmarks and for maps that are too large for NavigatorOnMap. Told
+/// that the vehicle was carried it has a navigator map on its own from there and ask the map; when that has found its
+/// place, localization goes on from there. Fixes are not used. The job must outlive it.
 class LocalizerFeed {
  public:
   LocalizerFeed(const Drive& job, std::vector<std::vector<core::Label>> labels_fed, LabelAgreement& agreement);
@@ -27,17 +26,14 @@ class LocalizerFeed {
   void lose();
   core::StepReport observe(const core::Scan& scan, std::size_t i);
   core::StepReport localize(const core::Scan& scan, std::size_t i);
-  void watch(const core::Scan& scan, core::StepReport& report);
   void take_place(core::StepReport&& found, core::StepReport& report);
 
   const Drive& job_;
   std::vector<std::vector<core::Label>> labels_of_;
   LabelAgreement& agreement_;
-  localization::LostMonitor monitor_;
-  std::optional<localization::Localizer> localizer_;  ///< none before the place was known at all
-  std::optional<supervisor::Navigator> finder_;       ///< while it is not
+  std::optional<localization::Localizer> localizer_;  ///< none while the place is unknown
+  std::optional<supervisor::Navigator> finder_;       ///< while it is
   std::size_t scans_ = 0;
-  double driven_m_ = 0.0;                       ///< since the last scan
   std::vector<core::CarriedDecision> carried_;  ///< since the last scan
   double driven_in_part_m_ = 0.0;
   int part_ = 0, next_part_ = 1;  ///< of the drive, as of core::CarriedDecision

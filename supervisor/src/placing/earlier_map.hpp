@@ -22,9 +22,10 @@ class EarlierMap {
   const core::MapAppearance& appearance() const { return appearance_; }
   core::LandmarkId next_name() const { return next_name_; }
 
- private:
+  /// Where a landmark is, with its covariance when the nearest ones, a dozen, are moved and turned together as fits them best. O(N).
   core::PointGaussian relative_to_neighbours(std::size_t landmark, double reach_m) const;
 
+ private:
   core::JointGaussian landmarks_;
   std::vector<int> observations_;
   core::MapAppearance appearance_;

@@ -10,7 +10,7 @@
 
 namespace helixnav::localization {
 
-/// Finds out that a localizer is not where it believes it is. A look is a scan taken at least a 30th of the reach from the one
+/// Finds out that a vehicle is not where on a map it is believed to be, such as where it was said to begin. A look is a scan taken at least a 30th of the reach from the one
 /// before. Either nearly all landmarks of the map that should be seen are missing: a look that sees at most a fifth of three or
 /// more adds ln(P(missed | elsewhere) / P(missed | here)) for each, one that sees half of them takes all of it away, and 20
 /// nats over a third of the reach mean lost. Or the vehicle has driven twice the reach since the last look that confirmed its
@@ -26,6 +26,9 @@ class LostMonitor {
 
   bool is_lost() const;
 
+  /// A look has confirmed the place since the begin, or since reset().
+  bool is_confirmed() const { return is_confirmed_; }
+
   /// The place is known again.
   void reset();
 
@@ -38,6 +41,7 @@ class LostMonitor {
   double since_confirmed_m_ = 0.0;
   double missing_nats_ = 0.0;
   int looks_at_unknown_ = 0;
+  bool is_confirmed_ = false;
 };
 
 }  // namespace helixnav::localization

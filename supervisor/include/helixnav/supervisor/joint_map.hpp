@@ -18,6 +18,12 @@ core::JointMap joint_map(core::JointGaussian joint, core::LandmarkId next_name,
 /// In the order of `landmarks`.
 std::vector<core::LandmarkId> ids_of(const std::vector<core::MapLandmark>& landmarks);
 
+/// The mature landmarks of a map as it is drawn, for who asks where on it the vehicle is: each independent of the others, with its
+/// covariance relative to its neighbours within `reach_m` and half the variance of what two drives see of one landmark
+/// (`pair_noise_m`) besides. By what the map as a whole is bent is not in it. The pose is at the origin and certain. O(N²).
+/// PreconditionError when the parts of the map do not fit each other. Test: supervisor/placing/as_drawn_test.cpp.
+core::JointMap as_drawn(const core::JointMap& map, double reach_m, double pair_noise_m);
+
 /// The same of a navigator with all landmarks of its map, as listed: a filter that holds a part of them may have names of its own.
 template <class Navigator>
 core::JointMap joint_map(const Navigator& navigator, const std::vector<core::MapLandmark>& landmarks) {
