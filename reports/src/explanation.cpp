@@ -10,6 +10,7 @@
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
+#include "helixnav/reports/run_warnings.hpp"
 #include "numerics_text.hpp"
 
 namespace helixnav::reports {
@@ -203,6 +204,8 @@ std::string explain_run(const runs::Run& run) {
   if (!run.steps.empty() && run.steps.back().mode == core::Mode::searching) {
     text += "\nAt the end of the run a search was still open.\n";
   }
+  const std::string contradicted = contradicted_place_text(run);
+  if (!contradicted.empty()) text += "\nWarning: " + contradicted + ".\n";
   text += all_of_kind<core::SlipDecision>(decided, "Slips that the odometry did not show");
   text += all_of_kind<core::MovingDecision>(decided, "What moves");
   text += numerics_line(run);
