@@ -237,6 +237,16 @@ TEST_F(GoOn, OneMapTwiceIsRefused) {
   refused(folder("nowhere"), "expected the folder of a run");
 }
 
+TEST_F(GoOn, ARunThatNeverFoundItsPlaceHoldsNothingOfThatMapAndIsJoinedAsAnyOther) {
+  write_yesterday();
+  write("elsewhere.circles", drive_text(grove(2, 50), 0.0, 200, 3));
+  must("elsewhere.circles", {"--map", folder("monday")}, "elsewhere");
+  ASSERT_EQ(summary("elsewhere").at("placed").at("found"), false);
+  const Outcome joined = run({"join", folder("monday"), folder("elsewhere"), "--out", folder("both")});
+  EXPECT_EQ(joined.exit_code, 0) << joined.err;
+  EXPECT_TRUE(fs::exists(folder("both") / "component_2" / "map.bin"));
+}
+
 TEST_F(GoOn, AMapOfOneLandmarkIsTooSmallToBeFoundOn) {
   write("one.circles", drive_text({{radius_m, 5.0}}, 0.0, 20, 1));
   must("one.circles", {}, "one");
