@@ -10,6 +10,7 @@
 
 #include "helixnav/reports/decision_sentence.hpp"
 #include "numerics_text.hpp"
+#include "only_localized.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -201,10 +202,10 @@ std::vector<std::string> warnings_of_place(const runs::Run& run) {
                        " in a row, from " + short_number(from_s) + " s on: there the pose is that of the odometry");
   }
   if (sought_in_vain(run)) {
-    warnings.emplace_back(
-        "the vehicle never found its place on the earlier map: the map is that of this session, or of the drive since "
-        "it "
-        "was carried, alone");
+    warnings.push_back(std::string("the vehicle never found its place on the earlier map: ") +
+                       (only_localized(run)
+                            ? "its poses are not on it"
+                            : "the map is that of this session, or of the drive since it was carried, alone"));
   }
   if (run.steps.back().mode == core::Mode::searching) {
     warnings.emplace_back("a search was still open at the end: where on the map the vehicle then was is not decided");

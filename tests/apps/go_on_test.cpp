@@ -247,6 +247,30 @@ TEST_F(GoOn, ARunThatNeverFoundItsPlaceHoldsNothingOfThatMapAndIsJoinedAsAnyOthe
   EXPECT_TRUE(fs::exists(folder("both") / "component_2" / "map.bin"));
 }
 
+TEST_F(GoOn, AJoinedMapIsNoRunAndHasNoEnd) {
+  write_yesterday();
+  write("elsewhere.circles", drive_text(grove(2, 50), 0.0, 200, 3));
+  must("elsewhere.circles", {}, "elsewhere");
+  ASSERT_EQ(run({"join", folder("monday"), folder("elsewhere"), "--out", folder("both")}).exit_code, 0);
+  for (const std::string command : {"explain", "evaluate"}) {
+    const Outcome outcome = run({command, folder("both")});
+    EXPECT_EQ(outcome.exit_code, 3);
+    EXPECT_NE(outcome.err.find("joins.csv says how each run was placed"), std::string::npos) << outcome.err;
+  }
+  const Outcome outcome = replay("monday.circles", {"--map", folder("both"), "--start", "end"}, "none");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.err.find("a joined map has no end"), std::string::npos) << outcome.err;
+}
+
+TEST_F(GoOn, OfALocalizationThatFoundNoPlaceIsNotSaidThatItMapped) {
+  write_yesterday();
+  write("elsewhere.circles", drive_text(grove(2, 50), 0.0, 200, 3));
+  must("elsewhere.circles", {"--localize", "--map", folder("monday"), "--start", "unknown"}, "located");
+  const std::string told = run({"explain", folder("located")}).out;
+  EXPECT_NE(told.find("which stays as given"), std::string::npos) << told;
+  EXPECT_EQ(told.find("that of this session"), std::string::npos) << told;
+}
+
 TEST_F(GoOn, AMapOfOneLandmarkIsTooSmallToBeFoundOn) {
   write("one.circles", drive_text({{radius_m, 5.0}}, 0.0, 20, 1));
   must("one.circles", {}, "one");
