@@ -237,6 +237,16 @@ TEST_F(GoOn, OneMapTwiceIsRefused) {
   refused(folder("nowhere"), "expected the folder of a run");
 }
 
+TEST_F(GoOn, AStartFromWhereNothingOfTheMapIsSeenIsWarnedOf) {
+  write_yesterday();
+  write("tuesday.circles", drive_text(grove(1, 50), 0.0, 240, 2));
+  const auto said = [&](const std::string& start) {
+    return replay("tuesday.circles", {"--map", folder("monday"), "--start", start}, "at" + start).err;
+  };
+  EXPECT_NE(said("300,0,0").find("matched with the map given"), std::string::npos);
+  EXPECT_EQ(said("0,0,0").find("matched with the map given"), std::string::npos);
+}
+
 TEST_F(GoOn, ARunThatNeverFoundItsPlaceHoldsNothingOfThatMapAndIsJoinedAsAnyOther) {
   write_yesterday();
   write("elsewhere.circles", drive_text(grove(2, 50), 0.0, 200, 3));
