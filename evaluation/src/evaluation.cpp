@@ -12,6 +12,8 @@
 #include "helixnav/core/rigid_fit.hpp"
 #include "helixnav/evaluation/alignment.hpp"
 #include "helixnav/evaluation/nees.hpp"
+#include "helixnav/runs/told_frame.hpp"
+#include "pose_pairs.hpp"
 #include "run_interpolation.hpp"
 
 namespace helixnav::evaluation {
@@ -99,61 +101,66 @@ void summarize_poses(PoseEvaluation& result) {
   result.nees_inside_95 = fraction_of(inside, result.nees_count);
 }
 
-/// A true pose and the estimate of its time.
-struct PosePair {
-  core::TruePose known;
-  core::PoseGaussian estimate;
-};
-
-std::vector<PosePair> pose_pairs(const Steps& steps, const std::vector<core::TruePose>& poses) {
-  std::vector<PosePair> pairs;
-  for (const core::TruePose& known : poses) {
-    const auto estimate = estimate_at(steps, known.t_ns);
-    if (estimate) pairs.push_back({known, *estimate});
-  }
-  return pairs;
-}
-
-/// Rigid alignment of all; of the position errors that it leaves, the RMSE.
+/// Rigid alignment of all that is in one frame; of the position errors that it leaves, the RMSE.
 std::pair<core::Pose2, double> align_poses(const std::vector<PosePair>& pairs) {
   std::vector<Eigen::Vector2d> known_m;
   std::vector<Eigen::Vector2d> estimated_m;
   for (const PosePair& pair : pairs) {
+    if (!pair.told.is_placed) continue;
     known_m.push_back(pair.known.T_world_robot.position_m());
     estimated_m.push_back(pair.estimate.mean.position_m());
   }
   const core::Pose2 T_truth_map = core::fit_rigidly(known_m, estimated_m);
   std::vector<double> left_m;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
+  for (std::size_t i = 0; i < known_m.size(); ++i) {
     left_m.push_back((known_m[i] - core::transform(T_truth_map, estimated_m[i])).norm());
   }
   return {T_truth_map, error_statistics(std::move(left_m)).rmse};
 }
 
+Eigen::Vector3d error_of(const core::Pose2& estimate, const core::Pose2& known) {
+  Eigen::Vector3d error = estimate.vector() - known.vector();
+  error.z() = core::wrap_to_pi(error.z());
+  return error;
+}
+
+/// Counts what it is compared with.
+double nees_of(const PosePair& pair, const core::Pose2& known_map, PoseEvaluation& pose) {
+  if (!pair.known_as_told) {
+    ++pose.nees_left_out;
+    return nan;
+  }
+  pose.nees_in_own_frame += pair.told.is_own ? 1 : 0;
+  return nees(pair.estimate, pair.told.is_own ? *pair.known_as_told : known_map);
+}
+
 std::pair<PositionEvaluation, PoseEvaluation> evaluate_poses(const Steps& steps, const runs::RunTruth& truth,
+                                                             const std::vector<runs::ToldFrame>& told,
                                                              core::Nanoseconds nees_from_ns) {
   PositionEvaluation position;
   position.limit_m = std::numeric_limits<double>::infinity();
   position.against_poses = true;
   position.aligned = !truth.frame.is_map;
   PoseEvaluation pose;
-  const std::vector<PosePair> pairs = pose_pairs(steps, truth.poses);
-  position.fixes_outside = truth.poses.size() - pairs.size();
+  const std::vector<PosePair> pairs = pose_pairs(steps, truth.poses, told);
   const auto [T_truth_map, rmse_m] = align_poses(pairs);
   position.rmse_aligned_m = rmse_m;
   if (position.aligned) position.T_truth_map = T_truth_map;
   const core::Pose2 T_map_truth = core::inverse(position.T_truth_map);
   for (const PosePair& pair : pairs) {
-    const core::Pose2 known =
+    if (!pair.told.is_placed && !pair.known_as_told) continue;
+    core::Pose2 known =
         position.aligned ? core::compose(T_map_truth, pair.known.T_world_robot) : pair.known.T_world_robot;
-    Eigen::Vector3d error = pair.estimate.mean.vector() - known.vector();
-    error.z() = core::wrap_to_pi(error.z());
+    const bool counts = pair.known.t_ns >= nees_from_ns;
+    const double nees_told = counts ? nees_of(pair, known, pose) : nan;
+    if (!pair.told.is_placed) known = *pair.known_as_told;
+    const Eigen::Vector3d error = error_of(pair.estimate.mean, known);
     const Eigen::Vector3d sigma = pair.estimate.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
     position.errors.push_back({pair.known.t_ns, known.position_m(), error.head<2>(), sigma.head<2>(), true});
-    const double told = pair.known.t_ns < nees_from_ns ? nan : nees(pair.estimate, known);
-    pose.errors.push_back({pair.known.t_ns, error.z(), sigma.z(), told});
+    pose.errors.push_back({pair.known.t_ns, error.z(), sigma.z(), nees_told});
   }
   position.fixes_used = position.errors.size();
+  position.fixes_outside = truth.poses.size() - position.fixes_used;
   position.error_m = statistics_of_used(position.errors);
   summarize_poses(pose);
   return {std::move(position), std::move(pose)};
@@ -174,7 +181,7 @@ std::optional<PositionEvaluation> evaluate_final(const runs::Run& run, const run
   const Steps steps = final_steps(run);
   if (!truth.positions.empty()) return evaluate_positions(steps, truth, limit_m);
   if (truth.poses.empty()) return std::nullopt;
-  return evaluate_poses(steps, truth, EvaluationOptions().nees_from_ns).first;
+  return evaluate_poses(steps, truth, runs::told_frames(run), EvaluationOptions().nees_from_ns).first;
 }
 
 NisEvaluation evaluate_nis(const std::vector<core::StepReport>& steps) {
@@ -265,7 +272,7 @@ Evaluation evaluate(const runs::Run& run, const runs::RunTruth& truth, const Eva
   evaluation.steps = run.steps.size();
   if (!truth.positions.empty()) evaluation.position = evaluate_positions(run.steps, truth, options.fix_limit_m);
   if (!truth.poses.empty()) {
-    auto [position, pose] = evaluate_poses(run.steps, truth, options.nees_from_ns);
+    auto [position, pose] = evaluate_poses(run.steps, truth, runs::told_frames(run), options.nees_from_ns);
     evaluation.pose = std::move(pose);
     if (!evaluation.position) evaluation.position = std::move(position);
   }

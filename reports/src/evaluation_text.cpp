@@ -87,6 +87,14 @@ std::string pose_text(const evaluation::PoseEvaluation& pose) {
     text += format("NEES                 mean %.3f (3 when consistent), %.1f %% inside the 95 %% band, %zu instants\n",
                    pose.nees_mean, 100.0 * pose.nees_inside_95, pose.nees_count);
   }
+  if (pose.nees_in_own_frame > 0) {
+    text += format("  before placed      %zu instants, by the truth since the session or part began\n",
+                   pose.nees_in_own_frame);
+  }
+  if (pose.nees_left_out > 0) {
+    text +=
+        format("  left out           %zu instants, told in a frame that the truth does not know\n", pose.nees_left_out);
+  }
   return text;
 }
 
@@ -189,6 +197,8 @@ Json evaluation_to_json(const evaluation::Evaluation& evaluation) {
     json["nees"] = {{"count", evaluation.pose->nees_count},
                     {"mean", evaluation.pose->nees_mean},
                     {"inside_95", evaluation.pose->nees_inside_95}};
+    if (evaluation.pose->nees_in_own_frame > 0) json["nees"]["own_frame"] = evaluation.pose->nees_in_own_frame;
+    if (evaluation.pose->nees_left_out > 0) json["nees"]["left_out"] = evaluation.pose->nees_left_out;
   }
   if (evaluation.map) json["landmark_error"] = map_to_json(*evaluation.map);
   json["nis"] = {{"updates", evaluation.nis.updates},

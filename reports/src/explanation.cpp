@@ -10,7 +10,9 @@
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
+#include "helixnav/reports/run_warnings.hpp"
 #include "numerics_text.hpp"
+#include "only_localized.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -117,7 +119,7 @@ bool is_placing(const Decided& decided) {
 }
 
 /// Whether a session found its place on an earlier map, where it looked for one.
-std::string places_of(const std::vector<Decided>& decided) {
+std::string places_of(const runs::Run& run, const std::vector<Decided>& decided) {
   std::string text;
   bool accepted = false, carried = false;
   for (const Decided& one : decided) {
@@ -127,8 +129,10 @@ std::string places_of(const std::vector<Decided>& decided) {
     carried = carried || is_carried(one);
   }
   if (text.empty()) return {};
-  const char* const alone = carried ? "  It did not find its place since: the map is that of the last part alone.\n"
-                                    : "  It never found its place: the map is that of this session alone.\n";
+  const char* const alone = only_localized(run)
+                                ? "  It did not find its place: no pose of it is on the map, which stays as given.\n"
+                            : carried ? "  It did not find its place since: the map is that of the last part alone.\n"
+                                      : "  It never found its place: the map is that of this session alone.\n";
   return std::string(carried ? "\nWhere the vehicle is:\n" : "\nThe earlier map:\n") + text + (accepted ? "" : alone) +
          '\n';
 }
@@ -192,7 +196,7 @@ std::string explain_run(const runs::Run& run) {
                      std::to_string(count_of(closures, "refused")) + " refused, " +
                      std::to_string(count_of(closures, "new-ground")) + " on new ground, " +
                      std::to_string(count_of(closures, "undecided")) + " left undecided.\n";
-  text += fates_line(run) + places_of(decided);
+  text += fates_line(run) + places_of(run, decided);
   if (std::none_of(decided.begin(), decided.end(), is_of_search)) {
     text += "No return was ambiguous enough for a search: every scan was associated at once.\n";
   }
@@ -203,6 +207,8 @@ std::string explain_run(const runs::Run& run) {
   if (!run.steps.empty() && run.steps.back().mode == core::Mode::searching) {
     text += "\nAt the end of the run a search was still open.\n";
   }
+  const std::string contradicted = contradicted_place_text(run);
+  if (!contradicted.empty()) text += "\nWarning: " + contradicted + ".\n";
   text += all_of_kind<core::SlipDecision>(decided, "Slips that the odometry did not show");
   text += all_of_kind<core::MovingDecision>(decided, "What moves");
   text += numerics_line(run);

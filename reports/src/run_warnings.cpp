@@ -11,6 +11,7 @@
 #include "closing_warnings.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
 #include "numerics_text.hpp"
+#include "only_localized.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -34,7 +35,7 @@ ObservationCounts count_observations(const runs::Run& run) {
 
 template <class... Values>
 std::string warning(const char* format, Values... values) {
-  std::array<char, 400> buffer{};
+  std::array<char, 600> buffer{};
   std::snprintf(buffer.data(), buffer.size(), format, values...);
   return buffer.data();
 }
@@ -93,6 +94,27 @@ std::string fixes_text(const runs::Run& run) {
       refused, used + refused);
 }
 
+/// How often in a row the whole map surely had another place for what was mapped than the vehicle was believed to be at, and nothing
+/// came of it; and how far away the last one was.
+std::pair<int, double> contradicted_places(const runs::Run& run) {
+  int times = 0;
+  double away_m = 0.0;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::Decision& decision : step.decisions) {
+      const auto* placed = std::get_if<core::PlacedDecision>(&decision);
+      const auto* asked = std::get_if<core::WholeMapDecision>(&decision);
+      const bool accepted = (placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted) ||
+                            (asked != nullptr && asked->verdict == core::WholeMapDecision::Verdict::accepted);
+      if (accepted || std::holds_alternative<core::CarriedDecision>(decision)) times = 0;
+      if (asked == nullptr || asked->verdict != core::WholeMapDecision::Verdict::refused) continue;
+      if (asked->lead < asked->needed) continue;  // another place may fit as well
+      ++times;
+      away_m = asked->displaced_m;
+    }
+  }
+  return {times, away_m};
+}
+
 bool has_match(const core::StepReport& step) {
   return std::any_of(step.associations.begin(), step.associations.end(),
                      [](const core::AssociationReport& a) { return a.outcome == core::Outcome::matched; });
@@ -128,6 +150,17 @@ std::pair<std::size_t, std::size_t> longest_without_match(const std::vector<core
 
 }  // namespace
 
+std::string contradicted_place_text(const runs::Run& run) {
+  const auto [times, away_m] = contradicted_places(run);
+  constexpr int least = 3;  // once or twice the pairs of a right place are refused for a bent map
+  if (times < least) return {};
+  return warning(
+      "the landmarks seen fit another place on the map, %.3g m from where the vehicle was taken to be: the whole map "
+      "said so %d times, and nothing came of it. The start given (--start) is wrong, or the place was lost, and the "
+      "map may hold landmarks twice. 'replay --map RUN --start unknown' finds the start by itself",
+      away_m, times);
+}
+
 std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Evaluation& evaluation) {
   std::vector<std::string> warnings;
   if (run.smoothed && run.smoothed->alone) return warnings;  // nothing was matched step by step
@@ -151,8 +184,8 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
                 "'helixnav evaluate' takes --truth-offset-s",
                 evaluation.position->fixes_outside));
   }
-  for (const std::string& text :
-       {fixes_text(run), numerics_text(numerics_of(run)), postponed_text(postponed_in(run))}) {
+  for (const std::string& text : {fixes_text(run), contradicted_place_text(run), numerics_text(numerics_of(run)),
+                                  postponed_text(postponed_in(run))}) {
     if (!text.empty()) warnings.push_back(text);
   }
   for (const std::string& text : closing_warnings(run)) warnings.push_back(text);
@@ -171,10 +204,10 @@ std::vector<std::string> warnings_of_place(const runs::Run& run) {
                        " in a row, from " + short_number(from_s) + " s on: there the pose is that of the odometry");
   }
   if (sought_in_vain(run)) {
-    warnings.emplace_back(
-        "the vehicle never found its place on the earlier map: the map is that of this session, or of the drive since "
-        "it "
-        "was carried, alone");
+    warnings.push_back(std::string("the vehicle never found its place on the earlier map: ") +
+                       (only_localized(run)
+                            ? "its poses are not on it"
+                            : "the map is that of this session, or of the drive since it was carried, alone"));
   }
   if (run.steps.back().mode == core::Mode::searching) {
     warnings.emplace_back("a search was still open at the end: where on the map the vehicle then was is not decided");

@@ -12,15 +12,6 @@ const core::PlacedDecision* placing_in(const core::Decision& decision) {
   return placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted ? placed : nullptr;
 }
 
-/// Otherwise the frame was known from the begin, or since it was found before.
-bool began_unknown(const Run& run) {
-  const auto& decisions = run.steps.front().decisions;
-  return std::any_of(decisions.begin(), decisions.end(), [](const core::Decision& decision) {
-    const auto* placed = std::get_if<core::PlacedDecision>(&decision);
-    return placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::sought;
-  });
-}
-
 void move(const core::Pose2& T_final_told, core::MapLandmark& landmark) {
   const Eigen::Matrix2d R = core::rotation(T_final_told.heading_rad);
   landmark.point.mean_m = core::transform(T_final_told, landmark.point.mean_m);
@@ -48,8 +39,7 @@ bool has_found_place(const Run& run) {
 std::vector<FrameOfStep> frames_of(const Run& run) {
   std::vector<FrameOfStep> frames;
   if (run.steps.empty()) return frames;
-  std::vector<int> part_of;  // [step] whose frame it is in by now
-  int part = began_unknown(run) ? 1 : 0;
+  int part = began_off_earlier_map(run) ? 1 : 0;  // part 0: that map
   int times_carried = 0;
   for (const core::StepReport& step : run.steps) {
     for (const core::Decision& decision : step.decisions) {
@@ -58,21 +48,20 @@ std::vector<FrameOfStep> frames_of(const Run& run) {
         ++times_carried;
         const std::size_t scans = std::min(frames.size(), static_cast<std::size_t>(std::max(0, carried->scans)));
         for (std::size_t k = frames.size() - scans; k < frames.size(); ++k) {
-          part_of[k] = part;
+          frames[k].part = part;
           frames[k].times_carried = times_carried;
         }
       }
       const core::PlacedDecision* placing = placing_in(decision);
       if (placing == nullptr || placing->part == part) continue;
       for (std::size_t k = 0; k < frames.size(); ++k) {
-        if (part_of[k] != part) continue;
-        part_of[k] = placing->part;
+        if (frames[k].part != part) continue;
+        frames[k].part = placing->part;
         frames[k].T_final_told = core::compose(placing->T_map_session, frames[k].T_final_told);
       }
       part = placing->part;
     }
-    frames.push_back({times_carried, {}});
-    part_of.push_back(part);
+    frames.push_back({times_carried, part, part, {}});
   }
   return frames;
 }

@@ -30,7 +30,7 @@ void correct_path(Run& run, const std::vector<core::StampedPose>& solved) {
   const auto frame_at = [&](core::Nanoseconds t_ns) {
     const auto later = [](const core::StepReport& step, core::Nanoseconds at_ns) { return step.t_ns < at_ns; };
     const auto step = std::lower_bound(run.steps.begin(), run.steps.end(), t_ns, later);
-    if (step == run.steps.end()) return FrameOfStep{frames.back().times_carried, {}};
+    if (step == run.steps.end()) return FrameOfStep{frames.back().times_carried, 0, 0, {}};
     return frames[static_cast<std::size_t>(step - run.steps.begin())];
   };
   run.final_path.clear();

@@ -291,6 +291,12 @@ RunManifest read_manifest(const std::string& path) {
     if (!robots.empty()) {
       throw core::InputError(path + ": the folder of a team of robots; each has a run folder of its own: " + robots);
     }
+    if (fs::exists(path + "/joins.csv")) {
+      throw core::InputError(
+          path +
+          ": the folder of a joined map, which is no run and has no drive: joins.csv says how each run was placed, "
+          "changes.csv what changed between them, report.html draws both; replay --map and join go on in it");
+    }
     throw core::InputError(path + ": not a run folder: expected a file " + manifest_file + " in it");
   }
   return manifest_from_text(manifest, files::read_whole_file(manifest));

@@ -8,8 +8,11 @@
 namespace helixnav::runs {
 namespace {
 
-/// As a folder of an earlier version has it.
-bool began_elsewhere(const Run& run) {
+bool are_equal(const core::Pose2& a, const core::Pose2& b) { return a.vector() == b.vector(); }
+
+}  // namespace
+
+bool began_off_earlier_map(const Run& run) {
   if (run.steps.empty()) return false;
   const auto& decisions = run.steps.front().decisions;
   return std::any_of(decisions.begin(), decisions.end(), [](const core::Decision& decision) {
@@ -17,10 +20,6 @@ bool began_elsewhere(const Run& run) {
     return placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::sought;
   });
 }
-
-bool are_equal(const core::Pose2& a, const core::Pose2& b) { return a.vector() == b.vector(); }
-
-}  // namespace
 
 /// Part 0 is the earlier map of a session that began elsewhere.
 bool is_on_earlier_map(const Run& run) {
@@ -48,8 +47,8 @@ void bring_truth_into_map(Run& run) {
   RunTruth& truth = run.truth;
   const std::optional<core::TruthFrame> placed = std::exchange(truth.frame_when_placed, std::nullopt);
   if (truth.poses.empty() || !is_on_earlier_map(run)) return;
-  if (!placed && !began_elsewhere(run)) return;
-  std::vector<core::TrueLandmark> none;  // beside positions, landmarks are in the frame of these
+  if (!placed && !began_off_earlier_map(run)) return;  // a folder of an earlier version
+  std::vector<core::TrueLandmark> none;                // beside positions, landmarks are in the frame of these
   move_truth(placed ? placed->T_truth_map : std::nullopt, truth.frame, truth.poses,
              truth.positions.empty() ? truth.landmarks : none);
 }

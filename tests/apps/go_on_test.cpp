@@ -237,6 +237,50 @@ TEST_F(GoOn, OneMapTwiceIsRefused) {
   refused(folder("nowhere"), "expected the folder of a run");
 }
 
+TEST_F(GoOn, AStartFromWhereNothingOfTheMapIsSeenIsWarnedOf) {
+  write_yesterday();
+  write("tuesday.circles", drive_text(grove(1, 50), 0.0, 240, 2));
+  const auto said = [&](const std::string& start) {
+    return replay("tuesday.circles", {"--map", folder("monday"), "--start", start}, "at" + start).err;
+  };
+  EXPECT_NE(said("300,0,0").find("matched with the map given"), std::string::npos);
+  EXPECT_EQ(said("0,0,0").find("matched with the map given"), std::string::npos);
+}
+
+TEST_F(GoOn, ARunThatNeverFoundItsPlaceHoldsNothingOfThatMapAndIsJoinedAsAnyOther) {
+  write_yesterday();
+  write("elsewhere.circles", drive_text(grove(2, 50), 0.0, 200, 3));
+  must("elsewhere.circles", {"--map", folder("monday")}, "elsewhere");
+  ASSERT_EQ(summary("elsewhere").at("placed").at("found"), false);
+  const Outcome joined = run({"join", folder("monday"), folder("elsewhere"), "--out", folder("both")});
+  EXPECT_EQ(joined.exit_code, 0) << joined.err;
+  EXPECT_TRUE(fs::exists(folder("both") / "component_2" / "map.bin"));
+}
+
+TEST_F(GoOn, AJoinedMapIsNoRunAndHasNoEnd) {
+  write_yesterday();
+  write("elsewhere.circles", drive_text(grove(2, 50), 0.0, 200, 3));
+  must("elsewhere.circles", {}, "elsewhere");
+  ASSERT_EQ(run({"join", folder("monday"), folder("elsewhere"), "--out", folder("both")}).exit_code, 0);
+  for (const std::string command : {"explain", "evaluate"}) {
+    const Outcome outcome = run({command, folder("both")});
+    EXPECT_EQ(outcome.exit_code, 3);
+    EXPECT_NE(outcome.err.find("joins.csv says how each run was placed"), std::string::npos) << outcome.err;
+  }
+  const Outcome outcome = replay("monday.circles", {"--map", folder("both"), "--start", "end"}, "none");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.err.find("a joined map has no end"), std::string::npos) << outcome.err;
+}
+
+TEST_F(GoOn, OfALocalizationThatFoundNoPlaceIsNotSaidThatItMapped) {
+  write_yesterday();
+  write("elsewhere.circles", drive_text(grove(2, 50), 0.0, 200, 3));
+  must("elsewhere.circles", {"--localize", "--map", folder("monday"), "--start", "unknown"}, "located");
+  const std::string told = run({"explain", folder("located")}).out;
+  EXPECT_NE(told.find("which stays as given"), std::string::npos) << told;
+  EXPECT_EQ(told.find("that of this session"), std::string::npos) << told;
+}
+
 TEST_F(GoOn, AMapOfOneLandmarkIsTooSmallToBeFoundOn) {
   write("one.circles", drive_text({{radius_m, 5.0}}, 0.0, 20, 1));
   must("one.circles", {}, "one");

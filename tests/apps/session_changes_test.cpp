@@ -74,6 +74,20 @@ TEST(SessionChanges, BeyondTheRimOfWhatASessionMappedNothingIsGone) {
   EXPECT_TRUE(std::none_of(changes.begin(), changes.end(), [](const ChangedLandmark& one) { return one.is_gone(); }));
 }
 
+/// Each has copies of its own there: the second did not fail to see what stands 1.7 m beside.
+TEST(SessionChanges, WhereTheSessionsAreBentApartNothingIsGoneNewOrMoved) {
+  TwoSessions world;
+  for (core::LandmarkId id = 0; id < 60; ++id) {
+    world.take_out(id, 1);
+    world.add(world.place_m(id) + Eigen::Vector2d(1.5, 0.8), false, true);
+  }
+  for (const ChangedLandmark& landmark : world.changes()) {
+    if (landmark.point_m.y() < 18.0) {
+      EXPECT_EQ(landmark.change(), Change::kept) << landmark.id;
+    }
+  }
+}
+
 TEST(SessionChanges, GoneAndNewNearerThanChanceMoved) {
   TwoSessions world;
   world.take_out(44, 1);

@@ -118,6 +118,70 @@ TEST(Evaluation, LeavesNeesOutWhereTheCovarianceIsSingular) {
   EXPECT_EQ(evaluation.pose->nees_mean, 0.0);
 }
 
+core::PlacedDecision placing(core::PlacedDecision::Verdict verdict) {
+  core::PlacedDecision decision;
+  decision.verdict = verdict;
+  decision.T_map_session = core::Pose2(20.0, -7.0, 0.5);
+  return decision;
+}
+
+/// The place is found in step 5 on a map that is wrong there by 30 m, as its covariance says; before, the session's own says 0.2 m.
+TEST(Evaluation, ComparesWhatWasToldBeforeThePlaceWasFoundWithTheTruthSinceTheBegin) {
+  runs::Run run = straight_run();
+  const core::Pose2 T_true_map(30.0, 0.0, 0.1);
+  run.steps[0].decisions.emplace_back(placing(core::PlacedDecision::Verdict::sought));
+  run.steps[5].decisions.emplace_back(placing(core::PlacedDecision::Verdict::accepted));
+  for (std::size_t k = 0; k < run.steps.size(); ++k) {
+    const core::Pose2 known = core::compose(T_true_map, run.steps[k].pose.mean);
+    run.truth.poses.push_back({run.steps[k].t_ns, known});
+    if (k >= 5) run.steps[k].pose.covariance.diagonal() = Eigen::Vector3d(900.0, 900.0, 0.01);
+  }
+  run.truth.poses[3].T_world_robot = core::compose(T_true_map, core::Pose2(3.2, 0.3, 0.1));
+  const Evaluation evaluation = evaluate(run);
+  EXPECT_EQ(evaluation.pose->nees_count, 11u);
+  EXPECT_EQ(evaluation.pose->nees_in_own_frame, 5u);
+  EXPECT_NEAR(evaluation.pose->errors[1].nees, 0.0, 1e-9);
+  EXPECT_NEAR(evaluation.pose->errors[3].nees, 3.0, 1e-9) << "one sigma in each coordinate";
+  EXPECT_NEAR(evaluation.pose->errors[10].nees, 2.0, 0.1);
+  EXPECT_GT(evaluation.position->errors[1].error_m.norm(), 29.0) << "as the place puts it on the map";
+  run.truth.poses.erase(run.truth.poses.begin());
+  EXPECT_EQ(evaluate(run).pose->nees_left_out, 4u) << "no truth where it began";
+}
+
+/// Carried in step 5 and never found: poses in a frame of their own.
+TEST(Evaluation, ComparesAPartThatWasNeverFoundWithTheTruthSinceItBegan) {
+  runs::Run run = straight_run();
+  core::CarriedDecision carried;
+  carried.part = 1;
+  run.steps[5].decisions.emplace_back(carried);
+  for (std::size_t k = 0; k < run.steps.size(); ++k) {
+    run.truth.poses.push_back(
+        {run.steps[k].t_ns, core::Pose2(static_cast<double>(k) + (k < 5 ? 0.0 : 400.0), 0.0, 0.0)});
+  }
+  run.truth.poses.push_back({run.steps[4].t_ns + 1, core::Pose2(4.0, 0.0, 0.0)});
+  const Evaluation evaluation = evaluate(run);
+  EXPECT_LT(evaluation.position->error_m.max, 1e-9);
+  EXPECT_LT(evaluation.position->rmse_aligned_m, 1e-9);
+  EXPECT_EQ(evaluation.position->fixes_outside, 1u) << "while it was carried";
+  EXPECT_EQ(evaluation.pose->nees_in_own_frame, 6u);
+  EXPECT_NEAR(evaluation.pose->nees_mean, 0.0, 1e-9);
+}
+
+/// The drive was parted two scans back: what those said then was wrong, and their covariance was of the map frame.
+TEST(Evaluation, LeavesNeesOutOfWhatWasMovedAfterwards) {
+  runs::Run run = straight_run();
+  core::CarriedDecision carried;
+  carried.cause = core::CarriedDecision::Cause::by_place;
+  carried.part = 1;
+  carried.scans = 2;
+  run.steps[5].decisions.emplace_back(carried);
+  run.steps[5].decisions.emplace_back(placing(core::PlacedDecision::Verdict::accepted));
+  for (const core::StepReport& step : run.steps) run.truth.poses.push_back({step.t_ns, step.pose.mean});
+  const Evaluation evaluation = evaluate(run);
+  EXPECT_EQ(evaluation.pose->nees_count, 9u);
+  EXPECT_EQ(evaluation.pose->nees_left_out, 2u);
+}
+
 TEST(Evaluation, CountsNisAgainstItsTwoSidedBand) {
   runs::Run run = straight_run();
   const double low = core::chi2_quantile(0.025, 4);

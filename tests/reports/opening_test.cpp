@@ -3,6 +3,7 @@
 
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
+#include "helixnav/reports/explanation.hpp"
 #include "helixnav/reports/run_warnings.hpp"
 #include "report/report_opening.hpp"
 
@@ -141,6 +142,31 @@ TEST(Opening, WarnsOfALongDriveWithoutAMatchAndOfASearchLeftOpen) {
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_NE(warnings[0].find("105 scans in a row, from 10 s on"), std::string::npos) << warnings[0];
   EXPECT_NE(warnings[1].find("still open"), std::string::npos) << warnings[1];
+}
+
+TEST(Opening, WarnsWhereTheWholeMapHasAnotherPlaceAgainAndAgain) {
+  runs::Run run = drifting_run(0.0);
+  core::WholeMapDecision asked;
+  asked.verdict = core::WholeMapDecision::Verdict::refused;
+  asked.lead = 60.0;
+  asked.needed = 25.0;
+  asked.displaced_m = 317.0;
+  for (const std::size_t k : {10u, 20u}) run.steps[k].decisions.emplace_back(asked);
+  EXPECT_TRUE(contradicted_place_text(run).empty()) << "twice: of a bent map";
+  run.steps[30].decisions.emplace_back(asked);
+  const std::vector<std::string> warnings = warnings_of(run, evaluation::evaluate(run));
+  const std::string all = warnings.empty() ? "" : warnings.back();
+  EXPECT_NE(contradicted_place_text(run).find("317 m"), std::string::npos) << contradicted_place_text(run);
+  EXPECT_NE(all.find("--start unknown"), std::string::npos) << all;
+  EXPECT_NE(explain_run(run).find("--start unknown"), std::string::npos);
+  asked.lead = 20.0;
+  for (const std::size_t k : {10u, 20u}) run.steps[k].decisions.back() = asked;
+  EXPECT_TRUE(contradicted_place_text(run).empty()) << "not sure of the place";
+  asked.lead = 60.0;
+  for (const std::size_t k : {10u, 20u}) run.steps[k].decisions.back() = asked;
+  asked.verdict = core::WholeMapDecision::Verdict::accepted;
+  run.steps[40].decisions.emplace_back(asked);
+  EXPECT_TRUE(contradicted_place_text(run).empty()) << "found at last";
 }
 
 TEST(Opening, OfARunWithoutStepsSaysNothing) {

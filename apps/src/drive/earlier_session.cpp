@@ -102,7 +102,19 @@ EarlierSession earlier_session(core::JointMap map, const SessionStart& start, co
   return session;
 }
 
+/// Several runs ended in a joined map, and the pose in its map.bin is of one of them.
+void check_has_end(const std::string& folder, const SessionStart& start) {
+  namespace fs = std::filesystem;
+  if (start.kind != SessionStart::Kind::end || fs::exists(folder + "/manifest.json")) return;
+  if (!fs::exists(folder + "/joined_from.csv")) return;
+  throw core::InputError(
+      folder +
+      ": a joined map has no end, since each of its runs ended elsewhere; give --start unknown or a pose "
+      "x,y,heading");
+}
+
 EarlierSession read_earlier_session(const std::string& folder, const SessionStart& start) {
+  check_has_end(folder, start);
   EarlierSession session = earlier_session(read_joint_map_in(folder), start, joint_map_file_in(folder));
   if (!std::filesystem::exists(std::filesystem::path(folder) / "manifest.json")) return session;
   const std::vector<core::LandmarkId>& ids = session.map.joint.ids;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <set>
 
 #include "helixnav/reports/run_warnings.hpp"
 
@@ -34,6 +35,25 @@ std::string names_text(const runs::Run& run) {
          ": identities are wrong at times, or landmarks were moved. 'helixnav explain --step N' shows a scan";
 }
 
+/// Empty unless hardly anything that was seen is of the map on which the start was given: each landmark matched began in this run.
+std::string given_start_text(const runs::Run& run) {
+  std::set<core::LandmarkId> begun;
+  std::size_t seen = 0, of_map = 0;
+  for (const core::StepReport& step : run.steps) {
+    seen += step.associations.size();
+    for (const core::AssociationReport& a : step.associations) {
+      if (a.outcome == core::Outcome::augmented) begun.insert(a.landmark);
+      of_map += a.outcome == core::Outcome::matched && begun.count(a.landmark) == 0 ? 1 : 0;
+    }
+  }
+  constexpr std::size_t enough = 200;
+  constexpr std::size_t most_times = 50;  // right starts: 2 of 5 and more; wrong ones: 1 of 75 and fewer
+  if (seen < enough || most_times * of_map > seen) return {};
+  return "of " + std::to_string(seen) + " detections " + std::to_string(of_map) +
+         " were matched with the map given: the vehicle left it at once, or the start given is wrong and the map holds "
+         "landmarks twice now; --start unknown finds the start by itself";
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const Drive& job, const runs::Run& run, const evaluation::Evaluation& evaluation) {
@@ -46,6 +66,10 @@ std::vector<std::string> warnings_of(const Drive& job, const runs::Run& run, con
   }
   if (job.known_association) {
     const std::string text = names_text(run);
+    if (!text.empty()) warnings.push_back(text);
+  }
+  if (job.earlier && job.earlier->start.kind == SessionStart::Kind::pose) {
+    const std::string text = given_start_text(run);
     if (!text.empty()) warnings.push_back(text);
   }
   return warnings;

@@ -90,13 +90,25 @@ struct Held {
   bool joined = false;  ///< by join, else the run went on in it
 };
 
+/// Whether the run looked for its place on the map that it was given and never found it: its own map holds nothing of that one.
+bool stayed_apart(const std::string& folder) {
+  const runs::Run run = runs::read_run(folder);
+  return runs::began_off_earlier_map(run) && !runs::is_on_earlier_map(run);
+}
+
+bool is_map(const runs::InputFile& input) {
+  const std::string file = fs::path(input.name).filename().string();
+  return file == "map.bin" || file == "drive.bin";
+}
+
 /// The maps that a run has taken in.
 std::vector<Held> held_in(const std::string& run) {
   std::vector<Held> held;
   if (fs::exists(fs::path(run) / "manifest.json")) {
-    for (const runs::InputFile& input : runs::read_manifest(run).inputs) {
-      const std::string file = fs::path(input.name).filename().string();
-      if (file == "map.bin" || file == "drive.bin") held.push_back({input.sha256, input.name});
+    const std::vector<runs::InputFile> inputs = runs::read_manifest(run).inputs;
+    const bool none = std::any_of(inputs.begin(), inputs.end(), is_map) && stayed_apart(run);
+    for (const runs::InputFile& input : inputs) {
+      if (is_map(input) && !none) held.push_back({input.sha256, input.name});
     }
   }
   const std::string table = run + "/" + joined_from;

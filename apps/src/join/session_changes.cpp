@@ -20,8 +20,16 @@ class Ground {
       ids_.push_back(name);
       points_m_.push_back(component.joint.points_m[static_cast<std::size_t>(at - component.joint.ids.begin())]);
     }
+    named_ = ids_;
     std::sort(ids_.begin(), ids_.end());
     for (const Eigen::Vector2d& point_m : points_m_) radii_m_.push_back(radius_m(point_m, reach_m));
+  }
+
+  /// Whether one of this session and the other has half at least of the eight landmarks of the other that are nearest. Where the two
+  /// are bent apart, each has copies of its own, and neither says what the other should have seen; where much grew, the later one has
+  /// those of the earlier one.
+  bool agrees_with(const Ground& other, const Eigen::Vector2d& at_m) const {
+    return knows_half_of(other, at_m) || other.knows_half_of(*this, at_m);
   }
 
   bool has(core::LandmarkId id) const { return std::binary_search(ids_.begin(), ids_.end(), id); }
@@ -34,6 +42,19 @@ class Ground {
   }
 
  private:
+  bool knows_half_of(const Ground& other, const Eigen::Vector2d& at_m) const {
+    constexpr std::size_t nearest = 8;
+    if (other.points_m_.size() < nearest) return false;
+    std::vector<std::pair<double, core::LandmarkId>> apart;
+    for (std::size_t i = 0; i < other.points_m_.size(); ++i) {
+      apart.emplace_back((other.points_m_[i] - at_m).squaredNorm(), other.named_[i]);
+    }
+    std::nth_element(apart.begin(), apart.begin() + nearest - 1, apart.end());
+    const auto is_known = [&](const auto& one) { return has(one.second); };
+    const auto known = std::count_if(apart.begin(), apart.begin() + nearest, is_known);
+    return 2 * static_cast<std::size_t>(known) >= nearest;
+  }
+
   /// Whether no half plane with the point on its edge is without the eight nearest landmarks.
   bool is_surrounded(const Eigen::Vector2d& at_m) const {
     constexpr std::size_t nearest = 8;
@@ -62,7 +83,8 @@ class Ground {
     return share * std::min(distances_m[eighth], reach_m);
   }
 
-  std::vector<core::LandmarkId> ids_;
+  std::vector<core::LandmarkId> ids_;    ///< ascending
+  std::vector<core::LandmarkId> named_;  ///< [landmark], as the points
   std::vector<Eigen::Vector2d> points_m_;
   std::vector<double> radii_m_;
 };
@@ -71,12 +93,16 @@ void add_shared(std::size_t number, const core::JointMap& component, const std::
                 const std::vector<std::size_t>& sessions, std::vector<ChangedLandmark>& shared) {
   for (std::size_t i = 0; i < component.joint.ids.size(); ++i) {
     ChangedLandmark landmark{number, component.joint.ids[i], component.joint.points_m[i], {}, {}, core::no_landmark};
+    std::vector<const Ground*> seen;
     for (std::size_t k = 0; k < sessions.size(); ++k) {
-      if (grounds[k].has(landmark.id)) {
-        landmark.seen_in.push_back(sessions[k]);
-      } else if (grounds[k].looked_at(landmark.point_m)) {
-        landmark.missing_in.push_back(sessions[k]);
-      }
+      if (!grounds[k].has(landmark.id)) continue;
+      landmark.seen_in.push_back(sessions[k]);
+      seen.push_back(&grounds[k]);
+    }
+    for (std::size_t k = 0; k < sessions.size(); ++k) {
+      if (grounds[k].has(landmark.id) || !grounds[k].looked_at(landmark.point_m)) continue;
+      const auto agrees = [&](const Ground* one) { return grounds[k].agrees_with(*one, landmark.point_m); };
+      if (std::any_of(seen.begin(), seen.end(), agrees)) landmark.missing_in.push_back(sessions[k]);
     }
     if (landmark.seen_in.size() + landmark.missing_in.size() > 1) shared.push_back(std::move(landmark));
   }

@@ -30,7 +30,8 @@ struct ChangedLandmark {
 const char* name_of(Change change);
 
 /// Sessions in order of time. A session looked at the ground about its own landmarks: about each, 0.6 of the way to its eighth
-/// neighbour, as far as its landmarks are on all sides. Joint landmarks only: those on ground of one session are left out. O(N²).
+/// neighbour, as far as its landmarks are on all sides. What it has not got there it says of those only that have half of its eight nearest
+/// landmarks there, or whose half it has: others were bent apart, and hold copies. Joint landmarks only: those on ground of one session are left out. O(N²).
 /// Moved are one that is gone and one that is new in a session after, each the other's nearest and nearer than chance would put
 /// new ones, as dense as they are: of the moves told 5 % are wrong in the mean. Test: apps/session_changes_test.cpp.
 std::vector<ChangedLandmark> shared_landmarks(const std::vector<core::JointMap>& sessions,

@@ -31,6 +31,11 @@ void InvolvedCorrection::go_towards(const InvolvedCorrection& from, double fract
   delta_ = w.P.view() * gain_;
 }
 
+double InvolvedCorrection::rounding(const UpdateWorkspace& w) const {
+  const double of_a_product = static_cast<double>(gain_.size()) * std::numeric_limits<double>::epsilon();
+  return of_a_product * (w.P.view().cwiseAbs() * gain_.cwiseAbs()).maxCoeff();
+}
+
 double InvolvedCorrection::cost(const UpdateWorkspace& w) const {
   const Eigen::LLT<Eigen::MatrixXd> R(w.R.view());
   if (R.info() != Eigen::Success) return std::numeric_limits<double>::infinity();

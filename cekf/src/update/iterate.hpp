@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -22,6 +23,8 @@ class InvolvedCorrection {
   /// Largest element of the difference.
   double largest() const { return delta_.cwiseAbs().maxCoeff(); }
   double distance(const InvolvedCorrection& other) const { return (delta_ - other.delta_).cwiseAbs().maxCoeff(); }
+  /// By how much rounding may change δ = P·gain: of a map whose place in its frame is known to hundreds of metres, more than a step.
+  double rounding(const UpdateWorkspace& w) const;
   /// |δ|²_P + |ν|²_R with ν of w; infinite where R is not positive definite.
   double cost(const UpdateWorkspace& w) const;
   /// w.pose and w.points_m become x ⊕ δ.
@@ -55,7 +58,8 @@ double iterate_to_minimum(InvolvedCorrection& correction, UpdateWorkspace& w, in
     const InvolvedCorrection before = correction;
     const UpdateWorkspace solved = w;
     correction.go_towards(before, 1.0, solved);
-    if (correction.distance(before) < settled * (1.0 + correction.largest())) return cost_at_fixed_point;
+    const double least_step = std::max(settled * (1.0 + correction.largest()), correction.rounding(solved));
+    if (correction.distance(before) < least_step) return cost_at_fixed_point;
     double next = std::numeric_limits<double>::infinity();
     for (double fraction = 1.0; fraction > 1e-3; fraction *= 0.5) {
       correction.go_towards(before, fraction, solved);

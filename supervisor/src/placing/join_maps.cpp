@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 
 #include "closing/branch_pairs.hpp"
 
@@ -48,32 +49,68 @@ Eigen::MatrixXd turned(const Eigen::MatrixXd& covariance, double angle_rad) {
   return twice;
 }
 
+/// Errors of a point in the map by those of T, which moved it there.
+Eigen::Matrix<double, 2, 3> point_by_place(const core::Pose2& T, const Eigen::Vector2d& point_m) {
+  const Eigen::Vector2d arm_m = point_m - T.position_m();
+  Eigen::Matrix<double, 2, 3> J;
+  J << 1.0, 0.0, -arm_m.y(), 0.0, 1.0, arm_m.x();
+  return J;
+}
+
+/// How T moves when the map's landmarks of the pairs do: by the rigid motion that fits theirs best. Any fit would serve, since what
+/// it leaves is far within the loosened covariance.
+Eigen::MatrixXd place_by_map(const core::Pose2& T, const core::JointGaussian& earlier, const KeptRemoved& pairs) {
+  const auto rows = 2 * static_cast<Eigen::Index>(pairs.size());
+  Eigen::MatrixXd B(rows, 3);
+  std::vector<Eigen::Index> columns;
+  for (const auto& [kept, removed] : pairs) {
+    const auto at = std::find(earlier.ids.begin(), earlier.ids.end(), kept) - earlier.ids.begin();
+    B.middleRows<2>(2 * static_cast<Eigen::Index>(columns.size())) =
+        point_by_place(T, earlier.points_m[static_cast<std::size_t>(at)]);
+    columns.push_back(2 * at);
+  }
+  const Eigen::MatrixXd fit = B.colPivHouseholderQr().solve(Eigen::MatrixXd::Identity(rows, rows));
+  Eigen::MatrixXd by_map = Eigen::MatrixXd::Zero(3, 2 * static_cast<Eigen::Index>(earlier.ids.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    by_map.middleCols<2>(columns[i]) += fit.middleCols<2>(2 * static_cast<Eigen::Index>(i));
+  }
+  return by_map;
+}
+
+PlaceOnMap place_on(const core::JointGaussian& earlier, const relocalize::Place& place, const KeptRemoved& pairs) {
+  const Eigen::Matrix3d covariance = loosened * place.information.inverse();
+  return {{place.T_map_branch, 0.5 * (covariance + covariance.transpose())},
+          place_by_map(place.T_map_branch, earlier, pairs)};
+}
+
 }  // namespace
 
 core::JointGaussian side_by_side(const core::JointGaussian& session, const core::JointGaussian& earlier,
-                                 const core::PoseGaussian& T_map_session) {
-  const core::Pose2& T = T_map_session.mean;
+                                 const PlaceOnMap& place) {
+  const core::Pose2& T = place.T_map_session.mean;
   const auto own = session.covariance.rows();
   const auto other = earlier.covariance.rows() - 3;
   core::JointGaussian joint;
   joint.pose = core::compose(T, session.pose);
   Eigen::MatrixXd common(own, 3);  // of the session's errors, those of T
   common.topRows<3>() = core::compose_jacobians(T, session.pose).J_first;
-  const Eigen::Matrix2d R = core::rotation(T.heading_rad);
   for (std::size_t i = 0; i < session.ids.size(); ++i) {
-    const auto row = 3 + 2 * static_cast<Eigen::Index>(i);
-    const Eigen::Vector2d arm_m = R * session.points_m[i];
-    common.middleRows<2>(row) << 1.0, 0.0, -arm_m.y(), 0.0, 1.0, arm_m.x();
     joint.ids.push_back(session.ids[i]);
     joint.points_m.push_back(core::transform(T, session.points_m[i]));
+    common.middleRows<2>(3 + 2 * static_cast<Eigen::Index>(i)) = point_by_place(T, joint.points_m.back());
   }
   joint.ids.insert(joint.ids.end(), earlier.ids.begin(), earlier.ids.end());
   joint.points_m.insert(joint.points_m.end(), earlier.points_m.begin(), earlier.points_m.end());
-  joint.covariance = Eigen::MatrixXd::Zero(own + other, own + other);
+  const auto of_map = earlier.covariance.bottomRightCorner(other, other);
+  const Eigen::MatrixXd with_map = place.by_map * of_map;  // covariance of T with the map's landmarks
+  const Eigen::Matrix3d of_place = place.T_map_session.covariance + with_map * place.by_map.transpose();
+  joint.covariance.resize(own + other, own + other);
   Eigen::MatrixXd moved = turned(session.covariance, T.heading_rad);
-  moved.noalias() += common * T_map_session.covariance * common.transpose();
+  moved.noalias() += common * of_place * common.transpose();
   joint.covariance.topLeftCorner(own, own) = 0.5 * (moved + moved.transpose());
-  joint.covariance.bottomRightCorner(other, other) = earlier.covariance.bottomRightCorner(other, other);
+  joint.covariance.topRightCorner(own, other).noalias() = common * with_map;
+  joint.covariance.bottomLeftCorner(other, own) = joint.covariance.topRightCorner(own, other).transpose();
+  joint.covariance.bottomRightCorner(other, other) = of_map;
   return joint;
 }
 
@@ -81,11 +118,10 @@ JoinedMaps join_maps(const cekf::CompressedEkf& session, const core::JointGaussi
                      const relocalize::Place& place, const std::vector<core::LandmarkId>& confirmed,
                      const std::vector<core::LandmarkId>& unconfirmed, double pair_noise_m,
                      const SearchOptions& options) {
-  const Eigen::Matrix3d covariance = loosened * place.information.inverse();
-  const core::PoseGaussian T_map_session{place.T_map_branch, 0.5 * (covariance + covariance.transpose())};
-  const core::JointGaussian both = side_by_side(session.joint(session.landmarks()), earlier, T_map_session);
-  JoinedMaps joined{cekf::CompressedEkf(both, session.next_name(), session.options()), {}, T_map_session.mean};
   KeptRemoved pairs = pairs_of(place);
+  const core::JointGaussian both =
+      side_by_side(session.joint(session.landmarks()), earlier, place_on(earlier, place, pairs));
+  JoinedMaps joined{cekf::CompressedEkf(both, session.next_name(), session.options()), {}, place.T_map_branch};
   const SearchOptions across = across_sessions(options, pair_noise_m, pairs.size());
   Closing& closing = joined.closing;
   if (!make_compatible(joined.filter, across, pairs, closing)) return joined;

@@ -11,11 +11,16 @@
 
 namespace helixnav::supervisor {
 
-/// Session and earlier map as one joint Gaussian in the frame of the earlier one, nothing in common yet: the session moved by
-/// T_map_session, whose covariance (x, y, heading) its pose and landmarks share. First-order; pose first, then the landmarks
-/// of the session, then those of the map.
+/// Where a session lies on an earlier map, as far as it is known before its landmarks are compared with the map's.
+struct PlaceOnMap {
+  core::PoseGaussian T_map_session;  ///< covariance (x, y, heading): of T where the errors of the map are known
+  Eigen::MatrixXd by_map;            ///< errors of T per error of the map's landmarks, 3 rows, 2 columns a landmark
+};
+
+/// Session and earlier map as one joint Gaussian in the frame of the earlier one: the session moved by T_map_session, whose errors
+/// its pose and landmarks share. First-order; pose first, then the landmarks of the session, then those of the map.
 core::JointGaussian side_by_side(const core::JointGaussian& session, const core::JointGaussian& earlier,
-                                 const core::PoseGaussian& T_map_session);
+                                 const PlaceOnMap& place);
 
 /// A session that found its place.
 struct JoinedMaps {
@@ -24,9 +29,10 @@ struct JoinedMaps {
   core::Pose2 T_map_session;   ///< in which the session was linearised
 };
 
-/// One map of both. The place's pose enters with a covariance of a hundred of its standard deviations: it is where the
-/// session is linearised, and what is known of it comes from the pairs, each of which says that two landmarks differ by no
-/// more than pair_noise_m. Then further pairs that the joint covariance leaves no doubt of are merged. Refused when the cost
+/// One map of both. The place's pose is where the session is linearised, and what is known of it comes from the pairs, each of which
+/// says that two landmarks differ by no more than pair_noise_m. It enters with a covariance of a hundred of its standard deviations
+/// about where the map's own landmarks of the pairs lie: relative to these and not to the frame, so that it says nothing of where
+/// in the frame they are, however little the map knows of it. Then further pairs that the joint covariance leaves no doubt of are merged. Refused when the cost
 /// of the pairs exceeds options.closing_probability, whatever few were dropped.
 /// confirmed: landmarks of the session that may be merged, unconfirmed: those that may be clutter; ascending.
 /// Cost O(N²·pairs) for N landmarks in all. Test: supervisor/placing/join_maps_test.cpp (equal to least squares over both maps).

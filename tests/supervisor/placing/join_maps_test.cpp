@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "helixnav/core/chi2.hpp"
 #include "helixnav/core/random.hpp"
+#include "helixnav/core/rigid_fit.hpp"
 #include "placing/relative_covariance.hpp"
 
 namespace helixnav::supervisor {
@@ -21,6 +24,23 @@ Eigen::MatrixXd some_covariance(Eigen::Index n, double sigma, core::RandomStream
     for (Eigen::Index i = 0; i < n; ++i) root(i, j) = random.normal(0.0, sigma / std::sqrt(static_cast<double>(n)));
   }
   return root * root.transpose() + 0.1 * sigma * sigma * Eigen::MatrixXd::Identity(n, n);
+}
+
+/// The covariance of points and the pose before them, that a rigid motion of all has.
+Eigen::MatrixXd moved_together(const std::vector<Eigen::Vector2d>& points_m, double sigma_m, double sigma_rad) {
+  Eigen::MatrixXd B(3 + 2 * static_cast<Eigen::Index>(points_m.size()), 3);
+  B.topRows<3>().setIdentity();
+  for (std::size_t i = 0; i < points_m.size(); ++i) {
+    B.middleRows<2>(3 + 2 * static_cast<Eigen::Index>(i)) << 1.0, 0.0, -points_m[i].y(), 0.0, 1.0, points_m[i].x();
+  }
+  const double m2 = sigma_m * sigma_m;
+  return B * Eigen::Vector3d(m2, m2, sigma_rad * sigma_rad).asDiagonal() * B.transpose();
+}
+
+Eigen::VectorXd drawn(const Eigen::MatrixXd& covariance, core::RandomStream& random) {
+  Eigen::VectorXd white(covariance.rows());
+  for (Eigen::Index i = 0; i < white.size(); ++i) white[i] = random.normal(0.0, 1.0);
+  return covariance.llt().matrixL() * white;
 }
 
 /// The same eight points twice: as the session knows them, and as the map does. Names 0… and 100….
@@ -51,7 +71,8 @@ struct PlacedMaps {
 
 /// Least squares over both maps and the place: session, map and pairs are measurements, the place is free.
 struct LeastSquares {
-  Eigen::VectorXd x;  ///< place (3), session's pose (3), its points (16), the map's (16)
+  Eigen::VectorXd x;           ///< place (3), session's pose (3), its points (16), the map's (16)
+  Eigen::MatrixXd covariance;  ///< of it
 
   explicit LeastSquares(const PlacedMaps& maps) : x(38) {
     x << maps.place.T_map_branch.vector(), maps.session.pose.vector(), Eigen::VectorXd::Zero(32);
@@ -68,6 +89,7 @@ struct LeastSquares {
       Eigen::VectorXd g = prior * (told - x);
       for (int i = 0; i < 8; ++i) add_pair(i, H, g);
       x += H.ldlt().solve(g);
+      covariance = H.inverse();
     }
   }
 
@@ -112,6 +134,56 @@ TEST(JoinMaps, IsLeastSquaresOverBothMapsWithAFreePlace) {
     EXPECT_NEAR(core::wrap_to_pi(joined.filter.pose().mean.heading_rad - pose.heading_rad), 0.0, 1e-4)
         << "first order: 3 % of its σ";
   }
+}
+
+/// A session that knows nothing of where the map lies in its frame changes nothing of what is known of that. What all of the map
+/// has in common is independent of the rest and no pair sees it, so that it is added to what least squares say without it: a covariance
+/// of both would lose the digits of the rest.
+TEST(JoinMaps, CovarianceIsThatOfAFreePlaceHoweverUncertainTheMap) {
+  for (const double sigma_m : {0.01, 0.1, 20.0, 300.0, 1000.0}) {
+    PlacedMaps maps(9);
+    Eigen::MatrixXd exact = LeastSquares(maps).covariance.bottomRightCorner<16, 16>();
+    const Eigen::MatrixXd common = moved_together(maps.earlier.points_m, sigma_m, 0.1);
+    exact += common.bottomRightCorner<16, 16>();
+    maps.earlier.covariance += common;
+    const JoinedMaps joined = join(maps);
+    ASSERT_TRUE(joined.closing.accepted) << sigma_m;
+    ASSERT_EQ(joined.closing.merged.size(), 8u);
+    const Eigen::MatrixXd got = joined.filter.joint(joined.filter.landmarks()).covariance.bottomRightCorner<16, 16>();
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ratio(got, exact, Eigen::EigenvaluesOnly);
+    EXPECT_GT(ratio.eigenvalues().minCoeff(), 0.92) << "map known to " << sigma_m << " m";
+    EXPECT_LT(ratio.eigenvalues().maxCoeff(), 1.08) << "map known to " << sigma_m << " m";
+  }
+}
+
+/// Map and session drawn about the truth, the map displaced by 20 m and 0.01 rad as its covariance says.
+TEST(JoinMaps, IsConsistentOnAMapThatLiesElsewhereThanItSays) {
+  constexpr int runs = 60;
+  double nees = 0.0;
+  for (int run = 0; run < runs; ++run) {
+    PlacedMaps maps(static_cast<std::uint64_t>(100 + run));
+    std::vector<Eigen::Vector2d> true_m;
+    for (const Eigen::Vector2d& at_m : maps.session.points_m) true_m.push_back(core::transform(T_true, at_m));
+    maps.earlier.covariance += moved_together(true_m, 20.0, 0.01);
+    core::RandomStream random(static_cast<std::uint64_t>(run), "errors");
+    const Eigen::VectorXd of_map = drawn(maps.earlier.covariance, random);
+    const Eigen::VectorXd of_session = drawn(maps.session.covariance, random);
+    for (std::size_t i = 0; i < 8; ++i) {
+      const auto row = 3 + 2 * static_cast<Eigen::Index>(i);
+      maps.earlier.points_m[i] = true_m[i] + of_map.segment<2>(row);
+      maps.session.points_m[i] += of_session.segment<2>(row);
+    }
+    maps.place.T_map_branch = core::fit_rigidly(maps.earlier.points_m, maps.session.points_m);
+    const JoinedMaps joined = join(maps);
+    ASSERT_TRUE(joined.closing.accepted);
+    Eigen::VectorXd error(16);
+    for (int i = 0; i < 8; ++i) {
+      error.segment<2>(2 * i) = joined.filter.landmark_mean(i) - true_m[static_cast<std::size_t>(i)];
+    }
+    const Eigen::MatrixXd P = joined.filter.joint(joined.filter.landmarks()).covariance.bottomRightCorner<16, 16>();
+    nees += error.dot(P.llt().solve(error));
+  }
+  EXPECT_LT(nees, core::chi2_quantile(0.999, 16 * runs));
 }
 
 TEST(JoinMaps, KeepsTheNamesOfTheEarlierMapAndGivesNoneTwice) {

@@ -29,7 +29,7 @@ ErrorStatistics error_statistics(std::vector<double> errors);
 /// The `fraction` quantile of an ascending list, linear between order statistics; NaN of an empty list.
 double quantile_of_sorted(const std::vector<double>& sorted, double fraction);
 
-/// Estimate against truth at one instant, in the map frame.
+/// Estimate against truth at one instant, in the map frame; of a part of the drive whose place was never found, in the part's own.
 struct PositionError {
   core::Nanoseconds t_ns = 0;
   Eigen::Vector2d true_map_m = Eigen::Vector2d::Zero();  ///< the fix, brought into the map frame
@@ -57,15 +57,18 @@ struct HeadingError {
   core::Nanoseconds t_ns = 0;
   double error_rad = 0.0;  ///< estimate − truth, wrapped
   double sigma_rad = 0.0;
-  double nees = 0.0;  ///< eᵀP⁻¹e of (x, y, heading); NaN where P is singular
+  double nees = 0.0;  ///< eᵀP⁻¹e of (x, y, heading); NaN where P is singular, or there is nothing to compare with
 };
 
 /// Against true poses only.
 struct PoseEvaluation {
   ErrorStatistics heading_error_rad;
   std::size_t nees_count = 0;
-  double nees_mean = 0.0;       ///< 3 when the filter is consistent
-  double nees_inside_95 = 0.0;  ///< fraction within the two-sided 95 % band of χ²₃
+  std::size_t nees_in_own_frame =
+      0;                          ///< of these: against the truth since the session or part began, before it was placed
+  std::size_t nees_left_out = 0;  ///< no truth at that begin, or told in a frame that was known to be wrong later
+  double nees_mean = 0.0;         ///< 3 when the filter is consistent
+  double nees_inside_95 = 0.0;    ///< fraction within the two-sided 95 % band of χ²₃
   std::vector<HeadingError> errors;
 };
 
@@ -128,7 +131,8 @@ struct EvaluationOptions {
 /// Compares a run with `truth`. The estimate is interpolated at the instants of the truth along arcs of constant twist.
 /// True positions: the antenna's estimated position (pose ∘ lever arm), rigid alignment with outliers left out. True
 /// poses: no alignment where the map frame is theirs (runs::RunTruth::frame), else a rigid one of all; NEES at the same instants
-/// with the covariance of the step before.
+/// with the covariance of the step before. What was told in a frame of its own, before a session or a part found its place, has a
+/// covariance since its begin: NEES compares it with the truth since then. Of a part that never found its place errors are of that, too.
 /// Landmarks: after the same alignment. Test: evaluation/evaluation_test.cpp (hand-computed values).
 Evaluation evaluate(const runs::Run& run, const runs::RunTruth& truth, const EvaluationOptions& options = {});
 inline Evaluation evaluate(const runs::Run& run, const EvaluationOptions& options = {}) {

@@ -14,6 +14,10 @@ namespace helixnav::reports {
 /// Test: apps/hostile/warnings_test.cpp.
 std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Evaluation& evaluation);
 
+/// That the whole map was sure of another place than the vehicle was believed to be at, again and again, and nothing came of it: empty
+/// otherwise. Test: reports/opening_test.cpp.
+std::string contradicted_place_text(const runs::Run& run);
+
 /// Where the run ended without knowing its place, or went on for long without a landmark that it knew.
 /// Test: reports/opening_test.cpp.
 std::vector<std::string> warnings_of_place(const runs::Run& run);

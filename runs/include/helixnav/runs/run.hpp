@@ -79,6 +79,9 @@ struct Run {
 /// Without poses the path is that of the steps where a session found its place, and none elsewhere. Test: runs/final_path_test.cpp.
 void correct_path(Run& run, const std::vector<core::StampedPose>& solved);
 
+/// Whether it began somewhere unknown on an earlier map and looked for its place there.
+bool began_off_earlier_map(const Run& run);
+
 /// Whether a session that looked for its place on an earlier map found it.
 bool is_on_earlier_map(const Run& run);
 

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "only_localized.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <sstream>
+#include <string>
+
+namespace helixnav::reports {
+
+bool only_localized(const runs::Run& run) {
+  std::istringstream words(run.manifest.command);
+  return std::any_of(std::istream_iterator<std::string>(words), {},
+                     [](const std::string& word) { return word == "--localize"; });
+}
+
+}  // namespace helixnav::reports

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "helixnav/runs/run.hpp"
+
+namespace helixnav::reports {
+
+/// Whether the run is one of replay --localize, which maps nothing: its map is the one that it was given.
+bool only_localized(const runs::Run& run);
+
+}  // namespace helixnav::reports
