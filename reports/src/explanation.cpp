@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
 #include "numerics_text.hpp"
+#include "place_questions.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -116,21 +119,25 @@ bool is_placing(const Decided& decided) {
   return is_carried(decided) || std::holds_alternative<core::PlacedDecision>(*decided.decision);
 }
 
-/// Whether a session found its place on an earlier map, where it looked for one.
-std::string places_of(const std::vector<Decided>& decided) {
+/// Whether a session found its place on an earlier map, where it looked for one: answers that say something else than the one
+/// before, and what all of them came to.
+std::string places_of(const runs::Run& run, const std::vector<Decided>& decided) {
   std::string text;
   bool accepted = false, carried = false;
+  std::map<int, std::string> last;  // [part] verdict
   for (const Decided& one : decided) {
     if (!is_placing(one)) continue;
-    text += line_of(one);
-    accepted = !is_carried(one) && (accepted || verdict_of(one) == "accepted");
-    carried = carried || is_carried(one);
+    const auto* placed = std::get_if<core::PlacedDecision>(one.decision);
+    if (placed == nullptr || std::exchange(last[placed->part], verdict_of(one)) != verdict_of(one))
+      text += line_of(one);
+    accepted = placed != nullptr && (accepted || verdict_of(one) == "accepted");
+    carried = carried || placed == nullptr;
   }
   if (text.empty()) return {};
   const char* const alone = carried ? "  It did not find its place since: the map is that of the last part alone.\n"
                                     : "  It never found its place: the map is that of this session alone.\n";
-  return std::string(carried ? "\nWhere the vehicle is:\n" : "\nThe earlier map:\n") + text + (accepted ? "" : alone) +
-         '\n';
+  return std::string(carried ? "\nWhere the vehicle is:\n" : "\nThe earlier map:\n") + text +
+         (accepted ? "" : alone + questions_text(questions_in(run))) + '\n';
 }
 
 /// Decisions of one kind, that need no search: the first few, and how many there are.
@@ -192,7 +199,7 @@ std::string explain_run(const runs::Run& run) {
                      std::to_string(count_of(closures, "refused")) + " refused, " +
                      std::to_string(count_of(closures, "new-ground")) + " on new ground, " +
                      std::to_string(count_of(closures, "undecided")) + " left undecided.\n";
-  text += fates_line(run) + places_of(decided);
+  text += fates_line(run) + places_of(run, decided);
   if (std::none_of(decided.begin(), decided.end(), is_of_search)) {
     text += "No return was ambiguous enough for a search: every scan was associated at once.\n";
   }
