@@ -223,7 +223,7 @@ std::string sentence(const core::PlacedDecision& d) {
              " exceeds " + short_number(d.limit) + ". " + evidence_of(d) + '.';
     case core::PlacedDecision::Verdict::not_here:
       return "Not placed" + after + "no place on " + map_of(d) + " fits the " + counted(d.landmarks, "landmark") +
-             " about the vehicle better than chance would.";
+             " about the vehicle better than chance would" + (d.pairs > 0 ? "; the best: " + evidence_of(d) : "") + '.';
   }
   return {};
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "helixnav/reports/run_warnings.hpp"
 #include "numerics_text.hpp"
 #include "only_localized.hpp"
+#include "place_questions.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -118,23 +121,27 @@ bool is_placing(const Decided& decided) {
   return is_carried(decided) || std::holds_alternative<core::PlacedDecision>(*decided.decision);
 }
 
-/// Whether a session found its place on an earlier map, where it looked for one.
+/// Whether a session found its place on an earlier map, where it looked for one: answers that say something else than the one
+/// before, and what all of them came to.
 std::string places_of(const runs::Run& run, const std::vector<Decided>& decided) {
   std::string text;
   bool accepted = false, carried = false;
+  std::map<int, std::string> last;  // [part] verdict
   for (const Decided& one : decided) {
     if (!is_placing(one)) continue;
-    text += line_of(one);
-    accepted = !is_carried(one) && (accepted || verdict_of(one) == "accepted");
-    carried = carried || is_carried(one);
+    const auto* placed = std::get_if<core::PlacedDecision>(one.decision);
+    if (placed == nullptr || std::exchange(last[placed->part], verdict_of(one)) != verdict_of(one))
+      text += line_of(one);
+    accepted = placed != nullptr && (accepted || verdict_of(one) == "accepted");
+    carried = carried || placed == nullptr;
   }
   if (text.empty()) return {};
   const char* const alone = only_localized(run)
                                 ? "  It did not find its place: no pose of it is on the map, which stays as given.\n"
                             : carried ? "  It did not find its place since: the map is that of the last part alone.\n"
                                       : "  It never found its place: the map is that of this session alone.\n";
-  return std::string(carried ? "\nWhere the vehicle is:\n" : "\nThe earlier map:\n") + text + (accepted ? "" : alone) +
-         '\n';
+  return std::string(carried ? "\nWhere the vehicle is:\n" : "\nThe earlier map:\n") + text +
+         (accepted ? "" : alone + questions_text(questions_in(run))) + '\n';
 }
 
 /// Decisions of one kind, that need no search: the first few, and how many there are.

@@ -12,6 +12,7 @@
 #include "helixnav/runs/words.hpp"
 #include "json.hpp"
 #include "numerics_text.hpp"
+#include "place_questions.hpp"
 
 namespace helixnav::reports {
 
@@ -51,10 +52,19 @@ std::optional<core::PlacedDecision> last_placing(const runs::Run& run) {
   return last;
 }
 
-Json placed_to_json(const core::PlacedDecision& last) {
+Json placed_to_json(const core::PlacedDecision& last, const PlaceQuestions& asked) {
   const bool found = last.verdict == core::PlacedDecision::Verdict::accepted;
   Json json = {{"found", found}, {"last", core::row_of(last).verdict}};
-  if (found) json.update({{"driven_m", last.driven_m}, {"questions", last.questions}, {"pairs", last.pairs}});
+  if (found) {
+    json.update({{"driven_m", last.driven_m}, {"questions", last.questions}, {"pairs", last.pairs}});
+    return json;
+  }
+  json.update({{"questions", asked.questions}, {"most_landmarks", asked.most_landmarks}});
+  if (!asked.best) return json;
+  const core::PlacedDecision& best = *asked.best;
+  json.update({{"asked_from_m", asked.from_m}, {"asked_to_m", asked.to_m}});
+  json["best"] = {{"question", best.questions}, {"landmarks", best.landmarks}, {"pairs", best.pairs},
+                  {"evidence", best.evidence},  {"lead", best.lead},           {"needed", best.needed}};
   return json;
 }
 
@@ -147,7 +157,7 @@ Json summary_to_json(const runs::Run& run, const evaluation::Evaluation& evaluat
   json["landmarks"] = {{"mature", count_landmarks(run, core::LandmarkState::mature)},
                        {"tentative", count_landmarks(run, core::LandmarkState::tentative)}};
   json["closures"] = closures_to_json(run);
-  if (const auto placed = last_placing(run)) json["placed"] = placed_to_json(*placed);
+  if (const auto placed = last_placing(run)) json["placed"] = placed_to_json(*placed, questions_in(run));
   if (const auto carried = carried_to_json(run)) json["carried"] = *carried;
   json["observations"] = observations_to_json(run);
   json["numerics"] = numerics_to_json(run);

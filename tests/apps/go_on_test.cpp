@@ -123,6 +123,7 @@ TEST_F(GoOn, AnotherPlaceIsNotHereAndSaidSo) {
   must("elsewhere.circles", {"--map", folder("monday")}, "elsewhere");
   EXPECT_EQ(summary("elsewhere").at("placed").at("found"), false);
   EXPECT_EQ(summary("elsewhere").at("placed").at("last"), "not-here");
+  EXPECT_GE(summary("elsewhere").at("placed").at("questions"), 1);
   const std::string told = run({"explain", folder("elsewhere")}).out;
   EXPECT_NE(told.find("never found its place"), std::string::npos) << told;
 }

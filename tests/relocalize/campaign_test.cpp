@@ -94,5 +94,38 @@ TEST(Campaign, ClosesNothingInALattice) {
   }
 }
 
+/// Rows of trees of which the map holds one, asked about with landmarks that agree to 0.03 m where 0.3 m are assumed.
+Tally ask_among_rows(const test::Points& map, const test::Points& world, std::uint64_t seed) {
+  constexpr double assumed_m = 0.3;
+  const MapIndex index = test::index_of(map, {30.0, assumed_m});
+  Tally tally;
+  for (int q = 0; q < 20; ++q) {
+    core::RandomStream random(seed, "question " + std::to_string(q));
+    test::Asked asked = test::ask_somewhere(world, {30, 0.1, 0.0, 0.03}, random);
+    for (Landmark& landmark : asked.question.landmarks)
+      landmark.point.covariance_m2 = 0.5 * assumed_m * assumed_m * Eigen::Matrix2d::Identity();
+    const Answer answer = ask(index, asked.question);
+    tally.ambiguous += answer.verdict == Verdict::ambiguous ? 1 : 0;
+    if (answer.verdict != Verdict::closed) continue;
+    const bool is_wrong = &map != &world || test::wrong(asked, answer.places.front().T_map_branch);
+    ++(is_wrong ? tally.wrong : tally.right);
+  }
+  return tally;
+}
+
+/// Hundreds of places fit to the jitter of the trees, and only one to what two sessions differ by.
+TEST(Campaign, TellsAPlaceFromRivalsThatFitTenTimesWorse) {
+  core::RandomStream random(18);
+  const test::Points map = test::orchard(400, false, 0.3, random);
+  const Tally present = ask_among_rows(map, map, 18);
+  EXPECT_GE(present.right, 15);
+  EXPECT_EQ(present.wrong, 0);
+  const Tally absent = ask_among_rows(map, test::orchard(400, false, 0.3, random), 19);
+  EXPECT_EQ(absent.wrong, 0);
+  EXPECT_GE(absent.ambiguous, 10) << "each fits like the others";
+  const Tally lattice = ask_among_rows(test::orchard(400, false, 0.0, random), map, 20);
+  EXPECT_EQ(lattice.wrong, 0);
+}
+
 }  // namespace
 }  // namespace helixnav::relocalize

@@ -54,5 +54,46 @@ TEST(Explanation, ListsTheFirstOfManyAndCountsTheOthers) {
   EXPECT_TRUE(says(run, "  And 7 more in decisions.csv.\n"));
 }
 
+core::PlacedDecision answer(core::PlacedDecision::Verdict verdict, int question, double evidence, double lead) {
+  core::PlacedDecision answer;
+  answer.verdict = verdict;
+  answer.questions = question;
+  answer.landmarks = 20;
+  answer.pairs = 12;
+  answer.evidence = evidence;
+  answer.lead = lead;
+  answer.needed = 15.0;
+  answer.driven_m = 100.0 * question;
+  return answer;
+}
+
+TEST(Explanation, SaysHowOftenAPlaceWasAskedForAndWhatWasLacking) {
+  using Verdict = core::PlacedDecision::Verdict;
+  runs::Run run = run_of(6);
+  run.steps[0].decisions = {core::PlacedDecision{}};
+  run.steps[1].decisions = {answer(Verdict::not_here, 1, 8.0, 8.0)};
+  run.steps[2].decisions = {answer(Verdict::ambiguous, 2, 40.0, 11.0)};
+  run.steps[3].decisions = {answer(Verdict::ambiguous, 3, 40.0, 3.0)};
+  const std::string text = explain_run(run);
+  EXPECT_NE(text.find("step 2 ("), std::string::npos);
+  EXPECT_EQ(text.find("step 3 ("), std::string::npos) << "says the same as the one before\n" << text;
+  EXPECT_TRUE(says(run, "3 questions were asked, from 100 to 300 m.")) << text;
+  EXPECT_TRUE(
+      says(run, "Nearest to an answer was question 2 after 200 m, with 20 landmarks about the vehicle: 12 of them"))
+      << text;
+  EXPECT_TRUE(says(run, "evidence of 40 nats and a lead over other places of 11 nats (15 are needed).")) << text;
+  EXPECT_TRUE(says(run, "The last was question 3 after 300 m")) << text;
+  run.steps[4].decisions = {answer(Verdict::accepted, 4, 40.0, 20.0)};
+  EXPECT_FALSE(says(run, "questions were asked")) << "it is told by what was found";
+}
+
+TEST(Explanation, SaysThatThereWasTooLittleToAskWith) {
+  runs::Run run = run_of(2);
+  core::PlacedDecision few;
+  few.landmarks = 5;
+  run.steps[0].decisions = {core::PlacedDecision{}, few};
+  EXPECT_TRUE(says(run, "Nothing was asked: never more than 5 landmarks")) << explain_run(run);
+}
+
 }  // namespace
 }  // namespace helixnav::reports

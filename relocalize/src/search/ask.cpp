@@ -6,6 +6,7 @@
 
 #include "helixnav/core/errors.hpp"
 #include "search/places.hpp"
+#include "search/residual_scale.hpp"
 
 namespace helixnav::relocalize {
 
@@ -57,6 +58,42 @@ RivalScale rival_scale(const std::vector<Place>& places) {
   return {std::max(1.0, sum / count), floor > 0.0 ? count : 0.0};
 }
 
+/// Lead of the first place over the others, in nats of chance.
+double lead(const std::vector<Place>& places, double least_rival) {
+  const double rival = places.size() > 1 ? places[1].evidence : 0.0;
+  return rival_scale(places).score(places.front().evidence - std::max({0.0, least_rival, rival}));
+}
+
+/// How many poses on the map's ground the pairs of a place tell apart, ln of it.
+double ln_poses_apart(const Prepared& asked, const Place& place) {
+  return asked.ln_poses + 0.5 * std::log(place.information.determinant()) - 1.5 * std::log(2.0 * core::pi);
+}
+
+/// A wrong place fits like other wrong ones: in an avenue all of them by the jitter of its trees. The first place without those
+/// rivals whose residuals are of another scale, so that it would not fit so much better at any of all poses, if it were one of them.
+std::vector<Place> without_other_scales(const std::vector<Place>& places, double least_ln_chance) {
+  const auto residuals = [](const Place& place) {
+    constexpr double fixed_by_pose = 3.0;
+    return Residuals{place.chi2, 2.0 * static_cast<double>(place.pairs.size()) - fixed_by_pose};
+  };
+  std::vector<Place> left;
+  for (const Place& place : places) {
+    const double ln_chance = ln_chance_of_smaller(residuals(places.front()), residuals(place));
+    if (left.empty() || ln_chance > least_ln_chance) left.push_back(place);
+  }
+  return left;
+}
+
+/// As it is with all rivals, or without those of another scale. Rivals that are not listed have no more evidence than the last of
+/// a full list.
+double gap(const Prepared& asked, const std::vector<Place>& places, const AskOptions& options) {
+  const double with_all = lead(places, 0.0);
+  const double least_ln_chance = std::log(options.alpha) - ln_poses_apart(asked, places.front());
+  const std::vector<Place> left = without_other_scales(places, least_ln_chance);
+  if (left.size() == places.size()) return with_all;
+  return std::max(with_all, lead(left, places.size() == most_places ? places.back().evidence : 0.0));
+}
+
 Verdict decide(const Answer& answer, const AskOptions& options) {
   if (answer.places.empty()) return Verdict::not_here;
   const Place& best = answer.places.front();
@@ -95,10 +132,8 @@ Answer ask(const MapIndex& map, const Question& question, const AskOptions& opti
   answer.crowded = candidates.crowded;
   for (const Hypothesis& h : find_places(asked, candidates.best)) answer.places.push_back(place_of(asked, h));
   if (answer.places.empty()) return answer;
-  const RivalScale scale = rival_scale(answer.places);
-  answer.rival_scale = scale.mean;
-  const double rival = answer.places.size() > 1 ? std::max(0.0, answer.places[1].evidence) : 0.0;
-  answer.gap = scale.score(answer.places.front().evidence - rival);
+  answer.rival_scale = rival_scale(answer.places).mean;
+  answer.gap = gap(asked, answer.places, options);
   answer.verdict = decide(answer, options);
   return answer;
 }

@@ -15,9 +15,6 @@
 namespace helixnav::supervisor {
 namespace {
 
-// Of the distance of old landmarks a third says well enough who is whose copy.
-constexpr double reach_share = 0.35;
-
 /// From an old landmark to its nearest old neighbour, as far as that matters.
 double nearest_old_m(const cekf::CompressedEkf& filter, core::LandmarkId kept, const std::vector<core::LandmarkId>& old,
                      double matters_m) {
@@ -114,8 +111,9 @@ KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core:
   std::vector<Leftover> found;
   for (const auto& here : compatible(filter, ids, old, look_m, {gate, options.duplicate_sigma_m, appearance})) {
     if (here.size() != 1) continue;
-    const double neighbour_m = nearest_old_m(filter, here.front().kept, old, options.leftover_most_m / reach_share);
-    const double reach_m = std::max(options.leftover_least_m, reach_share * neighbour_m);
+    const double neighbour_m =
+        nearest_old_m(filter, here.front().kept, old, options.leftover_most_m / leftover_reach_share);
+    const double reach_m = std::max(options.leftover_least_m, leftover_reach_share * neighbour_m);
     if (here.front().difference_m.norm() > reach_m || may_be_a_neighbours(here.front(), neighbour_m)) continue;
     found.push_back(here.front());
   }

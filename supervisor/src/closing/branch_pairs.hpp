@@ -17,6 +17,9 @@ using KeptRemoved = std::vector<cekf::CompressedEkf::LandmarkPair>;
 
 constexpr std::size_t least_pairs = 3;  ///< of a closing
 
+/// Of the distance of old landmarks a third says well enough who is whose copy.
+constexpr double leftover_reach_share = 0.35;
+
 KeptRemoved kept_removed(const std::vector<pf_relocalize::ConstellationPair>& pairs);
 
 /// An old landmark that a landmark of the branch may be a duplicate of.

@@ -245,9 +245,10 @@ std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const
   if (belief_.step % rim_stride == 0 && !has_unplaced(scan))
     at_rim = unseen_at_rim(belief_.filter, scan, report.associations, expected);
   const Searching* open = searching();
+  const OldGround ground{options_.search.old_after_m, options_.life.tentative_patience_m, options_.view_margin_m};
   for (std::vector<LandmarkId>* ids : {&expected, &at_rim}) {
-    drop_what_may_be_elsewhere(belief_.existence, open != nullptr ? &open->search : nullptr,
-                               options_.search.old_after_m, seen, *ids);
+    drop_what_may_be_elsewhere(belief_.filter, belief_.existence, open != nullptr ? &open->search : nullptr, ground,
+                               seen, *ids);
   }
   belief_.existence.pass(at_rim);
   const core::Pose2 T_world_sensor = core::compose(belief_.filter.pose().mean, scan.T_robot_sensor);

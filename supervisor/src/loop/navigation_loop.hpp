@@ -189,7 +189,7 @@ class NavigationLoop {
   relocalize::IndexOptions index_lengths() const;
   void index_maps_apart(core::StepReport& report);
   void find_place(const core::FieldOfView& view, core::StepReport& report);
-  void note_answers(const std::vector<core::PlacedDecision>& answers, core::StepReport& report) noexcept;
+  void note_too_few(std::size_t landmarks, core::StepReport& report);
   bool join(const MapApart& apart, const relocalize::Place& place, core::PlacedDecision& decision,
             core::StepReport& report);
 

@@ -24,6 +24,7 @@ struct Asked {
 
   int questions = 0;
   std::vector<core::LandmarkId> with;  ///< ascending
+  std::size_t most_about = 0;          ///< landmarks about the vehicle at once, before the first question
 
   /// Enough landmarks to ask with, and enough of them new since the last question: a fifth where somebody waits for the answer,
   /// half where nobody does.

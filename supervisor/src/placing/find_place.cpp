@@ -98,7 +98,10 @@ void NavigationLoop::find_place(const core::FieldOfView& view, core::StepReport&
   index_maps_apart(report);
   const double seen_within_m = options_.search.branch_seen_within_m;
   LandmarksAbout about = landmarks_about(belief_, seen_within_m);
-  if (!apart_.asked.is_due(about.ids)) return;
+  if (!apart_.asked.is_due(about.ids)) {
+    note_too_few(about.ids.size(), report);
+    return;
+  }
   const relocalize::Question question = session_question(belief_, about, view, index_lengths(), seen_within_m);
   if (question.looked.empty()) return;
   std::vector<PlacedDecision> answers;
@@ -111,17 +114,21 @@ void NavigationLoop::find_place(const core::FieldOfView& view, core::StepReport&
     if (answer.verdict == relocalize::Verdict::closed && join(apart, answer.places.front(), decision, report)) return;
   }
   report.decisions.reserve(report.decisions.size() + answers.size());
-  note_answers(answers, report);
+  for (const PlacedDecision& decision : answers) {
+    if (decision.questions > 0) report.decisions.emplace_back(decision);  // to others nobody can put one
+  }
   apart_.asked.note(about.ids);
 }
 
-/// Those that say something else than the one before. Room for them has been made: does not throw.
-void NavigationLoop::note_answers(const std::vector<PlacedDecision>& answers, core::StepReport& report) noexcept {
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    if (std::exchange(apart_.maps[i].last, answers[i].verdict) != answers[i].verdict) {
-      report.decisions.emplace_back(answers[i]);
-    }
-  }
+/// Before the first question to an earlier session's map: how many landmarks there are to ask with, whenever there were never more.
+void NavigationLoop::note_too_few(std::size_t landmarks, core::StepReport& report) {
+  if (apart_.asked.questions > 0 || apart_.maps.front().part > 0 || landmarks <= apart_.asked.most_about) return;
+  PlacedDecision decision;
+  decision.earlier_landmarks = static_cast<int>(apart_.maps.front().search->earlier().landmarks().ids.size());
+  decision.landmarks = static_cast<int>(landmarks);
+  decision.driven_m = belief_.existence.path_m();
+  report.decisions.emplace_back(decision);
+  apart_.asked.most_about = landmarks;
 }
 
 /// From here on one map, in the frame of the earlier one, or everything as before. What lies behind can no longer be solved

@@ -2,6 +2,7 @@
 #include "placing/join_maps.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -24,6 +25,43 @@ SearchOptions across_sessions(SearchOptions options, double pair_noise_m, std::s
   options.merge_sigma_m = options.duplicate_sigma_m = pair_noise_m;
   options.most_dropped = std::max(1, static_cast<int>(pairs) / share_dropped);
   return options;
+}
+
+/// From a landmark to its nearest neighbour, the median of a map; 0 of a map of one.
+double spacing_m(const std::vector<Eigen::Vector2d>& points_m) {
+  std::vector<double> nearest_m;
+  for (std::size_t i = 0; i < points_m.size(); ++i) {
+    double least_m = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < points_m.size(); ++j) {
+      if (j != i) least_m = std::min(least_m, (points_m[j] - points_m[i]).norm());
+    }
+    nearest_m.push_back(least_m);
+  }
+  if (nearest_m.size() < 2) return 0.0;
+  const auto middle = nearest_m.begin() + static_cast<std::ptrdiff_t>(nearest_m.size() / 2);
+  std::nth_element(nearest_m.begin(), middle, nearest_m.end());
+  return *middle;
+}
+
+/// A session that was placed late is off by metres where it began: how far a copy may be from its landmark is what the map's own
+/// spacing allows, not what a closing assumes of any map.
+SearchOptions with_spacing(SearchOptions options, const core::JointGaussian& earlier) {
+  options.leftover_most_m = std::max(options.leftover_most_m, leftover_reach_share * spacing_m(earlier.points_m));
+  return options;
+}
+
+/// Merges what the joint covariance leaves no doubt of, the nearest first: each pair ties the session's drive more firmly to the map
+/// where it was long before, and so the next one. Every pass removes a landmark.
+void merge_leftovers_of_session(const std::vector<core::LandmarkId>& confirmed, const core::JointGaussian& earlier,
+                                const SearchOptions& across, JoinedMaps& joined) {
+  const SearchOptions options = with_spacing(across, earlier);
+  while (true) {
+    KeptRemoved rest = leftovers(joined.filter, confirmed, earlier.ids, options);
+    Closing rest_closing;
+    if (rest.empty() || !make_compatible(joined.filter, options, rest, rest_closing)) return;
+    joined.filter.merge(rest, options.merge_sigma_m);
+    note(rest, joined.closing);
+  }
 }
 
 std::vector<core::LandmarkId> those_in(const cekf::CompressedEkf& filter, std::vector<core::LandmarkId> ids) {
@@ -128,14 +166,7 @@ JoinedMaps join_maps(const cekf::CompressedEkf& session, const core::JointGaussi
   joined.filter.merge(pairs, across.merge_sigma_m);
   note(pairs, closing);
   closing.accepted = true;
-  constexpr int most_passes = 10;
-  for (int pass = 0; pass < most_passes; ++pass) {
-    KeptRemoved rest = leftovers(joined.filter, confirmed, earlier.ids, across);
-    Closing rest_closing;
-    if (rest.empty() || !make_compatible(joined.filter, across, rest, rest_closing)) break;
-    joined.filter.merge(rest, across.merge_sigma_m);
-    note(rest, closing);
-  }
+  merge_leftovers_of_session(confirmed, earlier, across, joined);
   forget_copies(joined.filter, those_in(joined.filter, unconfirmed), earlier.ids, across, closing);
   return joined;
 }

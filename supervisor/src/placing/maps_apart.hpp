@@ -17,7 +17,6 @@ struct MapApart {
   int part = 0;  ///< of the drive, see core::CarriedDecision
   std::shared_ptr<const core::JointMap> map;
   std::shared_ptr<const PlaceSearch> search = {};  ///< in it, from the first scan on
-  core::PlacedDecision::Verdict last = core::PlacedDecision::Verdict::sought;
 };
 
 /// All of those, in order of part, and what was asked of them: every question goes to each.

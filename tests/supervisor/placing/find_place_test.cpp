@@ -102,6 +102,23 @@ TEST(FindPlace, AnotherWorldIsNotHereAndTheSessionGoesItsOwnWay) {
   });
 }
 
+// So that whoever asks afterwards why there was no answer can be told.
+TEST(FindPlace, EveryAnswerIsKeptAndHowFewLandmarksThereWereBefore) {
+  const Session session = begin_anywhere(another_day(3, 72, 0), map_of(sim::simulate(wide_circuit(), 1)));
+  int questions = 0, most_before = 0;
+  for (const core::PlacedDecision& decision : session.decisions) {
+    if (decision.verdict == Verdict::sought) {
+      EXPECT_EQ(questions, 0);
+      EXPECT_TRUE(decision.landmarks == 0 || decision.landmarks > most_before);
+      most_before = decision.landmarks;
+    } else {
+      EXPECT_EQ(decision.questions, ++questions);
+    }
+  }
+  EXPECT_GT(questions, 1);
+  EXPECT_GT(most_before, 0);
+}
+
 TEST(FindPlace, OnlyASessionThatHasNotBegunMayLook) {
   const core::Recording run = another_day(1, 73, 0);
   const core::JointMap map = map_of(run);

@@ -217,6 +217,50 @@ TEST(JoinMaps, WhatTheQuestionLeftOutIsMergedAfterwards) {
   EXPECT_EQ(join(maps).closing.merged.size(), 8u);
 }
 
+/// A drive past landmarks 12 m apart, placed by the last five: the farther back, the more its odometry has drifted from there.
+PlacedMaps placed_late(int landmarks, double drift_m, std::uint64_t seed) {
+  core::RandomStream random(seed, "placed late");
+  PlacedMaps maps(seed);
+  const Eigen::Index n = 3 + 2 * landmarks;
+  maps.session.ids.clear();
+  maps.session.points_m.clear();
+  maps.session.covariance = 0.01 * Eigen::MatrixXd::Identity(n, n);
+  maps.earlier = maps.session;
+  maps.earlier.pose = {};
+  maps.place.pairs.clear();
+  const int placed_from = landmarks - 5;
+  Eigen::Vector2d error_m(0.0, 0.0);
+  for (int i = landmarks - 1; i >= 0; --i) {
+    const Eigen::Vector2d at_m(12.0 * i, i % 2 == 0 ? -3.0 : 3.0);
+    if (i < placed_from) error_m += Eigen::Vector2d(random.normal(0.0, drift_m), random.normal(0.0, drift_m));
+    maps.session.ids.insert(maps.session.ids.begin(), 100 + i);
+    maps.session.points_m.insert(maps.session.points_m.begin(), at_m + error_m);
+    maps.earlier.ids.insert(maps.earlier.ids.begin(), i);
+    maps.earlier.points_m.insert(maps.earlier.points_m.begin(), core::transform(T_true, at_m));
+    if (i >= placed_from) maps.place.pairs.push_back({100 + i, i});
+    for (int k = 0; k < placed_from; ++k) {
+      const double common_m2 = drift_m * drift_m * std::max(0, placed_from - std::max(i, k));
+      maps.session.covariance.block<2, 2>(3 + 2 * i, 3 + 2 * k) += common_m2 * Eigen::Matrix2d::Identity();
+    }
+  }
+  return maps;
+}
+
+TEST(JoinMaps, WhatWasMappedLongBeforeThePlaceIsMergedFromThereOn) {
+  const JoinedMaps joined = join(placed_late(20, 1.4, 11));
+  ASSERT_TRUE(joined.closing.accepted);
+  for (const core::MergedLandmarks& one : joined.closing.merged) EXPECT_EQ(one.removed, 100 + one.kept);
+  EXPECT_EQ(joined.closing.merged.size(), 20u);
+}
+
+// Where drift from one landmark to the next is as large as their distance, none is merged rather than a wrong one.
+TEST(JoinMaps, WhatMayBeANeighboursStaysTwice) {
+  const JoinedMaps joined = join(placed_late(20, 5.0, 12));
+  ASSERT_TRUE(joined.closing.accepted);
+  for (const core::MergedLandmarks& one : joined.closing.merged) EXPECT_EQ(one.removed, 100 + one.kept);
+  EXPECT_LT(joined.closing.merged.size(), 12u);
+}
+
 TEST(RelativeCovariance, CommonMotionLeavesNothing) {
   core::RandomStream random(8, "relative");
   std::vector<Eigen::Vector2d> points_m;

@@ -172,8 +172,8 @@ struct CarriedDecision {
   int scans = 0;                   ///< before this one, with which the part begins already: those since the pause
 };
 
-/// The session and the map of an earlier one: whether, where and by which evidence the one was found in the other. Rows where
-/// nothing changed since the row before are left out.
+/// The session and the map of an earlier one: whether, where and by which evidence the one was found in the other. A row is
+/// one answer; of `sought`, how many landmarks were about the vehicle before the first question, whenever more than ever.
 struct PlacedDecision {
   enum class Verdict {
     sought,     ///< the place is unknown: the session maps on its own and asks

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "helixnav/core/decision.hpp"
+#include "helixnav/runs/run.hpp"
+
+namespace helixnav::reports {
+
+/// What was asked of maps on which the vehicle's place was unknown to the end of the run, since it was.
+struct PlaceQuestions {
+  int questions = 0;
+  double from_m = 0.0, to_m = 0.0;                ///< of the drive, first and last
+  int most_landmarks = 0;                         ///< about the vehicle at once
+  std::optional<core::PlacedDecision> last = {};  ///< the answer
+  std::optional<core::PlacedDecision> best = {};  ///< the one that lacked least to be accepted
+};
+
+PlaceQuestions questions_in(const runs::Run& run);
+
+/// Two or three sentences, indented, on lines of their own: how much was asked, and what the best and the last answer lacked.
+std::string questions_text(const PlaceQuestions& asked);
+
+}  // namespace helixnav::reports
