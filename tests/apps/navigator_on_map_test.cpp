@@ -111,7 +111,7 @@ Judged judged(const WoodAndBareGround& world) {
 }
 
 // 600 m without a landmark, the heading's deviation 14° by then: whatever is seen first, mostly clutter, is in some gate. An EKF of the
-// pose alone takes it, and is sure of a wrong place in 9 of these 10.
+// pose alone takes it, and is sure of a wrong place in all ten, for some 370 scans and to the end.
 TEST(NavigatorOnMap, BelievesNoClutterAfterBareGround) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -132,7 +132,7 @@ TEST(NavigatorOnMap, ForgetsAStartThatWhatIsSeenContradicts) {
   for (std::uint64_t seed = 21; seed <= 24; ++seed) {
     WoodAndBareGround world(seed);
     world.go(30.0);
-    world.go(60.0, 2.0 * core::pi);
+    for (int lap = 0; lap < 3; ++lap) world.go(60.0, 2.0 * core::pi);
     world.begin_at(core::Pose2(9.0, -14.0, 2.0));
     const Judged drive = judged(world);
     EXPECT_LT(drive.last_error_m, 0.5) << seed;

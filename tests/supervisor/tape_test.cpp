@@ -163,6 +163,22 @@ TEST(Tape, CutTakesOffWhatCameAfterThePosition) {
   EXPECT_DOUBLE_EQ(drive_cost(tape), 3 * 2.0 + 2 * 1.0);
 }
 
+TEST(Tape, WithoutTheMergesAtItsEndIsTheTapeBeforeTheClosing) {
+  Tape tape(100);
+  tape.append(scan_that_cost(3.0));
+  tape.append(Tape::Merge{{}, 5.0});
+  tape.append(scan_that_cost(4.0));
+  EXPECT_EQ(tape.cost_of_last_merges(), 0.0);
+  EXPECT_EQ(tape.without_last_merges().end(), tape.end());
+  const Tape::Position before = tape.end();
+  tape.append(Tape::Merge{{}, 6.0});
+  tape.append(Tape::Merge{{}, 7.0});
+  EXPECT_EQ(tape.cost_of_last_merges(), 13.0);
+  EXPECT_EQ(tape.without_last_merges().end(), before);
+  EXPECT_EQ(drive_cost(tape.without_last_merges()), 12.0);
+  EXPECT_EQ(drive_cost(tape), 25.0);
+}
+
 TEST(Tape, ChainsMotionThatLeadsToNoStop) {
   Tape tape(1000);
   tape.append(Tape::Motion{one_metre(), 1.0});

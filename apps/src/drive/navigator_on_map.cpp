@@ -16,22 +16,37 @@ bool is_unknown(const Drive& job) {
   return job.given_map->start && job.given_map->start->kind == SessionStart::Kind::unknown;
 }
 
-supervisor::Navigator begun_on_map(const Drive& job) {
-  const core::FieldOfView view = logs::field_of_view_of(job.recording);
-  core::JointMap map = as_drawn(*job.given_map, job.navigator, view);
-  if (is_unknown(job)) {
-    supervisor::Navigator navigator(core::PoseGaussian{}, job.navigator);
-    navigator.look_for_place_in(map);
-    return navigator;
-  }
-  if (job.given_map->start) {
-    const double reach_m = view.reach().value_or(supervisor::reference_reach_m);
-    map = seen_from(std::move(map), job.given_map->start->T_map_robot, reach_m);
-  } else {
-    map.joint.pose = job.recording.start.mean;
-    map.joint.covariance.topLeftCorner<3, 3>() = job.recording.start.covariance;
-  }
-  return supervisor::Navigator::go_on_in(map, job.navigator);
+double reach_of(const Drive& job) {
+  return logs::field_of_view_of(job.recording).reach().value_or(supervisor::reference_reach_m);
+}
+
+core::JointMap with_pose(core::JointMap map, const core::PoseGaussian& pose) {
+  map.joint.pose = pose.mean;
+  map.joint.covariance.topLeftCorner<3, 3>() = pose.covariance;
+  return map;
+}
+
+supervisor::Navigator looking_for_place(const Drive& job, const core::JointMap& map) {
+  supervisor::Navigator navigator(core::PoseGaussian{}, job.navigator);
+  navigator.look_for_place_in(map);
+  return navigator;
+}
+
+supervisor::Navigator begun_on_map(const Drive& job, const core::JointMap& map) {
+  if (is_unknown(job)) return looking_for_place(job, map);
+  const std::optional<SessionStart>& start = job.given_map->start;
+  return supervisor::Navigator::go_on_in(
+      start ? seen_from(map, start->T_map_robot, reach_of(job)) : with_pose(map, job.recording.start), job.navigator);
+}
+
+localization::LocalizerOptions tracking_options(const supervisor::NavigatorOptions& navigator) {
+  localization::LocalizerOptions options;
+  options.method = navigator.method;
+  options.association = navigator.association;
+  options.gates = navigator.gates;
+  options.extraneous_per_scan = navigator.extraneous_per_scan;
+  options.candidate_sigmas = navigator.candidate_sigmas;
+  return options;
 }
 
 /// After what a step decided.
@@ -53,41 +68,79 @@ NavigatorOnMap::NavigatorOnMap(const Drive& job, std::vector<std::vector<core::L
     : job_(job),
       labels_of_(std::move(labels_fed)),
       agreement_(agreement),
-      navigator_(begun_on_map(job)),
-      is_placed_(!is_unknown(job)) {
-  const core::FieldOfView view = logs::field_of_view_of(job.recording);
-  if (is_placed_) start_.emplace(job.given_map->landmarks, view.reach().value_or(supervisor::reference_reach_m));
-}
+      map_(as_drawn(*job.given_map, job.navigator, logs::field_of_view_of(job.recording))),
+      reach_m_(reach_of(job)),
+      navigator_(begun_on_map(job, map_)),
+      is_placed_(!is_unknown(job)),
+      monitor_(job.given_map->landmarks, reach_m_),
+      is_start_in_doubt_(is_placed_) {}
 
 std::optional<core::StepReport> NavigatorOnMap::take(const core::Event& event) {
-  if (std::holds_alternative<core::AbsoluteFix>(event)) return std::nullopt;
-  std::optional<core::StepReport> report = navigator_.take(event);
   if (const auto* odometry = std::get_if<core::Odometry>(&event)) {
     driven_m_ += odometry->T_before_after.position_m().norm();
+    if (tracker_) tracker_->move(*odometry);
+    navigator_.move(*odometry);
   }
-  if (!report) return report;
-  report = on_map(*std::move(report));
-  doubt_start(std::get<core::Scan>(event), *report);
-  if (!job_.recording.labels.empty()) agreement_.count(*report, labels_of_[scans_], *job_.given_map);
-  ++scans_;
+  if (const auto* lost = std::get_if<core::Lost>(&event)) {
+    tracker_.reset();
+    navigator_.lose(*lost);
+  }
+  const auto* scan = std::get_if<core::Scan>(&event);
+  if (scan == nullptr) return std::nullopt;
+  core::StepReport report = observe(*scan);
+  if (!job_.recording.labels.empty()) agreement_.count(report, labels_of_[scans_], *job_.given_map);
+  report.step = static_cast<std::int64_t>(scans_++);
   return report;
 }
 
-void NavigatorOnMap::doubt_start(const core::Scan& scan, const core::StepReport& report) {
-  if (!is_placed_) start_.reset();
+core::StepReport NavigatorOnMap::observe(const core::Scan& scan) {
   const double driven_m = std::exchange(driven_m_, 0.0);
-  if (!start_) return;
-  start_->observe(scan, report, driven_m);
-  const bool is_lost = start_->is_lost();
-  if (is_lost) navigator_.lose({scan.t_ns});
-  if (is_lost || start_->is_confirmed()) start_.reset();
+  core::StepReport navigated = on_map(navigator_.observe(scan));
+  if (tracker_) {
+    core::StepReport tracked = tracker_->observe(scan);
+    monitor_.observe(scan, tracked, driven_m);
+    if (!is_placed_) track_from(tracked.pose);
+    if (monitor_.since_confirmed_m() <= reach_m_) return tracked;
+    tracker_.reset();
+    monitor_.reset();
+    return navigated;
+  }
+  if (!is_placed_) {
+    is_start_in_doubt_ = false;
+    monitor_.reset();
+    return navigated;
+  }
+  monitor_.observe(scan, navigated, driven_m);
+  if (is_start_in_doubt_) doubt_start(navigated);
+  if (monitor_.is_confirmed() && navigated.mode == core::Mode::mapping) track_from(navigated.pose);
+  return navigated;
+}
+
+/// Begins anew, as a vehicle that does not know where on the map it is: what was mapped until now was put in wrong places of it.
+void NavigatorOnMap::doubt_start(core::StepReport& report) {
+  is_start_in_doubt_ = !monitor_.is_confirmed();
+  if (!monitor_.is_lost()) return;
+  is_start_in_doubt_ = is_placed_ = false;
+  navigator_ = looking_for_place(job_, map_);
+  core::CarriedDecision carried;
+  carried.part = carried.apart = 1;
+  report.decisions.emplace_back(carried);
+}
+
+/// The navigator, too, where it has left the map meanwhile.
+void NavigatorOnMap::track_from(const core::PoseGaussian& pose) {
+  tracker_.emplace(pose, job_.given_map->landmarks, tracking_options(job_.navigator));
+  if (is_placed_) return;
+  navigator_ = supervisor::Navigator::go_on_in(with_pose(map_, pose), job_.navigator);
+  is_placed_ = true;
 }
 
 core::StepReport NavigatorOnMap::on_map(core::StepReport report) {
   is_placed_ = is_placed_after(report.decisions, is_placed_);
   if (!is_placed_) report.mode = core::Mode::searching;
   leave_own_out(report.associations);
-  for (core::RevisedScan& revised : report.revised) leave_own_out(revised.associations);
+  report.revised.clear();  // what was said of earlier scans may have been the tracker's
+  report.solved.clear();
   report.merged.clear();
   report.mapped_landmarks = static_cast<int>(job_.given_map->landmarks.size());
   return report;

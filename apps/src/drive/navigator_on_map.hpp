@@ -7,24 +7,29 @@
 
 #include "drive.hpp"
 #include "given_map.hpp"
+#include "helixnav/localization/localizer.hpp"
 #include "helixnav/localization/lost_monitor.hpp"
 #include "helixnav/supervisor/navigator.hpp"
 
 namespace helixnav::apps {
 
-/// A navigator that says where on a given map the vehicle is. It takes the map as it is drawn (supervisor::as_drawn) and maps beside
-/// it what it holds no landmark of, for itself: so it has all that mapping has against wrong matches, slips and carrying. Its
-/// reports name landmarks of the given map only. A start that was said, and that what is seen contradicts before anything has confirmed
-/// it, is forgotten: the vehicle looks for its place as one that was carried. Fixes are not used. The job must outlive it.
+/// Says where on a given map the vehicle is. As long as looks confirm it, that is an EKF of the pose alone on the map's landmarks, which uses
+/// each of them in every scan (localization::Localizer). Beside it, and in its place once nothing has confirmed the pose over a reach, a
+/// navigator takes the map as it is drawn (supervisor::as_drawn) and maps for itself what the map does not hold: so it has all that mapping
+/// has against wrong matches, slips and carrying. Reports name landmarks of the given map only. A start that was said, and that what is
+/// seen contradicts before anything has confirmed it, is forgotten, and the place looked for. Fixes are not
+/// used. The job must outlive it. Test: apps/navigator_on_map_test.cpp.
 class NavigatorOnMap {
  public:
   NavigatorOnMap(const Drive& job, std::vector<std::vector<core::Label>> labels_fed, LabelAgreement& agreement);
 
   std::optional<core::StepReport> take(const core::Event& event);
-  core::PoseGaussian pose() const { return navigator_.pose(); }
+  core::PoseGaussian pose() const { return tracker_ ? tracker_->pose() : navigator_.pose(); }
 
  private:
-  void doubt_start(const core::Scan& scan, const core::StepReport& report);
+  core::StepReport observe(const core::Scan& scan);
+  void doubt_start(core::StepReport& report);
+  void track_from(const core::PoseGaussian& pose);
   core::StepReport on_map(core::StepReport report);
   bool is_given(core::LandmarkId id) const;
   void leave_own_out(std::vector<core::AssociationReport>& associations) const;
@@ -32,10 +37,14 @@ class NavigatorOnMap {
   const Drive& job_;
   std::vector<std::vector<core::Label>> labels_of_;
   LabelAgreement& agreement_;
+  core::JointMap map_;  ///< as drawn
+  double reach_m_;
   supervisor::Navigator navigator_;
-  bool is_placed_;                                  ///< it is known where on the map the vehicle is
-  std::optional<localization::LostMonitor> start_;  ///< while nothing has confirmed it
-  double driven_m_ = 0.0;                           ///< since the last scan
+  bool is_placed_;  ///< the navigator is on the map
+  std::optional<localization::Localizer> tracker_;
+  localization::LostMonitor monitor_;  ///< of what is reported
+  bool is_start_in_doubt_;
+  double driven_m_ = 0.0;  ///< since the last scan
   std::size_t scans_ = 0;
 };
 

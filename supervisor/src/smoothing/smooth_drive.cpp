@@ -33,7 +33,7 @@ Smoothing smooth_drive(const cekf::CompressedEkf& filter, const Tape& tape, Driv
   smoothing.chi2 = map.atlas().chi2();
   smoothing.poses = map.atlas().phase_count() + 1;
   smoothing.iterations = map.atlas().nodes_redone() - redone;
-  if (smoothing.chi2 > smoothing.limit) {
+  if (smoothing.chi2 > smoothing.limit && tape.cost_of_last_merges() > 0.0) {
     smoothing.limit = std::max(smoothing.limit, limit_by_closing(filter, tape, before_closing));
   }
   smoothing.accepted = smoothing.chi2 <= smoothing.limit;

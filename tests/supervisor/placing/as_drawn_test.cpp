@@ -46,7 +46,7 @@ TEST(AsDrawn, LeavesOutWhereTheMapLiesAndKeepsWhatItsLandmarksDifferBy) {
     EXPECT_LT(variances.maxCoeff(), 1.1 * own_m * own_m);
     EXPECT_TRUE(drawn.joint.covariance.block(row, 0, 2, row).isZero(0.0));
   }
-  EXPECT_TRUE(drawn.joint.covariance.topLeftCorner<3, 3>().isZero(0.0));
+  EXPECT_TRUE(drawn.joint.covariance.topLeftCorner(3, 3).isZero(0.0));
 }
 
 TEST(AsDrawn, AddsHalfOfWhatTwoDrivesSeeDifferently) {

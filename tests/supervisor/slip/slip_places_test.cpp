@@ -3,6 +3,7 @@
 #include "slip/slip_places.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include <gtest/gtest.h>
@@ -99,6 +100,33 @@ TEST(SlipPlaces, ArePairedOneToOneAndTheBestComesFirst) {
 TEST(SlipPlaces, ThereAreNoneOfTwoObservationsNorBeyondTheReachOfTheWidestSlip) {
   EXPECT_TRUE(places_of(SlipScene(scattered(1, 2), {0.5, 0.0, 0.0}, 1)).empty());
   EXPECT_TRUE(places_of(SlipScene(scattered(2), {3.5, 0.0, 0.0}, 2)).empty());
+}
+
+/// Stems 0.4 m beside each other, two and two.
+std::vector<Eigen::Vector2d> twins(std::uint64_t seed) {
+  core::RandomStream random(seed, "twins");
+  std::vector<Eigen::Vector2d> points_m;
+  for (const Eigen::Vector2d& point_m : scattered(seed, 10)) {
+    const double bearing_rad = random.uniform(-core::pi, core::pi);
+    points_m.push_back(point_m);
+    points_m.push_back(point_m + 0.4 * Eigen::Vector2d(std::cos(bearing_rad), std::sin(bearing_rad)));
+  }
+  return points_m;
+}
+
+TEST(SlipPlaces, AmongTwinsAreFoundBeyondTheNextNeighbourOnly) {
+  const Eigen::Vector3d truth(1.3, -0.8, 4.0 * degree);
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const SlipScene scene(twins(seed), truth, seed);
+    const auto has_truth = [&](SlipReach reach) {
+      const std::vector<SlipPlace> places =
+          slip_places(scene.geometry, scene.seen, a_pair_nats, components(), distinct_places_m, reach);
+      return !places.empty() && is_same_place(places.front().explanation.displacement, truth, distinct_places_m) &&
+             places.front().pairs.size() >= 18;
+    };
+    EXPECT_FALSE(has_truth(SlipReach::next_neighbour)) << seed;
+    EXPECT_TRUE(has_truth(SlipReach::any_neighbour)) << seed;
+  }
 }
 
 TEST(SlipPlaces, HeadingsTellPlacesApartAndCountRoundTheCircle) {

@@ -227,6 +227,17 @@ TEST(SmoothDrive, RefusesWhatCostsMoreThanTheFilter) {
   EXPECT_EQ(drive.filter.pose().covariance, before.covariance);
 }
 
+// After a closing the filter's cost is not the last word: what counts is what the closing costs the drive.
+TEST(SmoothDrive, IsJudgedByItsClosingWhereItCostsMoreThanTheFilter) {
+  const core::Recording run = circuit(8);
+  LabelledDrive drive(run, false);
+  drive.tape.append(Tape::Solved{drive_cost(drive.tape) - 300.0});
+  drive.tape.append(Tape::Merge{{}, 1.0});
+  const Smoothing smoothing = drive.solve();
+  EXPECT_TRUE(smoothing.accepted);
+  EXPECT_LT(smoothing.limit, smoothing.chi2 + 40.0) << "four times the limit of the merge, and the slack";
+}
+
 // For a linear filter the two costs are the same; here they differ by the little that is not linear.
 TEST(SmoothDrive, CostsWhatTheInnovationsOfTheFilterCost) {
   for (const std::uint64_t seed : {11u, 12u, 13u}) {

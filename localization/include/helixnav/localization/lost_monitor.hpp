@@ -26,8 +26,9 @@ class LostMonitor {
 
   bool is_lost() const;
 
-  /// A look has confirmed the place since the begin, or since reset().
+  /// A look has confirmed the place since the begin, or since reset(); and how far the vehicle has driven since the last one.
   bool is_confirmed() const { return is_confirmed_; }
+  double since_confirmed_m() const { return since_confirmed_m_; }
 
   /// The place is known again.
   void reset();
