@@ -36,7 +36,7 @@ std::vector<std::string> closing_warnings(const runs::Run& run) {
   const Closings closings = closings_of(run);
   std::vector<std::string> warnings;
   constexpr int several = 3;
-  const bool is_mostly_refused = closings.refused >= several && closings.refused > closings.accepted;
+  const bool is_mostly_refused = closings.refused >= several && closings.refused > 2 * closings.accepted;
   const bool is_mostly_undecided = closings.undecided >= 2 && closings.undecided > closings.accepted;
   if (is_mostly_refused || is_mostly_undecided) {
     warnings.push_back(
