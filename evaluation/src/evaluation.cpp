@@ -12,7 +12,7 @@
 #include "helixnav/core/rigid_fit.hpp"
 #include "helixnav/evaluation/alignment.hpp"
 #include "helixnav/evaluation/nees.hpp"
-#include "helixnav/runs/told_frame.hpp"
+#include "helixnav/runs/report_frame.hpp"
 #include "pose_pairs.hpp"
 #include "run_interpolation.hpp"
 
@@ -106,7 +106,7 @@ std::pair<core::Pose2, double> align_poses(const std::vector<PosePair>& pairs) {
   std::vector<Eigen::Vector2d> known_m;
   std::vector<Eigen::Vector2d> estimated_m;
   for (const PosePair& pair : pairs) {
-    if (!pair.told.is_placed) continue;
+    if (!pair.frame.is_placed) continue;
     known_m.push_back(pair.known.T_world_robot.position_m());
     estimated_m.push_back(pair.estimate.mean.position_m());
   }
@@ -126,38 +126,38 @@ Eigen::Vector3d error_of(const core::Pose2& estimate, const core::Pose2& known) 
 
 /// Counts what it is compared with.
 double nees_of(const PosePair& pair, const core::Pose2& known_map, PoseEvaluation& pose) {
-  if (!pair.known_as_told) {
+  if (!pair.known_in_frame) {
     ++pose.nees_left_out;
     return nan;
   }
-  pose.nees_in_own_frame += pair.told.is_own ? 1 : 0;
-  return nees(pair.estimate, pair.told.is_own ? *pair.known_as_told : known_map);
+  pose.nees_in_own_frame += pair.frame.is_own ? 1 : 0;
+  return nees(pair.estimate, pair.frame.is_own ? *pair.known_in_frame : known_map);
 }
 
 std::pair<PositionEvaluation, PoseEvaluation> evaluate_poses(const Steps& steps, const runs::RunTruth& truth,
-                                                             const std::vector<runs::ToldFrame>& told,
+                                                             const std::vector<runs::ReportFrame>& frames,
                                                              core::Nanoseconds nees_from_ns) {
   PositionEvaluation position;
   position.limit_m = std::numeric_limits<double>::infinity();
   position.against_poses = true;
   position.aligned = !truth.frame.is_map;
   PoseEvaluation pose;
-  const std::vector<PosePair> pairs = pose_pairs(steps, truth.poses, told);
+  const std::vector<PosePair> pairs = pose_pairs(steps, truth.poses, frames);
   const auto [T_truth_map, rmse_m] = align_poses(pairs);
   position.rmse_aligned_m = rmse_m;
   if (position.aligned) position.T_truth_map = T_truth_map;
   const core::Pose2 T_map_truth = core::inverse(position.T_truth_map);
   for (const PosePair& pair : pairs) {
-    if (!pair.told.is_placed && !pair.known_as_told) continue;
+    if (!pair.frame.is_placed && !pair.known_in_frame) continue;
     core::Pose2 known =
         position.aligned ? core::compose(T_map_truth, pair.known.T_world_robot) : pair.known.T_world_robot;
     const bool counts = pair.known.t_ns >= nees_from_ns;
-    const double nees_told = counts ? nees_of(pair, known, pose) : nan;
-    if (!pair.told.is_placed) known = *pair.known_as_told;
+    const double own_nees = counts ? nees_of(pair, known, pose) : nan;
+    if (!pair.frame.is_placed) known = *pair.known_in_frame;
     const Eigen::Vector3d error = error_of(pair.estimate.mean, known);
     const Eigen::Vector3d sigma = pair.estimate.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
     position.errors.push_back({pair.known.t_ns, known.position_m(), error.head<2>(), sigma.head<2>(), true});
-    pose.errors.push_back({pair.known.t_ns, error.z(), sigma.z(), nees_told});
+    pose.errors.push_back({pair.known.t_ns, error.z(), sigma.z(), own_nees});
   }
   position.fixes_used = position.errors.size();
   position.fixes_outside = truth.poses.size() - position.fixes_used;
@@ -181,7 +181,7 @@ std::optional<PositionEvaluation> evaluate_final(const runs::Run& run, const run
   const Steps steps = final_steps(run);
   if (!truth.positions.empty()) return evaluate_positions(steps, truth, limit_m);
   if (truth.poses.empty()) return std::nullopt;
-  return evaluate_poses(steps, truth, runs::told_frames(run), EvaluationOptions().nees_from_ns).first;
+  return evaluate_poses(steps, truth, runs::report_frames(run), EvaluationOptions().nees_from_ns).first;
 }
 
 NisEvaluation evaluate_nis(const std::vector<core::StepReport>& steps) {
@@ -272,7 +272,7 @@ Evaluation evaluate(const runs::Run& run, const runs::RunTruth& truth, const Eva
   evaluation.steps = run.steps.size();
   if (!truth.positions.empty()) evaluation.position = evaluate_positions(run.steps, truth, options.fix_limit_m);
   if (!truth.poses.empty()) {
-    auto [position, pose] = evaluate_poses(run.steps, truth, runs::told_frames(run), options.nees_from_ns);
+    auto [position, pose] = evaluate_poses(run.steps, truth, runs::report_frames(run), options.nees_from_ns);
     evaluation.pose = std::move(pose);
     if (!evaluation.position) evaluation.position = std::move(position);
   }

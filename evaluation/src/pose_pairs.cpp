@@ -17,33 +17,34 @@ std::size_t step_before(const std::vector<core::StepReport>& steps, core::Nanose
 }
 
 /// Between the last step of one frame and the first of the next there is no estimate, unless both were brought into one.
-bool is_torn(const std::vector<core::StepReport>& steps, const std::vector<runs::ToldFrame>& told, std::size_t step,
+bool is_torn(const std::vector<core::StepReport>& steps, const std::vector<runs::ReportFrame>& frames, std::size_t step,
              core::Nanoseconds t_ns) {
-  if (steps[step].t_ns == t_ns || step + 1 == told.size() || told[step].begin == told[step + 1].begin) return false;
-  return !told[step].is_placed || !told[step + 1].is_placed;
+  if (steps[step].t_ns == t_ns || step + 1 == frames.size() || frames[step].begin == frames[step + 1].begin)
+    return false;
+  return !frames[step].is_placed || !frames[step + 1].is_placed;
 }
 
 }  // namespace
 
 std::vector<PosePair> pose_pairs(const std::vector<core::StepReport>& steps, const std::vector<core::TruePose>& poses,
-                                 const std::vector<runs::ToldFrame>& told) {
+                                 const std::vector<runs::ReportFrame>& frames) {
   std::vector<PosePair> pairs;
-  std::map<std::size_t, std::optional<core::Pose2>> T_told_truth;  // [begin]
+  std::map<std::size_t, std::optional<core::Pose2>> T_report_truth;  // [begin]
   for (const core::TruePose& known : poses) {
     const auto estimate = estimate_at(steps, known.t_ns);
     if (!estimate) continue;
     const std::size_t step = step_before(steps, known.t_ns);
-    if (is_torn(steps, told, step, known.t_ns)) continue;
-    const runs::ToldFrame& frame = told[step];
+    if (is_torn(steps, frames, step, known.t_ns)) continue;
+    const runs::ReportFrame& frame = frames[step];
     PosePair pair{known, *estimate, frame, known.T_world_robot};
-    if (frame.is_moved) pair.known_as_told.reset();
+    if (frame.is_moved) pair.known_in_frame.reset();
     if (frame.is_own) {
-      const auto [begin, is_first] = T_told_truth.try_emplace(frame.begin);
+      const auto [begin, is_first] = T_report_truth.try_emplace(frame.begin);
       if (is_first && step == frame.begin) {
         begin->second = core::compose(estimate->mean, core::inverse(known.T_world_robot));
       }
-      pair.known_as_told = begin->second;
-      if (pair.known_as_told) *pair.known_as_told = core::compose(*pair.known_as_told, known.T_world_robot);
+      pair.known_in_frame = begin->second;
+      if (pair.known_in_frame) *pair.known_in_frame = core::compose(*pair.known_in_frame, known.T_world_robot);
     }
     pairs.push_back(pair);
   }

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "helixnav/core/recording.hpp"
+#include "helixnav/runs/report_frame.hpp"
 #include "helixnav/runs/run.hpp"
-#include "helixnav/runs/told_frame.hpp"
 
 namespace helixnav::evaluation {
 
@@ -15,14 +15,14 @@ namespace helixnav::evaluation {
 struct PosePair {
   core::TruePose known;
   core::PoseGaussian estimate;
-  runs::ToldFrame told;
-  /// Where the vehicle truly was in the frame in which the estimate was told, by the truth since that frame's begin: what the
+  runs::ReportFrame frame;
+  /// Where the vehicle truly was in the frame in which the estimate was reported, by the truth since that frame's begin: what the
   /// covariance is of. Nothing where the truth does not say it.
-  std::optional<core::Pose2> known_as_told;
+  std::optional<core::Pose2> known_in_frame;
 };
 
-/// told: [step] of runs::told_frames. The first true pose of a frame of its own counts as its begin where it lies within its first step.
+/// frames: [step] of runs::report_frames. The first true pose of a frame of its own counts as its begin where it lies within its first step.
 std::vector<PosePair> pose_pairs(const std::vector<core::StepReport>& steps, const std::vector<core::TruePose>& poses,
-                                 const std::vector<runs::ToldFrame>& told);
+                                 const std::vector<runs::ReportFrame>& frames);
 
 }  // namespace helixnav::evaluation

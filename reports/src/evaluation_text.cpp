@@ -92,8 +92,8 @@ std::string pose_text(const evaluation::PoseEvaluation& pose) {
                    pose.nees_in_own_frame);
   }
   if (pose.nees_left_out > 0) {
-    text +=
-        format("  left out           %zu instants, told in a frame that the truth does not know\n", pose.nees_left_out);
+    text += format("  left out           %zu instants, reported in a frame that the truth does not know\n",
+                   pose.nees_left_out);
   }
   return text;
 }

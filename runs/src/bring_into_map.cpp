@@ -12,19 +12,19 @@ const core::PlacedDecision* placing_in(const core::Decision& decision) {
   return placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted ? placed : nullptr;
 }
 
-void move(const core::Pose2& T_final_told, core::MapLandmark& landmark) {
-  const Eigen::Matrix2d R = core::rotation(T_final_told.heading_rad);
-  landmark.point.mean_m = core::transform(T_final_told, landmark.point.mean_m);
+void move(const core::Pose2& T_final_reported, core::MapLandmark& landmark) {
+  const Eigen::Matrix2d R = core::rotation(T_final_reported.heading_rad);
+  landmark.point.mean_m = core::transform(T_final_reported, landmark.point.mean_m);
   landmark.point.covariance_m2 = (R * landmark.point.covariance_m2 * R.transpose()).eval();
 }
 
-void move(const core::Pose2& T_final_told, core::StepReport& step) {
+void move(const core::Pose2& T_final_reported, core::StepReport& step) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = core::rotation(T_final_told.heading_rad);
-  step.pose.mean = core::compose(T_final_told, step.pose.mean);
+  turn.topLeftCorner<2, 2>() = core::rotation(T_final_reported.heading_rad);
+  step.pose.mean = core::compose(T_final_reported, step.pose.mean);
   const Eigen::Matrix3d turned = turn * step.pose.covariance * turn.transpose();
   step.pose.covariance = 0.5 * (turned + turned.transpose());
-  for (core::Pose2& pose : step.cloud) pose = core::compose(T_final_told, pose);
+  for (core::Pose2& pose : step.cloud) pose = core::compose(T_final_reported, pose);
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ std::vector<FrameOfStep> frames_of(const Run& run) {
       for (std::size_t k = 0; k < frames.size(); ++k) {
         if (frames[k].part != part) continue;
         frames[k].part = placing->part;
-        frames[k].T_final_told = core::compose(placing->T_map_session, frames[k].T_final_told);
+        frames[k].T_final_reported = core::compose(placing->T_map_session, frames[k].T_final_reported);
       }
       part = placing->part;
     }
@@ -69,15 +69,15 @@ std::vector<FrameOfStep> frames_of(const Run& run) {
 void bring_into_map(Run& run) {
   if (!has_found_place(run)) return;
   const std::vector<FrameOfStep> frames = frames_of(run);
-  const auto stays = [](const FrameOfStep& frame) { return frame.T_final_told.vector().isZero(0.0); };
+  const auto stays = [](const FrameOfStep& frame) { return frame.T_final_reported.vector().isZero(0.0); };
   auto change = run.map_changes.begin();
   for (std::size_t k = 0; k < frames.size(); ++k) {
-    const core::Pose2& T_final_told = frames[k].T_final_told;
+    const core::Pose2& T_final_reported = frames[k].T_final_reported;
     for (; change != run.map_changes.end() && change->step <= run.steps[k].step; ++change) {
       if (stays(frames[k])) continue;
-      for (core::MapLandmark& landmark : change->changed) move(T_final_told, landmark);
+      for (core::MapLandmark& landmark : change->changed) move(T_final_reported, landmark);
     }
-    if (!stays(frames[k])) move(T_final_told, run.steps[k]);
+    if (!stays(frames[k])) move(T_final_reported, run.steps[k]);
   }
 }
 

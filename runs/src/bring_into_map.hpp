@@ -12,10 +12,10 @@ namespace helixnav::runs {
 /// The frame in which a step was told. A session that looks for its place on an earlier map tells its steps in a frame of its
 /// own until that is found, and so does each part of a drive after the vehicle was carried.
 struct FrameOfStep {
-  int times_carried = 0;     ///< until then
-  int told_part = 0;         ///< whose frame that was
-  int part = 0;              ///< whose frame it is in at last
-  core::Pose2 T_final_told;  ///< from that frame into the one in which it is known at last
+  int times_carried = 0;         ///< until then
+  int reported_part = 0;         ///< whose frame that was
+  int part = 0;                  ///< whose frame it is in at last
+  core::Pose2 T_final_reported;  ///< from that frame into the one in which it is known at last
 };
 
 /// [step]

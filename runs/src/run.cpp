@@ -44,7 +44,7 @@ void correct_path(Run& run, const std::vector<core::StampedPose>& solved) {
     if (next == solved.end() || frame.times_carried != frames[k].times_carried) {
       run.final_path.push_back(step.pose.mean);
     } else if (next->t_ns == step.t_ns || begins) {
-      run.final_path.push_back(core::compose(frame.T_final_told, next->T_world_robot));
+      run.final_path.push_back(core::compose(frame.T_final_reported, next->T_world_robot));
     } else {
       const core::Pose2 motion = core::between(run.steps[k - 1].pose.mean, step.pose.mean);
       run.final_path.push_back(core::compose(run.final_path.back(), motion));

@@ -66,7 +66,7 @@ struct PoseEvaluation {
   std::size_t nees_count = 0;
   std::size_t nees_in_own_frame =
       0;                          ///< of these: against the truth since the session or part began, before it was placed
-  std::size_t nees_left_out = 0;  ///< no truth at that begin, or told in a frame that was known to be wrong later
+  std::size_t nees_left_out = 0;  ///< no truth at that begin, or reported in a frame that was known to be wrong later
   double nees_mean = 0.0;         ///< 3 when the filter is consistent
   double nees_inside_95 = 0.0;    ///< fraction within the two-sided 95 % band of χ²₃
   std::vector<HeadingError> errors;
@@ -131,7 +131,7 @@ struct EvaluationOptions {
 /// Compares a run with `truth`. The estimate is interpolated at the instants of the truth along arcs of constant twist.
 /// True positions: the antenna's estimated position (pose ∘ lever arm), rigid alignment with outliers left out. True
 /// poses: no alignment where the map frame is theirs (runs::RunTruth::frame), else a rigid one of all; NEES at the same instants
-/// with the covariance of the step before. What was told in a frame of its own, before a session or a part found its place, has a
+/// with the covariance of the step before. What was reported in a frame of its own, before a session or a part found its place, has a
 /// covariance since its begin: NEES compares it with the truth since then. Of a part that never found its place errors are of that, too.
 /// Landmarks: after the same alignment. Test: evaluation/evaluation_test.cpp (hand-computed values).
 Evaluation evaluate(const runs::Run& run, const runs::RunTruth& truth, const EvaluationOptions& options = {});

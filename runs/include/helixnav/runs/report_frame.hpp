@@ -9,16 +9,16 @@
 namespace helixnav::runs {
 
 /// Which frame the covariance of a step's pose is of. A session that looks for its place on an earlier map, and each part of a drive
-/// after the vehicle was carried, tells its steps in a frame of its own, which begins with it. The means of Run::steps have been
+/// after the vehicle was carried, reports its steps in a frame of its own, which begins with it. The means of Run::steps have been
 /// brought into the map frame since, where it is known how that lies; the covariances say what was known at the time.
-struct ToldFrame {
-  std::size_t begin = 0;  ///< the first step that was told in the same frame
+struct ReportFrame {
+  std::size_t begin = 0;  ///< the first step that was reported in the same frame
   bool is_own = false;    ///< not the frame of the run's truth
   bool is_placed = true;  ///< the mean is in the frame of the run's truth
-  bool is_moved = false;  ///< told in the frame of the truth, and moved there since: at the time it was wrong
+  bool is_moved = false;  ///< reported in the frame of the truth, and moved there since: at the time it was wrong
 };
 
 /// [step] Test: evaluation/evaluation_test.cpp.
-std::vector<ToldFrame> told_frames(const Run& run);
+std::vector<ReportFrame> report_frames(const Run& run);
 
 }  // namespace helixnav::runs
