@@ -49,6 +49,13 @@ localization::LocalizerOptions tracking_options(const supervisor::NavigatorOptio
   return options;
 }
 
+/// A scan most of which the map explains.
+bool confirms(const core::StepReport& report) {
+  const auto matched = std::count_if(report.associations.begin(), report.associations.end(),
+                                     [](const auto& one) { return one.outcome == core::Outcome::matched; });
+  return matched >= 2 && 2 * matched >= static_cast<std::ptrdiff_t>(report.associations.size());
+}
+
 /// After what a step decided.
 bool is_placed_after(const std::vector<core::Decision>& decisions, bool is_placed) {
   for (const core::Decision& decision : decisions) {
@@ -99,8 +106,9 @@ core::StepReport NavigatorOnMap::observe(const core::Scan& scan) {
   if (tracker_) {
     core::StepReport tracked = tracker_->observe(scan);
     monitor_.observe(scan, tracked, driven_m);
-    if (!is_placed_) track_from(tracked.pose);
-    if (monitor_.since_confirmed_m() <= reach_m_) return tracked;
+    const bool is_contradicted = !is_placed_ && !confirms(tracked);  // carried, as the navigator has found out
+    if (!is_placed_ && !is_contradicted) track_from(tracked.pose);
+    if (!is_contradicted && monitor_.since_confirmed_m() <= reach_m_) return tracked;
     tracker_.reset();
     monitor_.reset();
     return navigated;
