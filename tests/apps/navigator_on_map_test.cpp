@@ -33,6 +33,8 @@ class WoodAndBareGround {
   void go(double length_m, double turn_rad = 0.0) {
     for (double left_m = length_m; left_m > 0.0; left_m -= 1.0) step(turn_rad / length_m);
   }
+  /// Which no odometry knows of.
+  void slip(const core::Pose2& moved) { T_map_robot_ = core::compose(T_map_robot_, moved); }
   void begin_at(const core::Pose2& T_map_robot) {
     drive_.given_map->start = SessionStart{SessionStart::Kind::pose, T_map_robot};
   }
@@ -137,6 +139,19 @@ TEST(NavigatorOnMap, ForgetsAStartThatWhatIsSeenContradicts) {
     const Judged drive = judged(world);
     EXPECT_LT(drive.last_error_m, 0.5) << seed;
     EXPECT_GT(drive.sought, 0) << seed;
+  }
+}
+
+// The EKF alone is sure of the wrong place until nothing has confirmed it over a reach: for 9 to 18 scans each.
+TEST(NavigatorOnMap, GoesOnFromTheNavigatorsPoseAfterASlip) {
+  for (std::uint64_t seed = 41; seed <= 50; ++seed) {
+    WoodAndBareGround world(seed);
+    world.go(60.0, 2.0 * core::pi);
+    world.slip({1.4, -0.5, 0.05});
+    world.go(40.0, core::pi);
+    const Judged drive = judged(world);
+    EXPECT_LE(drive.sure_and_wrong, 2) << seed;
+    EXPECT_LT(drive.last_error_m, 0.5) << seed;
   }
 }
 

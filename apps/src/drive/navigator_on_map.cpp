@@ -56,6 +56,12 @@ bool confirms(const core::StepReport& report) {
   return matched >= 2 && 2 * matched >= static_cast<std::ptrdiff_t>(report.associations.size());
 }
 
+bool has_slipped(const core::StepReport& report) {
+  return std::any_of(report.decisions.begin(), report.decisions.end(), [](const core::Decision& decision) {
+    return std::holds_alternative<core::SlipDecision>(decision);
+  });
+}
+
 /// After what a step decided.
 bool is_placed_after(const std::vector<core::Decision>& decisions, bool is_placed) {
   for (const core::Decision& decision : decisions) {
@@ -108,6 +114,11 @@ core::StepReport NavigatorOnMap::observe(const core::Scan& scan) {
     monitor_.observe(scan, tracked, driven_m);
     const bool is_contradicted = !is_placed_ && !confirms(tracked);  // carried, as the navigator has found out
     if (!is_placed_ && !is_contradicted) track_from(tracked.pose);
+    if (knows_better(navigated, tracked)) {
+      track_from(navigated.pose);
+      monitor_.reset();
+      return navigated;
+    }
     if (!is_contradicted && monitor_.since_confirmed_m() <= reach_m_) return tracked;
     tracker_.reset();
     monitor_.reset();
@@ -124,6 +135,15 @@ core::StepReport NavigatorOnMap::observe(const core::Scan& scan) {
   return navigated;
 }
 
+/// After a slip, which the navigator weighs and the EKF knows nothing of: where the map explains what is seen from the navigator's pose and
+/// not from the tracked one, at once where a slip was decided, and else in two scans running.
+bool NavigatorOnMap::knows_better(const core::StepReport& navigated, const core::StepReport& tracked) {
+  const bool is_better =
+      is_placed_ && navigated.mode == core::Mode::mapping && confirms(navigated) && !confirms(tracked);
+  better_scans_ = is_better ? better_scans_ + 1 : 0;
+  return is_better && (has_slipped(navigated) || better_scans_ >= 2);
+}
+
 /// Begins anew, as a vehicle that does not know where on the map it is: what was mapped until now was put in wrong places of it.
 void NavigatorOnMap::doubt_start(core::StepReport& report) {
   is_start_in_doubt_ = !monitor_.is_confirmed();
@@ -137,6 +157,7 @@ void NavigatorOnMap::doubt_start(core::StepReport& report) {
 
 /// The navigator, too, where it has left the map meanwhile.
 void NavigatorOnMap::track_from(const core::PoseGaussian& pose) {
+  better_scans_ = 0;
   tracker_.emplace(pose, job_.given_map->landmarks, tracking_options(job_.navigator));
   if (is_placed_) return;
   navigator_ = supervisor::Navigator::go_on_in(with_pose(map_, pose), job_.navigator);

@@ -28,6 +28,7 @@ class NavigatorOnMap {
 
  private:
   core::StepReport observe(const core::Scan& scan);
+  bool knows_better(const core::StepReport& navigated, const core::StepReport& tracked);
   void doubt_start(core::StepReport& report);
   void track_from(const core::PoseGaussian& pose);
   core::StepReport on_map(core::StepReport report);
@@ -44,6 +45,7 @@ class NavigatorOnMap {
   std::optional<localization::Localizer> tracker_;
   localization::LostMonitor monitor_;  ///< of what is reported
   bool is_start_in_doubt_;
+  int better_scans_ = 0;   ///< in a row, explained from the navigator's pose and not from the tracked one
   double driven_m_ = 0.0;  ///< since the last scan
   std::size_t scans_ = 0;
 };
