@@ -144,6 +144,13 @@ void leave_returns_unused(GatedScan& gated) {
   for (const RevisitAmbiguity& met : gated.returns) gated.place.loose.push_back(met.landmark);
 }
 
+void leave_ambiguous_unused(const SearchOptions& options, GatedScan& gated) {
+  gated.place.loose.clear();
+  for (const RevisitAmbiguity& met : gated.returns) {
+    if (met.expected_confusers > options.defer_confusers) gated.place.loose.push_back(met.landmark);
+  }
+}
+
 std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, const NavigatorOptions& options,
                                                     double path_m, Confirmation& confirmation) {
   std::vector<core::AssociationReport> reports = association_reports(gated.assignment);

@@ -39,6 +39,9 @@ void look_for_returns(const cekf::CompressedEkf& filter, const association::Land
 /// they would be matched by is in question.
 void leave_returns_unused(GatedScan& gated);
 
+/// Of the old landmarks those that alone are ambiguous are not matched (defer_confusers), however many others are.
+void leave_ambiguous_unused(const SearchOptions& options, GatedScan& gated);
+
 /// A range or a bearing alone is of too many landmarks: without identities it is left unused.
 void leave_unplaced_unused(const core::Scan& scan, std::vector<core::AssociationReport>& reports);
 

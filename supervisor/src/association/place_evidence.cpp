@@ -90,7 +90,17 @@ class Question {
     return loose;
   }
 
-  double wrong_probability(double extraneous_per_scan, double view_margin_m, const SearchOptions& options) const {
+  /// Old landmarks that should be in view and that the assignment does not match.
+  int missing(double view_margin_m) const {
+    std::vector<LandmarkId> met;
+    for (const int p : matched_) met.push_back(landmark(pair_at(p)));
+    const std::vector<LandmarkId> expected = expected_in_view(filter_, scan_, view_margin_m);
+    return static_cast<int>(std::count_if(expected.begin(), expected.end(), [&](LandmarkId id) {
+      return is_old(id) && std::find(met.begin(), met.end(), id) == met.end();
+    }));
+  }
+
+  double wrong_probability(double extraneous_per_scan, int missing, const SearchOptions& options) const {
     const OldPairs pairs = old_pairs_given(problem_, gated_with_old(), given_);
     Matching best;
     for (int k = 0; k < pairs.size(); ++k) {
@@ -99,7 +109,7 @@ class Question {
     }
     const auto rivals = rival_matchings(pairs, best);
     if (!rivals) return 1.0;
-    const double missing_nats = options.integrity.missing_nats * missing(view_margin_m);
+    const double missing_nats = options.integrity.missing_nats * missing;
     const association::ExtraneousDensity extraneous = association::density_in_view(scan_, extraneous_per_scan, {});
     const auto evidence = [&](const Matching& matching) {
       double nats = joint_log_likelihood(pairs, matching) - missing_nats;
@@ -136,16 +146,6 @@ class Question {
       if (pair.dof == 2 && free && is_old(pair)) pairs.push_back(static_cast<int>(p));
     }
     return pairs;
-  }
-
-  /// Old landmarks that should be in view and that the assignment does not match.
-  int missing(double view_margin_m) const {
-    std::vector<LandmarkId> met;
-    for (const int p : matched_) met.push_back(landmark(pair_at(p)));
-    const std::vector<LandmarkId> expected = expected_in_view(filter_, scan_, view_margin_m);
-    return static_cast<int>(std::count_if(expected.begin(), expected.end(), [&](LandmarkId id) {
-      return is_old(id) && std::find(met.begin(), met.end(), id) == met.end();
-    }));
   }
 
   double spacing_m() const {
@@ -192,7 +192,9 @@ PlaceEvidence place_evidence(const cekf::CompressedEkf& filter, const Innovation
   if (!adds_little(place, options) && !leaves_no_room(place)) return place;  // the rest decides nothing
   place.loose = question.loose(extraneous_per_scan, options.defer_confusers);
   if (adds_little(place, options)) return place;
-  place.wrong_probability = question.wrong_probability(extraneous_per_scan, view_margin_m, options);
+  place.met = static_cast<int>(assignment.pairs.size());
+  place.missing = question.missing(view_margin_m);
+  place.wrong_probability = question.wrong_probability(extraneous_per_scan, place.missing, options);
   return place;
 }
 
@@ -200,6 +202,11 @@ bool fixes_pose(const PlaceEvidence& place, const SearchOptions& options) {
   if (place.loose.size() > 1) return false;
   return adds_little(place, options) ||
          (leaves_no_room(place) && place.wrong_probability < options.wrong_place_probability);
+}
+
+bool leaves_one_place(const PlaceEvidence& place, const SearchOptions& options) {
+  if (place.pairs == 0 || place.loose.size() > 1 || !leaves_no_room(place)) return false;
+  return options.integrity.missing_nats * place.missing <= options.integrity.seen_nats * place.met;
 }
 
 }  // namespace helixnav::supervisor

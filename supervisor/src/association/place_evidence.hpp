@@ -13,6 +13,8 @@ namespace helixnav::supervisor {
 /// What the old landmarks of a scan, taken together, say about where the vehicle is.
 struct PlaceEvidence {
   int pairs = 0;           ///< old landmarks that the assignment matches
+  int met = 0;             ///< landmarks that it matches, old or not
+  int missing = 0;         ///< old landmarks that should be in view and that it does not match
   double widening = 1.0;   ///< √(|S|/|R|), median over these pairs: how much wider the pose makes their gates
   double width_m = 0.0;    ///< |S|^¼ on the ground, likewise: where each is expected, one standard deviation
   double spacing_m = 0.0;  ///< of old landmarks in view from the nearest other one, median; 0 of fewer than two
@@ -42,5 +44,11 @@ PlaceEvidence place_evidence(const cekf::CompressedEkf& filter, const associatio
 /// `defer_confusers` objects of no landmark: a median says nothing about a single landmark far from all the others, and the
 /// observation of nothing that meets its gate, as wide as the whole drift, would move everything by it.
 bool fixes_pose(const PlaceEvidence& place, const SearchOptions& options);
+
+/// Whether every pose in question is the same place, so that a search would look for the vehicle where it is: the scan says too little
+/// for a match of old landmarks to be certain, but does not contradict the map (what is missing against what is met, weighed as by
+/// the integrity monitor), the old landmarks have no room beside one another, and at most one match hangs loose. What is ambiguous is then to be left unused,
+/// until more is seen, or the pose has drifted so far that another place may be meant.
+bool leaves_one_place(const PlaceEvidence& place, const SearchOptions& options);
 
 }  // namespace helixnav::supervisor

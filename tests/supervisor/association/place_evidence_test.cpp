@@ -248,6 +248,49 @@ TEST(PlaceEvidence, AWorldThatIsNotThereDoesNotFixThePose) {
   }
 }
 
+TEST(PlaceEvidence, OneOldLandmarkInViewThatMayBeItsTwinIsOnePlace) {
+  core::RandomStream random = place_stream(6);
+  const std::vector<Eigen::Vector2d> far_apart{{8.0, 0.0}, {0.0, 9.0}, {-9.0, 1.0}, {1.0, -8.0}, {8.0, 0.5}};
+  Ground ground(far_apart, 0.15, 0.002);
+  ground.scan.field_of_view = {0.0, 30.0, -0.5, 0.5};
+  ground.see({0.05, -0.05, 0.0}, {0}, random);
+  const PlaceEvidence place = ground.weigh({});
+  ASSERT_EQ(place.pairs, 1);
+  EXPECT_FALSE(fixes_pose(place, {}));
+  EXPECT_TRUE(leaves_one_place(place, {}));
+}
+
+TEST(PlaceEvidence, AWorldThatIsNotThereIsNotOnePlace) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    core::RandomStream random = place_stream(seed);
+    Ground ground(scattered_points(random, 40, 25.0), 0.35, 0.01);
+    const Ground other(scattered_points(random, 12, 20.0), 0.5, 0.01);
+    ground.points_m = other.points_m;
+    std::vector<std::size_t> which(12);
+    std::iota(which.begin(), which.end(), 0);
+    ground.see({}, which, random);
+    EXPECT_FALSE(leaves_one_place(ground.weigh({}), {})) << "seed " << seed;
+  }
+}
+
+TEST(PlaceEvidence, WithRoomForAnotherItIsNotOnePlace) {
+  core::RandomStream random = place_stream(6);
+  Ground ground({{8.0, 0.0}, {8.0, 2.0}, {8.0, -2.0}}, 0.6, 0.01);
+  ground.see({0.1, -0.2, 0.0}, {0, 1}, random);
+  EXPECT_FALSE(leaves_one_place(ground.weigh({}), {}));
+}
+
+TEST(PlaceEvidence, WhatIsAmbiguousWithinOnePlaceIsLeftUnused) {
+  GatedScan gated;
+  gated.returns.resize(2);
+  gated.returns[0].landmark = 3;
+  gated.returns[0].expected_confusers = 0.2;
+  gated.returns[1].landmark = 5;
+  gated.returns[1].expected_confusers = 0.01;
+  leave_ambiguous_unused({}, gated);
+  EXPECT_EQ(gated.place.loose, std::vector<core::LandmarkId>{3});
+}
+
 /// Six landmarks seen again right after they were mapped, and others mapped before a drive of which odometry knows little.
 struct TornGround {
   Ground ground{{}, 0.0, 0.0};
