@@ -65,19 +65,23 @@ void note(const KeptRemoved& pairs, Closing& closing) {
 namespace {
 
 /// Of few pairs one, after which the rest is solved anew; of many, as sessions have in common, all that contradict the rest.
-void drop_worst(const cekf::CompressedEkf& filter, const SearchOptions& options, const std::vector<double>& parts,
-                KeptRemoved& pairs, Closing& closing) {
+std::vector<std::size_t> worst_pairs(const cekf::CompressedEkf& filter, const SearchOptions& options,
+                                     const std::vector<double>& parts, const KeptRemoved& pairs, MayLeaveOut may) {
   constexpr std::size_t many = 64;
-  std::vector<std::size_t> worst;
-  if (pairs.size() > many) {
-    worst = contradicting_pairs(filter, pairs, options.merge_sigma_m, options.closing_probability,
-                                static_cast<std::size_t>(options.most_dropped - closing.dropped));
+  if (pairs.size() > many || may.any == 0) {
+    return contradicting_pairs(filter, pairs, options.merge_sigma_m, options.closing_probability, may);
   }
-  if (worst.empty()) {
-    worst.push_back(static_cast<std::size_t>(std::max_element(parts.begin(), parts.end()) - parts.begin()));
-  }
-  for (std::size_t k = worst.size(); k-- > 0;) pairs.erase(pairs.begin() + static_cast<std::ptrdiff_t>(worst[k]));
-  closing.dropped += static_cast<int>(worst.size());
+  return {static_cast<std::size_t>(std::max_element(parts.begin(), parts.end()) - parts.begin())};
+}
+
+/// Where trees stand as twins some pairs of a right closing are of one with the other: few, and each far beyond its deviation.
+MayLeaveOut may_still_leave_out(const SearchOptions& options, const Closing& closing, std::size_t pairs) {
+  constexpr std::size_t pairs_an_outlier = 20;
+  const auto any = static_cast<std::size_t>(options.most_dropped);
+  const auto dropped = static_cast<std::size_t>(closing.dropped);
+  const std::size_t all = std::max(any, (pairs + dropped) / pairs_an_outlier);
+  const std::size_t left_any = any - std::min(any, dropped);
+  return {left_any, all - std::min(all, dropped + left_any)};
 }
 
 }  // namespace
@@ -94,8 +98,12 @@ bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& opt
       return false;
     }
     if (cost->cost <= closing.limit) return true;
-    if (closing.dropped == options.most_dropped || pairs.size() <= least_pairs) return false;
-    drop_worst(filter, options, cost->parts, pairs, closing);
+    const MayLeaveOut may = may_still_leave_out(options, closing, pairs.size());
+    if (may.any + may.outliers == 0 || pairs.size() <= least_pairs) return false;
+    const std::vector<std::size_t> worst = worst_pairs(filter, options, cost->parts, pairs, may);
+    if (worst.empty()) return false;
+    for (std::size_t k = worst.size(); k-- > 0;) pairs.erase(pairs.begin() + static_cast<std::ptrdiff_t>(worst[k]));
+    closing.dropped += static_cast<int>(worst.size());
   }
 }
 

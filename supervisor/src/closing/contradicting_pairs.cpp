@@ -53,25 +53,27 @@ Differences differences(const cekf::CompressedEkf& filter, const KeptRemoved& pa
 class Remaining {
  public:
   explicit Remaining(const Differences& differences)
-      : S_m2_(differences.S_m2),
-        K_(differences.S_m2.llt().solve(Eigen::MatrixXd::Identity(S_m2_.rows(), S_m2_.cols()))),
+      : K_(differences.S_m2.llt().solve(Eigen::MatrixXd::Identity(differences.S_m2.rows(), differences.S_m2.cols()))),
         lambda_(K_ * differences.nu_m),
         cost_(lambda_.dot(differences.nu_m)),
-        is_left_(static_cast<std::size_t>(S_m2_.rows() / 2), true),
-        dof_(static_cast<int>(S_m2_.rows())) {}
+        is_left_(static_cast<std::size_t>(K_.rows() / 2), true),
+        dof_(static_cast<int>(K_.rows())) {}
 
   double cost() const { return cost_; }
   int dof() const { return dof_; }
 
-  /// The pair with the largest share: λ_kᵀ·S_kk·λ_k.
-  std::size_t worst() const {
-    std::size_t worst = 0;
-    double largest = -1.0;
+  struct Worst {
+    std::size_t pair = 0;
+    double nis = -1.0;  ///< of the pair given the others: by which χ² falls without it
+  };
+  Worst worst() const {
+    Worst worst;
     for (std::size_t k = 0; k < is_left_.size(); ++k) {
+      if (!is_left_[k]) continue;
       const auto row = 2 * static_cast<Index>(k);
       const Eigen::Vector2d lambda = lambda_.segment<2>(row);
-      const double share = lambda.dot(S_m2_.block<2, 2>(row, row) * lambda);
-      if (is_left_[k] && share > largest) largest = share, worst = k;
+      const double nis = lambda.dot(K_.block<2, 2>(row, row).inverse() * lambda);
+      if (nis > worst.nis) worst = {k, nis};
     }
     return worst;
   }
@@ -89,7 +91,7 @@ class Remaining {
   }
 
  private:
-  Eigen::MatrixXd S_m2_, K_;
+  Eigen::MatrixXd K_;
   Eigen::VectorXd lambda_;
   double cost_;
   std::vector<bool> is_left_;
@@ -99,12 +101,15 @@ class Remaining {
 }  // namespace
 
 std::vector<std::size_t> contradicting_pairs(const cekf::CompressedEkf& filter, const KeptRemoved& pairs,
-                                             double sigma_m, double closing_probability, std::size_t most) {
+                                             double sigma_m, double closing_probability, MayLeaveOut may) {
+  static const double outlier = core::chi2_quantile(0.999, 2);
   Remaining remaining(differences(filter, pairs, sigma_m));
   std::vector<std::size_t> left_out;
-  while (left_out.size() < most && remaining.dof() > 2 * static_cast<int>(least_pairs) &&
+  while (left_out.size() < may.any + may.outliers && remaining.dof() > 2 * static_cast<int>(least_pairs) &&
          remaining.cost() > core::chi2_quantile(closing_probability, remaining.dof())) {
-    left_out.push_back(remaining.worst());
+    const Remaining::Worst worst = remaining.worst();
+    if (left_out.size() >= may.any && worst.nis < outlier) break;
+    left_out.push_back(worst.pair);
     remaining.leave_out(left_out.back());
   }
   std::sort(left_out.begin(), left_out.end());

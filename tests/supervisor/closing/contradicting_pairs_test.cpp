@@ -41,7 +41,7 @@ constexpr double agreeing = 0.99;
 TEST(ContradictingPairs, AreThoseThatSolvingAnewAfterEachDrops) {
   KeptRemoved pairs;
   const cekf::CompressedEkf filter = doubled_map(40, 7, pairs);
-  const std::vector<std::size_t> left_out = contradicting_pairs(filter, pairs, merged_sigma_m, agreeing, 20);
+  const std::vector<std::size_t> left_out = contradicting_pairs(filter, pairs, merged_sigma_m, agreeing, {20, 0});
   std::vector<std::size_t> expected, places(pairs.size());
   for (std::size_t k = 0; k < places.size(); ++k) places[k] = k;
   KeptRemoved left = pairs;
@@ -61,10 +61,19 @@ TEST(ContradictingPairs, AreThoseThatSolvingAnewAfterEachDrops) {
 TEST(ContradictingPairs, AreNoneWhereAllAgreeAndNeverMoreThanAllowed) {
   KeptRemoved pairs;
   const cekf::CompressedEkf right = doubled_map(40, 0, pairs);
-  EXPECT_TRUE(contradicting_pairs(right, pairs, merged_sigma_m, agreeing, 20).empty());
+  EXPECT_TRUE(contradicting_pairs(right, pairs, merged_sigma_m, agreeing, {20, 0}).empty());
   KeptRemoved all_wrong;
   const cekf::CompressedEkf wrong = doubled_map(40, 2, all_wrong);
-  EXPECT_EQ(contradicting_pairs(wrong, all_wrong, merged_sigma_m, agreeing, 3).size(), 3u);
+  EXPECT_EQ(contradicting_pairs(wrong, all_wrong, merged_sigma_m, agreeing, {3, 0}).size(), 3u);
+}
+
+TEST(ContradictingPairs, BeyondAnyAreOutliersAlone) {
+  KeptRemoved pairs;
+  const cekf::CompressedEkf filter = doubled_map(40, 7, pairs);
+  std::vector<std::size_t> off;
+  for (std::size_t k = 6; k < pairs.size(); k += 7) off.push_back(k);
+  EXPECT_EQ(contradicting_pairs(filter, pairs, merged_sigma_m, 1e-6, {0, 20}), off);
+  EXPECT_EQ(contradicting_pairs(filter, pairs, merged_sigma_m, 1e-6, {0, 2}).size(), 2u);
 }
 
 }  // namespace
