@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "helixnav/core/errors.hpp"
 
@@ -66,6 +67,12 @@ void LandmarkLife::pass(const std::vector<LandmarkId>& unseen_at_rim) {
     one.last_passed_path_m = path_m_;
     one.log_odds += miss_nats_;
   }
+}
+
+bool LandmarkLife::is_blinded(std::size_t observations, std::size_t expected) {
+  constexpr std::size_t many = 3;
+  const bool sees_nothing = observations == 0 && expected >= many;
+  return std::exchange(saw_nothing_, sees_nothing) && sees_nothing;
 }
 
 LifeChanges LandmarkLife::observe(const Eigen::Vector2d& sensor_m, const std::vector<LandmarkId>& seen,

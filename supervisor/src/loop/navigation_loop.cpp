@@ -239,12 +239,14 @@ std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const
   if (!has_unplaced(scan)) {
     expected = expected_unseen(belief_.filter, scan, options_.view_margin_m, report.associations);
   }
+  const bool is_blinded = belief_.existence.is_blinded(scan.observations.size(), expected.size());
+  if (is_blinded) expected.clear();
   if (Mapping* mapping = std::get_if<Mapping>(&mode_)) {
     mapping->monitor.observe(belief_.existence, expected, seen, options_.search.old_after_m);
   }
   std::vector<LandmarkId> at_rim;
   constexpr std::int64_t rim_stride = 4;  // a whole drive past is one miss: not every scan need look
-  if (belief_.step % rim_stride == 0 && !has_unplaced(scan))
+  if (belief_.step % rim_stride == 0 && !has_unplaced(scan) && !is_blinded)
     at_rim = unseen_at_rim(belief_.filter, scan, report.associations, expected);
   const Searching* open = searching();
   const OldGround ground{options_.search.old_after_m, options_.life.tentative_patience_m, options_.view_margin_m};

@@ -76,6 +76,10 @@ class LandmarkLife {
   /// for an id that is not recorded.
   void pass(const std::vector<core::LandmarkId>& unseen_at_rim);
 
+  /// Whether what the next scan to be observed does not see is no evidence, because the sensor may be blinded: it sees nothing at all where
+  /// three landmarks or more should be, and so did the scan before it. Such scans miss all landmarks for one reason, and count once.
+  bool is_blinded(std::size_t observations, std::size_t expected);
+
   /// One scan taken with the sensor at `sensor_m`, world frame. `seen`: matched landmarks. `born`: those that it began.
   /// `expected`: those it should have seen, with a margin inside the field of view; seen ones may be among them. A
   /// landmark beside an ambiguous observation belongs in neither list. `seen_nats`: [seen] what class and size add to a hit's
@@ -157,6 +161,7 @@ class LandmarkLife {
   core::MapAppearance appearance_;
   double path_m_ = 0.0;
   std::size_t scans_ = 0, born_ = 0, seen_ = 0;
+  bool saw_nothing_ = false;  ///< in the last scan, where three or more should have been
   std::size_t matured_ = 0, died_tentative_ = 0;
 };
 
