@@ -165,8 +165,8 @@ SmoothingTask solve_once(const core::Recording& driven, const Ids& ids, const co
                          const smoothing::RobustKernel& kernel) {
   SmoothingTask task = task_from_recording(driven, ids);
   core::LandmarkGraph& graph = task.problem.graph;
-  if (graph.poses.size() == from.poses.size()) {
-    graph.poses = from.poses;
+  if (graph.poses.size() <= from.poses.size()) {  // it may end earlier
+    std::copy_n(from.poses.begin(), graph.poses.size(), graph.poses.begin());
     core::locate_landmarks(graph);
   }
   std::map<std::int64_t, Eigen::Vector2d> point_of;
