@@ -11,6 +11,7 @@
 #include "common/fit_to_recording.hpp"
 #include "common/progress_bar.hpp"
 #include "constants_fit.hpp"
+#include "drive/check_drive.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/supervisor/lengths.hpp"
@@ -49,6 +50,7 @@ class Calibrator {
     result_.settings = settings;
     const core::Recording log = plain(settings);
     print_remarks(log);
+    check(log);
     const double reach_m = logs::field_of_view_of(log).reach().value_or(supervisor::reference_reach_m);
     constants_ = constants_of(settings, logs::recognise(path_), vehicle, reach_m);
     drop_what_does_nothing(log);
@@ -67,6 +69,14 @@ class Calibrator {
   }
 
  private:
+  /// As replay refuses it.
+  void check(const core::Recording& log) const {
+    Drive drive;
+    drive.recording = log;
+    drive.known_association = known_.known_association;
+    check_drive(drive);
+  }
+
   core::Recording plain(const Settings& settings) const {
     stop_if_interrupted();
     Settings copy = settings;
@@ -128,6 +138,7 @@ class Calibrator {
     result_.closings = drive.closings;
     result_.observations = drive.observations;
     result_.used = drive.used;
+    result_.undetermined = drive.task.undetermined_landmarks;
     ++result_.rounds;
     constexpr double settled = 0.02, settled_sigmas = 0.4, far_sigmas = 3.0;  // a match or two go to and fro
     const bool final_associations = !far_off_;
