@@ -16,6 +16,12 @@ bool has_match(const core::StepReport& step) {
                      [](const core::AssociationReport& a) { return a.outcome == core::Outcome::matched; });
 }
 
+/// As the user calls it.
+std::string name_of(const runs::Run& run, core::LandmarkId id) {
+  const auto found = run.names.find(id);
+  return found == run.names.end() ? std::to_string(id) : "'" + found->second + "'";
+}
+
 /// Empty unless sightings were left out of the landmark that they name.
 std::string names_text(const runs::Run& run) {
   std::map<core::LandmarkId, std::size_t> contradicted;
@@ -31,7 +37,7 @@ std::string names_text(const runs::Run& run) {
   const auto most = std::max_element(contradicted.begin(), contradicted.end(),
                                      [](const auto& a, const auto& b) { return a.second < b.second; });
   return std::to_string(all) + " sightings contradict their names and were left out, most of them (" +
-         std::to_string(most->second) + ") of landmark " + std::to_string(most->first) +
+         std::to_string(most->second) + ") of landmark " + name_of(run, most->first) +
          ": identities are wrong at times, or landmarks were moved. 'helixnav explain --step N' shows a scan";
 }
 

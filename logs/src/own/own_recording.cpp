@@ -175,6 +175,7 @@ core::Recording make_recording(const OwnLog& log, const Vehicle& vehicle) {
   leave_out_untold(log, scans, recording.remarks);
   add_views(scans, sensors);
   recording.name = log.name;
+  recording.label_names = log.id_names;
   recording.extraneous_per_scan = 0.0;
   recording.antenna_robot_m = vehicle.antenna_m;
   const core::Nanoseconds first_scan_ns = scans.front().scan.t_ns;
