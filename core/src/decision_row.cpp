@@ -196,7 +196,7 @@ void numbers(PostponedDecision& d, Visit&& visit) {
   visit("limit", d.limit);
 }
 
-constexpr const char* carried_words[] = {"told", "found-out", "broken-off", "by-place", "no-odometry"};
+constexpr const char* carried_words[] = {"told", "found-out", "broken-off", "by-place", "no-odometry", "wrong-start"};
 constexpr const char* postponed_words[] = {"association", "window", "drive"};
 constexpr const char* whole_map_words[] = {"accepted", "ambiguous", "refused", "not-here"};
 constexpr const char* placed_words[] = {"sought", "accepted", "ambiguous", "refused", "not-here"};

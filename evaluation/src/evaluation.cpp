@@ -57,7 +57,13 @@ PositionEvaluation evaluate_positions(const Steps& steps, const runs::RunTruth& 
   result.limit_m = limit_m;
   std::vector<Eigen::Vector2d> fixes;
   std::vector<Eigen::Vector2d> antennas;
+  const core::Nanoseconds most_ns = most_apart_ns(steps);
+  result.gap_s = core::seconds(most_ns);
   for (const core::TruePosition& fix : truth.positions) {
+    if (is_in_gap(steps, fix.t_ns, most_ns)) {
+      ++result.fixes_in_gaps;
+      continue;
+    }
     const auto pose = estimate_at(steps, fix.t_ns);
     if (!pose) {
       ++result.fixes_outside;
@@ -160,7 +166,11 @@ std::pair<PositionEvaluation, PoseEvaluation> evaluate_poses(const Steps& steps,
     pose.errors.push_back({pair.known.t_ns, error.z(), sigma.z(), own_nees});
   }
   position.fixes_used = position.errors.size();
-  position.fixes_outside = truth.poses.size() - position.fixes_used;
+  const core::Nanoseconds most_ns = most_apart_ns(steps);
+  position.gap_s = core::seconds(most_ns);
+  for (const core::TruePose& known : truth.poses)
+    position.fixes_in_gaps += is_in_gap(steps, known.t_ns, most_ns) ? 1 : 0;
+  position.fixes_outside = truth.poses.size() - position.fixes_used - position.fixes_in_gaps;
   position.error_m = statistics_of_used(position.errors);
   summarize_poses(pose);
   return {std::move(position), std::move(pose)};

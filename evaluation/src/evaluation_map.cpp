@@ -2,10 +2,14 @@
 #include "evaluation_map.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 #include <utility>
 #include <vector>
+
+#include <Eigen/Eigenvalues>
 
 namespace helixnav::evaluation {
 
@@ -15,13 +19,16 @@ struct MovedLandmark {
   core::LandmarkId id;
   int observations;
   Eigen::Vector2d point_truth_m;
+  double sigma_m;  ///< along the longer axis of its ellipse
 };
 
 std::vector<MovedLandmark> mature_landmarks(const runs::Run& run, const core::Pose2& T_truth_map) {
   std::vector<MovedLandmark> landmarks;
   for (const core::MapLandmark& landmark : run.map) {
     if (landmark.state != core::LandmarkState::mature) continue;
-    landmarks.push_back({landmark.id, landmark.observations, core::transform(T_truth_map, landmark.point.mean_m)});
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(landmark.point.covariance_m2, Eigen::EigenvaluesOnly);
+    landmarks.push_back({landmark.id, landmark.observations, core::transform(T_truth_map, landmark.point.mean_m),
+                         std::sqrt(std::max(axes.eigenvalues().maxCoeff(), 0.0))});
   }
   return landmarks;
 }
@@ -98,20 +105,44 @@ struct NearPair {
   }
 };
 
-/// Landmarks and true ones that are no farther apart than the limit, the nearest first. Each landmark is compared with those true
-/// ones only whose x is as near.
+/// [true landmark] half the way to the next one; infinite where it is alone. `by_x`: their x, ascending, and which it is.
+std::vector<double> half_ways_m(const std::vector<core::TrueLandmark>& known,
+                                const std::vector<std::pair<double, std::size_t>>& by_x) {
+  std::vector<double> half_m(known.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < by_x.size(); ++i) {
+    double& least_m = half_m[by_x[i].second];
+    const auto may_be_nearer = [&](std::size_t j) {
+      if (std::abs(by_x[j].first - by_x[i].first) >= 2.0 * least_m) return false;
+      const auto apart_m = known[by_x[i].second].point_m - known[by_x[j].second].point_m;
+      least_m = std::min(least_m, 0.5 * apart_m.norm());
+      return true;
+    };
+    for (std::size_t j = i + 1; j < by_x.size() && may_be_nearer(j); ++j) {
+    }
+    for (std::size_t j = i; j > 0 && may_be_nearer(j - 1); --j) {
+    }
+  }
+  return half_m;
+}
+
+/// Landmarks and true ones that are no farther apart than the limit, or than four standard deviations of the landmark where that is
+/// less than half-way to the next true one; the nearest first. Each landmark is compared with those true ones only whose x is as near.
 std::vector<NearPair> near_pairs(const runs::RunTruth& truth, const std::vector<MovedLandmark>& landmarks,
                                  double limit_m) {
   std::vector<std::pair<double, std::size_t>> by_x;
   for (std::size_t j = 0; j < truth.landmarks.size(); ++j) by_x.emplace_back(truth.landmarks[j].point_m.x(), j);
   std::sort(by_x.begin(), by_x.end());
+  const std::vector<double> half_m = half_ways_m(truth.landmarks, by_x);
   std::vector<NearPair> pairs;
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
     const Eigen::Vector2d& point_m = landmarks[i].point_truth_m;
-    auto next = std::lower_bound(by_x.begin(), by_x.end(), std::make_pair(point_m.x() - limit_m, std::size_t{0}));
-    for (; next != by_x.end() && next->first <= point_m.x() + limit_m; ++next) {
+    constexpr double sigmas = 4.0;
+    const double most_m = std::max(limit_m, sigmas * landmarks[i].sigma_m);
+    auto next = std::lower_bound(by_x.begin(), by_x.end(), std::make_pair(point_m.x() - most_m, std::size_t{0}));
+    for (; next != by_x.end() && next->first <= point_m.x() + most_m; ++next) {
       const double distance_m = (point_m - truth.landmarks[next->second].point_m).norm();
-      if (distance_m <= limit_m) pairs.push_back({distance_m, i, next->second});
+      if (distance_m <= std::max(limit_m, std::min(most_m, half_m[next->second])))
+        pairs.push_back({distance_m, i, next->second});
     }
   }
   std::sort(pairs.begin(), pairs.end());

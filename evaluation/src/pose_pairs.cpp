@@ -30,7 +30,9 @@ std::vector<PosePair> pose_pairs(const std::vector<core::StepReport>& steps, con
                                  const std::vector<runs::ReportFrame>& frames) {
   std::vector<PosePair> pairs;
   std::map<std::size_t, std::optional<core::Pose2>> T_report_truth;  // [begin]
+  const core::Nanoseconds most_ns = most_apart_ns(steps);
   for (const core::TruePose& known : poses) {
+    if (is_in_gap(steps, known.t_ns, most_ns)) continue;
     const auto estimate = estimate_at(steps, known.t_ns);
     if (!estimate) continue;
     const std::size_t step = step_before(steps, known.t_ns);

@@ -21,7 +21,7 @@ struct PosePair {
   std::optional<core::Pose2> known_in_frame;
 };
 
-/// frames: [step] of runs::report_frames. The first true pose of a frame of its own counts as its begin where it lies within its first step.
+/// Those of the poses that lie within the steps' time and in no gap between them (is_in_gap). frames: [step] of runs::report_frames. The first true pose of a frame of its own counts as its begin where it lies within its first step.
 std::vector<PosePair> pose_pairs(const std::vector<core::StepReport>& steps, const std::vector<core::TruePose>& poses,
                                  const std::vector<runs::ReportFrame>& frames);
 

@@ -12,4 +12,11 @@ namespace helixnav::evaluation {
 /// Nothing outside the steps' time. Cost O(log n). Test: evaluation/evaluation_test.cpp.
 std::optional<core::PoseGaussian> estimate_at(const std::vector<core::StepReport>& steps, core::Nanoseconds t_ns);
 
+/// How far apart two steps may be for the path between them to be that of the vehicle: three times the interval that nine in ten
+/// are no longer than. In a longer gap between scans an arc of constant twist is a guess.
+core::Nanoseconds most_apart_ns(const std::vector<core::StepReport>& steps);
+
+/// Between two steps that are farther apart than that.
+bool is_in_gap(const std::vector<core::StepReport>& steps, core::Nanoseconds t_ns, core::Nanoseconds most_apart_ns);
+
 }  // namespace helixnav::evaluation

@@ -180,6 +180,10 @@ std::string why_carried(const core::CarriedDecision& d) {
 }
 
 std::string sentence(const core::CarriedDecision& d) {
+  if (d.cause == core::CarriedDecision::Cause::wrong_start) {
+    return "The start is another than was given, or than the run of the map ended at: what the first scans show does "
+           "not stand about it on the map. The vehicle looks for its place there.";
+  }
   const std::string ended = why_carried(d) + " Part " + std::to_string(d.from_part) + " of the drive ends after " +
                             short_number(d.driven_m) + " m";
   const std::string kept = d.landmarks > 0 ? ": " + counted(d.landmarks, "landmark") + " of it " +

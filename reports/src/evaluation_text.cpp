@@ -47,6 +47,11 @@ std::string against_text(const evaluation::PositionEvaluation& position) {
 
 std::string position_text(const evaluation::PositionEvaluation& position) {
   const evaluation::ErrorStatistics& e = position.error_m;
+  if (e.count == 0 && position.fixes_in_gaps > 0) {
+    return format(
+        "position error       unknown: %zu positions of truth lie in gaps, between scans farther apart than %.3g s\n",
+        position.fixes_in_gaps, position.gap_s);
+  }
   if (e.count == 0) {
     return format("position error       unknown: none of %zu positions of truth lies within the time of the run\n",
                   position.fixes_outside + position.fixes_left_out);
@@ -67,6 +72,10 @@ std::string position_text(const evaluation::PositionEvaluation& position) {
                    position.against_poses ? "true poses" : "fixes");
   }
   if (position.fixes_outside > 0) text += format("  outside the run    %zu\n", position.fixes_outside);
+  if (position.fixes_in_gaps > 0) {
+    text += format("  in gaps            %zu, left out: between scans farther apart than %.3g s\n",
+                   position.fixes_in_gaps, position.gap_s);
+  }
   return text;
 }
 
@@ -105,7 +114,8 @@ std::string map_text(const evaluation::MapEvaluation& map) {
                          : format("landmark error       RMSE %.3f m, median %.3f m, 95 %% %.3f m, maximum %.3f m\n",
                                   e.rmse, e.median, e.p95, e.max);
   text += format("  pairs              %zu ", e.count);
-  text += map.by_label ? std::string("(by label)\n") : format("(nearest first, within %g m)\n", map.limit_m);
+  text += map.by_label ? std::string("(by label)\n")
+                       : format("(nearest first, within %g m, or 4 standard deviations)\n", map.limit_m);
   text += format("  missing            %zu\n  duplicates         %zu\n  spurious           %zu\n", map.missing,
                  map.duplicates, map.spurious);
   return text;
@@ -140,6 +150,8 @@ Json position_to_json(const evaluation::PositionEvaluation& position) {
   json["fixes_used"] = position.fixes_used;
   json["fixes_left_out"] = position.fixes_left_out;
   json["fixes_outside"] = position.fixes_outside;
+  json["fixes_in_gaps"] = position.fixes_in_gaps;
+  json["gap_s"] = position.gap_s;
   json["against"] = position.against_poses ? "poses" : "positions";
   json["aligned"] = position.aligned;
   if (position.against_poses) json["rmse_aligned_m"] = position.rmse_aligned_m;

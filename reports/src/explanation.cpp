@@ -13,6 +13,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
 #include "helixnav/reports/run_warnings.hpp"
+#include "known_by_name.hpp"
 #include "numerics_text.hpp"
 #include "only_localized.hpp"
 #include "place_questions.hpp"
@@ -75,8 +76,24 @@ std::string nis_of(const core::AssociationReport& a) {
   return "NIS " + short_number(a.nis) + " with " + std::to_string(a.dof) + " degrees of freedom";
 }
 
-std::string fate_of(const core::AssociationReport& a) {
-  const std::string landmark = "landmark " + std::to_string(a.landmark);
+std::string landmark_of(const runs::Run& run, core::LandmarkId id) {
+  const auto name = run.names.find(id);
+  return "landmark " + std::to_string(id) + (name == run.names.end() ? "" : " ('" + name->second + "')");
+}
+
+/// Of landmarks that are known by name, where it is not as of others.
+std::string fate_by_name(const core::AssociationReport& a, const std::string& landmark) {
+  if (a.outcome == core::Outcome::augmented) return "began " + landmark + ": its name was new.";
+  if (a.outcome == core::Outcome::ambiguous && a.dof == 0) {
+    return "waits: its landmark has not been seen from places far enough apart for where it stands to be told.";
+  }
+  return {};
+}
+
+std::string fate_of(const core::AssociationReport& a, const runs::Run& run) {
+  const std::string landmark = landmark_of(run, a.landmark);
+  const std::string by_name = known_by_name(run) ? fate_by_name(a, landmark) : std::string();
+  if (!by_name.empty()) return by_name;
   const bool has_pair = a.dof > 0 && !std::isnan(a.nis);
   switch (a.outcome) {
     case core::Outcome::matched:
@@ -130,6 +147,7 @@ std::string places_of(const runs::Run& run, const std::vector<Decided>& decided)
   for (const Decided& one : decided) {
     if (!is_placing(one)) continue;
     const auto* placed = std::get_if<core::PlacedDecision>(one.decision);
+    if (placed == nullptr) last.clear();  // each part looks for its place anew
     if (placed == nullptr || std::exchange(last[placed->part], verdict_of(one)) != verdict_of(one))
       text += line_of(one);
     accepted = placed != nullptr && (accepted || verdict_of(one) == "accepted");
@@ -204,7 +222,9 @@ std::string explain_run(const runs::Run& run) {
                      std::to_string(count_of(closures, "new-ground")) + " on new ground, " +
                      std::to_string(count_of(closures, "undecided")) + " left undecided.\n";
   text += fates_line(run) + places_of(run, decided);
-  if (std::none_of(decided.begin(), decided.end(), is_of_search)) {
+  if (only_localized(run)) {
+    text += "The map stays as it was given: what fits none of its landmarks is rejected.\n";
+  } else if (std::none_of(decided.begin(), decided.end(), is_of_search)) {
     text += "No return was ambiguous enough for a search: every scan was associated at once.\n";
   }
   for (std::size_t i = 0; i < closures.size(); ++i) {
@@ -256,7 +276,7 @@ std::string explain_step(const runs::Run& run, std::int64_t step) {
   if (report.mode == core::Mode::searching) text += "  Old landmarks are excluded while the search lasts.\n";
   if (report.associations.empty()) text += "  Nothing was observed.\n";
   for (const core::AssociationReport& a : report.associations) {
-    text += "  Observation " + std::to_string(a.observation) + ' ' + fate_of(a) + '\n';
+    text += "  Observation " + std::to_string(a.observation) + ' ' + fate_of(a, run) + '\n';
   }
   for (const core::Decision& decision : report.decisions) text += "  " + sentence_of(decision) + '\n';
   const std::string numerics = numerics_text(report.numerics);

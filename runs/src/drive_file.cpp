@@ -292,6 +292,11 @@ void DriveFile::add(const core::Event& event) {
   if (std::holds_alternative<core::Scan>(event)) finish();
 }
 
+void DriveFile::end_input() {
+  finish();
+  file_->append(framed({}));
+}
+
 void DriveFile::finish() {
   if (block_.empty()) return;
   file_->append(framed(block_));
@@ -303,9 +308,11 @@ FedDrive read_drive(const std::string& path) {
   Blocks blocks(path, bytes);
   std::string_view block;
   if (!blocks.next(block)) throw core::InputError(path + ": the file is cut short before the drive begins");
-  FedDrive drive{Block(block, blocks.where()).start(), {}};
+  FedDrive drive{Block(block, blocks.where()).start(), {}, 0};
+  bool has_ended = false;
   core::Nanoseconds last_ns = std::numeric_limits<core::Nanoseconds>::min();
   while (blocks.next(block)) {
+    has_ended = has_ended || block.empty();
     Block events(block, blocks.where());
     while (!events.is_read()) {
       drive.events.push_back(events.event());
@@ -313,6 +320,7 @@ FedDrive read_drive(const std::string& path) {
       if (t_ns < last_ns) events.refuse("an event before the one before it");
       last_ns = t_ns;
     }
+    if (!has_ended) drive.before_end_of_input = drive.events.size();
   }
   return drive;
 }

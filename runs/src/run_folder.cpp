@@ -253,10 +253,29 @@ bool has_truth(const std::string& folder) {
 
 }  // namespace
 
+namespace {
+
+/// Columns of a map.csv: of four kinds, by what was told of landmarks.
+struct MapColumns {
+  RunTable table;
+  bool with_appearance = false, with_names = false;
+};
+
+MapColumns columns_of_map(const std::string& path) {
+  for (const MapColumns& columns :
+       {MapColumns{map_table_with_appearance_and_names, true, true}, MapColumns{map_table_with_appearance, true, false},
+        MapColumns{map_table_with_names, false, true}}) {
+    if (begins_with(path, columns.table)) return columns;
+  }
+  return {map_table};
+}
+
+}  // namespace
+
 std::vector<core::MapLandmark> read_map(const std::string& path) {
   std::vector<core::MapLandmark> map;
-  const bool tells_appearance = begins_with(path, map_table_with_appearance);
-  for_each_row(path, tells_appearance ? map_table_with_appearance : map_table, [&](const RunRow& row) {
+  const MapColumns columns = columns_of_map(path);
+  for_each_row(path, columns.table, [&](const RunRow& row) {
     core::MapLandmark& landmark = map.emplace_back();
     landmark.id = small_integer(row, 0);
     landmark.point.mean_m = {row.finite(1), row.finite(2)};
@@ -264,9 +283,20 @@ std::vector<core::MapLandmark> read_map(const std::string& path) {
     if (!landmark.point.covariance_m2.allFinite()) row.refuse(3, "finite numbers in it and the next two columns");
     landmark.observations = small_integer(row, 6);
     landmark.state = enumerator<core::LandmarkState>(row, 7, state_words);
-    if (tells_appearance) landmark.appearance = read_appearance(row, 8);
+    if (columns.with_appearance) landmark.appearance = read_appearance(row, 8);
   });
   return map;
+}
+
+std::map<core::LandmarkId, std::string> read_landmark_names(const std::string& path) {
+  std::map<core::LandmarkId, std::string> names;
+  const MapColumns columns = columns_of_map(path);
+  if (!columns.with_names) return names;
+  for_each_row(path, columns.table, [&](const RunRow& row) {
+    const std::string_view name = row.text(columns.with_appearance ? 12 : 8);
+    if (!name.empty()) names[small_integer(row, 0)] = name;
+  });
+  return names;
 }
 
 namespace {
@@ -316,7 +346,10 @@ Run read_run(const std::string& path) {
   const std::size_t final_rows = read_final_path(path + '/' + final_file, run);
   if (fs::exists(path + '/' + final_file))
     tell_missing(path, final_file, final_rows, said.steps.value_or(0), run.missing);
-  if (fs::exists(path + "/map.csv")) run.map = read_map(path + "/map.csv");
+  if (fs::exists(path + "/map.csv")) {
+    run.map = read_map(path + "/map.csv");
+    run.names = read_landmark_names(path + "/map.csv");
+  }
   tell_missing(path, "map.csv", run.map.size(), said.landmarks.value_or(0), run.missing);
   tell_missing_rows(path, said, run.missing);
   if (run.finished) tell_cut_drive(path, said.steps.value_or(0), run.missing);

@@ -231,7 +231,7 @@ void RunWriter::write(const core::StepReport& report, double microseconds) {
 }
 
 void RunWriter::finish(const Run& run, const std::string& report_page, const std::string& summary) {
-  files::write_whole_file(folder_ + "/map.csv", map_text(run.map));
+  files::write_whole_file(folder_ + "/map.csv", map_text(run.map, run.names));
   if (!run.final_path.empty()) {
     files::write_whole_file(folder_ + '/' + std::string(final_trajectory_table.file),
                             final_trajectory_text(run.steps, run.final_path));

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "helixnav/core/errors.hpp"
+#include "helixnav/smoothing/undetermined.hpp"
 
 namespace helixnav::smoothing {
 
@@ -28,10 +30,14 @@ Session::Session(const Problem& given, const Options& given_options)
 
 void Session::factorize_undamped() {
   const int failed = cholesky.factorize(equations.values, singular_pivot);
-  if (failed >= 0) {
-    throw core::NumericalError("smoothing: the measurements do not determine " +
-                               name_of_column(problem, layout, failed) + " (singular normal equations)");
+  if (failed < 0) return;
+  const std::string message = "smoothing: the measurements do not determine " +
+                              name_of_column(problem, layout, failed) + " (singular normal equations)";
+  for (std::size_t i = 0; i < layout.landmark_column.size(); ++i) {
+    const bool is_its = failed == layout.landmark_column[i] || failed == layout.landmark_column[i] + 1;
+    if (is_its) throw UndeterminedLandmark(message, problem.graph.landmarks[i].name);
   }
+  throw core::NumericalError(message);
 }
 
 Chi2 Session::try_step(const Eigen::VectorXd& step) {

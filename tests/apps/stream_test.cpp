@@ -19,6 +19,7 @@
 #include <nlohmann/json.hpp>
 
 #include "program.hpp"
+#include "stream_lines.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -26,50 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using Words = std::vector<std::string>;
-
-Words columns_of(const std::string& row) {
-  Words cells;
-  std::istringstream stream(row);
-  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-  return cells;
-}
-
-/// Rows of a table as JSON objects by their time; those of one time together.
-void add_table(const fs::path& path, std::map<double, Words>& rows) {
-  std::ifstream table(path);
-  std::string line;
-  std::getline(table, line);
-  const Words names = columns_of(line);
-  while (std::getline(table, line)) {
-    const Words cells = columns_of(line);
-    std::string object = "{";
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (!cells[i].empty()) object += (i == 0 ? "\"" : ", \"") + names[i] + "\": " + cells[i];
-    }
-    rows[std::stod(cells[0])].push_back(object + "}");
-  }
-}
-
-/// The first `seconds` of the log that new-vehicle writes, as lines in order of time; a scan on one line.
-Words lines_of(const fs::path& log, double seconds) {
-  std::map<double, Words> odometry, detections;
-  add_table(log / "odometry.csv", odometry);
-  add_table(log / "detections.csv", detections);
-  std::map<double, std::string> scans;
-  for (const auto& [t, rows] : detections) {
-    std::string list;
-    for (const std::string& row : rows) list += (list.empty() ? "" : ", ") + row;
-    scans[t] = R"({"detections": [)" + list + "]}";
-  }
-  Words lines;
-  auto scan = scans.begin();
-  for (const auto& [t, rows] : odometry) {
-    if (t > seconds) break;
-    for (; scan != scans.end() && scan->first < t; ++scan) lines.push_back(scan->second);
-    for (const std::string& row : rows) lines.push_back(R"({"odometry": )" + row + "}");
-  }
-  return lines;
-}
 
 /// One end of something that answers.
 class Talk {
@@ -281,6 +238,11 @@ TEST_F(StreamProgram, LeavesAFolderThatIsReadWhenItIsKilled) {
   EXPECT_EQ(Json::parse(evaluation.out)["steps"], 1);
 }
 
+std::string lengths_in_force(const fs::path& folder) {
+  const std::string config = Json::parse(text_of(folder / "manifest.json"))["config"];
+  return config.substr(config.find("# Field of view"));
+}
+
 /// Its client sends again what it has of the last seconds, the row before the last scan at least.
 TEST_F(StreamProgram, GoesOnWhereItWasKilledAsIfNothingHadHappened) {
   const Words lines = lines_of(log_, 60.0);
@@ -313,11 +275,30 @@ TEST_F(StreamProgram, GoesOnWhereItWasKilledAsIfNothingHadHappened) {
   for (const char* name : {"trajectory.tum", "map.csv", "map.bin", "associations.csv", "decisions.csv", "drive.bin"}) {
     EXPECT_EQ(text_of(out_ / name), text_of(again / name)) << name;
   }
+  EXPECT_EQ(lengths_in_force(out_), lengths_in_force(again));
   const std::string kept = text_of(killed / "drive.bin");
   const Outcome over = streamed({}, {"--resume", killed, "--out", killed, "--overwrite"});
   EXPECT_EQ(over.exit_code, 3);
   EXPECT_NE(over.err.find("another folder"), std::string::npos) << over.err;
   EXPECT_EQ(text_of(killed / "drive.bin"), kept);
+}
+
+/// The last scan was answered by odometry that ended before it, which goes on in what the client sends again.
+TEST_F(StreamProgram, GoesOnFromAnInputThatEndedAsIfItHadNot) {
+  const Words lines = lines_of(log_, 30.0);
+  ASSERT_EQ(streamed(lines, {"--out", out_}).exit_code, 0);
+  const fs::path ended = folder_.path() / "ended", again = folder_.path() / "again", same = folder_.path() / "same";
+  std::size_t cut = lines.size() / 2;
+  while (lines[cut - 1].find("range_m") == std::string::npos) ++cut;
+  Words part(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(cut));
+  part.erase(part.end() - 2);  // odometry
+  ASSERT_EQ(streamed(part, {"--out", ended}).exit_code, 0);
+  ASSERT_EQ(streamed(lines, {"--resume", ended, "--out", again}).exit_code, 0);
+  ASSERT_EQ(streamed({}, {"--resume", ended, "--out", same}).exit_code, 0);
+  for (const char* name : {"trajectory.tum", "map.csv", "map.bin", "associations.csv", "decisions.csv", "drive.bin"}) {
+    EXPECT_EQ(text_of(out_ / name), text_of(again / name)) << name;
+    EXPECT_EQ(text_of(ended / name), text_of(same / name)) << name << ", nothing having come";
+  }
 }
 
 TEST_F(StreamProgram, EndsInOrderWhenNobodyReadsItsAnswers) {

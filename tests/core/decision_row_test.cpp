@@ -15,7 +15,7 @@ std::vector<DecisionRow> all_rows() {
         Decision(NewGroundDecision{}), Decision(CarriedDecision{})}) {
     rows.push_back(row_of(decision));
   }
-  for (const char* cause : {"found-out", "broken-off", "by-place", "no-odometry"})
+  for (const char* cause : {"found-out", "broken-off", "by-place", "no-odometry", "wrong-start"})
     rows.push_back(row_of(decision_of({"carried", cause, {}})));
   for (const char* reason : {"timed-out", "nothing-here", "abandoned", "outdone"}) {
     rows.push_back(row_of(decision_of({"search", reason, {}})));

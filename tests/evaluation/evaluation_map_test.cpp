@@ -31,6 +31,22 @@ TEST(MapEvaluation, PairsByDistanceOneToOne) {
   EXPECT_EQ(map.spurious, 1u);
 }
 
+/// A radar far from where it began: the map says that it is metres off, and its landmarks stand farther apart than that.
+TEST(MapEvaluation, PairsAsFarAsTheMapIsUncertainButNotWithANeighbour) {
+  runs::Run run;
+  run.map = {landmark(0, 4.0, 0.0), landmark(1, 24.0, 0.0), landmark(2, 46.0, 0.0)};
+  run.map[0].point.covariance_m2 = Eigen::Matrix2d::Identity();
+  run.map[0].point.covariance_m2(0, 0) = 2.25;
+  run.map[1].point.covariance_m2 = 0.04 * Eigen::Matrix2d::Identity();
+  run.map[2].point.covariance_m2 = 100.0 * Eigen::Matrix2d::Identity();
+  runs::RunTruth truth;
+  truth.landmarks = {{7, {0.0, 0.0}}, {8, {20.0, 0.0}}, {9, {40.0, 0.0}}, {10, {40.0, 11.0}}};
+  const MapEvaluation map = evaluate_map(run, truth, {}, 2.0);
+  EXPECT_EQ(map.error_m.count, 1u);
+  EXPECT_NEAR(map.error_m.max, 4.0, 1e-12);
+  EXPECT_EQ(map.spurious, 2u) << "a sharp one 4 m off, and one beyond half-way to the next true one";
+}
+
 TEST(MapEvaluation, MovesTheMapIntoTheFrameOfTheTruthFirst) {
   runs::Run run;
   run.map = {landmark(0, 1.0, 2.0)};

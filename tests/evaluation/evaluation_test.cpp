@@ -89,6 +89,33 @@ TEST(Evaluation, AgainstTruePosesEqualsHandComputedValues) {
   EXPECT_EQ(evaluation.pose->nees_inside_95, 1.0);
 }
 
+/// For 20 s nothing is seen while the vehicle drives round a corner: where between the two scans it was nobody knows.
+TEST(Evaluation, LeavesOutWhatLiesInAGapBetweenScans) {
+  runs::Run run = straight_run();
+  for (int k = 0; k <= 10; ++k)
+    run.steps.push_back(step_at(11 + k, 30.0 + k, core::Pose2(10.0, 20.0 + k, core::pi / 2.0)));
+  const auto known = [&run](double t_s, const core::Pose2& pose) {
+    run.truth.poses.push_back({core::nanoseconds_from_seconds(t_s), pose});
+  };
+  for (int k = 0; k <= 10; ++k) known(k, core::Pose2(k, 0.0, 0.0));
+  known(12.5, core::Pose2(10.0, 0.0, 0.0));  // just behind the last scan
+  for (int k = 14; k <= 26; ++k) known(k, core::Pose2(40.0, 0.0, 0.0));
+  for (int k = 30; k <= 40; ++k) known(k, core::Pose2(10.0, k - 10.0, core::pi / 2.0));
+  const Evaluation evaluation = evaluate(run);
+  EXPECT_EQ(evaluation.position->fixes_in_gaps, 14u);
+  EXPECT_EQ(evaluation.position->gap_s, 3.0);
+  EXPECT_EQ(evaluation.position->fixes_used, 22u);
+  EXPECT_EQ(evaluation.position->fixes_outside, 0u);
+  EXPECT_EQ(evaluation.pose->nees_count, 22u);
+  EXPECT_LT(evaluation.position->error_m.max, 1e-9);
+  EXPECT_NE(reports::evaluation_text(evaluation).find("14, left out: between scans farther apart than 3 s"),
+            std::string::npos);
+  run.truth.positions.push_back({core::nanoseconds_from_seconds(20.0), {40.0, 0.0}});
+  for (int k = 0; k <= 10; ++k) run.truth.positions.push_back({core::nanoseconds_from_seconds(k), {1.0 * k, 0.0}});
+  EXPECT_EQ(evaluate(run).position->fixes_in_gaps, 1u);
+  EXPECT_EQ(evaluate(run).position->fixes_used, 11u);
+}
+
 TEST(Evaluation, AlignsTruePosesThatAreInAFrameOfTheirOwn) {
   runs::Run run = straight_run();
   const core::Pose2 T_truth_map(30.0, -20.0, 1.2);

@@ -32,6 +32,38 @@ TEST(Explanation, SaysOfADriveWithoutASearchThatThereWasNone) {
   EXPECT_FALSE(says(run, "What moves"));
 }
 
+TEST(Explanation, SaysOfALocalisedRunThatTheMapStays) {
+  runs::Run run = run_of(10);
+  run.manifest.command = "helixnav replay log --map monday --localize";
+  EXPECT_FALSE(says(run, "every scan was associated at once")) << explain_run(run);
+  EXPECT_TRUE(says(run, "what fits none of its landmarks is rejected")) << explain_run(run);
+  core::CarriedDecision carried;
+  carried.cause = core::CarriedDecision::Cause::wrong_start;
+  run.steps[3].decisions = {carried};
+  EXPECT_TRUE(says(run, "The start is another than was given")) << explain_run(run);
+  EXPECT_FALSE(says(run, "event lost")) << explain_run(run);
+}
+
+TEST(Explanation, SaysOfEachPartThatItWasFound) {
+  runs::Run run = run_of(40);
+  core::PlacedDecision placed;
+  placed.verdict = core::PlacedDecision::Verdict::accepted;
+  for (const std::size_t k : {5u, 20u}) run.steps[k].decisions = {core::CarriedDecision()};
+  for (const std::size_t k : {10u, 30u}) run.steps[k].decisions = {placed};
+  EXPECT_TRUE(says(run, "step 10 (0 s)  Found its place")) << explain_run(run);
+  EXPECT_TRUE(says(run, "step 30 (0 s)  Found its place")) << explain_run(run);
+}
+
+TEST(Explanation, TellsOfNamesWhatIsSoOfThem) {
+  runs::Run run = run_of(2);
+  run.steps[0].associations[0] = {0, core::Outcome::augmented, 7, 0.0, 0, 0.0};
+  run.names[7] = "oak";
+  const std::string said = explain_step(run, 0);
+  EXPECT_NE(said.find("Observation 0 began landmark 7 ('oak'): its name was new"), std::string::npos) << said;
+  EXPECT_EQ(said.find("too near one to be new"), std::string::npos) << said;
+  EXPECT_NE(said.find("waits: its landmark has not been seen from places far enough apart"), std::string::npos) << said;
+}
+
 TEST(Explanation, SaysWhatSlippedAndWhatMovesBesideASearch) {
   runs::Run run = run_of(40);
   core::SlipDecision slip;

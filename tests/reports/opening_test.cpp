@@ -154,9 +154,12 @@ TEST(Opening, WarnsWhereTheWholeMapHasAnotherPlaceAgainAndAgain) {
   for (const std::size_t k : {10u, 20u}) run.steps[k].decisions.emplace_back(asked);
   EXPECT_TRUE(contradicted_place_text(run).empty()) << "twice: of a bent map";
   run.steps[30].decisions.emplace_back(asked);
+  EXPECT_NE(contradicted_place_text(run).find("317 m"), std::string::npos) << contradicted_place_text(run);
+  EXPECT_NE(contradicted_place_text(run).find("helixnav calibrate"), std::string::npos) << "no start was given";
+  EXPECT_EQ(contradicted_place_text(run).find("--start"), std::string::npos) << contradicted_place_text(run);
+  run.manifest.command = "helixnav replay log --map monday --start end";
   const std::vector<std::string> warnings = warnings_of(run, evaluation::evaluate(run));
   const std::string all = warnings.empty() ? "" : warnings.back();
-  EXPECT_NE(contradicted_place_text(run).find("317 m"), std::string::npos) << contradicted_place_text(run);
   EXPECT_NE(all.find("--start unknown"), std::string::npos) << all;
   EXPECT_NE(explain_run(run).find("--start unknown"), std::string::npos);
   asked.lead = 20.0;
@@ -167,6 +170,29 @@ TEST(Opening, WarnsWhereTheWholeMapHasAnotherPlaceAgainAndAgain) {
   asked.verdict = core::WholeMapDecision::Verdict::accepted;
   run.steps[40].decisions.emplace_back(asked);
   EXPECT_TRUE(contradicted_place_text(run).empty()) << "found at last";
+}
+
+std::string all_warnings(const runs::Run& run) {
+  std::string all;
+  for (const std::string& text : warnings_of(run, evaluation::evaluate(run))) all += text + '\n';
+  return all;
+}
+
+TEST(Opening, WarnsWhereOdometryAndWhatIsSeenContradictEachOtherAllAlong) {
+  runs::Run slipping = drifting_run(0.0);
+  for (std::size_t k = 0; k < 9; ++k) slipping.steps[10 * k].decisions.emplace_back(core::SlipDecision());
+  EXPECT_EQ(all_warnings(slipping).find("helixnav calibrate"), std::string::npos) << "wheels do slip";
+  slipping.steps[95].decisions.emplace_back(core::SlipDecision());
+  EXPECT_NE(all_warnings(slipping).find("slipped in 10 of"), std::string::npos) << all_warnings(slipping);
+  runs::Run rejecting = drifting_run(0.0);
+  core::AssociationReport rejected;
+  rejected.outcome = core::Outcome::rejected;
+  rejected.landmark = core::no_landmark;
+  for (std::size_t k = 0; k < 100; ++k) rejecting.steps[k].associations.assign(4, rejected);
+  EXPECT_NE(all_warnings(rejecting).find("rejected as fitting nothing"), std::string::npos) << all_warnings(rejecting);
+  rejecting.manifest.command = "helixnav replay log --map monday --localize";
+  EXPECT_EQ(all_warnings(rejecting).find("rejected as"), std::string::npos)
+      << "what is not on the map given is rejected";
 }
 
 TEST(Opening, OfARunWithoutStepsSaysNothing) {

@@ -135,6 +135,21 @@ TEST_F(DriveFileTest, GoesThereAndBackBitForBit) {
   EXPECT_EQ(written(back), written(drive));
 }
 
+TEST_F(DriveFileTest, SaysWhatTheEndOfTheInputBroughtForth) {
+  const FedDrive drive = drive_of_every_kind();
+  EXPECT_EQ(read(written(drive)).before_end_of_input, drive.events.size());
+  const std::string file = (folder_.path() / "ended.bin").string();
+  DriveFile writer(file, drive.start);
+  for (std::size_t i = 0; i < drive.events.size(); ++i) {
+    if (i == 5) writer.end_input();
+    writer.add(drive.events[i]);
+  }
+  writer.finish();
+  const FedDrive back = read_drive(file);
+  EXPECT_EQ(back.events.size(), drive.events.size());
+  EXPECT_EQ(back.before_end_of_input, 5u);
+}
+
 TEST_F(DriveFileTest, EveryFlippedByteIsFound) {
   const std::string whole = written(drive_of_every_kind());
   for (std::size_t k = 0; k < whole.size(); ++k) {
@@ -156,7 +171,7 @@ TEST_F(DriveFileTest, AClassThatIsNoneIsRefusedThoughItsChecksumFits) {
   std::string bytes = written(drive_of_every_kind());
   const std::size_t name = bytes.find("a class of");
   ASSERT_NE(name, std::string::npos);
-  const std::size_t start = written({drive_of_every_kind().start, {}}).size();
+  const std::size_t start = written({drive_of_every_kind().start, {}, 0}).size();
   bytes[name + 1] = '\0';
   std::uint32_t size = 0;
   for (int k = 3; k >= 0; --k)
@@ -169,7 +184,7 @@ TEST_F(DriveFileTest, AClassThatIsNoneIsRefusedThoughItsChecksumFits) {
 /// As a process leaves it that is killed: whole scans are read, with what came before them.
 TEST_F(DriveFileTest, OfAFileThatWasCutWhatIsWholeIsRead) {
   const std::string whole = written(drive_of_every_kind());
-  const std::string begun = written({drive_of_every_kind().start, {}});
+  const std::string begun = written({drive_of_every_kind().start, {}, 0});
   std::size_t last = 0;
   for (std::size_t size = begun.size(); size <= whole.size(); ++size) {
     const FedDrive drive = read(whole.substr(0, size));

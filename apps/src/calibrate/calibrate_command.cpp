@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -93,6 +94,10 @@ void print_result(const Calibration& result) {
   print_scale("odometry", result.scales.odometry);
   print_scale("detections", result.scales.landmarks);
   print_constants(result);
+  if (result.undetermined > 0) {
+    std::printf("left out, since bearings from nearly one side leave open where they stand: %d landmarks\n",
+                result.undetermined);
+  }
   if (!result.settled) std::printf("not settled after %d rounds: the intervals are not to be trusted\n", result.rounds);
   if (result.without_returns) {
     std::printf("the returns of this drive do not fit the rest of it, and are not used: some associations are wrong\n");
@@ -106,16 +111,27 @@ void print_result(const Calibration& result) {
   }
 }
 
-/// What goes to and fro and leaves out more than a quarter of the log is no calibration; where most is used it is one, of
+std::string factor_text(const smoothing::NoiseScale& scale) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", scale.factor);
+  return text;
+}
+
+/// What goes to and fro and leaves out more than a quarter of the log, or takes the drive for noise of four times what was told, is no
+/// calibration; where most is used it is one, of
 /// which the file says that it has not settled.
 void write_out(const std::string& out, const logs::Vehicle& vehicle, const Calibration& result) {
-  if (!result.settled && 4 * result.used < 3 * result.observations) {
+  constexpr double most_noise = 4.0;
+  const bool is_noise = std::max(result.scales.odometry.factor, result.scales.landmarks.factor) > most_noise;
+  if (!result.settled && (is_noise || 4 * result.used < 3 * result.observations)) {
     std::fflush(stdout);
-    throw core::InputError(out + ": not written, since nothing settled after " + std::to_string(result.rounds) +
-                           " rounds, and of " + std::to_string(result.observations) + " detections " +
-                           std::to_string(result.used) +
-                           " are used: associations or what the vehicle file says are far off; see to mounting, units, "
-                           "signs and gaps first ('helixnav check')");
+    throw core::InputError(
+        out + ": not written, since nothing settled after " + std::to_string(result.rounds) + " rounds, and of " +
+        std::to_string(result.observations) + " detections " + std::to_string(result.used) +
+        " are used, with noise x " + factor_text(result.scales.odometry) + " of the odometry and x " +
+        factor_text(result.scales.landmarks) +
+        " of the detections: associations or what the vehicle file says are far off; see to mounting, units, "
+        "signs and gaps first ('helixnav check')");
   }
   const std::string head = result.settled ? "" : "# calibrate had not settled: the intervals are not to be trusted\n";
   files::write_whole_file(out, head + calibrated_text(vehicle, result));
@@ -172,7 +188,9 @@ void add_calibrate_command(CLI::App& app, ExitCode& code) {
       "is one\n"
       "that, fitted to three quarters of the log, does not explain the fourth better. Noise goes into vehicle.toml as\n"
       "noise_scale. Of a published log it begins with the vehicle that ships. What does not settle "
-      "and\nleaves out more than a quarter of the detections is printed, not written (exit code 3).\n\n"
+      "and\nleaves out more than a quarter of the detections, or asks for four times the noise, is printed, not "
+      "written "
+      "(exit\ncode 3).\n\n"
       "Examples:\n"
       "  helixnav calibrate my_drive --out calibrated.toml\n"
       "  helixnav replay my_drive --vehicle calibrated.toml --out runs/calibrated\n"

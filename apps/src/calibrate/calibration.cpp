@@ -5,14 +5,17 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <limits>
 #include <utility>
 
 #include "common/fit_to_recording.hpp"
 #include "common/progress_bar.hpp"
 #include "constants_fit.hpp"
+#include "drive/check_drive.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/supervisor/lengths.hpp"
+#include "keep_scans.hpp"
 #include "replay/read_to_replay.hpp"
 #include "settings/vehicle_option.hpp"
 #include "settled_log.hpp"
@@ -47,6 +50,7 @@ class Calibrator {
     result_.settings = settings;
     const core::Recording log = plain(settings);
     print_remarks(log);
+    check(log);
     const double reach_m = logs::field_of_view_of(log).reach().value_or(supervisor::reference_reach_m);
     constants_ = constants_of(settings, logs::recognise(path_), vehicle, reach_m);
     drop_what_does_nothing(log);
@@ -65,11 +69,29 @@ class Calibrator {
   }
 
  private:
+  /// As replay refuses it.
+  void check(const core::Recording& log) const {
+    Drive drive;
+    drive.recording = log;
+    drive.known_association = known_.known_association;
+    check_drive(drive);
+  }
+
   core::Recording plain(const Settings& settings) const {
     stop_if_interrupted();
     Settings copy = settings;
     core::Recording log = read_to_replay(path_, copy).recording;
     apply_log_settings(log, copy);
+    keep_scans(log, scans_);
+    return log;
+  }
+
+  /// The log of a drive, whose associations are cut to the scans of which the odometry still says where they were taken: another
+  /// delay puts others behind its end.
+  core::Recording read_of(SettledDrive& drive) {
+    core::Recording log = read(result_.settings);
+    scans_ = scans_of(log);
+    if (drive.ids.size() > scans_) drive.ids.resize(scans_);
     return log;
   }
 
@@ -106,7 +128,9 @@ class Calibrator {
   };
 
   void round() {
+    scans_ = every_scan;
     SettledDrive drive = navigate(result_.settings);
+    scans_ = drive.ids.size();
     const Fit fit = fit_to(drive);
     multiply(result_.scales.odometry, fit.noise.odometry);
     multiply(result_.scales.landmarks, fit.noise.landmarks);
@@ -114,6 +138,7 @@ class Calibrator {
     result_.closings = drive.closings;
     result_.observations = drive.observations;
     result_.used = drive.used;
+    result_.undetermined = drive.task.undetermined_landmarks;
     ++result_.rounds;
     constexpr double settled = 0.02, settled_sigmas = 0.4, far_sigmas = 3.0;  // a match or two go to and fro
     const bool final_associations = !far_off_;
@@ -203,7 +228,7 @@ class Calibrator {
     ProgressBar progress("fitting constants", most_steps, false);
     for (int i = 0; i < most_steps && !constants_.empty(); ++i) {
       progress.advance_to(static_cast<std::size_t>(i));
-      const core::Recording recording = read(result_.settings);
+      const core::Recording recording = read_of(drive);
       if (far_off_ || result_.without_returns) {
         const smoothing::RobustKernel robust{smoothing::RobustKernel::Shape::cauchy};
         drive.task = solve_log(recording, drive.ids, drive.task.problem.graph, robust);
@@ -218,7 +243,8 @@ class Calibrator {
       constexpr double little = 0.02;
       if (step < little) break;
     }
-    drive.task = solve_log(read(result_.settings), drive.ids, drive.task.problem.graph);
+    const core::Recording recording = read_of(drive);
+    drive.task = solve_log(recording, drive.ids, drive.task.problem.graph);
     double went = 0.0;
     for (std::size_t c = 0; c < constants_.size(); ++c) {
       const double way = constants_[c].value(result_.settings) - constants_[c].value(before);
@@ -305,8 +331,11 @@ class Calibrator {
     }
   }
 
+  static constexpr std::size_t every_scan = std::numeric_limits<std::size_t>::max();
+
   std::string path_;
   Settings known_;
+  std::size_t scans_ = every_scan;  ///< of the log that are used: the same ones in all of a round
   std::vector<VehicleConstant> constants_;
   bool far_off_;               ///< the constants may be, so that returns cannot be believed
   int times_thrown_back_ = 0;  ///< far off after they were not

@@ -31,7 +31,9 @@ struct Calibration {
   int rounds = 0;
   bool settled = false;
   std::size_t observations = 0, used = 0;  ///< in the last round
-  bool without_returns = false;            ///< landmarks that came back after a while were taken for others
+  int undetermined =
+      0;  ///< landmarks, or passages of them, left out in the last round: bearings leave open where they stand
+  bool without_returns = false;  ///< landmarks that came back after a while were taken for others
 
   double held_out_gain = 0.0;  ///< ln L of the parts, each with the constants fitted to the others, over that as told
   double nis_told = 0.0, nis_found = 0.0;  ///< per degree of freedom in the last part, with the noise found

@@ -11,6 +11,7 @@
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/event_loop.hpp"
+#include "keep_scans.hpp"
 #include "smooth/smoothing_run.hpp"
 #include "stop_if_interrupted.hpp"
 #include "without_fixes.hpp"
@@ -42,11 +43,6 @@ double nis_per_dof(const std::vector<core::StepReport>& steps, double from_share
   return rows > 0 ? nis / rows : 0.0;
 }
 
-std::size_t scans_in(const core::Recording& recording) {
-  const auto is_scan = [](const core::Event& event) { return std::holds_alternative<core::Scan>(event); };
-  return static_cast<std::size_t>(std::count_if(recording.events.begin(), recording.events.end(), is_scan));
-}
-
 }  // namespace
 
 SettledDrive drive_through(const core::Recording& recording, const supervisor::NavigatorOptions& options,
@@ -55,7 +51,7 @@ SettledDrive drive_through(const core::Recording& recording, const supervisor::N
   core::EventLoop loop(recording.events, navigator);
   std::vector<core::StepReport> steps;
   SettledDrive drive;
-  ProgressBar progress("navigating", scans_in(recording), false);
+  ProgressBar progress("navigating", scans_of(recording), false);
   while (std::optional<core::StepReport> step = loop.next()) {
     stop_if_interrupted();
     progress.advance_to(steps.size());

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <variant>
 
 #include "drifting_level.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/smoothing/optimize.hpp"
 #include "helixnav/smoothing/residuals.hpp"
+#include "helixnav/smoothing/undetermined.hpp"
 #include "stop_if_interrupted.hpp"
 #include "without_fixes.hpp"
 
@@ -161,12 +163,11 @@ smoothing::ConstantDerivative by_delay(const NudgedLog& log, const SmoothingTask
   return derivative;
 }
 
-SmoothingTask solve_once(const core::Recording& driven, const Ids& ids, const core::LandmarkGraph& from,
-                         const smoothing::RobustKernel& kernel) {
+SmoothingTask begun_task(const core::Recording& driven, const Ids& ids, const core::LandmarkGraph& from) {
   SmoothingTask task = task_from_recording(driven, ids);
   core::LandmarkGraph& graph = task.problem.graph;
-  if (graph.poses.size() == from.poses.size()) {
-    graph.poses = from.poses;
+  if (graph.poses.size() <= from.poses.size()) {  // it may end earlier
+    std::copy_n(from.poses.begin(), graph.poses.size(), graph.poses.begin());
     core::locate_landmarks(graph);
   }
   std::map<std::int64_t, Eigen::Vector2d> point_of;
@@ -174,10 +175,40 @@ SmoothingTask solve_once(const core::Recording& driven, const Ids& ids, const co
   for (auto& landmark : graph.landmarks) {
     if (const auto known = point_of.find(landmark.name); known != point_of.end()) landmark.point_m = known->second;
   }
-  smoothing::Options solver = patient_solver(1e-4);
-  solver.kernel = kernel;
-  smoothing::optimize(task.problem, solver);
   return task;
+}
+
+/// Takes all that was seen of landmarks out of `ids`.
+void leave_out(const std::set<std::int64_t>& names, Ids& ids) {
+  for (auto& of_scan : ids) {
+    for (std::int64_t& id : of_scan) id = names.count(id) > 0 ? core::no_label : id;
+  }
+}
+
+/// Takes out of `ids` what a task hardly determines, which may run away to where it cannot be solved; whether there was any.
+bool leave_out_hardly_determined(const SmoothingTask& task, Ids& ids, std::set<std::int64_t>& left_out) {
+  std::set<std::int64_t> names;
+  for (const int landmark : smoothing::hardly_determined_landmarks(task.problem.graph))
+    names.insert(task.problem.graph.landmarks[at(landmark)].name);
+  leave_out(names, ids);
+  left_out.insert(names.begin(), names.end());
+  return !names.empty();
+}
+
+/// Without landmarks that are not determined, at the start or where the solver is led.
+SmoothingTask solve_once(const core::Recording& driven, Ids& ids, const core::LandmarkGraph& from,
+                         const smoothing::Options& solver, std::set<std::int64_t>& left_out) {
+  while (true) {
+    SmoothingTask task = begun_task(driven, ids, from);
+    if (leave_out_hardly_determined(task, ids, left_out)) continue;
+    try {
+      smoothing::optimize(task.problem, solver);
+      return task;
+    } catch (const smoothing::UndeterminedLandmark& error) {
+      leave_out({error.name}, ids);
+      left_out.insert(error.name);
+    }
+  }
 }
 
 /// Takes out of `ids` what was seen of a landmark where it stands in the sensor; whether there was any. Where wrong associations
@@ -262,8 +293,13 @@ smoothing::Options patient_solver(double tolerance_chi2) {
 SmoothingTask solve_log(const core::Recording& recording, Ids ids, const core::LandmarkGraph& from,
                         const smoothing::RobustKernel& kernel) {
   const core::Recording driven = without_fixes(recording);
-  SmoothingTask task = solve_once(driven, ids, from, kernel);
-  while (leave_out_at_sensors(task, ids)) task = solve_once(driven, ids, task.problem.graph, kernel);
+  smoothing::Options solver = patient_solver(1e-4);
+  solver.kernel = kernel;
+  std::set<std::int64_t> left_out;
+  SmoothingTask task = solve_once(driven, ids, from, solver, left_out);
+  while (leave_out_at_sensors(task, ids) || leave_out_hardly_determined(task, ids, left_out))
+    task = solve_once(driven, ids, task.problem.graph, solver, left_out);
+  task.undetermined_landmarks = static_cast<int>(left_out.size());
   return task;
 }
 

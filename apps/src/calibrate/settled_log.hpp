@@ -27,7 +27,8 @@ Ids without_outliers(const Ids& ids, const SmoothingTask& solved);
 smoothing::Options patient_solver(double tolerance_chi2);
 
 /// The least-squares problem of a log read by the settings, with the associations of a drive through it, solved from where
-/// the drive stands. An observation of a landmark that comes to stand in the sensor is left out (edge_of −1). Test:
+/// the drive stands. An observation of a landmark that comes to stand in the sensor is left out (edge_of −1), and so are all of a landmark
+/// whose place bearings from nearly one side leave open (smoothing::hardly_determined_landmarks), which are counted. Test:
 /// apps/calibrate/settled_log_test.cpp
 SmoothingTask solve_log(const core::Recording& recording, Ids ids, const core::LandmarkGraph& from,
                         const smoothing::RobustKernel& kernel = {});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <sstream>
 #include <vector>
@@ -33,8 +34,9 @@ struct NewLine {
 std::string constant_line(const ConstantFound& found, double value) {
   std::array<char, 200> text{};
   const double unit = found.constant.unit, half = 1.96 * found.sigma / unit;
-  std::snprintf(text.data(), text.size(), "%s = %.6g  # calibrated; 95 %%: %.4g to %.4g\n", found.constant.key.c_str(),
-                value / unit, value / unit - half, value / unit + half);
+  const int decimals = half > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 9) : 6;
+  std::snprintf(text.data(), text.size(), "%s = %.6g  # calibrated; 95 %%: %.*f to %.*f\n", found.constant.key.c_str(),
+                value / unit, decimals, value / unit - half, decimals, value / unit + half);
   return text.data();
 }
 

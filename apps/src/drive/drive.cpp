@@ -27,6 +27,7 @@
 #include "helixnav/runs/run_recorder.hpp"
 #include "helixnav/runs/run_writer.hpp"
 #include "keeping.hpp"
+#include "landmark_names.hpp"
 #include "run_warnings.hpp"
 #include "smooth/smooth_drive.hpp"
 #include "withholding.hpp"
@@ -152,6 +153,7 @@ ExitCode drive(const Drive& job) {
   const std::vector<double>& step_us = driven.step_us;
 
   runs::Run run = recorder.finish(estimator.map());
+  run.names = landmark_names(job, run);
   run.joint_map = estimator.joint_map();
   if (run.joint_map) run.joint_map->drives = drives_in_map(job, run);
   if (estimator.parts_apart) run.parts_apart = estimator.parts_apart();

@@ -152,6 +152,7 @@ void NavigatorOnMap::doubt_start(core::StepReport& report) {
   navigator_ = looking_for_place(job_, map_);
   core::CarriedDecision carried;
   carried.part = carried.apart = 1;
+  carried.cause = core::CarriedDecision::Cause::wrong_start;
   report.decisions.emplace_back(carried);
 }
 

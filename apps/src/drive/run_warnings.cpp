@@ -16,6 +16,12 @@ bool has_match(const core::StepReport& step) {
                      [](const core::AssociationReport& a) { return a.outcome == core::Outcome::matched; });
 }
 
+/// As the user calls it.
+std::string name_of(const runs::Run& run, core::LandmarkId id) {
+  const auto found = run.names.find(id);
+  return found == run.names.end() ? std::to_string(id) : "'" + found->second + "'";
+}
+
 /// Empty unless sightings were left out of the landmark that they name.
 std::string names_text(const runs::Run& run) {
   std::map<core::LandmarkId, std::size_t> contradicted;
@@ -31,25 +37,44 @@ std::string names_text(const runs::Run& run) {
   const auto most = std::max_element(contradicted.begin(), contradicted.end(),
                                      [](const auto& a, const auto& b) { return a.second < b.second; });
   return std::to_string(all) + " sightings contradict their names and were left out, most of them (" +
-         std::to_string(most->second) + ") of landmark " + std::to_string(most->first) +
+         std::to_string(most->second) + ") of landmark " + name_of(run, most->first) +
          ": identities are wrong at times, or landmarks were moved. 'helixnav explain --step N' shows a scan";
 }
 
-/// Empty unless hardly anything that was seen is of the map on which the start was given: each landmark matched began in this run.
-std::string given_start_text(const runs::Run& run) {
+/// Of detections: those of landmarks of the map given (a landmark that began in this run is none), and all in the scans that have one.
+struct OnGivenMap {
+  std::size_t seen = 0, of_map = 0, seen_beside = 0;
+};
+
+OnGivenMap count_on_given_map(const runs::Run& run) {
+  OnGivenMap counts;
   std::set<core::LandmarkId> begun;
-  std::size_t seen = 0, of_map = 0;
   for (const core::StepReport& step : run.steps) {
-    seen += step.associations.size();
+    std::size_t of_map = 0;
     for (const core::AssociationReport& a : step.associations) {
       if (a.outcome == core::Outcome::augmented) begun.insert(a.landmark);
       of_map += a.outcome == core::Outcome::matched && begun.count(a.landmark) == 0 ? 1 : 0;
     }
+    counts.seen += step.associations.size();
+    counts.of_map += of_map;
+    counts.seen_beside += of_map > 0 ? step.associations.size() : 0;
   }
+  return counts;
+}
+
+/// Empty unless hardly anything that was seen is of the map on which the start was given, or only one here and there among many that
+/// are not, as a wrong place has it by chance: on the map most of what a scan shows is of it.
+std::string given_start_text(const runs::Run& run) {
+  const OnGivenMap counts = count_on_given_map(run);
   constexpr std::size_t enough = 200;
-  constexpr std::size_t most_times = 50;  // right starts: 2 of 5 and more; wrong ones: 1 of 75 and fewer
-  if (seen < enough || most_times * of_map > seen) return {};
-  return "of " + std::to_string(seen) + " detections " + std::to_string(of_map) +
+  constexpr std::size_t most_times = 50;
+  // Of all, and of those in scans with one of the map: wrong starts 0.08 and 0.24 at most, right ones 0.63 and 0.66 at least.
+  constexpr double little = 0.2, chance = 0.4;
+  const auto of_map = static_cast<double>(counts.of_map);
+  const bool by_chance =
+      of_map < little * static_cast<double>(counts.seen) && of_map < chance * static_cast<double>(counts.seen_beside);
+  if (counts.seen < enough || (most_times * counts.of_map > counts.seen && !by_chance)) return {};
+  return "of " + std::to_string(counts.seen) + " detections " + std::to_string(counts.of_map) +
          " were matched with the map given: the vehicle left it at once, or the start given is wrong and the map holds "
          "landmarks twice now; --start unknown finds the start by itself";
 }

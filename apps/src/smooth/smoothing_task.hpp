@@ -26,6 +26,7 @@ struct SmoothingTask {
   std::vector<std::vector<int>> edge_of;  ///< [step][observation] index of its landmark edge, −1 when left out
   int unlabelled_observations = 0;
   int unlocated_landmarks = 0;
+  int undetermined_landmarks = 0;  ///< left out of a solution: what is seen of them leaves open where they stand
   bool softened_odometry = false;  ///< covariances of rank two got `rank_sigma` on the diagonal
 };
 

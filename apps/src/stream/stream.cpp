@@ -43,14 +43,23 @@ class Stream {
     if (!job_.resume.empty()) drive_again();
     std::string line;
     while (reader_is_there_ && channel_.next(line)) answer(input_.take(line, channel_.line_number()));
-    if (reader_is_there_ && !interrupted()) answer(input_.finish());
+    if (reader_is_there_ && !interrupted()) answer_end_of_input();
     return end();
   }
 
  private:
+  /// The last scans: more of them might have come, or the odometry does not tell their motion to its end.
+  void answer_end_of_input() {
+    input_has_ended_ = true;
+    if (drive_) drive_->end_input();
+    drive_held_back();
+    answer(input_.finish());
+  }
+
   void answer(logs::StreamedEvents next) {
     for (const std::string& remark : next.remarks) send(note_answer(remark));
     for (const logs::RefusedLine& refused : next.refused) refuse(refused);
+    if (!next.recording.events.empty()) take_up_held_back(next.recording.events);
     if (driven_until_ns_) {
       const std::size_t scans = pass_over(*driven_until_ns_, next.recording);
       next.lines.erase(next.lines.begin(), next.lines.begin() + static_cast<std::ptrdiff_t>(scans));
@@ -60,24 +69,46 @@ class Stream {
     navigate(next);
   }
 
-  /// What the drive that is gone on with was fed; into the run folder as well, without answers.
+  /// What the drive that is gone on with was fed; into the run folder as well, without answers. What only the end of its input
+  /// brought forth waits: it may come again, and otherwise.
   void drive_again() {
     runs::FedDrive fed = runs::read_drive(drive_file_in(job_.resume));
+    const auto end = fed.events.begin() + static_cast<std::ptrdiff_t>(fed.before_end_of_input);
+    held_back_.assign(end, fed.events.end());
+    fed.events.erase(end, fed.events.end());
+    start_ = fed.start;
+    drive_fed(std::move(fed.events));
+    send(note_answer(std::to_string(steps_) + " scans of " + job_.resume + " are driven again"));
+  }
+
+  void drive_fed(std::vector<core::Event> events) {
+    if (events.empty()) return;
+    driven_until_ns_ = core::time_of(events.back());
     core::Recording before;
-    before.start = fed.start;
-    before.events = std::move(fed.events);
-    if (before.events.empty()) return;
-    driven_until_ns_ = core::time_of(before.events.back());
-    navigator_.begin_with(before);
+    before.start = start_;
+    before.events = std::move(events);
+    before.extraneous_per_scan = 0.0;  // to be learnt, as of all that a stream reads (logs::OwnStream)
+    if (!navigator_.has_begun()) navigator_.begin_with(before);
     open_folder_if_due(before);
     Timed timed(navigator_);
     Keeping kept(timed, drive_.get());
-    core::EventLoop loop(before.events, kept);
+    core::EventLoop loop(before.events, kept, steps_);
     while (const std::optional<core::StepReport> step = loop.next()) {
       if (writer_) write(*step, 1e6 * timed.last_s());
     }
     steps_ = loop.steps();
-    send(note_answer(std::to_string(steps_) + " scans of " + job_.resume + " are driven again"));
+  }
+
+  void drive_held_back() { drive_fed(std::exchange(held_back_, {})); }
+
+  /// What comes goes on behind what was held back, or it is that again, as more is known now.
+  void take_up_held_back(const std::vector<core::Event>& next) {
+    if (held_back_.empty()) return;
+    const auto is_first_scan = [](const core::Event& event) { return std::holds_alternative<core::Scan>(event); };
+    const auto first = std::find_if(next.begin(), next.end(), is_first_scan);
+    if (first == next.end()) return;
+    if (core::time_of(*first) > core::time_of(held_back_.back())) return drive_held_back();
+    held_back_.clear();
   }
 
   /// A scan on which the mathematics breaks down is left out; the navigator stands as before it.
@@ -112,6 +143,7 @@ class Stream {
     open_folder();
     if (!job_.settings.known_association) {
       drive_ = std::make_unique<runs::DriveFile>(drive_file_in(job_.out), next.start);
+      if (input_has_ended_) drive_->end_input();
     }
   }
 
@@ -170,6 +202,9 @@ class Stream {
   std::vector<core::StampedPose> solved_;             ///< the last time
   std::vector<core::StampedPose> solved_before_;      ///< of parts of the drive before the vehicle was carried
   std::optional<core::Nanoseconds> driven_until_ns_;  ///< what comes until then was driven before
+  core::PoseGaussian start_;                          ///< of the drive that is gone on with
+  std::vector<core::Event> held_back_;                ///< of it, behind the end of its input
+  bool input_has_ended_ = false;
   bool reader_is_there_ = true;
   std::int64_t steps_ = 0, refused_ = 0, broken_ = 0;
 };

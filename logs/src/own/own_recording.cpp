@@ -93,7 +93,8 @@ void check_clocks(const OwnLog& log, const std::vector<LabelledScan>& scans) {
   fail(log, text);
 }
 
-/// Increments and poses say nothing of where a scan was taken after their end: such scans are left out, and counted in a remark.
+/// Increments and poses say nothing of where a scan was taken after their end: such scans are left out, and counted in a remark. Where
+/// they are nearly all, the two are of different clocks or units, as with times in milliseconds in a column of seconds.
 void leave_out_untold(const OwnLog& log, std::vector<LabelledScan>& scans, std::vector<std::string>& remarks) {
   if (log.odometry_kind != OdometryKind::increments && log.odometry_kind != OdometryKind::poses) return;
   const core::Nanoseconds end_ns =
@@ -106,6 +107,11 @@ void leave_out_untold(const OwnLog& log, std::vector<LabelledScan>& scans, std::
                 "%td of %zu scans were taken after the odometry ends at %.9g s (%.9g to %.9g s); they are not used",
                 scans.end() - first, scans.size(), core::seconds(log.odometry.back().t_ns),
                 core::seconds(first->scan.t_ns), core::seconds(scans.back().scan.t_ns));
+  const std::ptrdiff_t used = first - scans.begin();
+  if (scans.size() >= 20 && 10 * static_cast<std::size_t>(used) < scans.size()) {
+    fail(log, text + std::string(". Are both of the same clock and in the same unit? A column t_s holds seconds, t_ms "
+                                 "milliseconds; a constant difference is delay_s of the [[sensor]]"));
+  }
   remarks.emplace_back(text);
   scans.erase(first, scans.end());
 }
@@ -169,6 +175,7 @@ core::Recording make_recording(const OwnLog& log, const Vehicle& vehicle) {
   leave_out_untold(log, scans, recording.remarks);
   add_views(scans, sensors);
   recording.name = log.name;
+  recording.label_names = log.id_names;
   recording.extraneous_per_scan = 0.0;
   recording.antenna_robot_m = vehicle.antenna_m;
   const core::Nanoseconds first_scan_ns = scans.front().scan.t_ns;

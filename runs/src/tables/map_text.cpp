@@ -10,11 +10,25 @@
 
 namespace helixnav::runs {
 
-std::string map_text(const std::vector<core::MapLandmark>& map) {
+namespace {
+
+void append_name(std::string& text, const std::map<core::LandmarkId, std::string>& names, core::LandmarkId id) {
+  text += ',';
+  const auto found = names.find(id);
+  if (found == names.end()) return;
+  for (const char c : found->second) {
+    const bool is_plain = c != ',' && c != '"' && (static_cast<unsigned char>(c) >= ' ') && c != '\x7f';
+    text += is_plain ? c : ' ';
+  }
+}
+
+}  // namespace
+
+std::string map_text(const std::vector<core::MapLandmark>& map, const std::map<core::LandmarkId, std::string>& names) {
   const bool tells_appearance = std::any_of(
       map.begin(), map.end(), [](const core::MapLandmark& landmark) { return landmark.appearance.is_given(); });
   std::string text(tells_appearance ? map_table_with_appearance.header : map_table.header);
-  text += '\n';
+  text += names.empty() ? "\n" : ",name\n";
   for (const core::MapLandmark& landmark : map) {
     const Eigen::Matrix2d& P = landmark.point.covariance_m2;
     files::append_number(text, std::int64_t{landmark.id});
@@ -27,6 +41,7 @@ std::string map_text(const std::vector<core::MapLandmark>& map) {
     text += ',';
     text += word_of(state_words, landmark.state);
     if (tells_appearance) append_appearance(text, landmark.appearance);
+    if (!names.empty()) append_name(text, names, landmark.id);
     text += '\n';
   }
   return text;

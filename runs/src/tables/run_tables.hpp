@@ -38,6 +38,10 @@ inline constexpr RunTable map_table{"map.csv", "id,x,y,sxx,sxy,syy,observations,
 /// Where a class or a size was told.
 inline constexpr RunTable map_table_with_appearance{
     "map.csv", "id,x,y,sxx,sxy,syy,observations,state,class,class_nats,size,sigma_size"};
+/// Where landmarks were known by name.
+inline constexpr RunTable map_table_with_names{"map.csv", "id,x,y,sxx,sxy,syy,observations,state,name"};
+inline constexpr RunTable map_table_with_appearance_and_names{
+    "map.csv", "id,x,y,sxx,sxy,syy,observations,state,class,class_nats,size,sigma_size,name"};
 inline constexpr RunTable truth_poses_table{"truth_poses.csv", "t_s,x,y,heading"};
 inline constexpr RunTable truth_frame_table{"truth_frame.csv", "when,known,x,y,heading"};
 inline constexpr RunTable truth_positions_table{"truth_positions.csv", "t_s,x,y,antenna_x,antenna_y"};

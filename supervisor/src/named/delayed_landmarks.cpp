@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 
@@ -73,12 +74,16 @@ double nearest_sensor_m(const std::vector<FitRow>& rows, const Eigen::Vector2d& 
   return nearest_m;
 }
 
+bool is_contradicted(const FittedPoint& best, std::size_t rows, const DelayedOptions& options) {
+  return best.nis > core::chi2_quantile(options.fit_probability, static_cast<int>(rows) - 2);
+}
+
 bool is_settled(const std::vector<FittedPoint>& solutions, const std::vector<FitRow>& rows,
                 const DelayedOptions& options) {
   if (solutions.empty()) return false;
   const FittedPoint& best = solutions.front();
   if (solutions.size() > 1 && solutions[1].cost - best.cost < options.min_rival_margin) return false;
-  if (best.nis > core::chi2_quantile(options.fit_probability, static_cast<int>(rows.size()) - 2)) return false;
+  if (is_contradicted(best, rows.size(), options)) return false;
   return largest_sigma(best.covariance_m2) < options.max_relative_sigma * nearest_sensor_m(rows, best.point_m);
 }
 
@@ -107,10 +112,16 @@ std::vector<LandmarkId> clones_of(const Sightings& sightings) {
   return ids;
 }
 
+/// Where a landmark stands by its sightings, and how well they agree about it.
+struct Located {
+  std::optional<cekf::DerivedPoint> point;
+  double nis = 0.0;              ///< of the best solution
+  bool is_contradicted = false;  ///< by sightings that do not fit it
+};
+
 template <class Sightings>
-std::optional<cekf::DerivedPoint> locate(const cekf::CompressedEkf& filter, const Sightings& sightings,
-                                         const DelayedOptions& options) {
-  if (sightings.size() < 4) return std::nullopt;
+Located locate(const cekf::CompressedEkf& filter, const Sightings& sightings, const DelayedOptions& options) {
+  if (sightings.size() < 4) return {};
   const core::JointGaussian joint = filter.joint(clones_of(sightings));
   const RelativePoints relative = relative_points(joint);
   std::vector<FitRow> rows;
@@ -124,9 +135,32 @@ std::optional<cekf::DerivedPoint> locate(const cekf::CompressedEkf& filter, cons
     first += sighting.ahead == core::no_landmark ? 2 : 4;
   }
   const std::vector<FittedPoint> solutions = fit_from_everywhere(rows, relative.P, options.spacing_m, options.same_m);
-  if (!is_settled(solutions, rows, options) || !looks_gaussian(rows, relative.P, solutions.front()))
-    return std::nullopt;
-  return in_map(solutions.front(), joint, relative);
+  Located located;
+  if (solutions.empty()) return located;
+  located.nis = solutions.front().nis;
+  located.is_contradicted = is_contradicted(solutions.front(), rows.size(), options);
+  if (is_settled(solutions, rows, options) && looks_gaussian(rows, relative.P, solutions.front()))
+    located.point = in_map(solutions.front(), joint, relative);
+  return located;
+}
+
+/// One sighting bore another landmark's name where all others agree without it, and it is far off: two of them and noise do not do that.
+template <class Sightings>
+std::optional<cekf::DerivedPoint> locate_without_one(const cekf::CompressedEkf& filter, const Sightings& sightings,
+                                                     double nis, const DelayedOptions& options) {
+  constexpr std::size_t least_others = 5;  // three more than place it
+  constexpr double least_gain = 30.0;      // one in a thousand is wrong, somewhere in view
+  std::optional<cekf::DerivedPoint> point;
+  if (sightings.size() <= least_others) return point;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    Sightings others = sightings;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    Located located = locate(filter, others, options);
+    if (!located.point || nis - located.nis < least_gain) continue;
+    if (point) return std::nullopt;  // any of two might be the wrong one
+    point = std::move(located.point);
+  }
+  return point;
 }
 
 }  // namespace
@@ -153,9 +187,11 @@ std::optional<LandmarkId> DelayedLandmarks::sight(cekf::CompressedEkf& filter, s
   }
   window.sightings.push_back(sighting);
 
-  const std::optional<cekf::DerivedPoint> located = locate(filter, window.sightings, options_);
-  if (!located) return std::nullopt;
-  const LandmarkId landmark = filter.augment(*located);
+  Located located = locate(filter, window.sightings, options_);
+  if (!located.point && located.is_contradicted)
+    located.point = locate_without_one(filter, window.sightings, located.nis, options_);
+  if (!located.point) return std::nullopt;
+  const LandmarkId landmark = filter.augment(*located.point);
   for (const LandmarkId id : clones_of(window.sightings)) filter.remove(id);
   windows_.erase(identity);
   return landmark;

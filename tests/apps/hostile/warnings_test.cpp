@@ -76,6 +76,7 @@ TEST_F(Warnings, RefuseRangesWithoutIdentitiesAndSayWhatToDo) {
   expect(replay(), 3, "the log has none (a column id)");
   folder_.write("log/detections.csv", "t,range_m,id\n1,10,a\n2,10,a\n");
   expect(replay(), 3, "add --association known");
+  expect(run({"calibrate", log_}), 3, "add --association known");
 }
 
 TEST_F(Warnings, RefuseToSmoothOrKnowWhatHasNoLabels) {

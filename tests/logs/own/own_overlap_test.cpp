@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "helixnav/logs/own_stream.hpp"
+#include "input_error.hpp"
 #include "own_log_folder.hpp"
 
 namespace helixnav::logs {
@@ -61,6 +63,15 @@ TEST(OwnOverlap, LeavesOutScansThatIncrementsAndPosesDoNotReach) {
               "2 of 4 scans were taken after the odometry ends at 12 s (14 to 15 s); they are not used\n");
     EXPECT_EQ(overlap.scans, 2);
   }
+}
+
+/// Only the first of them lies within the time of the odometry.
+TEST(OwnOverlap, RefusesScansInMillisecondsBesideOdometryInSeconds) {
+  std::vector<std::string> times{"12"};
+  for (int i = 1; i <= 30; ++i) times.push_back(std::to_string(12000 + 250 * i));
+  const std::string said = testing::input_error_of([&] { overlap_of(increment_rows, times); });
+  EXPECT_NE(said.find("30 of 31 scans"), std::string::npos) << said;
+  EXPECT_NE(said.find("t_ms milliseconds"), std::string::npos) << said;
 }
 
 TEST(OwnOverlap, IsTheSameOfAStream) {

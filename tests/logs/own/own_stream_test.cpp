@@ -254,6 +254,8 @@ TEST_F(OwnStreamLines, ThatAreWrongAreRefusedWithTheirKeyAndLeaveNothingBehind) 
   take(odometry(0.0));
   expect_refused("{\"odometry\": {\"t\": 0.5, \"v\": 1", "", "no JSON");
   expect_refused("[1, 2]", "", "expected an object");
+  expect_refused("{}", "", "holds no row");
+  expect_refused(R"({"detections": []})", "", "a time alone");
   expect_refused(R"({"odometry": {"t": NaN, "v": 1, "omega": 0}})", "", "no JSON");
   expect_refused(R"({"odometry": {"t": 0.5, "v": "nan", "omega": 0}})", "v", "expected a number");
   expect_refused(R"({"odometry": {"t": 0.5, "v": 1e999, "omega": 0}})", "", "no JSON");

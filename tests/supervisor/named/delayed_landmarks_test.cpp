@@ -126,6 +126,29 @@ TEST(DelayedLandmarks, WaitOnAStraightPathUntilATurnTellsTheMirrorImageFromTheLa
   EXPECT_LT((navigator.map()[0].point.mean_m - landmark_m).norm(), 0.5);
 }
 
+/// The first sighting is of something 60° aside: what all others agree about is the landmark.
+TEST(DelayedLandmarks, EnterWithoutTheOneSightingThatBoreAnothersName) {
+  const Eigen::Vector2d landmark_m(12.0, 9.0);
+  for (const bool is_first_wrong : {false, true}) {
+    NamedNavigator navigator(core::PoseGaussian{});
+    core::Pose2 truth;
+    for (int i = 0; i < 25; ++i) {
+      core::Odometry odometry = core::no_motion(i);
+      odometry.T_before_after = core::Pose2(1.0, 0.0, 0.02);
+      odometry.covariance = Eigen::Vector3d(1e-4, 1e-4, 1e-8).asDiagonal();
+      truth = core::compose(truth, odometry.T_before_after);
+      navigator.move(odometry);
+      const Eigen::Vector2d seen_m = core::transform(core::inverse(truth), landmark_m);
+      const double aside_rad = is_first_wrong && i == 0 ? core::pi / 3.0 : 0.0;
+      core::Scan scan;
+      scan.observations.push_back(core::make_bearing(std::atan2(seen_m.y(), seen_m.x()) - aside_rad, 0.01));
+      navigator.observe(scan, {7});
+    }
+    ASSERT_EQ(navigator.map().size(), 1u) << is_first_wrong;
+    EXPECT_LT((navigator.map()[0].point.mean_m - landmark_m).norm(), 0.5) << is_first_wrong;
+  }
+}
+
 TEST(DelayedLandmarks, KeepNoMoreClonesThanTheWindowHowEverLongTheyWait) {
   cekf::CompressedEkf filter(core::PoseGaussian{});
   DelayedOptions options;

@@ -155,6 +155,7 @@ struct CarriedDecision {
     broken_off,   ///< it was not carried: the part that ends cannot be computed any further
     by_place,     ///< landmarks mapped since a pause stand elsewhere on the map: it was carried then
     no_odometry,  ///< it may not have been carried: odometry leaves open which way it turned since the scan before
+    wrong_start,  ///< it was not carried: on the map, what is seen does not stand about the start that was given
   };
   int part = 0;           ///< that begins with this scan
   int from_part = 0;      ///< that ends

@@ -59,7 +59,8 @@ struct Recording {
   PoseGaussian start;         ///< of the robot in the map frame; DESIGN: identity with zero covariance
   std::vector<Event> events;  ///< in time order; an increment comes before the scan that ends it
 
-  std::vector<std::vector<Label>> labels;              ///< [scan][observation]; empty when the log has no labels
+  std::vector<std::vector<Label>> labels;  ///< [scan][observation]; empty when the log has no labels
+  std::vector<std::string> label_names;    ///< [label] where the log names its landmarks by words; empty: by numbers
   std::vector<SharedObservation> shared_observations;  ///< `labels` holds the first label of each
   bool labels_are_given = false;  ///< what is seen is part of the problem, as in a graph, and not in question
   std::vector<TruePose> true_poses;

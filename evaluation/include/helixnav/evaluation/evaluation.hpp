@@ -50,6 +50,8 @@ struct PositionEvaluation {
   std::size_t fixes_used = 0;
   std::size_t fixes_left_out = 0;  ///< farther than limit_m after the alignment
   std::size_t fixes_outside = 0;   ///< before the first or after the last step: nothing to compare with
+  std::size_t fixes_in_gaps = 0;   ///< between steps farther apart than `gap_s`: the path there is a guess
+  double gap_s = 0.0;              ///< three times the interval that nine in ten of the run's are no longer than
   std::vector<PositionError> errors;
 };
 
@@ -75,7 +77,7 @@ struct PoseEvaluation {
 /// Mature landmarks against true landmarks, one to one.
 struct MapEvaluation {
   bool by_label = false;       ///< paired by the labels of their observations; else by distance
-  double limit_m = 0.0;        ///< of pairing by distance
+  double limit_m = 0.0;        ///< of pairing by distance, where the map does not say that it is less certain
   ErrorStatistics error_m;     ///< over the pairs
   std::size_t missing = 0;     ///< true landmarks without partner; by label: of those in ≥ 10 observations
   std::size_t duplicates = 0;  ///< further landmarks on a true landmark that has its partner
@@ -122,13 +124,14 @@ struct Evaluation {
 
 struct EvaluationOptions {
   double fix_limit_m = 10.0;
-  double landmark_limit_m = 2.0;
+  double landmark_limit_m = 2.0;  ///< or four of a landmark's standard deviations, up to half-way to the next true one
   /// NEES counts from here on, as of a robot that came into the common frame of its team then: what its covariances said before was of
   /// another frame.
   core::Nanoseconds nees_from_ns = std::numeric_limits<core::Nanoseconds>::min();
 };
 
-/// Compares a run with `truth`. The estimate is interpolated at the instants of the truth along arcs of constant twist.
+/// Compares a run with `truth`. The estimate is interpolated at the instants of the truth along arcs of constant twist; instants in
+/// gaps between scans (PositionEvaluation::gap_s) count for nothing, neither for positions and headings nor for NEES.
 /// True positions: the antenna's estimated position (pose ∘ lever arm), rigid alignment with outliers left out. True
 /// poses: no alignment where the map frame is theirs (runs::RunTruth::frame), else a rigid one of all; NEES at the same instants
 /// with the covariance of the step before. What was reported in a frame of its own, before a session or a part found its place, has a

@@ -17,6 +17,11 @@ namespace {
 
 constexpr core::Nanoseconds nothing_yet_ns = std::numeric_limits<core::Nanoseconds>::min();
 
+bool is_without_rows(const OwnLog& log) {
+  return log.odometry.empty() && log.detections.empty() && log.lost_ns.empty() && log.fixes.empty() &&
+         log.true_poses.empty() && log.true_positions.empty() && log.true_landmarks.empty();
+}
+
 void check_told(const Vehicle& vehicle) {
   if (vehicle.sensors.empty()) throw core::InputError(vehicle.path + ": a stream needs a [[sensor]], found none");
   for (const SensorModel& sensor : vehicle.sensors) {
@@ -106,6 +111,9 @@ void OwnStream::State::read(std::string_view line, std::size_t number) {
     for (const std::string& remark : log.remarks) remark_once(remark);
     if (!log.fixes.empty() || !log.true_poses.empty() || !log.true_positions.empty() || !log.true_landmarks.empty()) {
       remark_once("stream: fixes and truth are not used; replay compares with them");
+    }
+    if (is_without_rows(log)) {
+      throw StreamRefusal("", "holds no row; a scan that saw nothing is a time alone, {\"detections\": {\"t\": 1.5}}");
     }
     check_times(log);
     motion.check(log);

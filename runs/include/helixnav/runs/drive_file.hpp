@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,6 +20,9 @@ namespace helixnav::runs {
 struct FedDrive {
   core::PoseGaussian start;
   std::vector<core::Event> events;
+  /// Of the events: those before the input ended. What comes behind, the end alone brought forth: scans of which more might have
+  /// come, or whose motion was not told to its end. As many as there are where nothing ended.
+  std::size_t before_end_of_input = 0;
 };
 
 /// Writes drive.bin (docs/run-folder.md) while the drive goes on. Cost of a scan: its bytes and one write.
@@ -32,6 +36,8 @@ class DriveFile {
 
   /// What the navigator has taken. A scan, with what came before it, is with the operating system when this returns.
   void add(const core::Event& event);
+  /// What is added from here on is so because the input has ended (FedDrive::before_end_of_input).
+  void end_input();
   /// What has come since the last scan.
   void finish();
 

@@ -54,6 +54,8 @@ struct Run {
   std::vector<core::StepReport> steps;
   std::vector<double> microseconds;    ///< [step] wall clock
   std::vector<core::MapLandmark> map;  ///< empty unless the run finished
+  /// What the user calls landmarks that were known by name; empty where association was not known.
+  std::map<core::LandmarkId, std::string> names;
   /// [step] as known at the end; empty unless a closing or a smoother corrected it, or a session found its place.
   std::vector<core::Pose2> final_path;
   RunTruth truth;

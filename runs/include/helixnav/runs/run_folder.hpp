@@ -20,6 +20,9 @@ RunManifest read_manifest(const std::string& path);
 /// Reads a map.csv. InputError naming file:line. Test: runs/run_folder_test.cpp.
 std::vector<core::MapLandmark> read_map(const std::string& path);
 
+/// What a map.csv says its landmarks are called; empty where they have no names. Errors as read_map.
+std::map<core::LandmarkId, std::string> read_landmark_names(const std::string& path);
+
 /// Reads truth from a folder (truth_*.csv, those that exist) or from one such file, recognised by its header line.
 /// InputError when there is none.
 RunTruth read_truth(const std::string& path);

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace helixnav::apps {
+
+/// The first `seconds` of the log that new-vehicle writes, as lines in order of time; a scan on one line.
+std::vector<std::string> lines_of(const std::filesystem::path& log, double seconds);
+
+}  // namespace helixnav::apps
