@@ -12,6 +12,7 @@
 
 #include "circuits.hpp"
 #include "closing/close_against_odometry.hpp"
+#include "helixnav/core/angle.hpp"
 #include "pauses.hpp"
 
 namespace helixnav::supervisor {
@@ -172,6 +173,23 @@ TEST(WholeMap, FindsAVehicleThatWasCarriedAway) {
   });
   EXPECT_EQ(cut, 1);
   EXPECT_LT(drive.error_at_end_m, 5.0);
+}
+
+/// A slip by about a pitch of the orchard, found out 60 m later: the trees that it stood among were seen up to then, and are not old.
+TEST(WholeMap, MergesCopiesOfTreesThatWereNotOldWhenTheSearchBegan) {
+  sim::Scenario scenario = sim::named_scenario("orchard");
+  scenario.slip.every_m = 200.0;
+  scenario.slip.distance_m = {2.0, 2.0};
+  scenario.slip.turn_rad = {10.0 * core::pi / 180.0, 10.0 * core::pi / 180.0};
+  const core::Recording run = sim::simulate(scenario, 6400039);
+  std::set<core::Label> standing;
+  for (const std::vector<core::Label>& scan : run.labels) standing.insert(scan.begin(), scan.end());
+  standing.erase(core::no_label);
+  const Asking drive = drive_asking(run, {});
+  EXPECT_TRUE(std::any_of(drive.asked.begin(), drive.asked.end(), [](const core::WholeMapDecision& asked) {
+    return asked.verdict == core::WholeMapDecision::Verdict::accepted && asked.odometry_factor != 1.0;
+  }));
+  EXPECT_LE(drive.mature, standing.size()) << "49 trees twice";
 }
 
 /// Where it was put down it matched trees that stand like those that it expected.
