@@ -17,6 +17,26 @@
 namespace helixnav::apps {
 namespace {
 
+/// [observation] how far off; 0 of a bearing alone.
+std::vector<double> ranges_of(const core::Scan& scan) {
+  std::vector<double> ranges_m;
+  for (const core::Observation& seen : scan.observations) {
+    switch (seen.kind) {
+      case core::ObservationKind::range_bearing:
+      case core::ObservationKind::range:
+        ranges_m.push_back(seen.z[0]);
+        break;
+      case core::ObservationKind::cartesian:
+        ranges_m.push_back(seen.z.norm());
+        break;
+      case core::ObservationKind::bearing:
+        ranges_m.push_back(0.0);
+        break;
+    }
+  }
+  return ranges_m;
+}
+
 MotionsAndMountings measured(const core::Recording& recording) {
   MotionsAndMountings result;
   core::Pose2 moved;
@@ -27,6 +47,7 @@ MotionsAndMountings measured(const core::Recording& recording) {
       result.times.push_back(scan->t_ns);
       result.moved.push_back(moved);
       result.mounting.push_back(scan->T_robot_sensor);
+      result.ranges_m.push_back(ranges_of(*scan));
       moved = core::Pose2();
     }
   }
@@ -69,6 +90,15 @@ Eigen::Vector3d left_over(const core::LandmarkGraph& graph, const core::Landmark
   return e;
 }
 
+/// Unit vector from the sensor to the landmark as solved, in the frame of the vehicle. As measured its error would be that of the measured
+/// bearing, and the derivative of a bearing then has its residual's sign: offsets of ranges came out 15 mm low.
+Eigen::Vector2d towards_landmark(const core::LandmarkGraph& graph, const core::LandmarkGraph::LandmarkEdge& edge) {
+  const core::Pose2& T_world_robot = graph.poses[at(edge.pose)].T_world_robot;
+  const Eigen::Vector2d point_m =
+      core::transform(core::inverse(T_world_robot), graph.landmarks[at(edge.landmark)].point_m);
+  return (point_m - edge.T_robot_sensor.position_m()).normalized();
+}
+
 smoothing::ConstantDerivative by_reading(const NudgedLog& log, std::size_t c, const SmoothingTask& task) {
   const core::LandmarkGraph& graph = task.problem.graph;
   const double nudge = log.constants[c].nudge;
@@ -85,8 +115,16 @@ smoothing::ConstantDerivative by_reading(const NudgedLog& log, std::size_t c, co
     if (multiplies) derivative.increments[i] += factor_of.cwiseProduct(left_over(graph, edge)) / log.values[c];
   }
   for (std::size_t k = 0; k < task.edge_of.size(); ++k) {
-    for (const int edge : task.edge_of[k]) {
-      if (edge >= 0) derivative.mountings[at(edge)] = slope(log.told.mounting[k], nudged.mounting[k], nudge);
+    for (std::size_t i = 0; i < task.edge_of[k].size(); ++i) {
+      const int edge = task.edge_of[k][i];
+      if (edge < 0) continue;
+      // What is seen farther off is what a sensor nearer to it sees.
+      const double farther_m = nudged.ranges_m[k].at(i) - log.told.ranges_m[k].at(i);
+      Eigen::Vector3d& mounting = derivative.mountings[at(edge)];
+      mounting = slope(log.told.mounting[k], nudged.mounting[k], nudge);
+      if (farther_m != 0.0) {
+        mounting.head<2>() += farther_m / nudge * towards_landmark(graph, graph.landmark_edges[at(edge)]);
+      }
     }
   }
   return derivative;
@@ -306,7 +344,8 @@ SmoothingTask solve_log(const core::Recording& recording, Ids ids, const core::L
 bool same(const MotionsAndMountings& a, const MotionsAndMountings& b) {
   const auto equal = [](const core::Pose2& one, const core::Pose2& other) { return one.vector() == other.vector(); };
   return std::equal(a.moved.begin(), a.moved.end(), b.moved.begin(), b.moved.end(), equal) &&
-         std::equal(a.mounting.begin(), a.mounting.end(), b.mounting.begin(), b.mounting.end(), equal);
+         std::equal(a.mounting.begin(), a.mounting.end(), b.mounting.begin(), b.mounting.end(), equal) &&
+         a.ranges_m == b.ranges_m;
 }
 
 NudgedLog nudge(const ReadLog& read, const Settings& settings, const std::vector<VehicleConstant>& constants,

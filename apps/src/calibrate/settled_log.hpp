@@ -35,9 +35,10 @@ SmoothingTask solve_log(const core::Recording& recording, Ids ids, const core::L
 
 /// What a log measures between its scans and at them.
 struct MotionsAndMountings {
-  std::vector<core::Nanoseconds> times;  ///< [scan]
-  std::vector<core::Pose2> moved;        ///< [scan] since the scan before
-  std::vector<core::Pose2> mounting;     ///< [scan]
+  std::vector<core::Nanoseconds> times;       ///< [scan]
+  std::vector<core::Pose2> moved;             ///< [scan] since the scan before
+  std::vector<core::Pose2> mounting;          ///< [scan]
+  std::vector<std::vector<double>> ranges_m;  ///< [scan][observation], 0 of a bearing alone
 };
 
 /// Whether two readings measure the same.

@@ -80,6 +80,9 @@ void add_own_sensors(std::size_t sensors, double reach_m, std::vector<VehicleCon
         length("x_m", sensor, reach_m / 50.0, mounting([](core::Pose2& T) -> double& { return T.x_m; })));
     constants.push_back(
         length("y_m", sensor, reach_m / 50.0, mounting([](core::Pose2& T) -> double& { return T.y_m; })));
+    constants.push_back(length("range_offset_m", sensor, reach_m / 100.0, place([i](Settings& s) -> double& {
+                                 return s.logs.vehicle->sensors[i].range_offset_m;
+                               })));
   }
   // One for all, so that scans keep their order.
   constants.push_back(delay(-100.0, 100.0, [](Settings& s) {

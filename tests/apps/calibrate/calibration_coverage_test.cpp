@@ -94,7 +94,7 @@ TEST(CalibrationCoverage, HoldsTheTruthOfSpoiltLogs) {
     EXPECT_GE(held, 0.90 * drives);
     EXPECT_LE(held, 0.99 * drives);
   }
-  EXPECT_GE(held, 0.85 * drives);  // 95 % of 27: fewer than 23 have a probability of 1 %
+  EXPECT_GE(held, 0.85 * drives);  // 95 % of 30: fewer than 26 have a probability of 2 %
   EXPECT_LE(worst_noise["detections"], 0.15);
   EXPECT_LE(worst_noise["odometry"], 0.25);  // 0.207 in 100 drives
 }

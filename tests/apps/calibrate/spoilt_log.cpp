@@ -27,6 +27,7 @@ SpoiltLog draw(std::uint64_t seed) {
   log.right["x_m"] = told_x_m + either(0.1, 0.3);
   log.right["y_m"] = either(0.1, 0.3);
   log.right["delay_s"] = random.uniform(0.05, 0.15);
+  log.right["range_offset_m"] = random.uniform(0.1, 0.25);
   return log;
 }
 
@@ -74,7 +75,7 @@ SpoiltLog write_spoilt_log(std::uint64_t seed, const std::filesystem::path& fold
       const double stamp_s = t_s + right.at("delay_s");
       if (scan->observations.empty()) detections << stamp_s << ",,\n";
       for (const core::Observation& z : scan->observations)
-        detections << stamp_s << ',' << z.z[0] << ',' << z.z[1] / degree << '\n';
+        detections << stamp_s << ',' << z.z[0] - right.at("range_offset_m") << ',' << z.z[1] / degree << '\n';
     }
   }
   return log;
