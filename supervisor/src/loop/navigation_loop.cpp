@@ -130,14 +130,14 @@ StepReport NavigationLoop::step(const Scan& scan) {
   predict();
   GatedScan gated = gate(scan);
   if (const auto trigger = find_trigger(gated, belief_.filter.pose(), options_.search)) {
-    if (leaves_one_place(gated.place, options_.search)) {
+    if (searching() != nullptr) {
+      leave_returns_unused(gated);
+    } else if (leaves_one_place(gated.place, options_.search)) {
       leave_ambiguous_unused(options_.search, gated);
-    } else if (searching() == nullptr) {
+    } else {
       report.decisions.emplace_back(*trigger);
       begin_search(scan);
       gated = gate(scan);
-    } else {
-      leave_returns_unused(gated);
     }
   }
   report_unfinished(gated, report);
