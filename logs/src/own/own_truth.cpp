@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <optional>
+#include <variant>
+
+#include "helixnav/core/odometry.hpp"
 
 namespace helixnav::logs {
 namespace {
@@ -24,8 +27,32 @@ std::optional<core::Pose2> pose_at(const std::vector<core::TruePose>& poses, cor
   return core::compose(before.T_world_robot, core::Pose2(Eigen::Vector3d(share * way)));
 }
 
-/// Where the vehicle stood before the first event. Without truth of that time, where it stood after the first increment, less that.
-std::optional<core::Pose2> start_of(const std::vector<core::TruePose>& poses, const Beginning& beginning) {
+/// From where the drive begins to where it is at a time, by odometry.
+core::Pose2 driven_until(const std::vector<core::Event>& events, core::Nanoseconds start_ns, core::Nanoseconds t_ns) {
+  core::Pose2 T_start_now;
+  core::Nanoseconds now_ns = start_ns;
+  for (const core::Event& event : events) {
+    const auto* motion = std::get_if<core::Odometry>(&event);
+    if (motion == nullptr) continue;
+    const bool is_within = motion->t_ns <= t_ns || motion->t_ns <= now_ns;
+    const double share = is_within ? 1.0 : core::seconds(t_ns - now_ns) / core::seconds(motion->t_ns - now_ns);
+    const Eigen::Vector3d way = motion->T_before_after.vector();
+    T_start_now = core::compose(T_start_now, core::Pose2(Eigen::Vector3d(share * way)));
+    now_ns = motion->t_ns;
+    if (now_ns >= t_ns) break;
+  }
+  return T_start_now;
+}
+
+/// Where the vehicle stood before the first event. Truth that begins later, by a second at most, was driven to by odometry until then.
+/// Without truth of that time, where it stood after the first increment, less that.
+std::optional<core::Pose2> start_of(const std::vector<core::TruePose>& poses, const Beginning& beginning,
+                                    const std::vector<core::Event>& events) {
+  const core::TruePose& first = poses.front();
+  if (first.t_ns > beginning.t_ns && pose_at(poses, beginning.t_ns)) {
+    const core::Pose2 T_start_first = driven_until(events, beginning.t_ns, first.t_ns);
+    return core::compose(first.T_world_robot, core::inverse(T_start_first));
+  }
   if (beginning.T_start_first.vector().isZero(0.0)) return pose_at(poses, beginning.t_ns);
   const core::Nanoseconds start_ns = beginning.t_ns - beginning.lasted_ns;
   const bool is_known = beginning.lasted_ns > 0 && poses.front().t_ns <= start_ns + beginning.lasted_ns / 2;
@@ -48,7 +75,7 @@ void add_truth(const OwnLog& log, const Beginning& beginning, core::Recording& r
     recording.remarks.emplace_back("truth_poses: without headings, and there are fixes: the fixes are compared with");
   }
   if (log.true_poses.empty()) return;
-  const std::optional<core::Pose2> start = start_of(log.true_poses, beginning);
+  const std::optional<core::Pose2> start = start_of(log.true_poses, beginning, recording.events);
   if (!start) {
     recording.remarks.emplace_back(
         "truth_poses: none within a second of the first event, so that the frames are aligned by positions");

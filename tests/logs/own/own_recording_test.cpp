@@ -240,6 +240,14 @@ TEST(OwnRecording, BeginsTheTruthAtTheScanThatComesBeforeTheFirstIncrement) {
   expect_near(log.recording().true_poses.back().T_world_robot, {2.0, 0.0, 0.0}, 1e-9);
 }
 
+TEST(OwnRecording, DrivesByOdometryFromTheStartToATruthThatBeginsLater) {
+  const OwnLogFolder log;
+  log.write("odometry.csv", "t,v,omega\n0,4,0\n0.2,4,0\n0.4,4,0\n2,4,0\n");
+  log.write("detections.csv", "t,range_m,bearing_deg\n0.5,10,0\n1.5,9,0\n");
+  log.write("truth_poses.csv", "t,x,y,heading_deg\n0.25,100,51,90\n2,100,58,90\n");
+  expect_near(log.recording().true_poses.front().T_world_robot, {1.0, 0.0, 0.0}, 1e-9);
+}
+
 TEST(OwnRecording, HandsOutFixesForComparison) {
   const OwnLogFolder log;
   log.write("fixes.csv", "t,x,y,sigma\n0,100,50,0.5\n2,100,60,\n");
