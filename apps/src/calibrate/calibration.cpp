@@ -115,7 +115,8 @@ class Calibrator {
   SettledDrive navigate(const Settings& settings) const {
     const core::Recording recording = read(settings);
     supervisor::NavigatorOptions options = fit_to_recording(settings, recording);
-    options.gates.match_probability = 0.9999;  // a gate cuts the tails that noise is judged by
+    // Gates cut the tails that noise is judged by: that of a pair, and that of all pairs of a scan together.
+    options.gates.match_probability = options.association.joint_probability = 0.9999;
     options.gates.new_probability = 0.999999;
     return drive_through(recording, options, settings.known_association);
   }
