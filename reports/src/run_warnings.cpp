@@ -12,6 +12,7 @@
 #include "helixnav/reports/decision_sentence.hpp"
 #include "numerics_text.hpp"
 #include "only_localized.hpp"
+#include "range_offset_text.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -220,7 +221,7 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
   }
   for (const std::string& text :
        {only_localized(run) ? std::string() : calibration_text(run), fixes_text(run), contradicted_place_text(run),
-        numerics_text(numerics_of(run)), postponed_text(postponed_in(run))}) {
+        numerics_text(numerics_of(run)), postponed_text(postponed_in(run)), range_offset_text(run)}) {
     if (!text.empty()) warnings.push_back(text);
   }
   for (const std::string& text : closing_warnings(run)) warnings.push_back(text);

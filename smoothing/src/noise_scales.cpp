@@ -3,58 +3,80 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/random.hpp"
+#include "joint.hpp"
+#include "sparse/selected_inverse.hpp"
+#include "whitened_rows.hpp"
 
 namespace helixnav::smoothing {
 namespace {
 
-enum class Kind { odometry, landmarks };
-
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
-
-void draw_odometry(Problem& problem, bool noisy, core::RandomStream& random) {
-  for (auto& edge : problem.graph.pose_edges) {
-    const core::Pose2 moved = core::between(problem.graph.poses[index_of(edge.from)].T_world_robot,
-                                            problem.graph.poses[index_of(edge.to)].T_world_robot);
-    const Eigen::Vector3d noise = noisy ? random.normal3(edge.covariance) : Eigen::Vector3d(Eigen::Vector3d::Zero());
-    edge.T_from_to = core::Pose2(Eigen::Vector3d(moved.vector() + noise));
+/// tr(H⁻¹ΣJᵀJ): how many columns these measurements determine.
+double determined_by(const std::vector<WhitenedRows>& all, const SelectedInverse& inverse,
+                     const std::vector<int>& position) {
+  double trace = 0.0;
+  for (const WhitenedRows& one : all) {
+    for (int k = 0; k < 6; ++k) {
+      if (one.column[sized(k)] < 0) continue;
+      const int pk = position[sized(one.column[sized(k)])];
+      trace += one.J.col(k).squaredNorm() * inverse.at(pk, pk);
+      for (int l = 0; l < k; ++l) {
+        if (one.column[sized(l)] < 0) continue;
+        trace += 2.0 * one.J.col(k).dot(one.J.col(l)) * inverse.at(pk, position[sized(one.column[sized(l)])]);
+      }
+    }
   }
+  return trace;
 }
 
-void draw_landmarks(Problem& problem, bool noisy, core::RandomStream& random) {
-  for (auto& edge : problem.graph.landmark_edges) {
-    core::Observation& z = edge.observation;
-    z.z = core::predict_observation(z.kind, problem.graph.poses[index_of(edge.pose)].T_world_robot, edge.T_robot_sensor,
-                                    problem.graph.landmarks[index_of(edge.landmark)].point_m)
-              .z_hat;
-    if (!noisy) continue;
-    const core::ObsVector predicted = z.z;
-    core::ObsVector normal(z.z.size());
-    for (Eigen::Index row = 0; row < normal.size(); ++row) normal[row] = random.normal();
-    z.z += Eigen::MatrixXd(Eigen::MatrixXd(z.R).llt().matrixL()) * normal;
-    const bool has_range = z.kind == core::ObservationKind::range_bearing || z.kind == core::ObservationKind::range;
-    if (has_range && !(z.z[0] > 0.0)) z.z = 2.0 * predicted - z.z;  // as likely, and a range
-  }
-}
+/// Means of what the solution x of errors of one kind does to the rows of the kinds, and of xᵀHx.
+struct Moved {
+  double odometry = 0.0, landmarks = 0.0, all = 0.0;
+};
 
-Eigen::Vector2d by_kind(const Chi2& chi2) { return {chi2.odometry, chi2.landmarks}; }
+/// S of a factorised session. With H = H₁ + H₂ (+ priors) and t_i = tr(H⁻¹H_i), S_ij = δ_ij(n_i − 2t_i) + tr(H⁻¹H_iH⁻¹H_j): the
+/// t_i are exact by the entries of H⁻¹ that H has, and of the rest, which needs all of H⁻¹, one number alone is drawn.
+class Redundancies {
+ public:
+  explicit Redundancies(Session& session)
+      : session_(session), odometry_(whitened_odometry(session)), landmarks_(whitened_observations(session)) {}
 
-/// χ² of both kinds where only measurements of one are in error, in the mean of the draws: a column of S.
-Eigen::Vector2d column(const Problem& solved, Kind kind, int draws, core::RandomStream& random,
-                       const Options& options) {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (int i = 0; i < draws; ++i) {
-    Problem drawn = solved;
-    draw_odometry(drawn, kind == Kind::odometry, random);
-    draw_landmarks(drawn, kind == Kind::landmarks, random);
-    sum += by_kind(optimize(drawn, options).chi2);
+  Eigen::Matrix2d draw(int draws, core::RandomStream& random) {
+    const std::vector<int> position = positions(session_);
+    const SelectedInverse inverse(session_.cholesky.factor(), position);
+    const double by_odometry = determined_by(odometry_, inverse, position);
+    const double by_landmarks = determined_by(landmarks_, inverse, position);
+    const Moved odometry = moved_by(odometry_, draws, random), landmarks = moved_by(landmarks_, draws, random);
+    Eigen::Matrix2d S;
+    const double both = 0.5 * (odometry.landmarks + landmarks.odometry);
+    // What priors hold fast is left as drawn; without priors both differences are nought beside the others.
+    const double own_odometry = by_odometry - both - (odometry.all - odometry.odometry - odometry.landmarks);
+    const double own_landmarks = by_landmarks - both - (landmarks.all - landmarks.odometry - landmarks.landmarks);
+    S << count_rows(odometry_) - 2.0 * by_odometry + own_odometry, both, both,
+        count_rows(landmarks_) - 2.0 * by_landmarks + own_landmarks;
+    return S;
   }
-  return sum / draws;
-}
+
+ private:
+  Moved moved_by(const std::vector<WhitenedRows>& kind, int draws, core::RandomStream& random) {
+    Moved sum;
+    Eigen::VectorXd x, Hx;
+    for (int i = 0; i < draws; ++i) {
+      const Eigen::VectorXd g = transposed_times(kind, session_.layout.columns, [&random] { return random.normal(); });
+      session_.cholesky.solve(g, x);
+      sum.odometry += squared_norm_of(odometry_, x) / draws;
+      sum.landmarks += squared_norm_of(landmarks_, x) / draws;
+      sum.all += x.dot(g) / draws;
+    }
+    return sum;
+  }
+
+  Session& session_;
+  std::vector<WhitenedRows> odometry_, landmarks_;
+};
 
 NoiseScale scale_of(double variance, double variance_of_variance, double redundancy) {
   NoiseScale scale;
@@ -68,19 +90,19 @@ NoiseScale scale_of(double variance, double variance_of_variance, double redunda
 
 }  // namespace
 
-NoiseScales estimate_noise_scales(const Problem& solved, std::uint64_t seed, int draws, const Options& options) {
+NoiseScales estimate_noise_scales(const Problem& solved, std::uint64_t seed, int draws) {
   if (draws < 1 || solved.graph.pose_edges.empty() || solved.graph.landmark_edges.empty()) {
     throw core::PreconditionError("estimate_noise_scales: needs odometry, landmark observations and at least one draw");
   }
-  Options near = options;
-  near.first_damping = 1e-8;
+  check_problem(solved);
+  const Options options;
+  Session session(solved, options);
+  session.linearize();
+  session.factorize_undamped();
   core::RandomStream random(seed, "noise scales");
-  const Eigen::Vector2d q = by_kind(evaluate_chi2(solved));
-  Eigen::Matrix2d S;
-  S.col(0) = column(solved, Kind::odometry, draws, random, near);
-  S.col(1) = column(solved, Kind::landmarks, draws, random, near);
+  const Eigen::Matrix2d S = Redundancies(session).draw(draws, random);
+  const Eigen::Vector2d q(session.chi2.odometry, session.chi2.landmarks);
   const Eigen::Vector2d redundancy = S.rowwise().sum();
-  S(0, 1) = S(1, 0) = 0.5 * (S(0, 1) + S(1, 0));
   Eigen::Vector2d variances = S.inverse() * q;
   if (!(S(0, 0) > 0.0 && S(1, 1) > 0.0 && S.determinant() > 1e-6 * S(0, 0) * S(1, 1))) {
     throw core::NumericalError("estimate_noise_scales: odometry and observations cannot be told apart");

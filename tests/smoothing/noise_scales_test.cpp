@@ -5,6 +5,7 @@
 
 #include "dense_twin.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/smoothing/optimize.hpp"
 #include "random_problem.hpp"
 
 namespace helixnav::smoothing {
@@ -24,19 +25,38 @@ Problem solved(std::uint64_t seed) {
   return made.problem;
 }
 
+/// S_ij = tr(P_i P_j) by the dense projector on what the solution leaves of the measurements.
+Eigen::Matrix2d dense_twin_of_s(const Problem& problem) {
+  const Eigen::MatrixXd J = DenseTwin(problem).jacobian();
+  const Eigen::MatrixXd P =
+      Eigen::MatrixXd::Identity(J.rows(), J.rows()) - J * (J.transpose() * J).ldlt().solve(J.transpose());
+  const auto n = static_cast<Eigen::Index>(3 * problem.graph.pose_edges.size());
+  const Eigen::Index m = P.rows() - n;
+  Eigen::Matrix2d S;
+  S << P.topLeftCorner(n, n).squaredNorm(), P.topRightCorner(n, m).squaredNorm(),
+      P.bottomLeftCorner(m, n).squaredNorm(), P.bottomRightCorner(m, m).squaredNorm();
+  return S;
+}
+
 TEST(NoiseScales, HaveTheRedundanciesOfTheDenseProjector) {
   const Problem problem = solved(1);
-  const Eigen::MatrixXd J = DenseTwin(problem).jacobian();
-  const Eigen::MatrixXd M =
-      Eigen::MatrixXd::Identity(J.rows(), J.rows()) - J * (J.transpose() * J).ldlt().solve(J.transpose());
-  const auto odometry_rows = static_cast<Eigen::Index>(3 * problem.graph.pose_edges.size());
-  const double odometry = M.diagonal().head(odometry_rows).sum();
-  const double landmarks = M.diagonal().tail(M.rows() - odometry_rows).sum();
-  constexpr int draws = 200;
-  const NoiseScales scales = estimate_noise_scales(problem, 1, draws);
-  // Each is a mean of 200 sums of squares: 5 standard deviations.
-  EXPECT_NEAR(scales.odometry.redundancy, odometry, 5.0 * std::sqrt(2.0 * odometry / draws));
-  EXPECT_NEAR(scales.landmarks.redundancy, landmarks, 5.0 * std::sqrt(2.0 * landmarks / draws));
+  const Eigen::Vector2d redundancy = dense_twin_of_s(problem).rowwise().sum();
+  const NoiseScales scales = estimate_noise_scales(problem, 1);  // however few are drawn
+  EXPECT_NEAR(scales.odometry.redundancy, redundancy[0], 1e-5 * redundancy[0]);
+  EXPECT_NEAR(scales.landmarks.redundancy, redundancy[1], 1e-5 * redundancy[1]);
+}
+
+TEST(NoiseScales, AreThoseOfTheDenseTwin) {
+  const Problem problem = solved(3);
+  const Eigen::Matrix2d S = dense_twin_of_s(problem);
+  const Chi2 chi2 = evaluate_chi2(problem);
+  const Eigen::Vector2d variances = S.inverse() * Eigen::Vector2d(chi2.odometry, chi2.landmarks);
+  const Eigen::Matrix2d C = 2.0 * S.inverse();
+  const NoiseScales scales = estimate_noise_scales(problem, 1, 3000);
+  EXPECT_NEAR(scales.odometry.factor, std::sqrt(variances[0]), 0.005);
+  EXPECT_NEAR(scales.landmarks.factor, std::sqrt(variances[1]), 0.005);
+  EXPECT_NEAR(std::log(scales.odometry.high_95 / scales.odometry.factor), 0.98 * std::sqrt(C(0, 0)), 0.005);
+  EXPECT_NEAR(std::log(scales.landmarks.high_95 / scales.landmarks.factor), 0.98 * std::sqrt(C(1, 1)), 0.005);
 }
 
 TEST(NoiseScales, HoldTheTruthInTheirIntervals) {

@@ -115,7 +115,8 @@ class Calibrator {
   SettledDrive navigate(const Settings& settings) const {
     const core::Recording recording = read(settings);
     supervisor::NavigatorOptions options = fit_to_recording(settings, recording);
-    options.gates.match_probability = 0.9999;  // a gate cuts the tails that noise is judged by
+    // Gates cut the tails that noise is judged by: that of a pair, and that of all pairs of a scan together.
+    options.gates.match_probability = options.association.joint_probability = 0.9999;
     options.gates.new_probability = 0.999999;
     return drive_through(recording, options, settings.known_association);
   }
@@ -189,10 +190,9 @@ class Calibrator {
 
   /// A drive that is nonsense from beginning to end leaves nothing to judge noise by.
   smoothing::NoiseScales noise_of(const SettledDrive& drive) const {
-    constexpr int draws = 12;  // by 3 the noise of the odometry is off by 4 % in all logs at once: the seed is the same
-    constexpr double tolerance_chi2 = 0.01;  // of thousands, to be known to a per cent
+    constexpr int draws = 12;
     try {
-      return smoothing::estimate_noise_scales(drive.task.problem, 1, draws, patient_solver(tolerance_chi2));
+      return smoothing::estimate_noise_scales(drive.task.problem, 1, draws);
     } catch (const core::NumericalError& error) {
       throw core::InputError(path_ + ": no noise can be judged by this drive (" + error.what() + "), of which " +
                              std::to_string(drive.used) + " of " + std::to_string(drive.observations) +

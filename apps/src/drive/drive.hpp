@@ -24,6 +24,7 @@ struct Drive {
   std::optional<GivenMap> given_map;      ///< localise in it instead of mapping
   std::optional<EarlierSession> earlier;  ///< go on in its map
   bool known_association = false;         ///< use the recording's labels as identities
+  bool is_own_log = false;                ///< in the user's own format, of which calibrate finds range_offset_m
   std::vector<bool> withheld;             ///< [scan] not to be fed (blackout.hpp); empty: none is
   double memory_mb = 0.0;                 ///< of the process, at which the drive ends; 0: no limit
   bool smooth = false;                    ///< afterwards, with the filter's own associations

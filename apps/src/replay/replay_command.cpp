@@ -116,6 +116,7 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   apply_vehicle(command, job.vehicle, job.path, job.settings);
   LogToReplay log = read_to_replay(job.path, job.settings);
   task.recording = std::move(log.recording);
+  task.is_own_log = logs::recognise(job.path) == logs::LogFormat::own;
   if (log.estimated_range_scale) std::printf("range scale estimated from the log: %.4f\n", *log.estimated_range_scale);
   if (!job.blackouts.empty()) task.withheld = withhold(task.recording, job.blackouts);
   apply_log_settings(task.recording, job.settings);
