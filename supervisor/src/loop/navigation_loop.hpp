@@ -161,7 +161,8 @@ class NavigationLoop {
   std::shared_ptr<DriveMap> drive_until_now() const;
   std::shared_ptr<DriveMap> begun_drive() const;
   void begin_window(std::shared_ptr<DriveMap> drive, const WindowNeeds& needs);
-  void begin_drive_if_due();
+  bool tape_is_long() const;
+  void take_drive_if_due();
   bool hand_over(const WindowNeeds& needs);
   void hand_over_if_due();
   void widen_for_search();

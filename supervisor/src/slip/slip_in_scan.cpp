@@ -178,6 +178,9 @@ bool NavigationLoop::allow_for_slip(const core::Scan& scan, const Confirmation& 
   if (!slip) return false;
   report.decisions.emplace_back(slip->figures);
   belief_.slips.add(slip->displacement);
+  core::Odometry slipped = core::no_motion(scan.t_ns);
+  slipped.T_before_after = core::Pose2(slip->displacement);
+  belief_.moving.move(slipped);  // else what stands would seem to have moved by it
   move_unmeasured(slip->covariance, scan.t_ns);
 
   std::vector<cekf::Match> pairs;

@@ -14,6 +14,8 @@
 namespace helixnav::supervisor {
 namespace {
 
+constexpr double pause_m = 20.0;                ///< driven from one trial to the next
+
 /// How far from the estimated vehicle what it sees may be mapped: both it and what is mapped there may be off by its deviation
 /// since the start.
 double drift_m(const cekf::CompressedEkf& filter) {
@@ -101,12 +103,17 @@ int NavigationLoop::would_hold(const WindowNeeds& needs) const {
   return std::min(needs.most, std::max(needs.landmarks, near));
 }
 
+/// Beyond the drive that is in the atlas.
+bool NavigationLoop::tape_is_long() const {
+  return belief_.drive &&
+         tape_.end() - belief_.drive->end() > static_cast<Tape::Position>(options_.search.smooth_up_to_scans);
+}
+
 /// When the vehicle nears the edge of its window, or the filter holds half as much again as a new one would; the first one is to
 /// halve it.
 bool NavigationLoop::is_hand_over_due() const {
   const bool is_part = std::isfinite(belief_.window.radius_m);
   if (!is_part && !needs_window()) return false;
-  constexpr double pause_m = 20.0;
   if (belief_.existence.path_m() - belief_.window.begun_path_m <= pause_m) return false;
   // Early: where the vehicle sees little, on a street without trees, it may be long before it is trusted again.
   // No farther than that of a window that does not reach so far, or it would be handed over all the time.
@@ -114,22 +121,24 @@ bool NavigationLoop::is_hand_over_due() const {
   const double needed_m = std::min(3.0 * view_.reach().value_or(reference_reach_m) + 0.5 * drift_m(belief_.filter),
                                    most_share * belief_.window.radius_m);
   if (belief_.window.reach_from(belief_.filter.pose().mean.position_m()) < needed_m) return true;
-  constexpr Tape::Position most_entries = 20000;
-  if (belief_.drive && tape_.end() - belief_.drive->end() > most_entries) return true;
+  if (tape_is_long()) return true;
   const double most_growth = is_part ? 1.5 : 2.0;
   const double held = belief_.filter.mapped_count();
   return held > most_growth * options_.map.window && held > most_growth * would_hold(window_to_map());
 }
 
-/// A long drive, before the tape ceases to hold it from its begin. Where it could not be solved it is tried again a few times.
-void NavigationLoop::begin_drive_if_due() {
+/// A long drive, before the tape ceases to hold it from its begin; where it could not be solved it is tried again a few times. From
+/// then on now and again, also where one filter holds the map for ever: a tape that nobody takes in grows without bound.
+void NavigationLoop::take_drive_if_due() {
   constexpr double longer = 1.125;
-  const bool is_due = !belief_.drive && 2 * tape_.stops() > options_.search.smooth_up_to_scans &&
-                      belief_.existence.path_m() > longer * belief_.window.begun_path_m;
+  const double path_m = belief_.existence.path_m();
+  const double begun_m = belief_.window.begun_path_m;
+  const bool is_due = belief_.drive ? tape_is_long() && path_m > begun_m + pause_m
+                                    : 2 * tape_.stops() > options_.search.smooth_up_to_scans && path_m > longer * begun_m;
   if (!is_due) return;
   Window tried = belief_.window;
-  tried.begun_path_m = belief_.existence.path_m();
-  std::shared_ptr<DriveMap> drive;
+  tried.begun_path_m = path_m;
+  std::shared_ptr<const DriveMap> drive = belief_.drive;
   try {
     drive = drive_until_now();
   } catch (const core::NumericalError&) {
@@ -152,7 +161,7 @@ void NavigationLoop::hand_over_if_due() {
   if (mapping == nullptr || !may_have_window()) return;
   const bool is_trusted = mapping->trusted->position == tape_.end();
   if (!is_trusted && !is_at_edge()) return;
-  if (is_trusted) begin_drive_if_due();
+  if (is_trusted) take_drive_if_due();
   if (!is_hand_over_due()) return;
   if (!undo_.mode) undo_.mode.emplace(Mode(*mapping));
   if (hand_over(window_to_map())) {
