@@ -227,6 +227,15 @@ TEST_F(StreamProgram, EndsInOrderOnSigterm) {
   EXPECT_EQ(complete_lines(out_ / "trajectory.tum"), 2u);
 }
 
+TEST_F(StreamProgram, IsJudgedByTheTruthOfItsLog) {
+  ASSERT_EQ(streamed(lines_of(log_, 60.0), {"--out", out_}).exit_code, 0);
+  const Outcome judged = run({"evaluate", out_, "--truth", log_, "--json"});
+  ASSERT_EQ(judged.exit_code, 0) << judged.err;
+  const Json figures = Json::parse(judged.out);
+  EXPECT_LT(figures["error"]["rmse_m"].get<double>(), 1.0) << "in the map frame as it is";
+  EXPECT_TRUE(figures.contains("nees")) << judged.out;
+}
+
 TEST_F(StreamProgram, LeavesAFolderThatIsReadWhenItIsKilled) {
   Talking live = begin({"--out", out_});
   live.talk->say(odometry(0.0) + odometry(1.0) + scan(0.5));

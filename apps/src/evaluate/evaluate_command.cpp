@@ -59,7 +59,8 @@ void add_evaluate_command(CLI::App& app, ExitCode&) {
   command->add_option("DIR", job->folder, "Run folder, also one whose run was killed")->required();
   command->add_option(
       "--truth", job->truth,
-      "Truth instead of the run folder's: truth_*.csv, a folder of them, or Victoria Park's aa3_gpsx.mat");
+      "Truth instead of the run folder's: its truth_*.csv, a folder of them, a log of one's own, or Victoria Park's "
+      "aa3_gpsx.mat");
   command->add_option("--truth-offset-s", job->truth_offset_s, "Added to the times of --truth")
       ->capture_default_str()
       ->check(number_between(-1e9, 1e9));
