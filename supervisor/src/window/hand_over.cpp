@@ -14,7 +14,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-constexpr double pause_m = 20.0;                ///< driven from one trial to the next
+constexpr double pause_m = 20.0;  ///< driven from one trial to the next
 
 /// How far from the estimated vehicle what it sees may be mapped: both it and what is mapped there may be off by its deviation
 /// since the start.
@@ -133,8 +133,9 @@ void NavigationLoop::take_drive_if_due() {
   constexpr double longer = 1.125;
   const double path_m = belief_.existence.path_m();
   const double begun_m = belief_.window.begun_path_m;
-  const bool is_due = belief_.drive ? tape_is_long() && path_m > begun_m + pause_m
-                                    : 2 * tape_.stops() > options_.search.smooth_up_to_scans && path_m > longer * begun_m;
+  const bool is_due = belief_.drive
+                          ? tape_is_long() && path_m > begun_m + pause_m
+                          : 2 * tape_.stops() > options_.search.smooth_up_to_scans && path_m > longer * begun_m;
   if (!is_due) return;
   Window tried = belief_.window;
   tried.begun_path_m = path_m;

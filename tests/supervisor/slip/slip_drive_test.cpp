@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Towns in which the vehicle slips, and orchards in which it does not, judged by the truth.
+#include <cmath>
+#include <variant>
+
 #include <gtest/gtest.h>
 
+#include "helixnav/core/angle.hpp"
+#include "helixnav/core/decision.hpp"
+#include "helixnav/core/odometry.hpp"
 #include "judged_drive.hpp"
 
 namespace helixnav::supervisor {
@@ -33,6 +39,46 @@ TEST(SlipDrive, OfAnOrchardWithoutSlipsDecidesForNone) {
 /// among those that lie around them.
 TEST(SlipDrive, OfAVehicleThatIsCarriedTooIsIndexed) {
   EXPECT_NO_THROW(navigate_and_judge(sim::named_scenario("kidnapped-slip"), 4300009));
+}
+
+/// Posts on both sides of a straight road, seen 12 m ahead and to the sides.
+core::Scan scan_of_posts(double vehicle_x_m, int scan) {
+  core::Scan seen;
+  seen.t_ns = 500'000'000LL * scan;
+  seen.field_of_view = {0.3, 12.0, -core::pi / 2, core::pi / 2};
+  for (int post = 0; post < 40; ++post) {
+    const Eigen::Vector2d at_m(2.2 * post + std::sin(5.0 * post) - vehicle_x_m,
+                               (post % 2 == 0 ? 1.0 : -1.0) * (4.0 + 3.0 * std::cos(3.0 * post)));
+    if (at_m.norm() > 12.0 || at_m.x() < 0.0) continue;
+    core::Observation observation;
+    observation.z = Eigen::Vector2d(at_m.norm(), std::atan2(at_m.y(), at_m.x()));
+    observation.R = Eigen::Vector2d(0.04, 0.01).cwiseAbs2().asDiagonal();
+    seen.observations.push_back(observation);
+  }
+  return seen;
+}
+
+/// Wheels that spin for two seconds: all that stands comes along with the vehicle by its own speed, as odometry has it.
+TEST(SlipDrive, OfWheelsThatSpinMakesNothingMove) {
+  constexpr double step_m = 0.75;
+  Navigator navigator({}, {});
+  double vehicle_x_m = 0.0;
+  int slips = 0, movers = 0;
+  for (int scan = 0; scan < 80; ++scan) {
+    core::Odometry motion = core::no_motion(500'000'000LL * scan);
+    motion.T_before_after = core::Pose2(step_m, 0.0, 0.0);
+    motion.covariance = Eigen::Vector3d(0.03, 0.01, 0.01).cwiseAbs2().asDiagonal();
+    if (scan > 0) navigator.move(motion);
+    const bool spins = scan >= 40 && scan < 44;
+    if (scan > 0 && !spins) vehicle_x_m += step_m;
+    for (const core::Decision& decision : navigator.observe(scan_of_posts(vehicle_x_m, scan)).decisions) {
+      slips += std::holds_alternative<core::SlipDecision>(decision);
+      movers += std::holds_alternative<core::MovingDecision>(decision);
+    }
+  }
+  EXPECT_GE(slips, 3);
+  EXPECT_EQ(movers, 0);
+  EXPECT_NEAR(navigator.pose().mean.x_m, vehicle_x_m, 0.3);
 }
 
 }  // namespace
