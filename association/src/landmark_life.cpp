@@ -69,7 +69,7 @@ void LandmarkLife::pass(const std::vector<LandmarkId>& unseen_at_rim) {
   }
 }
 
-bool LandmarkLife::is_blinded(std::size_t observations, std::size_t expected) {
+bool LandmarkLife::note_if_blinded(std::size_t observations, std::size_t expected) {
   constexpr std::size_t many = 3;
   const bool sees_nothing = observations == 0 && expected >= many;
   return std::exchange(saw_nothing_, sees_nothing) && sees_nothing;

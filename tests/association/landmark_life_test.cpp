@@ -35,18 +35,18 @@ TEST(LandmarkLife, ScansThatSeeNothingAtAllInARowAreOneMiss) {
   double x_m = 0.0;
   for (int k = 0; k < 5; ++k) life.observe(at(++x_m), trees, {}, trees);
   for (int k = 0; k < 20; ++k) {
-    const bool is_blinded = life.is_blinded(0, trees.size());
+    const bool is_blinded = life.note_if_blinded(0, trees.size());
     EXPECT_EQ(is_blinded, k > 0);
     life.observe(at(++x_m), {}, {}, is_blinded ? std::vector<core::LandmarkId>{} : trees);
   }
   for (const core::LandmarkId tree : trees) EXPECT_EQ(life.record(tree).misses, 1);
-  EXPECT_FALSE(life.is_blinded(1, trees.size())) << "it sees something";
-  EXPECT_FALSE(life.is_blinded(0, trees.size())) << "the first of the next row";
+  EXPECT_FALSE(life.note_if_blinded(1, trees.size())) << "it sees something";
+  EXPECT_FALSE(life.note_if_blinded(0, trees.size())) << "the first of the next row";
 }
 
 TEST(LandmarkLife, AScanThatMissesFewIsNotBlinded) {
   LandmarkLife life;
-  for (int k = 0; k < 3; ++k) EXPECT_FALSE(life.is_blinded(0, 2));
+  for (int k = 0; k < 3; ++k) EXPECT_FALSE(life.note_if_blinded(0, 2));
 }
 
 // A map keeps what several looks have placed: sightings that no estimate used make a landmark likely, but not placed.

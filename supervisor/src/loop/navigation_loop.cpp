@@ -239,7 +239,7 @@ std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const
   if (!has_unplaced(scan)) {
     expected = expected_unseen(belief_.filter, scan, options_.view_margin_m, report.associations);
   }
-  const bool is_blinded = belief_.existence.is_blinded(scan.observations.size(), expected.size());
+  const bool is_blinded = belief_.existence.note_if_blinded(scan.observations.size(), expected.size());
   if (is_blinded) expected.clear();
   if (Mapping* mapping = std::get_if<Mapping>(&mode_)) {
     mapping->monitor.observe(belief_.existence, expected, seen, options_.search.old_after_m);

@@ -161,7 +161,7 @@ class NavigationLoop {
   std::shared_ptr<DriveMap> drive_until_now() const;
   std::shared_ptr<DriveMap> begun_drive() const;
   void begin_window(std::shared_ptr<DriveMap> drive, const WindowNeeds& needs);
-  bool tape_is_long() const;
+  bool is_drive_due() const;
   void take_drive_if_due();
   bool hand_over(const WindowNeeds& needs);
   void hand_over_if_due();

@@ -103,12 +103,6 @@ int NavigationLoop::would_hold(const WindowNeeds& needs) const {
   return std::min(needs.most, std::max(needs.landmarks, near));
 }
 
-/// Beyond the drive that is in the atlas.
-bool NavigationLoop::tape_is_long() const {
-  return belief_.drive &&
-         tape_.end() - belief_.drive->end() > static_cast<Tape::Position>(options_.search.smooth_up_to_scans);
-}
-
 /// When the vehicle nears the edge of its window, or the filter holds half as much again as a new one would; the first one is to
 /// halve it.
 bool NavigationLoop::is_hand_over_due() const {
@@ -121,24 +115,31 @@ bool NavigationLoop::is_hand_over_due() const {
   const double needed_m = std::min(3.0 * view_.reach().value_or(reference_reach_m) + 0.5 * drift_m(belief_.filter),
                                    most_share * belief_.window.radius_m);
   if (belief_.window.reach_from(belief_.filter.pose().mean.position_m()) < needed_m) return true;
-  if (tape_is_long()) return true;
+  constexpr Tape::Position most_entries = 20000;
+  if (belief_.drive && tape_.end() - belief_.drive->end() > most_entries) return true;
   const double most_growth = is_part ? 1.5 : 2.0;
   const double held = belief_.filter.mapped_count();
   return held > most_growth * options_.map.window && held > most_growth * would_hold(window_to_map());
 }
 
 /// A long drive, before the tape ceases to hold it from its begin; where it could not be solved it is tried again a few times. From
-/// then on now and again, also where one filter holds the map for ever: a tape that nobody takes in grows without bound.
-void NavigationLoop::take_drive_if_due() {
+/// then on what came since, a little at a time, also where one filter holds the map for ever: a tape that nobody takes in grows
+/// without bound.
+bool NavigationLoop::is_drive_due() const {
   constexpr double longer = 1.125;
+  constexpr Tape::Position portion = 1000;  // entries: 20 ms
   const double path_m = belief_.existence.path_m();
   const double begun_m = belief_.window.begun_path_m;
-  const bool is_due = belief_.drive
-                          ? tape_is_long() && path_m > begun_m + pause_m
-                          : 2 * tape_.stops() > options_.search.smooth_up_to_scans && path_m > longer * begun_m;
-  if (!is_due) return;
+  const bool is_long = 2 * tape_.stops() > options_.search.smooth_up_to_scans || !tape_.holds_since(0);
+  if (!belief_.drive) return is_long && path_m > longer * begun_m;
+  const bool is_whole = std::isinf(belief_.window.radius_m);  // else a hand-over takes it in
+  return is_long && is_whole && tape_.end() - belief_.drive->end() > portion && path_m > begun_m + pause_m;
+}
+
+void NavigationLoop::take_drive_if_due() {
+  if (!is_drive_due()) return;
   Window tried = belief_.window;
-  tried.begun_path_m = path_m;
+  tried.begun_path_m = belief_.existence.path_m();
   std::shared_ptr<const DriveMap> drive = belief_.drive;
   try {
     drive = drive_until_now();

@@ -76,9 +76,9 @@ class LandmarkLife {
   /// for an id that is not recorded.
   void pass(const std::vector<core::LandmarkId>& unseen_at_rim);
 
-  /// Whether what the next scan to be observed does not see is no evidence, because the sensor may be blinded: it sees nothing at all where
+  /// Notes a scan before it is observed. True where what it does not see is no evidence, because the sensor may be blinded: it sees nothing at all where
   /// three landmarks or more should be, and so did the scan before it. Such scans miss all landmarks for one reason, and count once.
-  bool is_blinded(std::size_t observations, std::size_t expected);
+  bool note_if_blinded(std::size_t observations, std::size_t expected);
 
   /// One scan taken with the sensor at `sensor_m`, world frame. `seen`: matched landmarks. `born`: those that it began.
   /// `expected`: those it should have seen, with a margin inside the field of view; seen ones may be among them. A
