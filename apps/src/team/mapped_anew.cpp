@@ -40,6 +40,23 @@ bool is_of_landmark(const core::AssociationReport& one) {
   return one.outcome == core::Outcome::matched || one.outcome == core::Outcome::augmented;
 }
 
+using Times = std::map<core::LandmarkId, core::Nanoseconds>;
+
+/// When any robot saw each landmark first.
+Times first_seen_ns(const TeamDrive& drive, const LandmarksNow& now) {
+  Times first_ns;
+  for (const TeamDrive::Robot& robot : drive.robots) {
+    for (const core::StepReport& step : robot.steps) {
+      for (const core::AssociationReport& one : step.associations) {
+        if (!is_of_landmark(one)) continue;
+        core::Nanoseconds& first = first_ns.emplace(now(one.landmark), step.t_ns).first->second;
+        first = std::min(first, step.t_ns);
+      }
+    }
+  }
+  return first_ns;
+}
+
 struct Polar {
   double range_m = 0.0;
   double bearing_rad = 0.0;
@@ -100,8 +117,8 @@ struct Scan {
 
 /// Counts of the scans in which anything was seen.
 std::vector<Scan> count_scans(const TeamDrive::Robot& robot, const Points& points_m, const View& view,
-                              const LandmarksNow& now) {
-  std::map<core::LandmarkId, core::Nanoseconds> since_ns;
+                              const LandmarksNow& now, const Times& begun_ns) {
+  Times since_ns;
   std::vector<Scan> scans;
   for (const core::StepReport& step : robot.steps) {
     if (step.associations.empty()) continue;
@@ -112,8 +129,8 @@ std::vector<Scan> count_scans(const TeamDrive::Robot& robot, const Points& point
       ++scan.seen;
       if (!is_of_landmark(one)) continue;
       const core::LandmarkId id = now(one.landmark);
-      const core::Nanoseconds known_ns = step.t_ns - since_ns.emplace(id, step.t_ns).first->second;
-      scan.begun += known_ns < lately_ns ? 1 : 0;
+      since_ns.emplace(id, step.t_ns);
+      scan.begun += step.t_ns - begun_ns.at(id) < lately_ns ? 1 : 0;
       if (one.outcome == core::Outcome::matched) matched.insert(id);
     }
     for (const auto& [id, first_ns] : since_ns) {
@@ -138,7 +155,7 @@ std::optional<MappedAnew> mapped_anew(const TeamDrive& drive, std::size_t robot)
   const Points points_m = known_points_m(drive, robot);
   const std::optional<View> view = view_of(drive.robots[robot], points_m, now);
   if (!view) return std::nullopt;
-  const std::vector<Scan> scans = count_scans(drive.robots[robot], points_m, *view, now);
+  const std::vector<Scan> scans = count_scans(drive.robots[robot], points_m, *view, now, first_seen_ns(drive, now));
   std::optional<MappedAnew> worst;
   for (std::size_t first = 0; first + together <= scans.size(); ++first) {
     Scan sum;

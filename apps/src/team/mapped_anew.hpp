@@ -12,8 +12,8 @@ namespace helixnav::apps {
 /// elsewhere than it took itself for, after a slip or wrong matches.
 struct MappedAnew {
   core::Nanoseconds from_ns = 0, to_ns = 0;
-  double missed = 0.0;  ///< share of the landmarks known for ten seconds that were to be seen
-  double begun = 0.0;   ///< share of what was seen that is of landmarks begun in the last ten seconds
+  double missed = 0.0;  ///< share of the landmarks that it has known for ten seconds and that were to be seen
+  double begun = 0.0;   ///< share of what was seen that is of landmarks that no robot knew ten seconds before
 };
 
 /// The worst twenty scans of the robot, where both shares are 0.8 or more. Which landmarks are to be seen is told by where it
