@@ -147,7 +147,6 @@ bool join_by(const Candidate& candidate, core::Nanoseconds t_ns, const TeamOptio
   join.other = static_cast<int>(from.robots.front());
   join.merged = static_cast<int>(candidate.same.size());
   join.left_out = static_cast<int>(candidate.left_out.size());
-  forget_misread(candidate, trial);
   for (const std::size_t r : from.robots) trial.placed.push_back({r, trial.joins.size()});
   lay_together(candidate, trial);
   for (const std::size_t row : candidate.sightings) trial.sighting_rows[row].use = Use::used;
@@ -158,7 +157,8 @@ bool join_by(const Candidate& candidate, core::Nanoseconds t_ns, const TeamOptio
     if (join.by == TeamJoin::By::names && !is_placed(join, trial, options.join)) return false;
     const Explained others = use_sightings(candidate.into, options.gate_probability, trial);
     if (others.refused > others.used) return false;
-    if (others.used > 0 && !solve(candidate.into, trial)) return false;
+    forget_misread(candidate, trial);  // not before: what their sightings cost is in that of both apart
+    if ((others.used > 0 || join.left_out > 0) && !solve(candidate.into, trial)) return false;
   } catch (const core::NumericalError&) {
     return false;
   }
