@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -66,35 +67,6 @@ bool can_be_paired(const LabelCounts& counts, const runs::RunTruth& truth) {
                      [&](const core::TrueLandmark& known) { return counts.in_all.count(known.label) > 0; });
 }
 
-MapEvaluation evaluate_by_label(LabelCounts counts, const runs::RunTruth& truth,
-                                const std::vector<MovedLandmark>& landmarks) {
-  constexpr int seen_often = 10;
-  MapEvaluation result;
-  result.by_label = true;
-  std::map<core::Label, std::vector<const MovedLandmark*>> of_label;
-  for (const MovedLandmark& landmark : landmarks) {
-    of_label[most_frequent(counts.by_landmark[landmark.id])].push_back(&landmark);
-  }
-  std::vector<double> errors_m;
-  std::size_t claimed = 0;
-  for (const core::TrueLandmark& known : truth.landmarks) {
-    const auto found = of_label.find(known.label);
-    if (found == of_label.end()) {
-      result.missing += counts.in_all[known.label] >= seen_often ? 1 : 0;
-      continue;
-    }
-    const auto& rivals = found->second;
-    const MovedLandmark* partner = *std::max_element(
-        rivals.begin(), rivals.end(), [](const auto* a, const auto* b) { return a->observations < b->observations; });
-    errors_m.push_back((partner->point_truth_m - known.point_m).norm());
-    result.duplicates += rivals.size() - 1;
-    claimed += rivals.size();
-  }
-  result.spurious = landmarks.size() - claimed;
-  result.error_m = error_statistics(std::move(errors_m));
-  return result;
-}
-
 struct NearPair {
   double distance_m;
   std::size_t landmark;
@@ -149,6 +121,47 @@ std::vector<NearPair> near_pairs(const runs::RunTruth& truth, const std::vector<
   return pairs;
 }
 
+/// Of landmarks that this run never saw (of a map begun before, or by other robots), those that stand on no true one.
+std::size_t count_off_truth(const runs::RunTruth& truth, const std::vector<MovedLandmark>& unseen, double limit_m) {
+  std::set<std::size_t> on_truth;
+  for (const NearPair& pair : near_pairs(truth, unseen, limit_m)) on_truth.insert(pair.landmark);
+  return unseen.size() - on_truth.size();
+}
+
+MapEvaluation evaluate_by_label(LabelCounts counts, const runs::RunTruth& truth,
+                                const std::vector<MovedLandmark>& landmarks, double limit_m) {
+  constexpr int seen_often = 10;
+  MapEvaluation result;
+  result.by_label = true;
+  std::map<core::Label, std::vector<const MovedLandmark*>> of_label;
+  std::vector<MovedLandmark> unseen;
+  for (const MovedLandmark& landmark : landmarks) {
+    if (counts.by_landmark.count(landmark.id) == 0) {
+      unseen.push_back(landmark);
+      continue;
+    }
+    of_label[most_frequent(counts.by_landmark[landmark.id])].push_back(&landmark);
+  }
+  std::vector<double> errors_m;
+  std::size_t claimed = 0;
+  for (const core::TrueLandmark& known : truth.landmarks) {
+    const auto found = of_label.find(known.label);
+    if (found == of_label.end()) {
+      result.missing += counts.in_all[known.label] >= seen_often ? 1 : 0;
+      continue;
+    }
+    const auto& rivals = found->second;
+    const MovedLandmark* partner = *std::max_element(
+        rivals.begin(), rivals.end(), [](const auto* a, const auto* b) { return a->observations < b->observations; });
+    errors_m.push_back((partner->point_truth_m - known.point_m).norm());
+    result.duplicates += rivals.size() - 1;
+    claimed += rivals.size();
+  }
+  result.spurious = landmarks.size() - unseen.size() - claimed + count_off_truth(truth, unseen, limit_m);
+  result.error_m = error_statistics(std::move(errors_m));
+  return result;
+}
+
 MapEvaluation evaluate_by_distance(const runs::RunTruth& truth, const std::vector<MovedLandmark>& landmarks,
                                    double limit_m) {
   MapEvaluation result;
@@ -179,7 +192,7 @@ MapEvaluation evaluate_map(const runs::Run& run, const runs::RunTruth& truth, co
                            double limit_m) {
   const std::vector<MovedLandmark> landmarks = mature_landmarks(run, T_truth_map);
   LabelCounts counts = count_labels(run, truth);
-  return can_be_paired(counts, truth) ? evaluate_by_label(std::move(counts), truth, landmarks)
+  return can_be_paired(counts, truth) ? evaluate_by_label(std::move(counts), truth, landmarks, limit_m)
                                       : evaluate_by_distance(truth, landmarks, limit_m);
 }
 

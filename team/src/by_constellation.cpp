@@ -45,7 +45,7 @@ std::optional<Candidate> by_constellation(std::size_t into, std::size_t from, co
   const supervisor::JoinedSession& ours = joined.sessions[0];
   const supervisor::JoinedSession& theirs = joined.sessions[1];
   if (ours.component != theirs.component) return std::nullopt;
-  Candidate candidate{into, from, TeamJoin::By::constellation, {}, {}, {}};
+  Candidate candidate{into, from, TeamJoin::By::constellation, {}, {}, {}, {}};
   candidate.T_into_from.mean = core::compose(core::inverse(ours.T_component_session), theirs.T_component_session);
   for (const auto& [a, name_a] : ours.name_of) {
     for (const auto& [b, name_b] : theirs.name_of) {

@@ -54,7 +54,7 @@ std::vector<Candidate> by_sightings(std::size_t into, std::size_t from, core::Na
     for (std::size_t k = rows.size(); k-- > 0 && sees(rows[k], state).t_ns >= since_ns - pair_ns;) {
       const bool back = rows[k].robot == rows[i].seen && rows[k].seen == rows[i].robot && leads(k, from, into);
       if (!back || std::abs(sees(rows[k], state).t_ns - sees(rows[i], state).t_ns) > pair_ns) continue;
-      candidates.push_back({into, from, TeamJoin::By::sightings, {}, {}, {i, k}});
+      candidates.push_back({into, from, TeamJoin::By::sightings, {}, {}, {i, k}, {}});
       candidates.back().T_into_from.mean = pose_from(rows[i], rows[k], state);
       taken.insert({i, k});
       break;

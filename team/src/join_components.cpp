@@ -9,8 +9,10 @@
 
 #include <Eigen/LU>
 
+#include "common_names.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
+#include "process.hpp"
 #include "solve.hpp"
 
 namespace helixnav::team {
@@ -26,6 +28,7 @@ void add_common_names(Candidate& candidate, const State& state) {
   }
   std::set<core::LandmarkId> done;
   for (const auto& pair : candidate.same) done.insert(pair.second);
+  for (const auto& pair : candidate.left_out) done.insert(pair.second);
   for (const auto& [key, id] : state.id_of_name) {
     if (state.robots[key.first].component != candidate.from) continue;
     const auto same = ours.find(key.second);
@@ -122,10 +125,17 @@ bool is_placed(const TeamJoin& join, const State& state, const JoinOptions& opti
          std::sqrt(relative(2, 2)) <= options.max_sigma_rad;
 }
 
-}  // namespace
+/// Of two landmarks of one name, the one that was seen much less often was begun by a misread name.
+void forget_misread(const Candidate& candidate, State& state) {
+  for (const auto& [ours, theirs] : candidate.left_out) {
+    const int a = state.observations[static_cast<std::size_t>(ours)];
+    const int b = state.observations[static_cast<std::size_t>(theirs)];
+    if (2 * a < b) forget_named(ours, state);
+    if (2 * b < a) forget_named(theirs, state);
+  }
+}
 
-bool join_components(Candidate candidate, core::Nanoseconds t_ns, const TeamOptions& options, State& state) {
-  if (options.join.by_names) add_common_names(candidate, state);
+bool join_by(const Candidate& candidate, core::Nanoseconds t_ns, const TeamOptions& options, State& state) {
   State trial = state;
   const Component& into = state.components[candidate.into];
   const Component& from = state.components[candidate.from];
@@ -136,6 +146,7 @@ bool join_components(Candidate candidate, core::Nanoseconds t_ns, const TeamOpti
   join.robot = static_cast<int>(into.robots.front());
   join.other = static_cast<int>(from.robots.front());
   join.merged = static_cast<int>(candidate.same.size());
+  join.left_out = static_cast<int>(candidate.left_out.size());
   for (const std::size_t r : from.robots) trial.placed.push_back({r, trial.joins.size()});
   lay_together(candidate, trial);
   for (const std::size_t row : candidate.sightings) trial.sighting_rows[row].use = Use::used;
@@ -146,7 +157,8 @@ bool join_components(Candidate candidate, core::Nanoseconds t_ns, const TeamOpti
     if (join.by == TeamJoin::By::names && !is_placed(join, trial, options.join)) return false;
     const Explained others = use_sightings(candidate.into, options.gate_probability, trial);
     if (others.refused > others.used) return false;
-    if (others.used > 0 && !solve(candidate.into, trial)) return false;
+    forget_misread(candidate, trial);  // not before: what their sightings cost is in that of both apart
+    if ((others.used > 0 || join.left_out > 0) && !solve(candidate.into, trial)) return false;
   } catch (const core::NumericalError&) {
     return false;
   }
@@ -157,6 +169,21 @@ bool join_components(Candidate candidate, core::Nanoseconds t_ns, const TeamOpti
   trial.evidence.push_back({into.robots, from.robots, candidate.sightings, state.sighting_rows.size()});
   state = std::move(trial);
   return true;
+}
+
+}  // namespace
+
+bool join_components(Candidate candidate, core::Nanoseconds t_ns, const TeamOptions& options, State& state) {
+  if (options.join.by_names) add_common_names(candidate, state);
+  if (join_by(candidate, t_ns, options, state)) return true;
+  constexpr std::size_t enough = 4;
+  if (!options.join.by_names || candidate.same.size() < enough) return false;
+  NamesFit fit = fit_names(candidate.into, candidate.from, candidate.same, options.join, state);
+  if (!fit.agree || fit.left_out.empty()) return false;
+  candidate.same = std::move(fit.kept);
+  candidate.left_out.insert(candidate.left_out.end(), fit.left_out.begin(), fit.left_out.end());
+  candidate.T_into_from = fit.T_into_from;
+  return join_by(candidate, t_ns, options, state);
 }
 
 }  // namespace helixnav::team

@@ -129,11 +129,7 @@ void forget(const std::set<LandmarkId>& forgotten, State& state) {
 void forget_if_misplaced(LandmarkId id, State& state) {
   constexpr int least = 3;
   const auto at = static_cast<std::size_t>(id);
-  if (++state.refusals[at] <= 2 * state.observations[at] + least) return;
-  for (auto name = state.id_of_name.begin(); name != state.id_of_name.end();) {
-    name = state.resolve(name->second) == id ? state.id_of_name.erase(name) : std::next(name);
-  }
-  forget({id}, state);
+  if (++state.refusals[at] > 2 * state.observations[at] + least) forget_named(id, state);
 }
 
 Reports observe_by_name(std::size_t robot, const NamedScan& named, const TeamOptions& options, State& state) {
@@ -268,6 +264,13 @@ State begin(const std::vector<std::optional<core::PoseGaussian>>& starts) {
     component.filter = JointFilter(poses, {}, {}, P);
   }
   return state;
+}
+
+void forget_named(LandmarkId id, State& state) {
+  for (auto name = state.id_of_name.begin(); name != state.id_of_name.end();) {
+    name = state.resolve(name->second) == id ? state.id_of_name.erase(name) : std::next(name);
+  }
+  forget({id}, state);
 }
 
 void drop_seen_once(State& state) {

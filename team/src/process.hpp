@@ -42,6 +42,9 @@ std::optional<core::StepReport> process(const Entry& entry, const TeamOptions& o
 /// and one look at a place that nothing else knows says nothing of anything else.
 void drop_seen_once(State& state);
 
+/// Forgets a landmark, all that was seen of it and the names that mean it: it is begun anew with the next sighting.
+void forget_named(core::LandmarkId id, State& state);
+
 /// The robot's present pose as a pose of the graph, a new one unless it has not moved since the last.
 std::size_t clone_now(std::size_t robot, State& state);
 

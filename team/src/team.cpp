@@ -55,6 +55,7 @@ struct Team::Book {
   std::vector<core::Nanoseconds> moved_until_ns;  ///< [robot]
   std::vector<Entry> waiting;                     ///< sightings of robots that have not yet moved until then
   RefusedJoins refused;
+  std::vector<TakenBackJoin> taken_back;
   RefusedSame refused_same;
 };
 
@@ -158,9 +159,10 @@ std::optional<core::StepReport> Team::Book::replay() {
 bool Team::Book::take_back_wrong_join() {
   if (!state.news_of_joins) return false;
   state.news_of_joins = false;
-  const std::optional<std::size_t> wrong = find_wrong_join(state);
+  const std::optional<WrongJoin> wrong = find_wrong_join(state);
   if (!wrong) return false;
-  refuse(*wrong, state, refused);
+  refuse(wrong->join, state, refused);
+  taken_back.push_back({state.joins[wrong->join], entries[done - 1].t_ns(), wrong->refused, wrong->seen});
   checkpoints.clear();
   rewind(0);
   return true;
@@ -311,6 +313,7 @@ core::LandmarkId Team::landmark_of(int robot, std::int64_t name) const {
 }
 
 const std::vector<TeamJoin>& Team::joins() const { return book_->state.joins; }
+const std::vector<TakenBackJoin>& Team::joins_taken_back() const { return book_->taken_back; }
 
 std::vector<JudgedSighting> Team::sightings() const {
   const State& state = book_->state;
@@ -335,6 +338,7 @@ void Team::remove_join(std::size_t join) {
   if (join >= joins().size()) throw core::PreconditionError("remove_join: there is no join " + std::to_string(join));
   const TeamJoin removed = joins()[join];
   book_->refused.joins.insert({removed.by, removed.robot, removed.other});
+  book_->taken_back.push_back({removed, book_->entries.back().t_ns(), 0, 0});
   book_->start_again();
 }
 

@@ -15,23 +15,24 @@ bool is_between(const SightingRow& row, const JoinEvidence& join) {
          (has(join.from, row.robot) && has(join.into, row.seen));
 }
 
-bool is_contradicted(const JoinEvidence& join, const State& state) {
+std::optional<WrongJoin> contradiction_of(std::size_t join, const State& state) {
   constexpr int first = 40, least = 6;
-  int seen = 0, refused = 0;
-  for (std::size_t i = join.rows_before; i < state.sighting_rows.size() && seen < first; ++i) {
-    if (!is_between(state.sighting_rows[i], join)) continue;
-    ++seen;
-    refused += state.sighting_rows[i].use == SightingRow::Use::refused ? 1 : 0;
-    if (refused >= least && 2 * refused > seen) return true;
+  const JoinEvidence& evidence = state.evidence[join];
+  WrongJoin count{join, 0, 0};
+  for (std::size_t i = evidence.rows_before; i < state.sighting_rows.size() && count.seen < first; ++i) {
+    if (!is_between(state.sighting_rows[i], evidence)) continue;
+    ++count.seen;
+    count.refused += state.sighting_rows[i].use == SightingRow::Use::refused ? 1 : 0;
+    if (count.refused >= least && 2 * count.refused > count.seen) return count;
   }
-  return false;
+  return std::nullopt;
 }
 
 }  // namespace
 
-std::optional<std::size_t> find_wrong_join(const State& state) {
+std::optional<WrongJoin> find_wrong_join(const State& state) {
   for (std::size_t join = state.joins.size(); join-- > 0;) {
-    if (is_contradicted(state.evidence[join], state)) return join;
+    if (const std::optional<WrongJoin> wrong = contradiction_of(join, state)) return wrong;
   }
   return std::nullopt;
 }

@@ -8,9 +8,15 @@
 
 namespace helixnav::team {
 
+struct WrongJoin {
+  std::size_t join = 0;
+  int refused = 0;  ///< sightings between its two sides
+  int seen = 0;
+};
+
 /// The last join that sightings since then contradict: of the first forty of a robot of one side by one of the other, six and
 /// more than half are refused. One misread robot is enough for two sightings that agree. Test: team/team_test.cpp.
-std::optional<std::size_t> find_wrong_join(const State& state);
+std::optional<WrongJoin> find_wrong_join(const State& state);
 
 /// It is not made again on the same evidence: of two sightings, on either of them.
 void refuse(std::size_t join, const State& state, RefusedJoins& refused);

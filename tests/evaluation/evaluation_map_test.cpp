@@ -95,5 +95,18 @@ TEST(MapEvaluation, PairsByLabelWhateverTheDistance) {
   EXPECT_EQ(map.spurious, 1u);
 }
 
+/// Of a map begun by others: another robot of the team, an earlier run.
+TEST(MapEvaluation, JudgesLandmarksThatTheRunNeverSawByWhereTheyStand) {
+  runs::Run run;
+  run.map = {landmark(0, 0.1, 0.0, 20), landmark(1, 30.2, 0.0, 12), landmark(2, 45.0, 0.0, 12)};
+  run.truth.landmarks = {{7, {0.0, 0.0}}, {8, {30.0, 0.0}}};
+  run.steps.emplace_back().associations = {{0, core::Outcome::matched, 0, 1.0, 2, 1.0}};
+  run.truth.labels = {{7}};
+  const MapEvaluation map = evaluate_map(run, run.truth, {}, 2.0);
+  EXPECT_TRUE(map.by_label);
+  EXPECT_EQ(map.error_m.count, 1u);
+  EXPECT_EQ(map.spurious, 1u) << "that at 45 m, where none stands";
+}
+
 }  // namespace
 }  // namespace helixnav::evaluation

@@ -85,11 +85,19 @@ TEST_F(MrclamFolder, RobotsThatAreNotChosenAreNotSeen) {
   EXPECT_TRUE(team.robots[0].sightings.empty());
 }
 
+TEST_F(MrclamFolder, ARobotWithoutSightingsIsLeftOutAndNamed) {
+  folder_.write("measurements.csv", "1,0.5,63,6,2.0,0.1\n");
+  const core::TeamRecording team = read_mrclam(folder_.path());
+  ASSERT_EQ(team.robots.size(), 1u);
+  ASSERT_EQ(team.remarks.size(), 1u);
+  EXPECT_NE(team.remarks[0].find("robot 2 is left out"), std::string::npos) << team.remarks[0];
+}
+
 TEST_F(MrclamFolder, RefusesWhatIsMissingOrContradictsItself) {
   folder_.write("measurements.csv", std::string(sightings) + "2,3.5,77,21,1.0,0.0\n");
   EXPECT_NE(error().find("measurements.csv:6: subject 21 is neither"), std::string::npos) << error();
-  folder_.write("measurements.csv", "1,0.5,63,6,2.0,0.1\n");
-  EXPECT_NE(error().find("robot 2 has no sightings"), std::string::npos) << error();
+  folder_.write("measurements.csv", "");
+  EXPECT_NE(error().find("robot 1 has no sightings"), std::string::npos) << error();
   folder_.write("measurements.csv", std::string(sightings) + "3,3.5,63,6,1.0,0.0\n");
   EXPECT_NE(error().find("measurements.csv:6: robot 3 has no commands"), std::string::npos) << error();
   folder_.write("measurements.csv", "1,100.5,63,6,2.0,0.1\n2,3.0,63,6,2.0,0.0\n");

@@ -276,6 +276,12 @@ TEST(Team, AJoinThatAllLaterSightingsContradictIsTakenBack) {
   const Team team = testing::run(small, unknown_starts(small), options);
   ASSERT_EQ(team.joins().size(), 1u);
   EXPECT_GT(team.joins()[0].t_ns, 12 * second_ns);
+  ASSERT_EQ(team.joins_taken_back().size(), 1u);
+  const TakenBackJoin& back = team.joins_taken_back()[0];
+  EXPECT_EQ(back.join.t_ns, at_first.joins()[0].t_ns);
+  EXPECT_GT(back.t_ns, 12 * second_ns);
+  EXPECT_GE(back.refused, 6);
+  EXPECT_GT(2 * back.refused, back.seen);
   const core::Pose2 truth = core::between(small.last[0], small.last[1]);
   EXPECT_LT(difference(core::between(team.pose(0).mean, team.pose(1).mean), truth).head<2>().norm(), 0.2);
 }

@@ -41,11 +41,25 @@ void check_carried(const Drive& job) {
                          " does not go with");
 }
 
+/// Detections, and not one with a label.
+bool names_nothing(const core::Recording& recording) {
+  bool seen = false;
+  for (const std::vector<core::Label>& labels : recording.labels) {
+    for (const core::Label label : labels) {
+      if (label != core::no_label) return false;
+      seen = true;
+    }
+  }
+  return seen || recording.labels.empty();
+}
+
 void check_labels(const Drive& job) {
   if (job.known_association && job.earlier) check_earlier_labels(*job.earlier);
   const std::string option = job.fastslam.chosen ? "--fastslam.association known" : "--association known";
-  if (job.known_association && job.recording.labels.empty()) {
-    throw core::InputError(job.recording.name + ": " + option + " needs a labelled log, and this one has no labels");
+  if (job.known_association && names_nothing(job.recording)) {
+    throw core::InputError(
+        job.recording.name + ": " + option +
+        " needs a labelled log, and this one has no labels: none of its detections says of which landmark it is");
   }
   if (job.known_association && job.given_map && job.given_map->landmark_of.empty()) {
     throw core::InputError(option +

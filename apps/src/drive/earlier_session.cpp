@@ -77,6 +77,22 @@ std::string joint_map_file_in(const std::string& folder) {
   return (std::filesystem::path(folder) / "map.bin").string();
 }
 
+/// Why a run has no map.bin.
+std::string why_without_map(const std::string& folder) {
+  namespace fs = std::filesystem;
+  const fs::path path = fs::absolute(fs::path(folder) / ".").lexically_normal().parent_path();
+  const bool is_robot = path.filename().string().rfind("robot_", 0) == 0;
+  if (fs::exists(path / "sightings.csv") || (is_robot && fs::exists(path.parent_path() / "sightings.csv"))) {
+    return "The run of a team writes none: it cannot be gone on from nor joined with another run";
+  }
+  if (fs::exists(path / "particles.csv")) {
+    return "A run of FastSLAM writes none: its map is that of its particles; it cannot be gone on from nor joined with "
+           "another run";
+  }
+  return "A run that came to its end writes it, unless it has more than " + std::to_string(runs::most_joint_landmarks) +
+         " landmarks, only localised, or is of version 0.1";
+}
+
 core::JointMap read_joint_map_in(const std::string& folder) {
   namespace fs = std::filesystem;
   if (!fs::is_directory(folder)) {
@@ -85,9 +101,7 @@ core::JointMap read_joint_map_in(const std::string& folder) {
   }
   const std::string file = joint_map_file_in(folder);
   if (!fs::exists(file)) {
-    throw core::InputError(file + ": not there. A run that came to its end writes it, unless it has more than " +
-                           std::to_string(runs::most_joint_landmarks) +
-                           " landmarks, only localised, or is of version 0.1");
+    throw core::InputError(file + ": not there. " + why_without_map(folder));
   }
   core::JointMap map = runs::read_joint_map(file);
   map.drives = runs::read_drives(folder);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -181,9 +182,17 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
       command->add_flag("--localize", job->localize, "Estimate the pose alone, in the map given, which stays as it is");
   localize->needs(map);
   add_blackouts(*command, *job);
-  command->add_option("--robots", job->team.robots, "Of a log of several robots: those with these numbers alone")
-      ->delimiter(',')
-      ->check(robot_number())
+  const auto take_robots = [job](const std::vector<std::string>& lists) {
+    job->team.robots.clear();
+    for (const std::string& list : lists) {
+      std::istringstream numbers(list);
+      for (std::string number; std::getline(numbers, number, ',');) job->team.robots.push_back(std::stoi(number));
+    }
+  };
+  command
+      ->add_option_function<std::vector<std::string>>("--robots", take_robots,
+                                                      "Of a log of several robots: those with these numbers alone")
+      ->check(robot_numbers())
       ->type_name("N,N");
   command->add_flag("--unknown-starts", job->team.unknown_starts,
                     "Of a log of several robots: where they start is not taken from the truth");

@@ -29,13 +29,18 @@ CLI::Validator number_between(T low, T high) {
   return CLI::Validator(objection, range.str());
 }
 
-/// The number of a robot of a log. An empty word would be taken for 0.
-inline CLI::Validator robot_number() {
+/// Numbers of robots of a log, with a comma between each two: CLI11 passes over an empty one.
+inline CLI::Validator robot_numbers() {
   const auto objection = [](std::string& word) -> std::string {
     constexpr std::size_t most_digits = 6;
-    const bool digits = !word.empty() && word.size() <= most_digits &&
-                        std::all_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
-    return digits ? std::string() : "expected numbers of robots, as 1,3, found '" + word + "'";
+    std::size_t digits = 0;
+    bool right = true;
+    for (const char c : word + ',') {
+      const bool is_digit = c >= '0' && c <= '9';
+      right = right && (is_digit ? digits < most_digits : c == ',' && digits > 0);
+      digits = is_digit ? digits + 1 : 0;
+    }
+    return right ? std::string() : "expected numbers of robots, as 1,3, found '" + word + "'";
   };
   return CLI::Validator(objection, "");
 }

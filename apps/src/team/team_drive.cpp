@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -11,6 +10,7 @@
 
 #include "common/interrupt.hpp"
 #include "common/progress_bar.hpp"
+#include "team/last_frames.hpp"
 #include "team/own_names.hpp"
 
 namespace helixnav::apps {
@@ -54,45 +54,22 @@ team::Team make_team(const TeamTask& task) {
   return team::Team(starts, task.options);
 }
 
-/// When the robot came into the frame that its component has at the end.
-core::Nanoseconds in_last_frame_since(const team::Team& team, const std::vector<int>& first_component, int robot) {
-  std::vector<int> component = first_component;
-  core::Nanoseconds since_ns = std::numeric_limits<core::Nanoseconds>::min();
-  for (const team::TeamJoin& join : team.joins()) {
-    const int from = component[static_cast<std::size_t>(join.other)];
-    if (component[static_cast<std::size_t>(robot)] == from) since_ns = join.t_ns;
-    std::replace(component.begin(), component.end(), from, component[static_cast<std::size_t>(join.robot)]);
-  }
-  return since_ns;
-}
-
-/// T_end_then: brings what a robot told at t_ns into the frame that its component has at the end.
-core::Pose2 frame_since(const team::Team& team, const std::vector<int>& first_component, int robot,
-                        core::Nanoseconds t_ns) {
-  std::vector<int> component = first_component;
-  core::Pose2 T;
-  for (const team::TeamJoin& join : team.joins()) {
-    const auto r = static_cast<std::size_t>(robot);
-    const int from = component[static_cast<std::size_t>(join.other)];
-    const int into = component[static_cast<std::size_t>(join.robot)];
-    if (component[r] == from && join.t_ns > t_ns) T = core::compose(join.T_component_other, T);
-    std::replace(component.begin(), component.end(), from, into);
-  }
-  return T;
-}
-
-void bring_into_last_frames(const std::vector<int>& first_component, TeamDrive& drive) {
+void bring_into_last_frames(const LastFrames& frames, const std::vector<std::vector<std::size_t>>& told_in,
+                            TeamDrive& drive) {
   for (std::size_t r = 0; r < drive.robots.size(); ++r) {
-    for (core::StepReport& step : drive.robots[r].steps) {
-      const core::Pose2 T = frame_since(drive.team, first_component, static_cast<int>(r), step.t_ns);
+    const int robot = static_cast<int>(r);
+    for (std::size_t k = 0; k < drive.robots[r].steps.size(); ++k) {
+      core::StepReport& step = drive.robots[r].steps[k];
+      const core::Pose2 T = frames.T_end_then(robot, told_in[r][k]);
       Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
       turn.topLeftCorner<2, 2>() = core::rotation(T.heading_rad);
       step.pose.mean = core::compose(T, step.pose.mean);
       const Eigen::Matrix3d turned = turn * step.pose.covariance * turn.transpose();
       step.pose.covariance = 0.5 * (turned + turned.transpose());
+      drive.robots[r].wrongly_placed += frames.was_taken_back(robot, told_in[r][k]) ? 1 : 0;
     }
-    drive.robots[r].component = drive.team.component(static_cast<int>(r));
-    drive.robots[r].in_frame_since_ns = in_last_frame_since(drive.team, first_component, static_cast<int>(r));
+    drive.robots[r].component = drive.team.component(robot);
+    drive.robots[r].in_frame_since_ns = frames.since_ns(robot);
   }
 }
 
@@ -106,6 +83,8 @@ TeamDrive drive_team(const TeamTask& task) {
   TeamDrive drive{std::vector<TeamDrive::Robot>(members.size()), make_team(task), 0.0};
   std::vector<int> first_component;
   for (std::size_t r = 0; r < members.size(); ++r) first_component.push_back(drive.team.component(static_cast<int>(r)));
+  LastFrames frames(first_component);
+  std::vector<std::vector<std::size_t>> told_in(members.size());
   std::vector<OwnNames> own(task.own_names ? members.size() : 0);
   std::vector<core::Nanoseconds> last_sighting_ns(members.size(), -1);
   const std::vector<Fed> all = in_order(task.recording);
@@ -129,11 +108,13 @@ TeamDrive drive_team(const TeamTask& task) {
     progress.advance_to(k);
     if (!report) continue;
     drive.robots[r].at.push_back(!report->associations.empty() || last_sighting_ns[r] == fed.t_ns ? 1 : 0);
+    told_in[r].push_back(frames.note(drive.team.joins()));
     drive.robots[r].steps.push_back(std::move(*report));
     drive.robots[r].microseconds.push_back(1e6 * since(began));
   }
   drive.team.solve();
-  bring_into_last_frames(first_component, drive);
+  frames.note(drive.team.joins());
+  bring_into_last_frames(frames, told_in, drive);
   drive.seconds = since(begin);
   return drive;
 }

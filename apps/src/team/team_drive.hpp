@@ -16,8 +16,9 @@ struct TeamDrive {
     std::vector<core::StepReport> steps;  ///< as estimated then; poses in the frame of the component at the end
     std::vector<double> microseconds;     ///< [step]
     std::vector<std::vector<std::int64_t>> names;  ///< [scan][observation] as told to the team
-    std::vector<std::int64_t> at;  ///< [step] 1 where the log has a sighting, 0 where nothing was seen for a while
-    int component = 0;             ///< at the end: number of its first robot
+    std::vector<std::int64_t> at;    ///< [step] 1 where the log has a sighting, 0 where nothing was seen for a while
+    int component = 0;               ///< at the end: number of its first robot
+    std::size_t wrongly_placed = 0;  ///< steps told while a join held that was taken back later
     core::Nanoseconds in_frame_since_ns =
         0;  ///< when it came into that frame; covariances before know nothing of the way
   };

@@ -2,6 +2,7 @@
 #include "team/team_folder.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <set>
@@ -22,17 +23,70 @@ using Json = nlohmann::ordered_json;
 
 int number_of(const TeamTask& task, int robot) { return task.recording.robots[static_cast<std::size_t>(robot)].number; }
 
-std::string joins_table(const TeamTask& task, const TeamDrive& drive) {
-  std::string text = "t_s,by,robot,other,x,y,heading,merged,sightings,cost,dof,limit\n";
+void append_join(std::string& text, const TeamTask& task, const team::TeamJoin& join) {
+  const core::Pose2& T = join.T_component_other;
+  files::append_seconds(text, join.t_ns);
+  text += std::string(",") + team::name_of(join.by) + ',' + std::to_string(number_of(task, join.robot)) + ',' +
+          std::to_string(number_of(task, join.other));
+  files::append_cells(
+      text, {T.x_m, T.y_m, T.heading_rad, static_cast<double>(join.merged), static_cast<double>(join.sightings),
+             join.cost, static_cast<double>(join.dof), join.limit, static_cast<double>(join.left_out)});
+}
+
+std::string joins_text(const TeamTask& task, const TeamDrive& drive) {
+  std::string text;
+  char line[200];
   for (const team::TeamJoin& join : drive.team.joins()) {
-    const core::Pose2& T = join.T_component_other;
-    files::append_seconds(text, join.t_ns);
-    text += std::string(",") + team::name_of(join.by) + ',' + std::to_string(number_of(task, join.robot)) + ',' +
-            std::to_string(number_of(task, join.other));
-    files::append_cells(
-        text, {T.x_m, T.y_m, T.heading_rad, static_cast<double>(join.merged), static_cast<double>(join.sightings),
-               join.cost, static_cast<double>(join.dof), join.limit});
+    std::snprintf(line, sizeof line,
+                  "at %.1f s robot %d came into the frame of robot %d by %s (chi2 %.1f of at most %.1f)",
+                  core::seconds(join.t_ns), number_of(task, join.other), number_of(task, join.robot),
+                  team::name_of(join.by), join.cost, join.limit);
+    text += line;
+    if (join.left_out > 0) {
+      std::snprintf(line, sizeof line, "; %d common names contradict the others and were left out", join.left_out);
+      text += line;
+    }
     text += '\n';
+  }
+  return text;
+}
+
+/// One line for all evidence on which the same two were joined, and taken apart at the same time.
+std::string taken_back_text(const TeamTask& task, const TeamDrive& drive) {
+  std::string text;
+  const std::vector<team::TakenBackJoin>& all = drive.team.joins_taken_back();
+  for (std::size_t first = 0; first < all.size();) {
+    const team::TakenBackJoin& one = all[first];
+    const auto is_same = [&](const team::TakenBackJoin& other) {
+      return other.join.robot == one.join.robot && other.join.other == one.join.other && other.t_ns == one.t_ns;
+    };
+    std::size_t end = first;
+    while (end < all.size() && is_same(all[end])) ++end;
+    char line[200];
+    std::snprintf(line, sizeof line, "at %.1f s a join of robots %d and %d by %s at %.1f s was taken back",
+                  core::seconds(one.t_ns), number_of(task, one.join.robot), number_of(task, one.join.other),
+                  team::name_of(one.join.by), core::seconds(one.join.t_ns));
+    text += line;
+    if (end - first > 1) text += " (and on other evidence, " + std::to_string(end - first) + " times in all)";
+    std::snprintf(line, sizeof line, ": %d of %d sightings since contradict it\n", one.refused, one.seen);
+    text += line;
+    first = end;
+  }
+  return text;
+}
+
+std::string joins_table(const TeamTask& task, const TeamDrive& drive) {
+  std::string text =
+      "t_s,by,robot,other,x,y,heading,merged,sightings,cost,dof,limit,left_out,state,taken_back_s,refused,refused_of\n";
+  for (const team::TeamJoin& join : drive.team.joins()) {
+    append_join(text, task, join);
+    text += ",holds,,,\n";
+  }
+  for (const team::TakenBackJoin& one : drive.team.joins_taken_back()) {
+    append_join(text, task, one.join);
+    text += ",taken back,";
+    files::append_seconds(text, one.t_ns);
+    text += ',' + std::to_string(one.refused) + ',' + std::to_string(one.seen) + '\n';
   }
   return text;
 }
@@ -53,11 +107,15 @@ std::string sightings_table(const TeamTask& task, const TeamDrive& drive) {
   return text;
 }
 
-std::string map_table(const TeamTask& task, const TeamDrive& drive) {
-  std::string text = "component,landmark,x,y,xx,xy,yy,observations\n";
+std::set<int> components_of(const TeamDrive& drive) {
   std::set<int> components;
   for (const TeamDrive::Robot& robot : drive.robots) components.insert(robot.component);
-  for (const int component : components) {
+  return components;
+}
+
+std::string map_table(const TeamTask& task, const TeamDrive& drive) {
+  std::string text = "component,landmark,x,y,xx,xy,yy,observations\n";
+  for (const int component : components_of(drive)) {
     for (const core::MapLandmark& landmark : drive.team.map(component)) {
       const Eigen::Matrix2d& P = landmark.point.covariance_m2;
       text += std::to_string(number_of(task, component)) + ',' + std::to_string(landmark.id);
@@ -125,12 +183,14 @@ std::string team_summary(const TeamTask& task, const TeamDrive& drive, const Tea
   for (const team::JudgedSighting& sighting : sightings) used += sighting.used ? 1 : 0;
   json["misread"] = task.recording.misread;
   json["joins"] = drive.team.joins().size();
+  json["joins_taken_back"] = drive.team.joins_taken_back().size();
   json["sightings"] = {{"count", sightings.size()}, {"used", used}};
   for (std::size_t r = 0; r < drive.robots.size(); ++r) {
     Json robot{{"robot", task.recording.robots[r].number},
                {"component", number_of(task, drive.robots[r].component)},
                {"alone", is_alone(drive, r)},
                {"scans", drive.robots[r].steps.size()}};
+    if (drive.robots[r].wrongly_placed > 0) robot["scans_in_wrong_frame"] = drive.robots[r].wrongly_placed;
     const core::Nanoseconds since_ns = drive.robots[r].in_frame_since_ns;
     if (since_ns > std::numeric_limits<core::Nanoseconds>::min()) robot["in_frame_since_s"] = core::seconds(since_ns);
     if (evaluation.robots[r]) {
@@ -173,7 +233,13 @@ std::string team_text(const TeamTask& task, const TeamDrive& drive, const TeamEv
     std::snprintf(line, sizeof line, "robot %d: %zu scans, in the frame of robot %d", task.recording.robots[r].number,
                   robot.steps.size(), number_of(task, robot.component));
     text += line;
-    if (is_alone(drive, r)) text += ", which it has to itself: nothing joined it to another";
+    if (is_alone(drive, r)) {
+      text += robot.wrongly_placed > 0 ? ", which it has to itself: what joined it to another was taken back"
+                                       : ", which it has to itself: nothing joined it to another";
+    } else if (robot.wrongly_placed > 0) {
+      std::snprintf(line, sizeof line, " (%zu scans before a wrong join was taken back)", robot.wrongly_placed);
+      text += line;
+    }
     if (evaluation.robots[r]) {
       const RobotErrors& errors = *evaluation.robots[r];
       std::snprintf(line, sizeof line, "; position RMSE %.3f m, aligned %.3f m, NEES %.1f (3)", errors.raw_m.rmse,
@@ -189,17 +255,26 @@ std::string team_text(const TeamTask& task, const TeamDrive& drive, const TeamEv
     text += line;
   }
   for (const LandmarkErrors& errors : evaluation.landmarks) {
-    std::snprintf(line, sizeof line, "frame of robot %d: %zu landmarks, RMSE %.3f m, aligned %.3f m\n",
-                  number_of(task, errors.component), errors.landmarks, errors.raw_rmse_m, errors.aligned_rmse_m);
+    std::snprintf(line, sizeof line, "frame of robot %d: %zu landmarks, ", number_of(task, errors.component),
+                  errors.landmarks);
+    text += line;
+    if (std::isfinite(errors.raw_rmse_m)) {
+      std::snprintf(line, sizeof line, "RMSE %.3f m, ", errors.raw_rmse_m);
+      text += line;
+    }
+    std::snprintf(line, sizeof line, "aligned %.3f m\n", errors.aligned_rmse_m);
     text += line;
   }
-  for (const team::TeamJoin& join : drive.team.joins()) {
-    std::snprintf(line, sizeof line,
-                  "at %.1f s robot %d came into the frame of robot %d by %s (chi2 %.1f of at most %.1f)\n",
-                  core::seconds(join.t_ns), number_of(task, join.other), number_of(task, join.robot),
-                  team::name_of(join.by), join.cost, join.limit);
+  for (const int component : components_of(drive)) {
+    const bool told = std::any_of(evaluation.landmarks.begin(), evaluation.landmarks.end(),
+                                  [&](const LandmarkErrors& errors) { return errors.component == component; });
+    if (told) continue;
+    std::snprintf(line, sizeof line, "frame of robot %d: %zu landmarks\n", number_of(task, component),
+                  drive.team.map(component).size());
     text += line;
   }
+  text += joins_text(task, drive);
+  text += taken_back_text(task, drive);
   return text;
 }
 

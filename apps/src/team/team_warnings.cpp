@@ -1,7 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "team/team_warnings.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "team/mapped_anew.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -28,28 +36,104 @@ Refused refused_of(const TeamDrive& drive, std::size_t robot) {
   return count;
 }
 
+/// Sightings of one another by each two robots, by their places in the recording: among those of landmarks they are few.
+std::map<std::pair<int, int>, Refused> refused_by_pair(const TeamDrive& drive) {
+  std::map<std::pair<int, int>, Refused> counts;
+  for (const team::JudgedSighting& sighting : drive.team.sightings()) {
+    if (!sighting.residual) continue;
+    Refused& count = counts[std::minmax(sighting.robot, sighting.seen)];
+    ++count.seen;
+    count.refused += sighting.used ? 0 : 1;
+  }
+  return counts;
+}
+
+/// Names that robots of a component told.
+std::set<std::int64_t> names_of(const TeamDrive& drive, int component) {
+  std::set<std::int64_t> names;
+  for (const TeamDrive::Robot& robot : drive.robots) {
+    if (robot.component != component) continue;
+    for (const std::vector<std::int64_t>& scan : robot.names) names.insert(scan.begin(), scan.end());
+  }
+  return names;
+}
+
+std::size_t common_names(const TeamDrive& drive, int one, int other) {
+  const std::set<std::int64_t> ours = names_of(drive, one), theirs = names_of(drive, other);
+  return static_cast<std::size_t>(std::count_if(
+      theirs.begin(), theirs.end(), [&](std::int64_t name) { return name != core::no_label && ours.count(name) > 0; }));
+}
+
 template <class... Values>
 std::string sentence(const char* format, Values... values) {
-  char text[300];
+  char text[400];
   std::snprintf(text, sizeof text, format, values...);
   return text;
+}
+
+using Sentences = std::vector<std::string>;
+constexpr std::size_t one_in = 5;
+
+int number_of(const TeamTask& task, int robot) { return task.recording.robots[static_cast<std::size_t>(robot)].number; }
+
+void warn_of_refused(const TeamTask& task, const TeamDrive& drive, Sentences& warnings) {
+  constexpr std::size_t enough = 50, enough_of_robots = 20;
+  for (std::size_t r = 0; r < drive.robots.size(); ++r) {
+    const Refused count = refused_of(drive, r);
+    if (count.seen < enough || one_in * count.refused <= count.seen) continue;
+    warnings.push_back(
+        sentence("robot %d: %zu of its %zu sightings of landmarks and robots were refused: its odometry, its clock or "
+                 "barcodes are wrong, or what it knows of where it is",
+                 number_of(task, static_cast<int>(r)), count.refused, count.seen));
+  }
+  for (const auto& [pair, count] : refused_by_pair(drive)) {
+    if (count.seen < enough_of_robots || one_in * count.refused <= count.seen) continue;
+    warnings.push_back(
+        sentence("robots %d and %d: %zu of their %zu sightings of one another were refused: the clock or the odometry "
+                 "of one of them is wrong, robots were taken for others, or a start given is wrong",
+                 number_of(task, pair.first), number_of(task, pair.second), count.refused, count.seen));
+  }
+}
+
+void warn_of_mapped_anew(const TeamTask& task, const TeamDrive& drive, Sentences& warnings) {
+  for (std::size_t r = 0; r < drive.robots.size(); ++r) {
+    const std::optional<MappedAnew> anew = mapped_anew(drive, r);
+    if (!anew) continue;
+    constexpr double percent = 100.0;
+    warnings.push_back(
+        sentence("robot %d: from %.1f to %.1f s it missed %.0f %% of the landmarks that it knew there, and %.0f %% of "
+                 "what it saw was of new ones: it slipped unnoticed or matched wrongly; its path since is wrong, and "
+                 "landmarks stand a second time",
+                 number_of(task, static_cast<int>(r)), core::seconds(anew->from_ns), core::seconds(anew->to_ns),
+                 percent * anew->missed, percent * anew->begun));
+  }
+}
+
+void warn_of_names_in_two_frames(const TeamTask& task, const TeamDrive& drive, Sentences& warnings) {
+  constexpr std::size_t enough = 4;
+  std::set<int> components;
+  for (const TeamDrive::Robot& robot : drive.robots) components.insert(robot.component);
+  for (auto one = components.begin(); one != components.end(); ++one) {
+    for (auto other = std::next(one); other != components.end(); ++other) {
+      const std::size_t common = common_names(drive, *one, *other);
+      if (common < enough) continue;
+      warnings.push_back(
+          sentence("robots %d and %d stay in two frames, although %zu names of landmarks are common to both: where the "
+                   "landmarks stand contradicts that they are the same, or is known too badly",
+                   number_of(task, *one), number_of(task, *other), common));
+    }
+  }
 }
 
 }  // namespace
 
 std::vector<std::string> team_warnings(const TeamTask& task, const TeamDrive& drive) {
-  constexpr std::size_t enough = 50;
-  constexpr std::size_t one_in = 5;
-  std::vector<std::string> warnings;
-  for (std::size_t r = 0; r < drive.robots.size(); ++r) {
-    const core::TeamMember& member = task.recording.robots[r];
-    const Refused count = refused_of(drive, r);
-    if (count.seen >= enough && one_in * count.refused > count.seen) {
-      warnings.push_back(sentence(
-          "robot %d: %zu of its %zu sightings of landmarks and robots were refused: its odometry, its clock or "
-          "barcodes are wrong, or what it knows of where it is",
-          member.number, count.refused, count.seen));
-    }
+  Sentences warnings;
+  warn_of_refused(task, drive, warnings);
+  if (task.known_association) {
+    warn_of_names_in_two_frames(task, drive, warnings);
+  } else {
+    warn_of_mapped_anew(task, drive, warnings);
   }
   return warnings;
 }

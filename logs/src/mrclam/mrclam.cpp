@@ -2,6 +2,7 @@
 #include "helixnav/logs/mrclam.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -66,6 +67,23 @@ bool is_seen(const MrclamTables& tables, const std::vector<int>& chosen, int num
   });
 }
 
+/// A robot of which nothing is known but its commands is none of the team, as long as others are.
+void leave_out_unseen(MrclamTables& tables, std::vector<int>& chosen) {
+  const auto is_known = [&](int number) {
+    return !tables.robots.at(number).sightings.empty() || is_seen(tables, chosen, number);
+  };
+  const std::vector<int> all = chosen;
+  if (std::none_of(all.begin(), all.end(), is_known)) return;
+  std::vector<int> known;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(known), is_known);
+  for (const int number : all) {
+    if (is_known(number)) continue;
+    tables.remarks.push_back("warning: robot " + std::to_string(number) +
+                             " is left out: it has no sightings, and no other sees it");
+  }
+  chosen = known;
+}
+
 /// The longest time that a command was held for, up to the last sighting, where it is out of all proportion: somebody lost rows.
 void remark_on_longest_gap(const Robot& robot, int number, std::vector<std::string>& remarks) {
   std::vector<core::Nanoseconds> gaps_ns;
@@ -99,7 +117,8 @@ void check(const fs::path& path, const MrclamTables& tables, const std::vector<i
     if (!robot.sightings.empty()) {
       check_span(robot, number, robot.sightings.front().t_ns, robot.sightings.back().t_ns, "its sightings");
     } else if (!is_seen(tables, chosen, number)) {
-      throw core::InputError(path.string() + ": " + name + " has no sightings, and no other sees it");
+      throw core::InputError(path.string() + ": " + name +
+                             " has no sightings, and no other sees it: choose others (--robots N,N)");
     }
     check_span(robot, number, first.commands.front().t_ns, first.commands.back().t_ns, "those of another robot");
     if (robot.truth.empty()) continue;
@@ -263,8 +282,9 @@ core::TeamRecording read_mrclam(const fs::path& path, const std::vector<int>& ro
     sort_by_time(robot.sightings);
     sort_by_time(robot.truth);
   }
-  const std::vector<int> chosen = chosen_robots(path, tables, robots);
+  std::vector<int> chosen = chosen_robots(path, tables, robots);
   if (chosen.empty()) throw core::InputError(path.string() + ": expected commands of robots, found none");
+  if (robots.empty()) leave_out_unseen(tables, chosen);
   check(path, tables, chosen);
   core::TeamRecording team;
   team.name = (path.has_filename() ? path : path.parent_path()).filename().string();

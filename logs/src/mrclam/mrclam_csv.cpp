@@ -33,7 +33,12 @@ std::string read_packed(const fs::path& path) {
   for (;;) {
     const int got = gzread(file.get(), block.data(), static_cast<unsigned>(block.size()));
     if (got < 0) throw core::InputError(path.string() + ": expected a gzip file that can be read to its end");
-    if (got == 0) return text;
+    if (got == 0) {
+      int code = Z_OK;
+      gzerror(file.get(), &code);
+      if (code != Z_BUF_ERROR) return text;
+      throw core::InputError(path.string() + ": expected a whole gzip file, found one that was cut");
+    }
     text.append(block.data(), static_cast<std::size_t>(got));
     if (text.size() > most_bytes) throw core::InputError(path.string() + ": expected at most 512 MiB, found more");
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -84,6 +85,25 @@ void remark_on_missing(const DatFiles& files, int number, std::vector<std::strin
   }
 }
 
+/// Robots beyond those that are read: their numbers are those of landmarks.
+void remark_on_numbers_beyond(const fs::path& path, std::vector<std::string>& remarks) {
+  std::vector<std::string> names;
+  if (fs::is_directory(path)) {
+    for (const auto& entry : fs::directory_iterator(path)) names.push_back(entry.path().filename().string());
+  } else {
+    names = names_in_archive(path);
+  }
+  std::sort(names.begin(), names.end());
+  for (const std::string& name : names) {
+    const std::string head = "Robot", tail = "_Odometry.dat";
+    if (name.rfind(head, 0) != 0 || !ends_with(name, tail)) continue;
+    const std::string digits = name.substr(head.size(), name.size() - head.size() - tail.size());
+    if (digits.size() == 1 && digits[0] >= '1' && digits[0] <= '0' + most_robots) continue;
+    remarks.push_back("warning: " + name + " is left out: robots have the numbers 1 to " + std::to_string(most_robots) +
+                      ", landmarks those from there on");
+  }
+}
+
 MrclamTables::Robot read_robot(const DatFiles& files, int number, const std::map<std::int64_t, int>& subject_of) {
   MrclamTables::Robot robot;
   robot.file = files.full_name(name_of(number, "Odometry"));
@@ -121,6 +141,7 @@ MrclamTables read_mrclam_dat(const fs::path& folder_or_archive) {
       remark_on_missing(files, robot, tables.remarks);
     }
   }
+  remark_on_numbers_beyond(folder_or_archive, tables.remarks);
   return tables;
 }
 

@@ -20,7 +20,7 @@ inline core::Nanoseconds read_time(TextCursor& cursor) {
   const std::string_view word = cursor.word();
   const std::optional<core::Nanoseconds> t_ns = files::parse_seconds(word);
   if (!t_ns || *t_ns > most_ns || *t_ns < -most_ns) {
-    cursor.fail("expected a time [s], found '" + std::string(word) + "'");
+    cursor.fail("expected a time [s], found " + (word.empty() ? "none" : "'" + std::string(word) + "'"));
   }
   return *t_ns;
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/LU>
+
 #include "helixnav/core/errors.hpp"
 #include "search/places.hpp"
 #include "search/residual_scale.hpp"

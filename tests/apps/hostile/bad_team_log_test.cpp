@@ -62,6 +62,25 @@ TEST_F(TeamLog, IsNavigatedWhereNothingIsWrong) {
   EXPECT_EQ(names_in(out()), (std::set<std::string>{"joins.csv", "map.csv", "report.html", "robot_1", "robot_2",
                                                     "sightings.csv", "summary.json"}));
   EXPECT_EQ(outcome.out.find("to itself"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("nan"), std::string::npos) << "without truth there is no error: " << outcome.out;
+  EXPECT_NE(outcome.out.find("frame of robot 1: 2 landmarks, aligned"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.err.find("warning"), std::string::npos) << outcome.err;
+}
+
+TEST_F(TeamLog, WithoutNamesIsToldHowManyLandmarksThereAre) {
+  const Outcome outcome = replay({"--association", "unknown"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("frame of robot 1: 2 landmarks\n"), std::string::npos) << outcome.out;
+}
+
+TEST_F(TeamLog, GivesNoMapToGoOnFromAndSaysSo) {
+  ASSERT_EQ(replay().exit_code, 0);
+  for (const fs::path& run_folder : {out(), out() / "robot_1"}) {
+    const Outcome outcome =
+        run({"join", run_folder.string(), (out() / "robot_2").string(), "--out", (folder_.path() / "joined").string()});
+    EXPECT_EQ(outcome.exit_code, 3);
+    EXPECT_NE(outcome.err.find("The run of a team writes none"), std::string::npos) << outcome.err;
+  }
 }
 
 TEST_F(TeamLog, WithATableMissingIsRefused) {
@@ -84,9 +103,20 @@ TEST_F(TeamLog, WithASubjectOfNobodyIsRefused) {
   is_refused_with("measurements.csv:14: subject 21 is neither");
 }
 
-TEST_F(TeamLog, WithARobotThatNeitherSeesNorIsSeenIsRefused) {
+TEST_F(TeamLog, WithARobotThatNeitherSeesNorIsSeenGoesOnWithoutIt) {
   write("measurements.csv", "1,0.5,63,6,2.0,0.1\n");
-  is_refused_with("log: robot 2 has no sightings, and no other sees it");
+  is_refused_with("log: robot 2 has no sightings, and no other sees it: choose others (--robots N,N)",
+                  {"--robots", "1,2"});
+  const Outcome outcome = replay();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: robot 2 is left out: it has no sightings"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(fs::exists(out() / "robot_1"));
+  EXPECT_FALSE(fs::exists(out() / "robot_2"));
+}
+
+TEST_F(TeamLog, WithoutAnySightingIsRefused) {
+  write("measurements.csv", "# robot,t,barcode,subject,range,bearing\n");
+  is_refused_with("log: robot 1 has no sightings, and no other sees it");
 }
 
 TEST_F(TeamLog, WithARobotThatSeesNothingButIsSeenIsNavigated) {
@@ -121,6 +151,31 @@ TEST_F(TeamLog, OfWhichMuchIsRefusedIsWarnedOf) {
   EXPECT_EQ(outcome.err.find("warning: robot 2"), std::string::npos) << outcome.err;
 }
 
+/// Every third of the sightings of robots is wrong, and those of landmarks, which are many more, are right.
+TEST_F(TeamLog, OfRobotsThatContradictOneAnotherIsWarnedOf) {
+  std::string text;
+  for (int k = 1; k < 80; ++k) {
+    const std::string t = std::to_string(0.05 * k);
+    text += "1," + t + ",63,6,2.0,0.1\n2," + t + ",25,7,1.5,0.3\n";
+    const std::string range = k % 9 == 0 ? "9.0" : "4.0";
+    if (k % 3 == 0) text += "1," + t + ",14,2," + range + ",0.0\n2," + t + ",5,1," + range + ",3.0\n";
+  }
+  write("measurements.csv", text);
+  const Outcome outcome = replay();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: robots 1 and 2: 16 of their 52 sightings of one another"), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(outcome.err.find("warning: robot 1:"), std::string::npos) << outcome.err;
+}
+
+TEST_F(TeamLog, OfWhichATableWasCutIsRefusedAsCut) {
+  // gzip of "1,1.0,63,6,2.0,0.1\n", without its last eight bytes.
+  const std::string packed("\x1f\x8b\x08\x00\x00\x00\x00\x00\x02\x03", 10);
+  fs::remove(folder_.path() / "log" / "measurements.csv");
+  write("measurements.csv.gz", packed);
+  is_refused_with("measurements.csv.gz: expected a whole gzip file, found one that was cut");
+}
+
 TEST_F(TeamLog, IsForReplayAlone) {
   const std::string log = (folder_.path() / "log").string();
   for (const Words& words :
@@ -142,7 +197,7 @@ TEST_F(TeamLog, IsRefusedToWhoAsksForRobotsTwiceOrForOneThatIsNotThere) {
 }
 
 TEST_F(TeamLog, IsRefusedToWhoNamesNoRobot) {
-  for (const char* robots : {"", "one", "1,-2"}) {
+  for (const char* robots : {"", "one", "1,-2", "1,,2", "1,", ",1"}) {
     const Outcome outcome = replay({"--robots", robots});
     EXPECT_EQ(outcome.exit_code, 2) << robots;
     EXPECT_NE(outcome.err.find("expected numbers of robots, as 1,3, found '"), std::string::npos) << outcome.err;
@@ -171,6 +226,15 @@ TEST_F(TeamDatFiles, OfWhichOneIsMissingNameIt) {
   EXPECT_NE(outcome.err.find("warning: robot 2 is left out: Robot2_Measurement.dat is there, and "), std::string::npos);
   EXPECT_NE(outcome.err.find("Robot2_Odometry.dat is missing"), std::string::npos) << outcome.err;
   EXPECT_EQ(replay({"--overwrite", "--robots", "1"}).err, "") << "by choice";
+}
+
+TEST_F(TeamDatFiles, OfRobotsBeyondFiveAreNamed) {
+  write("Robot7_Odometry.dat", "0.0 0.0 0.0\n4.0 0.0 0.0\n");
+  const Outcome outcome = replay();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: Robot7_Odometry.dat is left out: robots have the numbers 1 to 5"),
+            std::string::npos)
+      << outcome.err;
 }
 
 TEST_F(TeamDatFiles, WithoutMeasurementsOfARobotAreRefusedByName) {

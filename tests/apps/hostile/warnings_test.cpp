@@ -55,6 +55,18 @@ TEST_F(Warnings, TellThatTheLogIsBetterThanAssumed) {
   expect(replay(), 0, "times smaller than the assumed noise");  // it has no error at all
 }
 
+/// A column of identities that is empty says no more than none.
+TEST_F(Warnings, AreNotNeededWhereNoDetectionHasAnIdentity) {
+  std::string detections = "t,range_m,bearing_deg,id\n";
+  for (int t = 0; t < 100; ++t) detections += std::to_string(t) + ",5,3,\n";
+  folder_.write("log/detections.csv", detections);
+  expect(replay({"--association", "known"}), 3, "--association known needs a labelled log, and this one has no labels");
+  expect(replay({"--filter", "fastslam", "--fastslam.association", "known"}), 3,
+         "--fastslam.association known needs a labelled log, and this one has no labels");
+  folder_.write("log/detections.csv", detections + "99.5,5,3,oak\n");
+  EXPECT_EQ(replay({"--association", "known"}).exit_code, 0) << "one is enough to go by";
+}
+
 TEST_F(Warnings, TellOfAMapWithoutALandmark) {
   std::string detections = "t,range_m,bearing_deg\n";
   for (int t = 0; t < 100; ++t)

@@ -70,6 +70,8 @@ class Team {
   /// The landmark that a robot's name means now; no_landmark where the robot has not seen it.
   core::LandmarkId landmark_of(int robot, std::int64_t name) const;
   const std::vector<TeamJoin>& joins() const;
+  /// Joins that held for a while and are none of joins(), in the order in which they were taken back.
+  const std::vector<TakenBackJoin>& joins_taken_back() const;
   std::vector<JudgedSighting> sightings() const;
   /// Landmarks that were made one by where they stand (JoinOptions::by_place).
   const std::vector<SameLandmarks>& same_landmarks() const;
