@@ -19,6 +19,7 @@
 #include "replay/read_to_replay.hpp"
 #include "settings/vehicle_option.hpp"
 #include "settled_log.hpp"
+#include "slipped_scans.hpp"
 #include "stop_if_interrupted.hpp"
 
 namespace helixnav::apps {
@@ -90,6 +91,7 @@ class Calibrator {
   /// delay puts others behind its end.
   core::Recording read_of(SettledDrive& drive) {
     core::Recording log = read(result_.settings);
+    loosen_odometry(drive.slipped, log);
     scans_ = scans_of(log);
     if (drive.ids.size() > scans_) drive.ids.resize(scans_);
     return log;
@@ -139,6 +141,7 @@ class Calibrator {
     result_.closings = drive.closings;
     result_.observations = drive.observations;
     result_.used = drive.used;
+    result_.slips = count_slips(drive.slipped);
     result_.undetermined = drive.task.undetermined_landmarks;
     ++result_.rounds;
     constexpr double settled = 0.02, settled_sigmas = 0.4, far_sigmas = 3.0;  // a match or two go to and fro
@@ -155,6 +158,7 @@ class Calibrator {
         drive.closings, drive.used, drive.observations);
     std::fflush(stdout);
     ids_ = std::move(drive.ids);
+    slipped_ = std::move(drive.slipped);
     graph_ = std::move(drive.task.problem.graph);
   }
 
@@ -293,7 +297,8 @@ class Calibrator {
 
   /// Keeps what, fitted to three quarters of the drive, explains the fourth better than what was told; by the whole then.
   void judge() {
-    const core::Recording recording = read(result_.settings);
+    core::Recording recording = read(result_.settings);
+    loosen_odometry(slipped_, recording);
     const NudgedLog log = nudged(recording);
     std::vector<Fold> folds;
     ProgressBar progress("judging by what is held out", parts_held_out + 1, false);
@@ -337,10 +342,11 @@ class Calibrator {
   Settings known_;
   std::size_t scans_ = every_scan;  ///< of the log that are used: the same ones in all of a round
   std::vector<VehicleConstant> constants_;
-  bool far_off_;               ///< the constants may be, so that returns cannot be believed
-  int times_thrown_back_ = 0;  ///< far off after they were not
-  Ids ids_;                    ///< of the last round
-  core::LandmarkGraph graph_;  ///< solved with them
+  bool far_off_;                      ///< the constants may be, so that returns cannot be believed
+  int times_thrown_back_ = 0;         ///< far off after they were not
+  Ids ids_;                           ///< of the last round
+  std::vector<std::size_t> slipped_;  ///< likewise
+  core::LandmarkGraph graph_;         ///< solved with them
   Calibration result_;
 };
 
