@@ -142,5 +142,18 @@ TEST(HelpPages, OfReplayFitOnAScreenAndShowAllOnDemand) {
   EXPECT_EQ(run({"help"}).out, run({"--help"}).out);
 }
 
+TEST(HelpPages, OfACommandThatIsNotThereNameTheNearest) {
+  const Outcome help = run({"help", "repaly"});
+  EXPECT_EQ(help.exit_code, 2);
+  EXPECT_NE(help.err.find("unknown command 'repaly'; did you mean 'replay'?"), std::string::npos) << help.err;
+}
+
+TEST(HelpPages, ProposeNoOptionThatIsFarFromWhatWasWritten) {
+  const Outcome seed = run({"replay", "x", "--out", "y", "--seed"});
+  EXPECT_EQ(seed.exit_code, 2);
+  EXPECT_NE(seed.err.find("unknown option '--seed'"), std::string::npos) << seed.err;
+  EXPECT_EQ(seed.err.find("did you mean"), std::string::npos) << seed.err;
+}
+
 }  // namespace
 }  // namespace helixnav::apps
