@@ -162,6 +162,10 @@ void doubt_bearings(const OwnLog& log, Doubts& doubts) {
 void doubt_few_detections(const OwnLog& log, Doubts& doubts) {
   const auto count = std::count_if(log.detections.begin(), log.detections.end(),
                                    [](const OwnDetection& row) { return row.kind != OwnDetection::Kind::nothing; });
+  const bool one_scan = !log.detections.empty() && log.detections.front().t_ns == log.detections.back().t_ns;
+  if (count >= 2 && one_scan) {
+    doubts.emplace_back("detections: all are of one time; there is nothing to be seen again in them");
+  }
   if (count >= 2) return;
   doubts.push_back(sentence("detections: %td in all of the log; there is nothing to be seen again in it", count));
 }

@@ -82,7 +82,8 @@ TEST(OwnDoubts, TellAReachThatNoDetectionComesNear) {
 
 TEST(OwnDoubts, TellAReachThreeTimesTheFarthestOfManyDetections) {
   std::string detections = "t_s,range_m,bearing_deg\n";
-  for (int i = 0; i < 200; ++i) detections += "1," + std::to_string(5.0 + 0.1 * i) + ',' + std::to_string(i) + '\n';
+  for (int i = 0; i < 200; ++i)
+    detections += std::to_string(1 + i / 100) + "," + std::to_string(5.0 + 0.1 * i) + ',' + std::to_string(i) + '\n';
   const OwnLogFolder log;
   log.write("detections.csv", detections);
   const auto with_reach = [&](const std::string& reach_m) {
@@ -99,6 +100,10 @@ TEST(OwnDoubts, TellAReachThreeTimesTheFarthestOfManyDetections) {
 TEST(OwnDoubts, TellThatHardlyAnythingWasDetected) {
   EXPECT_TRUE(says(remarks("detections.csv", "t,range_m,bearing_deg\n0.5,10,90\n"), "detections: 1 in all of the log"));
   EXPECT_TRUE(says(remarks("detections.csv", "t,range_m,bearing_deg\n0.5,,\n1.5,,\n"), "detections: 0 in all"));
+}
+
+TEST(OwnDoubts, TellThatAllWasDetectedAtOnce) {
+  EXPECT_TRUE(says(remarks("detections.csv", "t,range_m,bearing_deg\n0.5,10,90\n0.5,20,-45\n"), "all are of one time"));
 }
 
 TEST(OwnDoubts, TellTheVehicleOfAnotherRobot) {
