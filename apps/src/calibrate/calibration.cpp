@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "common/fit_to_recording.hpp"
@@ -14,6 +15,7 @@
 #include "drive/check_drive.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
+#include "helixnav/logs/handedness.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 #include "keep_scans.hpp"
 #include "replay/read_to_replay.hpp"
@@ -70,12 +72,15 @@ class Calibrator {
   }
 
  private:
-  /// As replay refuses it.
+  /// As replay refuses it, and where bearings or turns have the other sign: what fits then are wrong associations.
   void check(const core::Recording& log) const {
     Drive drive;
     drive.recording = log;
     drive.known_association = known_.known_association;
     check_drive(drive);
+    if (const std::optional<std::string> doubt = logs::doubt_handedness(log)) {
+      throw core::InputError(path_ + ": no constant mends a sign: " + *doubt);
+    }
   }
 
   core::Recording plain(const Settings& settings) const {

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
+#include <utility>
 #include <variant>
 
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/in_view.hpp"
-#include "own/own_handedness.hpp"
+#include "helixnav/logs/handedness.hpp"
 #include "own/own_overlap.hpp"
 #include "own/vehicle/units.hpp"
 
@@ -248,7 +250,7 @@ Doubts doubts_of(const OwnLog& log, const Vehicle& vehicle, const core::Recordin
   doubt_bearings(log, doubts);
   doubt_few_detections(log, doubts);
   doubt_overlap(log, recording, doubts);
-  doubt_handedness(recording, doubts);
+  if (std::optional<std::string> doubt = doubt_handedness(recording)) doubts.push_back(std::move(*doubt));
   doubt_reach(vehicle, recording, doubts);
   doubt_vehicle(vehicle, recording, doubts);
   return doubts;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "own_handedness.hpp"
+#include "helixnav/logs/handedness.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,6 +9,7 @@
 #include <deque>
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/odometry.hpp"
@@ -135,20 +136,20 @@ Found count_found(const core::Recording& recording) {
 
 }  // namespace
 
-void doubt_handedness(const core::Recording& recording, std::vector<std::string>& doubts) {
+std::optional<std::string> doubt_handedness(const core::Recording& recording) {
   constexpr std::size_t least_found = 30;
   constexpr std::size_t clear_ratio = 3;
   const Found all = count_found(recording);
   const bool bearings_fit_better = all.other_bearings.by_other >= all.other_turns.by_other;
   const FoundByOne& found = bearings_fit_better ? all.other_bearings : all.other_turns;
-  if (found.by_other < least_found || found.by_other < clear_ratio * found.as_it_stands) return;
+  if (found.by_other < least_found || found.by_other < clear_ratio * found.as_it_stands) return std::nullopt;
   std::array<char, 320> text{};
   std::snprintf(
       text.data(), text.size(),
       "while the vehicle turns, %zu detections are found again in a later scan as they stand, and %zu with bearings or "
       "turns of the other sign; are bearings or turns counted clockwise? Both are counter-clockwise",
       found.as_it_stands, found.by_other);
-  doubts.emplace_back(text.data());
+  return text.data();
 }
 
 }  // namespace helixnav::logs
