@@ -74,7 +74,7 @@ ExitCode run(int argc, char** argv) {
   }
   if (argc < 2) return fail(ExitCode::usage, ("a command is missing\n\n" + app.help()).c_str());
   try {
-    std::vector<std::string> words = without_help_word({argv, argv + argc});
+    std::vector<std::string> words = without_help_word(app, {argv, argv + argc});
     words.erase(words.begin());
     std::reverse(words.begin(), words.end());  // as parse wants them
     app.parse(std::move(words));

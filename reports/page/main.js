@@ -38,6 +38,7 @@ byId("errors-section").hidden = !filtered && !data.errors;
 byId("smoothing").hidden = !smoothing;
 dark.addEventListener("change", redraw);
 writeHeader();
+writeAntenna();
 writeOpening();
 writeSummary();
 writeDecisions();

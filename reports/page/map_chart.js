@@ -9,7 +9,7 @@ const landmarkTraces = (state, colour, symbol) => {
   const outlined = chosen.length > most_ellipses ? [] : chosen;
   const outline = ellipses(outlined.map((m) => [m.x, m.y, m.sxx, m.sxy, m.syy]));
   const name = `${state} landmarks${everyLandmarkText()}`;
-  const text = chosen.map((m) => `landmark ${m.id}<br>${m.observations} observations<br>σ ${
+  const text = chosen.map((m) => `landmark ${hoverName(m.id)}<br>${m.observations} observations<br>σ ${
     Math.sqrt(m.sxx).toFixed(3)} m, ${Math.sqrt(m.syy).toFixed(3)} m`);
   return [
     line(name, outline.x, outline.y, colour,
@@ -25,7 +25,7 @@ const truthTraces = () => {
   if (!truth) return [];
   if (!truth.aligned) return [line("true path", truth.x, truth.y, c.truth, { line: { color: c.truth, width: 1.6 } })];
   return [
-    dots("fixes", truth.x, truth.y, c.truth, { marker: { color: c.truth, size: 3.5 }, hoverinfo: "x+y" }),
+    dots(data.antenna ? `fixes (of the antenna, ${antennaPlace()})` : "fixes", truth.x, truth.y, c.truth, { marker: { color: c.truth, size: 3.5 }, hoverinfo: "x+y" }),
     dots("fixes left out", truth.left_out_x, truth.left_out_y, c.bad,
       { marker: { color: c.bad, size: 7, symbol: "x-thin", line: { color: c.bad, width: 1.5 } } }),
   ].filter((trace) => trace.x.length > 0);
@@ -76,10 +76,11 @@ const drawMap = () => {
     xaxis: axis("x [m]", { range: data.map_extent.slice(0, 2) }),
     yaxis: axis("y [m]", { range: data.map_extent.slice(2), scaleanchor: "x" }),
   });
+  const frame = data.frame_of_fixes ? "that of the position fixes" : "pose at the start";
   byId("map-note").textContent = (filtered
-    ? `Map frame (pose at the start). Ellipses hold the true position with 95 % if the filter is right; those of the
-       path stand ${count(path.ellipse_stride)} scans apart.`
-    : `Optimum of all measurements in the map frame (pose at the start). Ellipses hold the true position of a landmark
+    ? `Map frame (${frame}). Ellipses hold the true position with 95 % if the filter is right; those of the
+       path stand ${path.ellipse_stride === 1 ? "a scan" : `${count(path.ellipse_stride)} scans`} apart.`
+    : `Optimum of all measurements in the map frame (${frame}). Ellipses hold the true position of a landmark
        with 95 % if the covariances are right.`) + particlesMapNote() +
     (data.truth && data.truth.aligned ? " The fixes were brought into the map frame by the alignment." : "");
 };

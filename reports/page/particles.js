@@ -16,7 +16,7 @@ const mixtureTraces = () => {
       { line: { color: c.other, width: 1, dash: "dot" }, hoverinfo: "skip", legendgroup: name, showlegend: false }),
     dots(name, particles.mixture.map((m) => m.x), particles.mixture.map((m) => m.y), c.other,
       { marker: { color: c.other, size: 6, symbol: "x-thin", line: { color: c.other, width: 1.5 } }, legendgroup: name,
-        text: particles.mixture.map((m) => `landmark ${m.id}<br>in ${percent(m.share)} of the weight`),
+        text: particles.mixture.map((m) => `landmark ${hoverName(m.id)}<br>in ${percent(m.share)} of the weight`),
         hovertemplate: "%{text}<br>(%{x:.2f}, %{y:.2f}) m<extra></extra>" }),
   ];
 };

@@ -10,7 +10,7 @@ function(helixnav_embed_report target)
       "A copy elsewhere is named by -DHELIXNAV_PLOTLY_JS=<file>.")
   endif()
   # In this order: what a script needs at once stands before it.
-  set(scripts text.js unpack.js drive.js camera.js polyline.js present.js cells.js charts.js map_chart.js particles.js
+  set(scripts text.js names.js unpack.js drive.js camera.js polyline.js present.js cells.js charts.js map_chart.js particles.js
     strokes.js scene_ways.js layers.js ink.js scene_landmarks.js scene_now.js scene.js player_text.js player_strip.js player.js player_controls.js
     opening.js summary.js decisions.js closures.js main.js)
   list(TRANSFORM scripts PREPEND ${folder}/)

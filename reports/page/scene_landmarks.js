@@ -83,7 +83,7 @@ const drawIds = ({ context, camera, palette, present: { owner, landmarks }, visi
   for (let v = 0; v < found; v++) {
     const p = visible[v];
     if (!takeCell(cells, landmarks.x[p], landmarks.y[p])) continue;
-    context.fillText(landmarks.id[owner[p]], toScreenX(camera, landmarks.x[p]) + 6, toScreenY(camera, landmarks.y[p]) - 5);
+    context.fillText(shortName(landmarks.id[owner[p]]), toScreenX(camera, landmarks.x[p]) + 6, toScreenY(camera, landmarks.y[p]) - 5);
   }
 };
 

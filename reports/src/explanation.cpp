@@ -17,6 +17,7 @@
 #include "numerics_text.hpp"
 #include "only_localized.hpp"
 #include "place_questions.hpp"
+#include "slip_spans.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -236,7 +237,7 @@ std::string explain_run(const runs::Run& run) {
   }
   const std::string contradicted = contradicted_place_text(run);
   if (!contradicted.empty()) text += "\nWarning: " + contradicted + ".\n";
-  text += all_of_kind<core::SlipDecision>(decided, "Slips that the odometry did not show");
+  text += slips_text(run);
   text += all_of_kind<core::MovingDecision>(decided, "What moves");
   text += numerics_line(run);
   if (!closures.empty()) text += "\nDetails of one: helixnav explain " + run.path + " --closure 1\n";

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <string>
 #include <variant>
 #include <vector>
@@ -77,6 +78,48 @@ TEST(FuseGps, UsesAFixWhereTheVehicleWasThen) {
     const double x_m = 10.0 * core::seconds(core::time_of(event));
     EXPECT_NEAR(navigator.pose().mean.x_m, x_m, 1e-6);
   }
+}
+
+/// The same drive with true poses, which begin at the origin of the map, as such a log gives them; fixes in the frame of a grid.
+core::Recording drive_with_truth(const core::Pose2& T_grid_map, const core::Pose2& T_truth_map) {
+  core::Recording recording;
+  recording.antenna_robot_m = {1.0, 0.5};
+  recording.truth_frame.T_truth_map = T_truth_map;
+  recording.events.emplace_back(core::Scan{});
+  for (int k = 0; k <= 40; ++k) {
+    core::Odometry moved = core::no_motion(core::nanoseconds_from_seconds(0.5 * k));
+    moved.T_before_after.x_m = 5.0;
+    moved.covariance = Eigen::Vector3d(0.01, 0.01, 1e-8).asDiagonal();
+    if (k > 0) recording.events.emplace_back(moved);
+    const core::Pose2 T_map_robot(5.0 * k, 0.0, 0.0);
+    recording.true_poses.push_back({moved.t_ns, T_map_robot});
+    const Eigen::Vector2d antenna_m = core::transform(T_map_robot, recording.antenna_robot_m);
+    recording.true_positions.push_back({moved.t_ns, core::transform(T_grid_map, antenna_m), 0.5});
+  }
+  recording.true_landmarks.push_back({0, {10.0, 5.0}});
+  return recording;
+}
+
+TEST(FuseGps, IsJudgedByTheTruePosesInTheFrameOfTheFixes) {
+  const core::Pose2 T_grid_map(3.0e5, 5.4e6, 0.7);
+  core::Recording recording = drive_with_truth(T_grid_map, T_grid_map);
+  fuse_gps(recording, {true, 0.5, 30.0});
+  EXPECT_TRUE(recording.true_positions.empty());
+  EXPECT_TRUE(recording.truth_frame.is_map);
+  ASSERT_EQ(recording.true_poses.size(), 41U);
+  EXPECT_NEAR(recording.true_poses[2].T_world_robot.x_m, 3.0e5 + 10.0 * std::cos(0.7), 1e-6);
+  EXPECT_NEAR(recording.true_poses[2].T_world_robot.heading_rad, 0.7, 1e-9);
+  EXPECT_NEAR(recording.true_poses[0].T_world_robot.y_m, recording.start.mean.y_m, 1e-3);
+  const Eigen::Vector2d landmark_m = core::transform(T_grid_map, {10.0, 5.0});
+  EXPECT_NEAR((recording.true_landmarks[0].point_m - landmark_m).norm(), 0.0, 1e-6);
+}
+
+TEST(FuseGps, AlignsTruePosesThatAreOfAnotherFrameThanTheFixes) {
+  core::Recording recording = drive_with_truth({3.0e5, 5.4e6, 0.7}, {12.0, 3.0, 0.0});
+  fuse_gps(recording, {true, 0.5, 30.0});
+  EXPECT_TRUE(recording.true_positions.empty());
+  EXPECT_FALSE(recording.truth_frame.is_map);
+  EXPECT_EQ(recording.true_poses.size(), 41U);
 }
 
 }  // namespace

@@ -47,6 +47,20 @@ TEST_F(OwnLogProgram, NavigatesItsExampleFromNewVehicleToAJudgedMap) {
   EXPECT_NE(manifest.find("reach 30 m"), std::string::npos);
 }
 
+TEST_F(OwnLogProgram, TellsTheViewOfEachOfTwoSensors) {
+  const fs::path log = folder_.path() / "two";
+  folder_.write("two/vehicle.toml",
+                "[odometry]\nsigma_along_m_per_sqrt_m = 0.02\n"
+                "[[sensor]]\nname = \"front\"\nx_m = 0.5\nreach_m = 25\nview_deg = [-60, 60]\nsigma_point_m = 0.1\n"
+                "[[sensor]]\nname = \"rear\"\nx_m = -0.5\nheading_deg = 180\nreach_m = 15\nview_deg = [-80, 80]\n"
+                "sigma_point_m = 0.1\n");
+  folder_.write("two/odometry.csv", "t,v,omega\n0,1,0\n1,1,0\n2,1,0\n");
+  folder_.write("two/detections.csv", "t,x,y,sensor\n0.5,20,1,front\n0.6,12,2,rear\n1.5,18,-3,front\n1.6,11,2,rear\n");
+  expect({"check", log}, 0,
+         {"view used   front: reach 25 m", "bearings from -60 to 60 deg", "view used   rear: reach 15 m",
+          "bearings from -80 to 80 deg", "view seen   front: reach 20.02 m", "view seen   rear: reach 12.17 m"});
+}
+
 TEST_F(OwnLogProgram, RefusesAFolderThatIsTaken) {
   expect({"new-vehicle", log_}, 3, {"expected a folder that is empty or not there"});
 }
@@ -126,6 +140,19 @@ TEST(HelpPages, OfReplayFitOnAScreenAndShowAllOnDemand) {
   EXPECT_NE(all.out.find("--search.particles"), std::string::npos);
   EXPECT_EQ(run({"help", "replay"}).out, brief.out);
   EXPECT_EQ(run({"help"}).out, run({"--help"}).out);
+}
+
+TEST(HelpPages, OfACommandThatIsNotThereNameTheNearest) {
+  const Outcome help = run({"help", "repaly"});
+  EXPECT_EQ(help.exit_code, 2);
+  EXPECT_NE(help.err.find("unknown command 'repaly'; did you mean 'replay'?"), std::string::npos) << help.err;
+}
+
+TEST(HelpPages, ProposeNoOptionThatIsFarFromWhatWasWritten) {
+  const Outcome seed = run({"replay", "x", "--out", "y", "--seed"});
+  EXPECT_EQ(seed.exit_code, 2);
+  EXPECT_NE(seed.err.find("unknown option '--seed'"), std::string::npos) << seed.err;
+  EXPECT_EQ(seed.err.find("did you mean"), std::string::npos) << seed.err;
 }
 
 }  // namespace

@@ -53,10 +53,10 @@ TEST(Opening, SaysHowOftenTheVehicleSlipped) {
   core::SlipDecision slip;
   slip.moved_m = 0.5;
   run.steps[20].decisions = {slip};
-  EXPECT_NE(said().find("The vehicle slipped once, by 0.5 m, and its"), std::string::npos) << said();
+  EXPECT_NE(said().find("The vehicle slipped once, by 0.5 m, at 20 s, and its"), std::string::npos) << said();
   slip.moved_m = 0.75;
   run.steps[40].decisions = {slip};
-  EXPECT_NE(said().find("The vehicle slipped twice, by 0.75 m at most, and its"), std::string::npos) << said();
+  EXPECT_NE(said().find("The vehicle slipped twice, by 0.75 m at most, at 40 s, and its"), std::string::npos) << said();
 }
 
 TEST(Opening, SaysHowOftenSomethingThatMovesHadBeenMapped) {

@@ -105,6 +105,31 @@ TEST(Report, HoldsHealthPathsAndMixtureOfACloudOfParticles) {
   EXPECT_EQ(data["summary"]["particles"]["ancestors_least"], 9);
 }
 
+TEST(Report, HoldsNamesTheAntennaOfFixesAndTheFrameOfAFusedMap) {
+  runs::Run run = example_run(20);
+  const nlohmann::json plain = element(render(run), "run-data");
+  EXPECT_TRUE(plain["names"].is_null());
+  EXPECT_TRUE(plain["antenna"].is_null());
+  EXPECT_FALSE(plain["frame_of_fixes"].get<bool>());
+  run.names[7] = "north pier";
+  run.truth.positions = {{run.steps[3].t_ns, {1.0, 2.0}, 0.1}};
+  run.truth.antenna_robot_m = {3.0, -0.5};
+  run.steps[3].decisions = {core::FixDecision{}};
+  const nlohmann::json data = element(render(run), "run-data");
+  EXPECT_EQ(data["names"]["7"], "north pier");
+  EXPECT_EQ(data["antenna"], nlohmann::json({3.0, -0.5}));
+  EXPECT_TRUE(data["frame_of_fixes"].get<bool>());
+}
+
+TEST(Report, ShowsTentativeLandmarksWhereThereAreNoOthers) {
+  runs::Run run = example_run(1);
+  run.truth = {};
+  run.map = {example_map().front()};
+  run.map[0].state = core::LandmarkState::tentative;
+  run.map[0].point.mean_m = {500.0, 0.0};
+  EXPECT_GT(element(render(run), "run-data")["map_extent"][1].get<double>(), 500.0);
+}
+
 TEST(Report, LoadsNothingFromElsewhere) {
   std::string page = render(example_run(20));
   const std::size_t charts = page.find(report_charts);

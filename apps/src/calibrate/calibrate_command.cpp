@@ -98,9 +98,15 @@ void print_result(const Calibration& result) {
     std::printf("left out, since bearings from nearly one side leave open where they stand: %d landmarks\n",
                 result.undetermined);
   }
+  if (result.slips > 0) {
+    std::printf("left out of the noise of the odometry: %zu %s of the vehicle, as the landmarks say\n", result.slips,
+                result.slips == 1 ? "slip" : "slips");
+  }
   if (!result.settled) std::printf("not settled after %d rounds: the intervals are not to be trusted\n", result.rounds);
   if (result.without_returns) {
-    std::printf("the returns of this drive do not fit the rest of it, and are not used: some associations are wrong\n");
+    std::printf(
+        "the returns of this drive do not fit the rest of it, and are not used: associations may be wrong, or the "
+        "odometry\nslipped where the landmarks do not show it\n");
   }
   if (result.closings < result.first_closings) {
     std::printf(

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "common/fit_to_recording.hpp"
@@ -14,11 +15,13 @@
 #include "drive/check_drive.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
+#include "helixnav/logs/handedness.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 #include "keep_scans.hpp"
 #include "replay/read_to_replay.hpp"
 #include "settings/vehicle_option.hpp"
 #include "settled_log.hpp"
+#include "slipped_scans.hpp"
 #include "stop_if_interrupted.hpp"
 
 namespace helixnav::apps {
@@ -69,12 +72,15 @@ class Calibrator {
   }
 
  private:
-  /// As replay refuses it.
+  /// As replay refuses it, and where bearings or turns have the other sign: what fits then are wrong associations.
   void check(const core::Recording& log) const {
     Drive drive;
     drive.recording = log;
     drive.known_association = known_.known_association;
     check_drive(drive);
+    if (const std::optional<std::string> doubt = logs::doubt_handedness(log)) {
+      throw core::InputError(path_ + ": no constant mends a sign: " + *doubt);
+    }
   }
 
   core::Recording plain(const Settings& settings) const {
@@ -90,6 +96,7 @@ class Calibrator {
   /// delay puts others behind its end.
   core::Recording read_of(SettledDrive& drive) {
     core::Recording log = read(result_.settings);
+    loosen_odometry(drive.slipped, log);
     scans_ = scans_of(log);
     if (drive.ids.size() > scans_) drive.ids.resize(scans_);
     return log;
@@ -139,6 +146,7 @@ class Calibrator {
     result_.closings = drive.closings;
     result_.observations = drive.observations;
     result_.used = drive.used;
+    result_.slips = count_slips(drive.slipped);
     result_.undetermined = drive.task.undetermined_landmarks;
     ++result_.rounds;
     constexpr double settled = 0.02, settled_sigmas = 0.4, far_sigmas = 3.0;  // a match or two go to and fro
@@ -155,6 +163,7 @@ class Calibrator {
         drive.closings, drive.used, drive.observations);
     std::fflush(stdout);
     ids_ = std::move(drive.ids);
+    slipped_ = std::move(drive.slipped);
     graph_ = std::move(drive.task.problem.graph);
   }
 
@@ -293,7 +302,8 @@ class Calibrator {
 
   /// Keeps what, fitted to three quarters of the drive, explains the fourth better than what was told; by the whole then.
   void judge() {
-    const core::Recording recording = read(result_.settings);
+    core::Recording recording = read(result_.settings);
+    loosen_odometry(slipped_, recording);
     const NudgedLog log = nudged(recording);
     std::vector<Fold> folds;
     ProgressBar progress("judging by what is held out", parts_held_out + 1, false);
@@ -337,10 +347,11 @@ class Calibrator {
   Settings known_;
   std::size_t scans_ = every_scan;  ///< of the log that are used: the same ones in all of a round
   std::vector<VehicleConstant> constants_;
-  bool far_off_;               ///< the constants may be, so that returns cannot be believed
-  int times_thrown_back_ = 0;  ///< far off after they were not
-  Ids ids_;                    ///< of the last round
-  core::LandmarkGraph graph_;  ///< solved with them
+  bool far_off_;                      ///< the constants may be, so that returns cannot be believed
+  int times_thrown_back_ = 0;         ///< far off after they were not
+  Ids ids_;                           ///< of the last round
+  std::vector<std::size_t> slipped_;  ///< likewise
+  core::LandmarkGraph graph_;         ///< solved with them
   Calibration result_;
 };
 

@@ -31,6 +31,7 @@ struct Calibration {
   int rounds = 0;
   bool settled = false;
   std::size_t observations = 0, used = 0;  ///< in the last round
+  std::size_t slips = 0;                   ///< of the last round, which noise of the odometry is not estimated from
   int undetermined =
       0;  ///< landmarks, or passages of them, left out in the last round: bearings leave open where they stand
   bool without_returns = false;  ///< landmarks that came back after a while were taken for others

@@ -12,6 +12,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/event_loop.hpp"
 #include "keep_scans.hpp"
+#include "slipped_scans.hpp"
 #include "smooth/smoothing_run.hpp"
 #include "stop_if_interrupted.hpp"
 #include "without_fixes.hpp"
@@ -62,7 +63,9 @@ SettledDrive drive_through(const core::Recording& recording, const supervisor::N
     steps.push_back(std::move(*step));
   }
   const std::vector<core::MapLandmark> map = navigator.map();
-  const core::Recording driven = without_fixes(recording);
+  core::Recording driven = without_fixes(recording);
+  drive.slipped = slipped_scans(steps);
+  loosen_odometry(drive.slipped, driven);
   drive.ids = ids_of_mature(steps, driven, map);
   SmoothingTask task = task_from_recording(driven, drive.ids);
   if (task.problem.graph.landmark_edges.empty()) {

@@ -12,8 +12,9 @@ namespace helixnav::apps {
 
 /// A log with the associations of a run through it.
 struct SettledDrive {
-  SmoothingTask task;  ///< where the run left it
-  Ids ids;             ///< associations that it was made with
+  SmoothingTask task;                ///< where the run left it
+  Ids ids;                           ///< associations that it was made with
+  std::vector<std::size_t> slipped;  ///< scans before which the odometry slipped, which cuts the task
   std::size_t observations = 0, used = 0;
   std::size_t closings = 0;
   double nis_per_dof = 0.0;           ///< of the run

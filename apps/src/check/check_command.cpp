@@ -79,7 +79,7 @@ ExitCode check(CLI::App& command, CheckJob& job) {
   core::Recording recording = logs::read_recording(job.path, job.settings.logs);
   if (job.settings.logs.vehicle) tell_vehicle(recording, format, *job.settings.logs.vehicle);
   apply_log_settings(recording, job.settings);
-  std::fputs(events_text(recording).c_str(), stdout);
+  std::fputs(events_text(recording, job.settings.logs.vehicle ? &*job.settings.logs.vehicle : nullptr).c_str(), stdout);
   print_settings(job, recording);
   std::fputs(missing_text(recording).c_str(), stdout);
   for (const std::string& remark : recording.remarks) std::printf("note        %s\n", remark.c_str());

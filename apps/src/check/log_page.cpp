@@ -86,6 +86,50 @@ std::string view_text(const char* what, const core::FieldOfView& view) {
               view.max_range_m, deg_per_rad * (view.min_bearing_rad), deg_per_rad * (view.max_bearing_rad));
 }
 
+/// The scans of each sensor, by where it is mounted, in the order in which they come.
+std::vector<core::Recording> apart_by_sensor(const core::Recording& recording) {
+  std::vector<core::Pose2> mounted;
+  std::vector<core::Recording> sensors;
+  for (const core::Event& event : recording.events) {
+    const auto* scan = std::get_if<core::Scan>(&event);
+    if (scan == nullptr) continue;
+    const auto known = std::find_if(mounted.begin(), mounted.end(), [&](const core::Pose2& other) {
+      return other.vector() == scan->T_robot_sensor.vector();
+    });
+    const auto sensor = static_cast<std::size_t>(known - mounted.begin());
+    if (known == mounted.end()) {
+      mounted.push_back(scan->T_robot_sensor);
+      sensors.emplace_back();
+    }
+    sensors[sensor].events.push_back(event);
+  }
+  return sensors;
+}
+
+std::string sensor_name(const core::Pose2& T_robot_sensor, const logs::Vehicle* vehicle) {
+  if (vehicle != nullptr) {
+    for (const logs::SensorModel& sensor : vehicle->sensors) {
+      if (sensor.T_vehicle_sensor.vector() == T_robot_sensor.vector() && !sensor.name.empty()) return sensor.name;
+    }
+  }
+  std::array<char, 80> text{};
+  std::snprintf(text.data(), text.size(), "sensor at (%.3g, %.3g) m", T_robot_sensor.x_m, T_robot_sensor.y_m);
+  return text.data();
+}
+
+std::string views_text(const core::Recording& recording, const logs::Vehicle* vehicle) {
+  const std::vector<core::Recording> sensors = apart_by_sensor(recording);
+  std::string text;
+  for (const core::Recording& sensor : sensors) {
+    const auto& scan = std::get<core::Scan>(sensor.events.front());
+    const std::string name = sensors.size() > 1 ? ' ' + sensor_name(scan.T_robot_sensor, vehicle) + ':' : "";
+    const core::FieldOfView seen = logs::estimate_field_of_view(sensor);
+    if (seen.reach()) text += view_text(("view seen  " + name).c_str(), seen);
+    text += view_text(("view used  " + name).c_str(), logs::field_of_view_of(sensor));
+  }
+  return text;
+}
+
 std::string truth_text(const core::Recording& recording) {
   std::set<core::Label> labels;
   for (const auto& of_scan : recording.labels) labels.insert(of_scan.begin(), of_scan.end());
@@ -128,7 +172,7 @@ bool fixes_no_point(const core::Recording& recording) {
   return counts.observations > 0 && counts.of_kind[0] + counts.of_kind[1] == 0;
 }
 
-std::string events_text(const core::Recording& recording) {
+std::string events_text(const core::Recording& recording, const logs::Vehicle* vehicle) {
   const ScanCounts counts = count_scans(recording);
   std::string text = motion_text(recording);
   if (counts.scans == 0) return text;
@@ -138,10 +182,7 @@ std::string events_text(const core::Recording& recording) {
   text += line("            %.3g detections a scan, %zu scans saw nothing; %s",
                static_cast<double>(counts.observations) / static_cast<double>(counts.scans), counts.empty,
                kinds_text(counts).c_str());
-  const core::FieldOfView seen = logs::estimate_field_of_view(recording);
-  if (seen.reach()) text += view_text("view seen  ", seen);
-  text += view_text("view used  ", logs::field_of_view_of(recording));
-  return text + truth_text(recording);
+  return text + views_text(recording, vehicle) + truth_text(recording);
 }
 
 }  // namespace helixnav::apps

@@ -5,6 +5,7 @@
 
 #include "helixnav/core/recording.hpp"
 #include "helixnav/logs/own_log.hpp"
+#include "helixnav/logs/vehicle.hpp"
 
 namespace helixnav::apps {
 
@@ -12,8 +13,9 @@ namespace helixnav::apps {
 std::string tables_text(const logs::OwnLog& log);
 
 /// The events of any log in words: way and speed, scans, kinds of observations, reach and field of view seen and stated,
-/// gaps, truth.
-std::string events_text(const core::Recording& recording);
+/// gaps, truth. Of several sensors seen and stated are told of each, by its name in the vehicle file if there is one. Test:
+/// apps/own_log_test.cpp.
+std::string events_text(const core::Recording& recording, const logs::Vehicle* vehicle);
 
 /// Whether all that is detected are ranges or bearings alone.
 bool fixes_no_point(const core::Recording& recording);

@@ -32,10 +32,12 @@ void use_short_help(CLI::App& app) {
   app.set_help_all_flag("--help-all", "Print this help with all settings and exit");
 }
 
-std::vector<std::string> without_help_word(std::vector<std::string> words) {
+std::vector<std::string> without_help_word(const CLI::App& app, std::vector<std::string> words) {
   if (words.size() < 2 || words[1] != "help") return words;
   words.erase(words.begin() + 1);
-  words.emplace_back("--help");
+  const auto is_asked = [&](const CLI::App* command) { return words.size() > 1 && command->check_name(words[1]); };
+  const bool is_command = words.size() > 1 && words[1].rfind('-', 0) != 0;
+  if (!is_command || !app.get_subcommands(is_asked).empty()) words.emplace_back("--help");
   return words;
 }
 

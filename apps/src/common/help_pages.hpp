@@ -17,7 +17,8 @@ inline const char* const settings_group = "Settings (keys of --config)";
 /// shows.
 void use_short_help(CLI::App& app);
 
-/// `help COMMAND` as `COMMAND --help`; other words as they are.
-std::vector<std::string> without_help_word(std::vector<std::string> words);
+/// `help COMMAND` as `COMMAND --help`, and as COMMAND alone where there is none of that name, which is then refused; other words as
+/// they are.
+std::vector<std::string> without_help_word(const CLI::App& app, std::vector<std::string> words);
 
 }  // namespace helixnav::apps

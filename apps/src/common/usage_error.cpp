@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "usage_error.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -32,6 +34,11 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
+/// So near that it may have been meant: two letters, or a third of a long name.
+bool is_near(const std::string& name, const std::string& nearest) {
+  return core::edit_distance(name, nearest) <= std::max<std::size_t>(2, name.size() / 3);
+}
+
 std::string unknown_word(const CLI::App& app, const std::string& word) {
   const bool is_option = word.rfind('-', 0) == 0;
   const std::string name = is_option ? word.substr(0, word.find('=')) : word;
@@ -39,9 +46,10 @@ std::string unknown_word(const CLI::App& app, const std::string& word) {
   const std::string nearest = core::nearest_name(name, known);
   if (nearest.empty()) return "unexpected argument '" + name + "'";
   if (nearest == name) return "option '" + name + "' belongs after the command";
-  const std::string question = " '" + name + "'; did you mean '" + nearest + "'?";
-  if (is_option) return "unknown option" + question;
-  return "unknown command" + question + " Known are: " + CLI::detail::join(known, ", ");
+  const std::string what = (is_option ? "unknown option '" : "unknown command '") + name + "'" +
+                           (is_near(name, nearest) ? "; did you mean '" + nearest + "'?" : ".");
+  if (is_option) return what;
+  return what + " Known are: " + CLI::detail::join(known, ", ");
 }
 
 }  // namespace

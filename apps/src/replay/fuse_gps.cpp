@@ -12,6 +12,7 @@
 #include "helixnav/core/interpolate.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "helixnav/evaluation/alignment.hpp"
+#include "truth_of_fused.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -106,11 +107,8 @@ void fuse_gps(core::Recording& recording, const GpsSettings& settings) {
   for (; event < recording.events.size(); ++event) events.push_back(std::move(recording.events[event]));
   recording.events = std::move(events);
   if (recording.true_poses.empty()) return;
-  recording.true_positions.clear();  // the map frame is that of the GPS now, and the truth is aligned by its positions
-  for (const core::TruePose& pose : recording.true_poses) {
-    recording.true_positions.push_back({pose.t_ns, pose.T_world_robot.position_m()});
-  }
-  recording.true_poses.clear();
+  put_truth_in_frame_of_fixes(recording, settings.sigma_m);
+  recording.true_positions.clear();
   recording.antenna_robot_m.setZero();
 }
 

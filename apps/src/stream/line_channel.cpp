@@ -152,7 +152,7 @@ bool LineChannel::take_line(std::string& line) {
   if (!whole && !too_long && !(ended_ && length > 0)) return false;
   const bool was_skipping = skipping_;
   skipping_ = !whole && !ended_;
-  line.assign(buffer_, begin_, std::min(length, longest_line));
+  line.assign(buffer_, begin_, std::min(length, longest_line + 1));
   begin_ = searched_ = whole ? end + 1 : searched_;
   if (was_skipping) return take_line(line);  // the rest of one that was given
   if (!line.empty() && line.back() == '\r') line.pop_back();

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <string>
 
+#include "helixnav/logs/own_stream.hpp"
+
 namespace helixnav::apps {
 
 /// Where lines come from and answers go to: standard input and output, or one client after another on a socket of this
@@ -21,7 +23,7 @@ class LineChannel {
   const std::string& address() const { return address_; }
 
   /// Waits for the next line, its end taken off; the last of an input or of a client may have none. Of one longer than
-  /// longest_line only the beginning is given. False at the end of input, or when interrupted.
+  /// longest_line only the beginning is given, a byte more than that. False at the end of input, or when interrupted.
   bool next(std::string& line);
 
   /// Of the last line, from 1, in its input or of its client.
@@ -31,7 +33,7 @@ class LineChannel {
   /// nobody reads the standard output any more.
   bool send(std::string line);
 
-  static constexpr std::size_t longest_line = 1 << 20;
+  static constexpr std::size_t longest_line = logs::OwnStream::longest_line;
 
  private:
   bool wait_for(int descriptor, short what);

@@ -6,10 +6,13 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
+#include <utility>
 #include <variant>
 
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/in_view.hpp"
+#include "helixnav/logs/handedness.hpp"
 #include "own/own_overlap.hpp"
 #include "own/vehicle/units.hpp"
 
@@ -161,6 +164,10 @@ void doubt_bearings(const OwnLog& log, Doubts& doubts) {
 void doubt_few_detections(const OwnLog& log, Doubts& doubts) {
   const auto count = std::count_if(log.detections.begin(), log.detections.end(),
                                    [](const OwnDetection& row) { return row.kind != OwnDetection::Kind::nothing; });
+  const bool one_scan = !log.detections.empty() && log.detections.front().t_ns == log.detections.back().t_ns;
+  if (count >= 2 && one_scan) {
+    doubts.emplace_back("detections: all are of one time; there is nothing to be seen again in them");
+  }
   if (count >= 2) return;
   doubts.push_back(sentence("detections: %td in all of the log; there is nothing to be seen again in it", count));
 }
@@ -171,22 +178,33 @@ double range_of(const core::Observation& z) {
   return z.kind == core::ObservationKind::cartesian ? z.z.norm() : z.z[0];
 }
 
-/// All lengths of the navigator follow from the reach.
+struct Seen {
+  std::size_t count = 0;
+  double farthest_m = 0.0;
+};
+
+/// All lengths of the navigator follow from the reach. Of many detections the farthest comes near to it wherever the sensor is what
+/// ends them; few may all be near by chance.
 void doubt_reach(const Vehicle& vehicle, const core::Recording& recording, Doubts& doubts) {
-  constexpr double beyond = 10.0;
-  std::map<double, double> farthest_m;  // [reach]
+  constexpr double beyond = 3.0, beyond_few = 10.0;
+  constexpr std::size_t many = 200;
+  std::map<double, Seen> seen_up_to;  // [reach]
   for (const core::Event& event : recording.events) {
     const auto* scan = std::get_if<core::Scan>(&event);
     if (scan == nullptr || !scan->field_of_view.reach()) continue;
-    double& farthest = farthest_m[*scan->field_of_view.reach()];
-    for (const core::Observation& z : scan->observations) farthest = std::max(farthest, range_of(z));
+    Seen& seen = seen_up_to[*scan->field_of_view.reach()];
+    for (const core::Observation& z : scan->observations) seen.farthest_m = std::max(seen.farthest_m, range_of(z));
+    seen.count += scan->observations.size();
   }
   for (const SensorModel& sensor : vehicle.sensors) {
-    const auto seen = sensor.reach_m ? farthest_m.find(*sensor.reach_m) : farthest_m.end();
-    if (seen == farthest_m.end() || !(seen->second > 0.0) || seen->first <= beyond * seen->second) continue;
-    doubts.push_back(
-        sentence("%s: a reach of %.4g m, and the farthest of the detections is at %.4g m; is it in metres?",
-                 vehicle.path.c_str(), seen->first, seen->second));
+    const auto found = sensor.reach_m ? seen_up_to.find(*sensor.reach_m) : seen_up_to.end();
+    if (found == seen_up_to.end()) continue;
+    const auto& [reach_m, seen] = *found;
+    const double factor = seen.count >= many ? beyond : beyond_few;
+    if (!(seen.farthest_m > 0.0) || reach_m <= factor * seen.farthest_m) continue;
+    doubts.push_back(sentence(
+        "%s: a reach of %.4g m, and the farthest of %zu detections is at %.4g m; is it in metres, and of this sensor?",
+        vehicle.path.c_str(), reach_m, seen.count, seen.farthest_m));
   }
 }
 
@@ -232,6 +250,7 @@ Doubts doubts_of(const OwnLog& log, const Vehicle& vehicle, const core::Recordin
   doubt_bearings(log, doubts);
   doubt_few_detections(log, doubts);
   doubt_overlap(log, recording, doubts);
+  if (std::optional<std::string> doubt = doubt_handedness(recording)) doubts.push_back(std::move(*doubt));
   doubt_reach(vehicle, recording, doubts);
   doubt_vehicle(vehicle, recording, doubts);
   return doubts;

@@ -99,7 +99,7 @@ void put_decisions(Json& json, const runs::Run& run, const evaluation::Evaluatio
 }
 
 // What the map chart shows at first: the path, the truth and the landmarks, and not a fix left out or one seen from
-// afar.
+// afar. Tentative landmarks count where there are no others, as after a single scan.
 Json map_extent(const runs::Run& run, const evaluation::Evaluation& evaluation) {
   Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Array2d high = -low;
@@ -109,8 +109,12 @@ Json map_extent(const runs::Run& run, const evaluation::Evaluation& evaluation) 
     high = high.max(point_m.array());
   };
   for (const core::StepReport& step : run.steps) hold(step.pose.mean.position_m());
+  const auto is_mature = [](const core::MapLandmark& landmark) {
+    return landmark.state == core::LandmarkState::mature;
+  };
+  const bool has_mature = std::any_of(run.map.begin(), run.map.end(), is_mature);
   for (const core::MapLandmark& landmark : run.map) {
-    if (landmark.state == core::LandmarkState::mature) hold(landmark.point.mean_m);
+    if (!has_mature || is_mature(landmark)) hold(landmark.point.mean_m);
   }
   if (evaluation.position) {
     for (const evaluation::PositionError& error : evaluation.position->errors) {
@@ -121,6 +125,29 @@ Json map_extent(const runs::Run& run, const evaluation::Evaluation& evaluation) 
   const double margin_m = 1.0 + 0.04 * (high - low).maxCoeff();
   return {rounded(low.x() - margin_m), rounded(high.x() + margin_m), rounded(low.y() - margin_m),
           rounded(high.y() + margin_m)};
+}
+
+/// The map then lies in the frame of the fixes.
+bool has_fused_fixes(const runs::Run& run) {
+  return std::any_of(run.steps.begin(), run.steps.end(), [](const core::StepReport& step) {
+    return std::any_of(step.decisions.begin(), step.decisions.end(), [](const core::Decision& decision) {
+      return std::holds_alternative<core::FixDecision>(decision);
+    });
+  });
+}
+
+/// {number: name} of what the map calls by words; null where it has numbers alone.
+Json names_json(const runs::Run& run) {
+  Json json;
+  for (const auto& [id, name] : run.names) json[std::to_string(id)] = name;
+  return json;
+}
+
+/// Where the antenna of the fixes is on the vehicle, whose path is drawn; null where they are of one point.
+Json antenna_json(const runs::Run& run) {
+  const Eigen::Vector2d& antenna_m = run.truth.antenna_robot_m;
+  if (run.truth.positions.empty() || antenna_m.isZero(0.0)) return nullptr;
+  return {rounded(antenna_m.x(), 1e-3), rounded(antenna_m.y(), 1e-3)};
 }
 
 Json time_range_s(const std::vector<core::StepReport>& steps) {
@@ -153,6 +180,9 @@ Json report_data(const runs::Run& run, const evaluation::Evaluation& evaluation)
   json["begin_s"] = steps.empty() ? 0.0 : core::seconds(steps.front().t_ns);
   json["length_m"] = rounded(path_length_m(steps));
   json["time_range_s"] = time_range_s(steps);
+  json["names"] = names_json(run);
+  json["antenna"] = antenna_json(run);
+  json["frame_of_fixes"] = has_fused_fixes(run);
   json["map_extent"] = map_extent(run, evaluation);
   json["path"] = path_json(steps);
   json["final_path"] = final_path_json(run);

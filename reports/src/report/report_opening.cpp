@@ -6,10 +6,12 @@
 #include <cstdio>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
 #include "helixnav/reports/run_warnings.hpp"
+#include "slip_spans.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -69,19 +71,13 @@ std::string closings_sentence(const runs::Run& run) {
 
 /// Empty when the vehicle did not slip.
 std::string slips_sentence(const runs::Run& run) {
-  int slips = 0;
-  double most_m = 0.0;
-  for (const core::StepReport& step : run.steps) {
-    for (const core::Decision& decision : step.decisions) {
-      const auto* slip = std::get_if<core::SlipDecision>(&decision);
-      if (slip == nullptr) continue;
-      ++slips;
-      most_m = std::max(most_m, slip->moved_m);
-    }
-  }
-  if (slips == 0) return {};
-  return "The vehicle slipped " + times(slips) + ", by " + short_number(most_m) + " m" +
-         (slips == 1 ? "" : " at most") + ", and its odometry did not show it: the landmarks did.";
+  const std::vector<SlipSpan> slips = slip_spans(run);
+  if (slips.empty()) return {};
+  const SlipSpan& most = *std::max_element(slips.begin(), slips.end(),
+                                           [](const SlipSpan& a, const SlipSpan& b) { return a.moved_m < b.moved_m; });
+  return "The vehicle slipped " + times(static_cast<int>(slips.size())) + ", by " + short_number(most.moved_m) + " m" +
+         (slips.size() == 1 ? ", " : " at most, ") + when_slipped(run, most) +
+         ", and its odometry did not show it: the landmarks did.";
 }
 
 /// Empty when nothing that moves was mapped.

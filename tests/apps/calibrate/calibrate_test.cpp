@@ -62,6 +62,23 @@ TEST_F(CalibrateProgram, RefusesWhatItCannotUse) {
   EXPECT_NE(none.err.find("begins with a vehicle.toml"), std::string::npos) << none.err;
 }
 
+TEST_F(CalibrateProgram, RefusesBearingsThatAreCountedClockwise) {
+  std::istringstream rows(text_of(log_ / "detections.csv"));
+  std::string row, clockwise;
+  std::getline(rows, row);
+  clockwise = row + '\n';
+  while (std::getline(rows, row)) {
+    const std::size_t bearing = row.rfind(',') + 1;
+    if (bearing < row.size()) row = row[bearing] == '-' ? row.erase(bearing, 1) : row.insert(bearing, "-");
+    clockwise += row + '\n';
+  }
+  folder_.write("robot/detections.csv", clockwise);
+  const Outcome refused = run({"calibrate", log_, "--out", out_});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("are bearings or turns counted clockwise?"), std::string::npos) << refused.err;
+  EXPECT_FALSE(fs::exists(out_));
+}
+
 TEST_F(CalibrateProgram, SaysWhatIsMissingOrWrong) {
   const Outcome no_log = run({"calibrate", folder_.path() / "nothing"});
   EXPECT_EQ(no_log.exit_code, 3);
@@ -74,11 +91,11 @@ TEST_F(CalibrateProgram, SaysWhatIsMissingOrWrong) {
   EXPECT_NE(noise_beside.err.find("calibrate judges the vehicle file"), std::string::npos) << noise_beside.err;
 }
 
-/// The first two minutes of a log, with bearings clockwise.
-void mirror_and_cut(const fs::path& log) {
+/// The first 200 s of a log, with all bearings half as large again.
+void stretch_bearings_and_cut(const fs::path& log) {
   const std::string odometry = text_of(log / "odometry.csv"), seen = text_of(log / "detections.csv");
-  constexpr double last_s = 120.0;
-  const auto write = [&](const char* file, const std::string& text, bool mirror) {
+  constexpr double last_s = 200.0, stretch = 1.5;
+  const auto write = [&](const char* file, const std::string& text, bool is_seen) {
     std::istringstream lines(text);
     std::ofstream out(log / file);
     std::string line;
@@ -86,8 +103,9 @@ void mirror_and_cut(const fs::path& log) {
     out << line << '\n';
     while (std::getline(lines, line) && std::stod(line) < last_s) {
       const std::size_t comma = line.rfind(',');
-      const bool seen_there = mirror && comma + 1 < line.size();
-      out << (seen_there ? line.substr(0, comma + 1) + std::to_string(-std::stod(line.substr(comma + 1))) : line)
+      const bool has_bearing = is_seen && comma + 1 < line.size();
+      out << (has_bearing ? line.substr(0, comma + 1) + std::to_string(stretch * std::stod(line.substr(comma + 1)))
+                          : line)
           << '\n';
     }
   };
@@ -96,7 +114,7 @@ void mirror_and_cut(const fs::path& log) {
 }
 
 TEST_F(CalibrateProgram, WritesNothingThatHasNotSettledAndUsesLittle) {
-  mirror_and_cut(log_);
+  stretch_bearings_and_cut(log_);
   const Outcome outcome = run({"calibrate", log_, "--out", out_});
   EXPECT_EQ(outcome.exit_code, 3) << outcome.out;
   EXPECT_NE(outcome.out.find("not settled"), std::string::npos) << outcome.out;

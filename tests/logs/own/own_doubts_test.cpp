@@ -76,13 +76,34 @@ TEST(OwnDoubts, TellAReachThatNoDetectionComesNear) {
     return remarks("vehicle.toml", "[odometry]\nsigma_along_m_per_sqrt_m = 0.02\n[[sensor]]\nreach_m = " + reach_m +
                                        "\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n");
   };
-  EXPECT_TRUE(says(with_reach("300"), "a reach of 300 m, and the farthest of the detections is at 20 m"));
+  EXPECT_TRUE(says(with_reach("300"), "a reach of 300 m, and the farthest of 3 detections is at 20 m"));
   EXPECT_EQ(with_reach("190"), "");
+}
+
+TEST(OwnDoubts, TellAReachThreeTimesTheFarthestOfManyDetections) {
+  std::string detections = "t_s,range_m,bearing_deg\n";
+  for (int i = 0; i < 200; ++i)
+    detections += std::to_string(1 + i / 100) + "," + std::to_string(5.0 + 0.1 * i) + ',' + std::to_string(i) + '\n';
+  const OwnLogFolder log;
+  log.write("detections.csv", detections);
+  const auto with_reach = [&](const std::string& reach_m) {
+    log.write("vehicle.toml", "[odometry]\nsigma_along_m_per_sqrt_m = 0.02\n[[sensor]]\nreach_m = " + reach_m +
+                                  "\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n");
+    std::string all;
+    for (const std::string& remark : log.recording().remarks) all += remark + '\n';
+    return all;
+  };
+  EXPECT_TRUE(says(with_reach("80"), "a reach of 80 m, and the farthest of 200 detections is at 24.9 m"));
+  EXPECT_EQ(with_reach("70"), "");
 }
 
 TEST(OwnDoubts, TellThatHardlyAnythingWasDetected) {
   EXPECT_TRUE(says(remarks("detections.csv", "t,range_m,bearing_deg\n0.5,10,90\n"), "detections: 1 in all of the log"));
   EXPECT_TRUE(says(remarks("detections.csv", "t,range_m,bearing_deg\n0.5,,\n1.5,,\n"), "detections: 0 in all"));
+}
+
+TEST(OwnDoubts, TellThatAllWasDetectedAtOnce) {
+  EXPECT_TRUE(says(remarks("detections.csv", "t,range_m,bearing_deg\n0.5,10,90\n0.5,20,-45\n"), "all are of one time"));
 }
 
 TEST(OwnDoubts, TellTheVehicleOfAnotherRobot) {

@@ -258,7 +258,10 @@ TEST_F(OwnStreamLines, ThatAreWrongAreRefusedWithTheirKeyAndLeaveNothingBehind) 
   expect_refused(R"({"detections": []})", "", "a time alone");
   expect_refused(R"({"odometry": {"t": NaN, "v": 1, "omega": 0}})", "", "no JSON");
   expect_refused(R"({"odometry": {"t": 0.5, "v": "nan", "omega": 0}})", "v", "expected a number");
-  expect_refused(R"({"odometry": {"t": 0.5, "v": 1e999, "omega": 0}})", "", "no JSON");
+  expect_refused(R"({"odometry": {"t": 0.5, "v": 1e999, "omega": 0}})", "", "larger than any");
+  expect_refused(R"({"odometry": {"note": ")" + std::string(1 << 20, 'y') + R"("}})", "", "longer than 1 MiB");
+  expect_refused(R"({"detections": [{"t": 0.1, "range": 5, "bearing": 0}, {"t": 0.2, "range": 5, "bearing": 1}]})", "t",
+                 "a list is a whole scan, and this one has detections of 0.1 s and of 0.2 s");
   expect_refused(R"({"odometry": {"t": 0.5, "v": null, "omega": 0}})", "v", "an empty cell");
   expect_refused(R"({"odometry": {"t": 0.5, "v": [1], "omega": 0}})", "v", "expected a number or text");
   expect_refused(R"({"odometry": {"t": 0.5, "x": 1, "y": 0, "heading": 0}})", "odometry", "a stream has one kind");
@@ -270,6 +273,15 @@ TEST_F(OwnStreamLines, ThatAreWrongAreRefusedWithTheirKeyAndLeaveNothingBehind) 
   expect_refused(R"({"detections": [{"t": 0.1, "x": 5, "y": 90}]})", "", "sigma_point_m");
   take(odometry(1.0));
   EXPECT_EQ(scans_of(scan(0.1)), 1u) << "and with one detection";
+}
+
+TEST_F(OwnStreamLines, OfColumnsThatAreNotUsedAndOfASensorWithoutANameAreTold) {
+  const StreamedEvents odometry = take(R"({"odometry": {"t": 0, "v": 1, "omega": 0, "café": 1}})");
+  ASSERT_EQ(odometry.remarks.size(), 1u);
+  EXPECT_NE(odometry.remarks[0].find("column café is not used"), std::string::npos) << odometry.remarks[0];
+  const StreamedEvents seen = take(R"({"detections": [{"t": 0.5, "range": 5, "bearing": 0, "sensor": "nobody"}]})");
+  ASSERT_EQ(seen.remarks.size(), 1u);
+  EXPECT_NE(seen.remarks[0].find("sensor 'nobody' is taken for the only [[sensor]]"), std::string::npos);
 }
 
 TEST_F(OwnStreamLines, OfOneWrongTimeDoNotMakeTheRestLate) {

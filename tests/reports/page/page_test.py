@@ -71,6 +71,12 @@ class ReportPage(unittest.TestCase):
                 self.assertEqual(page.errors, [])
                 self.assertLessEqual(page.run("document.documentElement.scrollWidth"), look[0])
 
+    def test_breaks_a_long_name_of_a_log_where_the_screen_ends(self):
+        page = self.open(phone)
+        page.run("document.getElementById('title').textContent = '2026-05-12_field_north_robot_one_run_three_long'")
+        page.run(two_frames)
+        self.assertLessEqual(page.run("document.documentElement.scrollWidth"), phone[0])
+
     def test_asks_the_network_for_nothing(self):
         page = self.open()
         self.assertEqual(page.run("performance.getEntriesByType('resource').length"), 0)

@@ -39,7 +39,8 @@ struct StreamedEvents {
 class OwnStream {
  public:
   static constexpr double late_s = 1.0;
-  static constexpr std::size_t most_waiting = 1000;  ///< scans that wait for odometry; the oldest is refused then
+  static constexpr std::size_t longest_line = 1 << 20;  ///< bytes; a longer one is refused
+  static constexpr std::size_t most_waiting = 1000;     ///< scans that wait for odometry; the oldest is refused then
 
   /// Throws core::InputError for a vehicle without a sensor, and for a sensor of which replay would have to estimate reach
   /// or view from the whole log. `by_identity`: identities are wanted as labels, numbers or names alike for all; else

@@ -43,6 +43,8 @@ struct JsonRows::Line {
     Json object;
     try {
       object = Json::parse(text);
+    } catch (const Json::out_of_range&) {
+      fail(1, "a number that is larger than any that can be held (1.8e308)");
     } catch (const Json::exception& error) {
       const auto* placed = dynamic_cast<const Json::parse_error*>(&error);
       fail(placed != nullptr ? placed->byte : 1,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "helixnav/core/errors.hpp"
@@ -40,6 +41,17 @@ std::string key_at(std::string_view line, std::size_t column) {
   return end == std::string_view::npos ? std::string() : std::string(line.substr(column, end - column));
 }
 
+/// A list is a whole scan: of one time, by each sensor.
+void check_is_one_scan(const std::vector<OwnDetection>& rows) {
+  std::map<std::size_t, core::Nanoseconds> time_of;  // [sensor]
+  for (const OwnDetection& row : rows) {
+    const core::Nanoseconds first_ns = time_of.emplace(row.sensor, row.t_ns).first->second;
+    if (first_ns == row.t_ns) continue;
+    throw StreamRefusal("t", "a list is a whole scan, and this one has detections of " + LiveScans::text_of(first_ns) +
+                                 " s and of " + LiveScans::text_of(row.t_ns) + " s; give each scan a line");
+  }
+}
+
 }  // namespace
 
 struct OwnStream::State {
@@ -55,6 +67,7 @@ struct OwnStream::State {
     out.refused.push_back({line, std::move(key), std::move(why)});
   }
   void check_times(const OwnLog& log);
+  void tell_unnamed_sensor(const std::string& name);
   void check_jump(core::Nanoseconds t_ns);
   void check_lost(const std::vector<core::Nanoseconds>& rows_ns) const;
   void weave_lost(core::Nanoseconds before_ns);
@@ -96,6 +109,12 @@ void OwnStream::State::check_jump(core::Nanoseconds t_ns) {
   newest_ns = std::max(newest_ns, t_ns);
 }
 
+/// Whatever a sensor is called, it is the only one where that has no name.
+void OwnStream::State::tell_unnamed_sensor(const std::string& name) {
+  if (name.empty() || vehicle.sensors.size() != 1 || !vehicle.sensors.front().name.empty()) return;
+  remark_once("stream: sensor '" + name + "' is taken for the only [[sensor]], which has no name");
+}
+
 void OwnStream::State::check_times(const OwnLog& log) {
   core::Nanoseconds latest_ns = nothing_yet_ns;
   for (const OwnOdometry& row : log.odometry) latest_ns = std::max(latest_ns, row.t_ns);
@@ -115,6 +134,8 @@ void OwnStream::State::read(std::string_view line, std::size_t number) {
     if (is_without_rows(log)) {
       throw StreamRefusal("", "holds no row; a scan that saw nothing is a time alone, {\"detections\": {\"t\": 1.5}}");
     }
+    if (rows->last_was_list()) check_is_one_scan(log.detections);
+    for (const std::string& name : log.sensor_names) tell_unnamed_sensor(name);
     check_times(log);
     motion.check(log);
     check_lost(log.lost_ns);
@@ -195,6 +216,10 @@ StreamedEvents OwnStream::take(std::string_view line, std::size_t number) {
   state_->out = StreamedEvents();
   state_->out.recording.extraneous_per_scan = 0.0;
   if (line.find_first_not_of(" \t") == std::string_view::npos) return std::move(state_->out);
+  if (line.size() > longest_line) {
+    state_->refuse(number, "", "a line longer than 1 MiB");
+    return std::move(state_->out);
+  }
   state_->read(line, number);
   state_->weave(false);
   return std::move(state_->out);

@@ -48,12 +48,12 @@ std::pair<const Unit*, std::size_t> units_of(Measure measure) {
   }
 }
 
-/// "Range [m]" → "range_m": small letters, whatever is no letter or digit an underscore, none at the ends.
+/// "Range [m]" → "range_m": small letters, whatever is no letter or digit an underscore, none at the ends. Letters beyond ASCII stay.
 std::string plain(std::string_view name) {
   std::string result;
   for (const char c : name) {
     const auto u = static_cast<unsigned char>(c);
-    if (std::isalnum(u) != 0) {
+    if (std::isalnum(u) != 0 || u >= 0x80) {
       result += static_cast<char>(std::tolower(u));
     } else if (!result.empty() && result.back() != '_') {
       result += '_';
