@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include <Eigen/LU>
+
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/odometry.hpp"
 
