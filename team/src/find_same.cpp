@@ -4,10 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
+#include <utility>
 #include <vector>
+
+#include <Eigen/LU>
 
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/chi2.hpp"
+#include "helixnav/core/observation.hpp"
+#include "looks.hpp"
 #include "same_places.hpp"
 #include "solve.hpp"
 
@@ -15,36 +21,6 @@ namespace helixnav::team {
 namespace {
 
 using core::LandmarkId;
-
-/// The scans that saw a landmark, in order.
-using Looks = std::vector<std::pair<std::size_t, std::int64_t>>;
-
-std::map<LandmarkId, Looks> looks_of(const std::vector<LandmarkId>& ids, const State& state) {
-  std::map<LandmarkId, Looks> looks;
-  for (const LandmarkId id : ids) looks[id];
-  for (const LandmarkRow& row : state.landmark_rows) {
-    const auto of_id = looks.find(state.resolve(row.landmark));
-    if (of_id != looks.end()) of_id->second.emplace_back(row.robot, row.scan);
-  }
-  for (auto& [id, one] : looks) std::sort(one.begin(), one.end());
-  return looks;
-}
-
-/// Things of which one scan shows both are two. A look in twenty may have been taken for the other's.
-bool were_seen_together(const Looks& a, const Looks& b) {
-  constexpr double most_mistaken = 0.05;
-  std::size_t together = 0;
-  for (auto i = a.begin(), k = b.begin(); i != a.end() && k != b.end();) {
-    if (*i == *k) {
-      ++together;
-      ++i;
-      ++k;
-    } else {
-      ++(*i < *k ? i : k);
-    }
-  }
-  return static_cast<double>(together) > most_mistaken * static_cast<double>(std::min(a.size(), b.size()));
-}
 
 /// Other landmarks within reach of each, one at least, over the area within reach.
 std::vector<double> densities(const std::vector<Eigen::Vector2d>& at_m, double reach_m) {
@@ -95,14 +71,43 @@ void lay_as_one(std::size_t component, const std::vector<SameLandmarks>& same, S
   state.components[component].filter.remove(removed);
 }
 
-bool make_one(std::size_t component, std::vector<SameLandmarks> same, const TeamOptions& options, State& state) {
+/// What the two are told to be one by: their places, or looks that each took a part of.
+enum class Evidence { place, turns };
+
+/// χ² of all looks at landmarks, by the noise of one look, and its degrees of freedom: the looks must be of one thing each.
+std::pair<double, int> cost_of_looks(std::size_t component, const std::vector<SameLandmarks>& same,
+                                     const TeamOptions& options, const State& state) {
+  const JointFilter& filter = state.components[component].filter;
+  std::map<LandmarkId, Eigen::Vector2d> at_m;
+  for (const SameLandmarks& one : same) {
+    const auto found = std::find(filter.ids().begin(), filter.ids().end(), one.kept);
+    at_m[one.kept] = filter.points_m()[static_cast<std::size_t>(found - filter.ids().begin())];
+  }
+  double cost = 0.0;
+  int dof = 0;
+  for (const LandmarkRow& row : state.landmark_rows) {
+    const auto place = at_m.find(state.resolve(row.landmark));
+    if (place == at_m.end()) continue;
+    const core::Pose2& T_component_robot = state.robots[row.robot].clones[row.clone].T_component_robot;
+    const core::ObsVector nu = core::innovation(
+        row.observation.kind, row.observation.z,
+        core::predict_observation(row.observation.kind, T_component_robot, row.T_clone_sensor, place->second).z_hat);
+    cost += options.looks_as_one * nu.dot(Eigen::MatrixXd(row.observation.R).inverse() * nu);
+    dof += static_cast<int>(nu.size());
+  }
+  return {cost, dof};
+}
+
+bool make_one(std::size_t component, Evidence evidence, std::vector<SameLandmarks> same, const TeamOptions& options,
+              State& state) {
   State trial = state;
   const double before = state.components[component].chi2;
   lay_as_one(component, same, trial);
   if (!solve(component, trial)) return false;
-  const int dof = 2 * static_cast<int>(same.size());
+  int dof = 2 * static_cast<int>(same.size());
+  double cost = std::max(0.0, trial.components[component].chi2 - before);
+  if (evidence == Evidence::turns) std::tie(cost, dof) = cost_of_looks(component, same, options, trial);
   const double limit = core::chi2_quantile(options.join.probability, dof);
-  const double cost = std::max(0.0, trial.components[component].chi2 - before);
   if (!(cost <= limit)) return false;
   for (SameLandmarks& one : same) {
     one.cost = cost;
@@ -114,25 +119,40 @@ bool make_one(std::size_t component, std::vector<SameLandmarks> same, const Team
   return true;
 }
 
+void find_same_by(Evidence evidence, std::size_t component, core::Nanoseconds t_ns, const TeamOptions& options,
+                  const RefusedSame& refused, State& state) {
+  Places places = mature_places(component, options.join, state);
+  const std::vector<LandmarkId> ids = places.ids;
+  const std::map<LandmarkId, Looks> looks = looks_of(ids, options.looks_as_one, state);
+  const bool by_turns = evidence == Evidence::turns;
+  for (const LandmarkId id : ids) {
+    if (by_turns) places.split_m2.push_back(looks.at(id).variance_m2);
+  }
+  places.are_two = [&](std::size_t i, std::size_t j) {
+    const Looks &a = looks.at(ids[i]), &b = looks.at(ids[j]);
+    const bool may_be_one = by_turns ? were_seen_in_turn(a, b) : !were_seen_together(a, b);
+    return !may_be_one || is_refused(ids[i], ids[j], refused, state);
+  };
+  // One pair by its place alone may be chance; turns say more.
+  const double probability = by_turns ? 0.0 : options.join.probability;
+  std::vector<SameLandmarks> same;
+  for (const SamePlace& pair : same_places(std::move(places), probability)) {
+    same.push_back({t_ns, ids[pair.kept], ids[pair.removed], pair.nats, 0.0, 0, 0.0});
+  }
+  // Where least squares objects to all of them, the surest half may still pass.
+  while (!same.empty() && !make_one(component, evidence, same, options, state)) same.resize(same.size() / 2);
+}
+
 }  // namespace
 
 BirthKey key_of(const Birth& birth) { return {birth.robot, birth.t_ns, birth.observation}; }
 
 void find_same(std::size_t component, core::Nanoseconds t_ns, const TeamOptions& options, const RefusedSame& refused,
                State& state) {
-  if (state.components[component].filter.ids().size() < 2) return;
-  Places places = mature_places(component, options.join, state);
-  const std::vector<LandmarkId> ids = places.ids;
-  const std::map<LandmarkId, Looks> looks = looks_of(ids, state);
-  places.are_two = [&](std::size_t i, std::size_t j) {
-    return were_seen_together(looks.at(ids[i]), looks.at(ids[j])) || is_refused(ids[i], ids[j], refused, state);
-  };
-  std::vector<SameLandmarks> same;
-  for (const SamePlace& pair : same_places(std::move(places), options.join.probability)) {
-    same.push_back({t_ns, ids[pair.kept], ids[pair.removed], pair.nats, 0.0, 0, 0.0});
+  for (const Evidence evidence : {Evidence::place, Evidence::turns}) {
+    if (state.components[component].filter.ids().size() < 2) return;
+    find_same_by(evidence, component, t_ns, options, refused, state);
   }
-  // Where least squares objects to all of them, the surest half may still pass.
-  while (!same.empty() && !make_one(component, same, options, state)) same.resize(same.size() / 2);
 }
 
 }  // namespace helixnav::team

@@ -27,6 +27,7 @@ Difference difference_of(std::size_t i, std::size_t j, const Places& places) {
   const Eigen::Index a = column(i);
   const Eigen::Index b = column(j);
   Eigen::Matrix2d C = P.block<2, 2>(a, a) + P.block<2, 2>(b, b) - P.block<2, 2>(a, b) - P.block<2, 2>(b, a);
+  if (!places.split_m2.empty()) C += 0.5 * (places.split_m2[i] + places.split_m2[j]) * Eigen::Matrix2d::Identity();
   return {places.at_m[i] - places.at_m[j], 0.5 * (C + C.transpose())};
 }
 

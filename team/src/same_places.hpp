@@ -15,8 +15,11 @@ namespace helixnav::team {
 struct Places {
   std::vector<core::LandmarkId> ids;
   std::vector<Eigen::Vector2d> at_m;
-  Eigen::MatrixXd covariance;                             ///< joint, (x, y) of each
-  std::vector<double> density_per_m2;                     ///< of other landmarks about each
+  Eigen::MatrixXd covariance;          ///< joint, (x, y) of each
+  std::vector<double> density_per_m2;  ///< of other landmarks about each
+  /// Along an axis; empty: none. Copies that one gate holds take the looks at a landmark in turn, each those on its own side of the noise,
+  /// and come to stand as far apart as a look errs, whatever their covariance says.
+  std::vector<double> split_m2;
   std::function<bool(std::size_t, std::size_t)> are_two;  ///< is known, e.g. were seen in one scan
 };
 

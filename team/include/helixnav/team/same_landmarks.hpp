@@ -13,7 +13,8 @@ struct SameLandmarks {
   core::LandmarkId kept = core::no_landmark;
   core::LandmarkId removed = core::no_landmark;
   double nats = 0.0;  ///< ln of the likelihood ratio against another landmark that stands there by chance
-  double cost = 0.0;  ///< by how much least squares with the two as one exceeds that with two: χ² with dof
+  double cost = 0.0;  ///< by how much least squares with the two as one exceeds that with two, or, of copies that
+                      ///< were seen in turn, what all looks at them cost then: χ² with dof
   int dof = 0;
   double limit = 0.0;
 };
