@@ -4,6 +4,8 @@
 // steps inside the 95 % ellipsoid, RMSE by lap, distinct ancestors a lap ago. The EKF beside it is dense.
 #include <array>
 
+#include <Eigen/LU>
+
 #include "fastslam_study.hpp"
 #include "helixnav/core/random.hpp"
 #include "team_ekf.hpp"

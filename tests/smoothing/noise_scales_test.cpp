@@ -2,6 +2,7 @@
 #include "helixnav/smoothing/noise_scales.hpp"
 
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
 #include "dense_twin.hpp"
 #include "helixnav/core/errors.hpp"

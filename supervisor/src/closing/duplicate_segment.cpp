@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include "helixnav/core/angle.hpp"
 
