@@ -24,7 +24,10 @@ std::string remarks_on_rounds(const Signs& signs, double turn_rad_per_s = 0.2) {
   std::uniform_real_distribution<double> place_m(-20.0, 20.0);
   std::normal_distribution<double> noise(0.0, 1.0);
   std::vector<Eigen::Vector2d> posts_m;
-  for (int i = 0; i < 40; ++i) posts_m.emplace_back(place_m(random), place_m(random));
+  for (int i = 0; i < 40; ++i) {
+    const double x_m = place_m(random);  // in this order, whatever the compiler
+    posts_m.emplace_back(x_m, place_m(random));
+  }
   std::string odometry = "t_s,v_mps,omega_radps\n", detections = "t_s,range_m,bearing_rad\n";
   core::Pose2 pose;
   for (int i = 0; i < 63; ++i) {
@@ -47,7 +50,7 @@ std::string remarks_on_rounds(const Signs& signs, double turn_rad_per_s = 0.2) {
   log.write("detections.csv", detections);
   log.write("vehicle.toml",
             "[odometry]\nsigma_along_m_per_sqrt_m = 0.02\nsigma_heading_deg_per_sqrt_m = 0.5\n"
-            "[[sensor]]\nreach_m = 15\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n");
+            "[[sensor]]\nreach_m = 15\nview_deg = [-180, 180]\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n");
   std::string all;
   for (const std::string& remark : log.recording().remarks) all += remark + '\n';
   return all;
