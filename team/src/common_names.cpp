@@ -56,15 +56,17 @@ core::Pose2 rigid_fit(const Points& a, const Points& b, const std::vector<double
   return {at_m.x(), at_m.y(), heading_rad};
 }
 
-/// The rigid motion of least distances, to which a few points far off say little.
+/// The rigid motion of least distances, to which a few points far off say little; nearer than a pair is known it is of least squares.
 core::Pose2 robust_fit(const Points& a, const Points& b) {
   constexpr int iterations = 30;
-  constexpr double near_m = 0.1;
   std::vector<double> weights(a.at_m.size(), 1.0);
   core::Pose2 T = rigid_fit(a, b, weights);
   for (int k = 0; k < iterations; ++k) {
     for (std::size_t i = 0; i < weights.size(); ++i) {
-      weights[i] = 1.0 / std::max(near_m, (a.at_m[i] - core::transform(T, b.at_m[i])).norm());
+      const auto row = static_cast<Eigen::Index>(2 * i);
+      const double sigma_m =
+          std::sqrt(a.covariance.block<2, 2>(row, row).trace() + b.covariance.block<2, 2>(row, row).trace());
+      weights[i] = 1.0 / std::max(sigma_m, (a.at_m[i] - core::transform(T, b.at_m[i])).norm());
     }
     T = rigid_fit(a, b, weights);
   }
