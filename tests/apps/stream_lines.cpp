@@ -10,13 +10,6 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-Words columns_of(const std::string& row) {
-  Words cells;
-  std::istringstream stream(row);
-  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-  return cells;
-}
-
 /// Rows of a table as JSON objects by their time; those of one time together.
 void add_table(const std::filesystem::path& path, std::map<double, Words>& rows) {
   std::ifstream table(path);
@@ -34,6 +27,13 @@ void add_table(const std::filesystem::path& path, std::map<double, Words>& rows)
 }
 
 }  // namespace
+
+Words columns_of(const std::string& row) {
+  Words cells;
+  std::istringstream stream(row);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  return cells;
+}
 
 Words lines_of(const std::filesystem::path& log, double seconds) {
   std::map<double, Words> odometry, detections;

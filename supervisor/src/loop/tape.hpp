@@ -136,6 +136,7 @@ struct Stop {
   std::optional<core::Odometry> motion;
   std::vector<cekf::Match> seen;  ///< used observations
   std::optional<core::AbsoluteFix> fix;
+  bool repeats = false;  ///< nothing new from where the vehicle stands (StandingLooks)
 };
 
 /// The scans and accepted fixes of the drive since `position`, motion chained in between.

@@ -21,10 +21,11 @@ std::map<core::LandmarkId, int> sightings(const std::vector<Stop>& stops, const 
 }  // namespace
 
 DriveMap::DriveMap(const core::PoseGaussian& start, double phase_m, const atlas::Options& options)
-    : phase_m_(phase_m), atlas_(softened_start(start), options) {}
+    : phase_m_(phase_m), standing_(phase_m), atlas_(softened_start(start), options) {}
 
 void DriveMap::take(const Tape& tape, const cekf::CompressedEkf& filter) {
-  const std::vector<Stop> stops = stops_of(tape, end_);
+  std::vector<Stop> stops = stops_of(tape, end_);
+  standing_.thin(stops);
   const core::MergedIds ids = merged_ids(tape, end_);
   const std::map<core::LandmarkId, int> seen = sightings(stops, ids);
   PhaseNames names;

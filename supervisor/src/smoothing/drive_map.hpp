@@ -10,6 +10,7 @@
 #include "helixnav/core/step_report.hpp"
 #include "loop/tape.hpp"
 #include "smoothing/drive_phases.hpp"
+#include "smoothing/standing_looks.hpp"
 
 namespace helixnav::supervisor {
 
@@ -49,6 +50,7 @@ class DriveMap {
   bool has_name(core::LandmarkId id) const;
 
   double phase_m_;
+  StandingLooks standing_;
   atlas::Atlas atlas_;
   std::vector<std::shared_ptr<const std::vector<StopInPhase>>> stops_;  ///< of every phase
   std::vector<bool> named_;                                             ///< by id: known to the atlas

@@ -14,7 +14,12 @@ class Cutter {
       : length_m_(length_m), begins_drive_(begins_drive), names_(names) {}
 
   void stop(const Stop& stop) {
-    if (stop.motion) drive(*stop.motion);
+    if (stop.motion) wait(*stop.motion);
+    if (stop.repeats) {
+      phase_.stops.push_back({stop.t_ns, static_cast<int>(log_.steps.size()) - 1});
+      return;
+    }
+    go_on();
     see(stop.seen);
     if (stop.fix && log_.steps.empty()) stand_still();
     phase_.stops.push_back({stop.t_ns, static_cast<int>(log_.steps.size()) - 1});
@@ -22,6 +27,18 @@ class Cutter {
     if (stop.fix || driven_m_ >= length_m_) close();
   }
 
+  /// Motion that ends where nothing is to be known of the vehicle.
+  void wait(const core::Odometry& odometry) { waiting_ = waiting_ ? core::chain(*waiting_, odometry) : odometry; }
+
+  std::vector<DrivePhase> phases() && {
+    go_on();
+    const bool is_empty = phase_.stops.empty() && log_.steps.empty();
+    if (!is_empty && log_.steps.empty()) stand_still();
+    if (!is_empty) close();
+    return std::move(phases_);
+  }
+
+ private:
   void drive(const core::Odometry& odometry) {
     atlas::LoggedStep step;
     step.T_before_after = odometry.T_before_after;
@@ -31,14 +48,11 @@ class Cutter {
     driven_m_ += odometry.T_before_after.position_m().norm();
   }
 
-  std::vector<DrivePhase> phases() && {
-    const bool is_empty = phase_.stops.empty() && log_.steps.empty();
-    if (!is_empty && log_.steps.empty()) stand_still();
-    if (!is_empty) close();
-    return std::move(phases_);
+  void go_on() {
+    if (waiting_) drive(*waiting_);
+    waiting_.reset();
   }
 
- private:
   void stand_still() { drive(core::no_motion(0)); }
 
   void see(const std::vector<cekf::Match>& matches) {
@@ -70,6 +84,7 @@ class Cutter {
   const PhaseNames& names_;
   atlas::PhaseLog log_;
   DrivePhase phase_;
+  std::optional<core::Odometry> waiting_;
   double driven_m_ = 0.0;
   std::vector<DrivePhase> phases_;
 };
@@ -80,7 +95,7 @@ std::vector<DrivePhase> phases_of(const std::vector<Stop>& stops, const std::opt
                                   double length_m, bool begins_drive, const PhaseNames& names) {
   Cutter cutter(length_m, begins_drive, names);
   for (const Stop& stop : stops) cutter.stop(stop);
-  if (motion) cutter.drive(*motion);
+  if (motion) cutter.wait(*motion);
   return std::move(cutter).phases();
 }
 

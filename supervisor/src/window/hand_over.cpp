@@ -128,18 +128,17 @@ bool NavigationLoop::is_hand_over_due() const {
 bool NavigationLoop::is_drive_due() const {
   constexpr double longer = 1.125;
   constexpr Tape::Position portion = 1000;  // entries: 20 ms
-  const double path_m = belief_.existence.path_m();
-  const double begun_m = belief_.window.begun_path_m;
   const bool is_long = 2 * tape_.stops() > options_.search.smooth_up_to_scans || !tape_.holds_since(0);
-  if (!belief_.drive) return is_long && path_m > longer * begun_m;
+  if (!belief_.drive) return is_long && belief_.existence.path_m() > longer * belief_.window.begun_path_m;
   const bool is_whole = std::isinf(belief_.window.radius_m);  // else a hand-over takes it in
-  return is_long && is_whole && tape_.end() - belief_.drive->end() > portion && path_m > begun_m + pause_m;
+  return is_long && is_whole && tape_.end() > std::max(belief_.drive->end(), belief_.window.tried) + portion;
 }
 
 void NavigationLoop::take_drive_if_due() {
   if (!is_drive_due()) return;
   Window tried = belief_.window;
   tried.begun_path_m = belief_.existence.path_m();
+  tried.tried = tape_.end();
   std::shared_ptr<const DriveMap> drive = belief_.drive;
   try {
     drive = drive_until_now();

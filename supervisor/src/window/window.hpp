@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct Window {
   double radius_m = std::numeric_limits<double>::infinity();  ///< infinite: the whole map
   int landmarks = 0;                                          ///< when the filter began, and …
   double begun_path_m = 0.0;                                  ///< … the length of the drive then
+  std::size_t tried = 0;  ///< position on the tape up to where the drive was tried to be taken in
 
   /// Around a place, how far every landmark is held.
   double reach_from(const Eigen::Vector2d& point_m) const { return radius_m - (point_m - center_m).norm(); }
