@@ -16,6 +16,7 @@
 #include "drive/given_map.hpp"
 #include "drive/keeping.hpp"
 #include "drive/kept_inputs.hpp"
+#include "drive/start_by_names.hpp"
 #include "drive/truth_on_map.hpp"
 #include "drive/withholding.hpp"
 #include "helixnav/core/errors.hpp"
@@ -86,6 +87,7 @@ void take_map(const ReplayWishes& wishes, apps::Drive& job) {
     const apps::SessionStart start = wishes.start.value_or(apps::SessionStart{});
     job.earlier =
         map ? apps::earlier_session(*map, start, "map") : apps::read_earlier_session(wishes.map->path.string(), start);
+    apps::pass_over_driven(*job.earlier, job.recording, job.withheld);
   }
 }
 
@@ -105,6 +107,7 @@ apps::Drive job_of(const Log& log, const ReplayWishes& wishes) {
     apps::put_truth_behind(folder, driven, job.recording);
   } else {
     take_map(wishes, job);
+    apps::begin_by_names(job);
     apps::put_truth_on_map(job);
   }
   job.manifest = manifest_of(log, wishes);

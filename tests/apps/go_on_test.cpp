@@ -149,6 +149,44 @@ TEST_F(GoOn, AtTheEndByNameItIsAsIfThereHadBeenNoInterruption) {
   EXPECT_EQ(summary("whole").at("landmarks"), summary("second").at("landmarks"));
 }
 
+// It has no drive.bin: its estimate is restored, and what it drove of the log is not driven again.
+TEST_F(GoOn, WhatASessionBegunByPlaceDroveOfALogIsPassedOver) {
+  write_yesterday();
+  const std::string whole = drive_text(grove(1, 50), 2.0, 240, 2);
+  write("first.circles", whole.substr(0, whole.find("STEP img1140 ")));
+  write("tuesday.circles", whole);
+  must("first.circles", {"--map", folder("monday")}, "first");
+  ASSERT_EQ(summary("first").at("placed").at("found"), true);
+  ASSERT_FALSE(fs::exists(folder("first") / "drive.bin"));
+  const Outcome rest = replay("tuesday.circles", {"--map", folder("first"), "--start", "end"}, "rest");
+  EXPECT_EQ(rest.exit_code, 0) << rest.err;
+  EXPECT_NE(rest.err.find("140 scans of the log were driven by the run of --map"), std::string::npos) << rest.err;
+  EXPECT_EQ(summary("rest").at("steps"), 100);
+  EXPECT_NEAR(summary("rest").at("landmarks").at("mature").get<double>(),
+              summary("monday").at("landmarks").at("mature"), 3);
+
+  const Outcome nothing = replay("tuesday.circles", {"--map", folder("rest"), "--start", "end"}, "nothing");
+  EXPECT_EQ(nothing.exit_code, 3);
+  EXPECT_NE(nothing.err.find("drove the whole log"), std::string::npos) << nothing.err;
+}
+
+TEST_F(GoOn, WhoKnowsNamesBeginsWhereTheyTell) {
+  write("monday.circles", drive_text(grove(1, 50), 0.0, 300, 1));
+  write("tuesday.circles", drive_text(grove(1, 50), 2.0, 240, 2));
+  must("monday.circles", {"--association", "known"}, "monday");
+  for (const std::string how : {"on", "in"}) {
+    std::vector<std::string> words{"--association", "known", "--map", folder("monday")};
+    if (how == "in") words.emplace_back("--localize");
+    const Outcome outcome = replay("tuesday.circles", words, how);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("tell where the log begins on the map"), std::string::npos) << outcome.err;
+    EXPECT_EQ(summary(how).at("landmarks"), summary("monday").at("landmarks")) << how;
+  }
+  const Outcome as_said =
+      replay("monday.circles", {"--association", "known", "--localize", "--map", folder("monday")}, "as_said");
+  EXPECT_EQ(as_said.err.find("tell where"), std::string::npos) << "it begins where the log says";
+}
+
 TEST_F(GoOn, FromAPoseTheSameLandmarksAreSeenAgain) {
   write_yesterday();
   must("monday.circles", {"--map", folder("monday"), "--start", "0,0,0"}, "again");

@@ -11,13 +11,15 @@ namespace helixnav::apps {
 namespace {
 
 void check_earlier_labels(const EarlierSession& earlier) {
-  if (earlier.start.kind == SessionStart::Kind::unknown) {
-    throw core::InputError("--association known does not look for its place: give --start end, or a pose");
-  }
   if (earlier.landmark_of.empty()) {
     throw core::InputError(
         "--association known needs to know the labels of the map's landmarks: give --map the folder "
         "of a run over a labelled log");
+  }
+  if (earlier.start.kind == SessionStart::Kind::unknown) {
+    throw core::InputError(
+        "--association known finds where it begins by two landmarks of the map that one scan names and places, and "
+        "this log has no such scan: give --start end, or a pose");
   }
 }
 

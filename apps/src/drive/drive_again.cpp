@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "helixnav/core/errors.hpp"
 #include "helixnav/runs/drive_digest.hpp"
 
 namespace helixnav::apps {
@@ -59,6 +60,14 @@ std::size_t begin_behind(const std::vector<core::Event>& before, core::Recording
   return 0;
 }
 
+/// Observations of scans that were driven already are left out, and of the others it is said which scan they are of now.
+void take_off_shared(std::size_t driven, std::size_t before, core::Recording& recording) {
+  std::vector<core::SharedObservation>& shared = recording.shared_observations;
+  shared.erase(std::remove_if(shared.begin(), shared.end(), [&](const auto& one) { return one.scan < driven; }),
+               shared.end());
+  for (core::SharedObservation& one : shared) one.scan += before - driven;
+}
+
 /// The first entries, of scans that were driven already, make way for those of the drive before.
 template <class Entries>
 void exchange_front(Entries& entries, std::size_t driven, Entries before) {
@@ -89,6 +98,22 @@ std::size_t pass_over(core::Nanoseconds end_ns, core::Recording& recording) {
   return scans;
 }
 
+void pass_over_driven(const EarlierSession& earlier, core::Recording& recording, std::vector<bool>& withheld) {
+  if (earlier.start.kind != SessionStart::Kind::end || !earlier.ended_ns) return;
+  const std::vector<std::string> own = runs::drives_of(recording.events), &drives = earlier.map.drives;
+  if (own.empty() || std::find(drives.begin(), drives.end(), own.front()) == drives.end()) return;
+  const std::size_t driven = pass_over(*earlier.ended_ns, recording);
+  const std::vector<core::Event>& rest = recording.events;
+  if (std::none_of(rest.begin(), rest.end(), [](const auto& one) { return std::holds_alternative<core::Scan>(one); })) {
+    throw core::InputError("the run of --map drove the whole log: after its last scan there is nothing to go on with");
+  }
+  if (!withheld.empty()) exchange_front(withheld, driven, {});
+  if (!recording.labels.empty()) exchange_front(recording.labels, driven, {});
+  take_off_shared(driven, 0, recording);
+  recording.remarks.push_back(std::to_string(driven) +
+                              " scans of the log were driven by the run of --map: passed over");
+}
+
 std::vector<std::string> drives_in_map(const Drive& job, const runs::Run& run) {
   std::vector<std::string> own = runs::drives_of(job.recording.events);
   const bool is_on_earlier =
@@ -106,10 +131,7 @@ std::size_t put_before(runs::FedDrive before, core::Recording& recording, std::v
   recording.remarks.push_back(std::to_string(labels.size()) + " scans of the run of --map are driven again first" +
                               (driven > 0 ? ", " + std::to_string(driven) + " of the log are among them" : ""));
   if (!withheld.empty()) exchange_front(withheld, driven, std::vector<bool>(labels.size(), false));
-  std::vector<core::SharedObservation>& shared = recording.shared_observations;
-  shared.erase(std::remove_if(shared.begin(), shared.end(), [&](const auto& one) { return one.scan < driven; }),
-               shared.end());
-  for (core::SharedObservation& one : shared) one.scan += labels.size() - driven;
+  take_off_shared(driven, labels.size(), recording);
   if (!recording.labels.empty()) exchange_front(recording.labels, driven, std::move(labels));
   recording.start = before.start;
   recording.events.insert(recording.events.begin(), std::make_move_iterator(before.events.begin()),

@@ -27,6 +27,10 @@ bool is_driven_again(const std::string& folder, const std::optional<SessionStart
 /// Takes the events up to end_ns off the front of the recording, and returns how many scans they were; labels stay.
 std::size_t pass_over(core::Nanoseconds end_ns, core::Recording& recording);
 
+/// Where a session begins at the end of a run that has no drive.bin, and by the log of that run (or a longer one of it): leaves
+/// out what that drove, and says so in a remark. InputError where nothing is left. Test: apps/go_on_test.cpp.
+void pass_over_driven(const EarlierSession& earlier, core::Recording& recording, std::vector<bool>& withheld);
+
 /// Puts the drive of an earlier run before a recording that goes on where it ended (docs/yesterdays_map.md): its start, its events, no
 /// labels for them. What the recording holds of that drive is passed over; a recording whose clock began anew is moved behind
 /// it. `withheld` is [scan], empty or as many as there are. Returns how many scans were passed over. Test: apps/go_on_test.cpp, apps/drive_again_test.cpp.

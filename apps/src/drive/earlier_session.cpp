@@ -111,7 +111,7 @@ core::JointMap read_joint_map_in(const std::string& folder) {
 }
 
 EarlierSession earlier_session(core::JointMap map, const SessionStart& start, const std::string& name) {
-  EarlierSession session{std::move(map), {}, start, {}, {}};
+  EarlierSession session{std::move(map), {}, start, {}, {}, {}};
   check_size(name, session);
   return session;
 }
@@ -134,6 +134,7 @@ EarlierSession read_earlier_session(const std::string& folder, const SessionStar
   const std::vector<core::LandmarkId>& ids = session.map.joint.ids;
   const runs::Run run = runs::read_run(folder);
   session.missing = run.missing;
+  if (!run.steps.empty()) session.ended_ns = run.steps.back().t_ns;
   session.T_truth_map = run.truth.frame.T_truth_map;
   for (const auto& [label, id] : landmarks_by_label(run)) {
     if (std::binary_search(ids.begin(), ids.end(), id)) session.landmark_of[label] = id;

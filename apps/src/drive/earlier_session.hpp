@@ -30,8 +30,9 @@ struct EarlierSession {
   core::JointMap map;
   std::map<core::Label, core::LandmarkId> landmark_of;  ///< by label; empty when that run had no labels
   SessionStart start;
-  std::vector<std::string> missing;        ///< of that run: lost since it was written
-  std::optional<core::Pose2> T_truth_map;  ///< where its map lies in the frame of its truth, where that run knows
+  std::vector<std::string> missing;           ///< of that run: lost since it was written
+  std::optional<core::Nanoseconds> ended_ns;  ///< its last scan, where it has one
+  std::optional<core::Pose2> T_truth_map;     ///< where its map lies in the frame of its truth, where that run knows
 };
 
 /// From a map itself, `name` in messages. InputError where it holds too few mature landmarks to begin so.

@@ -32,6 +32,20 @@ ChosenNavigator begun(const Drive& job, const std::vector<std::vector<core::Labe
   return {supervisor::Navigator::go_on_in(map, job.navigator), labels};
 }
 
+bool is_same_map(const core::JointMap& one, const core::JointMap& other) {
+  return one.joint.ids == other.joint.ids && one.joint.points_m == other.joint.points_m;
+}
+
+/// Part 0 is the earlier map, and kept where that is, unless the session has gone on in it.
+std::map<int, core::JointMap> parts_of(const ChosenNavigator& navigator, const Drive& job) {
+  std::map<int, core::JointMap> maps = navigator.maps_apart();
+  const auto first = maps.find(0);
+  if (!job.earlier || first == maps.end()) return maps;
+  first->second.drives = job.earlier->map.drives;
+  if (is_same_map(first->second, job.earlier->map)) maps.erase(first);
+  return maps;
+}
+
 struct NavigatorDrive {
   std::vector<std::vector<core::Label>> labels;
   ChosenNavigator navigator;
@@ -56,11 +70,7 @@ Estimator navigator_of(const Drive& job) {
           [drive] { return drive->navigator.map(); },
           [drive, &job] { return joint_map_of(drive->navigator, job.recording); },
           {},
-          [drive, &job] {
-            std::map<int, core::JointMap> maps = drive->navigator.maps_apart();
-            if (job.earlier) maps.erase(0);  // the earlier session has it
-            return maps;
-          },
+          [drive, &job] { return parts_of(drive->navigator, job); },
           [drive] { return drive->navigator.sketch(); }};
 }
 

@@ -21,6 +21,7 @@
 #include "drive/drive_again.hpp"
 #include "drive/kept_inputs.hpp"
 #include "drive/landmark_names.hpp"
+#include "drive/start_by_names.hpp"
 #include "drive/start_option.hpp"
 #include "drive/truth_on_map.hpp"
 #include "helixnav/logs/field_of_view.hpp"
@@ -71,6 +72,7 @@ void take_map(const ReplayJob& job, Drive& task) {
     if (std::filesystem::exists(table))
       number_by_names(runs::read_landmark_names(table), task.recording, task.earlier->landmark_of);
     warn_of_missing(task.earlier->missing);
+    pass_over_driven(*task.earlier, task.recording, task.withheld);
   }
 }
 
@@ -122,14 +124,15 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   if (!job.blackouts.empty()) task.withheld = withhold(task.recording, job.blackouts);
   apply_log_settings(task.recording, job.settings);
   const bool drives_again = goes_on_from_drive(job);
-  if (drives_again) take_drive_before(job.map, task);
+  drives_again ? take_drive_before(job.map, task) : take_map(job, task);
   print_remarks(task.recording);
   task.navigator = fit_to_recording(job.settings, task.recording);
   fill_drive(task, job.run, dump_config(command) + in_force_text(job.settings, task.navigator, task.recording));
   task.smooth = job.smooth;
-  if (!drives_again) take_map(job, task);
-  put_truth_on_map(task);
   choose_filter(task, job.settings);
+  const std::string begun = begin_by_names(task);
+  if (!begun.empty()) std::fprintf(stderr, "helixnav: note: %s\n", begun.c_str());
+  put_truth_on_map(task);
   if (task.fastslam.chosen) task.manifest.seed = task.fastslam.seed;
   task.manifest.inputs = input_files(job.path);
   const bool has_file = !job.vehicle.empty() && std::filesystem::exists(job.vehicle);  // else one that ships

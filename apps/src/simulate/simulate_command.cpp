@@ -18,6 +18,7 @@
 #include "drive/drive.hpp"
 #include "drive/drive_again.hpp"
 #include "drive/kept_inputs.hpp"
+#include "drive/start_by_names.hpp"
 #include "drive/start_option.hpp"
 #include "drive/truth_on_map.hpp"
 #include "helixnav/core/errors.hpp"
@@ -133,6 +134,8 @@ ExitCode simulate(CLI::App& command, SimulateJob& job) {
     task.earlier = read_earlier_session(job.map, job.start.value_or(SessionStart{}));
     warn_of_missing(task.earlier->missing);
     task.manifest.inputs = input_files(joint_map_file_in(job.map));
+    const std::string begun = begin_by_names(task);
+    if (!begun.empty()) std::fprintf(stderr, "helixnav: note: %s\n", begun.c_str());
     put_truth_on_map(task);
   }
   return drive(task);

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drive/start_by_names.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "helixnav/core/odometry.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+constexpr double reach_m = 30.0;
+const core::Pose2 T_map_start(40.0, -7.0, 2.0);
+
+NamedMap map_of_four() {
+  NamedMap map;
+  const Eigen::Vector2d points_m[] = {{40.0, 3.0}, {32.0, -1.0}, {31.0, 6.0}, {200.0, 0.0}};
+  for (int i = 0; i < 4; ++i) {
+    map.landmark_of[10 + i] = i;
+    map.point_m[i] = points_m[i];
+  }
+  return map;
+}
+
+void drive(const core::Pose2& T_before_after, core::Recording& recording) {
+  core::Odometry motion = core::no_motion(0);
+  motion.T_before_after = T_before_after;
+  motion.covariance = Eigen::Vector3d(1e-4, 1e-4, 1e-6).asDiagonal();
+  recording.events.emplace_back(motion);
+}
+
+/// A scan from that pose; `moved_m`: the first one stands elsewhere than on the map.
+void look(const core::Pose2& T_map_robot, const std::vector<core::Label>& labels, core::Recording& recording,
+          double moved_m = 0.0) {
+  core::Scan scan;
+  const NamedMap map = map_of_four();
+  for (const core::Label label : labels) {
+    const auto named = map.landmark_of.find(label);
+    Eigen::Vector2d at_m = named == map.landmark_of.end() ? Eigen::Vector2d(50.0, 0.0) : map.point_m.at(named->second);
+    if (label == labels.front()) at_m.x() += moved_m;
+    const Eigen::Vector2d seen_m = core::transform(core::inverse(T_map_robot), at_m);
+    scan.observations.push_back(core::make_range_bearing(seen_m.norm(), std::atan2(seen_m.y(), seen_m.x()), 0.1, 0.01));
+  }
+  recording.events.emplace_back(scan);
+  recording.labels.push_back(labels);
+}
+
+void expect_start(const std::optional<core::PoseGaussian>& start) {
+  ASSERT_TRUE(start);
+  EXPECT_LT((start->mean.vector() - T_map_start.vector()).norm(), 1e-9);
+}
+
+TEST(StartByNames, IsThatOfTheFirstScanThatTellsThePose) {
+  core::Recording recording;
+  const core::Pose2 step(1.0, 0.1, 0.3);
+  look(T_map_start, {10, 99}, recording);  // one name of the map
+  drive(step, recording);
+  core::Pose2 here = core::compose(T_map_start, step);
+  look(here, {10, 11, 12}, recording, 5.0);  // another tree has got a name of the map
+  drive(step, recording);
+  here = core::compose(here, step);
+  look(here, {10, 11, 12}, recording);
+  const std::optional<core::PoseGaussian> start = start_by_names(recording, map_of_four(), reach_m);
+  expect_start(start);
+  const double given_m = reach_m / 60.0;
+  EXPECT_GT(start->covariance(0, 0), given_m * given_m) << "what odometry adds";
+}
+
+TEST(StartByNames, IsNotToldByLandmarksCloseTogether) {
+  core::Recording recording;
+  NamedMap map = map_of_four();
+  look(T_map_start, {10, 10}, recording);
+  EXPECT_FALSE(start_by_names(recording, map, reach_m));
+}
+
+TEST(StartByNames, IsNotToldAfterTheVehicleWasCarried) {
+  core::Recording recording;
+  recording.events.emplace_back(core::Lost{});
+  look(T_map_start, {10, 11, 12}, recording);
+  EXPECT_FALSE(start_by_names(recording, map_of_four(), reach_m));
+}
+
+TEST(StartByNames, ContradictsAtFiveDeviations) {
+  const core::PoseGaussian one{core::Pose2(0.0, 0.0, 3.1), Eigen::Matrix3d::Identity() * 0.01};
+  core::PoseGaussian other{core::Pose2(0.3, 0.0, -3.1), Eigen::Matrix3d::Zero()};
+  EXPECT_FALSE(contradict(one, other));
+  other.mean.x_m = 0.6;
+  EXPECT_TRUE(contradict(one, other));
+}
+
+}  // namespace
+}  // namespace helixnav::apps
