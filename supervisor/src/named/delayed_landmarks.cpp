@@ -51,15 +51,16 @@ RelativePoints relative_points(const core::JointGaussian& joint) {
 /// The sensor's pose from the point(s) of its clone; `first` is the column of its position.
 void place_sensor(const RelativePoints& relative, Index first, FitRow& row) {
   const Eigen::Vector2d position_m = relative.points_m[static_cast<std::size_t>(first / 2)];
-  row.J.setZero(3, relative.P.cols());
-  row.J.block<2, 2>(0, first).setIdentity();
+  row.first = first;
+  row.J.setZero(3, row.kind == core::ObservationKind::bearing ? 4 : 2);
+  row.J.topLeftCorner<2, 2>().setIdentity();
   double heading_rad = 0.0;
   if (row.kind == core::ObservationKind::bearing) {
     const Eigen::Vector2d way_m = relative.points_m[static_cast<std::size_t>(first / 2 + 1)] - position_m;
     heading_rad = std::atan2(way_m.y(), way_m.x());
     const Eigen::RowVector2d by_ahead = Eigen::RowVector2d(-way_m.y(), way_m.x()) / way_m.squaredNorm();
-    row.J.block<1, 2>(2, first) = -by_ahead;
-    row.J.block<1, 2>(2, first + 2) = by_ahead;
+    row.J.block<1, 2>(2, 0) = -by_ahead;
+    row.J.block<1, 2>(2, 2) = by_ahead;
   }
   row.sensor = core::Pose2(position_m.x(), position_m.y(), heading_rad);
 }

@@ -20,35 +20,52 @@ using Index = Eigen::Index;
 
 constexpr double at_the_sensor_m = 1e-6;  // there no direction is defined, whatever the world's size
 
+/// A row by the coordinates of P that it depends on, from FitRow::first on.
+using PlaceRow = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, 4>;
+
 struct Linearised {
   Eigen::VectorXd nu;
-  Eigen::MatrixXd H_point;   ///< rows × 2
-  Eigen::MatrixXd H_places;  ///< rows × size of P
+  Eigen::MatrixXd H_point;  ///< rows × 2
+  std::vector<PlaceRow> H_places;
   Eigen::LLT<Eigen::MatrixXd> S;
   double nis = 0.0;
   double cost = 0.0;
   bool good = false;
 };
 
+/// H·P·Hᵀ + R, the lower half.
+Eigen::MatrixXd innovation_covariance_of(const std::vector<FitRow>& rows, const std::vector<PlaceRow>& H,
+                                         const Eigen::MatrixXd& P) {
+  const std::size_t size = rows.size();
+  Eigen::MatrixXd S(size, size);
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      double sum = i == j ? rows[i].variance : 0.0;
+      for (Index b = 0; b < H[j].cols(); ++b) {
+        const double* column = &P(rows[i].first, rows[j].first + b);
+        for (Index a = 0; a < H[i].cols(); ++a) sum += H[i][a] * column[a] * H[j][b];
+      }
+      S(static_cast<Index>(i), static_cast<Index>(j)) = sum;
+    }
+  }
+  return S;
+}
+
 Linearised linearise(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P, const Eigen::Vector2d& point_m) {
   Linearised l;
   const auto size = static_cast<Index>(rows.size());
   l.nu.resize(size);
   l.H_point.resize(size, 2);
-  l.H_places.resize(size, P.cols());
-  Eigen::VectorXd R(size);
+  l.H_places.resize(rows.size());
   for (Index i = 0; i < size; ++i) {
     const FitRow& row = rows[static_cast<std::size_t>(i)];
     if ((point_m - row.sensor.position_m()).norm() < at_the_sensor_m) return l;
     const core::PredictedObservation predicted = core::predict_observation(row.kind, row.sensor, {}, point_m);
     l.nu[i] = core::innovation(row.kind, core::ObsVector::Constant(1, row.z), predicted.z_hat)[0];
     l.H_point.row(i) = predicted.H_landmark.row(0);
-    l.H_places.row(i) = predicted.H_pose.row(0) * row.J;
-    R[i] = row.variance;
+    l.H_places[static_cast<std::size_t>(i)] = predicted.H_pose.row(0) * row.J;
   }
-  Eigen::MatrixXd S = l.H_places * P * l.H_places.transpose();
-  S.diagonal() += R;
-  l.S.compute(S);
+  l.S.compute(innovation_covariance_of(rows, l.H_places, P));
   if (l.S.info() != Eigen::Success) return l;
   l.nis = l.nu.dot(l.S.solve(l.nu));
   l.cost = l.nis + 2.0 * l.S.matrixLLT().diagonal().array().log().sum();
@@ -56,15 +73,19 @@ Linearised linearise(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P, 
   return l;
 }
 
-FittedPoint finish(const std::vector<FitRow>& rows, const Linearised& l, const Eigen::Vector2d& point_m,
-                   const Eigen::Matrix2d& information) {
+FittedPoint finish(const std::vector<FitRow>& rows, Index coordinates, const Linearised& l,
+                   const Eigen::Vector2d& point_m, const Eigen::Matrix2d& information) {
   FittedPoint fitted;
   fitted.point_m = point_m;
   fitted.covariance_m2 = information.inverse();
   const Eigen::MatrixXd gain = fitted.covariance_m2 * l.S.solve(l.H_point).transpose();
-  fitted.G = -gain * l.H_places;
+  fitted.G.setZero(2, coordinates);
   Eigen::VectorXd R(static_cast<Index>(rows.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i) R[static_cast<Index>(i)] = rows[i].variance;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const PlaceRow& H = l.H_places[i];
+    fitted.G.middleCols(rows[i].first, H.cols()) -= gain.col(static_cast<Index>(i)) * H;
+    R[static_cast<Index>(i)] = rows[i].variance;
+  }
   const Eigen::Matrix2d noise = gain * R.asDiagonal() * gain.transpose();
   fitted.noise_m2 = 0.5 * (noise + noise.transpose());
   fitted.nis = l.nis;
@@ -106,7 +127,7 @@ std::optional<FittedPoint> fit_point(const std::vector<FitRow>& rows, const Eige
     damped.diagonal().array() += damping * information.trace();
     const Eigen::Vector2d move_m = damped.inverse() * gradient;
     if (!move_m.allFinite()) return std::nullopt;
-    if ((information.inverse() * gradient).norm() < settled_m) return finish(rows, now, point_m, information);
+    if ((information.inverse() * gradient).norm() < settled_m) return finish(rows, P.cols(), now, point_m, information);
     const Linearised next = linearise(rows, P, point_m + move_m);
     // S is held while steps are judged: its own dependence on the point is no part of the Gauss-Newton descent.
     if (next.good && next.nu.dot(now.S.solve(next.nu)) <= now.nis) {

@@ -11,13 +11,14 @@
 
 namespace helixnav::supervisor {
 
-/// One row of a fit: where the sensor stood, and how its pose depends on the coordinates of `P`.
+/// One row of a fit: where the sensor stood, and how its pose depends on the coordinates of `P`: on two to four of them.
 struct FitRow {
   core::ObservationKind kind = core::ObservationKind::range;
   double z = 0.0;
   double variance = 0.0;
   core::Pose2 sensor;
-  Eigen::Matrix<double, 3, Eigen::Dynamic> J;  ///< 3×size of P: (x, y, heading) of the sensor by those coordinates
+  Eigen::Index first = 0;                               ///< the coordinates from this one on
+  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 4> J;  ///< (x, y, heading) of the sensor by those coordinates
 };
 
 /// A point with its dependence: error = G · error of the coordinates + noise. `cost` is νᵀS⁻¹ν + ln|S|, twice the negative
@@ -32,7 +33,7 @@ struct FittedPoint {
 };
 
 /// Weighted least squares by Levenberg-Marquardt, S = H·P·Hᵀ + R taken anew at every step. Nothing when it has not settled
-/// (a step far below `same_m`) or the point is not determined.
+/// (a step far below `same_m`) or the point is not determined. O(rows³) a step, of which H·P·Hᵀ is O(rows²).
 std::optional<FittedPoint> fit_point(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P,
                                      const Eigen::Vector2d& start_m, double same_m);
 
