@@ -189,7 +189,7 @@ std::optional<LandmarkId> DelayedLandmarks::sight(cekf::CompressedEkf& filter, s
   window.sightings.push_back(sighting);
 
   Located located = locate(filter, window.sightings, options_);
-  if (!located.point && located.is_contradicted)
+  if (!located.point && located.is_contradicted && options_.names_may_be_wrong)
     located.point = locate_without_one(filter, window.sightings, located.nis, options_);
   if (!located.point) return std::nullopt;
   const LandmarkId landmark = filter.augment(*located.point);

@@ -31,6 +31,12 @@ core::Decision left_out_decision(std::size_t observations) {
   return core::OtherDecision{"scan", "left-out", {{"observations", static_cast<double>(observations)}}};
 }
 
+DelayedOptions delayed_of(const NavigatorOptions& options) {
+  DelayedOptions delayed = options.delayed;
+  delayed.names_may_be_wrong = options.names.wrong > 0.0;
+  return delayed;
+}
+
 /// One step with a scan's identities. Where the mathematics breaks on what they claim, one without any: no scan ends a drive.
 template <class StepWith>
 StepReport with_identities_or_none(const std::vector<std::int64_t>& identities, const StepWith& step_with) {
@@ -49,7 +55,7 @@ NamedNavigator::NamedNavigator(const core::PoseGaussian& start, const NavigatorO
     : options_(options),
       reach_m_(reference_reach_m),
       filter_(start, options.filter),
-      delayed_(options.delayed),
+      delayed_(delayed_of(options)),
       drive_(NamedDrive(start, options.search.smooth_up_to_scans)) {}
 
 /// The strong guarantee: the call takes effect as a whole, or what was before is made again from the checkpoint.
@@ -130,7 +136,7 @@ StepReport NamedNavigator::observe_thinned(const core::Scan& scan, const std::ve
 void NamedNavigator::fit_to(const core::FieldOfView& view) {
   if (fitted_ || !view.reach()) return;
   if (fit_to_sensor(view, step_ == 0, options_, filter_)) checkpoint_.reset();
-  delayed_.set_lengths(options_.delayed);
+  delayed_.set_lengths(delayed_of(options_));
   reach_m_ = *view.reach();
   fitted_ = true;
 }

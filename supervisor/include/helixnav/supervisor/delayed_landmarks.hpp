@@ -20,6 +20,8 @@ struct DelayedOptions {
   double max_relative_sigma = 0.1;  ///< largest σ of the landmark, relative to the robot, by its distance
   double fit_probability = 0.999;   ///< χ² gate of the fit to all sightings kept
   double min_rival_margin = 14.0;   ///< twice the log-likelihood by which every other solution must be worse
+  bool names_may_be_wrong =
+      true;  ///< one sighting may be of another landmark, and is sought where they contradict; NamedNavigator sets it
 };
 
 /// Landmarks seen as a bearing or a range only: they enter the filter when the sightings from several places fix them as
