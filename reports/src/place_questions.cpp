@@ -17,6 +17,7 @@ double lacking_nats(const core::PlacedDecision& d) { return d.needed - std::min(
 void count(const core::PlacedDecision& d, PlaceQuestions& asked) {
   asked.most_landmarks = std::max(asked.most_landmarks, d.landmarks);
   if (d.verdict == Verdict::sought) return;
+  if (d.verdict == Verdict::accepted) asked.accepted = d;
   if (asked.questions == 0) asked.from_m = d.driven_m;
   asked.to_m = d.driven_m;
   asked.questions = d.questions;
