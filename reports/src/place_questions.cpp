@@ -51,6 +51,16 @@ PlaceQuestions questions_in(const runs::Run& run) {
   return asked;
 }
 
+std::string best_answer_text(const PlaceQuestions& asked) {
+  if (!asked.best) {
+    return "nothing was asked, never more than " + std::to_string(asked.most_landmarks) +
+           " landmarks were known well enough about the vehicle at once";
+  }
+  std::string text = "nearest to an answer was " + answer_text(*asked.best);
+  text.pop_back();
+  return text;
+}
+
 std::string questions_text(const PlaceQuestions& asked) {
   if (asked.questions == 0) {
     return "  Nothing was asked: never more than " + std::to_string(asked.most_landmarks) +

@@ -25,4 +25,7 @@ PlaceQuestions questions_in(const runs::Run& run);
 /// Two or three sentences, indented, on lines of their own: how much was asked, and what the best and the last answer lacked.
 std::string questions_text(const PlaceQuestions& asked);
 
+/// How near it came: one sentence without its end, in small letters.
+std::string best_answer_text(const PlaceQuestions& asked);
+
 }  // namespace helixnav::reports

@@ -120,7 +120,16 @@ TEST_F(GoOn, ASessionBegunAnywhereIsPlacedAndBecomesOneMap) {
 TEST_F(GoOn, AnotherPlaceIsNotHereAndSaidSo) {
   write_yesterday();
   write("elsewhere.circles", drive_text(grove(2, 50), 0.0, 200, 3));
-  must("elsewhere.circles", {"--map", folder("monday")}, "elsewhere");
+  const std::string never = "the vehicle never found its place on the earlier map";
+  const Outcome mapped = replay("elsewhere.circles", {"--map", folder("monday")}, "elsewhere");
+  ASSERT_EQ(mapped.exit_code, 0) << mapped.err;
+  EXPECT_NE(mapped.err.find(never), std::string::npos) << mapped.err;
+  EXPECT_NE(mapped.err.find("nearest to an answer was question"), std::string::npos) << mapped.err;
+  EXPECT_EQ(mapped.err.find("holds this drive"), std::string::npos) << mapped.err;
+  const Outcome localised =
+      replay("elsewhere.circles", {"--map", folder("monday"), "--localize", "--start", "unknown"}, "localised");
+  EXPECT_NE(localised.err.find(never), std::string::npos) << localised.err;
+  EXPECT_EQ(localised.err.find("matching collapsed"), std::string::npos) << localised.err;
   EXPECT_EQ(summary("elsewhere").at("placed").at("found"), false);
   EXPECT_EQ(summary("elsewhere").at("placed").at("last"), "not-here");
   EXPECT_GE(summary("elsewhere").at("placed").at("questions"), 1);
