@@ -125,7 +125,6 @@ TEST_F(GoOn, AnotherPlaceIsNotHereAndSaidSo) {
   ASSERT_EQ(mapped.exit_code, 0) << mapped.err;
   EXPECT_NE(mapped.err.find(never), std::string::npos) << mapped.err;
   EXPECT_NE(mapped.err.find("nearest to an answer was question"), std::string::npos) << mapped.err;
-  EXPECT_EQ(mapped.err.find("holds this drive"), std::string::npos) << mapped.err;
   const Outcome localised =
       replay("elsewhere.circles", {"--map", folder("monday"), "--localize", "--start", "unknown"}, "localised");
   EXPECT_NE(localised.err.find(never), std::string::npos) << localised.err;
@@ -230,6 +229,27 @@ TEST_F(GoOn, RunsThatBeganAnywhereAreJoinedToOneMapToGoOnIn) {
   EXPECT_NE(text_of(folder("week") / "changes.csv").find(",gone,"), std::string::npos) << "the tree that was felled";
   must("tuesday.circles", {"--map", folder("week")}, "next");
   EXPECT_EQ(summary("next").at("placed").at("found"), true);
+}
+
+TEST_F(GoOn, NamesOutliveJoining) {
+  const std::vector<std::string> by_name{"--association", "known"};
+  write("monday.circles", drive_text(grove(1, 50), 0.0, 300, 1));
+  write("tuesday.circles", drive_text(grove(1, 50), 2.0, 240, 2));
+  must("monday.circles", by_name, "monday");
+  must("tuesday.circles", by_name, "tuesday");
+  const Outcome joined = run({"join", folder("monday"), folder("tuesday"), "--out", folder("week")});
+  ASSERT_EQ(joined.exit_code, 0) << joined.err;
+  EXPECT_EQ(joined.err, "") << "no names contradict where the trees stand";
+  EXPECT_NE(text_of(folder("week") / "map.csv").find(",name\n"), std::string::npos);
+  for (const bool is_localised : {false, true}) {
+    std::vector<std::string> words{"--association", "known", "--map", folder("week")};
+    if (is_localised) words.emplace_back("--localize");
+    if (!is_localised) words.insert(words.end(), {"--start", "0,0,0"});
+    const std::string out = is_localised ? "located" : "gone_on";
+    must("monday.circles", words, out);
+    EXPECT_NEAR(summary(out).at("nis").at("mean_per_dof").get<double>(), 1.0, 0.2) << out;
+  }
+  EXPECT_EQ(summary("located").at("association").at("recall"), 1.0);
 }
 
 TEST_F(GoOn, OneMapTwiceIsRefused) {

@@ -25,7 +25,6 @@
 #include "drive/truth_on_map.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/mrclam.hpp"
-#include "helixnav/runs/run_folder.hpp"
 #include "read_to_replay.hpp"
 #include "settings/config_file.hpp"
 #include "settings/deprecated_keys.hpp"
@@ -62,14 +61,14 @@ void take_map(const ReplayJob& job, Drive& task) {
   if (job.localize) {
     task.given_map = read_given_map(job.map);
     task.given_map->start = job.start;
-    number_by_names(runs::read_landmark_names(map_file(job.map)), task.recording, task.given_map->landmark_of);
+    std::vector<core::LandmarkId> ids;
+    for (const core::MapLandmark& landmark : task.given_map->landmarks) ids.push_back(landmark.id);
+    call_as_log(job.map, ids, task.recording, task.given_map->landmark_of);
     check_start(*task.given_map);
     warn_of_missing(task.given_map->missing);
   } else {
     task.earlier = read_earlier_session(job.map, job.start.value_or(SessionStart{}));
-    const std::string table = map_file(job.map);
-    if (std::filesystem::exists(table))
-      number_by_names(runs::read_landmark_names(table), task.recording, task.earlier->landmark_of);
+    call_as_log(job.map, task.earlier->map.joint.ids, task.recording, task.earlier->landmark_of);
     warn_of_missing(task.earlier->missing);
   }
 }
