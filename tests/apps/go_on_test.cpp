@@ -113,7 +113,9 @@ TEST_F(GoOn, ASessionBegunAnywhereIsPlacedAndBecomesOneMap) {
   EXPECT_NEAR(y_m, radius_m * std::sin(2.0), 0.5);
   EXPECT_NEAR(-x_m, radius_m * (1.0 - std::cos(2.0)), 0.5);
   // And a third session goes on in what came of both.
-  must("monday.circles", {"--map", folder("tuesday")}, "wednesday");
+  const Outcome again = replay("monday.circles", {"--map", folder("tuesday")}, "wednesday");
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_NE(again.err.find("holds this drive already"), std::string::npos) << again.err;
   EXPECT_EQ(summary("wednesday").at("placed").at("found"), true);
 }
 
@@ -125,6 +127,7 @@ TEST_F(GoOn, AnotherPlaceIsNotHereAndSaidSo) {
   ASSERT_EQ(mapped.exit_code, 0) << mapped.err;
   EXPECT_NE(mapped.err.find(never), std::string::npos) << mapped.err;
   EXPECT_NE(mapped.err.find("nearest to an answer was question"), std::string::npos) << mapped.err;
+  EXPECT_EQ(mapped.err.find("holds this drive"), std::string::npos) << mapped.err;
   const Outcome localised =
       replay("elsewhere.circles", {"--map", folder("monday"), "--localize", "--start", "unknown"}, "localised");
   EXPECT_NE(localised.err.find(never), std::string::npos) << localised.err;
@@ -250,6 +253,22 @@ TEST_F(GoOn, NamesOutliveJoining) {
     EXPECT_NEAR(summary(out).at("nis").at("mean_per_dof").get<double>(), 1.0, 0.2) << out;
   }
   EXPECT_EQ(summary("located").at("association").at("recall"), 1.0);
+}
+
+TEST_F(GoOn, WhatIsMissingFromARunToKnowItsDriveByIsSaid) {
+  write_yesterday();
+  write("tuesday.circles", drive_text(grove(1, 50), 2.0, 240, 2));
+  must("tuesday.circles", {}, "tuesday");
+  EXPECT_EQ(replay("tuesday.circles", {"--map", folder("monday"), "--start", "end"}, "with").err.find("drive.bin"),
+            std::string::npos);
+  fs::remove(folder("monday") / "drive.bin");
+  const Outcome without = replay("tuesday.circles", {"--map", folder("monday"), "--start", "end"}, "without");
+  EXPECT_NE(without.err.find("drive.bin: not there"), std::string::npos) << without.err;
+  fs::remove(folder("monday") / "drives.csv");
+  const Outcome joined = run({"join", folder("monday"), folder("tuesday"), "--out", folder("week")});
+  EXPECT_EQ(joined.exit_code, 0) << joined.err;
+  EXPECT_NE(joined.err.find("monday: no drives.csv"), std::string::npos) << joined.err;
+  EXPECT_EQ(joined.err.find("tuesday: no drives.csv"), std::string::npos) << joined.err;
 }
 
 TEST_F(GoOn, OneMapTwiceIsRefused) {

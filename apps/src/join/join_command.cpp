@@ -41,6 +41,17 @@ std::vector<LandmarkNames> read_names(const std::vector<std::string>& runs) {
   return names;
 }
 
+/// Nobody can tell then that a run is of the same drive as another, which would count it twice.
+void note_unknown_drives(const std::vector<std::string>& runs, const std::vector<core::JointMap>& maps) {
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    if (!maps[k].drives.empty()) continue;
+    std::fprintf(stderr,
+                 "helixnav: note: %s: no drives.csv says what drive its map is of; whether another run is of the same "
+                 "one, and counts twice, cannot be told\n",
+                 runs[k].c_str());
+  }
+}
+
 void say_changes(const std::vector<ChangedLandmark>& shared) {
   std::map<Change, int> counts;
   for (const ChangedLandmark& landmark : shared) ++counts[landmark.change()];
@@ -78,6 +89,7 @@ void join(CLI::App& command, const JoinJob& job) {
   const std::vector<core::JointMap> maps = read_maps(job.runs);
   check_independent(job.runs);
   check_independent(maps, job.runs);
+  note_unknown_drives(job.runs, maps);
   supervisor::JoinedSessions joined = supervisor::join_sessions(maps);
   tell_drives(maps, joined);
   const std::vector<ChangedLandmark> shared = shared_landmarks(maps, joined);
