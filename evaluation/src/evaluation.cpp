@@ -286,6 +286,9 @@ Evaluation evaluate(const runs::Run& run, const runs::RunTruth& truth, const Eva
     evaluation.pose = std::move(pose);
     if (!evaluation.position) evaluation.position = std::move(position);
   }
+  if (evaluation.position && evaluation.position->against_poses) {
+    evaluation.position->off_earlier_map = runs::began_off_earlier_map(run) && !runs::is_on_earlier_map(run);
+  }
   evaluation.final_position = evaluate_final(run, truth, options.fix_limit_m);
   const core::Pose2 T_truth_map = evaluation.position ? evaluation.position->T_truth_map : core::Pose2{};
   if (!truth.landmarks.empty()) evaluation.map = evaluate_map(run, truth, T_truth_map, options.landmark_limit_m);

@@ -37,6 +37,9 @@ std::string against_text(const evaluation::PositionEvaluation& position) {
   if (position.aligned) {
     return "  against            true poses, after rigid alignment: where the map lies in their frame is not known\n";
   }
+  if (position.off_earlier_map) {
+    return "  against            true poses, since the session began: its place on the earlier map was not found\n";
+  }
   std::string text = "  against            true poses, in the map frame as it is\n";
   if (!is_displaced(position)) return text;
   return text + format(
@@ -155,6 +158,7 @@ Json position_to_json(const evaluation::PositionEvaluation& position) {
   json["against"] = position.against_poses ? "poses" : "positions";
   json["aligned"] = position.aligned;
   if (position.against_poses) json["rmse_aligned_m"] = position.rmse_aligned_m;
+  if (position.off_earlier_map) json["off_earlier_map"] = true;
   if (!position.against_poses) json["limit_m"] = position.limit_m;
   if (position.aligned) {
     json["alignment"] = {{"x_m", position.T_truth_map.x_m},

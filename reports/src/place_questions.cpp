@@ -17,6 +17,7 @@ double lacking_nats(const core::PlacedDecision& d) { return d.needed - std::min(
 void count(const core::PlacedDecision& d, PlaceQuestions& asked) {
   asked.most_landmarks = std::max(asked.most_landmarks, d.landmarks);
   if (d.verdict == Verdict::sought) return;
+  if (d.verdict == Verdict::accepted) asked.accepted = d;
   if (asked.questions == 0) asked.from_m = d.driven_m;
   asked.to_m = d.driven_m;
   asked.questions = d.questions;
@@ -48,6 +49,16 @@ PlaceQuestions questions_in(const runs::Run& run) {
     }
   }
   return asked;
+}
+
+std::string best_answer_text(const PlaceQuestions& asked) {
+  if (!asked.best) {
+    return "nothing was asked, never more than " + std::to_string(asked.most_landmarks) +
+           " landmarks were known well enough about the vehicle at once";
+  }
+  std::string text = "nearest to an answer was " + answer_text(*asked.best);
+  text.pop_back();
+  return text;
 }
 
 std::string questions_text(const PlaceQuestions& asked) {

@@ -12,6 +12,7 @@
 #include "helixnav/reports/decision_sentence.hpp"
 #include "numerics_text.hpp"
 #include "only_localized.hpp"
+#include "place_questions.hpp"
 #include "range_offset_text.hpp"
 
 namespace helixnav::reports {
@@ -151,6 +152,12 @@ bool has_match(const core::StepReport& step) {
                      [](const core::AssociationReport& a) { return a.outcome == core::Outcome::matched; });
 }
 
+bool was_carried(const runs::Run& run) {
+  return std::any_of(run.steps.begin(), run.steps.end(), [](const core::StepReport& step) {
+    return std::any_of(step.decisions.begin(), step.decisions.end(), core::begins_part);
+  });
+}
+
 /// A place on an earlier map was sought and never found, or not after the vehicle was carried last.
 bool sought_in_vain(const runs::Run& run) {
   bool sought = false;
@@ -165,6 +172,9 @@ bool sought_in_vain(const runs::Run& run) {
   }
   return sought && !found;
 }
+
+/// Who only localises matches nothing before the place is found, which says nothing against odometry and detections.
+bool has_nothing_to_match(const runs::Run& run) { return only_localized(run) && sought_in_vain(run); }
 
 /// [begin, end) of the longest stretch of steps without a match.
 std::pair<std::size_t, std::size_t> longest_without_match(const std::vector<core::StepReport>& steps) {
@@ -196,6 +206,17 @@ std::string contradicted_place_text(const runs::Run& run) {
                        "other than assumed. 'helixnav calibrate' estimates them from the log");
 }
 
+std::string place_not_found_text(const runs::Run& run) {
+  if (!sought_in_vain(run)) return {};
+  const char* const what =
+      only_localized(run) ? "the vehicle never found its place on the earlier map: its poses are not on it; "
+      : was_carried(run)  ? "the vehicle did not find its place since it was carried: the map is that of the last part "
+                            "of the drive alone; "
+                          : "the vehicle never found its place on the earlier map: the map is that of this session "
+                            "alone; ";
+  return what + best_answer_text(questions_in(run));
+}
+
 std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Evaluation& evaluation) {
   std::vector<std::string> warnings;
   if (run.smoothed && run.smoothed->alone) return warnings;  // nothing was matched step by step
@@ -207,7 +228,8 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
   constexpr double least_matched = 0.15;
   if (!mature) {
     warnings.push_back(no_landmark_text(counts));
-  } else if (counts.seen >= enough && share(counts.matched, counts.seen) < least_matched) {
+  } else if (counts.seen >= enough && share(counts.matched, counts.seen) < least_matched &&
+             !has_nothing_to_match(run)) {
     warnings.push_back(collapse_text(counts));
   }
   constexpr double least_nis = 0.25, most_nis = 2.0;
@@ -239,12 +261,7 @@ std::vector<std::string> warnings_of_place(const runs::Run& run) {
     warnings.push_back("no landmark was matched in " + counted(static_cast<double>(end - begin), "scan") +
                        " in a row, from " + short_number(from_s) + " s on: there the pose is that of the odometry");
   }
-  if (sought_in_vain(run)) {
-    warnings.push_back(std::string("the vehicle never found its place on the earlier map: ") +
-                       (only_localized(run)
-                            ? "its poses are not on it"
-                            : "the map is that of this session, or of the drive since it was carried, alone"));
-  }
+  if (const std::string text = place_not_found_text(run); !text.empty()) warnings.push_back(text);
   if (run.steps.back().mode == core::Mode::searching) {
     warnings.emplace_back("a search was still open at the end: where on the map the vehicle then was is not decided");
   }

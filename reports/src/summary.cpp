@@ -41,24 +41,27 @@ Json closures_to_json(const runs::Run& run) {
   return {{"accepted", accepted}, {"refused", refused}, {"new_ground", new_ground}, {"undecided", undecided}};
 }
 
-/// What a session that looked for its place on an earlier map said of it last.
-std::optional<core::PlacedDecision> last_placing(const runs::Run& run) {
-  std::optional<core::PlacedDecision> last;
-  for (const core::StepReport& step : run.steps) {
-    for (const core::Decision& decision : step.decisions) {
-      if (const auto* placed = std::get_if<core::PlacedDecision>(&decision)) last = *placed;
-    }
-  }
-  return last;
+bool asked_for_place(const runs::Run& run) {
+  return std::any_of(run.steps.begin(), run.steps.end(), [](const core::StepReport& step) {
+    return std::any_of(step.decisions.begin(), step.decisions.end(), [](const core::Decision& decision) {
+      return std::holds_alternative<core::PlacedDecision>(decision);
+    });
+  });
 }
 
-Json placed_to_json(const core::PlacedDecision& last, const PlaceQuestions& asked) {
-  const bool found = last.verdict == core::PlacedDecision::Verdict::accepted;
-  Json json = {{"found", found}, {"last", core::row_of(last).verdict}};
-  if (found) {
-    json.update({{"driven_m", last.driven_m}, {"questions", last.questions}, {"pairs", last.pairs}});
+/// Of the part that the run ends in, as `explain` has it: a place that was found stays found, whatever is asked of other parts after
+/// that, until the vehicle is carried.
+Json placed_to_json(const PlaceQuestions& asked) {
+  Json json = {{"found", asked.accepted.has_value()}};
+  if (asked.accepted) {
+    const core::PlacedDecision& accepted = *asked.accepted;
+    json.update({{"last", core::row_of(accepted).verdict},
+                 {"driven_m", accepted.driven_m},
+                 {"questions", accepted.questions},
+                 {"pairs", accepted.pairs}});
     return json;
   }
+  json["last"] = core::row_of(asked.last.value_or(core::PlacedDecision())).verdict;
   json.update({{"questions", asked.questions}, {"most_landmarks", asked.most_landmarks}});
   if (!asked.best) return json;
   const core::PlacedDecision& best = *asked.best;
@@ -157,7 +160,7 @@ Json summary_to_json(const runs::Run& run, const evaluation::Evaluation& evaluat
   json["landmarks"] = {{"mature", count_landmarks(run, core::LandmarkState::mature)},
                        {"tentative", count_landmarks(run, core::LandmarkState::tentative)}};
   json["closures"] = closures_to_json(run);
-  if (const auto placed = last_placing(run)) json["placed"] = placed_to_json(*placed, questions_in(run));
+  if (asked_for_place(run)) json["placed"] = placed_to_json(questions_in(run));
   if (const auto carried = carried_to_json(run)) json["carried"] = *carried;
   json["observations"] = observations_to_json(run);
   json["numerics"] = numerics_to_json(run);

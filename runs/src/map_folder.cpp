@@ -42,9 +42,10 @@ std::vector<core::MapLandmark> landmarks_of(const core::JointMap& map) {
   return landmarks;
 }
 
-void write_map(const std::string& folder, const core::JointMap& map) {
+void write_map(const std::string& folder, const core::JointMap& map,
+               const std::map<core::LandmarkId, std::string>& names) {
   const std::vector<core::MapLandmark> landmarks = landmarks_of(map);
-  files::write_whole_file(folder + '/' + std::string(map_table.file), map_text(landmarks));
+  files::write_whole_file(folder + '/' + std::string(map_table.file), map_text(landmarks, names));
   write_joint_map(folder, map);
 }
 

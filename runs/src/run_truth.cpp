@@ -95,8 +95,8 @@ void read_frames(const std::string& path, RunTruth& truth) {
       truth.frame = frame;
     } else if (row.text(0) == "placed") {
       truth.frame_when_placed = frame;
-    } else {
-      row.refuse(0, "begin or placed");
+    } else if (row.text(0) != "end") {  // which the steps of the run say, too: T_truth_of_map
+      row.refuse(0, "begin, placed or end");
     }
   });
 }
@@ -117,6 +117,11 @@ void write_frames(const std::string& folder, const core::Recording& recording) {
   if (begin.T_truth_map || !begin.is_map) append_frame("begin", begin, text);
   if (placed) append_frame("placed", *placed, text);
   files::write_whole_file(folder + '/' + std::string(truth_frame_table.file), text);
+}
+
+/// What may be there already, of the begin.
+std::string frames_text(const std::string& file) {
+  return fs::exists(file) ? files::read_whole_file(file) : std::string(truth_frame_table.header) + '\n';
 }
 
 struct TruthReader {
@@ -168,6 +173,14 @@ void write_truth(const std::string& folder, const core::Recording& recording) {
     files::write_whole_file(folder + '/' + std::string(truth_labels_table.file),
                             std::string(truth_labels_table.header) + '\n' + labels_text(recording.labels));
   }
+}
+
+void write_frame_of_map(const std::string& folder, const Run& run) {
+  if (run.truth.poses.empty() || !begin_of_last_part(run)) return;
+  const std::string file = folder + '/' + std::string(truth_frame_table.file);
+  std::string text = frames_text(file);
+  append_frame("end", {false, T_truth_of_map(run)}, text);
+  files::write_whole_file(file, text);
 }
 
 RunTruth read_truth(const std::string& path) {

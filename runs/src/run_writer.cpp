@@ -236,6 +236,7 @@ void RunWriter::finish(const Run& run, const std::string& report_page, const std
     files::write_whole_file(folder_ + '/' + std::string(final_trajectory_table.file),
                             final_trajectory_text(run.steps, run.final_path));
   }
+  write_frame_of_map(folder_, run);
   if (run.joint_map) write_joint_map(folder_, *run.joint_map);
   for (const auto& [part, map] : run.parts_apart) write_part(folder_ + "/part_" + std::to_string(part), map);
   if (run.particle_end) {

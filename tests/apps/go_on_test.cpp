@@ -113,14 +113,25 @@ TEST_F(GoOn, ASessionBegunAnywhereIsPlacedAndBecomesOneMap) {
   EXPECT_NEAR(y_m, radius_m * std::sin(2.0), 0.5);
   EXPECT_NEAR(-x_m, radius_m * (1.0 - std::cos(2.0)), 0.5);
   // And a third session goes on in what came of both.
-  must("monday.circles", {"--map", folder("tuesday")}, "wednesday");
+  const Outcome again = replay("monday.circles", {"--map", folder("tuesday")}, "wednesday");
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_NE(again.err.find("holds this drive already"), std::string::npos) << again.err;
   EXPECT_EQ(summary("wednesday").at("placed").at("found"), true);
 }
 
 TEST_F(GoOn, AnotherPlaceIsNotHereAndSaidSo) {
   write_yesterday();
   write("elsewhere.circles", drive_text(grove(2, 50), 0.0, 200, 3));
-  must("elsewhere.circles", {"--map", folder("monday")}, "elsewhere");
+  const std::string never = "the vehicle never found its place on the earlier map";
+  const Outcome mapped = replay("elsewhere.circles", {"--map", folder("monday")}, "elsewhere");
+  ASSERT_EQ(mapped.exit_code, 0) << mapped.err;
+  EXPECT_NE(mapped.err.find(never), std::string::npos) << mapped.err;
+  EXPECT_NE(mapped.err.find("nearest to an answer was question"), std::string::npos) << mapped.err;
+  EXPECT_EQ(mapped.err.find("holds this drive"), std::string::npos) << mapped.err;
+  const Outcome localised =
+      replay("elsewhere.circles", {"--map", folder("monday"), "--localize", "--start", "unknown"}, "localised");
+  EXPECT_NE(localised.err.find(never), std::string::npos) << localised.err;
+  EXPECT_EQ(localised.err.find("matching collapsed"), std::string::npos) << localised.err;
   EXPECT_EQ(summary("elsewhere").at("placed").at("found"), false);
   EXPECT_EQ(summary("elsewhere").at("placed").at("last"), "not-here");
   EXPECT_GE(summary("elsewhere").at("placed").at("questions"), 1);
@@ -259,6 +270,43 @@ TEST_F(GoOn, RunsThatBeganAnywhereAreJoinedToOneMapToGoOnIn) {
   EXPECT_NE(text_of(folder("week") / "changes.csv").find(",gone,"), std::string::npos) << "the tree that was felled";
   must("tuesday.circles", {"--map", folder("week")}, "next");
   EXPECT_EQ(summary("next").at("placed").at("found"), true);
+}
+
+TEST_F(GoOn, NamesOutliveJoining) {
+  const std::vector<std::string> by_name{"--association", "known"};
+  write("monday.circles", drive_text(grove(1, 50), 0.0, 300, 1));
+  write("tuesday.circles", drive_text(grove(1, 50), 2.0, 240, 2));
+  must("monday.circles", by_name, "monday");
+  must("tuesday.circles", by_name, "tuesday");
+  const Outcome joined = run({"join", folder("monday"), folder("tuesday"), "--out", folder("week")});
+  ASSERT_EQ(joined.exit_code, 0) << joined.err;
+  EXPECT_EQ(joined.err, "") << "no names contradict where the trees stand";
+  EXPECT_NE(text_of(folder("week") / "map.csv").find(",name\n"), std::string::npos);
+  for (const bool is_localised : {false, true}) {
+    std::vector<std::string> words{"--association", "known", "--map", folder("week")};
+    if (is_localised) words.emplace_back("--localize");
+    if (!is_localised) words.insert(words.end(), {"--start", "0,0,0"});
+    const std::string out = is_localised ? "located" : "gone_on";
+    must("monday.circles", words, out);
+    EXPECT_NEAR(summary(out).at("nis").at("mean_per_dof").get<double>(), 1.0, 0.2) << out;
+  }
+  EXPECT_EQ(summary("located").at("association").at("recall"), 1.0);
+}
+
+TEST_F(GoOn, WhatIsMissingFromARunToKnowItsDriveByIsSaid) {
+  write_yesterday();
+  write("tuesday.circles", drive_text(grove(1, 50), 2.0, 240, 2));
+  must("tuesday.circles", {}, "tuesday");
+  EXPECT_EQ(replay("tuesday.circles", {"--map", folder("monday"), "--start", "end"}, "with").err.find("drive.bin"),
+            std::string::npos);
+  fs::remove(folder("monday") / "drive.bin");
+  const Outcome without = replay("tuesday.circles", {"--map", folder("monday"), "--start", "end"}, "without");
+  EXPECT_NE(without.err.find("drive.bin: not there"), std::string::npos) << without.err;
+  fs::remove(folder("monday") / "drives.csv");
+  const Outcome joined = run({"join", folder("monday"), folder("tuesday"), "--out", folder("week")});
+  EXPECT_EQ(joined.exit_code, 0) << joined.err;
+  EXPECT_NE(joined.err.find("monday: no drives.csv"), std::string::npos) << joined.err;
+  EXPECT_EQ(joined.err.find("tuesday: no drives.csv"), std::string::npos) << joined.err;
 }
 
 TEST_F(GoOn, OneMapTwiceIsRefused) {

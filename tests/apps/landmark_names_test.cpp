@@ -60,6 +60,8 @@ TEST(LandmarkNames, AreTheSameOnAnotherDayInAnotherOrder) {
   number_by_names(monday, tuesday, landmark_of);
   EXPECT_EQ(landmark_of, (std::map<core::Label, core::LandmarkId>{{2, 10}, {0, 11}, {3, 12}}));
   EXPECT_EQ(tuesday.label_names, (std::vector<std::string>{"elm", "birch", "oak", "beech"}));
+  EXPECT_EQ(landmarks_by_name({{10, "7"}, {11, "elm"}}, {}), (std::map<core::Label, core::LandmarkId>{{7, 10}}))
+      << "of a log whose names are numbers";
   core::Recording numbered;
   number_by_names(monday, numbered, landmark_of);
   EXPECT_EQ(landmark_of.at(2), 10) << "numbers are the same every day";

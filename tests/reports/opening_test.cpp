@@ -5,6 +5,7 @@
 #include "helixnav/reports/decision_sentence.hpp"
 #include "helixnav/reports/explanation.hpp"
 #include "helixnav/reports/run_warnings.hpp"
+#include "helixnav/reports/summary.hpp"
 #include "report/report_opening.hpp"
 
 namespace helixnav::reports {
@@ -142,6 +143,48 @@ TEST(Opening, WarnsOfALongDriveWithoutAMatchAndOfASearchLeftOpen) {
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_NE(warnings[0].find("105 scans in a row, from 10 s on"), std::string::npos) << warnings[0];
   EXPECT_NE(warnings[1].find("still open"), std::string::npos) << warnings[1];
+}
+
+TEST(Opening, SaysThatThePlaceOnTheMapWasNotFoundAndHowNearItCame) {
+  runs::Run run = drifting_run(0.0);
+  EXPECT_TRUE(place_not_found_text(run).empty());
+  core::PlacedDecision asked;
+  run.steps[0].decisions = {asked};
+  EXPECT_NE(place_not_found_text(run).find("never found its place on the earlier map"), std::string::npos);
+  EXPECT_NE(place_not_found_text(run).find("nothing was asked"), std::string::npos) << place_not_found_text(run);
+  asked.verdict = core::PlacedDecision::Verdict::ambiguous;
+  asked.questions = 5;
+  asked.landmarks = asked.pairs = 24;
+  asked.evidence = 159.0;
+  asked.lead = 7.0;
+  asked.needed = 15.0;
+  run.steps[20].decisions = {asked};
+  const std::string text = place_not_found_text(run);
+  EXPECT_NE(text.find("nearest to an answer was question 5"), std::string::npos) << text;
+  EXPECT_NE(text.find("a lead over other places of 7 nats (15 are needed)"), std::string::npos) << text;
+  const std::string against = evaluation_text(evaluation::evaluate(run));
+  EXPECT_NE(against.find("since the session began: its place on the earlier map was not found"), std::string::npos)
+      << against;
+  run.steps[30].decisions = {core::CarriedDecision{}};
+  EXPECT_NE(place_not_found_text(run).find("since it was carried"), std::string::npos) << place_not_found_text(run);
+  asked.verdict = core::PlacedDecision::Verdict::accepted;
+  run.steps[40].decisions = {asked};
+  EXPECT_TRUE(place_not_found_text(run).empty());
+}
+
+TEST(Opening, DoesNotBlameTheOdometryOfWhoOnlyLocalisesAndWasNotPlaced) {
+  runs::Run run = drifting_run(0.0);
+  for (core::StepReport& step : run.steps) {
+    step.associations.assign(3, {0, core::Outcome::rejected});
+    step.decisions.clear();
+  }
+  const auto says = [&run](const char* words) {
+    return all_of(warnings_of(run, evaluation::evaluate(run))).find(words) != std::string::npos;
+  };
+  EXPECT_TRUE(says("matching collapsed"));
+  run.steps[0].decisions = {core::PlacedDecision{}};
+  run.manifest.command = "helixnav replay log --map monday --localize";
+  EXPECT_FALSE(says("matching collapsed"));
 }
 
 TEST(Opening, WarnsWhereTheWholeMapHasAnotherPlaceAgainAndAgain) {

@@ -27,6 +27,36 @@ TEST(Summary, HasTheKeysThatScriptsRelyOn) {
   EXPECT_EQ(summary["error"]["fixes_left_out"], 0);
 }
 
+core::PlacedDecision placing(core::PlacedDecision::Verdict verdict, int question, double nats) {
+  core::PlacedDecision placed;
+  placed.verdict = verdict;
+  placed.questions = question;
+  placed.pairs = 10;
+  placed.evidence = placed.lead = nats;
+  placed.needed = 15.0;
+  return placed;
+}
+
+TEST(Summary, KeepsAPlaceThatWasFoundWhateverIsAskedOfOtherPartsAfterThat) {
+  using Verdict = core::PlacedDecision::Verdict;
+  runs::Run run = runs::example_run(200);
+  const auto placed = [&run] {
+    return nlohmann::json::parse(summary_json(run, evaluation::evaluate(run))).at("placed");
+  };
+  run.steps[0].decisions = {core::PlacedDecision{}};
+  run.steps[10].decisions = {placing(Verdict::accepted, 1, 30.0)};
+  run.steps[20].decisions = {placing(Verdict::not_here, 2, 0.0)};
+  EXPECT_EQ(placed()["found"], true);
+  EXPECT_EQ(placed()["last"], "accepted");
+  EXPECT_EQ(placed()["questions"], 1);
+  run.steps[30].decisions = {core::CarriedDecision{}};
+  EXPECT_EQ(placed()["found"], false) << "of the part that the run ends in";
+  EXPECT_EQ(placed()["last"], "sought");
+  run.steps[40].decisions = {placing(Verdict::ambiguous, 1, 8.0)};
+  EXPECT_EQ(placed()["last"], "ambiguous");
+  EXPECT_EQ(placed()["best"]["lead"], 8.0) << "what was accepted before it was carried is no best answer";
+}
+
 TEST(Summary, OfASmootherThatRanAloneJudgesItsOptimum) {
   const auto rmse_m = [](bool alone) {
     runs::RunRecorder recorder("run", {}, runs::example_recording(30));

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The truth of a run that found its place on the map of an earlier one.
 #include <optional>
+#include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "helixnav/core/angle.hpp"
 #include "helixnav/core/decision.hpp"
+#include "helixnav/files/file.hpp"
 #include "helixnav/runs/run_folder.hpp"
 #include "helixnav/runs/run_recorder.hpp"
 #include "helixnav/runs/run_writer.hpp"
@@ -91,6 +95,57 @@ TEST(TruthFrame, IsOneOfItsOwnWhereNobodyKnowsWhereTheEarlierMapLiesInIt) {
     EXPECT_FALSE(read.truth.frame.is_map);
     EXPECT_FALSE(read.truth.frame.T_truth_map);
   }
+}
+
+/// A drive whose vehicle is carried before step 2 and stays where it does not know its place, and its truth.
+std::pair<runs::Run, runs::Run> run_of_carried(core::Nanoseconds truth_late_ns, std::string& frames) {
+  core::Recording recording;
+  for (int k = 0; k < 4; ++k) {
+    const core::Pose2 first(1.0 * k, 0.0, 0.0), second(50.0, 1.0 * k - 2.0, 0.5 * core::pi);
+    recording.true_poses.push_back({k * second_ns + (k > 1 ? truth_late_ns : 0), k < 2 ? first : second});
+  }
+  recording.truth_frame.T_truth_map = core::Pose2(110.0, 5.0, 0.0);
+  const testing::TemporaryFolder folder;
+  const std::string path = (folder.path() / "run").string();
+  RunWriter writer(path, example_manifest(), recording);
+  RunRecorder recorder(path, example_manifest(), recording);
+  for (int k = 0; k < 4; ++k) {
+    core::StepReport step;
+    step.step = k;
+    step.t_ns = k * second_ns;
+    step.pose.mean = {k < 2 ? 1.0 * k : 1.0 * k - 2.0, 0.0, 0.0};
+    core::CarriedDecision carried;
+    carried.part = 1;
+    if (k == 2) step.decisions.emplace_back(carried);
+    writer.write(step, 1.0);
+    recorder.add(step, 1.0);
+  }
+  runs::Run made = recorder.finish({});
+  writer.finish(made, "", "");
+  frames = files::read_whole_file(path + "/truth_frame.csv");
+  return {std::move(made), read_run(path)};
+}
+
+TEST(TruthFrame, OfAMapOfAPartThatWasNotFoundIsThatPartsOwn) {
+  std::string frames;
+  const auto [made, read] = run_of_carried(0, frames);
+  for (const runs::Run* run : {&made, &read}) {
+    const std::optional<core::Pose2> T_truth_map = T_truth_of_map(*run);
+    ASSERT_TRUE(T_truth_map);
+    EXPECT_NEAR(T_truth_map->x_m, 160.0, 1e-12);
+    EXPECT_NEAR(T_truth_map->y_m, 5.0, 1e-12);
+    EXPECT_NEAR(T_truth_map->heading_rad, 0.5 * core::pi, 1e-12);
+    EXPECT_EQ(run->truth.frame.T_truth_map->x_m, 110.0) << "of the truth of the drive";
+  }
+  EXPECT_NE(frames.find("\nend,1,160,5,"), std::string::npos) << frames;
+}
+
+TEST(TruthFrame, OfAMapOfAPartWithoutATruePoseAtItsBeginIsNotKnown) {
+  std::string frames;
+  const auto [made, read] = run_of_carried(second_ns, frames);
+  EXPECT_FALSE(T_truth_of_map(made));
+  EXPECT_FALSE(T_truth_of_map(read));
+  EXPECT_NE(frames.find("\nend,0,0,0,0"), std::string::npos) << frames;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/runs/drive_digest.hpp"
+#include "helixnav/runs/run_folder.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -86,6 +87,13 @@ std::unique_ptr<runs::DriveFile> kept_drive(const Drive& job) {
 
 bool is_driven_again(const std::string& folder, const std::optional<SessionStart>& start) {
   return start && start->kind == SessionStart::Kind::end && std::filesystem::exists(drive_file_in(folder));
+}
+
+bool lacks_its_drive(const std::string& folder) {
+  const std::filesystem::path path(folder);
+  if (std::filesystem::exists(drive_file_in(folder)) || !std::filesystem::exists(path / "manifest.json")) return false;
+  const std::string command = runs::read_manifest(folder).command;
+  return command.find(" --map") == std::string::npos && command.find("association known") == std::string::npos;
 }
 
 std::size_t pass_over(core::Nanoseconds end_ns, core::Recording& recording) {

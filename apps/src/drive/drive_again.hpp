@@ -36,6 +36,9 @@ void pass_over_driven(const EarlierSession& earlier, core::Recording& recording,
 /// it. `withheld` is [scan], empty or as many as there are. Returns how many scans were passed over. Test: apps/go_on_test.cpp, apps/drive_again_test.cpp.
 std::size_t put_before(runs::FedDrive before, core::Recording& recording, std::vector<bool>& withheld);
 
+/// Whether a finished run that began a map of its own, and so kept its drive, has it no more.
+bool lacks_its_drive(const std::string& folder);
+
 /// What went into the map that a run of the job leaves (core::JointMap::drives): its own drive and, where it went on in an earlier map or
 /// was placed on it, what that holds.
 std::vector<std::string> drives_in_map(const Drive& job, const runs::Run& run);

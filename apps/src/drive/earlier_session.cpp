@@ -135,7 +135,7 @@ EarlierSession read_earlier_session(const std::string& folder, const SessionStar
   const runs::Run run = runs::read_run(folder);
   session.missing = run.missing;
   if (!run.steps.empty()) session.ended_ns = run.steps.back().t_ns;
-  session.T_truth_map = run.truth.frame.T_truth_map;
+  session.T_truth_map = runs::T_truth_of_map(run);
   for (const auto& [label, id] : landmarks_by_label(run)) {
     if (std::binary_search(ids.begin(), ids.end(), id)) session.landmark_of[label] = id;
   }

@@ -141,7 +141,7 @@ GivenMap read_given_map(const std::string& path) {
   }
   const runs::Run run = runs::read_run(folder.string());
   map.missing = run.missing;
-  map.T_truth_map = run.truth.frame.T_truth_map;
+  map.T_truth_map = runs::T_truth_of_map(run);
   for (const auto& [label, id] : landmarks_by_label(run)) {
     if (ids.count(id) > 0) map.landmark_of[label] = id;
   }

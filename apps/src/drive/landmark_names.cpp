@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "landmark_names.hpp"
 
+#include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <utility>
 
 #include "given_map.hpp"
+#include "helixnav/files/number_text.hpp"
+#include "helixnav/runs/run_folder.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -36,6 +40,31 @@ void number_by_names(const std::map<core::LandmarkId, std::string>& names_of_map
     anew[known->second] = id;
   }
   landmark_of = std::move(anew);
+}
+
+std::map<core::Label, core::LandmarkId> landmarks_by_name(const std::map<core::LandmarkId, std::string>& names_of_map,
+                                                          const core::Recording& recording) {
+  std::map<core::Label, core::LandmarkId> landmark_of;
+  for (const auto& [id, name] : names_of_map) {
+    if (!recording.label_names.empty()) {
+      landmark_of.emplace(static_cast<core::Label>(landmark_of.size()), id);
+    } else if (const auto label = files::parse_integer(name)) {
+      landmark_of.emplace(static_cast<core::Label>(*label), id);
+    }
+  }
+  return landmark_of;
+}
+
+void call_as_log(const std::string& map, const std::vector<core::LandmarkId>& ids, core::Recording& recording,
+                 std::map<core::Label, core::LandmarkId>& landmark_of) {
+  const std::string table = map_file(map);
+  if (!std::filesystem::exists(table)) return;
+  std::map<core::LandmarkId, std::string> names;
+  for (auto& [id, name] : runs::read_landmark_names(table)) {
+    if (std::binary_search(ids.begin(), ids.end(), id)) names.emplace(id, std::move(name));
+  }
+  if (landmark_of.empty()) landmark_of = landmarks_by_name(names, recording);
+  number_by_names(names, recording, landmark_of);
 }
 
 std::map<core::LandmarkId, std::string> landmark_names(const Drive& job, const runs::Run& run) {

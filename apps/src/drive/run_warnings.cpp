@@ -83,6 +83,7 @@ std::string given_start_text(const runs::Run& run) {
 
 std::vector<std::string> warnings_of(const Drive& job, const runs::Run& run, const evaluation::Evaluation& evaluation) {
   std::vector<std::string> warnings = reports::warnings_of(run, evaluation);
+  if (const std::string text = reports::place_not_found_text(run); !text.empty()) warnings.push_back(text);
   const bool mature = std::any_of(run.map.begin(), run.map.end(), [](const core::MapLandmark& landmark) {
     return landmark.state == core::LandmarkState::mature;
   });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -12,7 +13,9 @@
 #include "drive/earlier_session.hpp"
 #include "drive/kept_inputs.hpp"
 #include "helixnav/core/decision_row.hpp"
+#include "helixnav/runs/run_folder.hpp"
 #include "joined_folder.hpp"
+#include "joined_names.hpp"
 #include "session_changes.hpp"
 
 namespace helixnav::apps {
@@ -27,6 +30,26 @@ std::vector<core::JointMap> read_maps(const std::vector<std::string>& runs) {
   std::vector<core::JointMap> maps;
   for (const std::string& run : runs) maps.push_back(read_joint_map_in(run));
   return maps;
+}
+
+std::vector<LandmarkNames> read_names(const std::vector<std::string>& runs) {
+  std::vector<LandmarkNames> names;
+  for (const std::string& run : runs) {
+    const std::filesystem::path table = std::filesystem::path(run) / "map.csv";
+    names.push_back(std::filesystem::exists(table) ? runs::read_landmark_names(table.string()) : LandmarkNames());
+  }
+  return names;
+}
+
+/// Nobody can tell then that a run is of the same drive as another, which would count it twice.
+void note_unknown_drives(const std::vector<std::string>& runs, const std::vector<core::JointMap>& maps) {
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    if (!maps[k].drives.empty()) continue;
+    std::fprintf(stderr,
+                 "helixnav: note: %s: no drives.csv says what drive its map is of; whether another run is of the same "
+                 "one, and counts twice, cannot be told\n",
+                 runs[k].c_str());
+  }
 }
 
 void say_changes(const std::vector<ChangedLandmark>& shared) {
@@ -66,11 +89,14 @@ void join(CLI::App& command, const JoinJob& job) {
   const std::vector<core::JointMap> maps = read_maps(job.runs);
   check_independent(job.runs);
   check_independent(maps, job.runs);
+  note_unknown_drives(job.runs, maps);
   supervisor::JoinedSessions joined = supervisor::join_sessions(maps);
   tell_drives(maps, joined);
   const std::vector<ChangedLandmark> shared = shared_landmarks(maps, joined);
   make_gone_tentative(shared, joined.components);
-  write_joined(job.folder.out, job.runs, joined, shared);
+  const JoinedNames names = joined_names(read_names(job.runs), joined);
+  for (const std::string& note : names.notes) std::fprintf(stderr, "helixnav: note: %s\n", note.c_str());
+  write_joined(job.folder.out, job.runs, joined, shared, names.of_component);
   if (!job.folder.quiet) say(job, joined, shared);
 }
 

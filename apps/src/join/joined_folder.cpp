@@ -74,13 +74,14 @@ std::string component_folder(const std::string& out, std::size_t component) {
   return component == 0 ? out : out + "/component_" + std::to_string(component + 1);
 }
 
-void write_components(const std::string& out, const std::vector<core::JointMap>& components) {
+void write_components(const std::string& out, const std::vector<core::JointMap>& components,
+                      const std::vector<LandmarkNames>& landmarks) {
   for (std::size_t k = 0; k < components.size(); ++k) {
     const std::string folder = component_folder(out, k);
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw core::InputError(folder + ": cannot make the folder: " + error.message());
-    runs::write_map(folder, components[k]);
+    runs::write_map(folder, components[k], k < landmarks.size() ? landmarks[k] : LandmarkNames());
   }
 }
 
@@ -211,8 +212,9 @@ void tell_drives(const std::vector<core::JointMap>& maps, supervisor::JoinedSess
 }
 
 void write_joined(const std::string& out, const std::vector<std::string>& names,
-                  const supervisor::JoinedSessions& joined, const std::vector<ChangedLandmark>& shared) {
-  write_components(out, joined.components);
+                  const supervisor::JoinedSessions& joined, const std::vector<ChangedLandmark>& shared,
+                  const std::vector<LandmarkNames>& landmarks) {
+  write_components(out, joined.components, landmarks);
   for (std::size_t k = 0; k < joined.components.size(); ++k) {
     files::write_whole_file(component_folder(out, k) + "/" + joined_from, joined_from_table(names, joined, k));
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "helixnav/supervisor/join_sessions.hpp"
+#include "joined_names.hpp"
 #include "session_changes.hpp"
 
 namespace helixnav::apps {
@@ -20,8 +21,10 @@ void check_independent(const std::vector<core::JointMap>& maps, const std::vecto
 void tell_drives(const std::vector<core::JointMap>& maps, supervisor::JoinedSessions& joined);
 
 /// Writes what became of several sessions: the first component's map into `out`, which is made, the others' below it, and
-/// joined_from.csv, joins.csv, changes.csv and report.html. `names` are the sessions'.
+/// joined_from.csv, joins.csv, changes.csv and report.html. `names` are the sessions', `landmarks` [component] what its landmarks
+/// are called, where they are known by name.
 void write_joined(const std::string& out, const std::vector<std::string>& names,
-                  const supervisor::JoinedSessions& joined, const std::vector<ChangedLandmark>& shared);
+                  const supervisor::JoinedSessions& joined, const std::vector<ChangedLandmark>& shared,
+                  const std::vector<LandmarkNames>& landmarks = {});
 
 }  // namespace helixnav::apps

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -26,7 +27,7 @@
 #include "drive/truth_on_map.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/mrclam.hpp"
-#include "helixnav/runs/run_folder.hpp"
+#include "helixnav/runs/drive_digest.hpp"
 #include "read_to_replay.hpp"
 #include "settings/config_file.hpp"
 #include "settings/deprecated_keys.hpp"
@@ -57,21 +58,43 @@ void take_drive_before(const std::string& folder, Drive& task) {
   put_truth_behind(folder, driven, task.recording);
 }
 
+/// What a user may not have meant: the map of a drive that is driven on it again, or the end of a run of which only the map is left.
+void note_what_map_holds(const ReplayJob& job, const Drive& task) {
+  if (job.start && job.start->kind == SessionStart::Kind::end) {
+    if (!job.settings.known_association && lacks_its_drive(job.map))
+      std::fprintf(
+          stderr,
+          "helixnav: note: %s: not there. The run goes on from the map that the one before left (map.bin), not "
+          "from its drive and all that its navigator believed\n",
+          drive_file_in(job.map).c_str());
+    return;
+  }
+  const std::vector<std::string>& held = task.earlier->map.drives;
+  for (const std::string& own : runs::drives_of(task.recording.events)) {
+    if (!std::binary_search(held.begin(), held.end(), own)) continue;
+    std::fprintf(stderr,
+                 "helixnav: note: the map of %s holds this drive already: where it is placed there, what it saw counts "
+                 "twice, and the map says that it is surer than it is\n",
+                 job.map.c_str());
+  }
+}
+
 /// To localise in, or to go on in.
 void take_map(const ReplayJob& job, Drive& task) {
   if (job.map.empty()) return;
   if (job.localize) {
     task.given_map = read_given_map(job.map);
     task.given_map->start = job.start;
-    number_by_names(runs::read_landmark_names(map_file(job.map)), task.recording, task.given_map->landmark_of);
+    std::vector<core::LandmarkId> ids;
+    for (const core::MapLandmark& landmark : task.given_map->landmarks) ids.push_back(landmark.id);
+    call_as_log(job.map, ids, task.recording, task.given_map->landmark_of);
     check_start(*task.given_map);
     warn_of_missing(task.given_map->missing);
   } else {
     task.earlier = read_earlier_session(job.map, job.start.value_or(SessionStart{}));
-    const std::string table = map_file(job.map);
-    if (std::filesystem::exists(table))
-      number_by_names(runs::read_landmark_names(table), task.recording, task.earlier->landmark_of);
+    call_as_log(job.map, task.earlier->map.joint.ids, task.recording, task.earlier->landmark_of);
     warn_of_missing(task.earlier->missing);
+    note_what_map_holds(job, task);
     pass_over_driven(*task.earlier, task.recording, task.withheld);
   }
 }

@@ -42,6 +42,8 @@ struct PositionError {
 struct PositionEvaluation {
   bool aligned = false;  ///< a rigid alignment stands between the frames; false: the truth is in the map frame
   bool against_poses = false;
+  bool off_earlier_map =
+      false;                ///< its place there was sought and not found: the errors are of the path since its begin
   core::Pose2 T_truth_map;  ///< identity when not aligned
   double limit_m = 0.0;     ///< beyond it a fix is left out; infinite against true poses
   ErrorStatistics error_m;  ///< over the fixes used

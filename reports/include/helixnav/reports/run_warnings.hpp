@@ -18,6 +18,10 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
 /// otherwise. Test: reports/opening_test.cpp.
 std::string contradicted_place_text(const runs::Run& run);
 
+/// That the place on an earlier map, or on what was mapped before the vehicle was carried, was sought and not found, and what the best answer
+/// lacked: empty otherwise. Test: reports/opening_test.cpp.
+std::string place_not_found_text(const runs::Run& run);
+
 /// Where the run ended without knowing its place, or went on for long without a landmark that it knew.
 /// Test: reports/opening_test.cpp.
 std::vector<std::string> warnings_of_place(const runs::Run& run);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,9 @@ namespace helixnav::runs {
 std::vector<core::MapLandmark> landmarks_of(const core::JointMap& map);
 
 /// Writes map.csv and, for up to most_joint_landmarks, map.bin with drives.csv into a folder that is there: a map to go on in that no single
-/// drive made. InputError where the file system refuses. Test: apps/go_on_test.cpp (replay --map goes on in it).
-void write_map(const std::string& folder, const core::JointMap& map);
+/// drive made; `names` as of runs::Run. InputError where the file system refuses. Test: apps/go_on_test.cpp (replay --map goes on in it).
+void write_map(const std::string& folder, const core::JointMap& map,
+               const std::map<core::LandmarkId, std::string>& names = {});
 
 /// Writes map.bin and, where the map knows, drives.csv beside it: what of drives went into it. Nothing for a map that is too large.
 void write_joint_map(const std::string& folder, const core::JointMap& map);

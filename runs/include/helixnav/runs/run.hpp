@@ -92,6 +92,14 @@ bool is_on_earlier_map(const Run& run);
 /// Test: runs/truth_frame_test.cpp.
 void bring_truth_into_map(Run& run);
 
+/// The step with which the part began that the run ended in, where its place on the map of before was not found: map.csv is in a frame
+/// of that part's own, and not in that of the true poses. Nothing where the map is in their frame.
+std::optional<std::size_t> begin_of_last_part(const Run& run);
+
+/// Where map.csv lies in the frame in which the truth was given, for who goes on in it; of a part that was not found, by the truth within
+/// its first scan. Nothing where nobody knows. Test: runs/truth_frame_test.cpp.
+std::optional<core::Pose2> T_truth_of_map(const Run& run);
+
 /// Takes truth into the map frame that lies at T_truth_map in the frame in which the truth was given. Where either is not known,
 /// the truth is in a frame of its own from now on.
 void move_truth(const std::optional<core::Pose2>& T_truth_map, core::TruthFrame& frame,
