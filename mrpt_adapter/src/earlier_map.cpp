@@ -40,6 +40,7 @@ core::JointMap with_pose(core::JointMap map, const core::PoseGaussian& pose) {
   map.joint.pose = pose.mean;
   Eigen::MatrixXd& P = map.joint.covariance;
   P.topRows(3).setZero();
+  map.has_end = true;
   P.leftCols(3).setZero();
   P.topLeftCorner<3, 3>() = pose.covariance;
   return map;

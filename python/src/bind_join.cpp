@@ -12,6 +12,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/supervisor/join_sessions.hpp"
 #include "join/joined_folder.hpp"
+#include "helixnav/reports/decision_sentence.hpp"
 #include "join/session_changes.hpp"
 #include "map.hpp"
 #include "signals.hpp"
@@ -74,13 +75,19 @@ Joined join(const py::sequence& list, const std::optional<fs::path>& out, bool o
 void bind_parts(py::module_& module) {
   using supervisor::JoinedSession;
   py::class_<JoinedSession>(module, "JoinedSession", "What became of one session of join.")
+std::optional<Decided> decision_on(const supervisor::JoinedSession& session) {
+  if (session.decision.verdict == core::PlacedDecision::Verdict::sought) return std::nullopt;
+  return Decided{session.decision, reports::sentence_of_join(session.decision)};
+}
+
       .def_readonly("component", &JoinedSession::component, "Index in Joined.components.")
       .def_property_readonly(
           "transform", [](const JoinedSession& s) { return s.T_component_session.vector(); },
           "(x, y, heading): the session's frame in that of its component.")
       .def_property_readonly(
-          "decision", [](const JoinedSession& s) { return Decided{s.decision}; },
-          "How it was placed, or why it was not; the session that gave the component its frame was not asked.")
+          "decision", &decision_on,
+          "How it was placed, or why it was not; None for the session that gave the first component its frame: it was "
+          "not asked.")
       .def_readonly("landmark_of", &JoinedSession::name_of, "Ids in the component by the session's own; mature ones.");
   using apps::ChangedLandmark;
   py::class_<ChangedLandmark>(module, "ChangedLandmark", "A landmark on ground that several sessions looked at.")

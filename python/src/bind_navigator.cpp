@@ -53,6 +53,10 @@ py::dict numbers_of(const Decided& decided) {
 }
 
 void bind_report_parts(py::module_& module) {
+std::string words_of(const Decided& decided) {
+  return decided.sentence.empty() ? reports::sentence_of(decided.decision) : decided.sentence;
+}
+
   py::class_<core::AssociationReport>(module, "Association", "What became of one observation of a scan.")
       .def_readonly("observation", &core::AssociationReport::observation, "Index in the scan.")
       .def_property_readonly(
@@ -72,9 +76,8 @@ void bind_report_parts(py::module_& module) {
           "verdict", [](const Decided& d) { return core::row_of(d.decision).verdict; },
           "As in decisions.csv: accepted, refused …")
       .def_property_readonly("numbers", &numbers_of, "Name with unit: value.")
-      .def_property_readonly(
-          "sentence", [](const Decided& d) { return reports::sentence_of(d.decision); }, "The same in words.")
-      .def("__repr__", [](const Decided& d) { return "<Decision: " + reports::sentence_of(d.decision) + ">"; });
+      .def_property_readonly("sentence", &words_of, "The same in words.")
+      .def("__repr__", [](const Decided& d) { return "<Decision: " + words_of(d) + ">"; });
 }
 
 std::vector<Decided> decisions_of(const core::StepReport& report) {

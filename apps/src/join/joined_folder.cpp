@@ -26,8 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* joined_from = "joined_from.csv";
-
 std::string quoted(const std::string& name) {
   std::string text = "\"";
   for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -111,7 +109,7 @@ std::vector<Held> held_in(const std::string& run) {
       if (is_map(input) && !none) held.push_back({input.sha256, input.name});
     }
   }
-  const std::string table = run + "/" + joined_from;
+  const std::string table = run + "/" + runs::joined_from_file;
   if (!fs::exists(table)) return held;
   constexpr std::size_t digits = 64;
   std::istringstream rows(files::read_whole_file(table));
@@ -153,7 +151,7 @@ void check_two(const std::string& a, const Holding& of_a, const std::string& b, 
 /// What the map of a component is made of, with what that was made of.
 std::string joined_from_table(const std::vector<std::string>& runs, const supervisor::JoinedSessions& joined,
                               std::size_t component) {
-  std::string text = "sha256,run\n";
+  std::string text = runs::joined_from_header;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     if (joined.sessions[k].component != component || !fs::exists(joint_map_file_in(runs[k]))) continue;
     const std::string& run = runs[k];
@@ -214,7 +212,8 @@ void write_joined(const std::string& out, const std::vector<std::string>& names,
                   const supervisor::JoinedSessions& joined, const std::vector<ChangedLandmark>& shared) {
   write_components(out, joined.components);
   for (std::size_t k = 0; k < joined.components.size(); ++k) {
-    files::write_whole_file(component_folder(out, k) + "/" + joined_from, joined_from_table(names, joined, k));
+    files::write_whole_file(component_folder(out, k) + "/" + runs::joined_from_file,
+                            joined_from_table(names, joined, k));
   }
   files::write_whole_file(out + "/joins.csv", joins_table(names, joined));
   files::write_whole_file(out + "/changes.csv", changes_table(shared));

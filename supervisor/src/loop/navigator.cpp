@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "helixnav/core/check_event.hpp"
+#include "helixnav/supervisor/joint_map.hpp"
 #include "loop/navigation_loop.hpp"
 
 namespace helixnav::supervisor {
@@ -17,6 +18,7 @@ Navigator::Navigator(std::unique_ptr<NavigationLoop> loop) : loop_(std::move(loo
 Navigator Navigator::go_on_in(const core::JointMap& earlier, const NavigatorOptions& options) {
   return Navigator(std::make_unique<NavigationLoop>(earlier, options));
 }
+  check_has_end(earlier);
 
 Navigator::~Navigator() = default;
 Navigator::Navigator(Navigator&&) noexcept = default;
