@@ -9,6 +9,8 @@
 #include "arrays.hpp"
 #include "bind.hpp"
 #include "drive/earlier_session.hpp"
+#include "drive/kept_inputs.hpp"
+#include "gil.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/supervisor/join_sessions.hpp"
 #include "join/joined_folder.hpp"
@@ -59,7 +61,8 @@ void check_out(const fs::path& out, bool overwrite) {
 Joined join(const py::sequence& list, const std::optional<fs::path>& out, bool overwrite) {
   if (out) check_out(*out, overwrite);
   const Sessions sessions = sessions_from(list);
-  const py::gil_scoped_release released;
+  if (out) apps::refuse_to_replace(sessions.folders, out->string());
+  const WithoutGil released;
   apps::check_independent(sessions.folders);
   apps::check_independent(sessions.maps, sessions.names);
   Joined result;

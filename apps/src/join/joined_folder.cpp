@@ -19,6 +19,7 @@
 #include "helixnav/runs/map_folder.hpp"
 #include "helixnav/runs/run_folder.hpp"
 #include "helixnav/runs/run_manifest.hpp"
+#include "helixnav/runs/run_writer.hpp"
 #include "joined_page.hpp"
 
 namespace helixnav::apps {
@@ -75,9 +76,7 @@ std::string component_folder(const std::string& out, std::size_t component) {
 void write_components(const std::string& out, const std::vector<core::JointMap>& components) {
   for (std::size_t k = 0; k < components.size(); ++k) {
     const std::string folder = component_folder(out, k);
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw core::InputError(folder + ": cannot make the folder: " + error.message());
+    runs::make_run_folder(folder, runs::RunWriter::IfNotEmpty::overwrite);  // its owner was asked
     runs::write_map(folder, components[k]);
   }
 }
