@@ -10,6 +10,7 @@
 #include "common/fit_to_recording.hpp"
 #include "configuration.hpp"
 #include "helixnav/core/errors.hpp"
+#include "gil.hpp"
 #include "helixnav/sim/simulate.hpp"
 #include "log.hpp"
 #include "replay/blackout.hpp"
@@ -45,7 +46,7 @@ Log read_log(const fs::path& path, const std::optional<fs::path>& vehicle, const
              const std::vector<std::pair<double, double>>& spans) {
   const std::vector<apps::Blackout> blackouts = blackouts_from(spans);
   Configuration configuration = configuration_of(options, vehicle.value_or(fs::path()).string(), path.string());
-  const py::gil_scoped_release released;
+  const WithoutGil released;
   core::Recording recording = apps::read_to_replay(path.string(), configuration.settings).recording;
   std::vector<bool> withheld;
   if (!blackouts.empty()) withheld = apps::withhold(recording, blackouts);
@@ -59,7 +60,7 @@ Log read_log(const fs::path& path, const std::optional<fs::path>& vehicle, const
 
 Log simulate(const std::string& scenario, std::uint64_t seed, const py::dict& options) {
   const Configuration configuration = configuration_of(options);
-  const py::gil_scoped_release released;
+  const WithoutGil released;
   Log log = fitted(sim::simulate(sim::named_scenario(scenario), seed), configuration);
   log.seed = seed;
   return log;

@@ -10,10 +10,11 @@
 
 #include "bind.hpp"
 #include "drive/earlier_session.hpp"
+#include "gil.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/runs/map_folder.hpp"
-#include "helixnav/runs/words.hpp"
 #include "helixnav/runs/run_writer.hpp"
+#include "helixnav/runs/words.hpp"
 #include "map.hpp"
 
 namespace helixnav::python {
@@ -138,7 +139,7 @@ core::JointMap read_map(const fs::path& folder) { return apps::read_joint_map_in
 void bind_map(py::module_& module) {
   bind_landmarks(module);
   bind_joint_map(module);
-  module.def("read_map", &read_map, py::arg("folder"), py::call_guard<py::gil_scoped_release>(),
+  module.def("read_map", &read_map, py::arg("folder"), py::call_guard<WithoutGil>(),
              "The JointMap that a run, or join, left in its folder.");
 }
 

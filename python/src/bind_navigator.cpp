@@ -12,6 +12,7 @@
 #include "arrays.hpp"
 #include "common/joint_map_of.hpp"
 #include "configuration.hpp"
+#include "gil.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
@@ -126,7 +127,7 @@ void bind_report(py::module_& module) {
       .def_readonly("landmarks", &core::StepReport::mapped_landmarks, "How many are on the map.");
 }
 
-using Released = py::call_guard<py::gil_scoped_release>;
+using Released = py::call_guard<WithoutGil>;
 
 template <class AnyNavigator>
 std::unique_ptr<Locked<AnyNavigator>> of_log(const Log& log) {
@@ -165,14 +166,14 @@ std::optional<core::StepReport> take_unnamed(Locked<Navigator>& self, const core
 
 core::StepReport observe_named(Locked<NamedNavigator>& self, const core::Scan& scan, const py::object& identities) {
   const std::vector<std::int64_t> names = identities_from(identities);
-  const py::gil_scoped_release released;
+  const WithoutGil released;
   return observe(self, scan, names);
 }
 
 std::optional<core::StepReport> take_named(Locked<NamedNavigator>& self, const core::Event& event,
                                            const py::object& identities) {
   const std::vector<std::int64_t> names = identities_from(identities);
-  const py::gil_scoped_release released;
+  const WithoutGil released;
   return take(self, event, names);
 }
 

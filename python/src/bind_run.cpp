@@ -6,6 +6,8 @@
 
 #include "arrays.hpp"
 #include "bind.hpp"
+#include "gil.hpp"
+#include "helixnav/core/check_event.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/evaluation/evaluation.hpp"
 #include "helixnav/reports/explanation.hpp"
@@ -49,14 +51,14 @@ runs::Run replay_as_asked(const Log& log, const std::optional<fs::path>& out, bo
   wishes.start = start_from(start);
   wishes.localize = localize;
   wishes.smooth = smooth;
-  const py::gil_scoped_release released;
+  const WithoutGil released;
   return replay(log, wishes);
 }
 
 py::object evaluation_of(const runs::Run& run) {
   std::string text;
   {
-    const py::gil_scoped_release released;
+    const WithoutGil released;
     text = reports::evaluation_json(evaluation::evaluate(run));
   }
   return py::module_::import("json").attr("loads")(text);
@@ -124,7 +126,7 @@ void bind_run(py::module_& module) {
       "step and time; what was navigated until then is in the run folder.");
   module.def(
       "read_run", [](const fs::path& path) { return runs::read_run(path.string()); }, py::arg("path"),
-      py::call_guard<py::gil_scoped_release>(), "Reads a run folder, also one whose run was killed.");
+      py::call_guard<WithoutGil>(), "Reads a run folder, also one whose run was killed.");
   module.def("evaluate", &evaluation_of, py::arg("run"), "As Run.evaluate.");
   module.def("evaluate", &evaluation_of_folder, py::arg("run"), "Of the run folder at a path.");
 }

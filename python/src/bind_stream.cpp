@@ -14,6 +14,7 @@
 #include "bind.hpp"
 #include "configuration.hpp"
 #include "helixnav/core/errors.hpp"
+#include "gil.hpp"
 #include "helixnav/logs/own_stream.hpp"
 #include "map.hpp"
 #include "stream/live_navigator.hpp"
@@ -111,27 +112,27 @@ void bind_stream(py::module_& module) {
           "take",
           [](Stream& self, const py::object& line) {
             const std::string text = line_of(line);
-            const py::gil_scoped_release released;
+            const WithoutGil released;
             return self.take(text);
           },
           py::arg("line"),
           "A line of JSON Lines, or the dictionary of one, as {'odometry': {'t': 0.1, 'v': 1.2, 'omega_degps': 3}}. "
           "The "
           "StepReports of the scans that became due by it: a scan is once the odometry has reached its time.")
-      .def("finish", &Stream::finish, py::call_guard<py::gil_scoped_release>(),
+      .def("finish", &Stream::finish, py::call_guard<WithoutGil>(),
            "Nothing comes any more: StepReports of what still waits.")
-      .def("take_refused", &Stream::take_refused, py::call_guard<py::gil_scoped_release>(),
+      .def("take_refused", &Stream::take_refused, py::call_guard<WithoutGil>(),
            "(line, key, why) of what was not used since this was called last.")
-      .def("take_remarks", &Stream::take_remarks, py::call_guard<py::gil_scoped_release>(),
+      .def("take_remarks", &Stream::take_remarks, py::call_guard<WithoutGil>(),
            "Sentences on what is doubtful, since this was called last.")
       .def_property_readonly(
           "map",
           [](Stream& self) {
-            const py::gil_scoped_release released;
+            const WithoutGil released;
             return self.map();
           },
           "The Map now.")
-      .def("joint_map", &Stream::joint_map, py::call_guard<py::gil_scoped_release>(),
+      .def("joint_map", &Stream::joint_map, py::call_guard<WithoutGil>(),
            "The JointMap for another session; None before the first scan, or where the map is too large.");
 }
 

@@ -10,6 +10,7 @@
 
 #include "arrays.hpp"
 #include "bind.hpp"
+#include "gil.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/robot_sighting.hpp"
 #include "helixnav/team/team.hpp"
@@ -50,7 +51,7 @@ std::unique_ptr<LockedTeam> make_team(const std::vector<std::optional<core::Pose
 std::optional<core::StepReport> take_of_robot(LockedTeam& self, int robot, const core::Event& event,
                                               const py::object& identities) {
   const std::vector<std::int64_t> names = identities_from(identities);
-  const py::gil_scoped_release released;
+  const WithoutGil released;
   const std::lock_guard hold(self.mutex);
   return self.navigator.take(robot, event, names);
 }
@@ -69,7 +70,7 @@ Map map_of_robot(LockedTeam& self, int robot) { return {of_robot(&Team::map)(sel
 py::array_t<double> path_of_robot(LockedTeam& self, int robot) {
   std::vector<core::StampedPose> path;
   {
-    const py::gil_scoped_release released;
+    const WithoutGil released;
     path = of_robot(&Team::path)(self, robot);
   }
   py::array_t<double> rows({static_cast<py::ssize_t>(path.size()), py::ssize_t{4}});
@@ -156,7 +157,7 @@ void bind_same_landmarks(py::module_& module) {
 }  // namespace
 
 void bind_team(py::module_& module) {
-  using Released = py::call_guard<py::gil_scoped_release>;
+  using Released = py::call_guard<WithoutGil>;
   bind_sightings(module);
   bind_joins(module);
   bind_same_landmarks(module);

@@ -10,6 +10,7 @@
 #include "arrays.hpp"
 #include "bind.hpp"
 #include "common/input_files.hpp"
+#include "gil.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
 #include "helixnav/logs/mrclam.hpp"
@@ -160,7 +161,7 @@ void bind_team_run(py::module_& module) {
 }  // namespace
 
 void bind_team_log(py::module_& module) {
-  using Released = py::call_guard<py::gil_scoped_release>;
+  using Released = py::call_guard<WithoutGil>;
   bind_log_parts(module);
   bind_team_run(module);
   module.def("read_team_log", &read_team_log, py::arg("path"), py::arg("robots") = std::vector<int>(), Released(),
