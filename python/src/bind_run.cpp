@@ -27,7 +27,7 @@ std::optional<apps::SessionStart> start_from(const py::object& value) {
   if (value.is_none()) return std::nullopt;
   if (!py::isinstance<py::str>(value)) {
     const core::Pose2 T(vector3_from(value, "start"));
-    if (!T.vector().allFinite()) throw core::PreconditionError("start: the pose is not finite");
+    core::check_start({T, Eigen::Matrix3d::Zero()});
     return apps::SessionStart{apps::SessionStart::Kind::pose, T};
   }
   const std::string word = value.cast<std::string>();

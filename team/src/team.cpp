@@ -238,8 +238,16 @@ void check_names(const core::Scan& scan, const std::vector<std::int64_t>& names)
 
 }  // namespace
 
-Team::Team(const std::vector<std::optional<core::PoseGaussian>>& starts, const TeamOptions& options)
-    : book_(std::make_unique<Book>(starts, options)) {}
+Team::Team(const std::vector<std::optional<core::PoseGaussian>>& starts, const TeamOptions& options) {
+  for (const std::optional<core::PoseGaussian>& start : starts) {
+    if (start) core::check_start(*start);
+  }
+  if (!(std::isfinite(options.looks_as_one) && options.looks_as_one >= 1.0)) {
+    throw core::PreconditionError("team: looks_as_one: expected a number of looks from 1 on, found " +
+                                  std::to_string(options.looks_as_one));
+  }
+  book_ = std::make_unique<Book>(starts, options);
+}
 Team::~Team() = default;
 Team::Team(Team&&) noexcept = default;
 Team& Team::operator=(Team&&) noexcept = default;

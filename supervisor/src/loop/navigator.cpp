@@ -10,15 +10,17 @@
 
 namespace helixnav::supervisor {
 
-Navigator::Navigator(const core::PoseGaussian& start, const NavigatorOptions& options)
-    : loop_(std::make_unique<NavigationLoop>(start, options)) {}
+Navigator::Navigator(const core::PoseGaussian& start, const NavigatorOptions& options) {
+  core::check_start(start);
+  loop_ = std::make_unique<NavigationLoop>(start, options);
+}
 
 Navigator::Navigator(std::unique_ptr<NavigationLoop> loop) : loop_(std::move(loop)) {}
 
 Navigator Navigator::go_on_in(const core::JointMap& earlier, const NavigatorOptions& options) {
+  check_has_end(earlier);
   return Navigator(std::make_unique<NavigationLoop>(earlier, options));
 }
-  check_has_end(earlier);
 
 Navigator::~Navigator() = default;
 Navigator::Navigator(Navigator&&) noexcept = default;

@@ -36,6 +36,7 @@ class NamedDrive;
 /// supervisor/guarantee_test.cpp.
 class NamedNavigator {
  public:
+  /// PreconditionError for a start that core::check_start refuses.
   explicit NamedNavigator(const core::PoseGaussian& start, const NavigatorOptions& options = {});
 
   /// Goes on in the map of an earlier session, from the pose in it and with its correlations, as if that session had not
