@@ -61,7 +61,7 @@ py::object evaluation_of(const runs::Run& run) {
     const WithoutGil released;
     text = reports::evaluation_json(evaluation::evaluate(run));
   }
-  return py::module_::import("json").attr("loads")(text);
+  return py::module_::import("json").attr("loads")(text_with_paths(text));
 }
 
 py::object evaluation_of_folder(const fs::path& path) { return evaluation_of(runs::read_run(path.string())); }
@@ -101,7 +101,8 @@ py::dict figures_of(const runs::Run& run) {
 
 void bind_run(py::module_& module) {
   py::class_<runs::Run>(module, "Run", "A drive that was navigated: what helixnav replay writes into a run folder.")
-      .def_readonly("path", &runs::Run::path, "Its folder; empty without one.")
+      .def_property_readonly(
+          "path", [](const runs::Run& run) { return text_with_paths(run.path); }, "Its folder; empty without one.")
       .def_readonly("steps", &runs::Run::steps, "A StepReport for each scan.")
       .def_property_readonly("trajectory", &trajectory_of, "(N, 4): t, x, y, heading at each scan, as estimated then.")
       .def_property_readonly(
@@ -113,7 +114,9 @@ void bind_run(py::module_& module) {
                              "(N, 4): the same as known at the end; the trajectory where nothing corrected it.")
       .def_property_readonly("numbers", &figures_of, "Figures of a smoother and of a map given, by name.")
       .def("evaluate", &evaluation_of, "Errors against the truth of the log, as helixnav evaluate --json.")
-      .def("explain", &reports::explain_run, "How many loops were closed, refused or left open, in sentences.")
+      .def(
+          "explain", [](const runs::Run& run) { return text_with_paths(reports::explain_run(run)); },
+          "How many loops were closed, refused or left open, in sentences.")
       .def("__len__", [](const runs::Run& run) { return run.steps.size(); });
   module.def(
       "replay", &replay_as_asked, py::arg("log"), py::arg("out") = py::none(), py::arg("overwrite") = false,
