@@ -12,9 +12,9 @@
 #include "drive/kept_inputs.hpp"
 #include "gil.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/reports/decision_sentence.hpp"
 #include "helixnav/supervisor/join_sessions.hpp"
 #include "join/joined_folder.hpp"
-#include "helixnav/reports/decision_sentence.hpp"
 #include "join/session_changes.hpp"
 #include "map.hpp"
 #include "signals.hpp"
@@ -75,14 +75,14 @@ Joined join(const py::sequence& list, const std::optional<fs::path>& out, bool o
   return result;
 }
 
-void bind_parts(py::module_& module) {
-  using supervisor::JoinedSession;
-  py::class_<JoinedSession>(module, "JoinedSession", "What became of one session of join.")
 std::optional<Decided> decision_on(const supervisor::JoinedSession& session) {
   if (session.decision.verdict == core::PlacedDecision::Verdict::sought) return std::nullopt;
   return Decided{session.decision, reports::sentence_of_join(session.decision)};
 }
 
+void bind_parts(py::module_& module) {
+  using supervisor::JoinedSession;
+  py::class_<JoinedSession>(module, "JoinedSession", "What became of one session of join.")
       .def_readonly("component", &JoinedSession::component, "Index in Joined.components.")
       .def_property_readonly(
           "transform", [](const JoinedSession& s) { return s.T_component_session.vector(); },

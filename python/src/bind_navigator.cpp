@@ -53,11 +53,11 @@ py::dict numbers_of(const Decided& decided) {
   return numbers;
 }
 
-void bind_report_parts(py::module_& module) {
 std::string words_of(const Decided& decided) {
   return decided.sentence.empty() ? reports::sentence_of(decided.decision) : decided.sentence;
 }
 
+void bind_report_parts(py::module_& module) {
   py::class_<core::AssociationReport>(module, "Association", "What became of one observation of a scan.")
       .def_readonly("observation", &core::AssociationReport::observation, "Index in the scan.")
       .def_property_readonly(
@@ -205,7 +205,11 @@ std::map<int, core::JointMap> maps_apart(Locked<Navigator>& self) {
 /// To go on in; None where it is too large to be saved.
 template <class AnyNavigator>
 std::optional<core::JointMap> joint_map_of(Locked<AnyNavigator>& self, double reach_m) {
-  if (!(reach_m >= 0.0)) throw core::PreconditionError("reach: expected metres, 0 where it is unknown");
+  constexpr double most_m = 1e5;  // that map.bin holds
+  if (!(reach_m >= 0.0 && reach_m <= most_m)) {
+    throw core::PreconditionError("reach: expected metres up to 1e5, 0 where it is unknown, found " +
+                                  std::to_string(reach_m));
+  }
   const std::lock_guard hold(self.mutex);
   std::optional<core::JointMap> map = apps::joint_map_of(self.navigator, reach_m);
   if (map) map->drives = drives_of(self);

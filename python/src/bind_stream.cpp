@@ -11,10 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "arrays.hpp"
 #include "bind.hpp"
 #include "configuration.hpp"
-#include "helixnav/core/errors.hpp"
 #include "gil.hpp"
+#include "helixnav/core/errors.hpp"
 #include "helixnav/logs/own_stream.hpp"
 #include "map.hpp"
 #include "stream/live_navigator.hpp"
@@ -86,15 +87,27 @@ class Stream {
 };
 
 std::unique_ptr<Stream> stream_of(const std::filesystem::path& vehicle, const py::dict& options) {
-  Configuration configuration = configuration_of(options, vehicle.string());
+  Configuration configuration = configuration_of(options, vehicle.string(), {}, Filter::compressed_ekf);
+  if (configuration.settings.gps.fuse)
+    throw core::InputError("gps.use: fuse needs a whole log: a stream uses no fixes");
   if (!configuration.settings.logs.vehicle) throw core::InputError("Stream: expected a vehicle.toml");
   return std::make_unique<Stream>(std::move(configuration));
 }
 
+/// NumPy's scalars are no numbers to the json of Python.
+py::object plain_number(const py::object& value) {
+  if (py::isinstance(value, py::module_::import("numpy").attr("generic"))) return value.attr("item")();
+  throw py::type_error("line: expected numbers, texts, lists and dictionaries, found " +
+                       std::string(py::str(py::type::handle_of(value).attr("__name__"))));
+}
+
 /// A line as it is, or the JSON of a dictionary.
 std::string line_of(const py::object& line) {
-  if (py::isinstance<py::str>(line)) return line.cast<std::string>();
-  if (py::isinstance<py::dict>(line)) return py::module_::import("json").attr("dumps")(line).cast<std::string>();
+  if (py::isinstance<py::str>(line)) return utf8_from(line, "line");
+  if (py::isinstance<py::dict>(line)) {
+    const py::cpp_function plain(&plain_number);
+    return utf8_from(py::module_::import("json").attr("dumps")(line, py::arg("default") = plain), "line");
+  }
   throw py::type_error("line: expected a text or a dictionary");
 }
 

@@ -2,6 +2,7 @@
 #include "helixnav/team/team.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <set>
@@ -263,7 +264,10 @@ std::optional<core::StepReport> Team::take(int robot, const core::Event& event,
   }
   if (const auto* motion = std::get_if<core::Odometry>(&event)) book_->move(r, *motion);
   if (std::holds_alternative<core::Lost>(event)) {
-    throw core::PreconditionError("take: a robot that was carried is not found again by names");
+    throw core::PreconditionError("team: a robot that was carried is not found again by names");
+  }
+  if (std::holds_alternative<core::AbsoluteFix>(event)) {
+    throw core::PreconditionError("team: takes Odometry and Scan; position fixes have no part in its graph");
   }
   return std::nullopt;
 }
@@ -271,6 +275,9 @@ std::optional<core::StepReport> Team::take(int robot, const core::Event& event,
 void Team::sight(int robot, const core::RobotSighting& sighting) {
   book_->check_robot(robot);
   book_->check_robot(sighting.seen);
+  if (sighting.seen == robot) {
+    throw core::PreconditionError("team: robot " + std::to_string(robot) + " sees itself; expected another one");
+  }
   core::check_observation(sighting.observation);
   book_->sight(static_cast<std::size_t>(robot), sighting);
 }
