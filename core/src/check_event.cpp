@@ -118,6 +118,16 @@ void check(const Event& event) {
   std::visit([](const auto& e) { check(e); }, event);
 }
 
+void check_start(const PoseGaussian& start) {
+  if (!is_plausible(start.mean)) throw PreconditionError("pose: the mean is not finite, or beyond 1e8 m or 1e6 rad");
+  if (!start.covariance.allFinite() || !is_covariance_plausible(start.covariance)) {
+    throw PreconditionError("pose: the covariance is not finite, or beyond 1e16");
+  }
+  if (!is_symmetric_positive_semidefinite(start.covariance)) {
+    throw PreconditionError("pose: the covariance is not symmetric positive semidefinite");
+  }
+}
+
 void check_order(Nanoseconds last_ns, Nanoseconds t_ns) {
   if (t_ns >= last_ns) return;
   throw PreconditionError("an event at t_ns = " + std::to_string(t_ns) +

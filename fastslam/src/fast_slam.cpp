@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "helixnav/core/check_event.hpp"
 #include "helixnav/core/errors.hpp"
 #include "impl.hpp"
 
@@ -33,12 +34,7 @@ void check(const Options& o) {
   require(e.look_distance_m >= 0.0 && e.mature_looks >= 1, "looks need a distance ≥ 0 and a number ≥ 1");
 }
 
-void check(const core::PoseGaussian& start) {
-  require(start.mean.vector().allFinite() && core::is_symmetric_positive_semidefinite(start.covariance),
-          "a start must be finite with a symmetric positive semidefinite covariance");
-}
-
-void check(const core::Scan& scan) {
+void check_seen(const core::Scan& scan) {
   for (const core::Observation& observation : scan.observations) {
     core::check_observation(observation);
     require(core::dimension(observation.kind) == 2, "a bearing or a range alone cannot begin a landmark");
@@ -54,7 +50,7 @@ FastSlam::FastSlam(const core::PoseGaussian& start, const Options& options, std:
 FastSlam::FastSlam(const std::vector<core::PoseGaussian>& starts, const Options& options, std::uint64_t seed) {
   check(options);
   require(!starts.empty(), "there must be a robot");
-  for (const core::PoseGaussian& start : starts) check(start);
+  for (const core::PoseGaussian& start : starts) core::check_start(start);
   impl_ = std::make_unique<Impl>(starts, options, seed);
 }
 
@@ -83,7 +79,7 @@ void FastSlam::predict(const core::Odometry& odometry, std::size_t robot) {
 core::StepReport FastSlam::update(const core::Scan& scan, std::size_t robot) {
   require(robot < impl_->robots.size(), "there is no such robot");
   require(impl_->options.association != Association::known, "Association::known needs names");
-  check(scan);
+  check_seen(scan);
   return impl_->update(scan, nullptr, robot);
 }
 
@@ -96,7 +92,7 @@ core::StepReport FastSlam::update_known(const core::Scan& scan, const std::vecto
   std::copy_if(names.begin(), names.end(), std::back_inserter(sorted), [](KnownName n) { return n != no_name; });
   std::sort(sorted.begin(), sorted.end());
   require(std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end(), "a scan must not name a landmark twice");
-  check(scan);
+  check_seen(scan);
   return impl_->update(scan, &names, robot);
 }
 

@@ -29,9 +29,7 @@ core::Outcome outcome_of(const association::ObservationOutcome& observation) {
 Localizer::Localizer(const core::PoseGaussian& start, const std::vector<core::MapLandmark>& map,
                      const LocalizerOptions& options)
     : options_(options), pose_(start), last_ns_(std::numeric_limits<core::Nanoseconds>::min()) {
-  if (!start.mean.vector().allFinite() || !core::is_symmetric_positive_semidefinite(start.covariance)) {
-    throw core::PreconditionError("localizer: the start is not finite or its covariance not positive semidefinite");
-  }
+  core::check_start(start);
   for (const core::MapLandmark& landmark : map) {
     const bool fresh = map_m_.emplace(landmark.id, landmark.point.mean_m).second;
     if (!fresh || !landmark.point.mean_m.allFinite()) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "helixnav/core/check_event.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/runs/joint_map_file.hpp"
 #include "helixnav/runs/map_folder.hpp"
@@ -37,7 +38,9 @@ core::JointMap read_map(const fs::path& path, bool unknown_start) {
 
 /// The vehicle at a pose that nothing on the map has a part in.
 core::JointMap with_pose(core::JointMap map, const core::PoseGaussian& pose) {
+  core::check_start(pose);
   map.joint.pose = pose.mean;
+  map.has_end = true;
   Eigen::MatrixXd& P = map.joint.covariance;
   P.topRows(3).setZero();
   P.leftCols(3).setZero();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <string>
 
 #include <mrpt/img/CImage.h>
@@ -81,11 +83,14 @@ Picture picture_of(const std::vector<core::MapLandmark>& map, const std::vector<
   return {low_m, high_m};
 }
 
+/// MRPT throws an exception of its own for the name of a format that it does not write.
 std::string with_extension(const std::string& file) {
-  const std::size_t slash = file.find_last_of('/');
-  const std::size_t point = file.find_last_of('.');
-  const bool has_one = point != std::string::npos && (slash == std::string::npos || point > slash + 1);
-  return has_one ? file : file + ".png";
+  std::string extension = std::filesystem::path(file).extension().string();
+  for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  for (const char* known : {".png", ".jpg", ".jpeg", ".bmp"}) {
+    if (extension == known) return file;
+  }
+  return file + ".png";
 }
 
 }  // namespace

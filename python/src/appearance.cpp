@@ -32,7 +32,7 @@ void tell_appearance(const py::object& classes, const py::object& sizes, const p
     for (std::size_t i = 0; i < count; ++i) {
       if (names[i].is_none()) continue;
       if (!py::isinstance<py::str>(names[i])) throw py::type_error("classes: expected names or None");
-      scan.observations[i].appearance.name = core::ClassName(names[i].cast<std::string>());
+      scan.observations[i].appearance.name = core::ClassName(utf8_from(names[i], "classes"));
       scan.observations[i].appearance.class_error = class_error;
     }
   }

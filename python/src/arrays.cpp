@@ -74,9 +74,30 @@ std::vector<std::int64_t> identities_from(const py::handle& value) {
 std::string shape_text(const Array& array) { return tuple_text(array.shape(), array.ndim()); }
 
 std::filesystem::path path_from(const py::handle& value, const char* name) {
-  if (py::isinstance<py::str>(value) || py::hasattr(value, "__fspath__")) return value.cast<std::filesystem::path>();
+  const bool is_path = py::isinstance<py::str>(value) || py::isinstance<py::bytes>(value);
+  if (is_path || py::hasattr(value, "__fspath__")) return value.cast<std::filesystem::path>();
   throw py::type_error(std::string(name) + ": expected a path or a JointMap, found " +
                        std::string(py::str(py::type::handle_of(value).attr("__name__"))));
+}
+
+std::string utf8_from(const py::handle& text, const char* name) {
+  Py_ssize_t size = 0;
+  const char* const bytes = PyUnicode_AsUTF8AndSize(text.ptr(), &size);
+  if (bytes != nullptr) return {bytes, static_cast<std::size_t>(size)};
+  PyErr_Clear();
+  throw core::PreconditionError(std::string(name) + ": expected text, found half of a surrogate pair in it");
+}
+
+py::str text_with_paths(const std::string& bytes) {
+  PyObject* const text = PyUnicode_DecodeFSDefaultAndSize(bytes.data(), static_cast<Py_ssize_t>(bytes.size()));
+  if (text == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(text);
+}
+
+py::list texts_with_paths(const std::vector<std::string>& texts) {
+  py::list list;
+  for (const std::string& text : texts) list.append(text_with_paths(text));
+  return list;
 }
 
 core::Nanoseconds time_from(double t_s) {

@@ -34,6 +34,13 @@ std::string shape_text(const Array& array);
 /// A path as text or os.PathLike, where a map could stand, too; TypeError for anything else. `name` says in the message which argument it was.
 std::filesystem::path path_from(const py::handle& value, const char* name);
 
+/// Text as UTF-8; core::PreconditionError, which names the argument, for a half of a surrogate pair, which no UTF-8 holds.
+std::string utf8_from(const py::handle& text, const char* name);
+
+/// What may have a path in it, as os.fsdecode makes text of it: bytes that are no UTF-8 become surrogates.
+py::str text_with_paths(const std::string& bytes);
+py::list texts_with_paths(const std::vector<std::string>& texts);
+
 /// Seconds, finite and within the 292 years that nanoseconds can tell; else core::PreconditionError.
 core::Nanoseconds time_from(double t_s);
 

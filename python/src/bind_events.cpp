@@ -205,9 +205,7 @@ core::PoseGaussian make_pose(const py::object& mean, const py::object& covarianc
   core::PoseGaussian pose;
   pose.mean = Pose2(vector3_from(mean, "mean"));
   if (!covariance.is_none()) pose.covariance = matrix3_from(covariance, "covariance");
-  if (!pose.mean.vector().allFinite()) throw core::PreconditionError("pose: the mean is not finite");
-  if (!core::is_symmetric_positive_semidefinite(pose.covariance))
-    throw core::PreconditionError("pose: the covariance is not symmetric positive semidefinite");
+  core::check_start(pose);
   return pose;
 }
 

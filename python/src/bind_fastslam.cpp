@@ -11,6 +11,7 @@
 #include "arrays.hpp"
 #include "bind.hpp"
 #include "configuration.hpp"
+#include "gil.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/fastslam/fast_slam.hpp"
 #include "helixnav/fastslam/observe.hpp"
@@ -49,7 +50,7 @@ void move_slam(LockedSlam& self, const core::Odometry& odometry) {
 core::StepReport observe_slam(LockedSlam& self, const core::Scan& scan, const py::object& identities) {
   std::optional<std::vector<std::int64_t>> names;
   if (!identities.is_none()) names = identities_from(identities);
-  const py::gil_scoped_release released;
+  const WithoutGil released;
   const std::lock_guard hold(self.mutex);
   return names ? fastslam::observe_known(self.navigator, scan, *names) : fastslam::observe(self.navigator, scan);
 }
@@ -58,7 +59,7 @@ std::optional<core::StepReport> take_slam(LockedSlam& self, const core::Event& e
   if (const auto* scan = std::get_if<core::Scan>(&event)) return observe_slam(self, *scan, identities);
   const auto* odometry = std::get_if<core::Odometry>(&event);
   if (odometry == nullptr) throw core::PreconditionError("FastSlam takes Odometry and Scan alone");
-  const py::gil_scoped_release released;
+  const WithoutGil released;
   move_slam(self, *odometry);
   return std::nullopt;
 }
@@ -71,7 +72,7 @@ std::vector<core::Pose2> poses_of(LockedSlam& self) {
 py::array_t<double> particles_of(LockedSlam& self) {
   std::vector<core::Pose2> poses;
   {
-    const py::gil_scoped_release released;
+    const WithoutGil released;
     poses = poses_of(self);
   }
   py::array_t<double> rows({static_cast<py::ssize_t>(poses.size()), py::ssize_t{3}});
@@ -85,7 +86,7 @@ py::array_t<double> particles_of(LockedSlam& self) {
 py::array_t<double> weights_of(LockedSlam& self) {
   std::vector<double> weights;
   {
-    const py::gil_scoped_release released;
+    const WithoutGil released;
     weights = locked(&FastSlam::weights)(self);
   }
   return py::array_t<double>(static_cast<py::ssize_t>(weights.size()), weights.data());
@@ -99,7 +100,7 @@ core::PoseGaussian pose_of_slam(LockedSlam& self) {
 }  // namespace
 
 void bind_fastslam(py::module_& module) {
-  using Released = py::call_guard<py::gil_scoped_release>;
+  using Released = py::call_guard<WithoutGil>;
   py::class_<LockedSlam>(
       module, "FastSlam",
       "FastSLAM 1.0 and 2.0: particles over the path, each with a map of its own. To compare with: its "

@@ -9,7 +9,10 @@
 #include "arrays.hpp"
 #include "bind.hpp"
 #include "drive/earlier_session.hpp"
+#include "drive/kept_inputs.hpp"
+#include "gil.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/reports/decision_sentence.hpp"
 #include "helixnav/supervisor/join_sessions.hpp"
 #include "join/joined_folder.hpp"
 #include "join/session_changes.hpp"
@@ -58,7 +61,8 @@ void check_out(const fs::path& out, bool overwrite) {
 Joined join(const py::sequence& list, const std::optional<fs::path>& out, bool overwrite) {
   if (out) check_out(*out, overwrite);
   const Sessions sessions = sessions_from(list);
-  const py::gil_scoped_release released;
+  if (out) apps::refuse_to_replace(sessions.folders, out->string());
+  const WithoutGil released;
   apps::check_independent(sessions.folders);
   apps::check_independent(sessions.maps, sessions.names);
   Joined result;
@@ -71,6 +75,11 @@ Joined join(const py::sequence& list, const std::optional<fs::path>& out, bool o
   return result;
 }
 
+std::optional<Decided> decision_on(const supervisor::JoinedSession& session) {
+  if (session.decision.verdict == core::PlacedDecision::Verdict::sought) return std::nullopt;
+  return Decided{session.decision, reports::sentence_of_join(session.decision)};
+}
+
 void bind_parts(py::module_& module) {
   using supervisor::JoinedSession;
   py::class_<JoinedSession>(module, "JoinedSession", "What became of one session of join.")
@@ -79,8 +88,9 @@ void bind_parts(py::module_& module) {
           "transform", [](const JoinedSession& s) { return s.T_component_session.vector(); },
           "(x, y, heading): the session's frame in that of its component.")
       .def_property_readonly(
-          "decision", [](const JoinedSession& s) { return Decided{s.decision}; },
-          "How it was placed, or why it was not; the session that gave the component its frame was not asked.")
+          "decision", &decision_on,
+          "How it was placed, or why it was not; None for the session that gave the first component its frame: it was "
+          "not asked.")
       .def_readonly("landmark_of", &JoinedSession::name_of, "Ids in the component by the session's own; mature ones.");
   using apps::ChangedLandmark;
   py::class_<ChangedLandmark>(module, "ChangedLandmark", "A landmark on ground that several sessions looked at.")

@@ -6,9 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include "arrays.hpp"
 #include "bind.hpp"
 #include "common/fit_to_recording.hpp"
 #include "configuration.hpp"
+#include "gil.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/sim/simulate.hpp"
 #include "log.hpp"
@@ -45,7 +47,7 @@ Log read_log(const fs::path& path, const std::optional<fs::path>& vehicle, const
              const std::vector<std::pair<double, double>>& spans) {
   const std::vector<apps::Blackout> blackouts = blackouts_from(spans);
   Configuration configuration = configuration_of(options, vehicle.value_or(fs::path()).string(), path.string());
-  const py::gil_scoped_release released;
+  const WithoutGil released;
   core::Recording recording = apps::read_to_replay(path.string(), configuration.settings).recording;
   std::vector<bool> withheld;
   if (!blackouts.empty()) withheld = apps::withhold(recording, blackouts);
@@ -59,7 +61,7 @@ Log read_log(const fs::path& path, const std::optional<fs::path>& vehicle, const
 
 Log simulate(const std::string& scenario, std::uint64_t seed, const py::dict& options) {
   const Configuration configuration = configuration_of(options);
-  const py::gil_scoped_release released;
+  const WithoutGil released;
   Log log = fitted(sim::simulate(sim::named_scenario(scenario), seed), configuration);
   log.seed = seed;
   return log;
@@ -97,7 +99,7 @@ void bind_log(py::module_& module) {
   py::class_<Log>(module, "Log",
                   "A drive as it was recorded or simulated, with the navigator's options for its sensor.")
       .def_property_readonly(
-          "name", [](const Log& log) { return log.recording.name; }, "Of the file or the scenario.")
+          "name", [](const Log& log) { return text_with_paths(log.recording.name); }, "Of the file or the scenario.")
       .def_property_readonly(
           "start", [](const Log& log) { return log.recording.start; },
           "The Pose that the drive begins with, in the map frame.")
@@ -111,10 +113,12 @@ void bind_log(py::module_& module) {
       .def_property_readonly("true_positions", &true_positions_of, "(N, 3): t, x, y in a frame of their own.")
       .def_property_readonly("true_landmarks", &true_landmarks_of, "(N, 2).")
       .def_property_readonly(
-          "remarks", [](const Log& log) { return log.recording.remarks; },
+          "remarks", [](const Log& log) { return texts_with_paths(log.recording.remarks); },
           "What was mended, left out or is doubtful, a sentence each.")
       .def_readonly("known_association", &Log::known_association, "Whether replay takes the labels for identities.")
-      .def_readonly("config", &Log::config, "The configuration in force, as helixnav config --dump writes it.")
+      .def_property_readonly(
+          "config", [](const Log& log) { return text_with_paths(log.config); },
+          "The configuration in force, as helixnav config --dump writes it.")
       .def("__len__", [](const Log& log) { return log.recording.events.size(); });
   module.def("read_log", &read_log, py::arg("path"), py::arg("vehicle") = py::none(), py::arg("options") = py::dict(),
              py::arg("blackouts") = std::vector<std::pair<double, double>>(),

@@ -10,8 +10,10 @@
 
 #include "bind.hpp"
 #include "drive/earlier_session.hpp"
+#include "gil.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/runs/map_folder.hpp"
+#include "helixnav/runs/run_writer.hpp"
 #include "helixnav/runs/words.hpp"
 #include "map.hpp"
 
@@ -101,10 +103,10 @@ core::PoseGaussian pose_in(const core::JointMap& map) {
   return {map.joint.pose, map.joint.covariance.topLeftCorner<3, 3>()};
 }
 
-void save(const core::JointMap& map, const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw core::InputError(folder.string() + ": cannot make the folder: " + error.message());
+/// The folder is of one map: what a run left there would be read beside it.
+void save(const core::JointMap& map, const fs::path& folder, bool overwrite) {
+  using IfNotEmpty = runs::RunWriter::IfNotEmpty;
+  runs::make_run_folder(folder.string(), overwrite ? IfNotEmpty::overwrite : IfNotEmpty::refuse);
   runs::write_map(folder.string(), map);
 }
 
@@ -123,8 +125,10 @@ void bind_joint_map(py::module_& module) {
       .def_readonly("drives", &core::JointMap::drives,
                     "Digests of the drives that went into it; maps that have one in common are not joined. Empty: "
                     "unknown.")
-      .def("save", &save, py::arg("folder"), py::call_guard<py::gil_scoped_release>(),
-           "Writes map.csv and, up to 2000 landmarks, map.bin with drives.csv; replay goes on in the folder.")
+      .def(
+          "save", &save, py::arg("folder"), py::arg("overwrite") = false, py::call_guard<WithoutGil>(),
+          "Writes map.csv and, up to 2000 landmarks, map.bin with drives.csv; replay goes on in the folder. InputError "
+          "where that is not empty; with overwrite the files of a run that was there are gone.")
       .def("__len__", [](const core::JointMap& map) { return map.joint.ids.size(); });
 }
 
@@ -135,7 +139,7 @@ core::JointMap read_map(const fs::path& folder) { return apps::read_joint_map_in
 void bind_map(py::module_& module) {
   bind_landmarks(module);
   bind_joint_map(module);
-  module.def("read_map", &read_map, py::arg("folder"), py::call_guard<py::gil_scoped_release>(),
+  module.def("read_map", &read_map, py::arg("folder"), py::call_guard<WithoutGil>(),
              "The JointMap that a run, or join, left in its folder.");
 }
 

@@ -12,6 +12,7 @@
 #include "arrays.hpp"
 #include "common/joint_map_of.hpp"
 #include "configuration.hpp"
+#include "gil.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
@@ -52,6 +53,10 @@ py::dict numbers_of(const Decided& decided) {
   return numbers;
 }
 
+std::string words_of(const Decided& decided) {
+  return decided.sentence.empty() ? reports::sentence_of(decided.decision) : decided.sentence;
+}
+
 void bind_report_parts(py::module_& module) {
   py::class_<core::AssociationReport>(module, "Association", "What became of one observation of a scan.")
       .def_readonly("observation", &core::AssociationReport::observation, "Index in the scan.")
@@ -72,9 +77,8 @@ void bind_report_parts(py::module_& module) {
           "verdict", [](const Decided& d) { return core::row_of(d.decision).verdict; },
           "As in decisions.csv: accepted, refused …")
       .def_property_readonly("numbers", &numbers_of, "Name with unit: value.")
-      .def_property_readonly(
-          "sentence", [](const Decided& d) { return reports::sentence_of(d.decision); }, "The same in words.")
-      .def("__repr__", [](const Decided& d) { return "<Decision: " + reports::sentence_of(d.decision) + ">"; });
+      .def_property_readonly("sentence", &words_of, "The same in words.")
+      .def("__repr__", [](const Decided& d) { return "<Decision: " + words_of(d) + ">"; });
 }
 
 std::vector<Decided> decisions_of(const core::StepReport& report) {
@@ -123,7 +127,7 @@ void bind_report(py::module_& module) {
       .def_readonly("landmarks", &core::StepReport::mapped_landmarks, "How many are on the map.");
 }
 
-using Released = py::call_guard<py::gil_scoped_release>;
+using Released = py::call_guard<WithoutGil>;
 
 template <class AnyNavigator>
 std::unique_ptr<Locked<AnyNavigator>> of_log(const Log& log) {
@@ -162,14 +166,14 @@ std::optional<core::StepReport> take_unnamed(Locked<Navigator>& self, const core
 
 core::StepReport observe_named(Locked<NamedNavigator>& self, const core::Scan& scan, const py::object& identities) {
   const std::vector<std::int64_t> names = identities_from(identities);
-  const py::gil_scoped_release released;
+  const WithoutGil released;
   return observe(self, scan, names);
 }
 
 std::optional<core::StepReport> take_named(Locked<NamedNavigator>& self, const core::Event& event,
                                            const py::object& identities) {
   const std::vector<std::int64_t> names = identities_from(identities);
-  const py::gil_scoped_release released;
+  const WithoutGil released;
   return take(self, event, names);
 }
 
@@ -201,7 +205,11 @@ std::map<int, core::JointMap> maps_apart(Locked<Navigator>& self) {
 /// To go on in; None where it is too large to be saved.
 template <class AnyNavigator>
 std::optional<core::JointMap> joint_map_of(Locked<AnyNavigator>& self, double reach_m) {
-  if (!(reach_m >= 0.0)) throw core::PreconditionError("reach: expected metres, 0 where it is unknown");
+  constexpr double most_m = 1e5;  // that map.bin holds
+  if (!(reach_m >= 0.0 && reach_m <= most_m)) {
+    throw core::PreconditionError("reach: expected metres up to 1e5, 0 where it is unknown, found " +
+                                  std::to_string(reach_m));
+  }
   const std::lock_guard hold(self.mutex);
   std::optional<core::JointMap> map = apps::joint_map_of(self.navigator, reach_m);
   if (map) map->drives = drives_of(self);

@@ -6,6 +6,8 @@
 
 #include "arrays.hpp"
 #include "bind.hpp"
+#include "gil.hpp"
+#include "helixnav/core/check_event.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/evaluation/evaluation.hpp"
 #include "helixnav/reports/explanation.hpp"
@@ -25,7 +27,7 @@ std::optional<apps::SessionStart> start_from(const py::object& value) {
   if (value.is_none()) return std::nullopt;
   if (!py::isinstance<py::str>(value)) {
     const core::Pose2 T(vector3_from(value, "start"));
-    if (!T.vector().allFinite()) throw core::PreconditionError("start: the pose is not finite");
+    core::check_start({T, Eigen::Matrix3d::Zero()});
     return apps::SessionStart{apps::SessionStart::Kind::pose, T};
   }
   const std::string word = value.cast<std::string>();
@@ -49,17 +51,17 @@ runs::Run replay_as_asked(const Log& log, const std::optional<fs::path>& out, bo
   wishes.start = start_from(start);
   wishes.localize = localize;
   wishes.smooth = smooth;
-  const py::gil_scoped_release released;
+  const WithoutGil released;
   return replay(log, wishes);
 }
 
 py::object evaluation_of(const runs::Run& run) {
   std::string text;
   {
-    const py::gil_scoped_release released;
+    const WithoutGil released;
     text = reports::evaluation_json(evaluation::evaluate(run));
   }
-  return py::module_::import("json").attr("loads")(text);
+  return py::module_::import("json").attr("loads")(text_with_paths(text));
 }
 
 py::object evaluation_of_folder(const fs::path& path) { return evaluation_of(runs::read_run(path.string())); }
@@ -99,7 +101,8 @@ py::dict figures_of(const runs::Run& run) {
 
 void bind_run(py::module_& module) {
   py::class_<runs::Run>(module, "Run", "A drive that was navigated: what helixnav replay writes into a run folder.")
-      .def_readonly("path", &runs::Run::path, "Its folder; empty without one.")
+      .def_property_readonly(
+          "path", [](const runs::Run& run) { return text_with_paths(run.path); }, "Its folder; empty without one.")
       .def_readonly("steps", &runs::Run::steps, "A StepReport for each scan.")
       .def_property_readonly("trajectory", &trajectory_of, "(N, 4): t, x, y, heading at each scan, as estimated then.")
       .def_property_readonly(
@@ -111,7 +114,9 @@ void bind_run(py::module_& module) {
                              "(N, 4): the same as known at the end; the trajectory where nothing corrected it.")
       .def_property_readonly("numbers", &figures_of, "Figures of a smoother and of a map given, by name.")
       .def("evaluate", &evaluation_of, "Errors against the truth of the log, as helixnav evaluate --json.")
-      .def("explain", &reports::explain_run, "How many loops were closed, refused or left open, in sentences.")
+      .def(
+          "explain", [](const runs::Run& run) { return text_with_paths(reports::explain_run(run)); },
+          "How many loops were closed, refused or left open, in sentences.")
       .def("__len__", [](const runs::Run& run) { return run.steps.size(); });
   module.def(
       "replay", &replay_as_asked, py::arg("log"), py::arg("out") = py::none(), py::arg("overwrite") = false,
@@ -124,7 +129,7 @@ void bind_run(py::module_& module) {
       "step and time; what was navigated until then is in the run folder.");
   module.def(
       "read_run", [](const fs::path& path) { return runs::read_run(path.string()); }, py::arg("path"),
-      py::call_guard<py::gil_scoped_release>(), "Reads a run folder, also one whose run was killed.");
+      py::call_guard<WithoutGil>(), "Reads a run folder, also one whose run was killed.");
   module.def("evaluate", &evaluation_of, py::arg("run"), "As Run.evaluate.");
   module.def("evaluate", &evaluation_of_folder, py::arg("run"), "Of the run folder at a path.");
 }

@@ -11,8 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "arrays.hpp"
 #include "bind.hpp"
 #include "configuration.hpp"
+#include "gil.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/own_stream.hpp"
 #include "map.hpp"
@@ -85,15 +87,27 @@ class Stream {
 };
 
 std::unique_ptr<Stream> stream_of(const std::filesystem::path& vehicle, const py::dict& options) {
-  Configuration configuration = configuration_of(options, vehicle.string());
+  Configuration configuration = configuration_of(options, vehicle.string(), {}, Filter::compressed_ekf);
+  if (configuration.settings.gps.fuse)
+    throw core::InputError("gps.use: fuse needs a whole log: a stream uses no fixes");
   if (!configuration.settings.logs.vehicle) throw core::InputError("Stream: expected a vehicle.toml");
   return std::make_unique<Stream>(std::move(configuration));
 }
 
+/// NumPy's scalars are no numbers to the json of Python.
+py::object plain_number(const py::object& value) {
+  if (py::isinstance(value, py::module_::import("numpy").attr("generic"))) return value.attr("item")();
+  throw py::type_error("line: expected numbers, texts, lists and dictionaries, found " +
+                       std::string(py::str(py::type::handle_of(value).attr("__name__"))));
+}
+
 /// A line as it is, or the JSON of a dictionary.
 std::string line_of(const py::object& line) {
-  if (py::isinstance<py::str>(line)) return line.cast<std::string>();
-  if (py::isinstance<py::dict>(line)) return py::module_::import("json").attr("dumps")(line).cast<std::string>();
+  if (py::isinstance<py::str>(line)) return utf8_from(line, "line");
+  if (py::isinstance<py::dict>(line)) {
+    const py::cpp_function plain(&plain_number);
+    return utf8_from(py::module_::import("json").attr("dumps")(line, py::arg("default") = plain), "line");
+  }
   throw py::type_error("line: expected a text or a dictionary");
 }
 
@@ -111,27 +125,27 @@ void bind_stream(py::module_& module) {
           "take",
           [](Stream& self, const py::object& line) {
             const std::string text = line_of(line);
-            const py::gil_scoped_release released;
+            const WithoutGil released;
             return self.take(text);
           },
           py::arg("line"),
           "A line of JSON Lines, or the dictionary of one, as {'odometry': {'t': 0.1, 'v': 1.2, 'omega_degps': 3}}. "
           "The "
           "StepReports of the scans that became due by it: a scan is once the odometry has reached its time.")
-      .def("finish", &Stream::finish, py::call_guard<py::gil_scoped_release>(),
+      .def("finish", &Stream::finish, py::call_guard<WithoutGil>(),
            "Nothing comes any more: StepReports of what still waits.")
-      .def("take_refused", &Stream::take_refused, py::call_guard<py::gil_scoped_release>(),
+      .def("take_refused", &Stream::take_refused, py::call_guard<WithoutGil>(),
            "(line, key, why) of what was not used since this was called last.")
-      .def("take_remarks", &Stream::take_remarks, py::call_guard<py::gil_scoped_release>(),
+      .def("take_remarks", &Stream::take_remarks, py::call_guard<WithoutGil>(),
            "Sentences on what is doubtful, since this was called last.")
       .def_property_readonly(
           "map",
           [](Stream& self) {
-            const py::gil_scoped_release released;
+            const WithoutGil released;
             return self.map();
           },
           "The Map now.")
-      .def("joint_map", &Stream::joint_map, py::call_guard<py::gil_scoped_release>(),
+      .def("joint_map", &Stream::joint_map, py::call_guard<WithoutGil>(),
            "The JointMap for another session; None before the first scan, or where the map is too large.");
 }
 

@@ -10,6 +10,7 @@
 
 #include "arrays.hpp"
 #include "bind.hpp"
+#include "gil.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/robot_sighting.hpp"
 #include "helixnav/team/team.hpp"
@@ -22,6 +23,7 @@ namespace {
 
 using team::JudgedSighting;
 using team::SameLandmarks;
+using team::TakenBackJoin;
 using team::Team;
 using team::TeamJoin;
 using LockedTeam = Locked<Team>;
@@ -50,7 +52,7 @@ std::unique_ptr<LockedTeam> make_team(const std::vector<std::optional<core::Pose
 std::optional<core::StepReport> take_of_robot(LockedTeam& self, int robot, const core::Event& event,
                                               const py::object& identities) {
   const std::vector<std::int64_t> names = identities_from(identities);
-  const py::gil_scoped_release released;
+  const WithoutGil released;
   const std::lock_guard hold(self.mutex);
   return self.navigator.take(robot, event, names);
 }
@@ -69,7 +71,7 @@ Map map_of_robot(LockedTeam& self, int robot) { return {of_robot(&Team::map)(sel
 py::array_t<double> path_of_robot(LockedTeam& self, int robot) {
   std::vector<core::StampedPose> path;
   {
-    const py::gil_scoped_release released;
+    const WithoutGil released;
     path = of_robot(&Team::path)(self, robot);
   }
   py::array_t<double> rows({static_cast<py::ssize_t>(path.size()), py::ssize_t{4}});
@@ -92,6 +94,11 @@ std::optional<core::LandmarkId> landmark_of_robot(LockedTeam& self, int robot, s
 std::vector<TeamJoin> joins_of(LockedTeam& self) {
   const std::lock_guard hold(self.mutex);
   return self.navigator.joins();
+}
+
+std::vector<TakenBackJoin> joins_taken_back_of(LockedTeam& self) {
+  const std::lock_guard hold(self.mutex);
+  return self.navigator.joins_taken_back();
 }
 
 std::vector<SameLandmarks> same_landmarks_of(LockedTeam& self) {
@@ -135,10 +142,18 @@ void bind_joins(py::module_& module) {
       .def_property_readonly(
           "transform", [](const TeamJoin& j) { return j.T_component_other.vector(); }, "(x, y, heading) of its frame.")
       .def_readonly("merged", &TeamJoin::merged, "Landmarks of the two that became one.")
+      .def_readonly("left_out", &TeamJoin::left_out, "Names that both have and that contradict the others.")
       .def_readonly("sightings", &TeamJoin::sightings, "Of robots by each other, where these joined.")
       .def_readonly("cost", &TeamJoin::cost, "Chi squared of what joined.")
       .def_readonly("dof", &TeamJoin::dof, "Its degrees of freedom.")
       .def_readonly("limit", &TeamJoin::limit, "That the cost had to stay below.");
+  py::class_<TakenBackJoin>(module, "TakenBackJoin",
+                            "A join that sightings since then contradicted, or that was taken back by hand.")
+      .def_readonly("join", &TakenBackJoin::join, "The TeamJoin.")
+      .def_property_readonly(
+          "t", [](const TakenBackJoin& one) { return core::seconds(one.t_ns); }, "When it was taken back [s].")
+      .def_readonly("refused", &TakenBackJoin::refused, "Sightings between its two sides since then that were refused.")
+      .def_readonly("seen", &TakenBackJoin::seen, "Of so many; 0: by hand.");
 }
 
 void bind_same_landmarks(py::module_& module) {
@@ -156,7 +171,7 @@ void bind_same_landmarks(py::module_& module) {
 }  // namespace
 
 void bind_team(py::module_& module) {
-  using Released = py::call_guard<py::gil_scoped_release>;
+  using Released = py::call_guard<WithoutGil>;
   bind_sightings(module);
   bind_joins(module);
   bind_same_landmarks(module);
@@ -170,12 +185,12 @@ void bind_team(py::module_& module) {
           "A Pose for each robot, None where the start is unknown. With by_names a name means the same landmark to all "
           "robots, else to its own; with by_place landmarks of one place become one. looks_as_one: so many looks in a "
           "row say "
-          "what one would, and scans without names are told apart by the noise of one.")
+          "what one would (1 or more), and scans without names are told apart by the noise of one.")
       .def(
           "take", &take_of_robot, py::arg("robot"), py::arg("event"), py::arg("names") = py::tuple(),
           "Odometry, or a scan with a name for each observation, a negative one for none, or without names: associated "
           "by place. The report of a scan; None "
-          "for odometry, and for a scan that came late.")
+          "for odometry, and for a scan that came late. PreconditionError for AbsoluteFix and Lost.")
       .def("sight", locked(&Team::sight), py::arg("robot"), py::arg("sighting"), Released(),
            "`robot` sees another one.")
       .def("solve", locked(&Team::solve), Released(), "Solves the graph with all that has come.")
@@ -188,6 +203,8 @@ void bind_team(py::module_& module) {
       .def("landmark_of", &landmark_of_robot, py::arg("robot"), py::arg("name"), Released(),
            "Id of the landmark that a name means to the robot; None where it has not seen it.")
       .def_property_readonly("joins", py::cpp_function(&joins_of, Released()), "TeamJoins so far.")
+      .def_property_readonly("joins_taken_back", py::cpp_function(&joins_taken_back_of, Released()),
+                             "TakenBackJoins: held for a while, and none of joins.")
       .def_property_readonly("sightings", py::cpp_function(locked(&Team::sightings), Released()), "JudgedSightings.")
       .def("remove_join", locked(&Team::remove_join), py::arg("join"), Released(),
            "Takes a join back, by its index, and everything that came of it.")

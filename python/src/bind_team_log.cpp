@@ -10,6 +10,7 @@
 #include "arrays.hpp"
 #include "bind.hpp"
 #include "common/input_files.hpp"
+#include "gil.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
 #include "helixnav/logs/mrclam.hpp"
@@ -95,14 +96,14 @@ void bind_log_parts(py::module_& module) {
       .def_property_readonly("true_poses", &true_poses_of_member, "(N, 4): t, x, y, heading.");
   py::class_<TeamLog>(module, "TeamLog", "The drives of several robots in one world, by one clock.")
       .def_property_readonly(
-          "name", [](const TeamLog& log) { return log.recording.name; }, "Of the log or the scenario.")
+          "name", [](const TeamLog& log) { return text_with_paths(log.recording.name); }, "Of the log or the scenario.")
       .def_property_readonly(
           "robots", [](const TeamLog& log) { return log.recording.robots; }, "TeamMembers; a copy.")
       .def_property_readonly(
           "starts_known", [](const TeamLog& log) { return log.recording.starts_known; },
           "Whether the starts lie in one frame.")
       .def_property_readonly(
-          "remarks", [](const TeamLog& log) { return log.recording.remarks; },
+          "remarks", [](const TeamLog& log) { return texts_with_paths(log.recording.remarks); },
           "What was mended, left out or is doubtful, a sentence each.")
       .def("__len__", [](const TeamLog& log) { return log.recording.robots.size(); });
 }
@@ -135,7 +136,7 @@ int component_of_robot(const TeamRun& run, std::size_t robot) {
 
 py::object summary_of(const TeamRun& run) {
   const std::string text = apps::team_summary(run.task, run.drive, run.evaluation);
-  return py::module_::import("json").attr("loads")(text);
+  return py::module_::import("json").attr("loads")(text_with_paths(text));
 }
 
 void bind_team_run(py::module_& module) {
@@ -149,6 +150,8 @@ void bind_team_run(py::module_& module) {
       .def_property_readonly(
           "joins", [](const TeamRun& run) { return run.drive.team.joins(); }, "TeamJoins.")
       .def_property_readonly(
+          "joins_taken_back", [](const TeamRun& run) { return run.drive.team.joins_taken_back(); }, "TakenBackJoins.")
+      .def_property_readonly(
           "sightings", [](const TeamRun& run) { return run.drive.team.sightings(); }, "JudgedSightings.")
       .def("evaluate", &summary_of, "Errors against the truth of the log, as in summary.json of the run folder.")
       .def(
@@ -160,7 +163,7 @@ void bind_team_run(py::module_& module) {
 }  // namespace
 
 void bind_team_log(py::module_& module) {
-  using Released = py::call_guard<py::gil_scoped_release>;
+  using Released = py::call_guard<WithoutGil>;
   bind_log_parts(module);
   bind_team_run(module);
   module.def("read_team_log", &read_team_log, py::arg("path"), py::arg("robots") = std::vector<int>(), Released(),

@@ -87,7 +87,12 @@ Configuration configuration_of(const py::dict& options, const std::string& vehic
   std::reverse(words.begin(), words.end());  // as parse wants them
   try {
     app.parse(std::move(words));
-    apps::check_filter(app, apps::options_given(app), configuration.settings.fastslam);
+    const apps::FastSlamSettings& chosen = configuration.settings.fastslam;
+    if (filter == Filter::compressed_ekf) {
+      apps::require_compressed_ekf(app, apps::options_given(app), chosen,
+                                   "a stream is navigated by the compressed EKF");
+    }
+    apps::check_filter(app, apps::options_given(app), chosen);
     apps::refuse_memory_limit(configuration.settings, "a process of Python is its user's");
     apps::apply_vehicle(app, vehicle, log, configuration.settings);
   } catch (const CLI::ParseError& error) {

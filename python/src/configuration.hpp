@@ -16,11 +16,11 @@ struct Configuration {
   std::vector<std::string> keys;  ///< given, with their sections
 };
 
-enum class Filter { as_chosen, fastslam };
+enum class Filter { as_chosen, fastslam, compressed_ekf };
 
 /// From {"search.particles": 300} or {"search": {"particles": 300}}. What a vehicle file tells comes after what the options
 /// say; `vehicle` may be empty, and then the one beside `log` is taken. The keys must be
-/// of the filter chosen, or of FastSLAM where the caller is one. core::InputError naming the key.
+/// of the filter chosen, or of the one that the caller is. core::InputError naming the key.
 Configuration configuration_of(const py::dict& options, const std::string& vehicle = {}, const std::string& log = {},
                                Filter filter = Filter::as_chosen);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "helixnav/core/step_report.hpp"
@@ -13,6 +14,7 @@ struct Map {
 };
 struct Decided {
   core::Decision decision;
+  std::string sentence = {};  ///< where it is told in other words than all of its kind
 };
 
 }  // namespace helixnav::python

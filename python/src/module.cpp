@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <exception>
+
+#include "arrays.hpp"
 #include "bind.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
@@ -6,13 +9,27 @@
 namespace helixnav::python {
 namespace {
 
+/// What an error says has paths in it, which need not be UTF-8.
+template <class Error>
+py::exception<Error>& bind_error(py::module_& module, const char* name, PyObject* kind) {
+  static auto* const type = new py::exception<Error>(module, name, kind);  // as long as the process lasts
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const Error& error) {
+      PyErr_SetObject(type->ptr(), text_with_paths(error.what()).ptr());
+    }
+  });
+  return *type;
+}
+
 /// The three kinds of error (docs/adr/0005-error-kinds.md) by what Python calls their kind.
 void bind_errors(py::module_& module) {
-  py::register_exception<core::InputError>(module, "InputError", PyExc_ValueError).doc() =
+  bind_error<core::InputError>(module, "InputError", PyExc_ValueError).doc() =
       "A file, an option or a value that cannot be used; says where and what was expected.";
-  py::register_exception<core::PreconditionError>(module, "PreconditionError", PyExc_ValueError).doc() =
+  bind_error<core::PreconditionError>(module, "PreconditionError", PyExc_ValueError).doc() =
       "A call whose arguments break what its documentation asks for; the object is as it was.";
-  py::register_exception<core::NumericalError>(module, "NumericalError", PyExc_ArithmeticError).doc() =
+  bind_error<core::NumericalError>(module, "NumericalError", PyExc_ArithmeticError).doc() =
       "The mathematics broke down; the object is as it was before the call.";
 }
 

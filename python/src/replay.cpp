@@ -2,6 +2,7 @@
 #include "replay.hpp"
 
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "drive/given_map.hpp"
 #include "drive/keeping.hpp"
 #include "drive/kept_inputs.hpp"
+#include "drive/landmark_names.hpp"
 #include "drive/start_by_names.hpp"
 #include "drive/truth_on_map.hpp"
 #include "drive/withholding.hpp"
@@ -23,6 +25,7 @@
 #include "helixnav/core/event_loop.hpp"
 #include "helixnav/core/version.hpp"
 #include "helixnav/reports/finish_run.hpp"
+#include "helixnav/runs/run_folder.hpp"
 #include "helixnav/runs/run_recorder.hpp"
 #include "helixnav/runs/run_writer.hpp"
 #include "signals.hpp"
@@ -76,6 +79,19 @@ runs::RunManifest manifest_of(const Log& log, const ReplayWishes& wishes) {
   return manifest;
 }
 
+/// What the log calls the landmarks of a map in a folder.
+void take_names(const ReplayWishes& wishes, apps::Drive& job) {
+  if (wishes.map->map) return;
+  std::vector<core::LandmarkId> ids;
+  if (wishes.localize) {
+    for (const core::MapLandmark& landmark : job.given_map->landmarks) ids.push_back(landmark.id);
+  } else {
+    ids = job.earlier->map.joint.ids;
+  }
+  auto& landmark_of = wishes.localize ? job.given_map->landmark_of : job.earlier->landmark_of;
+  apps::call_as_log(wishes.map->path.string(), ids, job.recording, landmark_of);
+}
+
 void take_map(const ReplayWishes& wishes, apps::Drive& job) {
   if (!wishes.map) return;
   const std::optional<core::JointMap>& map = wishes.map->map;
@@ -89,6 +105,7 @@ void take_map(const ReplayWishes& wishes, apps::Drive& job) {
         map ? apps::earlier_session(*map, start, "map") : apps::read_earlier_session(wishes.map->path.string(), start);
     apps::pass_over_driven(*job.earlier, job.recording, job.withheld);
   }
+  take_names(wishes, job);
 }
 
 apps::Drive job_of(const Log& log, const ReplayWishes& wishes) {
@@ -169,6 +186,7 @@ runs::Run replay(const Log& log, const ReplayWishes& wishes) {
   const Ended ended = navigate(job, estimator, writer.get(), recorder);
   if (ended.interrupted && !writer) std::rethrow_exception(ended.interrupted);
   runs::Run run = recorder.finish(estimator.map());
+  run.names = apps::landmark_names(job, run);
   run.joint_map = estimator.joint_map();
   if (run.joint_map) run.joint_map->drives = apps::drives_in_map(job, run);
   if (estimator.parts_apart) run.parts_apart = estimator.parts_apart();

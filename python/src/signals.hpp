@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "bind.hpp"
+#include "gil.hpp"
 
 namespace helixnav::python {
 
@@ -15,7 +16,7 @@ class SignalWatch {
     const Clock::time_point now = Clock::now();
     if (now - last_ < std::chrono::milliseconds(200)) return;
     last_ = now;
-    const py::gil_scoped_acquire acquired;
+    const WithGil acquired;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   }
 

@@ -204,10 +204,10 @@ std::string begin_of(const core::PlacedDecision& d) {
 }
 
 template <class OfPlace>
-std::string evidence_of(const OfPlace& d) {
-  return counted(d.pairs, "landmark") + " of " + short_number(d.landmarks) +
-         " about the vehicle stand as on the map, " + short_number(d.evidence) + " nats better than by chance and " +
-         short_number(d.lead) + " ahead of any other place (" + short_number(d.needed) + " are needed of each)";
+std::string evidence_of(const OfPlace& d, const char* which = " about the vehicle") {
+  return counted(d.pairs, "landmark") + " of " + short_number(d.landmarks) + which + " stand as on the map, " +
+         short_number(d.evidence) + " nats better than by chance and " + short_number(d.lead) +
+         " ahead of any other place (" + short_number(d.needed) + " are needed of each)";
 }
 
 std::string sentence(const core::PlacedDecision& d) {
@@ -297,6 +297,29 @@ std::string short_number(double value) {
 
 std::string counted(double value, const std::string& noun) {
   return short_number(value) + ' ' + noun + (value == 1.0 ? "" : "s");
+}
+
+std::string sentence_of_join(const core::PlacedDecision& d) {
+  const std::string best = evidence_of(d, " of the best question");
+  const std::string asked =
+      " (" + counted(d.questions, "question") + " to a map of " + counted(d.earlier_landmarks, "landmark") + "): ";
+  switch (d.verdict) {
+    case core::PlacedDecision::Verdict::sought:
+      return "Gave its component the frame; it was not asked.";
+    case core::PlacedDecision::Verdict::accepted:
+      return "Found its place" + asked + best + "; their joint cost " + short_number(d.cost) + " is within " +
+             short_number(d.limit) + ". Both are one map (" + counted(d.merged, "landmark") + " merged); " +
+             begin_of(d) + " of it.";
+    case core::PlacedDecision::Verdict::ambiguous:
+      return "Not placed" + asked + "a place fits, and others may as well: " + best + '.';
+    case core::PlacedDecision::Verdict::refused:
+      return "Not placed" + asked + "the pairs contradict each other, their joint cost " + short_number(d.cost) +
+             " exceeds " + short_number(d.limit) + ". " + best + '.';
+    case core::PlacedDecision::Verdict::not_here:
+      return "Not placed" + asked + "no place fits better than chance would" +
+             (d.pairs > 0 ? "; the best: " + best : "") + '.';
+  }
+  return {};
 }
 
 std::string sentence_of(const core::Decision& decision) {

@@ -47,6 +47,13 @@ void write_map(const std::string& folder, const core::JointMap& map,
   const std::vector<core::MapLandmark> landmarks = landmarks_of(map);
   files::write_whole_file(folder + '/' + std::string(map_table.file), map_text(landmarks, names));
   write_joint_map(folder, map);
+  const std::string joined_from = folder + '/' + joined_from_file;
+  std::error_code none;
+  if (map.has_end) {
+    fs::remove(joined_from, none);  // of a map that was there before
+  } else {
+    files::write_whole_file(joined_from, joined_from_header);
+  }
 }
 
 void write_joint_map(const std::string& folder, const core::JointMap& map) {

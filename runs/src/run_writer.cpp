@@ -27,24 +27,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-void make_folder(const std::string& folder, RunWriter::IfNotEmpty if_not_empty) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder)) {
-    throw core::InputError(folder + ": cannot make the folder" + (error ? ": " + error.message() : ""));
-  }
-  if (fs::is_empty(folder)) return;
-  if (if_not_empty == RunWriter::IfNotEmpty::refuse) {
-    throw core::InputError(folder + ": the folder is not empty; expected an empty or new one, or leave to overwrite");
-  }
-  for (const char* name : run_files) fs::remove(fs::path(folder) / name, error);
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.path().filename().string().rfind("part_", 0) != 0) continue;
-    for (const char* name : {"map.csv", joint_map_file, drives_file}) fs::remove(entry.path() / name, error);
-    fs::remove(entry.path(), error);  // unless something else is in it
-  }
-}
-
 void write_part(const std::string& folder, const core::JointMap& map) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -167,6 +149,25 @@ struct Table {
 
 }  // namespace
 
+void make_run_folder(const std::string& folder, RunWriter::IfNotEmpty if_not_empty) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder)) {
+    throw core::InputError(folder + ": cannot make the folder" + (error ? ": " + error.message() : ""));
+  }
+  if (fs::is_empty(folder)) return;
+  if (if_not_empty == RunWriter::IfNotEmpty::refuse) {
+    throw core::InputError(folder + ": the folder is not empty; expected an empty or new one, or leave to overwrite");
+  }
+  for (const char* name : run_files) fs::remove(fs::path(folder) / name, error);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().filename().string().rfind("part_", 0) != 0) continue;
+    for (const char* name : {"map.csv", joint_map_file, drives_file, joined_from_file})
+      fs::remove(entry.path() / name, error);
+    fs::remove(entry.path(), error);  // unless something else is in it
+  }
+}
+
 bool is_run_file(std::string_view name) {
   return std::find(std::begin(run_files), std::end(run_files), name) != std::end(run_files);
 }
@@ -193,7 +194,7 @@ struct RunWriter::Files {
 RunWriter::RunWriter(const std::string& folder, const RunManifest& manifest, const core::Recording& recording,
                      IfNotEmpty if_not_empty)
     : folder_(folder) {
-  make_folder(folder_, if_not_empty);
+  make_run_folder(folder_, if_not_empty);
   write_truth(folder_, recording);
   files_ = std::make_unique<Files>(folder_);
   // Last: where there is a manifest, all else is.

@@ -2,6 +2,7 @@
 #include "helixnav/team/team.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <set>
@@ -238,8 +239,16 @@ void check_names(const core::Scan& scan, const std::vector<std::int64_t>& names)
 
 }  // namespace
 
-Team::Team(const std::vector<std::optional<core::PoseGaussian>>& starts, const TeamOptions& options)
-    : book_(std::make_unique<Book>(starts, options)) {}
+Team::Team(const std::vector<std::optional<core::PoseGaussian>>& starts, const TeamOptions& options) {
+  for (const std::optional<core::PoseGaussian>& start : starts) {
+    if (start) core::check_start(*start);
+  }
+  if (!(std::isfinite(options.looks_as_one) && options.looks_as_one >= 1.0)) {
+    throw core::PreconditionError("team: looks_as_one: expected a number of looks from 1 on, found " +
+                                  std::to_string(options.looks_as_one));
+  }
+  book_ = std::make_unique<Book>(starts, options);
+}
 Team::~Team() = default;
 Team::Team(Team&&) noexcept = default;
 Team& Team::operator=(Team&&) noexcept = default;
@@ -255,7 +264,10 @@ std::optional<core::StepReport> Team::take(int robot, const core::Event& event,
   }
   if (const auto* motion = std::get_if<core::Odometry>(&event)) book_->move(r, *motion);
   if (std::holds_alternative<core::Lost>(event)) {
-    throw core::PreconditionError("take: a robot that was carried is not found again by names");
+    throw core::PreconditionError("team: a robot that was carried is not found again by names");
+  }
+  if (std::holds_alternative<core::AbsoluteFix>(event)) {
+    throw core::PreconditionError("team: takes Odometry and Scan; position fixes have no part in its graph");
   }
   return std::nullopt;
 }
@@ -263,6 +275,9 @@ std::optional<core::StepReport> Team::take(int robot, const core::Event& event,
 void Team::sight(int robot, const core::RobotSighting& sighting) {
   book_->check_robot(robot);
   book_->check_robot(sighting.seen);
+  if (sighting.seen == robot) {
+    throw core::PreconditionError("team: robot " + std::to_string(robot) + " sees itself; expected another one");
+  }
   core::check_observation(sighting.observation);
   book_->sight(static_cast<std::size_t>(robot), sighting);
 }

@@ -151,6 +151,16 @@ TEST_F(Convert, ReplacesAFileOnlyWhenAsked) {
   refused({"convert", log, file("folder.g2o"), "--overwrite"}, 3, "found a folder");
 }
 
+TEST_F(Convert, KeepsTheVehicleThatTheLogIsReadBy) {
+  must({"convert", small_log(), file("a.jsonl")});
+  std::ofstream(file("vehicle.toml"), std::ios::app) << "# mine\n";
+  must({"convert", file("a.jsonl"), file("b.jsonl"), "--overwrite"});
+  EXPECT_NE(text_of(file("vehicle.toml")).find("# mine"), std::string::npos);
+  refused({"convert", small_log(), file("c.jsonl")}, 3, "vehicle.toml: the file is there already");
+  must({"convert", small_log(), file("c.jsonl"), "--overwrite"});
+  EXPECT_EQ(text_of(file("vehicle.toml")).find("# mine"), std::string::npos);
+}
+
 TEST_F(Convert, RefusesALogWithoutLabelsForAGraph) {
   find_real_data("victoria_park/raw/victoria_park_ascii.zip");
   if (IsSkipped()) return;

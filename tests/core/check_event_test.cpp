@@ -178,6 +178,24 @@ TEST(CheckEvent, RefusesAFixThatIsNotFiniteOrExactlyKnown) {
   expect_refused(fix, "covariance");
 }
 
+TEST(CheckStart, HoldsAPoseToTheLimitsOfEvents) {
+  PoseGaussian start;
+  start.mean = {1e8, -1e8, 1e6};
+  start.covariance = Eigen::Vector3d(1e16, 1e16, 0.0).asDiagonal();
+  EXPECT_NO_THROW(check_start(start));
+  const auto expect_no_start = [](const PoseGaussian& given) { EXPECT_THROW(check_start(given), PreconditionError); };
+  for (const double garbage : {1.1e8, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
+    PoseGaussian far;
+    far.mean.x_m = garbage;
+    expect_no_start(far);
+    far = {};
+    far.covariance(1, 1) = garbage * garbage;
+    expect_no_start(far);
+  }
+  start.covariance(0, 1) = 1e15;
+  expect_no_start(start);
+}
+
 TEST(CheckOrder, RefusesToGoBackAndAcceptsTheSameInstant) {
   EXPECT_NO_THROW(check_order(5, 5));
   EXPECT_NO_THROW(check_order(std::numeric_limits<Nanoseconds>::min(), 5));

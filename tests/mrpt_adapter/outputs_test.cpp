@@ -170,6 +170,8 @@ TEST(Outputs, PictureShowsTheLandmarks) {
                core::InputError);
   QuietBuilder empty;
   empty.saveCurrentEstimationToImage((folder.path() / "empty.bmp").string());
+  empty.saveCurrentEstimationToImage((folder.path() / "empty.GIF").string());
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "empty.GIF.png")) << "of a format that MRPT does not write";
   EXPECT_TRUE(image.loadFromFile((folder.path() / "empty.bmp").string()));
 }
 

@@ -12,6 +12,7 @@
 #include "helixnav/core/odometry.hpp"
 #include "helixnav/logs/acfr_log.hpp"
 #include "helixnav/logs/dlr.hpp"
+#include "helixnav/logs/vehicle.hpp"
 #include "helixnav/mrpt_adapter/run_access.hpp"
 #include "helixnav/supervisor/navigator.hpp"
 #include "input_error.hpp"
@@ -252,16 +253,55 @@ TEST_F(Rawlogs, AreConvertedByHelixnavConvertToo) {
   EXPECT_NE(again.err.find("--overwrite"), std::string::npos) << again.err;
 }
 
+std::size_t scans_answered(const std::string& answers) {
+  std::size_t scans = 0;
+  for (std::size_t at = 0; (at = answers.find("{\"scan\"", at)) != std::string::npos; ++at) ++scans;
+  return scans;
+}
+
 TEST_F(Rawlogs, FeedAStreamThatAnswersEachScan) {
   write_recording(testing::past_posts(), file("a.rawlog"), LandmarkIds::none);
   const std::string programs = std::filesystem::path(HELIXNAV_CLI).parent_path().string();
   const Outcome fed = run({"PATH=" + programs + ":/usr/bin:/bin", "sh", HELIXNAV_EXAMPLES "/live/feed_rawlog.sh",
                            file("a.rawlog"), "--detector", "none"});
   EXPECT_EQ(fed.exit_code, 0) << fed.err;
-  std::size_t scans = 0;
-  for (std::size_t at = 0; (at = fed.out.find("{\"scan\"", at)) != std::string::npos; ++at) ++scans;
-  EXPECT_EQ(scans, 21U) << fed.out << fed.err;
+  EXPECT_EQ(scans_answered(fed.out), 21U) << fed.out << fed.err;
   EXPECT_NE(fed.out.find("\"scans\":21"), std::string::npos) << fed.out;
+}
+
+/// As in MRPT's own kf-slam_demo.rawlog, whose 250 frames have three stamps.
+TEST_F(Rawlogs, WhoseFramesShareStampsFeedAStreamFrameByFrame) {
+  core::Recording recording = testing::past_posts();
+  for (core::Event& event : recording.events) {
+    std::visit([](auto& e) { e.t_ns = core::nanoseconds_from_seconds(e.t_ns < 8'000'000'000 ? 1.0 : 1.000002); },
+               event);
+  }
+  write_recording(recording, file("a.rawlog"), LandmarkIds::labels);
+  const Outcome converted = run({HELIXNAV_CLI, "convert", file("a.rawlog"), file("a.jsonl")});
+  EXPECT_EQ(converted.exit_code, 0) << converted.err;
+  EXPECT_NE(converted.out.find("times told apart: 38 rows"), std::string::npos) << converted.out;
+  const Outcome fed = run(
+      {"sh", "-c", std::string(HELIXNAV_CLI) + " stream --vehicle " + file("vehicle.toml") + " < " + file("a.jsonl")});
+  EXPECT_EQ(scans_answered(fed.out), 21U) << fed.out << fed.err;
+  EXPECT_NE(fed.out.find("\"refused\":0"), std::string::npos) << fed.out;
+  const Outcome driven = run({HELIXNAV_CLI, "replay", file("a.jsonl"), "--out", file("r"), "--quiet"});
+  EXPECT_NE(driven.out.find("steps                21"), std::string::npos) << driven.out << driven.err;
+}
+
+TEST_F(Rawlogs, WriteNoLinesBesideTheVehicleOfAnotherSensor) {
+  write_recording(testing::past_posts(), file("a.rawlog"), LandmarkIds::none);
+  folder_.write("vehicle.toml", "[[sensor]]\nreach_m = 99\n");
+  const std::vector<std::string> words{HELIXNAV_CLI, "convert", file("a.rawlog"), file("a.jsonl")};
+  const Outcome refused = run(words);
+  EXPECT_EQ(refused.exit_code, 3) << refused.out;
+  EXPECT_NE(refused.err.find("vehicle.toml: the file is there already"), std::string::npos) << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(file("a.jsonl")));
+  std::vector<std::string> replacing = words;
+  replacing.emplace_back("--overwrite");
+  EXPECT_EQ(run(replacing).exit_code, 0);
+  EXPECT_NE(logs::read_vehicle(file("vehicle.toml")).sensors.at(0).reach_m, 99.0);
+  std::filesystem::remove(file("a.jsonl"));
+  EXPECT_EQ(run(words).exit_code, 0) << "the same vehicle.toml is no other one";
 }
 
 }  // namespace

@@ -25,6 +25,10 @@ def scan(t=0.0, z=((3.0, 0.0), (5.0, 1.0), (7.0, -1.0)), **options):
     lambda: helixnav.Odometry(0.0, [1e100, 0, 0], 1e-4 * EYE3),
     lambda: helixnav.Odometry(0.0, [0, 0, 0], 1e100 * EYE3),
     lambda: helixnav.AbsoluteFix(0.0, [1e9, 0], np.eye(2)),
+    lambda: helixnav.Pose((1e9, 0, 0)),
+    lambda: helixnav.Pose((0, 0, 0), np.diag([1e17, 1, 1])),
+    lambda: helixnav.Navigator().joint_map(reach=1e6),
+    lambda: helixnav.Navigator().joint_map(reach=float("inf")),
 ])
 def test_what_is_beyond_any_vehicle_is_refused(made):
     with pytest.raises(helixnav.PreconditionError):

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/team/team.hpp"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
 
@@ -341,12 +343,28 @@ TEST(Team, RefusesRobotsThatAreNotThereAndGarbledEventsUnchanged) {
   EXPECT_THROW(team.take(2, core::Odometry{}), core::PreconditionError);
   EXPECT_THROW(team.sight(0, {0, 7, core::Pose2(), core::make_range_bearing(1.0, 0.0, 0.1, 0.1)}),
                core::PreconditionError);
+  EXPECT_THROW(team.sight(0, {0, 0, core::Pose2(), core::make_range_bearing(1.0, 0.0, 0.1, 0.1)}),
+               core::PreconditionError);
+  core::AbsoluteFix fix;
+  fix.covariance_m2.setIdentity();
+  EXPECT_THROW(team.take(0, fix), core::PreconditionError);
   core::Scan scan;
   scan.t_ns = small.messages.back().t_ns;
   scan.observations.push_back(core::make_range(1.0, 0.1));
   EXPECT_THROW(team.take(0, scan, {3}), core::PreconditionError);
   EXPECT_THROW(team.take(0, scan, {}), core::PreconditionError);
   EXPECT_EQ(team.pose(0).mean.vector(), before.mean.vector());
+}
+
+TEST(Team, RefusesOptionsAndStartsThatNothingCouldComeOf) {
+  for (const double looks : {-1.0, 0.0, 0.5, std::numeric_limits<double>::quiet_NaN()}) {
+    TeamOptions options;
+    options.looks_as_one = looks;
+    EXPECT_THROW(Team({std::nullopt}, options), core::PreconditionError) << looks;
+  }
+  core::PoseGaussian far;
+  far.mean.x_m = 1e9;
+  EXPECT_THROW(Team({far}), core::PreconditionError);
 }
 
 }  // namespace

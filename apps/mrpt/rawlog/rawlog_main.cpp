@@ -88,7 +88,8 @@ ExitCode convert(const RawlogJob& job) {
     print(write_rawlog(job), job.out);
   } else {
     const GraphFormat format = text_format(job);
-    const Converted converted = convert_recording(read_rawlog(job.in, job.sensors), job.in, job.out, format, {}, 0);
+    const Converted converted =
+        convert_recording(read_rawlog(job.in, job.sensors), job.in, job.out, format, {}, 0, job.overwrite);
     std::fputs(text_of(converted).c_str(), stdout);
     std::printf("written: %s (%s)\n", job.out.c_str(), name_of(format).c_str());
   }
@@ -111,7 +112,8 @@ int main(int argc, char** argv) {
   app.add_option("--detector", job.sensors.detector, "What finds landmarks in the range scans of a rawlog")
       ->capture_default_str()
       ->check(one_of({"trees", "reflectors", "none"}));
-  app.add_flag("--overwrite", job.overwrite, "Replace OUT when it is there");
+  app.add_flag("--overwrite", job.overwrite,
+               "Replace OUT, and the vehicle.toml beside JSON Lines, when they are there");
   app.footer(
       "To a rawlog: ACFR logs raw, as single observations (range scans, GPS, wheel and steering, odometry); all "
       "others\n"

@@ -94,7 +94,7 @@ ExitCode convert(const ConvertJob& job) {
     throw core::InputError(job.out + ": the file is there already; choose another name, or --overwrite to replace it");
   }
   refuse_to_replace_log(job);
-  const Converted converted = convert_log(job.in, job.out, format, noises, job.seed);
+  const Converted converted = convert_log(job.in, job.out, format, noises, job.seed, job.overwrite);
   std::fputs(text_of(converted).c_str(), stdout);
   std::printf("written: %s (%s)\n", job.out.c_str(), name_of(format).c_str());
   return ExitCode::ok;
@@ -119,7 +119,8 @@ void add_convert_command(CLI::App& app, ExitCode& code) {
   command->add_option("--seed", job->seed, "Seed of the noise")
       ->capture_default_str()
       ->check(number_between(std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max()));
-  command->add_flag("--overwrite", job->overwrite, "Replace OUT when it is there");
+  command->add_flag("--overwrite", job->overwrite,
+                    "Replace OUT, and the vehicle.toml beside JSON Lines, when they are there");
   command->footer(
       "Formats by extension: .circles .lines .dlr (DLR text, robot axes X left, Y backward), .g2o, .isam (square-root\n"
       "information), .gtsam (covariances), .jsonl (JSON Lines of your own schema, with a vehicle.toml beside them). "

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <set>
+#include <system_error>
 #include <utility>
 #include <variant>
 
@@ -14,6 +15,7 @@
 #include "helixnav/logs/dlr.hpp"
 #include "helixnav/logs/graph_files.hpp"
 #include "helixnav/logs/own_lines.hpp"
+#include "helixnav/logs/own_log.hpp"
 #include "helixnav/logs/read_recording.hpp"
 
 namespace helixnav::apps {
@@ -64,13 +66,27 @@ Converted to_dlr(core::Recording recording, const std::string& out) {
   return counts_of(recording);
 }
 
-Converted to_lines(const core::Recording& recording, const std::string& out) {
+/// The vehicle.toml that a log of one's own is read by stays, also for lines beside it: they are of the same sensor.
+void write_vehicle(const core::Recording& recording, const std::string& in, const std::string& out, bool overwrite) {
   namespace fs = std::filesystem;
-  const fs::path vehicle = fs::absolute(out).parent_path() / "vehicle.toml";
+  const fs::path vehicle = fs::path(out).parent_path() / "vehicle.toml";
   const std::string text = logs::vehicle_of_lines(recording);
+  std::error_code none;  // a file that is not there yet is another one
+  if (logs::is_own_log(in) && fs::equivalent(logs::vehicle_beside(in), vehicle, none)) return;
+  if (!overwrite && fs::exists(vehicle) && files::read_whole_file(vehicle.string()) != text) {
+    throw core::InputError(vehicle.string() + ": the file is there already, and of another log; choose another " +
+                           "folder, or --overwrite to replace it");
+  }
+  files::write_whole_file(vehicle.string(), text);
+}
+
+Converted to_lines(core::Recording recording, const std::string& in, const std::string& out, bool overwrite) {
+  write_vehicle(recording, in, out, overwrite);
+  const std::size_t told_apart = logs::tell_times_apart(recording);
   files::write_whole_file(out, logs::own_lines(recording));
-  if (!fs::exists(vehicle)) files::write_whole_file(vehicle.string(), text);
-  return counts_of(recording);
+  Converted converted = counts_of(recording);
+  converted.times_told_apart = told_apart;
+  return converted;
 }
 
 Converted to_graph(const core::LandmarkGraph& graph, const std::string& out, GraphFormat format) {
@@ -112,14 +128,15 @@ std::optional<GraphFormat> format_by_extension(const std::string& extension) {
 }
 
 Converted convert_log(const std::string& in, const std::string& out, GraphFormat format,
-                      const std::vector<logs::Noise>& noises, std::uint64_t seed) {
+                      const std::vector<logs::Noise>& noises, std::uint64_t seed, bool overwrite) {
   const bool is_graph = logs::recognise(in) == logs::LogFormat::g2o;
   if (is_graph && noises.empty() && is_graph_format(format)) return to_graph(logs::read_g2o(in), out, format);
-  return convert_recording(logs::read_recording(in), in, out, format, noises, seed);
+  return convert_recording(logs::read_recording(in), in, out, format, noises, seed, overwrite);
 }
 
 Converted convert_recording(core::Recording recording, const std::string& in, const std::string& out,
-                            GraphFormat format, const std::vector<logs::Noise>& noises, std::uint64_t seed) {
+                            GraphFormat format, const std::vector<logs::Noise>& noises, std::uint64_t seed,
+                            bool overwrite) {
   if (recording.labels.empty() && is_graph_format(format)) {
     throw core::InputError(in +
                            ": a graph needs a labelled log, and this one has no labels; --to dlr and jsonl need none");
@@ -128,7 +145,7 @@ Converted convert_recording(core::Recording recording, const std::string& in, co
   if (!noises.empty()) added = logs::add_noise(recording, noises, seed);
   if (format != GraphFormat::jsonl) check_odometry(recording);
   Converted converted = format == GraphFormat::dlr     ? to_dlr(std::move(recording), out)
-                        : format == GraphFormat::jsonl ? to_lines(recording, out)
+                        : format == GraphFormat::jsonl ? to_lines(std::move(recording), in, out, overwrite)
                                                        : to_graph(recording, out, format);
   converted.noise = std::move(added);
   return converted;
@@ -142,6 +159,12 @@ std::string text_of(const Converted& converted) {
   if (converted.unlabelled_observations + converted.unlocated_landmarks > 0) {
     std::snprintf(line, sizeof line, "left out: %d observations without label, %d landmarks that nothing locates\n",
                   converted.unlabelled_observations, converted.unlocated_landmarks);
+    text += line;
+  }
+  if (converted.times_told_apart > 0) {
+    std::snprintf(line, sizeof line,
+                  "times told apart: %zu rows were not later than the row before, and are written 1 ns after it\n",
+                  converted.times_told_apart);
     text += line;
   }
   for (const logs::AddedNoise& noise : converted.noise) {

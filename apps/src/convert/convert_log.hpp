@@ -24,21 +24,24 @@ struct Converted {
   std::size_t poses = 0;
   std::size_t landmarks = 0;  ///< of the graph; DLR text: labels
   std::size_t observations = 0;
-  int unlabelled_observations = 0;  ///< left out
-  int unlocated_landmarks = 0;      ///< left out
+  int unlabelled_observations = 0;   ///< left out
+  int unlocated_landmarks = 0;       ///< left out
+  std::size_t times_told_apart = 0;  ///< JSON Lines: events that had no time of their own
   std::vector<logs::AddedNoise> noise;
 };
 
 /// Reads `in`, adds the noise and writes `out`, whole or not at all. A g2o graph without noise keeps its start values
 /// when written as a graph; all other graphs start from dead reckoning. JSON Lines of the user's own schema need a vehicle.toml,
-/// which is written beside them unless one is there. InputError for what cannot be read or held.
+/// which is written beside them, unless `in` is read by that one. InputError for what cannot be read or held, and for another
+/// vehicle.toml there unless it is to be overwritten: by that of another sensor the lines would be misread.
 /// Test: apps/convert_test.cpp.
 Converted convert_log(const std::string& in, const std::string& out, GraphFormat format,
-                      const std::vector<logs::Noise>& noises, std::uint64_t seed);
+                      const std::vector<logs::Noise>& noises, std::uint64_t seed, bool overwrite);
 
 /// The same of a recording that was read from `in`.
 Converted convert_recording(core::Recording recording, const std::string& in, const std::string& out,
-                            GraphFormat format, const std::vector<logs::Noise>& noises, std::uint64_t seed);
+                            GraphFormat format, const std::vector<logs::Noise>& noises, std::uint64_t seed,
+                            bool overwrite);
 
 /// Counts, and a line for each noise with its measured standard deviation.
 std::string text_of(const Converted& converted);

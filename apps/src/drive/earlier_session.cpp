@@ -105,30 +105,25 @@ core::JointMap read_joint_map_in(const std::string& folder) {
   }
   core::JointMap map = runs::read_joint_map(file);
   map.drives = runs::read_drives(folder);
+  map.has_end =
+      fs::exists(fs::path(folder) / "manifest.json") || !fs::exists(fs::path(folder) / runs::joined_from_file);
   const fs::path table = fs::path(folder) / "map.csv";
   if (fs::exists(table)) tell_appearances(runs::read_map(table.string()), map);
   return map;
 }
 
 EarlierSession earlier_session(core::JointMap map, const SessionStart& start, const std::string& name) {
+  if (start.kind == SessionStart::Kind::end && !map.has_end) {
+    throw core::InputError(name +
+                           ": a joined map has no end, since each of its runs ended elsewhere; give --start unknown or "
+                           "a pose x,y,heading");
+  }
   EarlierSession session{std::move(map), {}, start, {}, {}, {}};
   check_size(name, session);
   return session;
 }
 
-/// Several runs ended in a joined map, and the pose in its map.bin is of one of them.
-void check_has_end(const std::string& folder, const SessionStart& start) {
-  namespace fs = std::filesystem;
-  if (start.kind != SessionStart::Kind::end || fs::exists(folder + "/manifest.json")) return;
-  if (!fs::exists(folder + "/joined_from.csv")) return;
-  throw core::InputError(
-      folder +
-      ": a joined map has no end, since each of its runs ended elsewhere; give --start unknown or a pose "
-      "x,y,heading");
-}
-
 EarlierSession read_earlier_session(const std::string& folder, const SessionStart& start) {
-  check_has_end(folder, start);
   EarlierSession session = earlier_session(read_joint_map_in(folder), start, joint_map_file_in(folder));
   if (!std::filesystem::exists(std::filesystem::path(folder) / "manifest.json")) return session;
   const std::vector<core::LandmarkId>& ids = session.map.joint.ids;
@@ -146,6 +141,7 @@ core::JointMap seen_from(core::JointMap map, const core::Pose2& T_map_robot, dou
   const double sigma_m = reach_m / 60.0;
   constexpr double sigma_rad = 3.0 * core::pi / 180.0;
   map.joint.pose = T_map_robot;
+  map.has_end = true;
   Eigen::MatrixXd& P = map.joint.covariance;
   P.topRows(3).setZero();
   P.leftCols(3).setZero();

@@ -35,7 +35,7 @@ struct EarlierSession {
   std::optional<core::Pose2> T_truth_map;     ///< where its map lies in the frame of its truth, where that run knows
 };
 
-/// From a map itself, `name` in messages. InputError where it holds too few mature landmarks to begin so.
+/// From a map itself, `name` in messages. InputError where it holds too few mature landmarks to begin so, or has no end.
 EarlierSession earlier_session(core::JointMap map, const SessionStart& start, const std::string& name);
 
 /// Reads the folder of a run that came to its end. InputError naming the file where there is no map.bin in it, it cannot be

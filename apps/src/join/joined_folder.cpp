@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <iterator>
 #include <sstream>
-#include <system_error>
 #include <utility>
 
 #include "drive/drive_again.hpp"
@@ -19,14 +18,13 @@
 #include "helixnav/runs/map_folder.hpp"
 #include "helixnav/runs/run_folder.hpp"
 #include "helixnav/runs/run_manifest.hpp"
+#include "helixnav/runs/run_writer.hpp"
 #include "joined_page.hpp"
 
 namespace helixnav::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* joined_from = "joined_from.csv";
 
 std::string quoted(const std::string& name) {
   std::string text = "\"";
@@ -78,9 +76,7 @@ void write_components(const std::string& out, const std::vector<core::JointMap>&
                       const std::vector<LandmarkNames>& landmarks) {
   for (std::size_t k = 0; k < components.size(); ++k) {
     const std::string folder = component_folder(out, k);
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw core::InputError(folder + ": cannot make the folder: " + error.message());
+    runs::make_run_folder(folder, runs::RunWriter::IfNotEmpty::overwrite);  // its owner was asked
     runs::write_map(folder, components[k], k < landmarks.size() ? landmarks[k] : LandmarkNames());
   }
 }
@@ -112,7 +108,7 @@ std::vector<Held> held_in(const std::string& run) {
       if (is_map(input) && !none) held.push_back({input.sha256, input.name});
     }
   }
-  const std::string table = run + "/" + joined_from;
+  const std::string table = run + "/" + runs::joined_from_file;
   if (!fs::exists(table)) return held;
   constexpr std::size_t digits = 64;
   std::istringstream rows(files::read_whole_file(table));
@@ -154,7 +150,7 @@ void check_two(const std::string& a, const Holding& of_a, const std::string& b, 
 /// What the map of a component is made of, with what that was made of.
 std::string joined_from_table(const std::vector<std::string>& runs, const supervisor::JoinedSessions& joined,
                               std::size_t component) {
-  std::string text = "sha256,run\n";
+  std::string text = runs::joined_from_header;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     if (joined.sessions[k].component != component || !fs::exists(joint_map_file_in(runs[k]))) continue;
     const std::string& run = runs[k];
@@ -216,7 +212,8 @@ void write_joined(const std::string& out, const std::vector<std::string>& names,
                   const std::vector<LandmarkNames>& landmarks) {
   write_components(out, joined.components, landmarks);
   for (std::size_t k = 0; k < joined.components.size(); ++k) {
-    files::write_whole_file(component_folder(out, k) + "/" + joined_from, joined_from_table(names, joined, k));
+    files::write_whole_file(component_folder(out, k) + "/" + runs::joined_from_file,
+                            joined_from_table(names, joined, k));
   }
   files::write_whole_file(out + "/joins.csv", joins_table(names, joined));
   files::write_whole_file(out + "/changes.csv", changes_table(shared));

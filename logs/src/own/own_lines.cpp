@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "helixnav/core/errors.hpp"
 #include "helixnav/files/number_text.hpp"
@@ -149,7 +151,26 @@ std::optional<double> class_error_of(const core::Recording& recording) {
   return std::nullopt;
 }
 
+/// A scan at the end of a motion has its time, and a vehicle that was carried is taken to be so after a scan of that time.
+bool may_share_time(const core::Event& event, const core::Event& before) {
+  if (std::holds_alternative<core::Scan>(event)) return std::holds_alternative<core::Odometry>(before);
+  return std::holds_alternative<core::Lost>(event);
+}
+
 }  // namespace
+
+std::size_t tell_times_apart(core::Recording& recording) {
+  std::size_t later = 0;
+  std::vector<core::Event>& events = recording.events;
+  for (std::size_t i = 1; i < events.size(); ++i) {
+    const core::Nanoseconds least_ns =
+        core::time_of(events[i - 1]) + (may_share_time(events[i], events[i - 1]) ? 0 : 1);
+    if (core::time_of(events[i]) >= least_ns) continue;
+    std::visit([&](auto& event) { event.t_ns = least_ns; }, events[i]);
+    ++later;
+  }
+  return later;
+}
 
 std::string own_lines(const core::Recording& recording) {
   std::string text;

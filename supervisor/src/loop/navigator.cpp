@@ -5,16 +5,20 @@
 #include <variant>
 
 #include "helixnav/core/check_event.hpp"
+#include "helixnav/supervisor/joint_map.hpp"
 #include "loop/navigation_loop.hpp"
 
 namespace helixnav::supervisor {
 
-Navigator::Navigator(const core::PoseGaussian& start, const NavigatorOptions& options)
-    : loop_(std::make_unique<NavigationLoop>(start, options)) {}
+Navigator::Navigator(const core::PoseGaussian& start, const NavigatorOptions& options) {
+  core::check_start(start);
+  loop_ = std::make_unique<NavigationLoop>(start, options);
+}
 
 Navigator::Navigator(std::unique_ptr<NavigationLoop> loop) : loop_(std::move(loop)) {}
 
 Navigator Navigator::go_on_in(const core::JointMap& earlier, const NavigatorOptions& options) {
+  check_has_end(earlier);
   return Navigator(std::make_unique<NavigationLoop>(earlier, options));
 }
 

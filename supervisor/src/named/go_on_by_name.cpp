@@ -2,6 +2,7 @@
 #include <string>
 
 #include "helixnav/core/errors.hpp"
+#include "helixnav/supervisor/joint_map.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
 #include "named/named_drive.hpp"
@@ -17,6 +18,7 @@ NamedNavigator::NamedNavigator(const core::JointMap& earlier,
       delayed_(options.delayed),
       landmark_of_identity_(landmark_of),
       drive_(NamedDrive({}, 0)) {
+  check_has_end(earlier);
   for (const auto& [identity, id] : landmark_of) {
     if (filter_.contains(id)) continue;
     throw core::PreconditionError("named navigator: the map has no landmark " + std::to_string(id));

@@ -56,7 +56,9 @@ NamedNavigator::NamedNavigator(const core::PoseGaussian& start, const NavigatorO
       reach_m_(reference_reach_m),
       filter_(start, options.filter),
       delayed_(delayed_of(options)),
-      drive_(NamedDrive(start, options.search.smooth_up_to_scans)) {}
+      drive_(NamedDrive(start, options.search.smooth_up_to_scans)) {
+  core::check_start(start);
+}
 
 /// The strong guarantee: the call takes effect as a whole, or what was before is made again from the checkpoint.
 template <class Call>

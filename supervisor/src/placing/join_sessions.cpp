@@ -29,19 +29,24 @@ relocalize::AskOptions options_for(std::size_t questions) {
   return session_options(alpha_a_pair / static_cast<double>(std::max<std::size_t>(1, questions)));
 }
 
-/// Answers that were closed, the surest first.
-std::vector<relocalize::Answer> ask_for(const EarlierMap& session, const relocalize::MapIndex& index,
-                                        const std::function<void()>& now_and_then) {
+struct AnsweredQuestion {
+  relocalize::Answer answer;
+  std::size_t landmarks = 0;  ///< of the question
+};
+
+/// All answers: closed ones first, the surest first among each other.
+std::vector<AnsweredQuestion> ask_for(const EarlierMap& session, const relocalize::MapIndex& index,
+                                      const std::function<void()>& now_and_then) {
   const std::vector<relocalize::Question> questions = map_questions(session, index.options());
   const relocalize::AskOptions options = options_for(questions.size());
-  std::vector<relocalize::Answer> answers;
+  std::vector<AnsweredQuestion> answers;
   for (const relocalize::Question& question : questions) {
     now_and_then();
-    answers.push_back(relocalize::ask(index, question, options));
+    answers.push_back({relocalize::ask(index, question, options), question.landmarks.size()});
   }
-  std::stable_sort(answers.begin(), answers.end(), [](const relocalize::Answer& a, const relocalize::Answer& b) {
-    const auto rank = [](const relocalize::Answer& answer) {
-      return std::make_pair(static_cast<int>(answer.verdict), -answer.gap);
+  std::stable_sort(answers.begin(), answers.end(), [](const AnsweredQuestion& a, const AnsweredQuestion& b) {
+    const auto rank = [](const AnsweredQuestion& asked) {
+      return std::make_pair(static_cast<int>(asked.answer.verdict), -asked.answer.gap);
     };
     return rank(a) < rank(b);
   });
@@ -63,14 +68,15 @@ cekf::FilterOptions without_regions(cekf::FilterOptions options, std::size_t lan
   return options;
 }
 
-core::PlacedDecision decision_of(const std::vector<relocalize::Answer>& answers, const core::JointMap& component) {
+core::PlacedDecision decision_of(const std::vector<AnsweredQuestion>& answers, const core::JointMap& component) {
   core::PlacedDecision decision;
   decision.verdict = core::PlacedDecision::Verdict::not_here;
   decision.earlier_landmarks = static_cast<int>(component.joint.ids.size());
   decision.questions = static_cast<int>(answers.size());
   decision.needed = relocalize::evidence_needed(options_for(answers.size()));
   if (answers.empty()) return decision;
-  const relocalize::Answer& best = answers.front();
+  const relocalize::Answer& best = answers.front().answer;
+  decision.landmarks = static_cast<int>(answers.front().landmarks);
   if (best.verdict == relocalize::Verdict::ambiguous) decision.verdict = core::PlacedDecision::Verdict::ambiguous;
   decision.lead = best.gap;
   if (best.places.empty()) return decision;
@@ -134,17 +140,17 @@ bool place_in(const core::JointMap& session_map, const std::function<void()>& no
   view.max_range_m = reach_m;
   const NavigatorOptions options = fit_lengths(NavigatorOptions{}, view);
   const relocalize::IndexOptions lengths = lengths_of(options, reach_m);
-  const std::vector<relocalize::Answer> answers = ask_for(session, earlier.index(lengths), now_and_then);
+  const std::vector<AnsweredQuestion> answers = ask_for(session, earlier.index(lengths), now_and_then);
   result.decision = decision_of(answers, component);
-  if (answers.empty() || answers.front().verdict != relocalize::Verdict::closed) return false;
+  if (answers.empty() || answers.front().answer.verdict != relocalize::Verdict::closed) return false;
   const LandmarkId offset = component.next_name;
   const core::JointGaussian joint = renamed(session, offset);
   const std::size_t together = joint.ids.size() + earlier.landmarks().ids.size();
   const cekf::CompressedEkf filter(joint, offset + session.next_name(), without_regions(options.filter, together));
   constexpr std::size_t most_tried = 3;
   for (std::size_t k = 0; k < std::min(most_tried, answers.size()); ++k) {
-    if (answers[k].verdict != relocalize::Verdict::closed) break;
-    relocalize::Place place = answers[k].places.front();
+    if (answers[k].answer.verdict != relocalize::Verdict::closed) break;
+    relocalize::Place place = answers[k].answer.places.front();
     for (relocalize::Pair& pair : place.pairs) pair.branch += offset;
     const JoinedMaps joined =
         join_maps(filter, earlier.landmarks(), place, joint.ids, {}, lengths.pair_noise_m, options.search);
@@ -172,6 +178,7 @@ core::JointMap begin(const core::JointMap& session, JoinedSession& result) {
     result.name_of[mature.landmarks().ids[i]] = mature.landmarks().ids[i];
   }
   tell_appearances(mature.appearance(), component);
+  component.has_end = false;
   return component;
 }
 

@@ -4,7 +4,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "helixnav/core/errors.hpp"
+
 namespace helixnav::supervisor {
+
+void check_has_end(const core::JointMap& map) {
+  if (map.has_end) return;
+  throw core::PreconditionError(
+      "a joined map has no end, since each of its sessions ended elsewhere; look for the place on it, or give a pose");
+}
 
 std::vector<core::LandmarkId> ids_of(const std::vector<core::MapLandmark>& landmarks) {
   std::vector<core::LandmarkId> ids;

@@ -2,7 +2,9 @@
 #include "helixnav/logs/own_lines.hpp"
 
 #include <fstream>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -78,6 +80,32 @@ TEST(OwnLines, ReadBackAreTheSameScans) {
   EXPECT_EQ(scans[0].observations[0].appearance.class_error, 0.03);
   EXPECT_EQ(again.labels, recording.labels);
   EXPECT_TRUE(scans[1].observations.empty());
+}
+
+/// Motion between two scans of one stamp, a scan at once with another, one whose clock went back.
+TEST(OwnLines, AreReadInTheirOrderWhereTimesAreTheSame) {
+  core::Recording recording;
+  core::Scan scan;
+  scan.t_ns = 1'000'000'000;
+  scan.observations = {core::make_range_bearing(3.0, 0.3, 0.1, 0.02)};
+  scan.field_of_view = {1.0, 25.0, -1.5, 1.5, 30.0};
+  recording.events = {moved_at(scan.t_ns, 0.5), scan, moved_at(scan.t_ns, 0.25), scan, scan};
+  scan.t_ns -= 5;
+  recording.events.insert(recording.events.end(), {moved_at(scan.t_ns, 0.125), scan});
+  EXPECT_EQ(tell_times_apart(recording), 5u);
+  std::vector<core::Nanoseconds> times;
+  for (const core::Event& event : recording.events) times.push_back(core::time_of(event) - 1'000'000'000);
+  EXPECT_EQ(times, (std::vector<core::Nanoseconds>{0, 0, 1, 1, 2, 3, 3}));
+  EXPECT_EQ(tell_times_apart(recording), 0u);
+  std::vector<double> moved_m;
+  double since_scan_m = 0.0;
+  for (const core::Event& event : read_back(recording).events) {
+    if (const auto* odometry = std::get_if<core::Odometry>(&event)) since_scan_m += odometry->T_before_after.x_m;
+    if (std::holds_alternative<core::Scan>(event)) moved_m.push_back(std::exchange(since_scan_m, 0.0));
+  }
+  ASSERT_EQ(moved_m.size(), 4u);
+  EXPECT_NEAR(moved_m[1], 0.25, 1e-9);
+  EXPECT_NEAR(moved_m[2] + moved_m[3], 0.125, 1e-3) << "divided at the scan, along the arc";
 }
 
 TEST(OwnLines, SeveralSensorsHaveNoNamesInThem) {

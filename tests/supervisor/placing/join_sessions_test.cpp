@@ -8,7 +8,10 @@
 
 #include <gtest/gtest.h>
 
+#include "helixnav/core/errors.hpp"
 #include "helixnav/core/random.hpp"
+#include "helixnav/supervisor/named_navigator.hpp"
+#include "helixnav/supervisor/navigator.hpp"
 #include "sanitized.hpp"
 
 namespace helixnav::supervisor {
@@ -95,6 +98,15 @@ TEST(JoinSessions, DrivesThatOverlapBecomeOneMapAndStrangersStayApart) {
     EXPECT_EQ(std::count_if(joined.sessions.begin(), joined.sessions.end(),
                             [](const JoinedSession& s) { return s.decision.verdict == Verdict::accepted; }),
               2);
+    for (const core::JointMap& component : joined.components) {
+      EXPECT_FALSE(component.has_end);
+      EXPECT_THROW(Navigator::go_on_in(component), core::PreconditionError);
+      EXPECT_THROW(NamedNavigator(component, {}), core::PreconditionError);
+    }
+    for (const JoinedSession& session : joined.sessions) {
+      EXPECT_GE(session.decision.landmarks, session.decision.pairs);
+      EXPECT_EQ(session.decision.landmarks > 0, session.decision.questions > 0);
+    }
     EXPECT_NE(joined.sessions[3].component, joined.sessions[0].component);
     const core::Pose2 T_world_component =
         core::compose(sessions[0].T_world_session, core::inverse(joined.sessions[0].T_component_session));

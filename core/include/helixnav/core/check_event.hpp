@@ -2,6 +2,7 @@
 #pragma once
 
 #include "helixnav/core/events.hpp"
+#include "helixnav/core/gaussian.hpp"
 
 namespace helixnav::core {
 
@@ -22,6 +23,9 @@ void check(const AbsoluteFix& fix);
 inline void check(const Lost&) {}
 /// Whichever it is.
 void check(const Event& event);
+
+/// Where an estimator begins, held to the same limits: finite, the covariance symmetric and positive semidefinite.
+void check_start(const PoseGaussian& start);
 
 /// PreconditionError when an event at t_ns would go back behind one at last_ns. Equal times are in order.
 void check_order(Nanoseconds last_ns, Nanoseconds t_ns);

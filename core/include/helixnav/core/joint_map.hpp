@@ -18,6 +18,8 @@ struct JointMap {
   double reach_m = 0.0;                              ///< of the sensor that drew it; 0: unknown
   std::vector<LandmarkAppearance> appearances = {};  ///< [landmark], or empty: nothing is known
   std::vector<std::string> drives = {};              ///< what went into it, runs::DriveDigest each; sorted
+  /// False for a joined map: its sessions ended elsewhere each, and nobody goes on from the pose in it.
+  bool has_end = true;
 };
 
 }  // namespace helixnav::core

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "helixnav/core/recording.hpp"
 
 namespace helixnav::logs {
 
+/// JSON Lines are put in order by their times, and rows of one time are one scan; a rawlog has frames of one stamp with motion
+/// between them. Makes such an event a nanosecond later than the one before it; returns how many were.
+/// Test: logs/own/own_lines_test.cpp.
+std::size_t tell_times_apart(core::Recording& recording);
+
 /// The recording as JSON Lines of the user's own schema (docs/your_own_log.md): increments and detections with their
 /// covariances, labels as id, classes and sizes, times at which the vehicle was carried, truth. A line an event, in its order.
-/// Read back, everything is as it was but for sensors, which are in the vehicle file, and the correlation of a range with its
+/// Read back, where times tell the events apart, everything is as it was but for sensors, which are in the vehicle file, and the correlation of a range with its
 /// bearing, which the schema does not hold. PreconditionError for fixes among the events.
 std::string own_lines(const core::Recording& recording);
 

@@ -11,6 +11,9 @@ namespace helixnav::reports {
 /// it stands.
 std::string sentence_of(const core::Decision& decision);
 
+/// How join placed a session, or why it did not: whole maps are asked there, and nobody drives.
+std::string sentence_of_join(const core::PlacedDecision& decision);
+
 /// `value` with three significant digits and the noun, in the plural unless it is 1: "3 pairs".
 std::string counted(double value, const std::string& noun);
 

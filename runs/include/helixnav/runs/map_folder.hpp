@@ -13,8 +13,13 @@ namespace helixnav::runs {
 /// Its landmarks one by one, without what they have in common.
 std::vector<core::MapLandmark> landmarks_of(const core::JointMap& map);
 
+/// Beside the map.bin of a joined map, which has no end: digests of what it was joined from.
+inline constexpr const char* joined_from_file = "joined_from.csv";
+inline constexpr const char* joined_from_header = "sha256,run\n";
+
 /// Writes map.csv and, for up to most_joint_landmarks, map.bin with drives.csv into a folder that is there: a map to go on in that no single
-/// drive made; `names` as of runs::Run. InputError where the file system refuses. Test: apps/go_on_test.cpp (replay --map goes on in it).
+/// drive made; `names` as of runs::Run. The pose of one that has no end is marked as none to go on from, by joined_from.csv. InputError where the file
+/// system refuses. Test: apps/go_on_test.cpp (replay --map goes on in it).
 void write_map(const std::string& folder, const core::JointMap& map,
                const std::map<core::LandmarkId, std::string>& names = {});
 

@@ -53,4 +53,7 @@ class RunWriter {
   std::unique_ptr<Files> files_;
 };
 
+/// Makes a folder for what is of one drive or one map, as RunWriter does.
+void make_run_folder(const std::string& folder, RunWriter::IfNotEmpty if_not_empty);
+
 }  // namespace helixnav::runs

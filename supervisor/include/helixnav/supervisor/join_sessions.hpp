@@ -23,7 +23,7 @@ struct JoinedSession {
 
 /// Maps of several sessions as few as can be said.
 struct JoinedSessions {
-  std::vector<core::JointMap> components;  ///< mature landmarks only; that of the largest session first
+  std::vector<core::JointMap> components;  ///< mature landmarks only, no end; that of the largest session first
   std::vector<JoinedSession> sessions;     ///< [session]
 };
 

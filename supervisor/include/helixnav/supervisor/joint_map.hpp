@@ -15,6 +15,9 @@ core::JointMap joint_map(const cekf::CompressedEkf& filter, const std::vector<co
 /// The same of any navigator that has joint() and filter().
 core::JointMap joint_map(core::JointGaussian joint, core::LandmarkId next_name,
                          const std::vector<core::MapLandmark>& landmarks);
+/// PreconditionError for a joined map, in which nobody can go on from the pose that it has.
+void check_has_end(const core::JointMap& map);
+
 /// In the order of `landmarks`.
 std::vector<core::LandmarkId> ids_of(const std::vector<core::MapLandmark>& landmarks);
 

@@ -36,11 +36,13 @@ class NamedDrive;
 /// supervisor/guarantee_test.cpp.
 class NamedNavigator {
  public:
+  /// PreconditionError for a start that core::check_start refuses.
   explicit NamedNavigator(const core::PoseGaussian& start, const NavigatorOptions& options = {});
 
   /// Goes on in the map of an earlier session, from the pose in it and with its correlations, as if that session had not
   /// ended: `landmark_of` names its landmarks. Sightings of ranges or bearings alone that had fixed no landmark yet are lost.
-  /// PreconditionError where cekf::CompressedEkf refuses the joint estimate, or for a landmark that the map does not have.
+  /// PreconditionError where cekf::CompressedEkf refuses the joint estimate, for a landmark that the map does not have, and for
+  /// a joined map, which has no end.
   /// Test: supervisor/placing/find_place_test.cpp (equal to 1e-7).
   NamedNavigator(const core::JointMap& earlier, const std::map<std::int64_t, core::LandmarkId>& landmark_of,
                  const NavigatorOptions& options = {});

@@ -34,9 +34,11 @@ class NavigationLoop;
 /// for bit. Test: supervisor/navigator_test.cpp, supervisor/closing/closing_test.cpp, supervisor/guarantee_test.cpp.
 class Navigator {
  public:
+  /// PreconditionError for a start that core::check_start refuses.
   explicit Navigator(const core::PoseGaussian& start, const NavigatorOptions& options = {});
   /// Goes on in the map of an earlier session, from the pose in it and with its correlations. Names given to landmarks from
-  /// now on are above those of the map. PreconditionError where cekf::CompressedEkf refuses the joint estimate.
+  /// now on are above those of the map. PreconditionError where cekf::CompressedEkf refuses the joint estimate, and for a
+  /// joined map, which has no end.
   static Navigator go_on_in(const core::JointMap& earlier, const NavigatorOptions& options = {});
   ~Navigator();
   Navigator(Navigator&&) noexcept;

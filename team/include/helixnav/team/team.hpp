@@ -36,11 +36,12 @@ struct JudgedSighting {
 /// gone through again from the checkpoint before it, so that late messages give the same bytes. A sighting waits until the
 /// motion of the robot seen has reached its time.
 /// Cost: O(N²) an observation, N = 3 robots + 2 landmarks of the component; a solution is a few sparse factorisations.
-/// Errors: PreconditionError for events that core::check refuses, robots that are not there, landmarks observed by range or
-/// bearing alone; NumericalError for broken mathematics. Test: team/team_test.cpp.
+/// Errors: PreconditionError for events that core::check refuses, fixes and carried robots, robots that are not there or see
+/// themselves, landmarks observed by range or bearing alone; NumericalError for broken mathematics. Test: team/team_test.cpp.
 class Team {
  public:
-  /// [robot] its start in the common frame, nothing where it is unknown.
+  /// [robot] its start in the common frame, nothing where it is unknown. PreconditionError for a start that core::check_start
+  /// refuses, and for looks_as_one below 1.
   explicit Team(const std::vector<std::optional<core::PoseGaussian>>& starts, const TeamOptions& options = {});
   ~Team();
   Team(Team&&) noexcept;
