@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr double bend_m = 20.0;  ///< radius of each circle that is driven
 
-std::vector<Eigen::Vector2d> wood(std::uint64_t world) {
+std::vector<Eigen::Vector2d> trees_of(std::uint64_t world) {
   core::RandomStream random(world, "wood");
   std::vector<Eigen::Vector2d> trees_m;
   for (int i = 0; i < 50; ++i) {
@@ -35,7 +35,7 @@ std::vector<Eigen::Vector2d> wood(std::uint64_t world) {
 /// Appends a drive round a circle through the wood to tables of odometry and detections.
 void add_drive(std::uint64_t world, int first_step, int steps, std::string& odometry, std::string& detections) {
   core::RandomStream random(world + static_cast<std::uint64_t>(first_step), "noise");
-  const std::vector<Eigen::Vector2d> trees_m = wood(world);
+  const std::vector<Eigen::Vector2d> trees_m = trees_of(world);
   char row[120];
   for (int k = 0; k < steps; ++k) {
     const double angle_rad = 0.5 * k / bend_m;

@@ -10,8 +10,8 @@
 namespace helixnav::apps {
 namespace {
 
-constexpr double reach_m = 30.0;
-const core::Pose2 T_map_start(40.0, -7.0, 2.0);
+constexpr double reach_of_sensor_m = 30.0;
+const core::Pose2 T_map_begin(40.0, -7.0, 2.0);
 
 NamedMap map_of_four() {
   NamedMap map;
@@ -23,7 +23,7 @@ NamedMap map_of_four() {
   return map;
 }
 
-void drive(const core::Pose2& T_before_after, core::Recording& recording) {
+void drive_on(const core::Pose2& T_before_after, core::Recording& recording) {
   core::Odometry motion = core::no_motion(0);
   motion.T_before_after = T_before_after;
   motion.covariance = Eigen::Vector3d(1e-4, 1e-4, 1e-6).asDiagonal();
@@ -31,8 +31,8 @@ void drive(const core::Pose2& T_before_after, core::Recording& recording) {
 }
 
 /// A scan from that pose; `moved_m`: the first one stands elsewhere than on the map.
-void look(const core::Pose2& T_map_robot, const std::vector<core::Label>& labels, core::Recording& recording,
-          double moved_m = 0.0) {
+void look_from(const core::Pose2& T_map_robot, const std::vector<core::Label>& labels, core::Recording& recording,
+               double moved_m = 0.0) {
   core::Scan scan;
   const NamedMap map = map_of_four();
   for (const core::Label label : labels) {
@@ -46,39 +46,39 @@ void look(const core::Pose2& T_map_robot, const std::vector<core::Label>& labels
   recording.labels.push_back(labels);
 }
 
-void expect_start(const std::optional<core::PoseGaussian>& start) {
+void expect_begin(const std::optional<core::PoseGaussian>& start) {
   ASSERT_TRUE(start);
-  EXPECT_LT((start->mean.vector() - T_map_start.vector()).norm(), 1e-9);
+  EXPECT_LT((start->mean.vector() - T_map_begin.vector()).norm(), 1e-9);
 }
 
 TEST(StartByNames, IsThatOfTheFirstScanThatTellsThePose) {
   core::Recording recording;
   const core::Pose2 step(1.0, 0.1, 0.3);
-  look(T_map_start, {10, 99}, recording);  // one name of the map
-  drive(step, recording);
-  core::Pose2 here = core::compose(T_map_start, step);
-  look(here, {10, 11, 12}, recording, 5.0);  // another tree has got a name of the map
-  drive(step, recording);
+  look_from(T_map_begin, {10, 99}, recording);  // one name of the map
+  drive_on(step, recording);
+  core::Pose2 here = core::compose(T_map_begin, step);
+  look_from(here, {10, 11, 12}, recording, 5.0);  // another tree has got a name of the map
+  drive_on(step, recording);
   here = core::compose(here, step);
-  look(here, {10, 11, 12}, recording);
-  const std::optional<core::PoseGaussian> start = start_by_names(recording, map_of_four(), reach_m);
-  expect_start(start);
-  const double given_m = reach_m / 60.0;
+  look_from(here, {10, 11, 12}, recording);
+  const std::optional<core::PoseGaussian> start = start_by_names(recording, map_of_four(), reach_of_sensor_m);
+  expect_begin(start);
+  const double given_m = reach_of_sensor_m / 60.0;
   EXPECT_GT(start->covariance(0, 0), given_m * given_m) << "what odometry adds";
 }
 
 TEST(StartByNames, IsNotToldByLandmarksCloseTogether) {
   core::Recording recording;
   NamedMap map = map_of_four();
-  look(T_map_start, {10, 10}, recording);
-  EXPECT_FALSE(start_by_names(recording, map, reach_m));
+  look_from(T_map_begin, {10, 10}, recording);
+  EXPECT_FALSE(start_by_names(recording, map, reach_of_sensor_m));
 }
 
 TEST(StartByNames, IsNotToldAfterTheVehicleWasCarried) {
   core::Recording recording;
   recording.events.emplace_back(core::Lost{});
-  look(T_map_start, {10, 11, 12}, recording);
-  EXPECT_FALSE(start_by_names(recording, map_of_four(), reach_m));
+  look_from(T_map_begin, {10, 11, 12}, recording);
+  EXPECT_FALSE(start_by_names(recording, map_of_four(), reach_of_sensor_m));
 }
 
 TEST(StartByNames, ContradictsAtFiveDeviations) {
