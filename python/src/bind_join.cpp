@@ -15,6 +15,7 @@
 #include "helixnav/reports/decision_sentence.hpp"
 #include "helixnav/supervisor/join_sessions.hpp"
 #include "join/joined_folder.hpp"
+#include "join/joined_names.hpp"
 #include "join/session_changes.hpp"
 #include "map.hpp"
 #include "signals.hpp"
@@ -31,8 +32,9 @@ struct Joined {
 
 struct Sessions {
   std::vector<core::JointMap> maps;
-  std::vector<std::string> names;    ///< of each
-  std::vector<std::string> folders;  ///< of those that were read
+  std::vector<std::string> names;              ///< of each
+  std::vector<std::string> folders;            ///< of those that were read
+  std::vector<apps::LandmarkNames> landmarks;  ///< of each, what its landmarks are called; a map in memory does not say
 };
 
 Sessions sessions_from(const py::sequence& list) {
@@ -42,12 +44,14 @@ Sessions sessions_from(const py::sequence& list) {
     if (py::isinstance<core::JointMap>(value)) {
       sessions.maps.push_back(value.cast<core::JointMap>());
       sessions.names.push_back("session " + number);
+      sessions.landmarks.emplace_back();
       continue;
     }
     const std::string folder = path_from(value, "sessions").string();
     sessions.maps.push_back(apps::read_joint_map_in(folder));
     sessions.names.push_back(folder);
     sessions.folders.push_back(folder);
+    sessions.landmarks.push_back(apps::landmark_names_in(folder));
   }
   if (sessions.maps.size() < 2) throw core::PreconditionError("join: expected two sessions or more");
   return sessions;
@@ -71,7 +75,10 @@ Joined join(const py::sequence& list, const std::optional<fs::path>& out, bool o
   apps::tell_drives(sessions.maps, result.joined);
   result.changes = apps::shared_landmarks(sessions.maps, result.joined);
   apps::make_gone_tentative(result.changes, result.joined.components);
-  if (out) apps::write_joined(out->string(), sessions.names, result.joined, result.changes);
+  if (out) {
+    const apps::JoinedNames landmarks = apps::joined_names(sessions.landmarks, result.joined);
+    apps::write_joined(out->string(), sessions.names, result.joined, result.changes, landmarks.of_component);
+  }
   return result;
 }
 

@@ -24,3 +24,14 @@ def test_a_run_by_names_has_them_in_its_map(program, tmp_path):
             tmp_path / "program2", "--quiet")
     helixnav.replay(again, map=tmp_path / "python", start=(0, 0, 0), out=tmp_path / "python2")
     assert (tmp_path / "python2" / "map.csv").read_text() == (tmp_path / "program2" / "map.csv").read_text()
+
+
+def test_joined_runs_keep_them_as_by_the_program(program, tmp_path):
+    days = [tmp_path / "monday", tmp_path / "tuesday"]
+    for number, day in enumerate(days):
+        program("simulate", "large-loop-changed", "--seed", 7, "--day", 7 + number, "--until", 60, "--association",
+                "known", "--out", day, "--quiet")
+    program("join", *days, "--out", tmp_path / "program")
+    helixnav.join(days, out=tmp_path / "python")
+    table = (tmp_path / "python" / "map.csv").read_text()
+    assert table == (tmp_path / "program" / "map.csv").read_text() and ",name\n" in table

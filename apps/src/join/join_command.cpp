@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -13,7 +12,6 @@
 #include "drive/earlier_session.hpp"
 #include "drive/kept_inputs.hpp"
 #include "helixnav/core/decision_row.hpp"
-#include "helixnav/runs/run_folder.hpp"
 #include "joined_folder.hpp"
 #include "joined_names.hpp"
 #include "session_changes.hpp"
@@ -34,10 +32,7 @@ std::vector<core::JointMap> read_maps(const std::vector<std::string>& runs) {
 
 std::vector<LandmarkNames> read_names(const std::vector<std::string>& runs) {
   std::vector<LandmarkNames> names;
-  for (const std::string& run : runs) {
-    const std::filesystem::path table = std::filesystem::path(run) / "map.csv";
-    names.push_back(std::filesystem::exists(table) ? runs::read_landmark_names(table.string()) : LandmarkNames());
-  }
+  for (const std::string& run : runs) names.push_back(landmark_names_in(run));
   return names;
 }
 

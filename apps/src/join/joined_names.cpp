@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <iterator>
 #include <set>
+
+#include "helixnav/runs/run_folder.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -79,6 +82,11 @@ LandmarkNames agreed_names(const Called& called, const core::JointMap& map, std:
 }
 
 }  // namespace
+
+LandmarkNames landmark_names_in(const std::string& folder) {
+  const std::filesystem::path table = std::filesystem::path(folder) / "map.csv";
+  return std::filesystem::exists(table) ? runs::read_landmark_names(table.string()) : LandmarkNames();
+}
 
 JoinedNames joined_names(const std::vector<LandmarkNames>& of_runs, const supervisor::JoinedSessions& joined) {
   JoinedNames result;

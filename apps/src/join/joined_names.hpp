@@ -11,6 +11,9 @@ namespace helixnav::apps {
 
 using LandmarkNames = std::map<core::LandmarkId, std::string>;
 
+/// Of the map.csv in the folder of a run; none where there is no such file.
+LandmarkNames landmark_names_in(const std::string& folder);
+
 /// What the landmarks of a joined map are called.
 struct JoinedNames {
   std::vector<LandmarkNames> of_component;

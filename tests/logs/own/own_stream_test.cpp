@@ -253,6 +253,7 @@ TEST_F(OwnStreamLines, AreWovenInLateAsLongAsNothingLaterIsDone) {
 TEST_F(OwnStreamLines, ThatAreWrongAreRefusedWithTheirKeyAndLeaveNothingBehind) {
   take(odometry(0.0));
   expect_refused("{\"odometry\": {\"t\": 0.5, \"v\": 1", "", "no JSON");
+  expect_refused(R"({"odometry": {"t": 0.5, "v": 1, "v": 2, "omega": 0}})", "v", "'v' is given twice");
   expect_refused("[1, 2]", "", "expected an object");
   expect_refused("{}", "", "holds no row");
   expect_refused(R"({"detections": []})", "", "a time alone");

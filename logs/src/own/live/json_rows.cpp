@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "json_rows.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include <nlohmann/json.hpp>
@@ -39,10 +40,26 @@ struct JsonRows::Line {
     fail_at(rows.path_, number, column, message);
   }
 
+  /// JSON takes the last of two values of one name, and nobody knows which was meant.
+  Json parsed() const {
+    std::vector<std::vector<std::string>> open;  // names so far of the objects about what is read
+    return Json::parse(text, [&](int, Json::parse_event_t event, const Json& read) {
+      if (event == Json::parse_event_t::object_start) open.emplace_back();
+      if (event == Json::parse_event_t::object_end) open.pop_back();
+      if (event != Json::parse_event_t::key) return true;
+      std::vector<std::string>& names = open.back();
+      names.push_back(read.get<std::string>());
+      if (std::find(names.begin(), names.end() - 1, names.back()) != names.end() - 1) {
+        fail(place_of(names.back(), text), "'" + names.back() + "' is given twice");
+      }
+      return true;
+    });
+  }
+
   Json object() const {
     Json object;
     try {
-      object = Json::parse(text);
+      object = parsed();
     } catch (const Json::out_of_range&) {
       fail(1, "a number that is larger than any that can be held (1.8e308)");
     } catch (const Json::exception& error) {
