@@ -2,6 +2,7 @@
 #include "drive/start_by_names.hpp"
 
 #include <cmath>
+#include <variant>
 
 #include <gtest/gtest.h>
 
@@ -65,6 +66,29 @@ TEST(StartByNames, IsThatOfTheFirstScanThatTellsThePose) {
   expect_begin(start);
   const double given_m = reach_of_sensor_m / 60.0;
   EXPECT_GT(start->covariance(0, 0), given_m * given_m) << "what odometry adds";
+}
+
+// The session begins as from a pose that is given, whose covariance says nothing of a long way in the dark.
+TEST(StartByNames, IsNoBeginAfterALongWayUntilTheFirstName) {
+  for (const bool is_long : {false, true}) {
+    Drive job;
+    job.known_association = true;
+    job.earlier.emplace();
+    job.earlier->landmark_of = map_of_four().landmark_of;
+    for (const auto& [id, point_m] : map_of_four().point_m) {
+      job.earlier->map.joint.ids.push_back(id);
+      job.earlier->map.joint.points_m.push_back(point_m);
+    }
+    core::Pose2 here = T_map_begin;
+    for (int k = 0; k < (is_long ? 400 : 4); ++k) {  // 100 times as much variance
+      drive_on(core::Pose2(0.01, 0.0, 0.0), job.recording);
+      std::get<core::Odometry>(job.recording.events.back()).covariance *= 100.0;
+      here = core::compose(here, core::Pose2(0.01, 0.0, 0.0));
+    }
+    look_from(here, {10, 11, 12}, job.recording);
+    EXPECT_EQ(begin_by_names(job).empty(), is_long);
+    EXPECT_EQ(job.earlier->start.kind, is_long ? SessionStart::Kind::unknown : SessionStart::Kind::pose);
+  }
 }
 
 TEST(StartByNames, IsNotToldByLandmarksCloseTogether) {

@@ -19,7 +19,7 @@ void check_earlier_labels(const EarlierSession& earlier) {
   if (earlier.start.kind == SessionStart::Kind::unknown) {
     throw core::InputError(
         "--association known finds where it begins by two landmarks of the map that one scan names and places, and "
-        "this log has no such scan: give --start end, or a pose");
+        "this log has no such scan near its begin: give --start end, or a pose");
   }
 }
 

@@ -84,6 +84,13 @@ NamedMap named(const GivenMap& given) {
   return map;
 }
 
+/// Whether it may be taken for a start that is given (seen_from), which has no covariance of its own: at most twice as uncertain.
+bool is_as_if_given(const core::PoseGaussian& start, double reach_m) {
+  const double sigma_m = reach_m / 60.0;
+  const Eigen::Array3d given(sigma_m, sigma_m, start_sigma_rad);
+  return (start.covariance.diagonal().array() <= 4.0 * given.square()).all();
+}
+
 std::string sentence(const core::Pose2& T_map_robot) {
   char text[160];
   std::snprintf(
@@ -124,6 +131,7 @@ std::string begin_by_names(Drive& job) {
       start_by_names(job.recording, is_sought ? named(*job.earlier) : named(*job.given_map), reach_m);
   if (!start) return {};
   if (is_sought) {
+    if (!is_as_if_given(*start, reach_m)) return {};
     job.earlier->start = {SessionStart::Kind::pose, start->mean};
     return sentence(start->mean);
   }

@@ -30,7 +30,8 @@ std::optional<core::PoseGaussian> start_by_names(const core::Recording& recordin
 bool contradict(const core::PoseGaussian& one, const core::PoseGaussian& other);
 
 /// Of a drive by names on an earlier map: begins where its first names tell, when nobody says where it begins, or when what the log
-/// says of it contradicts them. Returns a sentence about it, for the screen; none where all stays as it was. To be called before put_truth_on_map.
+/// says of it contradicts them. Not where odometry until then has made a start that nobody gave more than twice as uncertain as one that
+/// is given. Returns a sentence about it, for the screen; none where all stays as it was. To be called before put_truth_on_map.
 std::string begin_by_names(Drive& job);
 
 }  // namespace helixnav::apps
