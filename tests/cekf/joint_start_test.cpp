@@ -34,6 +34,18 @@ TEST_P(JointStart, KeepsTheWholeEstimate) {
   EXPECT_LT(filter.active_count(), filter.mapped_count());
 }
 
+TEST_P(JointStart, KeepsAnEstimateThatIsReadInParts) {
+  RandomProgram program(24, {GetParam(), 450, 40, false});
+  for (int k = 0; k < 420; ++k) program.step();
+  program.filter.keep_since(program.filter.phase());
+  program.filter.switch_region({});
+  for (int k = 0; k < 5; ++k) program.step();
+  EXPECT_GT(program.filter.mapped_count() - program.filter.active_count(), 130) << "more than are read at once";
+  const Differences d = compare(begun_again(program, true), program.oracle);
+  EXPECT_LE(d.mean, 1e-9);
+  EXPECT_LE(d.covariance, 1e-8);
+}
+
 TEST_P(JointStart, GoesOnAsTheFullFilter) {
   RandomProgram program(22, {GetParam(), 220, 40, false});
   for (int k = 0; k < 200; ++k) program.step();

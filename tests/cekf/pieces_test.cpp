@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "helixnav/cekf/packed_triangle.hpp"
 #include "helixnav/cekf/passive_covariance.hpp"
 #include "helixnav/cekf/reserved_matrix.hpp"
 #include "helixnav/core/random.hpp"
@@ -14,6 +15,21 @@ namespace {
 
 Eigen::MatrixXd random_matrix(core::RandomStream& random, int rows, int cols) {
   return Eigen::MatrixXd::NullaryExpr(rows, cols, [&] { return random.normal(); });
+}
+
+TEST(PackedTriangle, ComesBackWithBothTriangles) {
+  for (const Eigen::Index n : {0, 1, 7, 20}) {
+    ReservedMatrix symmetric(n, n);
+    const Eigen::MatrixXd some = Eigen::MatrixXd::NullaryExpr(n, n, [](Eigen::Index i, Eigen::Index j) {
+      return static_cast<double>(100 * std::max(i, j) + std::min(i, j));
+    });
+    symmetric.view() = some;
+    const PackedTriangle packed(symmetric);
+    EXPECT_EQ(packed.unpacked().view(), some) << n;
+    EXPECT_EQ(packed.bytes(), static_cast<std::size_t>(4 * n * (n + 1)));
+    symmetric.view().triangularView<Eigen::StrictlyUpper>().setZero();
+    EXPECT_TRUE(packed == PackedTriangle(symmetric)) << "the lower triangle is read";
+  }
 }
 
 TEST(ReservedMatrix, KeepsWhatIsCommonAndZeroesTheRest) {

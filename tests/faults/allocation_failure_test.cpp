@@ -148,6 +148,17 @@ TEST_P(FailedAllocation, LeavesASwitchThatKeepsThePhase) {
   expect_unharmed([&](CompressedEkf& f) { f.switch_region(wanted); }, 20);
 }
 
+TEST_P(FailedAllocation, LeavesASwitchFromTheWholeMap) {
+  filter_.switch_region(filter_.landmarks());
+  filter_.augment(near_, {});
+  filter_.remove(passive_[3]);
+  filter_.keep_since(filter_.phase());
+  const cekf::Snapshot snapshot = filter_.snapshot();
+  const std::vector<core::LandmarkId> wanted = {passive_[0], active_[0], passive_[1]};
+  expect_unharmed([&](CompressedEkf& f) { f.switch_region(wanted); }, 20);
+  EXPECT_TRUE(filter_.can_restore(snapshot));
+}
+
 TEST_P(FailedAllocation, LeavesARestoreAcrossPhases) {
   filter_.activate(passive_[4]);
   const cekf::Snapshot snapshot = filter_.snapshot();

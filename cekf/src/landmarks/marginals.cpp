@@ -4,39 +4,11 @@
 #include <cmath>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
-#include "helixnav/core/add_outer.hpp"
 #include "helixnav/core/packed_product.hpp"
 #include "region/touched_weights.hpp"
 
 namespace helixnav::cekf {
 namespace {
-
-ReservedMatrix zeros(Eigen::Index rows, Eigen::Index cols) {
-  ReservedMatrix matrix;
-  matrix.reserve(rows, cols);  // exactly: of a whole map's joint covariance there is no room for more
-  matrix.resize(rows, cols);
-  return matrix;
-}
-
-/// sum += e·M·eᵀ for a symmetric M, the lower triangle. Weights that no update has reached are left out.
-void add_both_sides(const Eigen::MatrixXd& e, const Eigen::MatrixXd& M, Eigen::MatrixXd& sum) {
-  const std::vector<int> touched = columns_not_zero(M);
-  if (touched.empty()) return;
-  const Eigen::MatrixXd M_touched = M(touched, touched);
-  const Eigen::Index n = e.rows();
-  ReservedMatrix reached = zeros(n, M_touched.cols());  // by the weights
-  core::add_product(reached.col(0), reached.stride(), core::Panels(e, touched, core::left_width),
-                    core::Panels(M_touched, core::right_width));
-  ReservedMatrix right = zeros(n, M_touched.cols());
-  right.view() = e(Eigen::all, touched);
-  constexpr Eigen::Index at_once = 256;  // columns, a multiple of eight
-  for (Eigen::Index first = 0; first < n; first += at_once) {
-    ReservedMatrix part = zeros(n - first, std::min(at_once, n - first));
-    core::add_outer(part.col(0), part.stride(), part.padded_rows(), part.cols(), reached.col(0) + first,
-                    reached.stride(), right.col(0) + first, right.stride(), M_touched.cols());
-    sum.block(first, first, part.rows(), part.cols()) += part.view();
-  }
-}
 
 /// e·M·eᵀ for one landmark's rows e, from the lower triangle of M, by columns: O(q²), no matrix formed.
 Eigen::Matrix2d both_sides(const Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>& e,
@@ -50,20 +22,6 @@ Eigen::Matrix2d both_sides(const Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen:
     sum += once + once.transpose();
   }
   return sum;
-}
-
-/// The same for the rows of a few landmarks, added to the lower triangle of `sum`.
-void add_both_sides_of_few(const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& e,
-                           const Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& M, Eigen::MatrixXd& sum) {
-  Eigen::VectorXd reached(e.rows());
-  for (Eigen::Index k = 0; k < M.cols(); ++k) {
-    const Eigen::Index below = M.cols() - k - 1;
-    const auto column = M.col(k).tail(below);
-    for (Eigen::Index i = 0; i < e.rows(); ++i) reached[i] = e.row(i).tail(below).dot(column) + 0.5 * M(k, k) * e(i, k);
-    for (Eigen::Index j = 0; j < e.rows(); ++j) {
-      for (Eigen::Index i = j; i < e.rows(); ++i) sum(i, j) += reached[i] * e(j, k) + e(i, k) * reached[j];
-    }
-  }
 }
 
 }  // namespace
@@ -161,58 +119,6 @@ Eigen::Matrix<double, 2, 3> CompressedEkf::covariance_with_pose(core::LandmarkId
   const Place& place = place_of(id, "covariance_with_pose");
   if (place.where == Whereabouts::active) return active_.P.view().block<2, 3>(ActivePart::column(place.index), 0);
   return phases_.back().basis.view().middleRows<2>(2 * place.index) * active_.A.view().leftCols<3>();
-}
-
-core::JointGaussian CompressedEkf::joint(const std::vector<core::LandmarkId>& ids) const {
-  core::JointGaussian result;
-  result.pose = active_.pose;
-  result.ids = ids;
-  const Eigen::Index n = 3 + 2 * static_cast<Eigen::Index>(ids.size());
-  result.covariance.resize(n, n);
-
-  // Where each row of the result comes from: a column of the active part, or a passive slot.
-  std::vector<int> active_rows = {0, 1, 2};
-  std::vector<int> active_columns = {0, 1, 2};
-  std::vector<int> passive_rows;
-  std::vector<int> passive_slots;
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const Place& place = place_of(ids[i], "joint");
-    const int row = ActivePart::column(static_cast<int>(i));
-    if (place.where == Whereabouts::active) {
-      const int column = ActivePart::column(place.index);
-      active_rows.insert(active_rows.end(), {row, row + 1});
-      active_columns.insert(active_columns.end(), {column, column + 1});
-      result.points_m.push_back(active_.points_m[static_cast<std::size_t>(place.index)]);
-    } else {
-      passive_rows.insert(passive_rows.end(), {row, row + 1});
-      passive_slots.push_back(place.index);
-      result.points_m.push_back(passive_mean(place.index));
-    }
-  }
-  auto& C = result.covariance;
-  C(active_rows, active_rows) = active_.P.view()(active_columns, active_columns);
-  if (passive_slots.empty()) return result;
-
-  const Eigen::MatrixXd e = basis_rows(passive_slots);
-  const Eigen::MatrixXd cross = e * active_.A.view()(Eigen::all, active_columns);
-  C(passive_rows, active_rows) = cross;
-  C(active_rows, passive_rows) = cross.transpose();
-  const Eigen::Index rows = e.rows();
-  const bool has_pairs = passive_slots.size() > 1;  // a landmark's own block needs no phase read again
-  Eigen::MatrixXd own = has_pairs ? phase_start_blocks(passive_slots) : Eigen::MatrixXd::Zero(rows, rows);
-  for (std::size_t i = 0; i < passive_slots.size(); ++i) {
-    const auto row = 2 * static_cast<Eigen::Index>(i);
-    own.block<2, 2>(row, row) = phases_.back().own_covariance_m2.middleRows<2>(2 * passive_slots[i]);
-  }
-  constexpr std::size_t few = 4;  // M is then read once in place; to form and pack it costs more
-  if (passive_slots.size() <= few) {
-    add_both_sides_of_few(e, active_.M.view(), own);
-  } else {
-    add_both_sides(e, active_.M.view().selfadjointView<Eigen::Lower>(), own);
-  }
-  own.triangularView<Eigen::StrictlyUpper>() = own.transpose();
-  C(passive_rows, passive_rows) = own;
-  return result;
 }
 
 }  // namespace helixnav::cekf

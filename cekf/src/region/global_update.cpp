@@ -11,6 +11,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/packed_product.hpp"
 #include "matrices/make_room.hpp"
+#include "region/before_switch.hpp"
 #include "region/touched_weights.hpp"
 
 namespace helixnav::cekf {
@@ -37,6 +38,25 @@ Eigen::MatrixXd product_with_symmetric(const ReservedMatrix& E, const Eigen::Mat
   return named.view();
 }
 
+/// In each column, what is in the rows `from` comes to be in the rows `to`; all others are zero. No allocation.
+void move_rows(const std::vector<MovedRows>& moves, Eigen::VectorXd& column, ReservedMatrix& matrix) {
+  auto view = matrix.view();
+  for (Eigen::Index j = 0; j < view.cols(); ++j) {
+    column.head(view.rows()) = view.col(j);
+    view.col(j).setZero();
+    for (const MovedRows& one : moves) view.col(j).segment<2>(one.to) = column.segment<2>(one.from);
+  }
+}
+
+std::vector<MovedRows> to_rows_of_slots(const std::vector<int>& slots) {
+  std::vector<MovedRows> moves;
+  moves.reserve(slots.size());
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    moves.push_back({ActivePart::column(static_cast<int>(i)), 2 * static_cast<Eigen::Index>(slots[i])});
+  }
+  return moves;
+}
+
 }  // namespace
 
 void CompressedEkf::global_update() {
@@ -61,8 +81,9 @@ int CompressedEkf::assign_slots(Phase& phase) {
 }
 
 /// Covariance of all slots (rows) with the active part (columns), 2·slots × n.
-ReservedMatrix CompressedEkf::end_columns(const core::Panels& basis, int slots) const {
+ReservedMatrix CompressedEkf::end_columns(int slots) const {
   const int n = active_.dimension();
+  const core::Panels basis(phases_.back().basis.view(), core::left_width);
   ReservedMatrix columns(2 * slots, n);
   const Eigen::MatrixXd weights = active_.A.view().transpose();
   core::add_product(columns.col(0), columns.stride(), basis, core::Panels(weights, core::right_width));
@@ -72,6 +93,44 @@ ReservedMatrix CompressedEkf::end_columns(const core::Panels& basis, int slots) 
         P.middleRows<2>(ActivePart::column(i));
   }
   return columns;
+}
+
+/// The same where nothing is passive, which the filter holds already, with its rows in another order, and which is large:
+/// not copied. The covariance of the vehicle alone stays behind.
+std::shared_ptr<const ReservedMatrix> CompressedEkf::hand_over_covariance(int slots, BeforeSwitch& before) {
+  const int n = active_.dimension();
+  std::vector<MovedRows> moves = to_rows_of_slots(active_.slots);
+  const Eigen::Index rows = std::max<Eigen::Index>(n, 2 * slots);
+  Eigen::VectorXd column(rows);
+  ReservedMatrix vehicle(3, 3);
+  vehicle.view() = active_.P.view().topLeftCorner<3, 3>();
+  const auto columns = std::make_shared<ReservedMatrix>();
+  active_.P.reserve(rows, n);
+
+  // Nothing below allocates or throws.
+  std::swap(active_.P, vehicle);
+  std::swap(*columns, vehicle);
+  columns->resize(rows, n);
+  move_rows(moves, column, *columns);
+  columns->resize(2 * slots, n);
+  before.columns = columns;
+  before.column.swap(column);
+  before.moves.swap(moves);
+  return columns;
+}
+
+/// The covariance of the active part again. No allocation.
+void CompressedEkf::take_back_covariance(BeforeSwitch& before) {
+  if (!before.columns) return;
+  ReservedMatrix& P = *before.columns;
+  const int n = active_.dimension();
+  for (MovedRows& one : before.moves) std::swap(one.from, one.to);
+  P.resize(before.column.size(), n);
+  move_rows(before.moves, before.column, P);
+  P.resize(n, n);
+  P.view().topRows<3>() = P.view().leftCols<3>().transpose();
+  P.view().topLeftCorner<3, 3>() = active_.P.view();
+  std::swap(active_.P, P);
 }
 
 /// An own variance that has become negative or is not finite: nothing of such a phase may be written down.
@@ -90,12 +149,12 @@ void CompressedEkf::check_own_covariances(const Phase& next) const {
 }
 
 /// Fills what only a closed phase has, and what the next one freezes.
-std::shared_ptr<const ReservedMatrix> CompressedEkf::close_phase(Phase& next) {
+std::shared_ptr<const ReservedMatrix> CompressedEkf::close_phase(Phase& next, BeforeSwitch& before) {
   Phase& phase = phases_.back();
   make_room(phase.taken, active_.slots.size());
   const int slots = assign_slots(phase);
-  const core::Panels basis(phase.basis.view(), core::left_width);
-  auto columns = std::make_shared<const ReservedMatrix>(end_columns(basis, slots));
+  const auto columns =
+      is_whole() ? hand_over_covariance(slots, before) : std::make_shared<const ReservedMatrix>(end_columns(slots));
 
   const Eigen::MatrixXd M = active_.M.view().selfadjointView<Eigen::Lower>();
   phase.touched = columns_not_zero(M);
@@ -116,7 +175,7 @@ std::shared_ptr<const ReservedMatrix> CompressedEkf::close_phase(Phase& next) {
     const int row = 2 * active_.slots[i];
     const int column = ActivePart::column(static_cast<int>(i));
     next.mean_m.segment<2>(row) = active_.points_m[i];
-    next.own_covariance_m2.middleRows<2>(row) = active_.P.view().block<2, 2>(column, column);
+    next.own_covariance_m2.middleRows<2>(row) = columns->view().block<2, 2>(row, column);
   }
   check_own_covariances(next);
   return columns;

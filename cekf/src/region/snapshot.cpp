@@ -14,11 +14,13 @@ std::size_t Snapshot::bytes() const {
                             (active.ids.size() + active.slots.size() + active.left_passive.size() +
                              active.dead_slots.size() + active.late_anchors.size()) *
                                 sizeof(int);
-  return sizeof(Snapshot) + active.P.bytes() + active.A.bytes() + active.M.bytes() +
+  return sizeof(Snapshot) + P.bytes() + active.A.bytes() + M.bytes() +
          static_cast<std::size_t>(active.theta.size()) * sizeof(double) + lists;
 }
 
-Snapshot CompressedEkf::snapshot() const { return {phases_.back().number, active_}; }
+Snapshot CompressedEkf::snapshot() const {
+  return {phases_.back().number, active_.without_symmetric(), PackedTriangle(active_.P), PackedTriangle(active_.M)};
+}
 
 bool CompressedEkf::can_restore(const Snapshot& snapshot) const {
   return std::any_of(phases_.begin(), phases_.end(),
@@ -35,6 +37,8 @@ void CompressedEkf::restore(const Snapshot& snapshot) {
   std::size_t at = 0;
   while (phases_[at].number != snapshot.phase) ++at;
   ActivePart active = snapshot.active;
+  active.P = snapshot.P.unpacked();
+  active.M = snapshot.M.unpacked();
   const std::vector<int>& have = phases_[at].late_anchors;
   const auto common = static_cast<std::size_t>(
       std::mismatch(have.begin(), have.end(), active.late_anchors.begin(), active.late_anchors.end()).first -

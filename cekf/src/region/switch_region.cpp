@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
+#include "region/before_switch.hpp"
 
 namespace helixnav::cekf {
 
@@ -46,26 +47,18 @@ bool CompressedEkf::switch_region_if_due() {
 
 void CompressedEkf::switch_region() { switch_region(region_around_vehicle()); }
 
-/// What closing a phase changes of the filter before the next one stands.
-struct CompressedEkf::BeforeSwitch {
-  std::vector<int> slots;
-  std::vector<int> free_slots;
-  long last_phase = 0;
-  std::size_t taken = 0;
-};
-
 void CompressedEkf::switch_region(const std::vector<core::LandmarkId>& active) {
   for (const core::LandmarkId id : active) place_of(id, "switch_region");
   std::vector<core::LandmarkId> wanted = active;
   std::sort(wanted.begin(), wanted.end());
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-  BeforeSwitch before{active_.slots, free_slots_, last_phase_, phases_.back().taken.size()};
+  BeforeSwitch before{active_.slots, free_slots_, last_phase_, phases_.back().taken.size(), nullptr, {}, {}};
   const std::size_t phases = phases_.size();
   try {
     Phase next;
     next.start_m = active_.pose.position_m();
     next.start_heading_variance_rad2 = active_.P.view()(2, 2);
-    const std::shared_ptr<const ReservedMatrix> columns = close_phase(next);
+    const std::shared_ptr<const ReservedMatrix> columns = close_phase(next, before);
     open_phase(std::move(next), columns->view(), wanted);
   } catch (...) {
     if (phases_.size() > phases) phases_.pop_back();
@@ -75,6 +68,7 @@ void CompressedEkf::switch_region(const std::vector<core::LandmarkId>& active) {
 }
 
 void CompressedEkf::reopen_phase(BeforeSwitch& before) {
+  take_back_covariance(before);
   open_again(phases_.back());
   phases_.back().taken.resize(before.taken);
   active_.slots.swap(before.slots);

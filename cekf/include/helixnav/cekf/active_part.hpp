@@ -12,7 +12,7 @@
 
 namespace helixnav::cekf {
 
-/// Everything that changes between two region switches: a copy of it is a snapshot.
+/// Everything that changes between two region switches, and what a snapshot copies.
 ///
 /// The state is (vehicle; active landmarks; weights s). The error of a passive landmark is its error at the start of
 /// the phase plus E·s, E being its rows of the phase's basis; the weights are carried as further states of the same
@@ -42,6 +42,11 @@ struct ActivePart {
   double rows = 0.0;                               ///< of the observations used since the phase began
   PhaseCosts costs;                                ///< of the phases before
 
+  /// All but P and M.
+  ActivePart without_symmetric() const {
+    return {pose,         points_m,   ids,          slots,   {},        A,    {},   theta,
+            left_passive, dead_slots, late_anchors, next_id, last_seen, cell, rows, costs};
+  }
   int dimension() const { return 3 + 2 * static_cast<int>(ids.size()); }
   int weights() const { return static_cast<int>(theta.size()); }
   static int column(int landmark_index) { return 3 + 2 * landmark_index; }

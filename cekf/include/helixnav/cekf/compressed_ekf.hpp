@@ -247,14 +247,18 @@ class CompressedEkf {
   double sigma_bound_m(int slot, double moved_m) const;
   std::vector<core::LandmarkId> passive_in_cells(const Eigen::Vector2d& point_m, double reach_m) const;
   Eigen::MatrixXd basis_rows(const std::vector<int>& slots) const;
+  void fill_own_of_many(const std::vector<int>& slots, const std::vector<int>& rows, const Eigen::MatrixXd& e,
+                        Eigen::MatrixXd& C) const;
   struct Parts;
   Parts parts_of(const std::vector<core::LandmarkId>& ids, const char* verb) const;
 
   // global_update.cpp, switch_region.cpp, snapshot.cpp
   struct BeforeSwitch;
   int assign_slots(Phase& phase);
-  ReservedMatrix end_columns(const core::Panels& basis, int slots) const;
-  std::shared_ptr<const ReservedMatrix> close_phase(Phase& next);
+  ReservedMatrix end_columns(int slots) const;
+  std::shared_ptr<const ReservedMatrix> hand_over_covariance(int slots, BeforeSwitch& before);
+  void take_back_covariance(BeforeSwitch& before);
+  std::shared_ptr<const ReservedMatrix> close_phase(Phase& next, BeforeSwitch& before);
   void absorb_closed_phases(long until);
   void check_own_covariances(const Phase& next) const;
   void reopen_phase(BeforeSwitch& before);

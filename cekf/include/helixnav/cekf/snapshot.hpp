@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "helixnav/cekf/active_part.hpp"
+#include "helixnav/cekf/packed_triangle.hpp"
 
 namespace helixnav::cekf {
 
@@ -11,7 +12,9 @@ namespace helixnav::cekf {
 /// filter that made it keeps that phase (CompressedEkf::keep_since).
 struct Snapshot {
   long phase = -1;
-  ActivePart active;
+  ActivePart active;  ///< without P and M
+  PackedTriangle P;
+  PackedTriangle M;
 
   std::size_t bytes() const;
 };
