@@ -61,6 +61,7 @@ void read_appearance(const Row& row, OwnDetection& detection) {
       row.fail(class_name, "expected a class of at most " + std::to_string(core::ClassName::most_bytes) +
                                " bytes; a short name of it will do");
     }
+    if (row.text(class_name).find('\0') != std::string::npos) row.fail(class_name, "a zero byte in class");
     detection.class_name = core::ClassName(row.text(class_name));
   }
   if (!row.has(size)) return;

@@ -56,6 +56,13 @@ TEST_F(OwnLogRefusal, OfNumbersThatAreNoneNamesThePlace) {
          "odometry.csv:2:3: expected a number with a decimal point for v, found '1,5'");
 }
 
+/// Found by fuzzing: it passed for a mistake of the program and ended it.
+TEST_F(OwnLogRefusal, OfAZeroByteInAClassNamesThePlace) {
+  const std::string zero(1, '\0');
+  expect("detections.csv", "t,range_m,bearing_deg,class\n0,1,2,o" + zero + "k\n",
+         "detections.csv:2:7: a zero byte in class");
+}
+
 TEST_F(OwnLogRefusal, OfUnitsThatCannotBeMeantSaysWhatToDo) {
   expect(
       "detections.csv", "t,range_m,bearing\n0,1,90\n",
