@@ -45,7 +45,7 @@ void ReservedMatrix::reserve(Eigen::Index rows, Eigen::Index cols) {
 void ReservedMatrix::make_room(Eigen::Index rows, Eigen::Index cols) {
   if (rows <= storage_.rows() && cols <= storage_.cols()) return;
   if (storage_.size() == 0) return reserve(rows, cols);  // only what has grown will grow
-  reserve(rows > storage_.rows() ? rows + rows / 4 : rows, cols > storage_.cols() ? cols + cols / 4 : cols);
+  reserve(rows > storage_.rows() ? rows + rows / 8 : rows, cols > storage_.cols() ? cols + cols / 8 : cols);
 }
 
 void ReservedMatrix::resize(Eigen::Index rows, Eigen::Index cols) {

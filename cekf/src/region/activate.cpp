@@ -92,7 +92,7 @@ void CompressedEkf::undo_activations(BeforeActivations& before) {
 }
 
 /// New anchors, given how all slots were correlated with them when the phase began.
-void CompressedEkf::append_columns(Phase& phase, const Eigen::MatrixXd& start_columns) const {
+void CompressedEkf::append_columns(Phase& phase, const Eigen::Ref<const Eigen::MatrixXd>& start_columns) const {
   const int w = weights_per_anchor();
   Eigen::Index q = phase.basis.cols();
   phase.basis.resize(phase.basis.rows(), q + w * start_columns.cols());
@@ -144,7 +144,8 @@ void CompressedEkf::refer_to_vehicle(const Phase& phase, const std::vector<int>&
   }
 }
 
-void CompressedEkf::append_first_columns(Phase& phase, const std::vector<int>& slots, Eigen::MatrixXd& anchors) const {
+void CompressedEkf::append_first_columns(Phase& phase, const std::vector<int>& slots,
+                                         Eigen::Ref<Eigen::MatrixXd> anchors) const {
   refer_to_vehicle(
       phase, slots, [&](int i) { return anchors.col(i); }, anchors.rightCols(anchors.cols() - 3));
   append_columns(phase, anchors);

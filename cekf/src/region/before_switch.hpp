@@ -8,14 +8,9 @@
 #include <Eigen/Core>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
+#include "matrices/move_rows.hpp"
 
 namespace helixnav::cekf {
-
-/// Two rows of a matrix, and where they go.
-struct MovedRows {
-  Eigen::Index from;
-  Eigen::Index to;
-};
 
 /// What closing a phase changes of the filter before the next one stands.
 struct CompressedEkf::BeforeSwitch {

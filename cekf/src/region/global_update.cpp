@@ -38,16 +38,6 @@ Eigen::MatrixXd product_with_symmetric(const ReservedMatrix& E, const Eigen::Mat
   return named.view();
 }
 
-/// In each column, what is in the rows `from` comes to be in the rows `to`; all others are zero. No allocation.
-void move_rows(const std::vector<MovedRows>& moves, Eigen::VectorXd& column, ReservedMatrix& matrix) {
-  auto view = matrix.view();
-  for (Eigen::Index j = 0; j < view.cols(); ++j) {
-    column.head(view.rows()) = view.col(j);
-    view.col(j).setZero();
-    for (const MovedRows& one : moves) view.col(j).segment<2>(one.to) = column.segment<2>(one.from);
-  }
-}
-
 std::vector<MovedRows> to_rows_of_slots(const std::vector<int>& slots) {
   std::vector<MovedRows> moves;
   moves.reserve(slots.size());

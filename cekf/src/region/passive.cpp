@@ -45,31 +45,41 @@ struct Carried {
   std::size_t from;
 };
 
-/// Carries these columns of the map's covariance over a closed phase that did not write their slots: all with one product, for
-/// which the phase is packed once.
-void replay_on_columns(const Phase& phase, const std::vector<Carried>& carried, Eigen::Ref<Eigen::MatrixXd> columns) {
-  if (carried.empty()) return;
-  std::vector<int> slots;
-  for (const Carried& one : carried) slots.push_back(one.slot);
+/// What a closed phase adds to the columns of these slots.
+ReservedMatrix change_of_columns(const Phase& phase, const core::Panels& response, const std::vector<int>& slots) {
   const Eigen::MatrixXd basis = rows_of(phase.basis.view(), slots, phase.touched);
   ReservedMatrix change(2 * phase.slots, basis.rows());
-  constexpr Eigen::Index few = 4;  // rows: to pack the phase for them costs more than to go through it once
-  if (basis.rows() <= few) {
-    for (Eigen::Index k = 0; k < basis.cols(); ++k) {
-      const auto response = phase.response.col(k);
-      for (Eigen::Index row = 0; row < basis.rows(); ++row) change.view().col(row) += basis(row, k) * response;
-    }
-  } else if (!phase.touched.empty()) {
-    core::add_product(change.col(0), change.stride(), core::Panels(phase.response, core::left_width),
-                      core::Panels(basis, core::right_width));
+  if (response.depth() > 0) {
+    core::add_product(change.col(0), change.stride(), response, core::Panels(basis, core::right_width));
+    return change;
   }
+  for (Eigen::Index k = 0; k < basis.cols(); ++k) {
+    for (Eigen::Index row = 0; row < basis.rows(); ++row) {
+      change.view().col(row) += basis(row, k) * phase.response.col(k);
+    }
+  }
+  return change;
+}
+
+/// Carries these columns of the map's covariance over a closed phase that did not write their slots; for all of them the phase is
+/// packed once.
+void replay_on_columns(const Phase& phase, const std::vector<Carried>& carried, Eigen::Ref<Eigen::MatrixXd> columns) {
+  constexpr std::size_t few = 2;  // to pack the phase for them costs more than to go through it once
+  constexpr std::size_t at_once = 128;
+  core::Panels response(core::left_width);
+  if (carried.size() > few) response.pack(phase.response);
   const auto written = phase.written_covariance();
-  for (std::size_t i = 0; i < carried.size(); ++i) {
-    auto own = columns.middleCols<2>(carried[i].column);
-    own.topRows(2 * phase.slots) += change.view().middleCols<2>(2 * static_cast<Eigen::Index>(i));
-    for (std::size_t k = 0; k < phase.written.size(); ++k) {
-      own.middleRows<2>(2 * phase.written[k]) =
-          written.block<2, 2>(2 * carried[i].slot, 2 * static_cast<Eigen::Index>(k)).transpose();
+  for (std::size_t first = 0; first < carried.size(); first += at_once) {
+    std::vector<int> slots;
+    for (std::size_t i = first; i < std::min(first + at_once, carried.size()); ++i) slots.push_back(carried[i].slot);
+    const ReservedMatrix change = change_of_columns(phase, response, slots);
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      auto own = columns.middleCols<2>(carried[first + i].column);
+      own.topRows(2 * phase.slots) += change.view().middleCols<2>(2 * static_cast<Eigen::Index>(i));
+      for (std::size_t k = 0; k < phase.written.size(); ++k) {
+        own.middleRows<2>(2 * phase.written[k]) =
+            written.block<2, 2>(2 * slots[i], 2 * static_cast<Eigen::Index>(k)).transpose();
+      }
     }
   }
 }
@@ -125,17 +135,18 @@ void replay_on_blocks(const Phase& phase, const std::vector<int>& rows, const st
 Eigen::MatrixXd CompressedEkf::start_columns(const std::vector<int>& slots, std::size_t phase) const {
   Eigen::MatrixXd columns =
       Eigen::MatrixXd::Zero(2 * phases_[phase].slots, 2 * static_cast<Eigen::Index>(slots.size()));
-  fill_start_columns(slots, phase, columns);
+  std::vector<Eigen::Index> at;
+  for (std::size_t k = 0; k < slots.size(); ++k) at.push_back(2 * static_cast<Eigen::Index>(k));
+  fill_start_columns(slots, phase, at, columns);
   return columns;
 }
 
-/// The same into columns that are zero. Allocates only where closed phases are kept.
+/// The same into two columns each, from `at` on, that are zero. Allocates only where closed phases are kept.
 void CompressedEkf::fill_start_columns(const std::vector<int>& slots, std::size_t phase,
-                                       Eigen::Ref<Eigen::MatrixXd> columns) const {
+                                       const std::vector<Eigen::Index>& at, Eigen::Ref<Eigen::MatrixXd> columns) const {
   std::vector<Carried> carried;
   for (std::size_t k = 0; k < slots.size(); ++k) {
-    const Eigen::Index column = 2 * static_cast<Eigen::Index>(k);
-    auto own = columns.middleCols<2>(column);
+    auto own = columns.middleCols<2>(at[k]);
     int w = -1;
     std::size_t p = phase;  // back to the last closed phase that wrote the slot
     while (w < 0 && p > 0) w = written_index(phases_[--p], slots[k]);
@@ -145,7 +156,7 @@ void CompressedEkf::fill_start_columns(const std::vector<int>& slots, std::size_
     } else if (2 * slots[k] < absorbed_->rows()) {
       absorbed_->copy_columns(slots[k], own.topRows(absorbed_->rows()));
     }
-    if (p < phase) carried.push_back({slots[k], column, p});
+    if (p < phase) carried.push_back({slots[k], at[k], p});
   }
   for (std::size_t p = 0; p < phase && !carried.empty(); ++p) {
     std::vector<Carried> here;

@@ -3,9 +3,22 @@
 #include <cmath>
 
 #include "helixnav/cekf/compressed_ekf.hpp"
+#include "matrices/move_rows.hpp"
 #include "region/before_switch.hpp"
 
 namespace helixnav::cekf {
+namespace {
+
+std::vector<MovedRows> to_rows_of_landmarks(const std::vector<int>& slots) {
+  std::vector<MovedRows> moves;
+  moves.reserve(slots.size());
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    moves.push_back({2 * static_cast<Eigen::Index>(slots[i]), ActivePart::column(static_cast<int>(i))});
+  }
+  return moves;
+}
+
+}  // namespace
 
 Eigen::Vector2i CompressedEkf::cell_of(const Eigen::Vector2d& point_m) const {
   // Beyond the range of int the cast would be anything; half of it leaves room for the neighbours of the last cell.
@@ -110,39 +123,43 @@ void CompressedEkf::open_phase(Phase&& next, const Eigen::Ref<const Eigen::Matri
                                const std::vector<core::LandmarkId>& active) {
   std::vector<int> slots;
   std::vector<int> entering;
+  std::vector<Eigen::Index> entering_at;
   for (const core::LandmarkId id : active) {
     const Place& place = *find_place(id);
     const bool was_active = place.where == Whereabouts::active;
-    slots.push_back(was_active ? active_.slots[static_cast<std::size_t>(place.index)] : place.index);
     if (!was_active) entering.push_back(place.index);
+    if (!was_active) entering_at.push_back(ActivePart::column(static_cast<int>(slots.size())));
+    slots.push_back(was_active ? active_.slots[static_cast<std::size_t>(place.index)] : place.index);
   }
   freeze_slots(next, active);
   ActivePart part = room_for(next, active, slots);
   const bool is_whole = next.passive_slots.empty();
   next.basis = ReservedMatrix(2 * next.slots, 0);
   if (!is_whole) next.basis.reserve(2 * next.slots, weights_per_anchor() * (part.dimension() + 16));
-  Eigen::MatrixXd entering_columns =
-      Eigen::MatrixXd::Zero(2 * next.slots, 2 * static_cast<Eigen::Index>(entering.size()));
-  Eigen::MatrixXd anchors(2 * next.slots, part.dimension());
+  std::vector<MovedRows> moves = to_rows_of_landmarks(slots);
+  Eigen::VectorXd column(std::max<Eigen::Index>(2 * next.slots, part.dimension()));
+  ReservedMatrix anchors;
+  anchors.reserve(column.size(), part.dimension());
+  anchors.resize(2 * next.slots, part.dimension());
   phases_.push_back(std::move(next));
   absorb_closed_phases(keep_since_);
-  fill_start_columns(entering, phases_.size() - 1, entering_columns);
+  fill_start_columns(entering, phases_.size() - 1, entering_at, anchors.view());
 
   // Nothing below allocates or throws. Anchors: covariances of all slots with the vehicle and each active landmark.
-  anchors.leftCols<3>() = columns.leftCols<3>();
-  Eigen::Index entered = 0;
+  anchors.view().leftCols<3>() = columns.leftCols<3>();
   for (std::size_t i = 0; i < active.size(); ++i) {
     const Place& place = *find_place(active[i]);
-    auto own = anchors.middleCols<2>(ActivePart::column(static_cast<int>(i)));
-    if (place.where == Whereabouts::active) {
-      own = columns.middleCols<2>(ActivePart::column(place.index));
-    } else {
-      own = entering_columns.middleCols<2>(2 * entered++);
-    }
+    if (place.where != Whereabouts::active) continue;
+    anchors.view().middleCols<2>(ActivePart::column(static_cast<int>(i))) =
+        columns.middleCols<2>(ActivePart::column(place.index));
   }
-  start_covariance(anchors, part);
+  if (is_whole) {
+    start_whole_covariance(moves, column, anchors, part);
+  } else {
+    start_covariance(anchors, part);
+  }
   active_ = std::move(part);
-  if (!is_whole) append_first_columns(phases_.back(), active_.slots, anchors);
+  if (!is_whole) append_first_columns(phases_.back(), active_.slots, anchors.view());
   rebuild_places();
 }
 
@@ -181,9 +198,9 @@ ActivePart CompressedEkf::room_for(const Phase& phase, const std::vector<core::L
   part.slots = slots;
   for (const int slot : slots) part.points_m.push_back(phase.mean_m.segment<2>(2 * slot));
   const int n = part.dimension();
-  part.P.resize(n, n);
   part.A.resize(0, n);
   if (phase.passive_slots.empty()) return part;
+  part.P.resize(n, n);
   part.theta = Eigen::VectorXd::Zero(weights_per_anchor() * n);
   std::vector<Eigen::Vector2d> offsets_m;
   for (const Eigen::Vector2d& point_m : part.points_m) offsets_m.push_back(point_m - phase.start_m);
@@ -191,12 +208,25 @@ ActivePart CompressedEkf::room_for(const Phase& phase, const std::vector<core::L
   return part;
 }
 
-void CompressedEkf::start_covariance(const Eigen::MatrixXd& anchors, ActivePart& part) const {
+void CompressedEkf::start_covariance(const ReservedMatrix& anchors, ActivePart& part) const {
   auto P = part.P.view();
   P.topLeftCorner<3, 3>() = active_.P.view().topLeftCorner<3, 3>();
   for (std::size_t i = 0; i < part.slots.size(); ++i) {
-    P.middleRows<2>(ActivePart::column(static_cast<int>(i))) = anchors.middleRows<2>(2 * part.slots[i]);
+    P.middleRows<2>(ActivePart::column(static_cast<int>(i))) = anchors.view().middleRows<2>(2 * part.slots[i]);
   }
+  P.triangularView<Eigen::StrictlyUpper>() = P.transpose();
+}
+
+/// The same where all landmarks are active: the anchors become the covariance, in their place.
+void CompressedEkf::start_whole_covariance(const std::vector<MovedRows>& moves, Eigen::VectorXd& column,
+                                           ReservedMatrix& anchors, ActivePart& part) const {
+  const int n = part.dimension();
+  anchors.resize(column.size(), n);
+  move_rows(moves, column, anchors);
+  anchors.resize(n, n);
+  std::swap(part.P, anchors);
+  auto P = part.P.view();
+  P.topLeftCorner<3, 3>() = active_.P.view().topLeftCorner<3, 3>();
   P.triangularView<Eigen::StrictlyUpper>() = P.transpose();
 }
 

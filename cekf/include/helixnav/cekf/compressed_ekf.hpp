@@ -25,6 +25,8 @@ class Panels;
 
 namespace helixnav::cekf {
 
+struct MovedRows;
+
 /// EKF-SLAM over a pose and point landmarks, exactly, at a cost per step that does not depend on the size of the map:
 /// only the landmarks of the vehicle's neighbourhood are active; what the steps of a phase mean for all others is
 /// gathered in the weights of ActivePart and applied when the region switches.
@@ -227,18 +229,19 @@ class CompressedEkf {
   BeforeActivations before_activations(bool all_active) const;
   void undo_activations(BeforeActivations& before);
   void make_room_for_landmark(int weights);
-  void append_columns(Phase& phase, const Eigen::MatrixXd& start_columns) const;
+  void append_columns(Phase& phase, const Eigen::Ref<const Eigen::MatrixXd>& start_columns) const;
   void append_weights_for(const std::vector<Eigen::Vector2d>& offsets_m, bool with_vehicle, ActivePart& part) const;
   template <class Vehicle>
   static void refer_to_vehicle(const Phase& phase, const std::vector<int>& slots, const Vehicle& vehicle,
                                Eigen::Ref<Eigen::MatrixXd> columns);
-  void append_first_columns(Phase& phase, const std::vector<int>& slots, Eigen::MatrixXd& anchors) const;
+  void append_first_columns(Phase& phase, const std::vector<int>& slots, Eigen::Ref<Eigen::MatrixXd> anchors) const;
   void append_late_columns(Phase& phase, const std::vector<int>& slots, Eigen::MatrixXd& start_columns) const;
   Eigen::MatrixXd phase_start_columns(const std::vector<int>& slots) const {
     return start_columns(slots, phases_.size() - 1);
   }
   Eigen::MatrixXd start_columns(const std::vector<int>& slots, std::size_t phase) const;
-  void fill_start_columns(const std::vector<int>& slots, std::size_t phase, Eigen::Ref<Eigen::MatrixXd> columns) const;
+  void fill_start_columns(const std::vector<int>& slots, std::size_t phase, const std::vector<Eigen::Index>& at,
+                          Eigen::Ref<Eigen::MatrixXd> columns) const;
   Eigen::MatrixXd phase_start_blocks(const std::vector<int>& slots) const;
   Eigen::MatrixXd phase_start_blocks(const std::vector<int>& rows, const std::vector<int>& columns) const;
   Eigen::Vector2d passive_mean(int slot) const;
@@ -267,7 +270,9 @@ class CompressedEkf {
   void freeze_slots(Phase& phase, const std::vector<core::LandmarkId>& active) const;
   ActivePart room_for(const Phase& phase, const std::vector<core::LandmarkId>& active,
                       const std::vector<int>& slots) const;
-  void start_covariance(const Eigen::MatrixXd& anchors, ActivePart& part) const;
+  void start_covariance(const ReservedMatrix& anchors, ActivePart& part) const;
+  void start_whole_covariance(const std::vector<MovedRows>& moves, Eigen::VectorXd& column, ReservedMatrix& anchors,
+                              ActivePart& part) const;
   std::vector<core::LandmarkId> region_around_vehicle() const;
   int most_active() const;
   int most_when_whole() const;

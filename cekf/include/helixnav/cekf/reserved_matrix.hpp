@@ -26,7 +26,7 @@ class ReservedMatrix {
   void resize(Eigen::Index rows, Eigen::Index cols);
   /// Room for rows × cols without a later allocation.
   void reserve(Eigen::Index rows, Eigen::Index cols);
-  /// Room for a resize to rows × cols, with what a resize would add for later ones, a quarter more unless it is the first:
+  /// Room for a resize to rows × cols, with what a resize would add for later ones, an eighth more unless it is the first:
   /// that resize then cannot throw.
   void make_room(Eigen::Index rows, Eigen::Index cols);
   void set_zero();
