@@ -12,6 +12,7 @@
 #include "helixnav/reports/decision_sentence.hpp"
 #include "numerics_text.hpp"
 #include "only_localized.hpp"
+#include "open_searches.hpp"
 #include "place_questions.hpp"
 #include "range_offset_text.hpp"
 
@@ -241,9 +242,9 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
                 "'helixnav evaluate' takes --truth-offset-s",
                 evaluation.position->fixes_outside));
   }
-  for (const std::string& text :
-       {only_localized(run) ? std::string() : calibration_text(run), fixes_text(run), contradicted_place_text(run),
-        numerics_text(numerics_of(run)), postponed_text(postponed_in(run)), range_offset_text(run)}) {
+  for (const std::string& text : {only_localized(run) ? std::string() : calibration_text(run), fixes_text(run),
+                                  contradicted_place_text(run), numerics_text(numerics_of(run)),
+                                  postponed_text(postponed_in(run)), range_offset_text(run), open_search_text(run)}) {
     if (!text.empty()) warnings.push_back(text);
   }
   for (const std::string& text : closing_warnings(run)) warnings.push_back(text);
@@ -262,7 +263,7 @@ std::vector<std::string> warnings_of_place(const runs::Run& run) {
                        " in a row, from " + short_number(from_s) + " s on: there the pose is that of the odometry");
   }
   if (const std::string text = place_not_found_text(run); !text.empty()) warnings.push_back(text);
-  if (run.steps.back().mode == core::Mode::searching) {
+  if (run.steps.back().mode == core::Mode::searching && open_search_text(run).empty()) {
     warnings.emplace_back("a search was still open at the end: where on the map the vehicle then was is not decided");
   }
   return warnings;
