@@ -15,6 +15,7 @@
 #include "open_searches.hpp"
 #include "place_questions.hpp"
 #include "range_offset_text.hpp"
+#include "scans_apart.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -55,7 +56,11 @@ std::string no_landmark_text(const ObservationCounts& counts) {
       counts.seen, counts.matched, counts.began);
 }
 
-std::string collapse_text(const ObservationCounts& counts) {
+std::string collapse_text(const ObservationCounts& counts, const runs::Run& run) {
+  if (const std::string text = scans_apart_text(run); !text.empty()) {
+    return warning("of %zu detections %.0f %% were matched; %s", counts.seen,
+                   100.0 * share(counts.matched, counts.seen), text.c_str());
+  }
   return warning(
       "matching collapsed: of %zu detections %.0f %% were matched, %.0f %% began landmarks; odometry or detections "
       "are worse than assumed, or mounting, units or times are wrong. 'helixnav check' shows what was understood, "
@@ -231,7 +236,7 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
     warnings.push_back(no_landmark_text(counts));
   } else if (counts.seen >= enough && share(counts.matched, counts.seen) < least_matched &&
              !has_nothing_to_match(run)) {
-    warnings.push_back(collapse_text(counts));
+    warnings.push_back(collapse_text(counts, run));
   }
   constexpr double least_nis = 0.25, most_nis = 2.0;
   const double nis = evaluation.nis.mean_per_dof;
