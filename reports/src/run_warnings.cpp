@@ -12,8 +12,10 @@
 #include "helixnav/reports/decision_sentence.hpp"
 #include "numerics_text.hpp"
 #include "only_localized.hpp"
+#include "open_searches.hpp"
 #include "place_questions.hpp"
 #include "range_offset_text.hpp"
+#include "scans_apart.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -54,7 +56,11 @@ std::string no_landmark_text(const ObservationCounts& counts) {
       counts.seen, counts.matched, counts.began);
 }
 
-std::string collapse_text(const ObservationCounts& counts) {
+std::string collapse_text(const ObservationCounts& counts, const runs::Run& run) {
+  if (const std::string text = scans_apart_text(run); !text.empty()) {
+    return warning("of %zu detections %.0f %% were matched; %s", counts.seen,
+                   100.0 * share(counts.matched, counts.seen), text.c_str());
+  }
   return warning(
       "matching collapsed: of %zu detections %.0f %% were matched, %.0f %% began landmarks; odometry or detections "
       "are worse than assumed, or mounting, units or times are wrong. 'helixnav check' shows what was understood, "
@@ -230,7 +236,7 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
     warnings.push_back(no_landmark_text(counts));
   } else if (counts.seen >= enough && share(counts.matched, counts.seen) < least_matched &&
              !has_nothing_to_match(run)) {
-    warnings.push_back(collapse_text(counts));
+    warnings.push_back(collapse_text(counts, run));
   }
   constexpr double least_nis = 0.25, most_nis = 2.0;
   const double nis = evaluation.nis.mean_per_dof;
@@ -241,9 +247,9 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
                 "'helixnav evaluate' takes --truth-offset-s",
                 evaluation.position->fixes_outside));
   }
-  for (const std::string& text :
-       {only_localized(run) ? std::string() : calibration_text(run), fixes_text(run), contradicted_place_text(run),
-        numerics_text(numerics_of(run)), postponed_text(postponed_in(run)), range_offset_text(run)}) {
+  for (const std::string& text : {only_localized(run) ? std::string() : calibration_text(run), fixes_text(run),
+                                  contradicted_place_text(run), numerics_text(numerics_of(run)),
+                                  postponed_text(postponed_in(run)), range_offset_text(run), open_search_text(run)}) {
     if (!text.empty()) warnings.push_back(text);
   }
   for (const std::string& text : closing_warnings(run)) warnings.push_back(text);
@@ -262,7 +268,7 @@ std::vector<std::string> warnings_of_place(const runs::Run& run) {
                        " in a row, from " + short_number(from_s) + " s on: there the pose is that of the odometry");
   }
   if (const std::string text = place_not_found_text(run); !text.empty()) warnings.push_back(text);
-  if (run.steps.back().mode == core::Mode::searching) {
+  if (run.steps.back().mode == core::Mode::searching && open_search_text(run).empty()) {
     warnings.emplace_back("a search was still open at the end: where on the map the vehicle then was is not decided");
   }
   return warnings;

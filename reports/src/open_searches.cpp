@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "open_searches.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include "helixnav/reports/decision_sentence.hpp"
+#include "only_localized.hpp"
+
+namespace helixnav::reports {
+namespace {
+
+struct OpenSearch {
+  enum class End { none, undecided, new_ground };
+  End end = End::none;
+  std::size_t from = 0, to = 0;  ///< steps [from, to)
+};
+
+bool closed_in(const core::StepReport& step) {
+  return std::any_of(step.decisions.begin(), step.decisions.end(), [](const core::Decision& decision) {
+    const auto* closure = std::get_if<core::ClosureDecision>(&decision);
+    return (closure != nullptr && closure->accepted) || core::begins_part(decision);
+  });
+}
+
+OpenSearch::End end_in(const core::StepReport& step) {
+  for (const core::Decision& decision : step.decisions) {
+    if (std::holds_alternative<core::UndecidedDecision>(decision)) return OpenSearch::End::undecided;
+    if (std::holds_alternative<core::NewGroundDecision>(decision)) return OpenSearch::End::new_ground;
+  }
+  return OpenSearch::End::none;
+}
+
+/// Those after the last closing; the one open at the end is the last.
+std::vector<OpenSearch> open_searches(const runs::Run& run) {
+  std::vector<OpenSearch> found;
+  std::optional<std::size_t> begun;
+  for (std::size_t k = 0; k < run.steps.size(); ++k) {
+    const core::StepReport& step = run.steps[k];
+    const OpenSearch::End end = end_in(step);
+    if (step.mode == core::Mode::searching && !begun) begun = k;
+    if (closed_in(step)) found.clear();
+    if (begun && end != OpenSearch::End::none) found.push_back({end, *begun, k + 1});
+    if (closed_in(step) || end != OpenSearch::End::none || step.mode == core::Mode::mapping) begun.reset();
+  }
+  if (begun) found.push_back({OpenSearch::End::none, *begun, run.steps.size()});
+  return found;
+}
+
+/// [landmark that lasted] the step in which it began.
+std::map<core::LandmarkId, std::size_t> begins_of_lasting(const runs::Run& run) {
+  std::map<core::LandmarkId, std::size_t> begins;
+  for (const core::MapLandmark& landmark : run.map) {
+    if (landmark.state == core::LandmarkState::mature) begins.emplace(landmark.id, 0);
+  }
+  for (std::size_t k = 0; k < run.steps.size(); ++k) {
+    for (const core::AssociationReport& a : run.steps[k].associations) {
+      const auto found = begins.find(a.landmark);
+      if (a.outcome == core::Outcome::augmented && found != begins.end()) found->second = k;
+    }
+  }
+  return begins;
+}
+
+bool stand_alike(const core::PointGaussian& a, const core::PointGaussian& b) {
+  constexpr double surely = 9.21;  // 99 % of two degrees of freedom
+  const Eigen::Vector2d apart_m = a.mean_m - b.mean_m;
+  const Eigen::Matrix2d S = a.covariance_m2 + b.covariance_m2;
+  return apart_m.dot(S.ldlt().solve(apart_m)) < surely;
+}
+
+/// Of landmarks that lasted: those that began in a search, and of them those that stand where one does that is older.
+struct Begun {
+  std::size_t all = 0, on_old = 0;
+};
+
+Begun begun_in(const OpenSearch& search, const runs::Run& run) {
+  const std::map<core::LandmarkId, std::size_t> begins = begins_of_lasting(run);
+  std::vector<const core::MapLandmark*> old, fresh;
+  for (const core::MapLandmark& landmark : run.map) {
+    const auto begin = begins.find(landmark.id);
+    if (begin == begins.end()) continue;
+    if (begin->second < search.from) old.push_back(&landmark);
+    if (begin->second >= search.from && begin->second < search.to) fresh.push_back(&landmark);
+  }
+  Begun begun{fresh.size(), 0};
+  for (const auto* landmark : fresh) {
+    begun.on_old += std::any_of(old.begin(), old.end(), [&](const core::MapLandmark* other) {
+      return stand_alike(landmark->point, other->point);
+    });
+  }
+  return begun;
+}
+
+double driven_in(const OpenSearch& search, const runs::Run& run) {
+  double driven_m = 0.0;
+  for (std::size_t k = search.from + 1; k < search.to; ++k) {
+    driven_m += (run.steps[k].pose.mean.position_m() - run.steps[k - 1].pose.mean.position_m()).norm();
+  }
+  return driven_m;
+}
+
+/// "12 landmarks mapped since may be on the map twice, 8 of them stand where old ones do".
+std::string twice_text(const Begun& begun, const std::string& when) {
+  const std::string twice =
+      counted(static_cast<double>(begun.all), "landmark") + " mapped " + when + " may be on the map twice";
+  return begun.on_old == 0 ? twice : twice + ", " + std::to_string(begun.on_old) + " stand where old ones do";
+}
+
+std::string text_of(const OpenSearch& search, const Begun& begun, const runs::Run& run) {
+  const std::string since = short_number(driven_in(search, run)) + " m, from " +
+                            short_number(core::seconds(run.steps[search.from].t_ns)) + " s on";
+  const std::string advice =
+      ". More of the old ground before the end would decide it; 'helixnav explain RUN' has the numbers, 'helixnav "
+      "calibrate' finds what makes returns ambiguous: noise and constants";
+  switch (search.end) {
+    case OpenSearch::End::none:
+      return "a search was still open at the end (" + since + "): whether this is old ground is not decided, and " +
+             twice_text(begun, "since") + advice;
+    case OpenSearch::End::undecided:
+      return "a search ended undecided (" + since + ") and nothing was closed after it: " + twice_text(begun, "in it") +
+             advice;
+    case OpenSearch::End::new_ground:
+      return "a search ended as on new ground (" + since + "), which is in doubt: " + twice_text(begun, "in it") +
+             advice;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string open_search_text(const runs::Run& run) {
+  if (only_localized(run)) return {};
+  const std::vector<OpenSearch> searches = open_searches(run);
+  constexpr std::size_t several = 3;
+  for (auto search = searches.rbegin(); search != searches.rend(); ++search) {
+    const Begun begun = begun_in(*search, run);
+    // New ground has none at all; of the honest drives that took old ground for new one had 18 of 49.
+    const std::size_t doubtful = search->end == OpenSearch::End::new_ground ? begun.on_old : begun.all;
+    if (doubtful >= several) return text_of(*search, begun, run);
+  }
+  return {};
+}
+
+}  // namespace helixnav::reports

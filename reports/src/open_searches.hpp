@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "helixnav/runs/run.hpp"
+
+namespace helixnav::reports {
+
+/// What searches left in doubt that no closing came after: one still open at the end, the last one that ended undecided, or the last that
+/// ended as new ground although three of the landmarks mapped in it stand where old ones do, within 99 % by their covariances. Each may have
+/// put landmarks on the map twice. Empty otherwise, where fewer than three landmarks that lasted began in it, and of a run that only localised.
+/// Test: reports/open_searches_test.cpp.
+std::string open_search_text(const runs::Run& run);
+
+}  // namespace helixnav::reports

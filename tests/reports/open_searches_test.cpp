@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "open_searches.hpp"
+
+#include <gtest/gtest.h>
+
+namespace helixnav::reports {
+namespace {
+
+constexpr std::size_t turn = 20, steps = 40;
+
+/// A drive of 1 m a step and a landmark a step; from the 20th step on it searches, and what it maps stands `aside_m` beside what it
+/// mapped before.
+runs::Run searching_run(double aside_m) {
+  runs::Run run;
+  for (std::size_t k = 0; k < steps; ++k) {
+    core::StepReport& step = run.steps.emplace_back();
+    step.t_ns = static_cast<core::Nanoseconds>(k) * 1'000'000'000;
+    step.pose.mean = core::Pose2(static_cast<double>(k), 0.0, 0.0);
+    step.mode = k < turn ? core::Mode::mapping : core::Mode::searching;
+    core::MapLandmark landmark;
+    landmark.id = static_cast<core::LandmarkId>(k);
+    landmark.state = core::LandmarkState::mature;
+    landmark.point.mean_m = {static_cast<double>(k % turn), k < turn ? 0.0 : aside_m};
+    landmark.point.covariance_m2 = 0.01 * Eigen::Matrix2d::Identity();
+    run.map.push_back(landmark);
+    core::AssociationReport began;
+    began.outcome = core::Outcome::augmented;
+    began.landmark = landmark.id;
+    step.associations = {began};
+  }
+  return run;
+}
+
+runs::Run ended(runs::Run run, const core::Decision& decision) {
+  run.steps[steps - 2].decisions = {decision};
+  run.steps.back().mode = core::Mode::mapping;
+  return run;
+}
+
+TEST(OpenSearches, AreSaidWhereOneIsOpenAtTheEnd) {
+  const std::string text = open_search_text(searching_run(50.0));
+  EXPECT_NE(text.find("still open at the end (19 m, from 20 s on)"), std::string::npos) << text;
+  EXPECT_NE(text.find("20 landmarks mapped since may be on the map twice."), std::string::npos) << text;
+  EXPECT_NE(open_search_text(searching_run(0.1)).find("20 stand where old ones do"), std::string::npos);
+}
+
+TEST(OpenSearches, AreNotSaidWhereNothingWasMappedSince) {
+  runs::Run run = searching_run(50.0);
+  run.map.resize(turn);
+  EXPECT_TRUE(open_search_text(run).empty());
+}
+
+TEST(OpenSearches, AreSaidWhereTheLastEndedUndecided) {
+  runs::Run run = ended(searching_run(50.0), core::UndecidedDecision{});
+  EXPECT_NE(open_search_text(run).find("ended undecided"), std::string::npos) << open_search_text(run);
+  core::ClosureDecision closed;
+  closed.accepted = true;
+  run.steps.back().decisions = {closed};
+  EXPECT_TRUE(open_search_text(run).empty());
+}
+
+TEST(OpenSearches, DoubtNewGroundOnlyWhereOldLandmarksStand) {
+  const std::string doubted = open_search_text(ended(searching_run(0.1), core::NewGroundDecision{}));
+  EXPECT_NE(doubted.find("as on new ground"), std::string::npos) << doubted;
+  EXPECT_TRUE(open_search_text(ended(searching_run(50.0), core::NewGroundDecision{})).empty());
+}
+
+TEST(OpenSearches, AreNotSaidOfWhoOnlyLocalises) {
+  runs::Run run = searching_run(0.1);
+  run.manifest.command = "helixnav replay log --map monday --localize";
+  EXPECT_TRUE(open_search_text(run).empty());
+}
+
+}  // namespace
+}  // namespace helixnav::reports
