@@ -47,6 +47,9 @@ cmake -S consumer -B by-cmake -DCMAKE_BUILD_TYPE=Release >cmake.log && cmake --b
 by-cmake/consumer
 g++ -std=c++17 consumer/consumer.cpp -o by-pkg-config $(pkg-config --cflags --libs helixnav)
 [[ $(./by-pkg-config) == "$(by-cmake/consumer)" ]] || fail "pkg-config makes another program"
+g++ -std=c++17 -O2 -march=native consumer/consumer.cpp -o native $(pkg-config --cflags --libs helixnav)
+landmarks=$(by-cmake/consumer | grep -o '^[0-9]* landmarks')
+[[ $(./native) == "$landmarks, robot at "* ]] || fail "compiled with -march=native it says: $(./native 2>&1)"
 
 echo "== removal"
 apt-get -q -y purge helixnav libhelixnav-dev python3-helixnav >apt.log || { cat apt.log; fail "purge"; }
