@@ -51,6 +51,13 @@ g++ -std=c++17 -O2 -march=native consumer/consumer.cpp -o native $(pkg-config --
 landmarks=$(by-cmake/consumer | grep -o '^[0-9]* landmarks')
 [[ $(./native) == "$landmarks, robot at "* ]] || fail "compiled with -march=native it says: $(./native 2>&1)"
 
+echo "== licences"
+for binary in /usr/bin/helixnav /usr/lib/python3/dist-packages/helixnav/_helixnav*.so; do
+  for library in $(objdump -p "$binary" | sed -n 's/^ *NEEDED *\(.*\)\.so.*/\1/p' | grep -v '^ld-'); do
+    grep -qwF -- "$library" /usr/share/doc/helixnav/copyright || fail "copyright does not name $library, which $binary links"
+  done
+done
+
 echo "== removal"
 apt-get -q -y purge helixnav libhelixnav-dev python3-helixnav >apt.log || { cat apt.log; fail "purge"; }
 left=$(files_of_ours)
