@@ -149,7 +149,7 @@ TEST_F(CampaignParts, AFolderIsDrivenByOneProcessOnly) {
   }
   const Outcome second = drive("a", "1:2");
   EXPECT_EQ(second.exit_code, 3);
-  EXPECT_NE(second.err.find("another process drives the campaign"), std::string::npos) << second.err;
+  EXPECT_NE(second.err.find("another process writes into this folder"), std::string::npos) << second.err;
 }
 
 }  // namespace
