@@ -3,7 +3,10 @@
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_PACKAGE_NAME helixnav)
 set(CPACK_PACKAGE_CONTACT "HelixNav developers <helixnav@packages.invalid>" CACHE STRING "Maintainer in the .deb files")
-set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+# Of the commit, so that apt-get takes a package built later for a newer one, which it is.
+execute_process(COMMAND ${CMAKE_COMMAND} -E env TZ=UTC git -C ${PROJECT_SOURCE_DIR} log -1
+  --date=format-local:%Y%m%d%H%M%S --format=+git%cd.%h OUTPUT_VARIABLE helixnav_of_commit ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION}${helixnav_of_commit})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_GENERATOR DEB)
 set(CPACK_STRIP_FILES ON)
@@ -78,8 +81,13 @@ add_custom_target(helixnav_man ALL DEPENDS ${man}/helixnav.1.gz)
 install(DIRECTORY ${man}/ DESTINATION share/man/man1 COMPONENT tools)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/helixnav.bash-completion
   DESTINATION share/bash-completion/completions RENAME helixnav COMPONENT tools)
-install(FILES README.md DESTINATION share/doc/helixnav COMPONENT tools)
-install(DIRECTORY docs examples DESTINATION share/doc/helixnav COMPONENT tools)
+# The changelog is installed as Debian wants it.
+file(READ README.md readme)
+string(REPLACE "(CHANGELOG.md)" "(changelog.gz)" readme "${readme}")
+file(CONFIGURE OUTPUT ${pages}/README.md CONTENT "${readme}" @ONLY)
+install(FILES ${pages}/README.md CONTRIBUTING.md DESTINATION share/doc/helixnav COMPONENT tools)
+install(DIRECTORY docs DESTINATION share/doc/helixnav COMPONENT tools PATTERN Doxyfile EXCLUDE)
+install(DIRECTORY examples DESTINATION share/doc/helixnav COMPONENT tools USE_SOURCE_PERMISSIONS)
 install(DIRECTORY tests/house/consumer DESTINATION share/doc/libhelixnav-dev/examples COMPONENT dev)
 
 include(CPack)

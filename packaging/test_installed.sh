@@ -26,9 +26,13 @@ cmp like/vehicle.toml /usr/share/helixnav/vehicles/plaza.toml
 for command in $(helixnav --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do
   dpkg -L helixnav | grep -q "/man1/helixnav-$command\.1\.gz$" || fail "no manual page of $command"
 done
+test -x /usr/share/doc/helixnav/examples/campaign/slurm_array.sh || fail "the examples cannot be run"
 completed=$(bash -c '. /usr/share/bash-completion/completions/helixnav
   COMP_WORDS=(helixnav repl) COMP_CWORD=1; _helixnav; echo "${COMPREPLY[*]}"')
 [[ $completed == replay ]] || fail "completed repl to '$completed'"
+completed=$(bash -c '. /usr/share/bash-completion/completions/helixnav
+  COMP_WORDS=(helixnav replay --association jc) COMP_CWORD=3; _helixnav; echo "${COMPREPLY[*]}"')
+[[ $completed == jcbb ]] || fail "completed --association jc to '$completed'"
 
 echo "== Python module"
 install "$debs"/python3-helixnav_*.deb
@@ -40,6 +44,16 @@ PYTHON
 for table in trajectory.tum map.csv decisions.csv; do cmp "own/$table" "python/$table"; done
 python3 /usr/share/doc/helixnav/examples/python/tutorial.py picture.svg | tail -1
 
+python3 - <<'PYTHON'
+import os, re, sys
+dead = [(page, link) for folder, _, names in os.walk("/usr/share/doc/helixnav") for page in
+        (os.path.join(folder, name) for name in names if name.endswith(".md"))
+        for link in re.findall(r"\]\(([^)\s#]+)", open(page, encoding="utf-8").read())
+        if not re.match("[a-z]+:", link) and not os.path.exists(os.path.join(folder, link))]
+sys.exit(f"FAILED: dead links: {dead}" if dead else 0)
+PYTHON
+python3 -c 'import importlib.metadata; print("dist-info:", importlib.metadata.version("helixnav"))'
+
 echo "== library"
 install "$debs"/libhelixnav-dev_*.deb g++ cmake make
 cp -r /usr/share/doc/libhelixnav-dev/examples/consumer .
@@ -47,6 +61,16 @@ cmake -S consumer -B by-cmake -DCMAKE_BUILD_TYPE=Release >cmake.log && cmake --b
 by-cmake/consumer
 g++ -std=c++17 consumer/consumer.cpp -o by-pkg-config $(pkg-config --cflags --libs helixnav)
 [[ $(./by-pkg-config) == "$(by-cmake/consumer)" ]] || fail "pkg-config makes another program"
+g++ -std=c++17 -O2 -march=native consumer/consumer.cpp -o native $(pkg-config --cflags --libs helixnav)
+landmarks=$(by-cmake/consumer | grep -o '^[0-9]* landmarks')
+[[ $(./native) == "$landmarks, robot at "* ]] || fail "compiled with -march=native it says: $(./native 2>&1)"
+
+echo "== licences"
+for binary in /usr/bin/helixnav /usr/lib/python3/dist-packages/helixnav/_helixnav*.so; do
+  for library in $(objdump -p "$binary" | sed -n 's/^ *NEEDED *\(.*\)\.so.*/\1/p' | grep -v '^ld-'); do
+    grep -qwF -- "$library" /usr/share/doc/helixnav/copyright || fail "copyright does not name $library, which $binary links"
+  done
+done
 
 echo "== removal"
 apt-get -q -y purge helixnav libhelixnav-dev python3-helixnav >apt.log || { cat apt.log; fail "purge"; }

@@ -16,6 +16,7 @@ import sysconfig
 import zipfile
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
+LICENSES = {"LICENSE": "LICENSE", "copyright": "packaging/copyright"}  # in dist-info; the second: of what the module links
 
 
 def version():
@@ -31,7 +32,8 @@ def tag():
 def metadata():
     return (f"Metadata-Version: 2.1\nName: helixnav\nVersion: {version()}\n"
             "Summary: Landmark navigation with an exact compressed EKF and particle-filter relocalisation\n"
-            "License: BSD-3-Clause\nRequires-Python: >=3.9\nRequires-Dist: numpy\n"
+            "License: BSD-3-Clause\n" + "".join(f"License-File: {name}\n" for name in LICENSES) +
+            "Requires-Python: >=3.9\nRequires-Dist: numpy\n"
             "Description-Content-Type: text/markdown\n\n" + (SOURCE / "docs/python.md").read_text(encoding="utf-8"))
 
 
@@ -70,7 +72,8 @@ def files_of(package):
     info = f"helixnav-{version()}.dist-info"
     yield f"{info}/METADATA", metadata().encode()
     yield f"{info}/WHEEL", f"Wheel-Version: 1.0\nGenerator: helixnav\nRoot-Is-Purelib: false\nTag: {tag()}\n".encode()
-    yield f"{info}/LICENSE", (SOURCE / "LICENSE").read_bytes()
+    for name, path in LICENSES.items():
+        yield f"{info}/{name}", (SOURCE / path).read_bytes()
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):

@@ -5,13 +5,16 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "cloud_choice.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/files/append_cells.hpp"
 #include "helixnav/files/file.hpp"
+#include "helixnav/files/folder_lock.hpp"
 #include "helixnav/files/number_text.hpp"
 #include "helixnav/runs/joint_map_file.hpp"
 #include "helixnav/runs/map_folder.hpp"
@@ -173,6 +176,7 @@ bool is_run_file(std::string_view name) {
 }
 
 struct RunWriter::Files {
+  std::unique_ptr<files::FolderLock> lock;
   Table associations;
   Table decisions;
   Table merges;
@@ -182,8 +186,9 @@ struct RunWriter::Files {
   std::optional<Table> particles;  ///< from the first step on that has a cloud
   CloudChoice cloud_choice;
 
-  explicit Files(const std::string& folder)
-      : associations(folder, associations_table),
+  Files(const std::string& folder, std::unique_ptr<files::FolderLock> kept)
+      : lock(std::move(kept)),
+        associations(folder, associations_table),
         decisions(folder, decisions_table),
         merges(folder, merges_table),
         clouds(folder, clouds_table),
@@ -194,9 +199,12 @@ struct RunWriter::Files {
 RunWriter::RunWriter(const std::string& folder, const RunManifest& manifest, const core::Recording& recording,
                      IfNotEmpty if_not_empty)
     : folder_(folder) {
+  std::error_code error;  // make_run_folder says what is wrong
+  fs::create_directories(folder_, error);
+  auto lock = std::make_unique<files::FolderLock>(folder_);
   make_run_folder(folder_, if_not_empty);
   write_truth(folder_, recording);
-  files_ = std::make_unique<Files>(folder_);
+  files_ = std::make_unique<Files>(folder_, std::move(lock));
   // Last: where there is a manifest, all else is.
   files::write_whole_file(folder_ + '/' + manifest_file, manifest_json(manifest));
 }

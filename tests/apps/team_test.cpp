@@ -191,6 +191,10 @@ TEST(TeamCampaignParts, AreTheCampaignThatWasNotDivided) {
   for (const char* file : {"manifest.json", "runs.csv", "summary.json"}) {
     EXPECT_EQ(text_of(fs::path(merged) / file), text_of(fs::path(whole) / file)) << file;
   }
+  const std::string later = drive("later", "24", "1");
+  const Outcome apart = run({"montecarlo", "--merge", whole, later, "--out", merged, "--overwrite"});
+  EXPECT_EQ(apart.exit_code, 3);
+  EXPECT_NE(apart.err.find("seeds 23 are in none of the parts"), std::string::npos) << apart.err;
   const Outcome twice = run({"montecarlo", "--merge", whole, first, "--out", merged, "--overwrite"});
   EXPECT_EQ(twice.exit_code, 3);
   EXPECT_NE(twice.err.find("seed 21 is in"), std::string::npos) << twice.err;

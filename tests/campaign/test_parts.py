@@ -17,7 +17,8 @@ import slurm_node
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples" / "campaign"
 PROGRAM = os.path.abspath(os.environ["HELIXNAV_PROGRAM"])
-RUNS, TASKS = int(os.environ.get("RUNS", 240)), int(os.environ.get("TASKS", 3))
+TASKS = int(os.environ.get("TASKS", 3))
+RUNS = int(os.environ.get("RUNS", 240)) // TASKS * TASKS
 SCENARIO = os.environ.get("SCENARIO", "circuit")
 
 
@@ -71,7 +72,7 @@ def test_a_slurm_array_with_a_task_killed_and_requeued(whole, shared):
     out = shared / "out"
     with slurm_node.one_node(shared / "slurm", cpus=2) as slurm:
         job = slurm.say("sbatch", "--parsable", f"--array=1-{TASKS}", f"--output={shared}/%a.log",
-                        f"--export=ALL,HELIXNAV={PROGRAM}", EXAMPLES / "slurm_array.sh", out, RUNS, SCENARIO).strip()
+                        f"--export=ALL,HELIXNAV={PROGRAM}", EXAMPLES / "slurm_array.sh", out, RUNS // TASKS, SCENARIO).strip()
         first = out / "part_00001"
         slurm_node.until(lambda: lines_in(first) >= 2, 120, "the first task drives nothing")
         slurm.say("scontrol", "requeue", f"{job}_1")
@@ -98,7 +99,7 @@ def test_gnu_parallel(whole, shared):
     environment = {**os.environ, "HELIXNAV": PROGRAM, "PARALLEL_OPTIONS": "--jobs 2"}
     begun = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                              start_new_session=True)
-    slurm_node.until(lambda: lines_in(shared / "part_00001") >= 2, 60, "nothing is driven")
+    slurm_node.until(lambda: lines_in(shared / f"part_1-{RUNS // TASKS}") >= 2, 60, "nothing is driven")
     os.killpg(begun.pid, signal.SIGKILL)  # the jobs, in groups of their own, live on for a while
     begun.wait()
     said = []
@@ -109,5 +110,23 @@ def test_gnu_parallel(whole, shared):
         return done.returncode == 0
 
     slurm_node.until(goes_on, 120, said)
-    assert all("another process drives the campaign" in text for text in said[:-1])
+    assert all("another process writes into this folder" in text for text in said[:-1])
     is_that_of_one_machine(shared / "merged", whole)
+
+
+def slurm_task(task, out, each):
+    """slurm_array.sh as Slurm starts it, without Slurm."""
+    return subprocess.run([EXAMPLES / "slurm_array.sh", out, str(each), SCENARIO], stderr=subprocess.PIPE, text=True,
+                          stdout=subprocess.DEVNULL, env={**os.environ, "HELIXNAV": PROGRAM, "SLURM_ARRAY_TASK_ID": str(task)})
+
+
+def test_a_task_knows_its_seeds_by_its_number_alone(tmp_path):
+    for task in (1, 3):
+        assert slurm_task(task, tmp_path, 2).returncode == 0
+    seeds = json.loads((tmp_path / "part_00003" / "manifest.json").read_text(encoding="utf-8"))["seeds"]
+    assert seeds == [[5, 6]]
+    parts = [tmp_path / "part_00001", tmp_path / "part_00003"]
+    assert "seeds 3 to 4 are in none" in montecarlo("--merge", *parts, "--out", tmp_path / "merged", code=3)
+    assert slurm_task(2, tmp_path, 2).returncode == 0
+    montecarlo("--merge", *parts, tmp_path / "part_00002", "--out", tmp_path / "merged")
+    assert "counted from 1" in slurm_task(0, tmp_path, 2).stderr

@@ -245,6 +245,8 @@ def test_the_stubs_name_everything_that_there_is():
     stub = ast.parse(pathlib.Path(helixnav.__file__).with_name("__init__.pyi").read_text(encoding="utf-8"))
     classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
     functions = {node.name for node in stub.body if isinstance(node, ast.FunctionDef)}
+    aliases = {target.id for node in stub.body if isinstance(node, ast.Assign) for target in node.targets}
+    assert all(name.startswith("_") for name in aliases), "names that nobody can import"
     for name in helixnav.__all__:
         thing = getattr(helixnav, name)
         if not inspect.isclass(thing):

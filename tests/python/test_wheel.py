@@ -37,6 +37,11 @@ def test_the_wheel_installs_without_network_and_navigates(environment, tmp_path)
     wheel, = tmp_path.glob("helixnav-*.whl")
     names = zipfile.ZipFile(wheel).namelist()
     assert "helixnav/py.typed" in names and "helixnav/__init__.pyi" in names
+    metadata, = (name for name in names if name.endswith("dist-info/METADATA"))
+    licenses = [line.split()[1] for line in zipfile.ZipFile(wheel).read(metadata).decode().splitlines()
+                if line.startswith("License-File:")]
+    assert licenses == ["LICENSE", "copyright"]
+    assert b"libClp" in zipfile.ZipFile(wheel).read(metadata.replace("METADATA", "copyright"))
     record, = (name for name in names if name.endswith("RECORD"))
     rows = csv.reader(zipfile.ZipFile(wheel).read(record).decode().splitlines())
     assert sorted(row[0] for row in rows) == sorted(names)

@@ -93,6 +93,18 @@ TEST(RunWriter, OverwritesTheFilesOfARunAndNoOthers) {
   EXPECT_EQ(files::read_whole_file(run + "/notes.txt"), "mine");
 }
 
+TEST(RunWriter, KeepsItsFolderToItselfAsLongAsItLives) {
+  const TemporaryFolder folder;
+  const std::string run = (folder.path() / "run").string();
+  const auto write_over = [&] { RunWriter(run, example_manifest(), {}, RunWriter::IfNotEmpty::overwrite); };
+  {
+    const RunWriter first(run, example_manifest(), {});
+    EXPECT_NE(input_error_of(write_over).find("another process writes into this folder"), std::string::npos);
+    EXPECT_TRUE(fs::exists(run + "/health.csv"));
+  }
+  write_over();
+}
+
 TEST(RunWriter, RefusesAFolderThatIsAFile) {
   const TemporaryFolder folder;
   const std::string file = folder.write("file", "x").string();

@@ -9,6 +9,7 @@
 #include "drive/drive.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
+#include "helixnav/files/folder_lock.hpp"
 #include "settings/config_file.hpp"
 #include "settings/settings.hpp"
 
@@ -45,6 +46,7 @@ void prepare_run(CLI::App& command, const RunOptions& options) {
   if (!fs::exists(options.out)) return;
   if (!fs::is_directory(options.out))
     throw core::InputError(options.out + ": expected a folder for --out, found a file");
+  const files::FolderLock nobody_writes_there(options.out);  // RunWriter takes it for good
   if (!options.overwrite && !fs::is_empty(options.out)) {
     throw core::InputError(options.out +
                            ": the folder is not empty; choose another --out, or --overwrite to replace the run in it");

@@ -111,9 +111,9 @@ void add_convert_command(CLI::App& app, ExitCode& code) {
   command
       ->add_option("--noise", job->noise,
                    "Add white Gaussian noise of this standard deviation, and its variance to the covariances;\n"
-                   "FIELD is one of " +
+                   "several with commas between them. FIELD is one of " +
                        CLI::detail::join(field_names(), ", "))
-      ->type_name("FIELD=SIGMA,...")
+      ->type_name("FIELD=SIGMA")
       ->delimiter(',')
       ->allow_extra_args(false);
   command->add_option("--seed", job->seed, "Seed of the noise")

@@ -100,7 +100,9 @@ void join(CLI::App& command, const JoinJob& job) {
 void add_join_command(CLI::App& app, ExitCode&) {
   CLI::App* command = app.add_subcommand("join", "Make one map of several runs that began anywhere");
   const auto job = std::make_shared<JoinJob>();
-  command->add_option("RUN", job->runs, "Run folders with a map.bin, oldest first")->required()->expected(2, 1000);
+  command->add_option("RUN", job->runs, "Run folders with a map.bin, oldest first")
+      ->required()
+      ->expected(2, CLI::detail::expected_max_vector_size);
   add_folder_options(*command, job->folder);
   command->get_option("--out")->required();
   command->footer(
@@ -109,9 +111,11 @@ void add_join_command(CLI::App& app, ExitCode&) {
       "map.csv and map.bin (replay --map goes on in them), joins.csv (how each run was placed, and why not),\n"
       "changes.csv (what is new, moved or gone where several runs looked) and report.html, where that is drawn. What "
       "is\n"
-      "gone is tentative from here on. To take a run out again, join the others.\n\n"
+      "gone is tentative from here on. To take a run out again, join the others. A run that went on in the map of "
+      "another\n"
+      "holds that already: give the later one alone.\n\n"
       "Example:\n"
-      "  helixnav join runs/monday runs/tuesday runs/robot_2 --out runs/week\n");
+      "  helixnav join runs/robot_1 runs/robot_2 runs/robot_3 --out runs/week\n");
   command->callback([job, command] { join(*command, *job); });
 }
 

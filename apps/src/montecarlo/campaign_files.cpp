@@ -128,4 +128,16 @@ SeedRanges fused(SeedRanges ranges) {
   return whole;
 }
 
+void check_no_seed_between_is_missing(const SeedRanges& fused) {
+  std::string missing;
+  for (std::size_t i = 1; i < fused.size(); ++i) {
+    const std::uint64_t first = fused[i - 1].second + 1, last = fused[i].first - 1;
+    missing += (missing.empty() ? "" : ", ") + std::to_string(first);
+    if (last > first) missing += " to " + std::to_string(last);
+  }
+  if (missing.empty()) return;
+  throw core::InputError("seeds " + missing +
+                         " are in none of the parts; drive them, too, or give the part that has them");
+}
+
 }  // namespace helixnav::apps

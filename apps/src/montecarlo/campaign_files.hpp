@@ -38,4 +38,7 @@ SeedRanges seed_ranges(const Json& manifest);
 /// In order, neighbours and overlapping ones as one.
 SeedRanges fused(SeedRanges ranges);
 
+/// InputError naming the seeds between the first and the last that no range holds: a part was forgotten, or never driven.
+void check_no_seed_between_is_missing(const SeedRanges& fused);
+
 }  // namespace helixnav::apps

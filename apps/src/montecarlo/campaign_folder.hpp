@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "folder_lock.hpp"
+#include "helixnav/files/folder_lock.hpp"
 
 namespace helixnav::apps {
 
@@ -41,7 +41,7 @@ class CampaignFolder {
   void take_up(Json manifest) const;
 
   std::string path_;
-  std::optional<FolderLock> lock_;
+  std::optional<files::FolderLock> lock_;
   std::ofstream rows_;
 };
 

@@ -92,7 +92,9 @@ void merge_campaigns(const std::vector<std::string>& parts, const std::string& o
   Merged merged;
   for (const std::string& part : parts) add_part(part, merged);
   sort_by_seed(merged.rows);
-  if (!merged.seeds.empty()) merged.manifest["seeds"] = fused(merged.seeds);
+  const SeedRanges seeds = fused(merged.seeds);
+  check_no_seed_between_is_missing(seeds);
+  if (!seeds.empty()) merged.manifest["seeds"] = seeds;
   std::error_code error;
   fs::create_directories(out, error);
   if (error) throw core::InputError(out + ": cannot make the folder: " + error.message());

@@ -13,6 +13,7 @@
 #include "helixnav/core/version.hpp"
 #include "helixnav/core/worker_pool.hpp"
 #include "helixnav/files/file.hpp"
+#include "helixnav/files/folder_lock.hpp"
 #include "team_campaign_table.hpp"
 #include "team_trial.hpp"
 
@@ -92,9 +93,11 @@ void merge_team_campaigns(const std::vector<std::string>& parts, const std::stri
       worlds.push_back(std::move(world));
     }
   }
+  const SeedRanges whole = fused(seeds);
+  check_no_seed_between_is_missing(whole);
   std::stable_sort(worlds.begin(), worlds.end(),
                    [](const TeamWorld& a, const TeamWorld& b) { return a.seed < b.seed; });
-  merged["seeds"] = fused(seeds);
+  merged["seeds"] = whole;
   std::filesystem::create_directories(out);
   files::write_whole_file(out + '/' + manifest_name, merged.dump(2) + '\n');
   files::write_whole_file(out + '/' + team_rows_name, team_columns + team_rows(worlds, 0, worlds.size()));
@@ -103,6 +106,7 @@ void merge_team_campaigns(const std::vector<std::string>& parts, const std::stri
 
 ExitCode run_team_campaign(const TeamCampaign& campaign) {
   make_folder(campaign);
+  const files::FolderLock lock(campaign.out);
   std::vector<TeamWorld> worlds = worlds_of(campaign);
   core::WorkerPool workers(campaign.jobs);
   ProgressBar progress("driving", worlds.size(), campaign.quiet);

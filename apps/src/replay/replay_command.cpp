@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -158,8 +157,7 @@ ExitCode replay(CLI::App& command, ReplayJob& job) {
   put_truth_on_map(task);
   if (task.fastslam.chosen) task.manifest.seed = task.fastslam.seed;
   task.manifest.inputs = input_files(job.path);
-  const bool has_file = !job.vehicle.empty() && std::filesystem::exists(job.vehicle);  // else one that ships
-  if (has_file) task.manifest.inputs.push_back(input_files(job.vehicle).front());
+  for (runs::InputFile& file : vehicle_inputs(job.vehicle)) task.manifest.inputs.push_back(std::move(file));
   if (!job.map.empty()) {
     const std::vector<runs::InputFile> of_map = input_files(job.localize   ? map_file(job.map)
                                                             : drives_again ? drive_file_in(job.map)

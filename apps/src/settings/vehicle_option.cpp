@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/fit_to_recording.hpp"
+#include "common/input_files.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/own_log.hpp"
@@ -85,13 +86,17 @@ void set_unless_given(CLI::App& command, const std::string& option_name, double 
   option->run_callback();
 }
 
-void add_vehicle_option(CLI::App& command, std::string& file) {
+void add_vehicle_option(CLI::App& command, std::string& file, const std::string& without) {
   command
       .add_option("--vehicle", file,
                   "The vehicle, its sensors and their noise: a file, or one that ships (" +
-                      CLI::detail::join(logs::shipped_vehicle_names(), ", ") +
-                      "); default: vehicle.toml beside the log, or that of a published log")
+                      CLI::detail::join(logs::shipped_vehicle_names(), ", ") + ")" + without)
       ->type_name("FILE");
+}
+
+std::vector<runs::InputFile> vehicle_inputs(const std::string& file) {
+  if (file.empty() || !std::filesystem::exists(file)) return {};
+  return input_files(file);
 }
 
 void apply_vehicle(CLI::App& command, const std::string& file, const std::string& log, Settings& settings) {

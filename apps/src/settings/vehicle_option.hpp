@@ -2,9 +2,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "helixnav/core/recording.hpp"
 #include "helixnav/logs/read_recording.hpp"
+#include "helixnav/runs/run_manifest.hpp"
 #include "settings.hpp"
 
 namespace CLI {
@@ -13,8 +15,13 @@ class App;
 
 namespace helixnav::apps {
 
-/// --vehicle FILE: a vehicle.toml, or the name of one that ships.
-void add_vehicle_option(CLI::App& command, std::string& file);
+/// --vehicle FILE: a vehicle.toml, or the name of one that ships; `without` says what holds when it is not given.
+void add_vehicle_option(
+    CLI::App& command, std::string& file,
+    const std::string& without = "; default: vehicle.toml beside the log, or that of a published log");
+
+/// The file of --vehicle, for the manifest; none where it is not given or ships.
+std::vector<runs::InputFile> vehicle_inputs(const std::string& file);
 
 /// As if the option had been given, unless it was.
 void set_unless_given(CLI::App& command, const std::string& option_name, double value);

@@ -175,6 +175,11 @@ bool LineChannel::next(std::string& line) {
   return false;
 }
 
+std::string LineChannel::why_nobody_reads() const {
+  if (write_error_ == EPIPE) return "the standard output is closed: nobody reads the answers";
+  return std::string("the standard output cannot be written: ") + std::strerror(write_error_);
+}
+
 bool LineChannel::send(std::string line) {
   if (out_ < 0) return true;
   line += '\n';
@@ -185,6 +190,7 @@ bool LineChannel::send(std::string line) {
     if (n > 0) {
       sent += static_cast<std::size_t>(n);
     } else if (n < 0 && errno != EINTR && errno != EAGAIN) {
+      write_error_ = errno;
       if (listening_ < 0) return false;
       out_ = -1;  // what it sent is read all the same
       return true;

@@ -33,6 +33,9 @@ class LineChannel {
   /// nobody reads the standard output any more.
   bool send(std::string line);
 
+  /// In words, after send returned false.
+  std::string why_nobody_reads() const;
+
   static constexpr std::size_t longest_line = logs::OwnStream::longest_line;
 
  private:
@@ -51,6 +54,7 @@ class LineChannel {
   bool skipping_ = false;  ///< the rest of a line that is too long
   bool ended_ = false;     ///< this input
   std::size_t number_ = 0;
+  int write_error_ = 0;
 };
 
 }  // namespace helixnav::apps

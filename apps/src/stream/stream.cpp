@@ -39,7 +39,18 @@ class Stream {
     if (!job.listen.empty()) std::fprintf(stderr, "helixnav: listening on %s\n", channel_.address().c_str());
   }
 
+  /// Whatever stops it, the client is told.
   ExitCode run() {
+    try {
+      return answer_all();
+    } catch (const std::exception& error) {
+      send_end(error.what());
+      throw;
+    }
+  }
+
+ private:
+  ExitCode answer_all() {
     if (!job_.resume.empty()) drive_again();
     std::string line;
     while (reader_is_there_ && channel_.next(line)) answer(input_.take(line, channel_.line_number()));
@@ -47,7 +58,6 @@ class Stream {
     return end();
   }
 
- private:
   /// The last scans: more of them might have come, or the odometry does not tell their motion to its end.
   void answer_end_of_input() {
     input_has_ended_ = true;
@@ -159,6 +169,10 @@ class Stream {
 
   void send(std::string line) { reader_is_there_ = reader_is_there_ && channel_.send(std::move(line)); }
 
+  void send_end(const std::string& why) {
+    if (!std::exchange(end_is_told_, true)) send(end_answer(steps_, refused_, why));
+  }
+
   void refuse(const logs::RefusedLine& refused) {
     ++refused_;
     send(refused_answer(refused));
@@ -181,12 +195,12 @@ class Stream {
 
   ExitCode end() {
     const bool stopped = interrupted();
-    send(end_answer(steps_, refused_, stopped ? "signal" : "end of input"));
+    send_end(stopped ? "signal" : "end of input");
     if (!job_.out.empty()) finish_folder();
     std::fprintf(stderr, "helixnav: %lld scans answered, %lld lines refused\n", static_cast<long long>(steps_),
                  static_cast<long long>(refused_));
     if (!reader_is_there_) {
-      std::fputs("helixnav: the standard output is closed: nobody reads the answers\n", stderr);
+      std::fprintf(stderr, "helixnav: %s\n", channel_.why_nobody_reads().c_str());
       return ExitCode::data;
     }
     if (stopped) return ExitCode::interrupted;
@@ -205,7 +219,7 @@ class Stream {
   core::PoseGaussian start_;                          ///< of the drive that is gone on with
   std::vector<core::Event> held_back_;                ///< of it, behind the end of its input
   bool input_has_ended_ = false;
-  bool reader_is_there_ = true;
+  bool reader_is_there_ = true, end_is_told_ = false;
   std::int64_t steps_ = 0, refused_ = 0, broken_ = 0;
 };
 

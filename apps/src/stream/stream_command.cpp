@@ -43,7 +43,7 @@ ExitCode run_stream(CLI::App& command, StreamOptions& options) {
   job.manifest.command = command_line_text();
   job.manifest.recording = "stream";
   job.manifest.config = dump_config(command);
-  job.manifest.inputs = input_files(options.vehicle);
+  job.manifest.inputs = vehicle_inputs(options.vehicle);
   if (!job.resume.empty()) job.manifest.inputs.push_back(input_files(drive_file_in(job.resume)).front());
   return stream(job);
 }
@@ -53,7 +53,10 @@ ExitCode run_stream(CLI::App& command, StreamOptions& options) {
 void add_stream_command(CLI::App& app, ExitCode& code) {
   CLI::App* command = app.add_subcommand("stream", "Navigate live: JSON Lines in, one answer line a scan out");
   const auto options = std::make_shared<StreamOptions>();
-  add_vehicle_option(*command, options->vehicle);
+  add_vehicle_option(
+      *command, options->vehicle,
+      ", whose sensors say what they see (view_deg, reach_m); those that ship leave it to the log: write it "
+      "into a copy (helixnav new-vehicle DIR --like NAME)");
   command->get_option("--vehicle")->required();
   command
       ->add_option("--listen", options->job.listen,

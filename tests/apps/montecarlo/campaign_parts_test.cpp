@@ -90,6 +90,15 @@ TEST_F(CampaignParts, ThatOverlapAreNotMerged) {
   expect_refused(merge({"a", "a"}), "seed 1 is in");
 }
 
+TEST_F(CampaignParts, BetweenWhichSeedsAreMissingAreNotMerged) {
+  ASSERT_EQ(drive("a", "1:1").exit_code, 0);
+  ASSERT_EQ(drive("b", "4:4").exit_code, 0);
+  ASSERT_EQ(drive("c", "6:6").exit_code, 0);
+  expect_refused(merge({"c", "a", "b"}), "seeds 2 to 3, 5 are in none of the parts");
+  ASSERT_EQ(drive("b", "2:5").exit_code, 0);
+  EXPECT_EQ(merge({"c", "a", "b"}).exit_code, 0);
+}
+
 TEST_F(CampaignParts, ThatWereNotDrivenToTheirEndAreNotMerged) {
   ASSERT_EQ(drive("a", "1:3").exit_code, 0);
   const std::string rows = text_of(out("a") + "/runs.jsonl");
@@ -149,7 +158,7 @@ TEST_F(CampaignParts, AFolderIsDrivenByOneProcessOnly) {
   }
   const Outcome second = drive("a", "1:2");
   EXPECT_EQ(second.exit_code, 3);
-  EXPECT_NE(second.err.find("another process drives the campaign"), std::string::npos) << second.err;
+  EXPECT_NE(second.err.find("another process writes into this folder"), std::string::npos) << second.err;
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ bool is_run_file(std::string_view name);
 /// truth are on disk; after each `write` the step is. A process killed at any instant leaves a folder that read_run
 /// reads up to the last complete step. Numbers are the shortest text that reads back as the same double. Everything
 /// but wall-clock figures is a function of the arguments, byte for byte.
-/// Throws InputError when the file system refuses (the message names the file and the reason).
+/// Throws InputError, which names file and reason, when the file system refuses or another writes there (files::FolderLock).
 /// Test: runs/run_writer_test.cpp, runs/run_folder_test.cpp.
 class RunWriter {
  public:
