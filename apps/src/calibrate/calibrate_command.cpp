@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -66,14 +67,31 @@ void print_scale(const char* what, const smoothing::NoiseScale& scale) {
                                                           : "better");
 }
 
+std::string verdict_on(const ConstantFound& found) {
+  std::array<char, 160> text{};
+  const double unit = found.constant.unit;
+  switch (found.verdict) {
+    case Verdict::not_observable:
+      return "not observable from this log: left as told";
+    case Verdict::unsettled:
+      return "observable; goes to and fro between the rounds: left as told";
+    case Verdict::indistinguishable:
+      return "observable; indistinguishable from the told value: left as told";
+    case Verdict::not_confirmed:
+      return "observable; does not explain the held-out part better: left as told";
+    case Verdict::kept:
+      break;
+  }
+  std::snprintf(text.data(), text.size(), "observable; kept, as %.5g +- %.3g with the others as written",
+                found.kept_value / unit, 1.96 * found.kept_sigma / unit);
+  return text.data();
+}
+
 void print_constant(const ConstantFound& found) {
   const double unit = found.constant.unit, half = 1.96 * found.sigma / unit;
   const std::string sensor = found.constant.sensor > 0 ? " (sensor " + std::to_string(found.constant.sensor) + ")" : "";
   std::printf("%-20s told %9.5g  found %9.5g +- %-8.3g  %s\n", (found.constant.key + sensor).c_str(), found.told / unit,
-              found.value / unit, half,
-              !found.observable ? "not observable from this log: left as told"
-              : found.kept      ? "observable; kept"
-                                : "observable; does not explain the held-out part better: left as told");
+              found.value / unit, half, verdict_on(found).c_str());
 }
 
 void print_constants(const Calibration& found) {
@@ -190,9 +208,11 @@ void add_calibrate_command(CLI::App& app, ExitCode& code) {
   command->footer(
       "Navigates the log, solves the drive as a whole and fits the constants of the vehicle file and both noises to "
       "it; then\n"
-      "again with what was found, until it stays. A constant of which the log says too little is left as told, and so "
-      "is one\n"
-      "that, fitted to three quarters of the log, does not explain the fourth better. Noise goes into vehicle.toml as\n"
+      "again with what was found, until it stays. A constant is kept where its interval of 95 % excludes what was told "
+      "and\nwhere, fitted to three quarters of the log, it explains the fourth better; others are left as told, the "
+      "rest "
+      "estimated\nagain, and so is one of which the log says too little or that does not settle. Noise goes into "
+      "vehicle.toml as\n"
       "noise_scale. Of a published log it begins with the vehicle that ships. What does not settle "
       "and\nleaves out more than a quarter of the detections, or asks for four times the noise, is printed, not "
       "written "

@@ -17,12 +17,14 @@
 #include "helixnav/logs/field_of_view.hpp"
 #include "helixnav/logs/handedness.hpp"
 #include "helixnav/supervisor/lengths.hpp"
+#include "judge_constants.hpp"
 #include "keep_scans.hpp"
 #include "replay/read_to_replay.hpp"
 #include "settings/vehicle_option.hpp"
 #include "settled_log.hpp"
 #include "slipped_scans.hpp"
 #include "stop_if_interrupted.hpp"
+#include "swings.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -59,14 +61,19 @@ class Calibrator {
     drop_what_does_nothing(log);
     far_off_ = !constants_.empty();
     for (const VehicleConstant& constant : constants_) {
-      result_.constants.push_back(
-          {constant, constant.value(settings), constant.value(settings), 0.0, false, false, 0.0});
+      ConstantFound& found = result_.constants.emplace_back();
+      found.constant = constant;
+      found.told = found.value = found.kept_value = constant.value(settings);
     }
   }
 
   Calibration run() {
-    constexpr int most_rounds = 8;
-    while (result_.rounds < most_rounds && !result_.settled) round();
+    constexpr int most_rounds = 8, most_with_fewer = 12;
+    while (result_.rounds < (leaves_any() ? most_with_fewer : most_rounds) && !result_.settled) {
+      round();
+      if (!result_.settled && repeats(values_, sigmas())) leave_least_significant();
+    }
+    if (!result_.settled) leave_unsettled();
     if (!constants_.empty()) judge();
     return result_;
   }
@@ -165,6 +172,57 @@ class Calibrator {
     ids_ = std::move(drive.ids);
     slipped_ = std::move(drive.slipped);
     graph_ = std::move(drive.task.problem.graph);
+    values_.push_back(values());
+  }
+
+  Eigen::VectorXd values() const {
+    Eigen::VectorXd values(index(constants_.size()));
+    for (std::size_t c = 0; c < constants_.size(); ++c) values[index(c)] = constants_[c].value(result_.settings);
+    return values;
+  }
+
+  Eigen::VectorXd sigmas() const {
+    Eigen::VectorXd sigmas(index(constants_.size()));
+    for (std::size_t c = 0; c < constants_.size(); ++c)
+      sigmas[index(c)] = is_left(c) ? 0.0 : result_.constants[c].sigma;
+    return sigmas;
+  }
+
+  /// Left as told from here on.
+  bool is_left(std::size_t c) const { return result_.constants[c].verdict == Verdict::unsettled; }
+  bool leaves_any() const {
+    return std::any_of(result_.constants.begin(), result_.constants.end(),
+                       [](const ConstantFound& found) { return found.verdict == Verdict::unsettled; });
+  }
+
+  /// Rounds that repeat never settle: of the constants that go to and fro the one goes back to what was told that is nearest to
+  /// it, and the rounds begin to count anew.
+  void leave_least_significant() {
+    const Eigen::VectorXd swing = swings(values_, sigmas());
+    constexpr double settled_sigmas = 0.4;
+    ConstantFound* least = nullptr;
+    const auto significance = [](const ConstantFound& found) {
+      return std::abs(found.value - found.told) / found.sigma;
+    };
+    for (std::size_t c = 0; c < constants_.size(); ++c) {
+      ConstantFound& found = result_.constants[c];
+      if (is_left(c) || !found.observable || swing[index(c)] < settled_sigmas) continue;
+      if (least == nullptr || significance(found) < significance(*least)) least = &found;
+    }
+    if (least == nullptr) return;
+    least->verdict = Verdict::unsettled;
+    least->constant.add(result_.settings, least->told - least->constant.value(result_.settings));
+    std::printf("the rounds repeat: %s is left as told\n", least->constant.key.c_str());
+    values_.clear();
+  }
+
+  /// What still goes farther than its interval.
+  void leave_unsettled() {
+    if (values_.size() < 2) return;
+    const Eigen::VectorXd swing = swings(values_, sigmas());
+    for (std::size_t c = 0; c < constants_.size(); ++c) {
+      if (result_.constants[c].observable && swing[index(c)] > 1.96) result_.constants[c].verdict = Verdict::unsettled;
+    }
   }
 
   /// Without returns where they cannot be believed: the constants may be far off, or the returns fit the rest so badly that they
@@ -210,20 +268,6 @@ class Calibrator {
     }
   }
 
-  Eigen::VectorXd usual() const {
-    Eigen::VectorXd usual(index(constants_.size()));
-    for (std::size_t c = 0; c < constants_.size(); ++c) usual[index(c)] = constants_[c].usual;
-    return usual;
-  }
-
-  /// Back to what was told.
-  Eigen::VectorXd back(const Settings& settings) const {
-    Eigen::VectorXd change(index(constants_.size()));
-    for (std::size_t c = 0; c < constants_.size(); ++c)
-      change[index(c)] = result_.constants[c].told - constants_[c].value(settings);
-    return change;
-  }
-
   NudgedLog nudged(const core::Recording& recording) const {
     return nudge([this](const Settings& settings) { return plain(settings); }, result_.settings, constants_, recording);
   }
@@ -246,9 +290,9 @@ class Calibrator {
       drive.task = solve_log(recording, drive.ids, drive.task.problem.graph);
       const auto evidence =
           smoothing::evidence_of_constants(drive.task.problem, derivatives_of(nudged(recording), drive.task));
-      const std::vector<bool> free = observable(evidence.information, usual());
-      sigmas = sigmas_of(evidence.information, free, usual());
-      const double step = move(best_change(evidence, free, back(result_.settings)), free, sigmas);
+      const std::vector<bool> free = observable(evidence.information, usual_of(result_));
+      sigmas = sigmas_of(evidence.information, free, usual_of(result_));
+      const double step = move(best_change(evidence, free, back_to_told(result_, result_.settings)), free, sigmas);
       constexpr double little = 0.02;
       if (step < little) break;
     }
@@ -256,6 +300,7 @@ class Calibrator {
     drive.task = solve_log(recording, drive.ids, drive.task.problem.graph);
     double went = 0.0;
     for (std::size_t c = 0; c < constants_.size(); ++c) {
+      if (is_left(c)) continue;
       const double way = constants_[c].value(result_.settings) - constants_[c].value(before);
       went = std::max(went, std::abs(way) / sigmas[index(c)]);
     }
@@ -269,6 +314,7 @@ class Calibrator {
       const double value = constants_[c].value(result_.settings);
       const double to = std::clamp(value + change[index(c)], constants_[c].least, constants_[c].most);
       constants_[c].add(result_.settings, to - value);
+      if (is_left(c)) continue;
       found.value = to;
       found.sigma = sigmas[index(c)];
       found.observable = free[c];
@@ -277,58 +323,16 @@ class Calibrator {
     return longest;
   }
 
-  /// Evidence of the scans of one part of the log, or of all others, the observations of the rest being left out.
-  smoothing::ConstantsEvidence evidence_of(const core::Recording& recording, const NudgedLog& log, int part,
-                                           bool inside) const {
-    Ids ids = ids_;
-    for (std::size_t k = 0; k < ids.size(); ++k) {
-      const bool is_inside = static_cast<int>(k * std::size_t{parts_held_out} / ids.size()) == part;
-      if (is_inside != inside) std::fill(ids[k].begin(), ids[k].end(), core::no_label);
-    }
-    const SmoothingTask task = solve_log(recording, ids, graph_);
-    return smoothing::evidence_of_constants(task.problem, derivatives_of(log, task));
-  }
-
-  /// Observable in the whole log and without any of its parts.
-  std::vector<bool> free_in(const std::vector<Fold>& folds) const {
-    std::vector<bool> free;
-    for (const ConstantFound& found : result_.constants) free.push_back(found.observable);
-    for (const Fold& fold : folds) {
-      const std::vector<bool> without_part = observable(fold.rest.information, usual());
-      for (std::size_t c = 0; c < free.size(); ++c) free[c] = free[c] && without_part[c];
-    }
-    return free;
-  }
-
-  /// Keeps what, fitted to three quarters of the drive, explains the fourth better than what was told; by the whole then.
   void judge() {
-    core::Recording recording = read(result_.settings);
-    loosen_odometry(slipped_, recording);
-    const NudgedLog log = nudged(recording);
-    std::vector<Fold> folds;
-    ProgressBar progress("judging by what is held out", parts_held_out + 1, false);
-    for (int part = 0; part < parts_held_out; ++part) {
-      progress.advance_to(static_cast<std::size_t>(part));
-      folds.push_back({evidence_of(recording, log, part, false), evidence_of(recording, log, part, true)});
-    }
-    const auto all = evidence_of(recording, log, parts_held_out, false);
-    const Eigen::VectorXd told = back(result_.settings);
-    const std::vector<bool> none(constants_.size(), false);
-    const std::vector<bool> keep = confirmed(folds, free_in(folds), told);
-    result_.held_out_gain = 0.5 * (held_out_chi2(folds, none, told) - held_out_chi2(folds, keep, told));
+    JudgedDrive drive;
+    drive.as_told = [this](const Settings& settings) { return plain(settings); };
+    drive.with_noise_found = [this](const Settings& settings) { return read(settings); };
+    drive.ids = std::move(ids_);
+    drive.slipped = std::move(slipped_);
+    drive.graph = std::move(graph_);
+    const Settings by_rest = judge_constants(std::move(drive), result_);
     result_.nis_told = nis_held_out(known_);
-    result_.nis_found = nis_held_out(changed(best_change(folds.back().rest, keep, told)));
-    result_.settings = changed(best_change(all, keep, told));
-    for (std::size_t c = 0; c < constants_.size(); ++c) {
-      result_.constants[c].kept = keep[c];
-      result_.constants[c].kept_value = constants_[c].value(result_.settings);
-    }
-  }
-
-  Settings changed(const Eigen::VectorXd& change) const {
-    Settings settings = result_.settings;
-    for (std::size_t c = 0; c < constants_.size(); ++c) constants_[c].add(settings, change[index(c)]);
-    return settings;
+    result_.nis_found = nis_held_out(by_rest);
   }
 
   /// Not a number where a run breaks off, as one may with the noise found and constants that are wrong.
@@ -352,6 +356,7 @@ class Calibrator {
   Ids ids_;                           ///< of the last round
   std::vector<std::size_t> slipped_;  ///< likewise
   core::LandmarkGraph graph_;         ///< solved with them
+  RoundValues values_;                ///< since rounds began to count
   Calibration result_;
 };
 

@@ -7,20 +7,24 @@
 
 #include "helixnav/logs/vehicle.hpp"
 #include "helixnav/smoothing/noise_scales.hpp"
+#include "kept_constants.hpp"
 #include "settings/settings.hpp"
 #include "vehicle_constants.hpp"
 
 namespace helixnav::apps {
 
-/// A constant as found. `value` is the best one whether it is kept or not.
+/// A constant as found, all of them free. `value` is the best one whether it is kept or not.
 struct ConstantFound {
   VehicleConstant constant;
   double told = 0.0;  ///< by the vehicle file
   double value = 0.0;
   double sigma = 0.0;  ///< of value; where nothing is observable: what is known after the log
   bool observable = false;
-  bool kept = false;        ///< explains the held-out part better than what was told
-  double kept_value = 0.0;  ///< with the constants that are not kept as told
+  Verdict verdict = Verdict::not_observable;
+  double kept_value = 0.0;  ///< estimated with the constants that are not kept as told
+  double kept_sigma = 0.0;  ///< likewise; 0 of one that is not kept
+
+  bool kept() const { return verdict == Verdict::kept; }
 };
 
 struct Calibration {

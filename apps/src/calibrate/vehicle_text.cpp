@@ -33,7 +33,7 @@ struct NewLine {
 
 std::string constant_line(const ConstantFound& found, double value) {
   std::array<char, 200> text{};
-  const double unit = found.constant.unit, half = 1.96 * found.sigma / unit;
+  const double unit = found.constant.unit, half = 1.96 * found.kept_sigma / unit;
   const int decimals = half > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 9) : 6;
   std::snprintf(text.data(), text.size(), "%s = %.6g  # calibrated; 95 %%: %.*f to %.*f\n", found.constant.key.c_str(),
                 value / unit, decimals, value / unit - half, decimals, value / unit + half);
@@ -54,7 +54,7 @@ std::vector<NewLine> lines_of(const logs::Vehicle& vehicle, const Calibration& c
                                               : scale_line(sensor_scale, calibration.scales.landmarks)});
   for (const ConstantFound& found : calibration.constants) {
     const bool every = section >= 0 && found.constant.sensor == VehicleConstant::every_sensor;
-    if (!found.kept || !(every || found.constant.sensor == section)) continue;
+    if (!found.kept() || !(every || found.constant.sensor == section)) continue;
     const double value = every ? told_delay_s(vehicle, section) + found.kept_value - found.told : found.kept_value;
     lines.push_back({found.constant.stem, constant_line(found, value)});
   }

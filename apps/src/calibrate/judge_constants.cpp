@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "judge_constants.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/progress_bar.hpp"
+#include "keep_scans.hpp"
+#include "slipped_scans.hpp"
+
+namespace helixnav::apps {
+namespace {
+
+class Judge {
+ public:
+  Judge(JudgedDrive drive, Calibration& calibration) : drive_(std::move(drive)), result_(calibration) {
+    for (const ConstantFound& found : result_.constants) constants_.push_back(found.constant);
+  }
+
+  Settings run() {
+    const Settings found = result_.settings;
+    const std::vector<Fold> folds = cut();
+    const auto all = evidence_here();
+    const Eigen::VectorXd told = back_to_told(result_, found);
+    std::vector<Verdict> verdicts = judge_kept(all, folds, free_in(folds), usual_of(result_), told);
+    change(best_change(all, kept_of(verdicts), told));
+    estimate(verdicts);
+    const std::vector<bool> none(constants_.size(), false), keep = kept_of(verdicts);
+    result_.held_out_gain = 0.5 * (held_out_chi2(folds, none, told) - held_out_chi2(folds, keep, told));
+    Settings by_rest = found;
+    change(by_rest, best_change(folds.back().rest, keep, told));
+    return by_rest;
+  }
+
+ private:
+  core::Recording recording_here() const {
+    core::Recording recording = drive_.with_noise_found(result_.settings);
+    loosen_odometry(drive_.slipped, recording);
+    return recording;
+  }
+
+  NudgedLog nudged(const core::Recording& recording) const {
+    return nudge(drive_.as_told, result_.settings, constants_, recording);
+  }
+
+  std::vector<Fold> cut() const {
+    const core::Recording recording = recording_here();
+    const NudgedLog log = nudged(recording);
+    std::vector<Fold> folds;
+    ProgressBar progress("judging by what is held out", parts_held_out + 1, false);
+    for (int part = 0; part < parts_held_out; ++part) {
+      progress.advance_to(static_cast<std::size_t>(part));
+      folds.push_back({evidence_of(recording, log, part, false), evidence_of(recording, log, part, true)});
+    }
+    return folds;
+  }
+
+  /// Evidence of the scans of one part of the log, or of all others, the observations of the rest being left out.
+  smoothing::ConstantsEvidence evidence_of(const core::Recording& recording, const NudgedLog& log, int part,
+                                           bool inside) const {
+    Ids ids = drive_.ids;
+    for (std::size_t k = 0; k < ids.size(); ++k) {
+      const bool is_inside = static_cast<int>(k * std::size_t{parts_held_out} / ids.size()) == part;
+      if (is_inside != inside) std::fill(ids[k].begin(), ids[k].end(), core::no_label);
+    }
+    const SmoothingTask task = solve_log(recording, ids, drive_.graph);
+    return smoothing::evidence_of_constants(task.problem, derivatives_of(log, task));
+  }
+
+  /// Of the whole log; another delay may put the last scans behind its end.
+  smoothing::ConstantsEvidence evidence_here() {
+    const core::Recording recording = recording_here();
+    if (const std::size_t scans = scans_of(recording); drive_.ids.size() > scans) drive_.ids.resize(scans);
+    return evidence_of(recording, nudged(recording), parts_held_out, false);
+  }
+
+  /// Kept until judged: what differs from what was told with all others free, and is observable without any part of the log, too.
+  /// With others as told an interval is narrower, and of a log that the model does not quite fit it then excludes the truth.
+  std::vector<Verdict> free_in(const std::vector<Fold>& folds) const {
+    std::vector<Verdict> verdicts;
+    for (const ConstantFound& found : result_.constants) {
+      const bool free = found.observable && found.verdict != Verdict::unsettled;
+      const bool differs = std::abs(found.value - found.told) > 1.96 * found.sigma;
+      verdicts.push_back(!free ? found.verdict : differs ? Verdict::kept : Verdict::indistinguishable);
+    }
+    for (const Fold& fold : folds) {
+      const std::vector<bool> without_part = observable(fold.rest.information, usual_of(result_));
+      for (std::size_t c = 0; c < verdicts.size(); ++c) {
+        if (verdicts[c] == Verdict::kept && !without_part[c]) verdicts[c] = Verdict::not_confirmed;
+      }
+    }
+    return verdicts;
+  }
+
+  /// What is kept, with all else as told; what does not differ from what was told then goes back, too.
+  void estimate(std::vector<Verdict>& verdicts) {
+    Eigen::VectorXd sigmas = Eigen::VectorXd::Zero(index(constants_.size()));
+    constexpr int most_steps = 4;
+    constexpr double little = 0.02;
+    for (int i = 0; i < most_steps && is_any_kept(verdicts); ++i) {
+      const auto evidence = evidence_here();
+      const Eigen::VectorXd usual = usual_of(result_), told = back_to_told(result_, result_.settings);
+      while (const auto least = least_significant(evidence, verdicts, usual, told))
+        verdicts[*least] = Verdict::indistinguishable;
+      const Eigen::VectorXd step = best_change(evidence, kept_of(verdicts), told);
+      sigmas = kept_sigmas(evidence.information, verdicts, usual);
+      change(step);
+      if ((step.array().abs() <= little * sigmas.array()).all()) break;
+    }
+    for (std::size_t c = 0; c < constants_.size(); ++c) {
+      ConstantFound& found = result_.constants[c];
+      found.verdict = verdicts[c];
+      found.kept_value = constants_[c].value(result_.settings);
+      found.kept_sigma = found.kept() ? sigmas[index(c)] : 0.0;
+    }
+  }
+
+  void change(const Eigen::VectorXd& by) { change(result_.settings, by); }
+  void change(Settings& settings, const Eigen::VectorXd& by) const {
+    for (std::size_t c = 0; c < constants_.size(); ++c) constants_[c].add(settings, by[index(c)]);
+  }
+
+  JudgedDrive drive_;
+  Calibration& result_;
+  std::vector<VehicleConstant> constants_;
+};
+
+}  // namespace
+
+Eigen::VectorXd usual_of(const Calibration& calibration) {
+  Eigen::VectorXd usual(index(calibration.constants.size()));
+  for (std::size_t c = 0; c < calibration.constants.size(); ++c) {
+    const ConstantFound& found = calibration.constants[c];
+    usual[index(c)] = found.verdict == Verdict::unsettled ? 0.0 : found.constant.usual;
+  }
+  return usual;
+}
+
+Eigen::VectorXd back_to_told(const Calibration& calibration, const Settings& settings) {
+  Eigen::VectorXd change(index(calibration.constants.size()));
+  for (std::size_t c = 0; c < calibration.constants.size(); ++c) {
+    const ConstantFound& found = calibration.constants[c];
+    change[index(c)] = found.told - found.constant.value(settings);
+  }
+  return change;
+}
+
+Settings judge_constants(JudgedDrive drive, Calibration& calibration) {
+  return Judge(std::move(drive), calibration).run();
+}
+
+}  // namespace helixnav::apps

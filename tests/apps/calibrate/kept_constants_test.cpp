@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "calibrate/kept_constants.hpp"
+
+#include <gtest/gtest.h>
+
+namespace helixnav::apps {
+namespace {
+
+smoothing::ConstantsEvidence evidence_at(const Eigen::MatrixXd& information, const Eigen::VectorXd& minimum) {
+  return {-information * minimum, information};
+}
+
+const Eigen::Vector2d usual(1.0, 1.0), told(0.0, 0.0);
+
+// The first is 5 standard deviations from told, the second 1: its interval holds what was told.
+TEST(KeptConstants, GoBackToToldWhereTheIntervalHoldsIt) {
+  const Eigen::Matrix2d S = Eigen::Vector2d(100.0, 100.0).asDiagonal();
+  const auto all = evidence_at(S, Eigen::Vector2d(0.5, 0.1));
+  const std::vector<Fold> folds{{all, all}};
+  const auto verdicts = judge_kept(all, folds, {Verdict::kept, Verdict::kept}, usual, told);
+  EXPECT_EQ(verdicts, (std::vector<Verdict>{Verdict::kept, Verdict::indistinguishable}));
+}
+
+// Of two that are hardly told apart neither interval excludes what was told; with one of them as told the other one's does.
+TEST(KeptConstants, AreJudgedWithTheOthersThatWentBackAsTold) {
+  Eigen::Matrix2d S;
+  S << 100.0, 99.0, 99.0, 100.0;
+  const auto all = evidence_at(S, Eigen::Vector2d(0.5, 0.1));
+  const auto verdicts = judge_kept(all, {{all, all}}, {Verdict::kept, Verdict::kept}, usual, told);
+  EXPECT_EQ(verdicts, (std::vector<Verdict>{Verdict::kept, Verdict::indistinguishable}));
+  EXPECT_NEAR(kept_sigmas(S, verdicts, usual)[0], 0.1, 1e-6);
+}
+
+TEST(KeptConstants, AreConfirmedByWhatIsHeldOut) {
+  const Eigen::Matrix2d S = Eigen::Vector2d(100.0, 100.0).asDiagonal();
+  const auto all = evidence_at(S, Eigen::Vector2d(0.5, 0.5));
+  const std::vector<Fold> folds{{all, evidence_at(S, Eigen::Vector2d(0.5, -0.5))}};
+  const auto verdicts = judge_kept(all, folds, {Verdict::kept, Verdict::kept}, usual, told);
+  EXPECT_EQ(verdicts, (std::vector<Verdict>{Verdict::kept, Verdict::not_confirmed}));
+}
+
+}  // namespace
+}  // namespace helixnav::apps
