@@ -19,24 +19,25 @@ namespace {
 /// Below this the smallest variance of an increment is rounding: (10 µm)², (10 µrad)².
 constexpr double least_variance = 1e-10;
 
-/// Indefinite ones are the solver's to refuse.
-bool is_rank_deficient(const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
-  const double least = eigen.eigenvalues().minCoeff();
-  if (least < -least_variance) return false;
-  return least <= 0.0 || least < std::min(least_variance, 1e-9 * eigen.eigenvalues().maxCoeff());
+/// A vehicle that stands, of which noise is told by the way, is where it was but for rounding: with more than that a long stop
+/// would drift, and count as odometry that is better than told.
+bool stands(const core::LandmarkGraph::PoseEdge& edge) {
+  return edge.T_from_to.position_m().squaredNorm() < least_variance &&
+         edge.covariance.cwiseAbs().maxCoeff() < least_variance;
 }
 
-/// A vehicle that stands, of which noise is told by the way, is where it was but for rounding: with more than that a long stop
-/// would drift, and count as odometry that is better than told. What moves with certainty in one direction is softened, and
-/// then the whole drive, so that its noise is of one kind.
+/// What moves with certainty in one direction is softened, and then the whole drive, so that its noise is of one kind.
 void soften_rank_two(SmoothingTask& task) {
   bool moves = false;
   for (auto& edge : task.problem.graph.pose_edges) {
-    if (!is_rank_deficient(edge.covariance)) continue;
-    const bool stands = edge.T_from_to.position_m().squaredNorm() < least_variance;
-    if (stands) edge.covariance.diagonal().array() += least_variance;
-    moves = moves || !stands;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(edge.covariance, Eigen::EigenvaluesOnly);
+    const double least = eigen.eigenvalues().minCoeff();
+    if (least < -least_variance) continue;  // indefinite ones are the solver's to refuse
+    if (stands(edge)) {
+      edge.covariance.diagonal().array() += least_variance;
+    } else {
+      moves = moves || least <= 0.0 || least < std::min(least_variance, 1e-9 * eigen.eigenvalues().maxCoeff());
+    }
   }
   if (!moves) return;
   smoothing::soften_odometry(task.problem, rank_sigma);
