@@ -118,7 +118,7 @@ void CompressedEkf::take_back_covariance(BeforeSwitch& before) {
   P.resize(before.column.size(), n);
   move_rows(before.moves, before.column, P);
   P.resize(n, n);
-  P.view().topRows<3>() = P.view().leftCols<3>().transpose();
+  P.view().topRightCorner(3, n - 3) = P.view().bottomLeftCorner(n - 3, 3).transpose();
   P.view().topLeftCorner<3, 3>() = active_.P.view();
   std::swap(active_.P, P);
 }
