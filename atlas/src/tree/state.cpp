@@ -22,7 +22,8 @@ std::vector<int> landmarks_of(const Leaf& leaf) {
 }
 
 int add_variable(State& state, int dim, int name, const Eigen::Vector3d& value) {
-  static const auto nobody = std::make_shared<const std::vector<int>>();
+  // never destroyed: a thread may still be here when the process ends
+  static const auto& nobody = *new auto(std::make_shared<const std::vector<int>>());
   Variable variable;
   variable.dim = dim;
   variable.name = name;

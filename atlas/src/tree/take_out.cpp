@@ -36,7 +36,8 @@ void let_go(State& state, int phase) {
 }
 
 void free_node(State& state, int id) {
-  static const auto nothing = std::make_shared<const FrontShape>();
+  // never destroyed: a thread may still be here when the process ends
+  static const auto& nothing = *new auto(std::make_shared<const FrontShape>());
   TreeNode node;
   node.parent = state.free_node;
   node.dirty = false;

@@ -20,7 +20,8 @@ struct KindColumns {
 
 const std::vector<KindColumns>& kinds() {
   using namespace odometry_columns;
-  static const std::vector<KindColumns> all{
+  // never destroyed: a thread may still be here when the process ends
+  static const auto& all = *new const std::vector<KindColumns>{
       {OdometryKind::increments, {dx, dheading}, {dy}}, {OdometryKind::steering, {v, steering}, {}},
       {OdometryKind::velocities, {v, omega}, {vy}},     {OdometryKind::wheels, {v_left, v_right}, {}},
       {OdometryKind::poses, {x, y, heading}, {}},

@@ -11,7 +11,8 @@ namespace helixnav::fastslam {
 
 /// What configurations call the kinds of association.
 inline const std::vector<std::pair<std::string, Association>>& association_names() {
-  static const std::vector<std::pair<std::string, Association>> names{
+  // never destroyed: a thread may still be here when the process ends
+  static const auto& names = *new const std::vector<std::pair<std::string, Association>>{
       {"known", Association::known},
       {"nearest-neighbour", Association::nearest_neighbour},
       {"likelihood-ratio", Association::likelihood_ratio},

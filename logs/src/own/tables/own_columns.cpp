@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "own_columns.hpp"
 
+#include <array>
+
 #include "own_tables.hpp"
 
 namespace helixnav::logs {
@@ -19,7 +21,8 @@ std::string_view OwnTables::name_of(Table table) {
 
 const std::vector<ColumnKind>& OwnTables::columns_of(Table table) {
   using M = Measure;
-  static const std::vector<ColumnKind> of[table_count] = {
+  // never destroyed: a thread may still be here when the process ends
+  static const auto& of = *new const std::array<std::vector<ColumnKind>, table_count>{{
       {time_column,
        {"dx", M::length},
        {"dy", M::length},
@@ -66,7 +69,7 @@ const std::vector<ColumnKind>& OwnTables::columns_of(Table table) {
       {time_column, {"x", M::length}, {"y", M::length}, heading_column},
       {{"id", M::text, {"label", "landmark"}}, {"x", M::length}, {"y", M::length}},
       {time_column},
-  };
+  }};
   return of[static_cast<std::size_t>(table)];
 }
 
