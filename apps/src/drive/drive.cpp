@@ -28,9 +28,9 @@
 #include "helixnav/runs/run_writer.hpp"
 #include "keeping.hpp"
 #include "landmark_names.hpp"
-#include "range_offset.hpp"
 #include "run_warnings.hpp"
 #include "smooth/smooth_drive.hpp"
+#include "systematic_motion.hpp"
 #include "withholding.hpp"
 
 namespace helixnav::apps {
@@ -170,7 +170,7 @@ ExitCode drive(const Drive& job) {
     run.numbers.emplace_back("blackout.scans", static_cast<double>(withheld));
   }
   const bool whole = !interrupted() && driven.broken.empty() && driven.full_mb == 0.0;
-  if (whole) note_range_offset(job, run);
+  if (whole) note_systematic_errors(job, run);
   const ExitCode smoothed = job.smooth && whole ? smooth_drive(job, run) : ExitCode::ok;
   const evaluation::Evaluation evaluation = reports::finish_run(run, writer);
   std::fputs(reports::evaluation_text(evaluation).c_str(), stdout);

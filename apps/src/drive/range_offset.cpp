@@ -147,13 +147,4 @@ std::optional<RangeOffset> range_offset_of(const core::Recording& recording, con
   return RangeOffset{gradient / information, std::sqrt(std::max(1.0, chi2 / dof) / information)};
 }
 
-void note_range_offset(const Drive& job, runs::Run& run) {
-  if (!job.is_own_log || job.given_map || job.earlier || job.fastslam.chosen) return;
-  const std::optional<RangeOffset> found = range_offset_of(job.recording, run);
-  constexpr double surely_sigmas = 5.0;  // 2.6 in forests without an offset, 6.2 and more where one spoils the path
-  if (!found || !(std::abs(found->offset_m) > surely_sigmas * found->sigma_m)) return;
-  run.numbers.emplace_back("range_offset.missing_m", found->offset_m);
-  run.numbers.emplace_back("range_offset.sigma_m", found->sigma_m);
-}
-
 }  // namespace helixnav::apps

@@ -3,7 +3,6 @@
 
 #include <optional>
 
-#include "drive.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/runs/run.hpp"
 
@@ -21,9 +20,5 @@ struct RangeOffset {
 /// (it comes out too small, not too large). Empty where no range and bearing of a landmark of the map was matched. Cost: 16 passes
 /// over the pairs, after the run. Test: apps/range_offset_test.cpp.
 std::optional<RangeOffset> range_offset_of(const core::Recording& recording, const runs::Run& run);
-
-/// Into the run's numbers, by which the report warns, where it is surely not nought. Of logs of which calibrate finds it alone, and not of a run on a given map, whose own ranges
-/// had an offset of theirs, nor of particles, each of which has landmarks of its own.
-void note_range_offset(const Drive& job, runs::Run& run);
 
 }  // namespace helixnav::apps

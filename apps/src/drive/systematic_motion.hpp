@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "drive.hpp"
+#include "helixnav/core/recording.hpp"
+#include "helixnav/runs/run.hpp"
+
+namespace helixnav::apps {
+
+/// How the corrections of a run drift along with the way driven. The innovations of a filter whose model is right have mean zero,
+/// whatever the map; so have its corrections. A scale of the odometry leaves a part of the way in them, a sensor that looks aside a part
+/// of it across.
+struct SystematicMotion {
+  double too_long = 0.0;  ///< of the odometry's ways, as a share of the corrected ones; negative: too short
+  double too_long_sigma = 0.0;
+  double sideways_rad = 0.0;  ///< to the left of the odometry, as if the sensors looked so much farther to the right
+  double sideways_sigma_rad = 0.0;
+};
+
+/// A bound from below of what is across: the filter corrects a part of it by heading. Sums of corrections by sums of ways, with the corrections' own scatter; those of single steps beyond six standard deviations
+/// (slips, closings) are left out. Of a turn that the odometry gets wrong it says nothing: scans set that right at once. Empty where fewer than 50 scans
+/// with matches lie behind a motion forwards or back. Cost: a pass over steps and events, after the run.
+/// Test: apps/systematic_motion_test.cpp.
+std::optional<SystematicMotion> systematic_motion_of(const core::Recording& recording, const runs::Run& run);
+
+/// Into the run's numbers, by which the report warns, what its detections say against the odometry all along, of that and of an
+/// offset of ranges (range_offset_of): where it is surely not nought. Of logs of which calibrate finds it alone, not of a run on a
+/// given map, whose own odometry and ranges had errors of theirs, nor of particles, each of which has landmarks of its own.
+void note_systematic_errors(const Drive& job, runs::Run& run);
+
+}  // namespace helixnav::apps
