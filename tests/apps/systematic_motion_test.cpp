@@ -97,7 +97,7 @@ TEST(SystematicMotion, IsSaidOfASpoiltLogAndNotOfTheExample) {
   const SpoiltLog log = write_spoilt_log(207, folder.path() / "log");
   const Outcome spoilt = run({"replay", folder.path() / "log", "--out", folder.path() / "spoilt", "--quiet"});
   const std::string side =
-      log.right.at("heading_deg") > 0.0 ? "deg to the right of its odometry" : "deg to the left of its odometry";
+      log.right.at("heading_deg") > 0.0 ? "to the right of its odometry" : "to the left of its odometry";
   EXPECT_NE(spoilt.err.find(side), std::string::npos) << spoilt.err;
   ASSERT_EQ(run({"new-vehicle", folder.path() / "example"}).exit_code, 0);
   const Outcome example = run({"replay", folder.path() / "example", "--out", folder.path() / "right", "--quiet"});

@@ -6,6 +6,7 @@
 #include "closing/close_by_merge.hpp"
 #include "closing/close_by_replay.hpp"
 #include "closing/close_by_restart.hpp"
+#include "closing/tied_by_view.hpp"
 #include "closing/tied_pairs.hpp"
 
 namespace helixnav::supervisor {
@@ -34,6 +35,7 @@ Branch branch_of(const ClosingView& view, const SearchOptions& options) {
   branch.new_drive.T_frame_sensor = view.coverage.between(left_old_ground_m, std::numeric_limits<double>::infinity());
   branch.new_drive.field_of_view = view.scan.field_of_view;
   branch.new_drive.least_views = 2;
+  branch.confirmed = seen_since(view.tied_since_m, view.life, branch.confirmed);
   branch.appearance = view.life.appearance();
   return branch;
 }

@@ -19,6 +19,8 @@ struct ClosingView {
   const CoverageTrace& coverage;
   const core::Scan& scan;
   BranchRecord record;
+  /// Of the branch only what was seen since that length of the drive is merged (tied_by_view.hpp).
+  double tied_since_m = 0.0;
 };
 
 /// The landmarks mapped since the search began, and the ground that both drives covered.

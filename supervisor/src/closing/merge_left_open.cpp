@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What was mapped in searches that ended undecided may be copies; a closing tells where the vehicle was then.
+#include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 
 #include "closing/close_by_merge.hpp"
 #include "closing/duplicate_segment.hpp"
+#include "closing/tied_by_view.hpp"
 #include "loop/navigation_loop.hpp"
 
 namespace helixnav::supervisor {
@@ -33,23 +36,64 @@ std::vector<core::LandmarkId> mature_before(double path_m, const association::La
   return ids;
 }
 
+/// As many copies as make a constellation, and most of what now stands on ground that was mapped before: in a lattice a few fit
+/// anywhere.
+bool are_most_copies(const Closing& closing, const Branch& branch, const cekf::CompressedEkf& filter,
+                     const SearchOptions& options) {
+  std::size_t alone = 0;
+  for (const core::LandmarkId id : branch.confirmed) {
+    alone += filter.contains(id) && branch.old_drive.covers(filter.landmark_mean(id)) ? 1 : 0;
+  }
+  return closing.merged.size() > alone &&
+         closing.merged.size() >= static_cast<std::size_t>(options.constellation.least_matches);
+}
+
+/// Those that views do not tie to the present.
+Branch beyond(const Branch& branch, const std::vector<core::LandmarkId>& tied) {
+  Branch rest = branch;
+  rest.confirmed.clear();
+  std::set_difference(branch.confirmed.begin(), branch.confirmed.end(), tied.begin(), tied.end(),
+                      std::back_inserter(rest.confirmed));
+  return rest;
+}
+
+Closing merge_copies(cekf::CompressedEkf& filter, const Branch& branch, const std::vector<core::LandmarkId>& old,
+                     const SearchOptions& options) {
+  Closing closing;
+  if (branch.confirmed.empty()) return closing;
+  merge_leftovers(filter, DuplicateSegment(filter, branch), branch.confirmed, old, options, closing);
+  return closing;
+}
+
 }  // namespace
 
-/// After a closing: merges what it shows to be copies, by the rules for what a closing leaves over.
-void NavigationLoop::merge_left_open(const core::FieldOfView& view, core::StepReport& report) {
+/// After a closing: merges what it shows to be copies, by the rules for what a closing leaves over. Of what was mapped before
+/// `tied_since_m` either most or none: odometry that was wrong somewhere says too little of where it is.
+void NavigationLoop::merge_left_open(const core::FieldOfView& view, double tied_since_m, core::StepReport& report) {
   for (const LeftOpen& segment : belief_.left_open) {
-    const Branch branch = branch_of(belief_, segment, view, options_.search.constellation.least_hits);
-    if (branch.confirmed.empty()) continue;
+    Branch tied = branch_of(belief_, segment, view, options_.search.constellation.least_hits);
+    const std::vector<core::LandmarkId> ids = seen_since(tied_since_m, belief_.existence, tied.confirmed);
+    const Branch rest = beyond(tied, ids);
+    tied.confirmed = ids;
     const std::vector<core::LandmarkId> old = mature_before(segment.begun_path_m, belief_.existence);
-    Closing closing;
-    merge_leftovers(belief_.filter, DuplicateSegment(belief_.filter, branch), branch.confirmed, old, options_.search,
-                    closing);
-    report.numerics.note(closing.numerics);
-    if (closing.merged.empty()) continue;
-    for (const core::MergedLandmarks& one : closing.merged) belief_.existence.merge(one.kept, one.removed);
-    report.merged.insert(report.merged.end(), closing.merged.begin(), closing.merged.end());
-    tape_.append(Tape::Merge{std::move(closing.merged), closing.limit_of_leftovers});
+    note_merged(merge_copies(belief_.filter, tied, old, options_.search), report);
+    if (rest.confirmed.empty()) continue;
+    cekf::CompressedEkf before = belief_.filter;
+    const Closing closing = merge_copies(belief_.filter, rest, old, options_.search);
+    if (!are_most_copies(closing, rest, belief_.filter, options_.search)) {
+      std::swap(belief_.filter, before);
+      continue;
+    }
+    note_merged(closing, report);
   }
+}
+
+void NavigationLoop::note_merged(const Closing& closing, core::StepReport& report) {
+  report.numerics.note(closing.numerics);
+  if (closing.merged.empty()) return;
+  for (const core::MergedLandmarks& one : closing.merged) belief_.existence.merge(one.kept, one.removed);
+  report.merged.insert(report.merged.end(), closing.merged.begin(), closing.merged.end());
+  tape_.append(Tape::Merge{closing.merged, closing.limit_of_leftovers});
 }
 
 }  // namespace helixnav::supervisor

@@ -29,6 +29,8 @@
 
 namespace helixnav::supervisor {
 
+struct ClosingView;
+
 /// The loop of the Navigator: a belief, the tape of what came in and what became of it, and the mode.
 /// Where things are decided: a trigger in search/trigger.cpp, the death of a landmark in update_existence() by
 /// association::LandmarkLife, a closing in closing/close_map.cpp. Scans are here, searches in
@@ -139,11 +141,14 @@ class NavigationLoop {
              core::StepReport& report);
   bool close_as_measured(const core::Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
                          core::StepReport& report);
-  void accept(const Closing& closing, const core::FieldOfView& view, core::StepReport& report);
+  double tied_if_slipping_m() const;
+  void accept(const Closing& closing, const ClosingView& view, core::StepReport& report);
   void report_closing(const Closing& closing, std::size_t pairs, double driven_m, const core::Pose2& before,
                       core::StepReport& report) const;
   void end_search(const Closing* closing);
-  void merge_left_open(const core::FieldOfView& view, core::StepReport& report);  // merge_left_open.cpp
+  void merge_left_open(const core::FieldOfView& view, double tied_since_m,
+                       core::StepReport& report);  // merge_left_open.cpp
+  void note_merged(const Closing& closing, core::StepReport& report);
 
   // smoothing/solve_drive.cpp
   void solve_drive(core::StepReport& report);

@@ -5,6 +5,7 @@
 
 #include "association/revisit_ambiguity.hpp"
 #include "closing/close_map.hpp"
+#include "closing/tied_by_view.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 #include "loop/navigation_loop.hpp"
 
@@ -73,22 +74,32 @@ bool NavigationLoop::close_as_measured(const Scan& scan, const std::vector<pf_re
                                        StepReport& report) {
   const Searching& open = *searching();
   const core::Pose2 before = belief_.filter.pose().mean;
-  const Closing closing =
-      close_map(belief_.filter, {open.search, belief_.existence, belief_.coverage, scan, {open.trigger, tape_}}, pairs,
-                options_.search);
+  const ClosingView view{open.search, belief_.existence,     belief_.coverage,
+                         scan,        {open.trigger, tape_}, tied_if_slipping_m()};
+  const Closing closing = close_map(belief_.filter, view, pairs, options_.search);
   report_closing(closing, pairs.size(), belief_.existence.path_m() - open.search.begun_path_m(), before, report);
-  if (closing.accepted) accept(closing, scan.field_of_view, report);
+  if (closing.accepted) accept(closing, view, report);
   return closing.accepted;
 }
 
+/// A vehicle that slips may have slipped where nothing was in view: what lies beyond is tied by odometry alone.
+double NavigationLoop::tied_if_slipping_m() const {
+  if (belief_.slips.count == 0) return 0.0;
+  return tied_since_m(tape_, belief_.existence.path_m(), options_.search.old_after_m);
+}
+
 /// The filter has been closed: so is everything else.
-void NavigationLoop::accept(const Closing& closing, const core::FieldOfView& view, StepReport& report) {
+void NavigationLoop::accept(const Closing& closing, const ClosingView& view, StepReport& report) {
+  const double begun_m = view.search.begun_path_m() - options_.search.old_after_m;
+  if (view.tied_since_m > begun_m) belief_.left_open.push_back({begun_m, view.tied_since_m});
   for (const core::MergedLandmarks& one : closing.merged) belief_.existence.merge(one.kept, one.removed);
   for (const LandmarkId id : closing.forgotten) belief_.existence.remove(id);
   report.merged = closing.merged;
   tape_.append(Tape::Merge{closing.merged, closing.limit + closing.limit_of_leftovers});
+  const double tied_m = view.tied_since_m;
+  const core::FieldOfView field = view.scan.field_of_view;
   end_search(&closing);
-  merge_left_open(view, report);
+  merge_left_open(field, tied_m, report);
   solve_drive(report);
 }
 

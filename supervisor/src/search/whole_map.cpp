@@ -7,6 +7,7 @@
 
 #include "association/revisit_ambiguity.hpp"
 #include "closing/close_against_odometry.hpp"
+#include "closing/tied_by_view.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/rigid_fit.hpp"
 #include "loop/navigation_loop.hpp"
@@ -94,7 +95,8 @@ void NavigationLoop::ask_meanwhile(const core::Scan& scan, core::StepReport& rep
   AskedWholeMap asked = ask(about, open.search, scan);
   questions_.asked_meanwhile = std::exchange(questions_.asked.with, before.with);
   if (asked.is_closed()) {
-    const ClosingView view{open.search, belief_.existence, belief_.coverage, scan, {open.trigger, tape_}};
+    const ClosingView view{open.search, belief_.existence,     belief_.coverage,
+                           scan,        {open.trigger, tape_}, tied_if_slipping_m()};
     cekf::CompressedEkf trial = belief_.filter;
     if (close_map(trial, view, asked.pairs, options_.search).accepted) return;
     if (close_at(asked.pairs, open.search, open.trigger, scan, asked.decision, report)) return;
@@ -184,7 +186,7 @@ bool NavigationLoop::begin_drive_anew(const Tape& tape, const cekf::CompressedEk
 bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair>& pairs, const Search& search,
                               const Checkpoint& trigger, const core::Scan& scan, WholeMapDecision& decision,
                               core::StepReport& report) {
-  const ClosingView view{search, belief_.existence, belief_.coverage, scan, {trigger, tape_}};
+  ClosingView view{search, belief_.existence, belief_.coverage, scan, {trigger, tape_}, tied_if_slipping_m()};
   const core::Pose2 before = belief_.filter.pose().mean;
   ForbiddenPlace place{pairs, branch_on_map(pairs, belief_.filter), {}};
   decision.displaced_m = (core::compose(place.T_map_branch, before).position_m() - before.position_m()).norm();
@@ -201,6 +203,7 @@ bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair
     decision.needed += nats_against_odometry(closing);
     if (std::min(decision.evidence, decision.lead) < decision.needed) return false;
     place.as_measured = closing;
+    view.tied_since_m = tied_since_m(tape_, belief_.existence.path_m(), options_.search.old_after_m);
     Reconciled reconciled = close_against_odometry(belief_.filter, start_, view, place, options_.search);
     if (!reconciled.closing.accepted) {
       pending_.forbidden = pairs;
@@ -222,7 +225,7 @@ bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair
   decision.verdict = WholeMapDecision::Verdict::accepted;
   report.decisions.emplace_back(decision);
   report_closing(closing, pairs.size(), belief_.existence.path_m() - search.begun_path_m(), before, report);
-  accept(closing, scan.field_of_view, report);
+  accept(closing, view, report);
   return true;
 }
 
