@@ -12,6 +12,7 @@
 #include "configuration.hpp"
 #include "gil.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/logs/read_recording.hpp"
 #include "helixnav/sim/simulate.hpp"
 #include "log.hpp"
 #include "replay/blackout.hpp"
@@ -54,6 +55,7 @@ Log read_log(const fs::path& path, const std::optional<fs::path>& vehicle, const
   apps::apply_log_settings(recording, configuration.settings);
   Log log = fitted(std::move(recording), configuration);
   log.withheld = std::move(withheld);
+  log.is_own_log = logs::recognise(path.string()) == logs::LogFormat::own;
   log.files.push_back(path.string());
   if (vehicle) log.files.push_back(vehicle->string());
   return log;

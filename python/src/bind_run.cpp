@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "arrays.hpp"
 #include "bind.hpp"
@@ -11,6 +13,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/evaluation/evaluation.hpp"
 #include "helixnav/reports/explanation.hpp"
+#include "helixnav/reports/run_warnings.hpp"
 #include "helixnav/reports/summary.hpp"
 #include "helixnav/runs/run_folder.hpp"
 #include "log.hpp"
@@ -62,6 +65,16 @@ py::object evaluation_of(const runs::Run& run) {
     text = reports::evaluation_json(evaluation::evaluate(run));
   }
   return py::module_::import("json").attr("loads")(text_with_paths(text));
+}
+
+py::list warnings_of(const runs::Run& run) {
+  std::vector<std::string> warnings;
+  {
+    const WithoutGil released;
+    warnings = reports::warnings_of(run, evaluation::evaluate(run));
+    for (std::string& warning : reports::warnings_of_place(run)) warnings.push_back(std::move(warning));
+  }
+  return texts_with_paths(warnings);
 }
 
 py::object evaluation_of_folder(const fs::path& path) { return evaluation_of(runs::read_run(path.string())); }
@@ -117,6 +130,10 @@ void bind_run(py::module_& module) {
       .def(
           "explain", [](const runs::Run& run) { return text_with_paths(reports::explain_run(run)); },
           "How many loops were closed, refused or left open, in sentences.")
+      .def(
+          "warnings", &warnings_of,
+          "What is not well, a sentence each, as helixnav replay says it. Of a run that was read, without what the log "
+          "alone tells: constants that err all along.")
       .def("__len__", [](const runs::Run& run) { return run.steps.size(); });
   module.def(
       "replay", &replay_as_asked, py::arg("log"), py::arg("out") = py::none(), py::arg("overwrite") = false,

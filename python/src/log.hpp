@@ -17,6 +17,7 @@ struct Log {
   supervisor::NavigatorOptions navigator;
   apps::FastSlamSettings fastslam;  ///< in place of the navigator, where it is chosen
   bool known_association = false;
+  bool is_own_log = false;         ///< in the user's own format
   std::vector<bool> withheld;      ///< [scan] not to be fed; empty: none is
   std::vector<std::string> files;  ///< that it was read from
   std::string config;              ///< in force, for manifests

@@ -19,6 +19,7 @@
 #include "drive/kept_inputs.hpp"
 #include "drive/landmark_names.hpp"
 #include "drive/start_by_names.hpp"
+#include "drive/systematic_motion.hpp"
 #include "drive/truth_on_map.hpp"
 #include "drive/withholding.hpp"
 #include "helixnav/core/errors.hpp"
@@ -114,6 +115,7 @@ apps::Drive job_of(const Log& log, const ReplayWishes& wishes) {
   job.navigator = log.navigator;
   job.fastslam = log.fastslam;
   job.known_association = log.known_association;
+  job.is_own_log = log.is_own_log;
   job.withheld = log.withheld;
   job.smooth = wishes.smooth;
   job.out = wishes.out;
@@ -192,6 +194,7 @@ runs::Run replay(const Log& log, const ReplayWishes& wishes) {
   if (estimator.parts_apart) run.parts_apart = estimator.parts_apart();
   if (estimator.particle_end) run.particle_end = estimator.particle_end();
   run.numbers = apps::numbers_of(agreement);
+  if (ended.is_whole() && job.may_err_systematically()) apps::note_systematic_errors(job.recording, run);
   if (job.smooth && ended.is_whole()) apps::smooth(job, run);
   if (writer) reports::finish_run(run, *writer);
   if (ended.interrupted) std::rethrow_exception(ended.interrupted);

@@ -4,12 +4,15 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "program.hpp"
+#include "stream_lines.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -32,6 +35,20 @@ class StreamEnds : public ::testing::Test {
       ::dup2(::open(file.c_str(), O_RDONLY), STDIN_FILENO);
       if (output != nullptr) ::dup2(::open(output, O_WRONLY), STDOUT_FILENO);
     });
+  }
+
+  /// The whole log of new-vehicle, with these words of its vehicle.toml replaced.
+  Outcome streamed_with(const std::string& words, const std::string& by) {
+    std::string text;
+    for (const std::string& line : lines_of(log_, 1e9)) text += line + "\n";
+    const fs::path lines = folder_.write("all.jsonl", text);
+    std::stringstream vehicle;
+    vehicle << std::ifstream(vehicle_).rdbuf();
+    std::string changed = vehicle.str();
+    changed.replace(changed.find(words), words.size(), by);
+    const fs::path file = folder_.write("vehicle.toml", changed);
+    return run({"stream", "--vehicle", file, "--out", out_, "--overwrite"},
+               [&] { ::dup2(::open(lines.c_str(), O_RDONLY), STDIN_FILENO); });
   }
 
   testing::TemporaryFolder folder_;
@@ -75,6 +92,14 @@ TEST_F(StreamEnds, LeavesAFolderAloneThatAnotherProcessWritesAsReplayDoes) {
   EXPECT_TRUE(fs::is_empty(out_));
   ::close(other);
   EXPECT_EQ(streamed({"--vehicle", vehicle_, "--out", out_, "--overwrite"}).exit_code, 0);
+}
+
+TEST_F(StreamEnds, WarnsAsReplayDoes) {
+  const Outcome right = streamed_with("heading_deg = 0.0", "heading_deg = 0.00");
+  EXPECT_EQ(right.err.find("warning"), std::string::npos) << right.err;
+  const Outcome aside = streamed_with("heading_deg = 0.0", "heading_deg = 3.0");
+  EXPECT_EQ(aside.exit_code, 0);
+  EXPECT_NE(aside.err.find("helixnav: warning: by what is seen, the vehicle moves"), std::string::npos) << aside.err;
 }
 
 }  // namespace

@@ -170,7 +170,7 @@ ExitCode drive(const Drive& job) {
     run.numbers.emplace_back("blackout.scans", static_cast<double>(withheld));
   }
   const bool whole = !interrupted() && driven.broken.empty() && driven.full_mb == 0.0;
-  if (whole) note_systematic_errors(job, run);
+  if (whole && job.may_err_systematically()) note_systematic_errors(job.recording, run);
   const ExitCode smoothed = job.smooth && whole ? smooth_drive(job, run) : ExitCode::ok;
   const evaluation::Evaluation evaluation = reports::finish_run(run, writer);
   std::fputs(reports::evaluation_text(evaluation).c_str(), stdout);

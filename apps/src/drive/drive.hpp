@@ -24,7 +24,7 @@ struct Drive {
   std::optional<GivenMap> given_map;      ///< localise in it instead of mapping
   std::optional<EarlierSession> earlier;  ///< go on in its map
   bool known_association = false;         ///< use the recording's labels as identities
-  bool is_own_log = false;                ///< in the user's own format, of which calibrate finds range_offset_m
+  bool is_own_log = false;                ///< in the user's own format
   std::vector<bool> withheld;             ///< [scan] not to be fed (blackout.hpp); empty: none is
   double memory_mb = 0.0;                 ///< of the process, at which the drive ends; 0: no limit
   bool smooth = false;                    ///< afterwards, with the filter's own associations
@@ -33,6 +33,10 @@ struct Drive {
   bool quiet = false;
   runs::RunManifest manifest;
   double reading_s = 0.0;  ///< wall clock spent before the drive
+
+  /// Whether to ask for constants that err all along (systematic_motion.hpp): of logs of which calibrate finds them. Not of a run on a
+  /// given map, whose own odometry and ranges had errors of theirs, nor of particles, each of which has landmarks of its own.
+  bool may_err_systematically() const { return is_own_log && !given_map && !earlier && !fastslam.chosen; }
 };
 
 /// Runs it, prints the evaluation on stdout and where the report is. On SIGINT the run ends after the present step, its

@@ -99,10 +99,9 @@ std::optional<SystematicMotion> systematic_motion_of(const core::Recording& reco
   return SystematicMotion{-along.mean, along.sigma, across.mean, across.sigma};
 }
 
-void note_systematic_errors(const Drive& job, runs::Run& run) {
-  if (!job.is_own_log || job.given_map || job.earlier || job.fastslam.chosen) return;
-  const RangeOffset offset = range_offset_of(job.recording, run).value_or(RangeOffset());
-  const SystematicMotion motion = systematic_motion_of(job.recording, run).value_or(SystematicMotion());
+void note_systematic_errors(const core::Recording& recording, runs::Run& run) {
+  const RangeOffset offset = range_offset_of(recording, run).value_or(RangeOffset());
+  const SystematicMotion motion = systematic_motion_of(recording, run).value_or(SystematicMotion());
   const double offset_z = sigmas(offset.offset_m, offset.sigma_m);
   const double scale_z = sigmas(motion.too_long, motion.too_long_sigma);
   // Each leaves a trace in the other's number: of a scale alone 0.1 of its sigmas in the offset's, of an offset alone 0.7 in the

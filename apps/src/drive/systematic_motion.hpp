@@ -3,7 +3,6 @@
 
 #include <optional>
 
-#include "drive.hpp"
 #include "helixnav/core/recording.hpp"
 #include "helixnav/runs/run.hpp"
 
@@ -25,9 +24,8 @@ struct SystematicMotion {
 /// Test: apps/systematic_motion_test.cpp.
 std::optional<SystematicMotion> systematic_motion_of(const core::Recording& recording, const runs::Run& run);
 
-/// Into the run's numbers, by which the report warns, what its detections say against the odometry all along, of that and of an
-/// offset of ranges (range_offset_of): where it is surely not nought. Of logs of which calibrate finds it alone, not of a run on a
-/// given map, whose own odometry and ranges had errors of theirs, nor of particles, each of which has landmarks of its own.
-void note_systematic_errors(const Drive& job, runs::Run& run);
+/// Into the run's numbers, by which reports and programs warn, what its detections say against the odometry all along, of that and of
+/// an offset of ranges (range_offset_of): where it is surely not nought. For a drive that mapped by itself with one filter.
+void note_systematic_errors(const core::Recording& recording, runs::Run& run);
 
 }  // namespace helixnav::apps

@@ -17,10 +17,13 @@
 #include "common/timed.hpp"
 #include "drive/drive_again.hpp"
 #include "drive/keeping.hpp"
+#include "drive/systematic_motion.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/event_loop.hpp"
 #include "helixnav/logs/own_stream.hpp"
 #include "helixnav/reports/finish_run.hpp"
+#include "helixnav/reports/run_warnings.hpp"
+#include "helixnav/runs/drive_file.hpp"
 #include "helixnav/runs/run_folder.hpp"
 #include "helixnav/runs/run_writer.hpp"
 #include "line_channel.hpp"
@@ -189,7 +192,15 @@ class Stream {
     solved_before_.insert(solved_before_.end(), solved_.begin(), solved_.end());
     runs::correct_path(run, solved_before_);
     run.finished = true;
-    reports::finish_run(run, *writer_);
+    if (drive_ && job_.resume.empty()) {
+      core::Recording recording;
+      recording.events = runs::read_drive(drive_file_in(job_.out)).events;
+      note_systematic_errors(recording, run);
+    }
+    const evaluation::Evaluation evaluation = reports::finish_run(run, *writer_);
+    for (const std::string& warning : reports::warnings_of(run, evaluation)) {
+      std::fprintf(stderr, "helixnav: warning: %s\n", warning.c_str());
+    }
     std::fprintf(stderr, "run folder: %s   report: %s/report.html\n", job_.out.c_str(), job_.out.c_str());
   }
 
