@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <map>
@@ -361,6 +363,27 @@ class VirtualScreen {
   std::string display_;
 };
 
+/// Says on stderr why there is no window.
+bool shows_landmarks(const std::string& rawlog, const VirtualScreen& screen) {
+  std::string why_not;
+  const std::unique_ptr<LiveWindow> window = open_live_window(why_not);
+  if (!window) std::fprintf(stderr, "%s\n", why_not.c_str());
+  if (!window) return false;
+  mrpt_adapter::MapBuilder builder;
+  SlamFeed feed(builder, [](const auto&) {});
+  RawlogSource source(rawlog, 0, {});
+  while (const auto turn = source.next()) feed.take(*turn);
+  window->show(scene_of(builder, {}), "21 steps");
+  window->look_at(8.0, 0.0);
+  constexpr int enough = 12 * 5;
+  int blue = 0;
+  for (int tries = 0; tries < 1000 && blue < enough; ++tries) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    blue = screen.blue_pixels();
+  }
+  return blue >= enough;
+}
+
 TEST_F(Slam, ShowsTheLandmarksInALiveWindow) {
   fs::create_directory(file("screen"));
   const VirtualScreen screen(file("screen"));
@@ -370,23 +393,17 @@ TEST_F(Slam, ShowsTheLandmarksInALiveWindow) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
 
-  // The same window again, for as long as the picture takes to appear.
-  setenv("DISPLAY", screen.display().c_str(), 1);
-  std::string why_not;
-  const std::unique_ptr<LiveWindow> window = open_live_window(why_not);
-  ASSERT_TRUE(window) << why_not;
-  mrpt_adapter::MapBuilder builder;
-  SlamFeed feed(builder, [](const auto&) {});
-  RawlogSource source(posts(), 0, {});
-  while (const auto turn = source.next()) feed.take(*turn);
-  window->show(scene_of(builder, {}), "21 steps");
-  window->look_at(8.0, 0.0);
-  int blue = 0;
-  for (int tries = 0; tries < 1000 && blue < 12 * 5; ++tries) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    blue = screen.blue_pixels();
+  // The same window again, for as long as the picture takes to appear. In a process that ends without MRPT's and the renderer's own
+  // endings: on a busy machine they now and then read what is gone by then.
+  const std::string rawlog = posts();
+  const pid_t looks = fork();
+  if (looks == 0) {
+    setenv("DISPLAY", screen.display().c_str(), 1);
+    _exit(shows_landmarks(rawlog, screen) ? 0 : 1);
   }
-  EXPECT_GE(blue, 12 * 5);
+  int status = -1;
+  ASSERT_EQ(waitpid(looks, &status, 0), looks);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "status " << status;
 }
 
 TEST_F(Slam, GoesOnWithoutADisplay) {
