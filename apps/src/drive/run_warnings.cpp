@@ -6,15 +6,11 @@
 #include <map>
 #include <set>
 
+#include "has_match.hpp"
 #include "helixnav/reports/run_warnings.hpp"
 
 namespace helixnav::apps {
 namespace {
-
-bool has_match(const core::StepReport& step) {
-  return std::any_of(step.associations.begin(), step.associations.end(),
-                     [](const core::AssociationReport& a) { return a.outcome == core::Outcome::matched; });
-}
 
 /// As the user calls it.
 std::string name_of(const runs::Run& run, core::LandmarkId id) {

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "has_match.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "range_offset.hpp"
 
@@ -17,11 +18,6 @@ struct StepMotion {
   double way_m = 0.0;                      ///< forwards, by odometry
   Eigen::Vector2d correction_m{0.0, 0.0};  ///< what the scan added to it
 };
-
-bool has_match(const core::StepReport& step) {
-  return std::any_of(step.associations.begin(), step.associations.end(),
-                     [](const core::AssociationReport& a) { return a.outcome == core::Outcome::matched; });
-}
 
 std::vector<StepMotion> motions_of(const core::Recording& recording, const runs::Run& run) {
   std::vector<StepMotion> motions;

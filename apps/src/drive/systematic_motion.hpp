@@ -18,10 +18,10 @@ struct SystematicMotion {
   double sideways_sigma_rad = 0.0;
 };
 
-/// A bound from below of what is across: the filter corrects a part of it by heading. Sums of corrections by sums of ways, with the corrections' own scatter; those of single steps beyond six standard deviations
-/// (slips, closings) are left out. Of a turn that the odometry gets wrong it says nothing: scans set that right at once. Empty where fewer than 50 scans
-/// with matches lie behind a motion forwards or back. Cost: a pass over steps and events, after the run.
-/// Test: apps/systematic_motion_test.cpp.
+/// Sums of corrections by sums of ways, with the corrections' own scatter; those of single steps beyond six standard deviations
+/// (slips, closings) are left out. What is across is a bound from below: the filter corrects a part of it by heading. Of a turn that
+/// the odometry gets wrong it says nothing: scans set that right at once. Empty where fewer than 50 scans with matches lie behind a
+/// motion forwards or back. Cost: a pass over steps and events, after the run. Test: apps/systematic_motion_test.cpp.
 std::optional<SystematicMotion> systematic_motion_of(const core::Recording& recording, const runs::Run& run);
 
 /// Into the run's numbers, by which reports and programs warn, what its detections say against the odometry all along, of that and of

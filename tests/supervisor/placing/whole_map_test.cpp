@@ -13,6 +13,7 @@
 #include "circuits.hpp"
 #include "closing/close_against_odometry.hpp"
 #include "helixnav/core/angle.hpp"
+#include "judged_drive.hpp"
 #include "pauses.hpp"
 
 namespace helixnav::supervisor {
@@ -190,6 +191,17 @@ TEST(WholeMap, MergesCopiesOfTreesThatWereNotOldWhenTheSearchBegan) {
     return asked.verdict == core::WholeMapDecision::Verdict::accepted && asked.odometry_factor != 1.0;
   }));
   EXPECT_LE(drive.mature, standing.size()) << "49 trees twice";
+}
+
+/// A slip on bare ground between two stretches, found out on the second: the first fits the next row of the orchard here and there.
+TEST(WholeMap, MergesNoFewCopiesThatOnlyOdometryTies) {
+  sim::Scenario scenario = sim::named_scenario("orchard");
+  scenario.slip.every_m = 500.0;
+  scenario.slip.distance_m = {2.0, 2.0};
+  scenario.slip.turn_rad = {10.0 * core::pi / 180.0, 10.0 * core::pi / 180.0};
+  const evaluation::RunScore score = navigate_and_judge(scenario, 1046);
+  ASSERT_FALSE(score.closures.empty());
+  for (const evaluation::ClosureScore& closure : score.closures) EXPECT_EQ(closure.wrong_pairs, 0) << "6 of 14";
 }
 
 /// Where it was put down it matched trees that stand like those that it expected.

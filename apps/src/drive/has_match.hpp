@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+
+#include "helixnav/core/step_report.hpp"
+
+namespace helixnav::apps {
+
+/// Whether a scan saw a landmark again.
+inline bool has_match(const core::StepReport& step) {
+  return std::any_of(step.associations.begin(), step.associations.end(),
+                     [](const core::AssociationReport& a) { return a.outcome == core::Outcome::matched; });
+}
+
+}  // namespace helixnav::apps
