@@ -210,20 +210,39 @@ Eigen::Vector2d CompressedEkf::passive_mean(int slot) const {
   return phase.mean_m.segment<2>(2 * slot) + phase.basis.view().middleRows<2>(2 * slot) * active_.theta;
 }
 
-/// By how much these means have moved since the phase began; column after column, as the basis lies in memory. The second column
-/// of an anchor is the first turned by a right angle (append_columns) and need not be read.
+/// By how much these means have moved since the phase began; some columns at a time, as the basis lies in memory. The second
+/// column of an anchor is the first turned by a right angle (append_columns) and need not be read.
 std::vector<Eigen::Vector2d> CompressedEkf::moved_m(const std::vector<int>& slots) const {
-  std::vector<Eigen::Vector2d> moved(slots.size(), Eigen::Vector2d::Zero());
+  struct Column {
+    const double* rows;
+    double along, across;
+  };
+  std::vector<Column> columns;
   const int w = weights_per_anchor();
+  columns.reserve(static_cast<std::size_t>(active_.theta.size()));
   for (Eigen::Index k = 0; k < active_.theta.size(); k += w) {
-    const double along = active_.theta(k);
     const double across = w == 2 ? active_.theta(k + 1) : 0.0;
-    if (along == 0.0 && across == 0.0) continue;  // of an anchor that no update has reached
-    const double* column = phases_.back().basis.col(k);
+    if (active_.theta(k) == 0.0 && across == 0.0) continue;  // of an anchor that no update has reached
+    columns.push_back({phases_.back().basis.col(k), active_.theta(k), across});
+  }
+
+  constexpr std::size_t at_once = 8;
+  std::vector<Eigen::Vector2d> moved(slots.size(), Eigen::Vector2d::Zero());
+  for (std::size_t first = 0; first < columns.size(); first += at_once) {
+    const std::size_t end = std::min(columns.size(), first + at_once);
     for (std::size_t i = 0; i < slots.size(); ++i) {
-      const double* own = column + 2 * static_cast<Eigen::Index>(slots[i]);
-      moved[i] += along * Eigen::Vector2d(own[0], own[1]);
-      moved[i] += across * Eigen::Vector2d(-own[1], own[0]);
+      const auto row = 2 * static_cast<std::ptrdiff_t>(slots[i]);
+      double x_m = moved[i].x();
+      double y_m = moved[i].y();
+      for (std::size_t k = first; k < end; ++k) {
+        const Column& column = columns[k];
+        const double* own = column.rows + row;
+        x_m += column.along * own[0];
+        y_m += column.along * own[1];
+        x_m -= column.across * own[1];
+        y_m += column.across * own[0];
+      }
+      moved[i] = {x_m, y_m};
     }
   }
   return moved;
