@@ -29,7 +29,7 @@ ExitCode fail(ExitCode code, const char* what) {
   return code;
 }
 
-/// What was printed and cannot be written is lost without a word, unless somebody asks.
+/// Output that cannot be written is lost silently, unless somebody checks.
 ExitCode check_output(ExitCode code) {
   errno = 0;
   std::cout.flush();
@@ -39,8 +39,9 @@ ExitCode check_output(ExitCode code) {
   return fail(ExitCode::data, ("the standard output cannot be written, and what was printed is lost" + why).c_str());
 }
 
-/// Large matrices go back to the system when they are freed. glibc raises the size from which they do to that of the largest
-/// freed so far, up to 32 MB; from then on they leave holes in its heap, a fifth of the memory of a drive through a forest.
+/// Large matrices are returned to the system when they are freed. glibc raises the size from which this happens to that of
+/// the largest freed so far, up to 32 MB; from then on they leave holes in its heap, a fifth of the memory of a drive
+/// through a forest.
 void give_back_large_matrices() {
 #ifdef M_MMAP_THRESHOLD
   constexpr int least_bytes = 4 << 20;
@@ -87,7 +88,7 @@ ExitCode run(int argc, char** argv) {
   try {
     std::vector<std::string> words = without_help_word(app, {argv, argv + argc});
     words.erase(words.begin());
-    std::reverse(words.begin(), words.end());  // as parse wants them
+    std::reverse(words.begin(), words.end());  // as parse expects them
     app.parse(std::move(words));
     return check_output(code);
   } catch (const CLI::ParseError& error) {

@@ -87,8 +87,8 @@ void solve_rest(Rounding& r) {
   for (std::size_t k = 0; k < x.size(); ++k) r.x[entry_of_rest[k]] = x[k];
 }
 
-/// The tie rule: every combination of the variables that are not 0, the cheapest is kept. Depth first, so that even
-/// a spent budget leaves a feasible one.
+/// The tie rule: every combination of the nonzero variables is tried, the cheapest is kept. Depth first, so that even a
+/// spent budget leaves a feasible one.
 class TieSearch {
  public:
   TieSearch(Rounding& rounding, std::int64_t budget) : r_(rounding), budget_(budget) {

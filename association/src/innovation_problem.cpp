@@ -39,7 +39,7 @@ bool is_usable(const core::Observation& observation) {
 }
 
 PaddedObservation padded(const core::Observation& observation) {
-  // The cheap test comes first: check_observation allocates, and has the last word and the better sentence.
+  // The cheap test comes first: check_observation allocates, and has the final say and the better message.
   if (!is_usable(observation)) core::check_observation(observation);
   const int d = core::dimension(observation.kind);
   PaddedObservation result;
@@ -58,7 +58,7 @@ Thresholds thresholds(const Gates& gates, int dof) {
   return {chi2_threshold(gates.match_probability, dof), chi2_threshold(gates.new_probability, dof)};
 }
 
-/// ẑ and H of one candidate, without covariances; false when it stands at the sensor.
+/// ẑ and H of one candidate, without covariances; false when it is at the sensor.
 bool predict_mean(ObservationKind kind, const core::Pose2& T_world_robot, const core::Scan& scan,
                   const Eigen::Vector2d& point_m, Prediction& out) {
   try {
@@ -129,7 +129,7 @@ Looks look_at(const core::Appearance& seen, core::LandmarkId id, const Gates& ga
   return {evidence.size_nis + evidence.gate, evidence.size_dof == 0 ? by_place : thresholds(gates, pair.dof + 1)};
 }
 
-/// Predictions of one kind stand together in problem.predictions: [begin, end) of each kind.
+/// Predictions of one kind are contiguous in problem.predictions: [begin, end) of each kind.
 using KindRanges = std::array<std::pair<int, int>, kinds>;
 
 template <typename PredictionsOfKind>

@@ -11,8 +11,8 @@ namespace {
 
 /// Joint compatibility branch and bound after Neira and Tardós (2001): of all sets of pairs, each observation and each
 /// landmark at most once, whose joint NIS is within the χ² gate of their degrees of freedom, the largest; of the largest
-/// the one with the least NIS. NIS only grows with the set, so a set beyond the gate of the most that its branch can
-/// still collect is cut, whatever the order of the observations.
+/// the one with the least NIS. NIS only grows with the set, so a set is cut if it exceeds the gate of the most that its
+/// branch can still collect, whatever the order of the observations.
 class CompatibilitySearch {
  public:
   CompatibilitySearch(const InnovationProblem& problem, double joint_probability, std::int64_t node_budget)

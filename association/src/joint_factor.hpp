@@ -16,7 +16,7 @@ struct Increment {
 };
 
 /// Cholesky factor of the joint innovation covariance of a set of pairs that grows and shrinks at its end, for searches:
-/// one pair more costs O(n²) of 2×2 blocks, one less nothing.
+/// adding a pair costs O(n²) of 2×2 blocks, removing one nothing.
 class JointFactor {
  public:
   /// Tabulates the covariances between all predictions that have a pair: O(n²) once.

@@ -9,7 +9,7 @@
 namespace helixnav::association {
 namespace {
 
-/// The part of a pair's cost that its likelihood is not: −ln(P_D/(1−P_D)) and what class and size say.
+/// The part of a pair's cost other than its likelihood: −ln(P_D/(1−P_D)) and what class and size say.
 double detection_cost(const InnovationProblem& problem, const AssignmentProblem& costs, int pair) {
   return costs.cost[pair] + problem.pairs[pair].log_likelihood;
 }
@@ -59,7 +59,7 @@ class PosteriorSearch {
     const GatedPair& pair = problem_.pairs[gated.begin];
     const Eigen::Matrix2d R = pair.S - problem_.predictions[pair.prediction].HPHt;
     const double log_determinant = std::log(R(0, 0) * R(1, 1) - R(0, 1) * R(1, 0));
-    // Where rounding leaves nothing of R the bound is lost, not the answer.
+    // If rounding leaves nothing of R, the bound is lost, not the answer.
     if (std::isnan(log_determinant)) return -infinity;
     double most_nats = pair.appearance_nats;
     for (int p = gated.begin; p < gated.end; ++p) most_nats = std::max(most_nats, problem_.pairs[p].appearance_nats);

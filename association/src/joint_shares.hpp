@@ -10,8 +10,8 @@
 
 namespace helixnav::association {
 
-/// What each pair of a set adds to its joint NIS while pairs are taken out one after another: the NIS with all minus the NIS
-/// without that one, rᵢᵀ(S⁻¹)ᵢᵢ⁻¹rᵢ with r = S⁻¹ν. S⁻¹ is found once, O(n³); a pair less is a change of rank two, O(n²).
+/// What each pair of a set adds to its joint NIS while pairs are removed one after another: the NIS with all minus the NIS
+/// without that one, rᵢᵀ(S⁻¹)ᵢᵢ⁻¹rᵢ with r = S⁻¹ν. S⁻¹ is found once, O(n³); removing a pair is a rank-two change, O(n²).
 /// Test: association/joint_innovation_test.cpp (leave one out, several in a row).
 class JointShares {
  public:

@@ -38,7 +38,7 @@ struct Passing {
   double cost;
 };
 
-/// Pairs that all assignments have.
+/// Pairs common to all assignments.
 std::vector<int> common_pairs(const std::vector<AssignmentSolution>& solutions) {
   std::vector<int> common = solutions.front().entry;
   for (const AssignmentSolution& one : solutions) {
@@ -50,7 +50,7 @@ std::vector<int> common_pairs(const std::vector<AssignmentSolution>& solutions) 
 }
 
 /// Joint NIS of assignments that differ in few pairs: what they have in common is factored once, O(n³), and each costs O(n²) for
-/// each pair beyond.
+/// each additional pair.
 class NeighbouringNis {
  public:
   NeighbouringNis(const InnovationProblem& problem, const std::vector<AssignmentSolution>& solutions)

@@ -28,8 +28,8 @@ struct Dearer {
 
 using Queue = std::priority_queue<Part, std::vector<Part>, Dearer>;
 
-/// Everything in the part but its best, in parts that do not overlap: row by row, the rows before as in the best, this
-/// one not.
+/// Everything in the part except its best, as disjoint parts: row by row, the rows before as in the best, this one
+/// different.
 void split(const Part& part, ResidualPath& path, long& created, Queue& queue) {
   const int rows = static_cast<int>(part.best.entry.size());
   for (int row = part.first_row; row < rows; ++row) {

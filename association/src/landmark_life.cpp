@@ -143,7 +143,7 @@ void LandmarkLife::count_unused(LandmarkRecord& record, const Eigen::Vector2d& s
     record.log_odds = std::min(options_.max_log_odds, record.log_odds + std::min(hit_nats_, nats));
 }
 
-/// That it was seen; false where a look from about here has counted already.
+/// Records that it was seen; false if a look from about here has already been counted.
 bool LandmarkLife::note_look(LandmarkRecord& record, const Eigen::Vector2d& sensor_m) const {
   record.unseen_at_rest = -1;  // this scan is counted, too
   record.last_seen_path_m = path_m_;

@@ -10,7 +10,7 @@
 namespace helixnav::association {
 namespace {
 
-/// Distance of the furthest observation that tells one; zero when none does.
+/// Distance of the furthest observation that gives one; zero when none does.
 double furthest_m(const core::Scan& scan) {
   double reach_m = 0.0;
   for (const core::Observation& observation : scan.observations) {
@@ -28,7 +28,7 @@ double area_of_m2(const core::FieldOfView& view) {
   return 0.5 * width_rad * (view.max_range_m - view.min_range_m) * (view.max_range_m + view.min_range_m);
 }
 
-/// A view from which a density can be had: neither a line nor a point, nor beyond all measure.
+/// A view that yields a density: neither a line nor a point, nor implausibly large.
 bool has_area(const core::FieldOfView& view) {
   constexpr double least_m2 = 1e-12;
   constexpr double most_m2 = 1e18;

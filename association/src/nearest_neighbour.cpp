@@ -9,7 +9,7 @@ namespace helixnav::association {
 Matching nearest_neighbour(const InnovationProblem& problem) {
   Matching matching;
   matching.pair.reserve(problem.observations.size());
-  // Pairs of an observation stand in the order of their NIS.
+  // Pairs of an observation are in order of their NIS.
   for (const GatedObservation& o : problem.observations) matching.pair.push_back(o.begin < o.end ? o.begin : unmatched);
   return matching;
 }

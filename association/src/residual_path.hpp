@@ -8,7 +8,7 @@
 
 namespace helixnav::association {
 
-/// Entry −1 is the row's private "none" column, which stands behind the landmarks' columns.
+/// Entry −1 is the row's private "none" column, which comes after the landmarks' columns.
 inline int column_of(const AssignmentProblem& problem, int row, int entry) {
   return entry < 0 ? problem.columns + row : problem.column[entry];
 }
@@ -27,7 +27,7 @@ class ResidualPath {
   /// include its own. False when nothing else is possible.
   bool search(const AssignmentSolution& solution, int first_row, int row, const std::vector<int>& forbidden);
 
-  double length() const { return length_; }  ///< by how much the assignment becomes dearer; ≥ 0
+  double length() const { return length_; }  ///< by how much the cost of the assignment rises; ≥ 0
 
   /// The changed assignment with prices that prove it among the rows from `first_row` on.
   AssignmentSolution apply() const;
@@ -54,7 +54,7 @@ class ResidualPath {
   std::vector<int> from_row_;  // row that reached the column, or −1 for the sink
   std::vector<int> from_entry_;
   std::vector<char> done_;
-  std::vector<std::pair<double, int>> open_;  // heap of distances and columns, some of them overtaken
+  std::vector<std::pair<double, int>> open_;  // heap of distances and columns, some of them superseded
 };
 
 }  // namespace helixnav::association

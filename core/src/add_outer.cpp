@@ -9,8 +9,8 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// So many doubles in a vector, which the compiler lowers to what the function's target has. Written out: GCC drops the
-/// attribute where its argument depends on a template's.
+/// This many doubles in a vector, which the compiler lowers to what the function's target has. Written out: GCC drops
+/// the attribute if its argument depends on a template's.
 template <int lanes>
 struct Vector;
 template <>

@@ -15,7 +15,7 @@ using Vote = LandmarkAppearance::Vote;
 /// Least variance of the sizes of a population, as a share of the square of their mean: of things that are all alike.
 constexpr double least_spread = 1e-4;
 
-/// ln N(d; 0, variance) but for −½ ln 2π, which all densities of a size have.
+/// ln N(d; 0, variance) except for −½ ln 2π, which all densities of a size have.
 double ln_normal(double difference, double variance) {
   return -0.5 * (std::log(variance) + difference * difference / variance);
 }

@@ -22,7 +22,7 @@ bool is_plausible(const Eigen::Vector2d& lengths_m) {
 }
 
 bool is_plausible(const Pose2& pose) {
-  return is_plausible(pose.position_m()) && std::abs(pose.heading_rad) <= most_heading_rad;  // no, where it is NaN
+  return is_plausible(pose.position_m()) && std::abs(pose.heading_rad) <= most_heading_rad;  // false for NaN
 }
 
 template <class Matrix>

@@ -19,7 +19,7 @@ bool is_symmetric_and_finite(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
   return asymmetry(matrix) <= relative_tolerance * scale;
 }
 
-/// Eigen takes a pivot that is NaN, as one of inf − inf is, for a positive one.
+/// Eigen takes a NaN pivot, such as inf − inf gives, for a positive one.
 bool has_root(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
   const Eigen::LLT<Eigen::MatrixXd> llt(matrix);
   return llt.info() == Eigen::Success && llt.matrixLLT().allFinite();
@@ -27,7 +27,7 @@ bool has_root(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
 
 }  // namespace
 
-/// Tile by tile, because the elements of a row lie far from each other.
+/// Tile by tile, because the elements of a row are far apart in memory.
 double asymmetry(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
   constexpr Eigen::Index tile = 64;
   const Eigen::Index n = matrix.rows();

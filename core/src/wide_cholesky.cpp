@@ -15,8 +15,8 @@ using Square = Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 
 constexpr Index at_once = 64;  ///< columns eliminated before the rest is updated with them
 
-/// Lower triangle of F −= A·Aᵀ. What the products write beyond the last row of a column would be of the next column, or of nobody: the
-/// last rows go through a buffer.
+/// Lower triangle of F −= A·Aᵀ. What the products write beyond the last row of a column would belong to the next column, or to nobody:
+/// the last rows go through a buffer.
 void subtract_square(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& A, Square F) {
   constexpr Index rows_at_once = 128;
   const Panels right(-A, right_width);

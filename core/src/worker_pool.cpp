@@ -12,7 +12,7 @@ WorkerPool::WorkerPool(unsigned threads) {
   try {
     for (unsigned k = 1; k < threads; ++k) threads_.emplace_back([this] { wait_for_jobs(); });
   } catch (const std::exception&) {
-    // The system gives no more: those that there are do the work.
+    // The system gives no more threads: those that exist do the work.
   }
 }
 

@@ -43,7 +43,7 @@ RigidAlignment within(const Points& a, const Points& b, const core::Pose2& T_a_b
   return result;
 }
 
-// Fit and selection in turn until the selection stays; it may run in a circle of few, hence the bound.
+// Alternates fit and selection until the selection no longer changes; it may cycle through a few, hence the bound.
 RigidAlignment refine(const Points& a, const Points& b, const core::Pose2& begin, double limit_m) {
   RigidAlignment now = within(a, b, begin, limit_m);
   for (int iteration = 0; iteration < 100; ++iteration) {

@@ -107,7 +107,7 @@ void summarize_poses(PoseEvaluation& result) {
   result.nees_inside_95 = fraction_of(inside, result.nees_count);
 }
 
-/// Rigid alignment of all that is in one frame; of the position errors that it leaves, the RMSE.
+/// Rigid alignment of everything in one frame; returns the RMSE of the remaining position errors.
 std::pair<core::Pose2, double> align_poses(const std::vector<PosePair>& pairs) {
   std::vector<Eigen::Vector2d> known_m;
   std::vector<Eigen::Vector2d> estimated_m;
@@ -176,7 +176,7 @@ std::pair<PositionEvaluation, PoseEvaluation> evaluate_poses(const Steps& steps,
   return {std::move(position), std::move(pose)};
 }
 
-/// Times and poses of the final path, in the shape of steps.
+/// Times and poses of the final path, in the form of steps.
 Steps final_steps(const runs::Run& run) {
   Steps steps(run.final_path.size());
   for (std::size_t i = 0; i < steps.size(); ++i) {

@@ -34,7 +34,7 @@ std::vector<MovedLandmark> mature_landmarks(const runs::Run& run, const core::Po
   return landmarks;
 }
 
-// How often each label was seen, in all and by each landmark.
+// How often each label was seen, in total and by each landmark.
 struct LabelCounts {
   std::map<core::Label, int> in_all;
   std::map<core::LandmarkId, std::map<core::Label, int>> by_landmark;
@@ -77,7 +77,8 @@ struct NearPair {
   }
 };
 
-/// [true landmark] half the way to the next one; infinite where it is alone. `by_x`: their x, ascending, and which it is.
+/// [true landmark] half the distance to the next one; infinite if it is alone. `by_x`: their x, ascending, and the
+/// index.
 std::vector<double> half_ways_m(const std::vector<core::TrueLandmark>& known,
                                 const std::vector<std::pair<double, std::size_t>>& by_x) {
   std::vector<double> half_m(known.size(), std::numeric_limits<double>::infinity());
@@ -97,8 +98,9 @@ std::vector<double> half_ways_m(const std::vector<core::TrueLandmark>& known,
   return half_m;
 }
 
-/// Landmarks and true ones that are no farther apart than the limit, or than four standard deviations of the landmark where that is
-/// less than half-way to the next true one; the nearest first. Each landmark is compared with those true ones only whose x is as near.
+/// Landmarks and true landmarks no farther apart than the limit, or than four standard deviations of the landmark if
+/// that is less than half-way to the next true one; nearest first. Each landmark is only compared with true ones whose
+/// x is as near.
 std::vector<NearPair> near_pairs(const runs::RunTruth& truth, const std::vector<MovedLandmark>& landmarks,
                                  double limit_m) {
   std::vector<std::pair<double, std::size_t>> by_x;
@@ -121,7 +123,7 @@ std::vector<NearPair> near_pairs(const runs::RunTruth& truth, const std::vector<
   return pairs;
 }
 
-/// Of landmarks that this run never saw (of a map begun before, or by other robots), those that stand on no true one.
+/// Among landmarks that this run never saw (from an earlier map, or other robots), those that are on no true landmark.
 std::size_t count_off_truth(const runs::RunTruth& truth, const std::vector<MovedLandmark>& unseen, double limit_m) {
   std::set<std::size_t> on_truth;
   for (const NearPair& pair : near_pairs(truth, unseen, limit_m)) on_truth.insert(pair.landmark);

@@ -10,25 +10,25 @@
 
 namespace helixnav::evaluation {
 
-/// Which tree each landmark is, by the labels of the observations that it was given: the majority, until the landmark is
-/// old. Then it is fixed: wrong matches afterwards must not make it another tree.
+/// Which tree each landmark is, by the labels of its observations: the majority, until the landmark is old. Then it is
+/// fixed: later wrong matches must not turn it into another tree.
 class Identities {
  public:
   explicit Identities(int old_sightings) : old_sightings_(old_sightings) {}
 
   void add_sighting(core::LandmarkId id, core::Label label, double driven_m);
 
-  /// Fixes those that were not seen since `seen_before_m`, all of them or one.
+  /// Fixes those that have not been seen since `seen_before_m`, all of them or a single one.
   void fix_unseen(double seen_before_m);
   void fix_if_unseen(core::LandmarkId id, double seen_before_m);
 
-  /// A fixed landmark that was some tree when it was fixed, and not just a few false detections.
+  /// A fixed landmark that was a tree when it was fixed, and not just a few false detections.
   bool is_old(core::LandmarkId id) const;
 
   /// no_label for false detections and for landmarks never seen.
   core::Label identity(core::LandmarkId id) const;
 
-  /// Trees that old landmarks are.
+  /// Trees represented by old landmarks.
   std::set<core::Label> old_trees() const;
 
  private:

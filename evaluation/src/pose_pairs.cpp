@@ -9,14 +9,15 @@
 namespace helixnav::evaluation {
 namespace {
 
-/// The last step that is not after it.
+/// The last step not after it.
 std::size_t step_before(const std::vector<core::StepReport>& steps, core::Nanoseconds t_ns) {
   const auto after = std::upper_bound(steps.begin(), steps.end(), t_ns,
                                       [](core::Nanoseconds t, const core::StepReport& step) { return t < step.t_ns; });
   return static_cast<std::size_t>(after - steps.begin()) - 1;
 }
 
-/// Between the last step of one frame and the first of the next there is no estimate, unless both were brought into one.
+/// Between the last step of one frame and the first of the next there is no estimate, unless both were brought into one
+/// frame.
 bool is_torn(const std::vector<core::StepReport>& steps, const std::vector<runs::ReportFrame>& frames, std::size_t step,
              core::Nanoseconds t_ns) {
   if (steps[step].t_ns == t_ns || step + 1 == frames.size() || frames[step].begin == frames[step + 1].begin)

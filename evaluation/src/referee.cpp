@@ -179,7 +179,7 @@ void Referee::Book::note_slips(const StepReport& report) {
   if (driven_m - last_slip_m > options.slip_known_m) score.slips_unfounded += decided;
 }
 
-/// Notes which trees come into view, and when they are old ones. `pose` still is that of the scan before.
+/// Notes which trees come into view, and whether they are old ones. `pose` is still that of the previous scan.
 void Referee::Book::look_out(const std::vector<Label>& labels) {
   int old = 0;
   for (const Label label : labels) {
@@ -219,7 +219,8 @@ void Referee::Book::count_matches(const StepReport& report, const std::vector<La
   if (is_associated()) last_associated.open = {pose, truth(), recognised};
 }
 
-/// Landmarks that earlier scans began when they were gone through again; and poses believed in between are no more.
+/// Landmarks that were started by earlier scans when these were replayed; and poses believed in between no longer
+/// hold.
 void Referee::Book::revise(const StepReport& report) {
   for (const core::RevisedScan& scan : report.revised) {
     const std::vector<Label>& labels = recording.labels.at(static_cast<std::size_t>(scan.step));

@@ -12,7 +12,7 @@
 
 namespace helixnav::evaluation {
 
-/// An estimated pose and the true one, and the old landmarks by which the vehicle was there.
+/// An estimated pose and the true one, and the old landmarks by which the vehicle was located.
 struct Judgeable {
   core::PoseGaussian estimate;
   core::Pose2 truth;
@@ -22,11 +22,11 @@ struct Judgeable {
 /// Absolute values.
 PoseError error_between(const core::Pose2& estimate, const core::Pose2& truth);
 
-/// A pose to be judged by the map of its own time, which a later closing moves: at the first scan for which it does not hold
-/// any more, because listing a map costs.
+/// A pose to be judged by the map of its own time, which a later closing moves. It is judged at the first scan for
+/// which it no longer holds, because listing a map is costly.
 struct Judgement {
   std::optional<Judgeable> open;
-  std::optional<JudgedPose> judged;  ///< when nothing is open
+  std::optional<JudgedPose> judged;  ///< if nothing is open
 
   bool is_known() const { return open || judged; }
 };
@@ -38,7 +38,7 @@ struct Referee::Book {
   RefereeOptions options;
   double in_sight_m;
   Identities identities;
-  std::vector<std::set<core::Label>> seen_until_return;  ///< trees, by then
+  std::vector<std::set<core::Label>> seen_until_return;  ///< trees, up to then
   std::set<core::Label> seen;
   std::set<core::Label> old_trees;  ///< at the present return
   double driven_m = 0.0;
@@ -47,10 +47,10 @@ struct Referee::Book {
   int wrong_so_far = 0;                   ///< wrong old matches since the present return, while nothing triggered
   bool on_old_ground = false;             ///< in the present scan
   std::set<core::LandmarkId> recognised;  ///< old landmarks matched in the present scan
-  bool judges_at_once;                    ///< a vehicle that is carried leaves the map of that time
-  bool is_apart = false;                  ///< it was carried, and how its map lies to the one before is unknown
+  bool judges_at_once;                    ///< a vehicle that is carried leaves its map of that time
+  bool is_apart = false;                  ///< it was carried, and the relation of its map to the one before is unknown
   std::size_t steps = 0;
-  double last_slip_m = -std::numeric_limits<double>::infinity();  ///< driven until then
+  double last_slip_m = -std::numeric_limits<double>::infinity();  ///< distance driven until then
   core::PoseGaussian pose;
   Judgement last_on_old_ground;  ///< or at a closing behind it
   Judgement last_associated;     ///< with old ground, since the present return

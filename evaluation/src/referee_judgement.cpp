@@ -19,16 +19,16 @@ using core::MapLandmark;
 using core::StepReport;
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
-constexpr double relative_reach_m = 80.0;  // old landmarks farther than that say nothing about here
+constexpr double relative_reach_m = 80.0;  // old landmarks farther than this say nothing about here
 constexpr std::size_t least_relative = 3;
 
-/// Landmarks, where the map has them and where their trees stand.
+/// Landmarks: their positions on the map and those of their trees.
 struct Places {
   std::vector<Eigen::Vector2d> map_m;
   std::vector<Eigen::Vector2d> true_m;
 };
 
-/// Root of the mean squared distance after the best rigid motion; NaN with fewer than two.
+/// Root mean square distance after the best rigid motion; NaN with fewer than two.
 double rms_after_fit(const Places& places) {
   if (places.map_m.size() < 2) return no_number;
   const core::Pose2 T_true_map = core::fit_rigidly(places.true_m, places.map_m);
@@ -69,7 +69,7 @@ void Referee::Book::judge_closure(const StepReport& report, const std::vector<Ma
   std::set<core::LandmarkId> kept;
   for (const core::MergedLandmarks& pair : report.merged) kept.insert(pair.kept);
   closure.pose = judge({pose, truth(), std::move(kept)}, map);
-  // Before the first return there may be something to close all the same: a crossing of a town is old ground from two sides.
+  // Before the first return there may still be something to close: a town crossing is old ground from two sides.
   const bool nothing_to_close = returns_at_m.empty() || (score.returns.empty() && closure.pairs == 0);
   closure.is_false =
       nothing_to_close || is_wrong(closure.pose.relative) || too_many_wrong(closure.wrong_pairs, closure.pairs);
@@ -82,8 +82,8 @@ JudgedPose Referee::Book::judge(const Judgeable& pose_at, const std::vector<MapL
           nees(pose_at.estimate, pose_at.truth)};
 }
 
-/// To the old landmarks that were recognised, where three of them are still on the map: others near may stand on another
-/// street of the map, to which no loop is closed yet. Else to the nearest.
+/// Relative to the old landmarks that were recognised, if three of them are still on the map: others nearby may be on
+/// another street of the map, to which no loop has been closed yet. Otherwise relative to the nearest.
 PoseError Referee::Book::relative_error(const Judgeable& pose_at, const std::vector<MapLandmark>& map) const {
   const core::Pose2& estimate = pose_at.estimate.mean;
   const auto is_recognised = [&](const MapLandmark& landmark) { return pose_at.recognised.count(landmark.id) > 0; };

@@ -8,12 +8,12 @@
 
 namespace helixnav::evaluation {
 
-/// Estimate of the run at `t_ns`: pose interpolated between the steps around it, covariance of the step before.
-/// Nothing outside the steps' time. Cost O(log n). Test: evaluation/evaluation_test.cpp.
+/// Estimate of the run at `t_ns`: pose interpolated between the steps around it, covariance of the step before. Nothing
+/// outside the time of the steps. Cost O(log n). Test: evaluation/evaluation_test.cpp.
 std::optional<core::PoseGaussian> estimate_at(const std::vector<core::StepReport>& steps, core::Nanoseconds t_ns);
 
-/// How far apart two steps may be for the path between them to be that of the vehicle: three times the interval that nine in ten
-/// are no longer than. In a longer gap between scans an arc of constant twist is a guess.
+/// How far apart two steps may be for the path between them to be that of the vehicle: three times the 90 % quantile of
+/// the intervals. In a longer gap between scans an arc of constant twist is a guess.
 core::Nanoseconds most_apart_ns(const std::vector<core::StepReport>& steps);
 
 /// Between two steps that are farther apart than that.

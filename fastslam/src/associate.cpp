@@ -47,7 +47,7 @@ void Associator::look_around(const HypothesisSet& set, std::size_t begin, std::s
     high = high.cwiseMax(place_m);
     spread = std::max(spread, spread_m2(set.all[i], z));
   }
-  // Matches move a hypothesis on while its candidates are looked for: by what its own spread allows.
+  // Matches move a hypothesis while its candidates are being sought: by what its own spread allows.
   const double moves_m = 3.0 * std::sqrt(std::max(0.0, spread - z.noise_m2));  // rounding of a certain pose
   const double margin_m = moves_m + std::sqrt(search_slack * std::max(options_.match_gate, options_.new_gate) * spread);
   if (scratch.near.size() <= only) scratch.near.resize(only + 1);

@@ -21,7 +21,7 @@ struct Candidate {
   double log_likelihood = 0.0;  ///< ln N(ν; 0, S)
 };
 
-/// A lineage that an observation, or the view, of some particle of a block may concern.
+/// A lineage that may concern an observation, or the view, of some particle in a block.
 struct Neighbour {
   LineageId id = 0;
   float reach_m = 0.0F;
@@ -64,10 +64,10 @@ class Associator {
   /// Appends the children of one hypothesis by one observation to scratch.children.
   void split(const Hypothesis& h, const Choice* choices, std::size_t observation, AssociationScratch& scratch) const;
 
-  /// νᵀS⁻¹ν of a landmark that h's particle holds, seen from (x, P); NaN where it cannot be told.
+  /// νᵀS⁻¹ν of a landmark that h's particle holds, seen from (x, P); NaN if it is undefined.
   double nis(const Hypothesis& h, LineageId id, std::size_t observation) const;
 
-  /// ν of the same, each row by its standard deviation.
+  /// ν of the same, each row divided by its standard deviation.
   Eigen::Vector2d normalised_innovation(const Hypothesis& h, LineageId id, std::size_t observation) const;
 
   /// The match moves (x, P), with FastSLAM 2.0, and weighs; `known`: without a doubt, whatever its likelihood was before.
@@ -79,7 +79,7 @@ class Associator {
     Symmetric2 S;
     double determinant, nis;
 
-    /// False where noise out of all proportion to the spread of the pose leaves nothing of S but rounding.
+    /// False if noise out of all proportion to the spread of the pose leaves nothing of S but rounding.
     bool can_be_told() const { return determinant > 1e-14 * S.xx * S.yy && nis >= 0.0 && std::isfinite(nis); }
   };
   Innovation innovation(const Hypothesis& h, const Eigen::Vector2d& landmark_m, const Symmetric2& landmark_m2,
@@ -106,7 +106,7 @@ class Associator {
   double log_detection_odds_, log_unmatched_, log_new_, log_clutter_, log_missed_;
 };
 
-/// Factor on the gate when places are compared in the plane, before the exact test: room for bent coordinates.
+/// Factor on the gate when places are compared in the plane, before the exact test: room for curved coordinates.
 inline constexpr double search_slack = 1.3;
 
 /// What a landmark's own uncertainty adds to how far it may be found from its estimate.

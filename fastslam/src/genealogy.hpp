@@ -8,14 +8,14 @@
 
 namespace helixnav::fastslam {
 
-/// Of how many particles of some drive ago the particles of today descend. A mark is set every eighth of that drive, and
+/// From how many particles of some drive ago the current particles descend. A mark is set every eighth of that drive, and
 /// every particle carries the number of its ancestor at each mark that is kept. Test: apps/fastslam_test.cpp (the drive is the
 /// same with and without).
 class Genealogy {
  public:
   Genealogy(std::size_t particles, double back_m) : back_m_(back_m) { set_mark(particles); }
 
-  /// Particle k comes from parents[k] of before.
+  /// Particle k comes from parents[k] of the previous set.
   void descend(const std::vector<std::uint32_t>& parents);
 
   /// The robot has driven on; `particles`: how many there are.
@@ -27,7 +27,7 @@ class Genealogy {
  private:
   struct Mark {
     double at_m = 0.0;
-    std::vector<std::uint32_t> ancestor;  ///< [particle of today]
+    std::vector<std::uint32_t> ancestor;  ///< [current particle]
   };
   void set_mark(std::size_t particles);
 

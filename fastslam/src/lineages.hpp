@@ -12,18 +12,18 @@
 
 namespace helixnav::fastslam {
 
-/// All lineages of landmarks with the grid that finds those near a place, shared by all particles. A lineage stands in
-/// the cell of its anchor, with a reach within which all that particles hold of it lies: estimates, and what their own
-/// uncertainty may add to a search. 16 bytes a lineage. Reading from several threads is safe while nothing writes.
+/// All lineages of landmarks with the grid that finds those near a place, shared by all particles. A lineage is in the
+/// cell of its anchor, with a reach that covers all that particles hold of it: estimates, and what their own
+/// uncertainty may add to a search. 16 bytes per lineage. Reading from several threads is safe while nothing writes.
 /// Test: fastslam/lineages_test.cpp (against brute force).
 class Lineages {
  public:
-  /// Beyond, and for what is not finite, cells have no numbers and single precision no metres.
+  /// Beyond this, and for non-finite values, cells have no numbers and single precision no metres.
   static constexpr double farthest_m = 1e9;
 
   Lineages() : buckets_(64, none) {}
 
-  /// A new lineage, anchored where it was born as near as single precision has it.
+  /// A new lineage, anchored where it was born as closely as single precision allows.
   LineageId add(const Eigen::Vector2d& place_m);
 
   /// Ids given so far, dead ones included.

@@ -9,7 +9,7 @@
 namespace helixnav::fastslam {
 namespace {
 
-/// Only what somebody's path leads over, with new indices; `last` are the ends of the paths.
+/// Only what is on some path, with new indices; `last` are the ends of the paths.
 std::vector<core::PathPoint> living(const std::vector<core::PathPoint>& points, std::vector<std::ptrdiff_t>& last) {
   std::vector<bool> lives(points.size(), false);
   for (const std::ptrdiff_t end : last) lives[static_cast<std::size_t>(end)] = true;

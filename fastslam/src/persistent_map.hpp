@@ -11,11 +11,10 @@
 namespace helixnav::fastslam {
 
 /// The landmarks of one particle: a persistent 16-way trie over lineage ids with leaves of eight landmarks. Maps share
-/// what they have in common: `share` costs one count, and a write copies the nodes on its way that somebody else uses,
-/// or writes in place where nothing else does. Depth log₁₆(id / 8).
-/// Different maps may be written by different threads at the same time, each with a pool of its own that was told that
-/// it is not alone. The owner of a map clears it: the pool is not known here.
-/// Test: fastslam/persistent_map_test.cpp (random programs against std::map).
+/// what they have in common: `share` costs one count, and a write copies the nodes on its path that are used
+/// elsewhere, or writes in place if they are not. Depth log₁₆(id / 8). Different maps may be written by different
+/// threads at the same time, each with a pool of its own that was told that it is not alone. The owner of a map clears
+/// it: the pool is not known here. Test: fastslam/persistent_map_test.cpp (random programs against std::map).
 class PersistentMap {
  public:
   PersistentMap() = default;

@@ -11,10 +11,10 @@
 namespace helixnav::fastslam {
 namespace {
 
-/// Only what stands well inside the view is expected: this share of its range, and so far from its sides.
+/// Only landmarks well inside the view are expected: within this share of its range, and this far from its sides.
 constexpr double sure_range = 0.9, sure_edge_rad = 0.1;
 
-/// Beside an observation of nothing no landmark counts as absent: so many standard deviations of the observation.
+/// Near an observation of nothing no landmark counts as absent: within this many σ of the observation.
 constexpr double beside_sigmas = 6.0;
 
 Eigen::Vector2d place_of(const Lineages& lineages, LineageId id, const LandmarkRecord& landmark) {
@@ -75,7 +75,7 @@ void MapUpdate::update(const TurnedPose& pose, LineageId id, const PreparedObser
   const Eigen::Vector2d step = K * pair.nu;
   const Eigen::Matrix2d after = P - K * PHt.transpose();
   const bool can_be_told = step.norm() < Lineages::farthest_m && after.diagonal().minCoeff() > 0.0;
-  if (!can_be_told) return;  // of S nothing was left but rounding
+  if (!can_be_told) return;  // nothing was left of S but rounding
   landmark.dx_m += static_cast<float>(step.x());
   landmark.dy_m += static_cast<float>(step.y());
   landmark.set_covariance_m2({after(0, 0), 0.5 * (after(0, 1) + after(1, 0)), after(1, 1)});

@@ -13,7 +13,7 @@
 
 namespace helixnav::fastslam {
 
-/// What one worker uses over and over, and what it finds on the way.
+/// What one worker reuses, and what it finds on the way.
 struct RealiseScratch {
   std::vector<LineageId> in_reach;                  ///< lineages that may be in view, for a block of particles
   std::vector<std::pair<LineageId, float>> growth;  ///< lineages whose reach has become too short, with the reach due

@@ -12,13 +12,13 @@
 
 namespace helixnav::fastslam {
 
-/// How much of what a scan says the scan before has said already: innovations of one landmark in two scans in a row, as the
-/// heaviest hypothesis has them, are white where the noise is, and correlated where it stays for a while (the bark of one
-/// side of a tree, a landmark that is two). Where the correlation is ρ and fades geometrically, (1 + ρ)/(1 − ρ) scans say what
+/// How much of what a scan says the previous scan has already said: innovations of one landmark in two consecutive scans, as
+/// the heaviest hypothesis has them, are white if the noise is, and correlated if it persists for a while (the bark of one
+/// side of a tree, a landmark that is two). If the correlation is ρ and decays geometrically, (1 + ρ)/(1 − ρ) scans say what
 /// one would. Test: fastslam/repeated_looks_test.cpp.
 class RepeatedLooks {
  public:
-  /// Share of the evidence of a scan that is its own, in (0, 1].
+  /// Share of a scan's evidence that is its own, in (0, 1].
   double own_share() const {
     const double rho = std::clamp(product_ / power_, 0.0, most_);
     return (1.0 - rho) / (1.0 + rho);

@@ -15,7 +15,7 @@ namespace helixnav::fastslam {
 
 using Matrix23 = Eigen::Matrix<double, 2, 3>;
 
-/// An observation made ready for thousands of particles: no trigonometry but that of the particle's heading is left.
+/// An observation prepared for thousands of particles: the only trigonometry left is that of the particle's heading.
 struct PreparedObservation {
   bool polar = true;                ///< range and bearing, else cartesian
   Eigen::Vector2d point_robot_m;    ///< what was seen, in the frame of the robot

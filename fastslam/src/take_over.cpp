@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Second half of a scan: from weighed hypotheses to the particles of tomorrow.
+// Second half of a scan: from weighted hypotheses to the next particles.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -66,7 +66,7 @@ void FastSlam::Impl::begin_with(const std::vector<core::PointGaussian>& landmark
   for (std::size_t i = 1; i < maps.size(); ++i) maps[i].share(maps.front(), pool);
 }
 
-/// Looks are counted by how far the sensor has come, so that standing still says nothing twice.
+/// Looks are counted by how far the sensor has moved, so that nothing is counted twice while it stands still.
 void FastSlam::Impl::drive(Robot& robot, const core::Odometry& motion, const core::Pose2& T_robot_sensor) {
   robot.motion.reset();
   robot.T_look_robot = core::compose(robot.T_look_robot, motion.T_before_after);
@@ -139,7 +139,7 @@ void FastSlam::Impl::draw_poses() {
   }
 }
 
-/// Every particle that is not a repetition gets its parent's map: the last one the map itself, those before it copies.
+/// Every particle that is not a repetition gets its parent's map: the last one the map itself, earlier ones copies.
 void FastSlam::Impl::take_over_maps() {
   NodePool& pool = workers.front().pool;
   new_maps.resize(chosen.size());
@@ -195,7 +195,7 @@ void FastSlam::Impl::settle() {
   if (lineages.size() - swept_at > lineages.living() / 2 + 256) sweep_lineages();
 }
 
-/// Forgets lineages that no particle holds. What has a name stays: it may be seen again.
+/// Forgets lineages that no particle holds. Those with a name stay: they may be seen again.
 void FastSlam::Impl::sweep_lineages() {
   std::vector<bool> alive(lineages.size(), false);
   for (const auto& [id, name] : names_of_lineages) alive[id] = true;

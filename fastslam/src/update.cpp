@@ -15,7 +15,7 @@ Eigen::Matrix3d root(const Eigen::Matrix3d& covariance) {
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
-/// A landmark begun beyond would make every weight after it NaN.
+/// A landmark begun beyond this would make every later weight NaN.
 void refuse_out_of_bounds(const PreparedScan& scan) {
   for (const PreparedObservation& z : scan.observations) {
     if (z.point_robot_m.norm() < Lineages::farthest_m) continue;
@@ -23,8 +23,8 @@ void refuse_out_of_bounds(const PreparedScan& scan) {
   }
 }
 
-/// As core::normalise, but weights that vanish all, or cannot be told, are equal from now on: a scan that fits no particle says
-/// nothing of which is better. How badly it fits is for NIS to say. Weights that alone cannot be told vanish.
+/// As core::normalise, but if all weights vanish or are undefined, they are equal from now on: a scan that fits no particle
+/// says nothing about which is better. How badly it fits is for NIS to say. Individual undefined weights vanish.
 double normalise_or_equal(std::vector<double>& log_weight) {
   for (double& lw : log_weight) {
     if (!std::isfinite(lw)) lw = -HUGE_VAL;
@@ -212,9 +212,9 @@ void FastSlam::Impl::count_repeated(const Associator& associator, std::size_t he
   if (!innovations.empty()) robot.repeated.count(innovations);
 }
 
-/// Weights tell particles apart by what the scan has to say of its own. All of it, where scans in a row repeat each other,
-/// picks the ancestor of all particles long before a loop can tell which was right. Children of several hypotheses, which
-/// differ by what a scan says of one landmark or two, are weighed as they are.
+/// Weights tell particles apart by what the scan itself has to say. Using all of it, if consecutive scans repeat each
+/// other, picks the ancestor of all particles long before a loop can tell which was right. Children of several hypotheses,
+/// which differ in what a scan says about one landmark or two, are weighted as they are.
 void FastSlam::Impl::weigh(std::size_t robot) {
   const bool several = options.association == Association::multiple_hypotheses;
   const double own_share = several ? 1.0 : robots[robot].repeated.own_share();

@@ -20,10 +20,10 @@ namespace {
   throw core::InputError(path + ": cannot " + verb + ": " + std::strerror(errno));
 }
 
-/// What has no size, such as a device or a pipe, may never end.
+/// Anything without a size, such as a device or a pipe, may never end.
 constexpr std::size_t most_device_bytes = 64u << 20;
 
-/// A file open to be read.
+/// A file open for reading.
 class OpenFile {
  public:
   explicit OpenFile(const std::string& path) : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
@@ -38,7 +38,7 @@ class OpenFile {
 
   bool is_regular() const { return S_ISREG(status_.st_mode); }
 
-  /// Appends what comes next and returns how many bytes that were; 0 at the end.
+  /// Appends the next bytes and returns how many there were; 0 at the end.
   std::size_t read_into(std::string& bytes) const {
     constexpr std::size_t block_bytes = 1u << 18;
     const std::size_t before = bytes.size();
@@ -79,7 +79,7 @@ void AppendFile::append(std::string_view bytes) {
 
 void write_whole_file(const std::string& path, std::string_view bytes) {
   const std::string temporary = path + ".part";
-  ::unlink(temporary.c_str());  // left by a process that was killed, or a link planted to be written through
+  ::unlink(temporary.c_str());  // left by a killed process, or a link planted to be written through
   try {
     AppendFile(temporary).append(bytes);
     if (std::rename(temporary.c_str(), path.c_str()) != 0) refuse(path, "write");

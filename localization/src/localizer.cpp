@@ -16,7 +16,7 @@
 namespace helixnav::localization {
 namespace {
 
-/// What is new to association is not on the map, and the map is given.
+/// What association takes for new is not on the map, and the map is given.
 core::Outcome outcome_of(const association::ObservationOutcome& observation) {
   if (observation.outcome == association::Outcome::matched) return core::Outcome::matched;
   const bool extraneous =
@@ -150,7 +150,7 @@ Localizer::Associated Localizer::associate(const core::PoseGaussian& pose, const
   return associated;
 }
 
-/// Updates the predicted pose with what is matched. Nothing throws once something has changed.
+/// Updates the predicted pose with the matches. Nothing throws once something has changed.
 core::StepReport Localizer::update(const core::PoseGaussian& pose, const core::Scan& scan, Associated associated) {
   std::vector<Sighting> sightings;
   for (const core::AssociationReport& association : associated.reports) {

@@ -10,9 +10,9 @@
 
 namespace helixnav::localization {
 
-/// Where the landmarks of a scan may stand: discs around the points that its observations see, with a radius of `sigmas`
+/// Where the landmarks of a scan may be: discs around the points that its observations see, with a radius of `sigmas`
 /// standard deviations of pose and noise together (their trace, so that nothing inside an exact gate is lost). A scan
-/// with an observation that fixes no point (one row) has one disc, its field of view, or the whole map where that is
+/// with an observation that fixes no point (one row) has one disc, its field of view, or the whole map if that is
 /// unknown (a greatest range of zero).
 class Nearby {
  public:

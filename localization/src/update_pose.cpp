@@ -11,7 +11,7 @@
 namespace helixnav::localization {
 namespace {
 
-/// ν, H and R of all sightings, one under the other.
+/// ν, H and R of all sightings, stacked.
 struct Stacked {
   Eigen::VectorXd nu;
   Eigen::Matrix<double, Eigen::Dynamic, 3> H;

@@ -13,7 +13,7 @@
 
 namespace helixnav::localization {
 
-/// An observation of a point that is known.
+/// An observation of a known point.
 struct Sighting {
   core::LandmarkId landmark = core::no_landmark;
   Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
@@ -28,8 +28,8 @@ struct PoseUpdate {
 };
 
 /// Joint EKF update of a pose with sightings of known points: S = HPHᵀ + R, K = PHᵀS⁻¹, Joseph's form of the covariance.
-/// No sighting changes nothing. NumericalError with step and landmarks when S is not positive definite or the correction
-/// is not finite. O(rows³).
+/// Without sightings nothing changes. NumericalError with step and landmarks when S is not positive definite or the
+/// correction is not finite. O(rows³).
 PoseUpdate update_pose(const core::PoseGaussian& pose, const core::Pose2& T_robot_sensor,
                        const std::vector<Sighting>& sightings, std::int64_t step);
 

@@ -21,7 +21,7 @@ struct Number {
   double* variance = nullptr;
 };
 
-/// Row of an observation's z that the field is, −1 when it has none.
+/// Row of the field in an observation's z, −1 when it has none.
 int row_of(NoiseField field, ObservationKind kind) {
   switch (field) {
     case NoiseField::point_x:

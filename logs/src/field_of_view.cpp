@@ -57,7 +57,7 @@ core::FieldOfView estimate_field_of_view(const core::Recording& recording) {
   view.max_range_m = quantile(polar.ranges_m, 0.75);
   view.reach_m = quantile(polar.ranges_m, 0.95);
   if (!(view.max_range_m > view.min_range_m)) view.min_range_m = 0.0;  // all at one distance
-  constexpr double nearly_behind_rad = 0.97 * core::pi;                // 1 % of bearings all around go beyond 0.98 π
+  constexpr double nearly_behind_rad = 0.97 * core::pi;                // 1 % of bearings all around exceed 0.98 π
   const bool all_around =
       quantile(polar.bearings_rad, 0.01) < -nearly_behind_rad && quantile(polar.bearings_rad, 0.99) > nearly_behind_rad;
   if (all_around) return view;

@@ -43,13 +43,13 @@ std::string name_of(archive_entry* entry) {
   return path == nullptr ? std::string() : std::filesystem::path(path).filename().string();
 }
 
-/// A few megabytes of zip may hold terabytes of the same byte. The longest log known has 60 MB.
+/// A few megabytes of zip may hold terabytes of the same byte. The longest known log has 60 MB.
 constexpr std::size_t most_text_bytes = 512u << 20;
 
 std::string content(const std::filesystem::path& path, archive* reader, archive_entry* entry) {
   std::string text;
   if (archive_entry_size_is_set(entry) != 0) {
-    constexpr std::int64_t reserved_at_most_bytes = 64 << 20;  // a size that lies does not take the memory
+    constexpr std::int64_t reserved_at_most_bytes = 64 << 20;  // a false size must not allocate the memory
     text.reserve(
         static_cast<std::size_t>(std::clamp<std::int64_t>(archive_entry_size(entry), 0, reserved_at_most_bytes)));
   }
@@ -88,7 +88,7 @@ std::string read_file(const std::filesystem::path& path) {
 }
 
 TextByName read_archive(const std::filesystem::path& path, const std::vector<std::string>& names) {
-  read_file(path).clear();  // names a missing or unreadable file in the same words as everywhere
+  read_file(path).clear();  // reports a missing or unreadable file in the same words as everywhere
   const ArchiveReader reader = open_archive(path);
   if (reader == nullptr) {
     fail(path, nullptr);

@@ -17,14 +17,14 @@ inline bool ends_with(std::string_view text, std::string_view ending) {
 /// The whole content of a file. Throws core::InputError naming the file when it cannot be read.
 std::string read_file(const std::filesystem::path& path);
 
-/// Text of files by their name without folders.
+/// Contents of files by their name without folders.
 using TextByName = std::map<std::string, std::string>;
 
-/// The files called `names` (without folders, any depth) of a zip or tar, by libarchive; those not there are left out.
-/// Throws core::InputError for an archive that is none or is cut off.
+/// The files called `names` (without folders, any depth) of a zip or tar, by libarchive; missing ones are left out.
+/// Throws core::InputError for a file that is not an archive or is cut off.
 TextByName read_archive(const std::filesystem::path& path, const std::vector<std::string>& names);
 
-/// The names (without folders) of all files in an archive; empty when it is no archive.
+/// The names (without folders) of all files in an archive; empty when it is not an archive.
 std::vector<std::string> names_in_archive(const std::filesystem::path& path);
 
 }  // namespace helixnav::logs

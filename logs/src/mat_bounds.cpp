@@ -16,7 +16,8 @@ constexpr std::size_t type_matrix = 14;
 constexpr std::size_t type_compressed = 15;
 constexpr int deepest = 8;
 
-/// Array flags are the first part of a matrix, its class their lowest byte; 1 to 3 are cells, structures and objects.
+/// Array flags are the first part of a matrix, with its class in their lowest byte; 1 to 3 are cells, structures and
+/// objects.
 std::size_t class_of(std::string_view matrix, bool little_endian) {
   constexpr std::size_t flags_at = 2 * tag_bytes;
   return matrix.size() < flags_at + 4 ? 0 : unsigned32(matrix, flags_at, little_endian) & 0xff;
@@ -30,7 +31,7 @@ bool is_container(std::string_view matrix, bool little_endian) {
 /// A part of a matrix: type and data, which may be cut off.
 struct Part {
   std::size_t type = 0;
-  std::size_t length = 0;  ///< as the file says
+  std::size_t length = 0;  ///< as stated in the file
   std::string_view data;
   std::string_view with_tag;
 };
@@ -38,7 +39,7 @@ struct Part {
 Part part_at(std::string_view matrix, std::size_t at, bool little_endian) {
   Part part;
   part.type = unsigned32(matrix, at, little_endian);
-  const bool is_small = part.type > 0xffff;  // four bytes of data at most, in the tag itself
+  const bool is_small = part.type > 0xffff;  // at most four bytes of data, in the tag itself
   part.length = is_small ? part.type >> 16 : unsigned32(matrix, at + 4, little_endian);
   const std::size_t from = at + (is_small ? 4 : tag_bytes);
   part.data = matrix.substr(from, is_small ? std::min<std::size_t>(part.length, 4) : part.length);
@@ -46,7 +47,7 @@ Part part_at(std::string_view matrix, std::size_t at, bool little_endian) {
   return part;
 }
 
-/// `matrix` begins at its tag.
+/// `matrix` starts at its tag.
 std::vector<Part> parts_of(std::string_view matrix, std::size_t most, bool little_endian) {
   std::vector<Part> parts;
   for (std::size_t at = tag_bytes; at <= matrix.size() && matrix.size() - at >= tag_bytes && parts.size() < most;) {
@@ -56,8 +57,8 @@ std::vector<Part> parts_of(std::string_view matrix, std::size_t most, bool littl
   return parts;
 }
 
-/// The array flags are the first part, of eight bytes, which is what matio takes whatever length is given: with another one
-/// it would go on elsewhere than we do.
+/// The array flags are the first part, of eight bytes, which is what matio takes whatever length is given: with another
+/// length it would continue at a different place than we do.
 bool has_flags(const std::vector<Part>& parts) { return parts.empty() || parts[0].length == 8; }
 
 /// The dimensions are the second part, of four bytes each.
@@ -66,7 +67,7 @@ bool has_few_dimensions(const std::vector<Part>& parts) { return parts.size() < 
 /// The name is the third part.
 bool has_short_name(const std::vector<Part>& parts) { return parts.size() < 3 || parts[2].length <= 1024; }
 
-/// Every cell, and every field of a structure, is a matrix with a tag of its own. The fourth part of a structure is the
+/// Every cell, and every field of a structure, is a matrix with its own tag. The fourth part of a structure is the
 /// length of a field's name, the fifth the names.
 bool has_room_for_cells(const std::vector<Part>& parts, std::size_t bytes, std::size_t array_class,
                         bool little_endian) {
@@ -83,7 +84,7 @@ bool has_room_for_cells(const std::vector<Part>& parts, std::size_t bytes, std::
   return cells <= bytes / tag_bytes;
 }
 
-/// `matrix` begins at its tag.
+/// `matrix` starts at its tag.
 std::string_view broken_bound_of_matrix(std::string_view matrix, int levels, bool little_endian) {
   constexpr std::size_t head = 5;
   const std::vector<Part> first = parts_of(matrix, head, little_endian);
@@ -103,7 +104,7 @@ std::string_view broken_bound_of_matrix(std::string_view matrix, int levels, boo
   return {};
 }
 
-/// The first `most` bytes of what is compressed; fewer when there are no more, or none that can be read.
+/// The first `most` bytes of the compressed data; fewer when there are no more, or none that can be read.
 std::string inflated(std::string_view compressed, std::size_t most) {
   std::string bytes(most, '\0');
   z_stream stream{};

@@ -66,7 +66,7 @@ MatFile::MatFile(const std::filesystem::path& path) : path_(path) {
   }
 }
 
-/// matio takes a file that is cut off for one full of zeros; the lengths that stand before each variable tell. It also goes
+/// matio reads a truncated file as one full of zeros; the lengths before each variable reveal this. It also descends
 /// into cells by recursion, however deep.
 void MatFile::check_extent() const {
   constexpr std::size_t header_bytes = 128;
@@ -94,7 +94,7 @@ bool MatFile::has(const std::string& variable) const {
   return std::find(variables_.begin(), variables_.end(), variable) != variables_.end();
 }
 
-/// What is compressed may be a thousand times as long as the file.
+/// Decompressed data may be a thousand times as long as the file.
 void MatFile::check_size(const std::string& name) const {
   constexpr std::size_t most_elements = 20'000'000;
   const Variable info(Mat_VarReadInfo(static_cast<mat_t*>(file_.get()), name.c_str()));

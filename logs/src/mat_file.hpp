@@ -27,9 +27,9 @@ class MatFile {
   std::vector<std::string> variables() const { return variables_; }
   bool has(const std::string& variable) const;
 
-  /// A numeric matrix without NaN and infinities.
+  /// A numeric matrix without NaN or infinities.
   MatMatrix matrix(const std::string& name) const;
-  /// A row or column vector of `length` numbers; of any length when that is 0.
+  /// A row or column vector of `length` numbers; of any length if `length` is 0.
   std::vector<double> vector(const std::string& name, std::size_t length = 0) const;
 
   /// Throws core::InputError: "file: message".

@@ -8,7 +8,7 @@
 
 namespace helixnav::logs {
 
-/// A landmark as a point in the robot frame, for file formats that know no other form.
+/// A landmark as a point in the robot frame, for file formats that have no other form.
 struct PointInRobotFrame {
   Eigen::Vector2d point_m;
   Eigen::Matrix2d covariance_m2;

@@ -12,8 +12,8 @@
 
 namespace helixnav::logs {
 
-// What a log of a vehicle may hold; beyond it a number is garbage, and the squares of its products leave the range in
-// which a covariance can be told from rounding.
+// What a log of a vehicle may hold; beyond this a number is garbage, and the squares of its products leave the range
+// in which a covariance can be distinguished from rounding.
 inline constexpr double most_motion_m = 1e4;                      ///< from one scan to the next, in one direction
 inline constexpr double most_turn_rad = 1e3;                      ///< likewise
 inline constexpr double most_distance_m = 1e5;                    ///< of a landmark from the sensor
@@ -23,7 +23,7 @@ inline constexpr double most_variance = 1e12;                     ///< (1000 km)
 inline constexpr std::int64_t most_name = 1'000'000'000'000'000;  ///< of a pose or a landmark, and its negative
 inline constexpr std::size_t most_observations = 50'000;          ///< in one scan
 
-/// What is wrong with a covariance ("is not positive definite"), nothing where nothing is.
+/// What is wrong with a covariance ("is not positive definite"), nothing if it is valid.
 std::optional<std::string> fault_of_covariance(const Eigen::Ref<const Eigen::MatrixXd>& covariance);
 
 /// Next field of the line as the name of a pose or a landmark.
@@ -35,7 +35,7 @@ inline std::int64_t read_name(TextCursor& cursor, const std::string& what) {
   return name;
 }
 
-/// Refuses the observation beyond the last that a scan may have.
+/// Refuses an observation beyond the number that a scan may have.
 inline void check_count(const TextCursor& cursor, std::size_t observations) {
   if (observations < most_observations) return;
   cursor.fail("more than " + std::to_string(most_observations) + " observations in one scan");

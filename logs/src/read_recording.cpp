@@ -63,7 +63,7 @@ std::optional<LogFormat> of_matlab_file(const fs::path& path) {
   return std::nullopt;
 }
 
-/// By the first word that is no comment; in DLR's old files LANDMARK stands after a STEP.
+/// By the first word that is not a comment; in DLR's old files LANDMARK comes after a STEP.
 std::optional<LogFormat> of_text(std::string_view text, const fs::path& path) {
   TextCursor cursor(text, path.string());
   while (!cursor.at_end() && cursor.peek() == '#') {

@@ -6,8 +6,8 @@
 
 namespace helixnav::logs {
 
-/// Reads the times of one sensor, in seconds, which never go back. Unix times pass, and all that passes fits into
-/// nanoseconds.
+/// Reads the times of one sensor, in seconds, which never go back. Unix times are accepted, and all accepted
+/// times fit into nanoseconds.
 class ReadingTimes {
  public:
   core::Nanoseconds next(TextCursor& cursor) {

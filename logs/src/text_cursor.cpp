@@ -11,7 +11,7 @@
 namespace helixnav::logs {
 namespace {
 
-/// A field as it may stand in a message: printable and short.
+/// A field in a form fit for a message: printable and short.
 std::string quoted(std::string_view field) {
   constexpr std::size_t longest = 24;
   std::string text = "'";

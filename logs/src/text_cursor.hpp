@@ -8,12 +8,13 @@
 
 namespace helixnav::logs {
 
-/// Walks through a text of fields and gives numbers, with errors that name file, line or byte, what was found and what
-/// was expected (core::InputError). Spaces, tabs and one kind of separator (a comma, or another space) part the fields;
-/// "\r\n" ends a line like "\n". The text outlives the cursor. Numbers by std::from_chars: no locale, no allocation.
+/// Walks through a text of fields and returns numbers, with errors that name file, line or byte, what was found and
+/// what was expected (core::InputError). Spaces, tabs and one kind of separator (a comma, or another space) separate
+/// the fields; "\r\n" ends a line like "\n". The text outlives the cursor. Numbers by std::from_chars: no locale, no
+/// allocation.
 class TextCursor {
  public:
-  /// How an error names a place: by line where a text has lines, by byte where all stands in one.
+  /// How an error names a place: by line if a text has lines, by byte if everything is on one.
   enum class Place { line, byte };
 
   TextCursor(std::string_view text, std::string file_name, char separator = ' ', Place place = Place::line);
@@ -23,13 +24,13 @@ class TextCursor {
   /// True when no field is left in this line; moves past spaces.
   bool at_line_end();
 
-  /// The character that comes next, '\0' at the end of the text.
+  /// The next character, '\0' at the end of the text.
   char peek() const { return position_ < text_.size() ? text_[position_] : '\0'; }
 
   /// Next field of this line as a finite number; `what` names it in errors, with its unit.
   double number(std::string_view what);
   std::int64_t integer(std::string_view what);
-  /// Next field of this line as it stands, empty at its end.
+  /// Next field of this line unchanged, empty at the end of the line.
   std::string_view word();
   /// As number() and integer(), but moves over line ends before the field.
   double number_in_stream(std::string_view what);

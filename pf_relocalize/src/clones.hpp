@@ -2,8 +2,8 @@
 #pragma once
 
 /// HELIXNAV_CLONES before a function: one binary for all x86-64 machines, with the widest vectors that the machine at hand
-/// has. Results are the same bytes on one machine; between machines with and without fused multiply-add they differ in
-/// the last digits. Off under sanitizers, whose runtime is not up when the choice is made, and for clang, which knows no
+/// has. Results are the same bytes on one machine; between machines with and without fused multiply-add they differ in the
+/// last digits. Off under sanitizers, whose runtime is not up when the choice is made, and for clang, which has no
 /// architecture levels here.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__) && \
     !defined(__SANITIZE_ADDRESS__)

@@ -122,7 +122,7 @@ double spacing_m(const std::vector<OldLandmark>& landmarks) {
 /// ConstellationScore::appearance_matches of the pairs that were matched.
 double appearance_matches(const Constellation& constellation, const PlacedBranch& placed, const Matching& matching,
                           const std::vector<Candidate>& candidates) {
-  constexpr double least_nats = 3.0;  // where landmarks stand so densely that chance is a partner in one of twenty
+  constexpr double least_nats = 3.0;  // where landmarks are so dense that one in twenty has a partner by chance
   double nearest_m = -1.0;
   double worth = 0.0;
   for (const Candidate& pair : candidates) {
@@ -142,7 +142,7 @@ bool counts(const ConstellationScore& rival, const ConstellationScore& winner, c
   return rival.matched >= limits.rival_least_matches && rival.matched >= limits.rival_match_share * winner.matched;
 }
 
-/// Then the particle filter, which looks at places alone, may well be where no pair looks alike.
+/// Then the particle filter, which only looks at places, may well be where no pair looks alike.
 bool tells_appearance(const Constellation& constellation) {
   return std::any_of(constellation.branch.begin(), constellation.branch.end(),
                      [](const BranchLandmark& one) { return one.appearance.is_given(); });

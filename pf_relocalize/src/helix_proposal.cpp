@@ -29,8 +29,8 @@ Eigen::Vector3d pose_difference(const core::Pose2& a, const core::Pose2& b) {
   return {a.x_m - b.x_m, a.y_m - b.y_m, core::wrap_to_pi(a.heading_rad - b.heading_rad)};
 }
 
-/// One after another, not as arguments of a call, whose order the compiler chooses. The last one first: so GCC chose, and what
-/// is published was drawn so.
+/// One after another, not as arguments of a call, whose order the compiler chooses. The last one first: GCC chose this order,
+/// and the published results were drawn in it.
 template <int n>
 Eigen::Matrix<double, n, 1> normals(core::RandomStream& random) {
   Eigen::Matrix<double, n, 1> drawn;

@@ -23,7 +23,7 @@ struct PoseTile {
   alignas(64) TileArray sin_heading;
 };
 
-/// Where one observed point lies for every pose of a tile, with its covariance in the map frame.
+/// Where one observed point is for every pose of a tile, with its covariance in the map frame.
 struct PlacedPoints {
   alignas(64) TileArray x, y, sxx, sxy, syy;
 };
@@ -37,7 +37,7 @@ struct TileLandmark {
 };
 
 /// sum[p] += factor[p] · N(placed point p; landmark, Σ + R_p) for the n particles of a tile. Relative error below 1e-9.
-/// This loop is where the filter spends its arithmetic: about 50 flops a pair, two of them a division and a square root.
+/// The filter spends its arithmetic in this loop: about 50 flops per pair, two of them a division and a square root.
 void add_densities(std::size_t n, const PlacedPoints& placed, const TileLandmark& landmark, const double* factor,
                    double* sum);
 

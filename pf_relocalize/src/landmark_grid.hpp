@@ -8,8 +8,8 @@
 
 namespace helixnav::pf_relocalize {
 
-/// Points in square cells of about one point each. Cells of a row are neighbours in memory, so that a look-up of a
-/// rectangle is one run a row.
+/// Points in square cells of about one point each. Cells of a row are neighbours in memory, so that looking up a
+/// rectangle is one run per row.
 class LandmarkGrid {
  public:
   explicit LandmarkGrid(const std::vector<Eigen::Vector2d>& points_m);

@@ -106,7 +106,7 @@ bool is_sound(const MarginalsInBaseFrame& marginals) {
          });
 }
 
-/// Of the marginals nothing needs the covariances between landmarks, nor a test of all together, O(n³).
+/// The marginals need neither the covariances between landmarks nor a joint test, O(n³).
 std::optional<ReferenceMap> of_marginals(const core::JointGaussian& joint, const Bases& bases) {
   MarginalsInBaseFrame marginals = marginals_in_base_frame(joint, bases);
   if (!is_sound(marginals)) return std::nullopt;

@@ -70,7 +70,7 @@ struct Relocalizer::Impl {
   ScanLikelihood likelihood;
   core::WorkerPool pool;
   core::RandomStream random;
-  std::vector<core::RandomStream> block_random;  // one a block of particles, whichever thread takes it
+  std::vector<core::RandomStream> block_random;  // one per block of particles, whichever thread takes it
   Particles particles, resampled;
   std::vector<double> log_likelihood;
   std::vector<std::uint32_t> parents;
@@ -145,7 +145,7 @@ void Relocalizer::Impl::absorb_weights(core::Nanoseconds t_ns) {
 void Relocalizer::Impl::resample_when_due() {
   const double n = static_cast<double>(particles.size());
   state.resampled = state.effective_size < options.resample_below * n;
-  parents.clear();  // empty: everyone is its own parent
+  parents.clear();  // empty: every particle is its own parent
   if (!state.resampled) return;
   const double offset = random.uniform();
   core::systematic_parents(particles.log_weight, particles.size(), offset, parents);

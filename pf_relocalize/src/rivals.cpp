@@ -31,7 +31,7 @@ std::vector<RobotPoint> points_of(const std::vector<BranchLandmark>& branch, con
   return points;
 }
 
-/// Poses of a cloud by falling weight, the first `count` that lie at least `distinct_m` (or 8°) from those before.
+/// Poses of a cloud by falling weight, the first `count` that are at least `distinct_m` (or 8°) from those before.
 std::vector<core::Pose2> best_apart(const Particles& cloud, std::size_t count, double distinct_m, double distinct_rad) {
   std::vector<std::size_t> order(cloud.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

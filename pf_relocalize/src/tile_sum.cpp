@@ -23,7 +23,7 @@ LandmarkTable::LandmarkTable(const ReferenceMap& map)
     syy.push_back(landmark.covariance_m2(1, 1));
     variance.push_back(largest_variance(landmark.covariance_m2));
     largest = std::max(largest, variance.back());
-    if (modes == 0) continue;  // no rows to take of an empty matrix
+    if (modes == 0) continue;  // an empty matrix has no rows to take
     const auto V = map.latent.middleRows<2>(2 * static_cast<Eigen::Index>(i));
     for (Eigen::Index k = 0; k < V.cols(); ++k) latent.insert(latent.end(), {V(0, k), V(1, k)});
     latent_reach_m = std::max(latent_reach_m, 4.0 * V.norm());

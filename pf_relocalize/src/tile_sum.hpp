@@ -54,7 +54,7 @@ struct Box {
   }
 };
 
-/// One tile of particles, as the sums below want it; about 5 kB, on the stack of the thread that works on it.
+/// One tile of particles, as the sums below need it; about 5 kB, on the stack of the thread that works on it.
 struct ParticleTile {
   ParticleTile(const LandmarkTable& landmarks, const Particles& particles, std::size_t begin, std::size_t end);
 

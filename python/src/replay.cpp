@@ -51,7 +51,7 @@ void refuse_contradictions(const Log& log, const ReplayWishes& wishes) {
   refuse(log.fastslam.chosen && wishes.smooth, "smooth needs the associations of one map; FastSLAM has many");
 }
 
-/// Where the run ended, with all that its navigator believed.
+/// Whether the session goes on from where the run of --map ended, with all that its navigator believed.
 bool goes_on_from_drive(const Log& log, const ReplayWishes& wishes) {
   return wishes.map && !wishes.map->map && !wishes.localize && !log.known_association &&
          apps::is_driven_again(wishes.map->path.string(), wishes.start);

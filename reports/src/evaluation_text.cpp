@@ -19,12 +19,12 @@ std::string format(const char* pattern, Values... values) {
   return text;
 }
 
-/// One in ten or more: the limit, and not their errors, decides what is left.
+/// One in ten or more: the limit, not their errors, determines what remains.
 bool too_many_left_out(const evaluation::PositionEvaluation& position) {
   return 10 * position.fixes_left_out > position.fixes_used + position.fixes_left_out;
 }
 
-/// Nearly all of the error is one of place and heading: the truth may be of another frame, or the run lie elsewhere.
+/// Nearly all of the error is in position and heading: the truth may be in another frame, or the run be elsewhere.
 bool is_displaced(const evaluation::PositionEvaluation& position) {
   constexpr double least_m = 1.0;
   constexpr double times = 10.0;

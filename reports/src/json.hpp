@@ -10,7 +10,7 @@
 
 namespace helixnav::reports {
 
-/// Keys keep the order in which they were put in.
+/// Keys keep their insertion order.
 using Json = nlohmann::ordered_json;
 
 /// `json` over several lines; bytes that are not UTF-8 (from a file name, say) become U+FFFD.

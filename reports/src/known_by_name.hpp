@@ -5,7 +5,7 @@
 
 namespace helixnav::reports {
 
-/// Whether the run is one of --association known, which tells landmarks by their names.
+/// Whether the run used --association known, which identifies landmarks by their names.
 bool known_by_name(const runs::Run& run);
 
 }  // namespace helixnav::reports

@@ -12,7 +12,7 @@ namespace helixnav::reports {
 /// Of all steps of a run.
 core::NumericalHealth numerics_of(const runs::Run& run);
 
-/// How often budgets left work out or put it off.
+/// How often budgets skipped or deferred work.
 struct PostponedWork {
   std::int64_t scans_thinned = 0;
   std::int64_t scans_left_out = 0;  ///< their names
@@ -24,9 +24,9 @@ struct PostponedWork {
 };
 PostponedWork postponed_in(const runs::Run& run);
 
-/// A sentence, with no end; empty where nothing was repaired, refused or near its limit.
+/// A sentence without a full stop; empty if nothing was repaired, refused or near its limit.
 std::string numerics_text(const core::NumericalHealth& numerics);
-/// A sentence, with no end; empty where nothing was left out or put off.
+/// A sentence without a full stop; empty if nothing was skipped or deferred.
 std::string postponed_text(const PostponedWork& postponed);
 
 }  // namespace helixnav::reports

@@ -5,7 +5,7 @@
 
 namespace helixnav::reports {
 
-/// Whether the run is one of replay --localize, which maps nothing: its map is the one that it was given.
+/// Whether the run is one of replay --localize, which maps nothing: its map is the given one.
 bool only_localized(const runs::Run& run);
 
 }  // namespace helixnav::reports

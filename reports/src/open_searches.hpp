@@ -7,9 +7,9 @@
 
 namespace helixnav::reports {
 
-/// What searches left in doubt that no closing came after: one still open at the end, the last one that ended undecided, or the last that
-/// ended as new ground although three of the landmarks mapped in it stand where old ones do, within 99 % by their covariances. Each may have
-/// put landmarks on the map twice. Empty otherwise, where fewer than three landmarks that lasted began in it, and of a run that only localised.
+/// What searches left in doubt if no closing followed: one still open at the end, the last one that ended undecided, or the last that ended as
+/// new ground although three of the landmarks mapped in it are at the places of old ones, within 99 % by their covariances. Each may have put
+/// landmarks on the map twice. Otherwise empty, as also if fewer than three lasting landmarks began in it, and for a run that only localised.
 /// Test: reports/open_searches_test.cpp.
 std::string open_search_text(const runs::Run& run);
 

@@ -35,7 +35,7 @@ std::string line_of(const runs::Run& run, const SlipSpan& slip) {
 }  // namespace
 
 std::vector<SlipSpan> slip_spans(const runs::Run& run) {
-  constexpr std::size_t most_apart = 3;  // two scans between
+  constexpr std::size_t most_apart = 3;  // two scans between them
   std::vector<SlipSpan> slips;
   for (std::size_t k = 0; k < run.steps.size(); ++k) {
     for (const core::Decision& decision : run.steps[k].decisions) {

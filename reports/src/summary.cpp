@@ -49,8 +49,8 @@ bool asked_for_place(const runs::Run& run) {
   });
 }
 
-/// Of the part that the run ends in, as `explain` has it: a place that was found stays found, whatever is asked of other parts after
-/// that, until the vehicle is carried.
+/// For the part in which the run ends, as in `explain`: a place that was found stays found, whatever is asked about other parts
+/// later, until the vehicle is carried.
 Json placed_to_json(const PlaceQuestions& asked) {
   Json json = {{"found", asked.accepted.has_value()}};
   if (asked.accepted) {
@@ -71,7 +71,7 @@ Json placed_to_json(const PlaceQuestions& asked) {
   return json;
 }
 
-/// How often the vehicle was carried (event lost); nothing where it was not.
+/// How often the vehicle was carried (event lost); nothing if it was not.
 std::optional<Json> carried_to_json(const runs::Run& run) {
   int times = 0;
   bool is_placed = true;
@@ -120,7 +120,7 @@ Json observations_to_json(const runs::Run& run) {
   return json;
 }
 
-/// Of the tables whose rows nothing else counts, so that one that was cut is noticed.
+/// For the tables whose rows nothing else counts, so that a truncated one is noticed.
 Json rows_to_json(const runs::Run& run) {
   std::size_t labels = 0, particles = 0;
   for (const auto& of_step : run.truth.labels) labels += of_step.size();

@@ -8,7 +8,8 @@
 
 namespace helixnav::reports {
 
-/// A warning for each constant that, as the run's numbers say, ranges, odometry or mounting lack.
+/// A warning for each constant that, by the run's numbers, is missing for ranges, odometry or
+/// mounting.
 /// Test: apps/systematic_motion_test.cpp, apps/range_offset_test.cpp
 std::vector<std::string> systematic_errors_texts(const runs::Run& run);
 

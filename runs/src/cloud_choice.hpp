@@ -8,8 +8,8 @@
 
 namespace helixnav::runs {
 
-/// Which clouds of a search are kept: where an attempt starts, one, three and six scans later, and where a closing was
-/// tried. A cloud changes fast at first and little afterwards; all of them would be most of the folder.
+/// Which clouds of a search are kept: when an attempt starts, one, three and six scans later, and when a closing was
+/// tried. A cloud changes fast at first and little afterwards; keeping all would be most of the folder.
 class CloudChoice {
  public:
   /// Every report in order.

@@ -11,7 +11,7 @@
 namespace helixnav::runs {
 namespace {
 
-/// The blocks of a drive.bin: one of the start, one of each scan, perhaps one of what came after the last.
+/// The blocks of a drive.bin: one for the start, one for each scan, perhaps one for what came after the last.
 struct DriveExtent {
   std::size_t blocks = 0;
   bool is_whole = false;  ///< the last one ends where the file does

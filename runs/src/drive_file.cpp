@@ -42,7 +42,7 @@ std::string framed(std::string_view block) {
   return bytes.append(block);
 }
 
-/// Up to 16 numbers: which of them are not +0, and those.
+/// Up to 16 numbers: which of them are not +0, and their values.
 template <std::size_t n>
 void put_numbers(std::string& bytes, const std::array<double, n>& numbers) {
   static_assert(n <= 16);
@@ -106,7 +106,7 @@ std::string start_block(const core::PoseGaussian& start) {
   return block;
 }
 
-/// Reads what stands in a block; ends by InputError where it does not hold what it says.
+/// Reads the content of a block; throws InputError if it is not what it claims to be.
 class Block {
  public:
   Block(std::string_view bytes, std::string where) : bytes_(bytes), where_(std::move(where)) {}
@@ -160,7 +160,7 @@ class Block {
     return numbers;
   }
 
-  /// As it was, not wrapped anew.
+  /// Unchanged, not wrapped anew.
   static core::Pose2 pose(const double* numbers) {
     core::Pose2 pose;
     pose.x_m = numbers[0];
@@ -235,7 +235,7 @@ class Block {
   std::string where_;
 };
 
-/// Blocks of a file, one after the other.
+/// The blocks of a file, one after the other.
 class Blocks {
  public:
   Blocks(const std::string& path, std::string_view bytes) : path_(path), bytes_(bytes), rest_(bytes) {
@@ -249,7 +249,7 @@ class Blocks {
            std::to_string(drive_version));
   }
 
-  /// False at the end, or before a block that is not whole.
+  /// False at the end, or before an incomplete block.
   bool next(std::string_view& block) {
     if (rest_.left() < frame_bytes) return false;
     at_ = bytes_.size() - rest_.left();

@@ -42,7 +42,7 @@ std::size_t size_for(std::size_t landmarks) {
   throw core::InputError(path + ": " + problem);
 }
 
-/// The number of landmarks of a file that is whole.
+/// The number of landmarks in a complete file.
 std::size_t check_frame(const std::string& path, std::string_view bytes) {
   if (bytes.size() < header_bytes || bytes.substr(0, magic.size()) != magic) {
     refuse(path,
@@ -68,18 +68,18 @@ std::size_t check_frame(const std::string& path, std::string_view bytes) {
   return landmarks;
 }
 
-// Beyond these a map is garbage, as the numbers of a log are (docs/fuzzing.md).
+// Beyond these a map is garbage, like the numbers of a log (docs/fuzzing.md).
 constexpr double most_coordinate_m = 1e8;
 constexpr double most_reach_m = 1e5;
 constexpr double most_variance = 1e12;
-constexpr core::LandmarkId most_name = 10'000'000;  // lists by name are as long as the last one
+constexpr core::LandmarkId most_name = 10'000'000;  // lists by name are as long as the last name
 
 bool is_place(const Eigen::Vector2d& point_m) {
   return point_m.allFinite() && point_m.cwiseAbs().maxCoeff() <= most_coordinate_m;
 }
 
-/// No two quantities are correlated by more than one, but for what solving a large map loses to rounding. O(N²): a whole
-/// factorisation would tell more, and take seconds.
+/// No correlation exceeds one, except for what solving a large map loses to rounding. O(N²): a full factorisation would
+/// reveal more, and take seconds.
 bool can_be_covariance(const Eigen::MatrixXd& P) {
   if (!P.allFinite() || P.diagonal().minCoeff() < 0.0 || P.diagonal().maxCoeff() > most_variance) return false;
   const double rounding = 1e-6 * P.diagonal().maxCoeff();
@@ -90,7 +90,7 @@ bool can_be_covariance(const Eigen::MatrixXd& P) {
   return core::is_symmetric_positive_semidefinite(P.topLeftCorner<3, 3>());
 }
 
-/// What a program other than this one may have written.
+/// What another program may have written.
 void check_content(const std::string& path, const core::JointMap& map) {
   core::LandmarkId last = -1;
   for (const core::LandmarkId id : map.joint.ids) {

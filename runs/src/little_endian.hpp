@@ -28,7 +28,7 @@ inline void put(std::string& bytes, double value) {
   put_unsigned(bytes, bits);
 }
 
-/// Takes numbers off the front of bytes, of which there are enough: whoever takes has looked at left().
+/// Takes numbers off the front of bytes, of which there are enough: the caller has checked left().
 class LittleEndian {
  public:
   explicit LittleEndian(std::string_view rest) : rest_(rest) {}

@@ -11,7 +11,7 @@
 namespace helixnav::runs {
 namespace {
 
-/// Keys keep the order in which they were put in.
+/// Keys keep the order in which they were inserted.
 using Json = nlohmann::ordered_json;
 
 constexpr const char* format_name = "helixnav-run 2";
@@ -21,7 +21,7 @@ Json config_to_json(const std::string& config) {
   return parsed.is_object() || parsed.is_array() ? parsed : Json(config);
 }
 
-/// The values of a manifest's object, of the kind that is asked for. InputError with file and key for any other.
+/// The values of a manifest's object, of the requested kind. InputError with file and key for any other.
 class ManifestValues {
  public:
   ManifestValues(const std::string& path, const Json& json, std::string place = "")

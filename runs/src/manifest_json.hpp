@@ -7,7 +7,7 @@
 
 namespace helixnav::runs {
 
-/// Reads what manifest_json made. InputError names `path`.
+/// Reads the output of manifest_json. InputError names `path`.
 RunManifest manifest_from_text(const std::string& path, const std::string& text);
 
 }  // namespace helixnav::runs

@@ -19,7 +19,7 @@ bool looks_other(const core::MapLandmark& a, const core::MapLandmark& b, double 
          std::max(before_m, after_m) > visible_growth * std::min(before_m, after_m);
 }
 
-/// A drive whose map moves all the time tells of larger moves only, or its history would be most of the report.
+/// If the map moves all the time, only larger moves are reported, or its history would be most of the report.
 double visible_m(std::size_t told) {
   constexpr double least_m = 0.02;
   constexpr double doubles_after = 40'000.0;

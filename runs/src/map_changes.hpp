@@ -9,22 +9,22 @@
 
 namespace helixnav::runs {
 
-/// Follows the map of a drive for its picture. Test: runs/run_recorder_test.cpp.
+/// Tracks the map of a drive for its picture. Test: runs/run_recorder_test.cpp.
 class MapChanges {
  public:
   MapChanges() = default;
   explicit MapChanges(std::size_t scans);
 
-  /// Some hundred times a drive, and after every closing or solution of the drive. `report` is as it came.
+  /// Some hundred times per drive, and after every closing or solution of the drive. `report` as it came.
   bool wants(const core::StepReport& report) const;
 
-  /// What a picture shows to be other than when this was last called: landmarks in order of id.
+  /// What a picture shows differently than at the last call: landmarks in order of id.
   MapChange since_last(std::int64_t step, const std::vector<core::MapLandmark>& map);
 
  private:
   std::int64_t every_ = 10;
   std::size_t told_ = 0;                  ///< landmarks in all changes until now
-  std::vector<core::MapLandmark> shown_;  ///< as the changes until now tell it, in order of id
+  std::vector<core::MapLandmark> shown_;  ///< as reported by the changes until now, in order of id
 };
 
 }  // namespace helixnav::runs

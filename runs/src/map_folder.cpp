@@ -50,7 +50,7 @@ void write_map(const std::string& folder, const core::JointMap& map,
   const std::string joined_from = folder + '/' + joined_from_file;
   std::error_code none;
   if (map.has_end) {
-    fs::remove(joined_from, none);  // of a map that was there before
+    fs::remove(joined_from, none);  // from a map that was there before
   } else {
     files::write_whole_file(joined_from, joined_from_header);
   }
@@ -62,7 +62,7 @@ void write_joint_map(const std::string& folder, const core::JointMap& map) {
   const std::string drives = folder + '/' + drives_file;
   std::error_code none;
   if (map.drives.empty()) {
-    fs::remove(drives, none);  // of a map that was there before
+    fs::remove(drives, none);  // from a map that was there before
     return;
   }
   std::string text = std::string(drives_header) + '\n';

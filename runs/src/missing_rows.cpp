@@ -14,7 +14,7 @@ namespace {
 
 using SummaryJson = nlohmann::json;
 
-/// Of an object, and nothing of anything else.
+/// A count in an object; nothing for anything else.
 std::optional<std::size_t> count_in(const SummaryJson& json, const char* key) {
   if (!json.is_object() || !json.contains(key) || !json.at(key).is_number_unsigned()) return std::nullopt;
   return json.at(key).get<std::size_t>();

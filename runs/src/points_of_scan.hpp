@@ -9,7 +9,7 @@
 
 namespace helixnav::runs {
 
-/// [observation] where it was seen, in the robot's frame [m]; NaN where the sensor tells a range or a bearing alone.
+/// [observation] where it was seen, in the robot frame [m]; NaN if the sensor measures only a range or a bearing.
 std::vector<Eigen::Vector2f> points_of_scan(const core::Scan& scan);
 
 }  // namespace helixnav::runs

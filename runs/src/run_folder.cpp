@@ -43,7 +43,7 @@ int small_integer(const RunRow& row, std::size_t column, std::int64_t low = 0) {
   return static_cast<int>(row.integer_in(column, low, int_max));
 }
 
-// The tables as they stand, before the steps that lack a part are dropped.
+// The tables as they are, before incomplete steps are dropped.
 struct AssociationRow {
   std::int64_t step;
   bool revised;
@@ -69,8 +69,8 @@ struct RunTables {
   std::map<std::int64_t, core::CloudReport> clouds;  ///< by step; empty where no file has them
 };
 
-/// From the columns of its upper triangle, row by row. Element by element: a comma initialiser of Eigen must not be left by
-/// an exception.
+/// From the columns of its upper triangle, row by row. Element by element: an Eigen comma initialiser must not
+/// be left by an exception.
 template <int n>
 Eigen::Matrix<double, n, n> symmetric(const RunRow& row, std::size_t column) {
   Eigen::Matrix<double, n, n> matrix;
@@ -214,7 +214,7 @@ void assemble(RunTables& tables, Run& run) {
   }
 }
 
-/// Step by step, or not at all. How many rows there are.
+/// For every step, or not at all. Returns how many rows there are.
 std::size_t read_final_path(const std::string& path, Run& run) {
   if (!fs::exists(path)) return 0;
   for_each_row(path, final_trajectory_table,
@@ -224,7 +224,7 @@ std::size_t read_final_path(const std::string& path, Run& run) {
   return rows;
 }
 
-/// Where the tables that grow have fewer rows than the steps say, of which health.csv says how many there were.
+/// Reports which growing tables have fewer rows than the steps imply; health.csv states how many there were.
 void tell_missing_steps(const std::string& folder, const RunTables& tables, std::size_t steps,
                         std::vector<std::string>& missing) {
   std::size_t associations = 0, decisions = 0, merges = 0, clouds = 0;
@@ -255,7 +255,7 @@ bool has_truth(const std::string& folder) {
 
 namespace {
 
-/// Columns of a map.csv: of four kinds, by what was told of landmarks.
+/// Columns of a map.csv: one of four kinds, depending on what was reported of landmarks.
 struct MapColumns {
   RunTable table;
   bool with_appearance = false, with_names = false;
@@ -301,7 +301,7 @@ std::map<core::LandmarkId, std::string> read_landmark_names(const std::string& p
 
 namespace {
 
-/// [folder] of the robots of a team, whose run folder this is; few enough for a message.
+/// [folder] of the robots of a team whose run folder this is; few enough for a message.
 std::string robot_folders(const std::string& path) {
   std::string text;
   constexpr int most = 100;

@@ -15,7 +15,7 @@
 namespace helixnav::runs {
 namespace {
 
-/// As a quaternion about z holds it.
+/// As stored in a quaternion about z.
 double heading_by_quaternion(double heading_rad) {
   return 2.0 * std::atan2(std::sin(0.5 * heading_rad), std::cos(0.5 * heading_rad));
 }
@@ -43,7 +43,7 @@ struct RunRecorder::Book {
   Run run;
   CloudChoice cloud_choice;
   std::vector<core::StampedPose> solved;         ///< the last time
-  std::vector<core::StampedPose> solved_before;  ///< of the parts of the drive before the vehicle was carried
+  std::vector<core::StampedPose> solved_before;  ///< for the parts of the drive before the vehicle was carried
   MapChanges map_changes;
   bool wants_map = false;  ///< after the step last added
 };

@@ -69,7 +69,7 @@ void read_landmarks(const std::string& path, RunTruth& truth) {
 }
 
 void read_labels(const std::string& path, RunTruth& truth) {
-  // What a row makes room for is bounded, whatever it says. The writer leaves out no observation; somebody else may.
+  // The memory that a row can claim is bounded, whatever it says. The writer leaves out no observation; others may.
   constexpr std::int64_t most_steps = 10'000'000;
   constexpr std::int64_t most_unseen_steps = 100'000;
   constexpr std::int64_t most_unseen_observations = 100;
@@ -95,7 +95,7 @@ void read_frames(const std::string& path, RunTruth& truth) {
       truth.frame = frame;
     } else if (row.text(0) == "placed") {
       truth.frame_when_placed = frame;
-    } else if (row.text(0) != "end") {  // which the steps of the run say, too: T_truth_of_map
+    } else if (row.text(0) != "end") {  // which the steps of the run also show: T_truth_of_map
       row.refuse(0, "begin, placed or end");
     }
   });
@@ -108,7 +108,7 @@ void append_frame(const char* when, const core::TruthFrame& frame, std::string& 
   append_row(text, {T_truth_map.x_m, T_truth_map.y_m, T_truth_map.heading_rad});
 }
 
-/// Nothing of a drive of which only the poses in the map frame are known.
+/// Nothing for a drive of which only the poses in the map frame are known.
 void write_frames(const std::string& folder, const core::Recording& recording) {
   const core::TruthFrame& begin = recording.truth_frame;
   const std::optional<core::TruthFrame>& placed = recording.truth_frame_when_placed;

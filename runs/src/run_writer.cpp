@@ -43,7 +43,7 @@ void append_step_and_time(std::string& text, const core::StepReport& report) {
   files::append_seconds(text, report.t_ns);
 }
 
-// A cell must not end the line that it stands in, nor the list of numbers.
+// A cell must not end its line, nor the list of numbers.
 void append_word(std::string& text, const std::string& word) {
   for (const char c : word) text += c == ',' || c == ';' || c == '=' || c == '"' || c == '\n' || c == '\r' ? ' ' : c;
 }
@@ -59,7 +59,7 @@ void append_association(std::string& text, std::int64_t step, const core::Associ
   text += revised ? ",1\n" : ",0\n";
 }
 
-/// Revisions first; the number of rows.
+/// Revisions first; returns the number of rows.
 std::int64_t append_associations(std::string& block, const core::StepReport& report) {
   auto rows = static_cast<std::int64_t>(report.associations.size());
   for (const core::RevisedScan& scan : report.revised) {
@@ -183,7 +183,7 @@ struct RunWriter::Files {
   Table clouds;
   Table trajectory;
   Table health;
-  std::optional<Table> particles;  ///< from the first step on that has a cloud
+  std::optional<Table> particles;  ///< from the first step with a cloud
   CloudChoice cloud_choice;
 
   Files(const std::string& folder, std::unique_ptr<files::FolderLock> kept)
@@ -199,13 +199,13 @@ struct RunWriter::Files {
 RunWriter::RunWriter(const std::string& folder, const RunManifest& manifest, const core::Recording& recording,
                      IfNotEmpty if_not_empty)
     : folder_(folder) {
-  std::error_code error;  // make_run_folder says what is wrong
+  std::error_code error;  // make_run_folder reports what is wrong
   fs::create_directories(folder_, error);
   auto lock = std::make_unique<files::FolderLock>(folder_);
   make_run_folder(folder_, if_not_empty);
   write_truth(folder_, recording);
   files_ = std::make_unique<Files>(folder_, std::move(lock));
-  // Last: where there is a manifest, all else is.
+  // Last: if there is a manifest, everything else is there.
   files::write_whole_file(folder_ + '/' + manifest_file, manifest_json(manifest));
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 bool are_equal(const core::Pose2& a, const core::Pose2& b) { return a.vector() == b.vector(); }
 
-/// The estimate at a true pose within the first scan of a part, as near its begin as the truth knows it.
+/// The estimate at a true pose within the first scan of a part, as near its start as the truth allows.
 std::optional<core::Pose2> pose_since(const std::vector<core::StepReport>& steps, std::size_t begin,
                                       core::Nanoseconds t_ns) {
   const core::StepReport& first = steps[begin];
@@ -25,7 +25,7 @@ std::optional<core::Pose2> pose_since(const std::vector<core::StepReport>& steps
   return core::interpolate(first.pose.mean, next.pose.mean, fraction);
 }
 
-/// Where a part lies in the frame of the true poses, by where the vehicle was when it began.
+/// Pose of a part in the frame of the true poses, from where the vehicle was when it started.
 std::optional<core::Pose2> T_poses_part(const Run& run, std::size_t begin) {
   const std::vector<core::TruePose>& poses = run.truth.poses;
   const auto known = std::lower_bound(poses.begin(), poses.end(), run.steps[begin].t_ns,
@@ -36,7 +36,7 @@ std::optional<core::Pose2> T_poses_part(const Run& run, std::size_t begin) {
   return core::compose(known->T_world_robot, core::inverse(*T_part_robot));
 }
 
-/// The run made no map: its map.csv is the one that it was given.
+/// The run made no map: its map.csv is the one it was given.
 bool keeps_given_map(const Run& run) { return run.manifest.command.find(" --localize") != std::string::npos; }
 
 }  // namespace
@@ -50,7 +50,7 @@ bool began_off_earlier_map(const Run& run) {
   });
 }
 
-/// Part 0 is the earlier map of a session that began elsewhere.
+/// Part 0 is the earlier map of a session that started elsewhere.
 bool is_on_earlier_map(const Run& run) {
   const auto places = [](const core::Decision& decision) {
     const auto* placed = std::get_if<core::PlacedDecision>(&decision);

@@ -8,11 +8,11 @@
 
 namespace helixnav::runs {
 
-/// Writes the truth_*.csv that the recording has something for.
+/// Writes the truth_*.csv files for which the recording has content.
 void write_truth(const std::string& folder, const core::Recording& recording);
 
-/// Adds to truth_frame.csv where map.csv lies when the run ended in a part of the drive that was not found on the map of before: in
-/// another frame than the truth. Nothing otherwise.
+/// Adds the pose of map.csv to truth_frame.csv when the run ended in a part of the drive that was not found on the
+/// earlier map: in another frame than the truth. Nothing otherwise.
 void write_frame_of_map(const std::string& folder, const Run& run);
 
 }  // namespace helixnav::runs

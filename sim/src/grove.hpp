@@ -8,7 +8,7 @@
 
 namespace helixnav::sim {
 
-/// Trees as they are planted: one too near to another or to the route is left out.
+/// Planted trees: one too near to another or to the route is left out.
 class Grove {
  public:
   Grove(const Route& route, double road_clearance_m) : route_(route), road_clearance_m_(road_clearance_m) {}

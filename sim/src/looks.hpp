@@ -10,7 +10,8 @@
 
 namespace helixnav::sim {
 
-/// What the scanner tells of trees besides where they are. Draws from a stream of its own: with or without, scans are the same.
+/// What the scanner reports of trees besides where they are. Draws from its own stream: with or without, scans are the
+/// same.
 class Looks {
  public:
   Looks(const LooksOptions& options, std::uint64_t seed) : options_(options), random_(seed, "sim.looks") {}

@@ -19,7 +19,7 @@ Movers::Movers(const Scenario& scenario, const Route& road, const std::vector<Dr
   core::RandomStream random(seed, "sim.movers");
   const double scans = static_cast<double>(steps.size()) / scenario.vehicle.samples_per_scan;
   double left = scenario.movers.in_view * scans;
-  const std::size_t most = 1000 + 100 * static_cast<std::size_t>(left);  // of a view in which nothing ever is
+  const std::size_t most = 1000 + 100 * static_cast<std::size_t>(left);  // for a view that is always empty
   for (std::size_t tries = 0; left > 0.0 && tries < most; ++tries) {
     const Mover mover =
         draw(scenario.movers, scenario.scanner.field_of_view, steps, scenario.vehicle.odometry_period_s, random);

@@ -13,14 +13,14 @@
 
 namespace helixnav::sim {
 
-/// Things that move along the road, each at a speed and a distance from its middle of its own; nothing beyond its ends.
+/// Objects that move along the road, each at its own speed and distance from the centre line; nothing beyond its ends.
 /// Test: sim/movers_test.cpp.
 class Movers {
  public:
-  /// Draws as many as are in view on the mean over the scans of `steps`: each is somewhere in view at some time of the drive.
+  /// Draws as many as are in view on average over the scans of `steps`: each is in view at some time of the drive.
   Movers(const Scenario& scenario, const Route& road, const std::vector<DriveStep>& steps, std::uint64_t seed);
 
-  /// World frame; a point for each that is on the road then.
+  /// World frame; a point for each that is on the road at that time.
   std::vector<Eigen::Vector2d> at(double t_s) const;
 
  private:

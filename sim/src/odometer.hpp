@@ -10,15 +10,15 @@
 
 namespace helixnav::sim {
 
-/// Measures wheel speed and steering with white noise and a slow error, and turns them into increments; what the vehicle
-/// slips between two samples is not in them.
+/// Measures wheel speed and steering with white noise and a slow error, and turns them into increments; slips of the
+/// vehicle between two samples are not included.
 class Odometer {
  public:
   Odometer(const Scenario& scenario, std::uint64_t seed);
 
   core::Odometry measure(const core::AckermannSample& truth, core::Nanoseconds t_ns);
 
-  /// When the vehicle slipped, so far.
+  /// When the vehicle has slipped so far.
   const std::vector<core::Nanoseconds>& slips() const { return slips_; }
 
  private:

@@ -18,7 +18,7 @@ int points_per_lap(double lap_length_m) {
   return std::max(least_points_per_lap, static_cast<int>(std::ceil(lap_length_m / point_spacing_m)));
 }
 
-/// Samples a curve of period 2π and scales its first lap to the length wanted.
+/// Samples a curve of period 2π and scales its first lap to the desired length.
 template <class Curve>
 Polyline sample_and_scale(const Curve& curve, double lap_length_m, int laps) {
   const int per_lap = points_per_lap(lap_length_m);

@@ -23,7 +23,7 @@ Polyline figure_of_eight(double lap_length_m, int laps, core::RandomStream& rand
 
 Polyline circle(double lap_length_m, int laps);
 
-/// Two straights and two half circles; it begins `run_up_m` into a straight.
+/// Two straights and two half circles; it starts `run_up_m` into a straight.
 Polyline racetrack(double lap_length_m, double turn_radius_m, double run_up_m, int laps);
 
 }  // namespace helixnav::sim

@@ -50,7 +50,7 @@ double Route::nearest_along_m(const Eigen::Vector2d& point_m, const Stretch& str
   for (std::size_t i = segment_of(stretch.from_m); i <= last; ++i) {
     const double length_m = along_m_[i + 1] - along_m_[i];
     const double too_far_m = (points_m_[i] - point_m).norm() - beyond_m;
-    if (too_far_m > length_m) {  // so is all that begins and ends within that length of road from here
+    if (too_far_m > length_m) {  // and so is everything within that length of road from here
       i = std::max(i, segment_of(along_m_[i] + too_far_m) - 1);
       continue;
     }

@@ -20,13 +20,13 @@ struct LabelledScan {
   std::vector<core::Label> labels;
 };
 
-/// Looks at the trees of a world with range and bearing noise, misses, clutter and occlusion, and at what moves among them,
-/// whose draws come from a stream of their own: the trees' observations stay as they are without it.
+/// Observes the trees of a world with range and bearing noise, misses, clutter and occlusion, and what moves among
+/// them, whose draws come from a separate stream: the trees' observations are the same as without it.
 class Scanner {
  public:
   Scanner(const Scenario& scenario, const World& world, std::uint64_t seed);
 
-  /// `moving_m`: where things are now that move; they are detected like trees and have no label.
+  /// `moving_m`: where moving objects are now; they are detected like trees and have no label.
   LabelledScan look(const core::Pose2& T_world_robot, double along_m, core::Nanoseconds t_ns,
                     const std::vector<Eigen::Vector2d>& moving_m = {});
 

@@ -11,14 +11,14 @@ namespace {
 
 constexpr double degrees = core::pi / 180.0;
 
-/// The other loops: back where the error is often still below the spacing of the trees.
+/// The other loops: the return comes when the error is often still below the spacing of the trees.
 Scenario changed_loop() {
   Scenario s;
   s.world.changed_share = 0.3;
   return s;
 }
 
-/// Bare for so long that a filter that knows every tree comes back off by more than the 8 m between trees: 10 m in the
+/// Bare for so long that a filter that knows every tree returns with an error above the 8 m between trees: 10 m in the
 /// median of the seeds (cekf/large_loop_test.cpp).
 Scenario with_long_bare_stretch(Scenario s) {
   s.world.loop_length_m = {430.0, 820.0};
@@ -107,7 +107,7 @@ Scenario blackout() {
   return s;
 }
 
-/// A small robot on a circle of 8 m, 200 scans a lap, 800 in all; each scan sees all landmarks within 8 m.
+/// A small robot on a circle of 8 m, 200 scans per lap, 800 in all; each scan sees all landmarks within 8 m.
 Scenario circuit(double sigma_turn_rad, double sigma_range_m, double sigma_bearing_rad) {
   Scenario s;
   s.world.kind = WorldKind::circuit;
@@ -122,8 +122,8 @@ Scenario circuit(double sigma_turn_rad, double sigma_range_m, double sigma_beari
   s.vehicle.lookahead_m = 1.0;
   s.scanner.T_robot_sensor = {};
   s.scanner.field_of_view = {0.1, 8.0, -core::pi, core::pi};
-  // The small robot's noise is large beside 8 m: with lengths by that reach it searches where it need not (large noise:
-  // recall 77 instead of 96 %).
+  // The small robot's noise is large relative to 8 m: with lengths based on that reach it searches when it need not
+  // (large noise: recall 77 instead of 96 %).
   s.scanner.field_of_view.reach_m = 30.0;
   s.scanner.detection_probability = 1.0;
   s.scanner.clutter_per_scan = 0.0;
@@ -162,7 +162,7 @@ Scenario kidnapped_slip() {
   return s;
 }
 
-/// On a grid so small that it is most likely set down where it has been.
+/// On a grid so small that it is most likely set down where it has been before.
 Scenario kidnapped() {
   Scenario s = town();
   s.world.blocks_a_side = 2;
@@ -178,8 +178,8 @@ Scenario movers() {
   return s;
 }
 
-/// On foot, seeing all around; a stem is missed as often as in the stem maps of real forests, and odometry errs by 2 % along
-/// the way and 0.5° a root of a metre.
+/// On foot, seeing all around; a stem is missed as often as in the stem maps of real forests, and odometry errs by 2 %
+/// along the path and 0.5° per root metre.
 Scenario forest() {
   Scenario s;
   s.world.kind = WorldKind::forest;

@@ -24,7 +24,7 @@ class RoadBuilder {
     for (int i = 1; i <= steps; ++i) append(start_m + (end_m - start_m) * i / steps);
   }
 
-  /// A quarter of a circle around `crossing_m`'s corner, from driving along `in` to driving along `out`.
+  /// A quarter circle around `crossing_m`'s corner, from driving along `in` to driving along `out`.
   void corner(const Eigen::Vector2d& crossing_m, const Eigen::Vector2d& in, const Eigen::Vector2d& out) {
     line_to(crossing_m - corner_radius_m * in);
     const Eigen::Vector2d centre_m = crossing_m + corner_radius_m * (out - in);
@@ -63,7 +63,7 @@ Town::Town(const WorldOptions& options, core::RandomStream& random)
 }
 
 TownTour Town::tour(double length_m, double drive_on_m, core::RandomStream& random) const {
-  constexpr double returns = 5.0;  // in a row, each of which may drive the end further on
+  constexpr double returns = 5.0;  // in a row, each of which may move the end of the drive further on
   const std::vector<Crossing> way = draw_crossings(length_m + returns * drive_on_m, random);
   TownTour tour;
   RoadBuilder road(at_m(way.front()));

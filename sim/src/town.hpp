@@ -11,8 +11,8 @@
 
 namespace helixnav::sim {
 
-/// A way through a town, how much of it is driven, and where along it a street with trees is entered again that was left
-/// behind.
+/// A path through a town, how much of it is driven, and where along it a street with trees that was left behind is
+/// entered again.
 struct TownTour {
   Polyline road;
   double drive_m = 0.0;
@@ -25,11 +25,11 @@ class Town {
   /// Draws which streets are bare.
   Town(const WorldOptions& options, core::RandomStream& random);
 
-  /// A random tour, at least so long, and so long after the last return: at every crossing any street but the one that it
-  /// comes from. Corners are rounded.
+  /// A random tour of at least this length, and this long after the last return: at every crossing any street except
+  /// the one it comes from. Corners are rounded.
   TownTour tour(double length_m, double drive_on_m, core::RandomStream& random) const;
 
-  /// From crossing to crossing, as far as they have trees.
+  /// From crossing to crossing, those that have trees.
   std::vector<Polyline> streets_with_trees() const;
 
  private:

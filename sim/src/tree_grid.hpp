@@ -9,14 +9,15 @@
 
 namespace helixnav::sim {
 
-/// The trees of a world by square cells of the plane, for a scanner that would else look at every tree of a town in each scan.
-/// Test: sim/tree_grid_test.cpp (brute force).
+/// The trees of a world by square cells of the plane, for a scanner that would otherwise check every tree of a town in
+/// each scan. Test: sim/tree_grid_test.cpp (brute force).
 class TreeGrid {
  public:
-  /// `cell_m`: the distance that is asked with, roughly.
+  /// `cell_m`: roughly the query distance.
   TreeGrid(const std::vector<Tree>& trees, double cell_m);
 
-  /// Indices of all trees within `radius_m` of `point_m`, and of others near there, in no particular order. O(trees about).
+  /// Indices of all trees within `radius_m` of `point_m`, and of others nearby, in no particular order. O(trees
+  /// nearby).
   std::vector<std::size_t> about(const Eigen::Vector2d& point_m, double radius_m) const;
 
  private:

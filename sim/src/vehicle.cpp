@@ -23,7 +23,7 @@ core::AckermannSample steer(const core::Pose2& T_world_robot, const Eigen::Vecto
   const core::AckermannGeometry& g = vehicle.geometry;
   core::AckermannSample sample;
   sample.steering_rad = pursue(core::transform(core::inverse(T_world_robot), target_world_m), g.wheelbase_m);
-  // The encoder's wheel is not in the middle of the axle: it runs slower on the inside of a curve.
+  // The encoder's wheel is not at the centre of the axle: it runs slower on the inside of a curve.
   sample.wheel_speed_mps =
       vehicle.speed_mps * (1.0 - g.encoder_offset_m / g.wheelbase_m * std::tan(sample.steering_rad));
   sample.duration_s = vehicle.odometry_period_s;

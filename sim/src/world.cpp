@@ -87,7 +87,7 @@ World open_road_world(const WorldOptions& options, Dice& dice) {
   return world;
 }
 
-/// A lattice along the home straight: several rows a side, each shifted against the one before.
+/// A lattice along the home straight: several rows per side, each shifted relative to the previous one.
 void plant_lattice(const WorldOptions& options, Grove& grove, Dice& dice) {
   constexpr double first_row_m = 4.0;
   constexpr double jitter_m = 0.05;
@@ -125,7 +125,7 @@ World figure_of_eight_world(const WorldOptions& options, Dice& dice) {
   const Stretch first{0.07 * lap_m, 0.36 * lap_m};
   const Stretch second{0.57 * lap_m, 0.86 * lap_m};
   const std::vector<double> returns_at_m = {lap_m + first.from_m, lap_m + second.from_m, 2.0 * lap_m + first.from_m};
-  // Not so far that a region comes into view again that would not be judged.
+  // Not so far that a region that would not be judged comes into view again.
   const double drive_m = returns_at_m.back() + std::min(options.drive_on_m, first.to_m - first.from_m);
   World world{route_from_origin(figure_of_eight(lap_m, laps_for(drive_m, lap_m), dice.road)), drive_m, {}, {}, {}};
   world.returns_at_m = returns_at_m;
@@ -164,7 +164,7 @@ World town_world(const WorldOptions& options, Dice& dice) {
   const Town town(options, dice.road);
   const TownTour tour = town.tour(options.tour_m, options.drive_on_m, dice.road);
   World world{Route(tour.road), tour.drive_m, {}, tour.returns_at_m, {}};
-  constexpr double crossing_m = 10.0;  // no trees so near to the middle of a crossing
+  constexpr double crossing_m = 10.0;  // no trees this close to the middle of a crossing
   Grove grove(world.route, options.road_clearance_m);
   for (const Polyline& street : town.streets_with_trees()) {
     const Stretch stretch{crossing_m, options.block_side_m - crossing_m};
@@ -174,7 +174,7 @@ World town_world(const WorldOptions& options, Dice& dice) {
   return world;
 }
 
-/// As dense as said on the mean, where there is room; some of them with a second stem.
+/// As dense as given on average, if there is room; some of them with a second stem.
 void plant_forest(const WorldOptions& options, double lap_m, const Route& route, Grove& grove, Dice& dice) {
   Eigen::AlignedBox2d box;
   for (double along_m = 0.0; along_m < lap_m; along_m += 1.0) box.extend(route.at(along_m));

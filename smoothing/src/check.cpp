@@ -25,7 +25,7 @@ void check_covariance(const Eigen::Ref<const Eigen::MatrixXd>& covariance, const
   }
 }
 
-/// Rows that speak of each variable, who is tied to whom, and what ties each part to the world.
+/// Rows that involve each variable, which variables are tied to which, and what ties each part to the world.
 /// Variables are counted poses first, then landmarks.
 class Observability {
  public:

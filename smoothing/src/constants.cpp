@@ -9,7 +9,7 @@
 namespace helixnav::smoothing {
 namespace {
 
-/// How a landmark would have to move for a sensor that stays to see what one sees that moves on the vehicle.
+/// How a landmark would have to move for a fixed sensor to see what a sensor moved on the vehicle sees.
 Eigen::Matrix<double, 2, 3> point_by_mounting(const core::Pose2& T_world_robot, const core::Pose2& T_robot_sensor,
                                               const Eigen::Vector2d& point_m) {
   const Eigen::Vector2d from_sensor_m = point_m - core::compose(T_world_robot, T_robot_sensor).position_m();
@@ -110,7 +110,7 @@ ConstantsEvidence evidence_of_constants(const Problem& solved, const std::vector
   for (Eigen::Index c = 0; c < equations.border.cols(); ++c) {
     session.cholesky.solve(equations.border.col(c), x);
     evidence.information.col(c) -= equations.border.transpose() * x;
-    evidence.gradient[c] -= x.dot(session.equations.gradient);  // nought at the very minimum
+    evidence.gradient[c] -= x.dot(session.equations.gradient);  // zero exactly at the minimum
   }
   evidence.information = 0.5 * (evidence.information + evidence.information.transpose()).eval();
   return evidence;

@@ -7,11 +7,11 @@
 
 namespace helixnav::smoothing {
 
-/// Where each column of a factorised session's H stands in the elimination order.
+/// Where each column of a factorised session's H is in the elimination order.
 std::vector<int> positions(const Session& session);
 
 /// Columns of H that the chosen variables occupy, poses first, −1 for each coordinate of a fixed pose. PreconditionError
-/// where there is no such variable.
+/// if there is no such variable.
 std::vector<int> columns_of(const Session& session, const std::vector<int>& poses, const std::vector<int>& landmarks);
 
 /// Blocks of H⁻¹ of a factorised session, all pairs of the variables chosen; zero for fixed poses.

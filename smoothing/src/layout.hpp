@@ -8,7 +8,7 @@
 
 namespace helixnav::smoothing {
 
-/// Where each variable stands among the columns of H: free poses first (3 each), then landmarks (2 each).
+/// Where each variable is among the columns of H: free poses first (3 each), then landmarks (2 each).
 struct Layout {
   std::vector<int> pose_column;  ///< −1 when fixed
   std::vector<int> landmark_column;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double smallest_damping = 1e-12;
 constexpr double largest_damping = 1e12;
-/// A negligible promise counts as convergence only when damping does not explain it.
+/// A negligible predicted decrease counts as convergence only when damping does not explain it.
 constexpr double light_damping = 1e-2;
 
 /// Step of (H + λ·diag H)s = −g; false when even the damped matrix cannot be factorised.

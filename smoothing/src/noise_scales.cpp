@@ -38,7 +38,7 @@ struct Moved {
 };
 
 /// S of a factorised session. With H = H₁ + H₂ (+ priors) and t_i = tr(H⁻¹H_i), S_ij = δ_ij(n_i − 2t_i) + tr(H⁻¹H_iH⁻¹H_j): the
-/// t_i are exact by the entries of H⁻¹ that H has, and of the rest, which needs all of H⁻¹, one number alone is drawn.
+/// t_i are exact, from the entries of H⁻¹ on the pattern of H; of the rest, which needs all of H⁻¹, only one number is drawn.
 class Redundancies {
  public:
   explicit Redundancies(Session& session)
@@ -52,7 +52,7 @@ class Redundancies {
     const Moved odometry = moved_by(odometry_, draws, random), landmarks = moved_by(landmarks_, draws, random);
     Eigen::Matrix2d S;
     const double both = 0.5 * (odometry.landmarks + landmarks.odometry);
-    // What priors hold fast is left as drawn; without priors both differences are nought beside the others.
+    // What priors hold fixed is left as drawn; without priors both differences are negligible beside the others.
     const double own_odometry = by_odometry - both - (odometry.all - odometry.odometry - odometry.landmarks);
     const double own_landmarks = by_landmarks - both - (landmarks.all - landmarks.odometry - landmarks.landmarks);
     S << count_rows(odometry_) - 2.0 * by_odometry + own_odometry, both, both,
@@ -107,7 +107,7 @@ NoiseScales estimate_noise_scales(const Problem& solved, std::uint64_t seed, int
   if (!(S(0, 0) > 0.0 && S(1, 1) > 0.0 && S.determinant() > 1e-6 * S(0, 0) * S(1, 1))) {
     throw core::NumericalError("estimate_noise_scales: odometry and observations cannot be told apart");
   }
-  // A small sample may ask for a negative variance: then each kind is judged alone.
+  // A small sample may ask for a negative variance: each kind is then judged on its own.
   if (!(variances.minCoeff() > 0.0)) variances = q.cwiseQuotient(redundancy);
   const Eigen::Matrix2d C = 2.0 * S.inverse();
   return {scale_of(variances[0], C(0, 0), redundancy[0]), scale_of(variances[1], C(1, 1), redundancy[1])};

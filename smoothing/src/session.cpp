@@ -49,7 +49,7 @@ Chi2 Session::try_step(const Eigen::VectorXd& step) {
     // An object of its own: GCC lets evaluate() write into what it is assigned to, where half a sum stays when it throws.
     const Chi2 found = equations.evaluate(trial_);
     if (std::isfinite(found.cost)) return found;
-  } catch (const core::NumericalError&) {  // a landmark came to stand at a sensor: no step to take
+  } catch (const core::NumericalError&) {  // a landmark ended up at a sensor: no step to take
   }
   return none;
 }

@@ -11,7 +11,7 @@
 namespace helixnav::smoothing {
 namespace {
 
-/// What all observations of a landmark say of it, with the poses known.
+/// What all observations of a landmark say about it, given the poses.
 struct Known {
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   double distances_m = 0.0;
@@ -30,7 +30,7 @@ void add_edge(const core::LandmarkGraph& graph, const core::LandmarkGraph::Landm
   const core::Pose2& T_world_robot = graph.poses[static_cast<std::size_t>(edge.pose)].T_world_robot;
   const Eigen::Vector2d& point_m = graph.landmarks[static_cast<std::size_t>(edge.landmark)].point_m;
   const double distance_m = (point_m - core::compose(T_world_robot, edge.T_robot_sensor).position_m()).norm();
-  constexpr double nearest_m = 1e-3;  // nothing is seen from so near
+  constexpr double nearest_m = 1e-3;  // nothing is seen from this close
   known.distances_m += distance_m;
   ++known.observations;
   if (!(distance_m > nearest_m)) return;

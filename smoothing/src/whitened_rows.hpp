@@ -13,8 +13,8 @@ namespace helixnav::smoothing {
 
 inline std::size_t sized(int i) { return static_cast<std::size_t>(i); }
 
-/// The whitened derivative of one measurement between two variables: of `rows` rows and `columns` columns, of which `column`
-/// says the place in H (−1: the variable is fixed).
+/// The whitened derivative of one measurement between two variables, `rows` × `columns`, whose place in H is given by
+/// `column` (−1: the variable is fixed).
 struct WhitenedRows {
   Eigen::Matrix<double, 3, 6> J = Eigen::Matrix<double, 3, 6>::Zero();
   std::array<int, 6> column{-1, -1, -1, -1, -1, -1};

@@ -15,8 +15,8 @@ namespace {
 
 using Options = NavigatorOptions;
 
-/// A length as a fraction of the reach: whole numbers, so that at a reach of 30 m the round numbers come out that were
-/// measured there.
+/// A length as a fraction of the reach, in whole numbers, so that a reach of 30 m gives the round values measured
+/// there.
 struct Row {
   std::string_view name;
   double numerator, denominator;
@@ -86,7 +86,7 @@ constexpr std::array rows{
     Row{"slip.large_m", 1, 15, [](Options& o) -> double& { return o.slip.large_m; }},
     Row{"slip.distinct_m", 1, 60, [](Options& o) -> double& { return o.slip.distinct_m; }},
 
-    // What moves.
+    // Moving things.
     Row{"moving.speed_mps", 1, 6, [](Options& o) -> double& { return o.moving.speed_mps; }},
 
     // Landmarks seen as a range or a bearing only.
@@ -96,7 +96,7 @@ constexpr std::array rows{
     Row{"delayed.clone_sigma_m", 1, 30000, [](Options& o) -> double& { return o.delayed.clone_sigma_m; }},
 };
 
-/// That it takes to look all around, 2 at the least.
+/// Views needed to look all around, at least 2.
 double views_around(const core::FieldOfView& view) {
   const double width_rad = view.max_bearing_rad - view.min_bearing_rad;
   return width_rad > 0.0 ? std::max(2.0, std::round(2.0 * core::pi / width_rad)) : 2.0;
@@ -131,7 +131,7 @@ void set_length(NavigatorOptions& options, std::string_view name, double value) 
 
 SearchOptions with_extraneous_density(SearchOptions search, double born_per_scan, const core::FieldOfView& view) {
   if (!search.learn_extraneous) return search;
-  constexpr double least_per_scan = 0.01;  // a count of zero is no estimate
+  constexpr double least_per_scan = 0.01;  // a count of zero is not an estimate
   search.extraneous_per_scan = std::max(least_per_scan, born_per_scan);
   search.relocalizer.sensor.extraneous_per_scan = search.extraneous_per_scan;
   const double area = view_area_m2(view);

@@ -47,8 +47,8 @@ double noise_m2(const core::Observation& observation, const core::Pose2& T_robot
   return (located.G_z * observation.R * located.G_z.transpose()).trace();
 }
 
-/// Takes matches back that may as well be of another landmark, which the scan has not found elsewhere: an odds of 20 is
-/// asked for. Which of two landmarks it is makes no difference where the noise given is wider than they are apart.
+/// Revokes matches that may equally be of another landmark, which the scan has not found elsewhere: odds of 20 are
+/// required. Which of two landmarks it is makes no difference if the noise given is wider than they are apart.
 void leave_doubtful(const core::Scan& scan, const association::InnovationProblem& problem,
                     const core::JointGaussian& joint, association::Assignment& assignment) {
   const double needed_nats = std::log(20.0);

@@ -11,17 +11,17 @@
 
 namespace helixnav::team {
 
-/// Where component `from` stands in `into` by landmarks that both call by the same name, two or more: generalised least
-/// squares over both maps' covariances. Nothing while χ² objects.
+/// Where component `from` is in `into`, from landmarks that both call by the same name, two or more: generalised least
+/// squares over both maps' covariances. Nothing if χ² objects.
 std::optional<Candidate> by_names(std::size_t into, std::size_t from, const JoinOptions& options, const State& state);
 
-/// By two sightings, one each way, of a robot of each: the last two, then the last two before those, a few times; any may be of
-/// another robot than was taken for it. `refused`: are no evidence.
+/// From two sightings, one each way, of a robot of each: the last two, then the last two before those, a few times; any may be
+/// of a different robot from the one it was taken for. `refused`: are not evidence.
 std::vector<Candidate> by_sightings(std::size_t into, std::size_t from, core::Nanoseconds t_ns,
                                     const JoinOptions& options, const std::set<SightingKey>& refused,
                                     const State& state);
 
-/// By where the landmarks stand, without names (supervisor::join_sessions).
+/// From where the landmarks are, without names (supervisor::join_sessions).
 std::optional<Candidate> by_constellation(std::size_t into, std::size_t from, const JoinOptions& options,
                                           const State& state);
 

@@ -33,7 +33,7 @@ Points points_of(const JointFilter& filter, const std::vector<LandmarkId>& ids) 
   return points;
 }
 
-/// The rigid motion of least squares, by weights.
+/// The rigid motion of weighted least squares.
 core::Pose2 rigid_fit(const Points& a, const Points& b, const std::vector<double>& weights) {
   Eigen::Vector2d mean_a = Eigen::Vector2d::Zero();
   Eigen::Vector2d mean_b = Eigen::Vector2d::Zero();
@@ -56,7 +56,7 @@ core::Pose2 rigid_fit(const Points& a, const Points& b, const std::vector<double
   return {at_m.x(), at_m.y(), heading_rad};
 }
 
-/// The rigid motion of least distances, to which a few points far off say little; nearer than a pair is known it is of least squares.
+/// The rigid motion of least distances, which a few points far off hardly affect; closer than a pair is known it is least squares.
 core::Pose2 robust_fit(const Points& a, const Points& b) {
   constexpr int iterations = 30;
   std::vector<double> weights(a.at_m.size(), 1.0);

@@ -19,10 +19,10 @@ struct NamesFit {
   SamePairs kept, left_out;
 };
 
-/// Where component `from` stands in `into` by landmarks of one name: generalised least squares over both maps' covariances.
-/// Where χ² objects, names are left out one by one, each time the one without which χ² is least: a barcode may have been
-/// misread. Each counts by the sightings of the map that has fewer, five at most; those left out may have a quarter of all.
-/// Test: team/misread_names_test.cpp.
+/// Where component `from` is in `into`, from landmarks of one name: generalised least squares over both maps' covariances.
+/// If χ² objects, names are left out one by one, each time the one without which χ² is least: a barcode may have been
+/// misread. Each counts by the sightings of the map that has fewer, five at most; those left out may make up a quarter of
+/// all. Test: team/misread_names_test.cpp.
 NamesFit fit_names(std::size_t into, std::size_t from, const SamePairs& pairs, const JoinOptions& options,
                    const State& state);
 

@@ -9,14 +9,14 @@
 
 namespace helixnav::team {
 
-/// What is no evidence: joins taken back, by their kind and the two robots, and sightings that a wrong join rested on, by time, robot
+/// What is not evidence: joins undone, by their kind and the two robots, and sightings that a wrong join rested on, by time, robot
 /// and robot seen.
 struct RefusedJoins {
   std::set<std::tuple<TeamJoin::By, int, int>> joins;
   std::set<SightingKey> sightings;
 };
 
-/// Looks at all pairs of components for what places one in the other's frame, and joins those of which χ² of the joint
+/// Searches all pairs of components for what places one in the other's frame, and joins those to which χ² of the joint
 /// solution does not object. Components are solved when this is called.
 void find_joins(core::Nanoseconds t_ns, const TeamOptions& options, const RefusedJoins& refused, State& state);
 

@@ -59,7 +59,7 @@ bool is_refused(LandmarkId a, LandmarkId b, const RefusedSame& refused, const St
   return refused.count({std::min(key_a, key_b), std::max(key_a, key_b)}) > 0;
 }
 
-/// The component with pairs as one, the covariance being for the solution to find.
+/// The component with pairs merged, the covariance being left to the solution.
 void lay_as_one(std::size_t component, const std::vector<SameLandmarks>& same, State& state) {
   std::vector<LandmarkId> removed;
   for (const SameLandmarks& one : same) {
@@ -71,7 +71,7 @@ void lay_as_one(std::size_t component, const std::vector<SameLandmarks>& same, S
   state.components[component].filter.remove(removed);
 }
 
-/// What the two are told to be one by: their places, or looks that each took a part of.
+/// What the two are taken to be one by: their places, or looks shared out between them.
 enum class Evidence { place, turns };
 
 /// χ² of all looks at landmarks, by the noise of one look, and its degrees of freedom: the looks must be of one thing each.
@@ -139,7 +139,7 @@ void find_same_by(Evidence evidence, std::size_t component, core::Nanoseconds t_
   for (const SamePlace& pair : same_places(std::move(places), probability)) {
     same.push_back({t_ns, ids[pair.kept], ids[pair.removed], pair.nats, 0.0, 0, 0.0});
   }
-  // Where least squares objects to all of them, the surest half may still pass.
+  // If least squares objects to all of them, the surest half may still pass.
   while (!same.empty() && !make_one(component, evidence, same, options, state)) same.resize(same.size() / 2);
 }
 

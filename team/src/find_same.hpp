@@ -11,16 +11,16 @@
 
 namespace helixnav::team {
 
-/// Landmarks that were made two again, by what began them.
+/// Landmarks that were split in two again, by what began them.
 using BirthKey = std::tuple<std::size_t, core::Nanoseconds, int>;
 using RefusedSame = std::set<std::pair<BirthKey, BirthKey>>;
 
 BirthKey key_of(const Birth& birth);
 
-/// Makes landmarks of a solved component one that stand in one place, as far as χ² of least squares with them as one does
-/// not object; no change otherwise. Robots that map the same ground begin the same landmarks more than once, before they
-/// are joined or while their poses are not known well. Twice: by their places; then those whose looks were shared out between two
-/// copies (were_seen_in_turn), where the looks at both fit one thing by the noise of a look.
+/// Merges landmarks of a solved component that are in one place, as far as χ² of least squares with them merged does not object;
+/// no change otherwise. Robots that map the same ground begin the same landmarks more than once, before they are joined or while
+/// their poses are poorly known. Twice: by their places; then those whose looks were shared out between two copies
+/// (were_seen_in_turn), if the looks at both fit one thing by the noise of a look.
 void find_same(std::size_t component, core::Nanoseconds t_ns, const TeamOptions& options, const RefusedSame& refused,
                State& state);
 

@@ -37,7 +37,7 @@ void add_common_names(Candidate& candidate, const State& state) {
   }
 }
 
-/// Both in one frame and in one list, with what ties them; the covariance is for the solution to find.
+/// Both in one frame and in one list, with what ties them; the covariance is left to the solution.
 void lay_together(const Candidate& candidate, State& state) {
   Component& into = state.components[candidate.into];
   Component& from = state.components[candidate.from];
@@ -103,7 +103,7 @@ bool passes(double apart_chi2, int rows, const State& state, const TeamOptions& 
   return join.cost <= join.limit;
 }
 
-/// Whether the first robots of both are known well enough, each seen from the other: two names say little of a heading.
+/// Whether both first robots are known well enough, each seen from the other: two names say little about a heading.
 bool is_placed(const TeamJoin& join, const State& state, const JoinOptions& options) {
   const Robot& a = state.robots[static_cast<std::size_t>(join.robot)];
   const Robot& b = state.robots[static_cast<std::size_t>(join.other)];
@@ -157,7 +157,7 @@ bool join_by(const Candidate& candidate, core::Nanoseconds t_ns, const TeamOptio
     if (join.by == TeamJoin::By::names && !is_placed(join, trial, options.join)) return false;
     const Explained others = use_sightings(candidate.into, options.gate_probability, trial);
     if (others.refused > others.used) return false;
-    forget_misread(candidate, trial);  // not before: what their sightings cost is in that of both apart
+    forget_misread(candidate, trial);  // not earlier: the cost of their sightings is included in that of both apart
     if ((others.used > 0 || join.left_out > 0) && !solve(candidate.into, trial)) return false;
   } catch (const core::NumericalError&) {
     return false;

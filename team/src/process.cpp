@@ -72,7 +72,7 @@ void note_reach(const core::Observation& observation, State& state) {
   state.reach_m = std::max(state.reach_m, range_m);
 }
 
-/// One observation into filter and graph: of the landmark told, of a new one where none is.
+/// Adds one observation to filter and graph: of the landmark given, or of a new one if none is.
 core::AssociationReport observe(std::size_t robot, const core::Scan& scan, int index, bool is_named,
                                 LandmarkId landmark, const TeamOptions& options, State& state) {
   const core::Pose2& T_robot_sensor = scan.T_robot_sensor;
@@ -124,8 +124,8 @@ void forget(const std::set<LandmarkId>& forgotten, State& state) {
   for (Component& component : state.components) component.filter.remove({forgotten.begin(), forgotten.end()});
 }
 
-/// A landmark that was first seen under another's name is where nobody sees it again: more than twice as many sightings of
-/// it are refused as it has. It is begun anew with the next one.
+/// A landmark that was first seen under another's name is where nobody sees it again: more than twice as many of its
+/// sightings are refused as it has. It is begun anew with the next one.
 void forget_if_misplaced(LandmarkId id, State& state) {
   constexpr int least = 3;
   const auto at = static_cast<std::size_t>(id);
@@ -213,7 +213,7 @@ void take(std::size_t robot, const core::Odometry& motion, State& state) {
 
 int rank_of(const Entry& entry) { return static_cast<int>(entry.what.index()); }
 
-/// Of two sightings by one robot at one time the one may wait longer than the other.
+/// Of two sightings by one robot at the same time, one may wait longer than the other.
 int seen_by(const Entry& entry) {
   const auto* sighting = std::get_if<core::RobotSighting>(&entry.what);
   return sighting == nullptr ? 0 : sighting->seen;

@@ -62,7 +62,7 @@ std::vector<Scored> scored_pairs(const std::vector<bool>& gone, const Places& pl
   return pairs;
 }
 
-/// Whether what one of the pair may be as well is known to be another than the other of the pair.
+/// Whether an alternative for one of the pair is known to be distinct from the other of the pair.
 bool has_rival(const Scored& pair, const std::vector<Scored>& pairs, const Places& places) {
   return std::any_of(pairs.begin(), pairs.end(), [&](const Scored& other) {
     if (pair.nats - other.nats >= needed_nats) return false;

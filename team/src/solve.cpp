@@ -47,7 +47,7 @@ class ComponentGraph {
     smoothing::soften_odometry(problem, softening);
   }
 
-  /// Where no start is known, the first robot's is the frame.
+  /// If no start is known, the first robot's is the frame.
   void add_start() {
     const Eigen::Matrix3d certain = softening.cwiseAbs2().asDiagonal();
     for (const std::size_t r : component_.robots) {
@@ -73,7 +73,7 @@ class ComponentGraph {
     }
   }
 
-  /// A sighting is a position; of the heading of the robot seen it says nothing.
+  /// A sighting is a position; it says nothing about the heading of the robot seen.
   void add_sightings() {
     constexpr double any_heading_rad2 = 1e6;
     for (const SightingRow& row : state_.sighting_rows) {

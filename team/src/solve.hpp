@@ -7,11 +7,11 @@
 
 namespace helixnav::team {
 
-/// Solves the graph of one component from where it is, and begins its filter anew at the solution. False, and no change but
-/// a clone where each robot is, where least squares does not converge or breaks down.
+/// Solves the graph of one component from where it is, and restarts its filter at the solution. False, with no change
+/// except a clone where each robot is, if least squares does not converge or breaks down.
 bool solve(std::size_t component, State& state);
 
-/// The observed position of the robot seen, in the frame of the robot that sees.
+/// The observed position of the robot seen, in the frame of the observing robot.
 struct SeenPosition {
   Eigen::Vector2d position_m;
   Eigen::Matrix2d covariance_m2;

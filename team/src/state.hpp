@@ -17,7 +17,7 @@
 
 namespace helixnav::team {
 
-/// A pose of a robot that the graph holds.
+/// A pose of a robot in the graph.
 struct Clone {
   core::Nanoseconds t_ns = 0;
   core::Pose2 T_component_robot;
@@ -26,7 +26,7 @@ struct Clone {
 
 /// A robot: poses of the graph, and the motion since the last.
 struct Robot {
-  std::optional<core::PoseGaussian> start;  ///< in the common frame, where it is known
+  std::optional<core::PoseGaussian> start;  ///< in the common frame, if known
   std::vector<Clone> clones;
   core::Odometry since = core::no_motion(0);
   std::size_t component = 0;
@@ -44,7 +44,7 @@ struct LandmarkRow {
   std::int64_t scan = 0;  ///< of the robot
 };
 
-/// What began a landmark: the same whatever came late, so that a decision on it can be taken back.
+/// What began a landmark: unaffected by late arrivals, so that a decision on it can be undone.
 struct Birth {
   std::size_t robot = 0;
   core::Nanoseconds t_ns = 0;
@@ -61,16 +61,16 @@ struct SightingRow {
   core::Pose2 T_robot_sensor;
   core::Observation observation;
   Use use = Use::apart;  ///< apart: between two components
-  double nis = 0.0;      ///< of the innovation, where it was in one component
+  double nis = 0.0;      ///< of the innovation, if it was in one component
 };
 
-/// A sighting by what it was, whatever came late: time, robot, robot seen.
+/// A sighting identified independently of late arrivals: time, robot, robot seen.
 using SightingKey = std::tuple<core::Nanoseconds, std::size_t, std::size_t>;
 inline SightingKey key_of(const SightingRow& row) { return {row.t_ns, row.robot, row.seen}; }
 
 /// Robots in one frame, that of the first of them or the one where starts are known.
 struct Component {
-  std::vector<std::size_t> robots;  ///< empty: went into another
+  std::vector<std::size_t> robots;  ///< empty: joined into another
   JointFilter filter;
   double chi2 = 0.0;  ///< of the graph at the last solution
   bool news = false;  ///< since then

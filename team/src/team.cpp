@@ -62,7 +62,7 @@ struct Team::Book {
 
 namespace {
 
-/// Components into which others came.
+/// Components into which others were joined.
 std::set<std::size_t> joined_since(std::size_t joins, const State& state) {
   std::set<std::size_t> components;
   for (std::size_t j = joins; j < state.joins.size(); ++j) {
@@ -138,7 +138,7 @@ void Team::Book::start_again() {
   replay();
 }
 
-/// To a checkpoint that rests on none of the entries from `entries_kept` on, nor was taken because of one of them.
+/// Rolls back to a checkpoint that rests on no entry from `entries_kept` on, nor was taken because of one of them.
 void Team::Book::rewind(std::size_t entries_kept) {
   while (!checkpoints.empty() && checkpoints.back().entries >= entries_kept) checkpoints.pop_back();
   const Checkpoint& from = checkpoints.empty() ? first : checkpoints.back();
@@ -156,7 +156,7 @@ std::optional<core::StepReport> Team::Book::replay() {
   return report;
 }
 
-/// True where one was found: what came of it is gone, and everything is to be gone through again.
+/// True if one was found: all that followed from it is undone, and everything has to be processed again.
 bool Team::Book::take_back_wrong_join() {
   if (!state.news_of_joins) return false;
   state.news_of_joins = false;
@@ -194,7 +194,7 @@ void Team::Book::sight(std::size_t robot, const core::RobotSighting& sighting) {
   enter({robot, sighting});
 }
 
-/// Cuts the increment that the robot was in the midst of; before its first there is nothing to cut.
+/// Cuts the increment that the robot was in the middle of; before its first there is nothing to cut.
 void Team::Book::end_motion_at(std::size_t robot, core::Nanoseconds t_ns) {
   const auto is_motion = [&](const Entry& entry) {
     return entry.robot == robot && std::holds_alternative<core::Odometry>(entry.what);

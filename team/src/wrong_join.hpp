@@ -14,11 +14,11 @@ struct WrongJoin {
   int seen = 0;
 };
 
-/// The last join that sightings since then contradict: of the first forty of a robot of one side by one of the other, six and
-/// more than half are refused. One misread robot is enough for two sightings that agree. Test: team/team_test.cpp.
+/// The last join that later sightings contradict: of the first forty of a robot on one side by one on the other, six and more
+/// than half are refused. One misread robot is enough for two sightings that agree. Test: team/team_test.cpp.
 std::optional<WrongJoin> find_wrong_join(const State& state);
 
-/// It is not made again on the same evidence: of two sightings, on either of them.
+/// It is not made again on the same evidence: if that is two sightings, on either of them.
 void refuse(std::size_t join, const State& state, RefusedJoins& refused);
 
 }  // namespace helixnav::team

@@ -9,8 +9,8 @@
 
 namespace helixnav::apps {
 
-/// Writes a rawlog, compressed with gzip as MRPT's own are. The file appears whole, with `finish`, or not at all.
-/// Throws core::InputError when the file system refuses. Test: mrpt_apps/rawlog_stream_test.cpp.
+/// Writes a rawlog, compressed with gzip like MRPT's own. The file appears complete, on `finish`, or not at all.
+/// Throws core::InputError on a file system error. Test: mrpt_apps/rawlog_stream_test.cpp.
 class RawlogSink {
  public:
   explicit RawlogSink(const std::string& path);

@@ -19,7 +19,7 @@ namespace helixnav::apps {
 namespace {
 
 const mrpt::topography::TGeodeticCoords nominal_place(-33.886, 151.194, 0.0);
-constexpr int first_error_code_cm = 8183;  // SickScan: these and above are no ranges
+constexpr int first_error_code_cm = 8183;  // SickScan: values from here on are not ranges
 
 bool is_shiny(const logs::SickScan& scan) {
   return std::any_of(scan.reflectivity.begin(), scan.reflectivity.end(), [](int code) { return code > 0; });

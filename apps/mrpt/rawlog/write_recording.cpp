@@ -25,7 +25,7 @@ namespace {
 
 using mrpt::obs::CObservationBearingRange;
 
-/// Range and bearing with their covariance, whichever way the observation says it.
+/// Range and bearing with their covariance, in whichever form the observation gives it.
 struct Polar {
   double range_m;
   double bearing_rad;
@@ -80,7 +80,7 @@ class Writer {
   }
 
  private:
-  /// Readers of pairs skip a frame that no action stands before, so a first scan gets one of no motion.
+  /// Readers of pairs skip a frame that no action precedes, so a first scan gets one without motion.
   void write(const core::Scan& scan) {
     sink_.write(movement_of(motion_ ? *motion_ : core::no_motion(scan.t_ns)));
     motion_.reset();

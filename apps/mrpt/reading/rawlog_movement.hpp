@@ -7,7 +7,7 @@
 
 namespace helixnav::apps {
 
-/// One movement with its whole covariance, which MRPT keeps for movements from scan matching only.
+/// One movement with its full covariance, which MRPT keeps only for movements from scan matching.
 mrpt::obs::CActionCollection movement_of(const core::Odometry& odometry);
 
 }  // namespace helixnav::apps

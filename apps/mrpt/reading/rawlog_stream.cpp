@@ -21,8 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The size of the content that a gzip file states in its last four bytes (modulo 2³²). zlib reads a file that was cut
-/// off as if it ended there, and MRPT does not ask it.
+/// The content size that a gzip file states in its last four bytes (modulo 2³²). zlib reads a truncated file as if it
+/// ended there, and MRPT does not check.
 bool is_cut_off(const fs::path& path, std::uint64_t content_bytes) {
   std::ifstream file(path, std::ios::binary);
   std::array<unsigned char, 2> magic{};
@@ -36,7 +36,7 @@ bool is_cut_off(const fs::path& path, std::uint64_t content_bytes) {
   return stated != static_cast<std::uint32_t>(content_bytes);
 }
 
-/// The innermost of the messages that MRPT nests, without its call stacks.
+/// The innermost of MRPT's nested messages, without its call stacks.
 std::string core_of(const std::exception& error) {
   std::string text = error.what();
   const std::string beginning = "Message:";
@@ -106,7 +106,7 @@ struct RawlogStream::File {
   }
 
   std::string path;
-  std::unique_ptr<Handles> own;  ///< null where they are the caller's
+  std::unique_ptr<Handles> own;  ///< null if they are the caller's
   mrpt::io::CFileGZInputStream& gz;
   mrpt::serialization::CArchive::UniquePtr& archive;
   mrpt::serialization::CSerializable::Ptr entry;

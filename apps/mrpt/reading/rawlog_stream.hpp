@@ -11,14 +11,14 @@
 
 namespace helixnav::apps {
 
-/// Reads a rawlog entry by entry, compressed with gzip or not. What stands before a damaged place is handed out first.
-/// Throws core::InputError when the file is not there or does not begin as a rawlog.
+/// Reads a rawlog entry by entry, compressed with gzip or not. Everything before a damaged place is returned first.
+/// Throws core::InputError if the file does not exist or does not begin as a rawlog.
 /// Test: mrpt_apps/rawlog_stream_test.cpp.
 class RawlogStream {
  public:
   explicit RawlogStream(const std::string& path);
 
-  /// The same through a file and an archive of the caller's, which it opens and which outlive it.
+  /// The same with a file and an archive owned by the caller, which it opens and which outlive it.
   RawlogStream(const std::string& path, mrpt::io::CFileGZInputStream& file,
                mrpt::serialization::CArchive::UniquePtr& archive);
 
@@ -31,7 +31,7 @@ class RawlogStream {
 
   std::size_t entries() const;  ///< handed out so far
 
-  /// Empty when the file ended well; else the entry, and what is wrong with it: truncated, of an unknown class, no rawlog.
+  /// Empty if the file ended cleanly; else the entry and its fault: truncated, of an unknown class, not a rawlog.
   const std::string& damage() const;
 
  private:

@@ -9,7 +9,7 @@
 
 namespace helixnav::apps {
 
-/// MRPT counts 100 ns since 1601; ours is 0 at the Unix epoch, so that small times of a log stay what they are.
+/// MRPT counts 100 ns since 1601; ours is 0 at the Unix epoch, so that small times in a log are preserved.
 inline constexpr std::int64_t unix_epoch_100ns = 116'444'736'000'000'000;
 
 /// To the nearest 100 ns.

@@ -41,7 +41,8 @@ logs::DeadReckoning reading_of(const CObservationRawDAQ& reading, std::size_t en
   return {time_of_rawlog(reading.timestamp), reading.AIN_double[0], reading.AIN_double[1]};
 }
 
-/// The log as make_recording wants it, its scans without a return: only when they were taken matters.
+/// The log as make_recording expects it, its scans without returns: only the times at which they were taken
+/// matter.
 logs::AcfrLog blind_log(const RawlogEntries& entries) {
   logs::AcfrLog log;
   logs::SickScan blind;
@@ -93,7 +94,7 @@ RawlogEntries with_movements(RawlogEntries entries, const logs::AcfrSettings& se
   const bool has_wheels = std::any_of(entries.begin(), entries.end(), as_wheel_steering);
   if (!has_wheels) return entries;
   logs::AcfrSettings vehicle = settings;
-  vehicle.laser_delay_s = 0.0;  // a rawlog says when a scan was taken
+  vehicle.laser_delay_s = 0.0;  // a rawlog states when a scan was taken
   const std::vector<core::Odometry> before_scan = motions(make_recording(blind_log(entries), vehicle));
   RawlogEntries result;
   std::size_t scan = 0;

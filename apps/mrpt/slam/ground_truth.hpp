@@ -11,15 +11,15 @@
 
 namespace helixnav::apps {
 
-/// kf-slam's ground_truth_file: a landmark a line, x y z … and in the seventh column its landmarkID. InputError names
-/// file and line.
+/// kf-slam's ground_truth_file: one landmark per line, x y z … and its landmarkID in the seventh column. InputError
+/// names file and line.
 std::vector<core::TrueLandmark> read_true_landmarks(const std::string& path);
 
-/// kf-slam's ground_truth_file_robot: the place (x, y) of the vehicle, a line a step.
+/// kf-slam's ground_truth_file_robot: the position (x, y) of the vehicle, one line per step.
 std::vector<Eigen::Vector2d> read_true_path(const std::string& path);
 
-/// Distances in the plane of landmarks to the truth of the same landmarkID, in the frame of the map (nothing is aligned),
-/// as kf-slam counts them.
+/// Distances in the plane from landmarks to the truth of the same landmarkID, in the map frame (nothing is aligned), as
+/// kf-slam computes them.
 struct LandmarkErrors {
   std::size_t compared = 0;
   std::size_t without_truth = 0;

@@ -12,12 +12,12 @@
 
 namespace helixnav::apps {
 
-/// The window that shows the map while it is built, where SHOW_3D_LIVE asks for one and a display is there.
+/// The window that shows the map while it is built, if SHOW_3D_LIVE asks for one and there is a display.
 class LiveView {
  public:
   explicit LiveView(const SlamConfig& config);
 
-  /// At most 20 times a second and a tenth of the time, or when it must.
+  /// At most 20 times a second and for a tenth of the time, or when it must.
   void show(const mrpt_adapter::MapBuilder& builder, std::size_t step, bool must);
 
  private:

@@ -17,8 +17,8 @@ LiveWindow::LiveWindow() : window_(mrpt::gui::CDisplayWindow3D::Create("helixnav
   window_->captureImagesStart();
 }
 
-/// A software renderer takes a second or two for its first picture. Who closes the window before, and ends the program,
-/// takes the renderer's compiler away from under it.
+/// A software renderer takes a second or two for its first picture. Closing the window earlier, and ending the program,
+/// would pull the renderer's compiler out from under it.
 LiveWindow::~LiveWindow() {
   using namespace std::chrono_literals;
   const auto give_up = std::chrono::steady_clock::now() + 10s;
@@ -41,7 +41,7 @@ void LiveWindow::look_at(double x_m, double y_m) {
 }
 
 std::unique_ptr<LiveWindow> open_live_window(std::string& why_not) {
-  if (std::getenv("DISPLAY") == nullptr) {  // wxWidgets ends the program when it finds none
+  if (std::getenv("DISPLAY") == nullptr) {  // wxWidgets ends the program if it finds none
     why_not = "there is no display";
     return nullptr;
   }

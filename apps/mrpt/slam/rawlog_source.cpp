@@ -14,7 +14,7 @@ namespace {
 
 using mrpt::obs::CActionCollection;
 
-/// Null for what is no movement; an action that stands alone becomes a collection of one.
+/// Null if it is not a movement; a single action becomes a collection of one.
 CActionCollection::Ptr movement_in(const mrpt::serialization::CSerializable::Ptr& entry) {
   const auto action = std::dynamic_pointer_cast<mrpt::obs::CAction>(entry);
   if (!action) return std::dynamic_pointer_cast<CActionCollection>(entry);

@@ -12,33 +12,33 @@
 
 namespace helixnav::apps {
 
-/// What a builder takes at a time: a frame or a single observation, with the movement before it where there is one; or a
-/// movement that another movement follows.
+/// What a builder takes at a time: a frame or a single observation, with the movement before it if there is one; or a
+/// movement that is followed by another movement.
 struct RawlogTurn {
   mrpt::obs::CActionCollection::Ptr movement;
   mrpt::obs::CSensoryFrame::Ptr frame;
   mrpt::obs::CObservation::Ptr observation;
 };
 
-/// MRPT's data source for rawlogs, of frames and of single observations, with its file, offset and counter of entries.
-/// How the next turn is found is our own: MRPT 2.5.8 ends where a file is cut off as if it were whole, drops a frame that no
-/// action stands before (the first one of kf-slam's own demo) and one of two actions in a row.
+/// MRPT's data source for rawlogs, of frames and of single observations, with its file, offset and entry counter. The search
+/// for the next turn is our own: MRPT 2.5.8 ends at a truncated file as if it were complete, drops a frame that no action
+/// precedes (the first one in kf-slam's own demo) and one of two consecutive actions.
 /// Test: mrpt_apps/rawlog_source_test.cpp.
 class RawlogSource : public mrpt::apps::DataSourceRawlog {
  public:
-  /// Reads the file, up to its end or a damaged place, and leaves out the first `offset` entries. InputError as
+  /// Reads the file, up to its end or a damaged place, and leaves out the first `offset` entries. InputError as for
   /// RawlogStream; `vehicle` as in with_movements.
   RawlogSource(const std::string& path, std::size_t offset, const logs::AcfrSettings& vehicle);
 
-  /// Empty at the end. A movement that nothing follows is not handed out.
+  /// Empty at the end. A movement that nothing follows is not returned.
   std::optional<RawlogTurn> next();
 
   const RawlogEntries& entries() const { return entries_; }  ///< behind the offset
   std::size_t offset() const { return m_rawlog_offset; }
   std::size_t size() const { return skipped_ + entries_.size(); }
-  std::size_t last_entry() const { return m_rawlogEntry - 1; }  ///< from 0 on, the one that next() handed out
+  std::size_t last_entry() const { return m_rawlogEntry - 1; }  ///< counted from 0, the one that next() returned
 
-  /// What is wrong with the file behind the last entry; empty when nothing is.
+  /// What is wrong with the file after the last entry; empty if nothing is.
   const std::string& damage() const { return damage_; }
 
  protected:

@@ -14,16 +14,16 @@ class App;
 
 namespace helixnav::apps {
 
-/// The program helixnav-slam, in the form of MRPT's own: initialised from the command line, then run.
+/// The program helixnav-slam, structured like MRPT's: initialised from the command line, then run.
 class SlamApp : public mrpt::apps::BaseAppInitializableCLI {
  public:
   SlamApp();
   ~SlamApp() override;
 
-  /// CLI::ParseError when the arguments are wrong or ask for help or version.
+  /// CLI::ParseError if the arguments are wrong or ask for help or version.
   void initialize(int argc, const char** argv) { impl_initialize(argc, argv); }
 
-  /// As run_slam, of what the command line named.
+  /// As run_slam, with the inputs named on the command line.
   ExitCode run() const { return run_slam(job_); }
 
   CLI::App& command_line() { return *command_line_; }

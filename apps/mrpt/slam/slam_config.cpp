@@ -67,7 +67,7 @@ std::string content_of(const std::string& path) {
   return content.str();
 }
 
-/// Values of one section; what is wrong with one is said with file, section and key.
+/// Values of one section; errors are reported with file, section and key.
 class Section {
  public:
   Section(const CConfigFileMemory& ini, const std::string& path, const char* name)
@@ -100,7 +100,7 @@ class Section {
   }
 
  private:
-  /// Without the comment that may follow on the line, and without blanks around.
+  /// Without the comment that may follow on the line, and without surrounding blanks.
   std::string text(const char* key) const {
     std::string word = ini_.read_string(name_, key, "");
     for (const char* comment : {" //", "\t//", " #", "\t#", " ;", "\t;"}) word = word.substr(0, word.find(comment));
@@ -133,8 +133,8 @@ void read_application(const Section& section, SlamConfig& config) {
 }
 
 /// The filter that the file asks kf-slam for, by MRPT's names or numbers. Both plain ones are an EKF with the standard
-/// retraction, the second of them number by number; a file that says `retraction` is read after this one. Iterated ones
-/// have no successor here. True when the key had its effect.
+/// retraction, the second of them scalar by scalar; a `retraction` in the file is read after this one. Iterated ones
+/// have no successor here. True if the key took effect.
 bool take_filter_of_kf_slam(const Section& section, mrpt_adapter::MapBuilderOptions& options) {
   constexpr const char* key = "method";
   if (!section.has(key)) return false;

@@ -12,17 +12,17 @@
 namespace helixnav::apps {
 
 /// Feeds a rawlog to a builder, frames and single observations alike; a frame without movement (the first, in kf-slam's own
-/// demo) goes in alone. A frame with several observations of landmarks goes in one by one, so that the builder's last data
-/// association is that of `seen`.
+/// demo) is fed alone. A frame with several observations of landmarks is fed one observation at a time, so that the
+/// builder's last data association is that of `seen`.
 class SlamFeed {
  public:
-  /// Called after each observation that the builder looked at, with that observation.
+  /// Called after each observation that the builder processed, with that observation.
   using Seen = std::function<void(const mrpt::obs::CObservation&)>;
 
   SlamFeed(mrpt_adapter::MapBuilder& builder, Seen seen);
 
-  /// InputError for what the builder cannot use and for an observation of landmarks without time; nothing of the turn
-  /// is then in the map, or of a frame with several, what came before.
+  /// InputError for anything the builder cannot use and for an observation of landmarks without time; nothing of the
+  /// turn is then in the map or, for a frame with several, only what came before.
   void take(const RawlogTurn& turn);
 
  private:

@@ -38,7 +38,7 @@ struct Sighting {
   double pitch_rad = 0.0;
 };
 
-/// What was measured, by the index that data associations have.
+/// What was measured, by the indices used in data associations.
 std::vector<Sighting> sightings_of(const mrpt::obs::CObservation& seen,
                                    const mrpt_adapter::MapBuilderOptions& options) {
   std::vector<Sighting> sightings;
@@ -60,7 +60,7 @@ std::string numbered(std::size_t step) {
   return text;
 }
 
-/// Whether this is a name that a run gives to a file of kf-slam's kind, with the number of a step or without.
+/// Whether this is a name that a run gives to a kf-slam file, with or without a step number.
 bool is_written_here(const std::string& name) {
   for (const char* alone : {"data_association.log", "landmarks.txt", "map.simplemap", "map.png"}) {
     if (name == alone) return true;
@@ -160,7 +160,7 @@ void SlamFiles::write_end(mrpt_adapter::MapBuilder& builder) {
   if (config_.save_png) write_picture(builder);
 }
 
-/// Where there is nothing to render with, the builder draws.
+/// If there is nothing to render with, the builder draws.
 void SlamFiles::write_picture(mrpt_adapter::MapBuilder& builder) const {
   const std::string path = folder_ + "/map.png";
   const auto scene = scene_of(builder, true_path_m_);

@@ -14,10 +14,10 @@
 
 namespace helixnav::apps {
 
-/// The files that users of kf-slam look for, in the folder of the run: data_association.log as the run goes; where
-/// SAVE_LOG_FREQUENCY says so, robot_pose_N.txt, full_cov_N.txt and kf_state_N.3Dscene; at the end robot_pose.txt,
-/// full_cov.txt, landmarks.txt, kf_state.3Dscene, map.simplemap and map.png. InputError when one cannot be written. Files
-/// of these names that lie in the folder from an earlier run are removed at the beginning, and no others.
+/// The files that users of kf-slam expect, in the run folder: data_association.log during the run; if SAVE_LOG_FREQUENCY
+/// is set, robot_pose_N.txt, full_cov_N.txt and kf_state_N.3Dscene; at the end robot_pose.txt, full_cov.txt,
+/// landmarks.txt, kf_state.3Dscene, map.simplemap and map.png. InputError if one cannot be written. Files of these names
+/// left in the folder by an earlier run are removed at the beginning, and no others.
 /// Test: mrpt_apps/slam_test.cpp.
 class SlamFiles {
  public:

@@ -81,7 +81,7 @@ class Run {
   Run(const SlamConfig& config, RawlogSource& source, std::string out)
       : config_(config), source_(source), out_(std::move(out)), damage_(source.damage()) {
     if (!config_.map.empty()) builder_.initializeFromRun(config_.map);
-    // The log's truth is in the log's frame, and the run in that of the map.
+    // The log's truth is in the log's frame, and the run in the map frame.
     if (!config_.builder.gps_use && config_.map.empty())
       add_true_positions(source_.entries(), config_.builder, recording_);
     if (!config_.ground_truth_file.empty()) recording_.true_landmarks = read_true_landmarks(config_.ground_truth_file);

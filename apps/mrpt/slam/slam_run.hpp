@@ -17,9 +17,9 @@ struct SlamJob {
   std::vector<std::string> command_line;
 };
 
-/// Navigates along a rawlog as a kf-slam configuration says; run folder and kf-slam's files into one folder. What a
-/// rawlog holds before a damaged place, or before an observation that cannot be used, is navigated and written; then the
-/// fault is thrown. InputError when nothing could be processed: no folder is made then.
+/// Navigates along a rawlog as a kf-slam configuration specifies; run folder and kf-slam's files go into one folder.
+/// What precedes a damaged place in the rawlog, or an observation that cannot be used, is navigated and written; then
+/// the error is thrown. InputError if nothing could be processed: no folder is made then.
 ExitCode run_slam(const SlamJob& job);
 
 }  // namespace helixnav::apps

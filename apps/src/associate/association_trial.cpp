@@ -19,7 +19,7 @@ namespace helixnav::apps {
 namespace {
 
 bool is_consistent(const core::PoseGaussian& pose, const core::Pose2& truth) {
-  return evaluation::nees(pose, truth) <= core::chi2_quantile(0.999, 3);  // no, where it is NaN
+  return evaluation::nees(pose, truth) <= core::chi2_quantile(0.999, 3);  // false for NaN
 }
 
 /// "97.5 % [94.3, 98.9]", or "-" without runs.

@@ -25,11 +25,11 @@ struct AssociationTrial {
 void try_association(const core::Recording& recording, const supervisor::NavigatorOptions& options,
                      AssociationTrial& trial);
 
-/// One line a method, with 95 % intervals (Wilson) of the run successes.
+/// One line per method, with 95 % intervals (Wilson) of the run successes.
 std::string association_table(const std::vector<std::string>& methods, const std::vector<AssociationTrial>& trials);
 
 /// The matching matrix x_nm of a scan, as ihgr_zhang2005 Tables I and II: a row for each observation and one for the
-/// dummy, a column for each landmark there was before the scan and one for the dummy, called 0.
+/// dummy, a column for each landmark that existed before the scan and one for the dummy, called 0.
 std::string matching_matrix(const core::StepReport& report, const std::vector<core::LandmarkId>& landmarks_before);
 
 }  // namespace helixnav::apps

@@ -16,7 +16,7 @@ std::vector<Eigen::Index> free_ones(const std::vector<bool>& free) {
   return columns;
 }
 
-/// In units of what is known beforehand, with as good as nothing added, so that it can be inverted.
+/// In units of what is known beforehand, plus a negligible amount, so that it can be inverted.
 Eigen::VectorXd sigmas_alone(const Eigen::MatrixXd& information, const std::vector<Eigen::Index>& columns,
                              const Eigen::VectorXd& usual) {
   const Eigen::VectorXd units = usual(columns);

@@ -6,8 +6,8 @@
 namespace helixnav::apps {
 namespace {
 
-/// The steps between what is seen, as measurements: their covariance is 2 and −1 beside the diagonal for the noise, and
-/// ratio·apart on it for the drift, in units of the variance of the noise.
+/// The steps between the observed values, as measurements: their covariance is 2 and −1 beside the diagonal for the
+/// noise, and ratio·apart on it for the drift, in units of the variance of the noise.
 struct Steps {
   Eigen::VectorXd weighted;     ///< by the inverse of their covariance
   double log_likelihood = 0.0;  ///< with the best variance of the noise
@@ -45,7 +45,7 @@ Eigen::VectorXd drifting_level(const Eigen::VectorXd& seen, const Eigen::VectorX
   const Eigen::VectorXd steps = seen.tail(n) - seen.head(n);
   if (steps.isZero(0.0)) return seen;
   Steps best = judge_steps(steps, apart_s, 0.0);
-  constexpr double evident = 1.35;  // half of the 90 % of χ² of one degree: of no drift at all one half is at nought
+  constexpr double evident = 1.35;  // half of the 90 % of χ² with one degree: without any drift one half is at zero
   double least = best.log_likelihood + evident;
   constexpr double smallest_ratio = 1e-8, largest_ratio = 1e6;  // 1/s
   for (double ratio = smallest_ratio; ratio < largest_ratio; ratio *= 2.0) {

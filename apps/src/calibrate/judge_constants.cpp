@@ -56,7 +56,7 @@ class Judge {
     return folds;
   }
 
-  /// Evidence of the scans of one part of the log, or of all others, the observations of the rest being left out.
+  /// Evidence from the scans of one part of the log, or of all others, with the observations of the rest left out.
   smoothing::ConstantsEvidence evidence_of(const core::Recording& recording, const NudgedLog& log, int part,
                                            bool inside) const {
     Ids ids = drive_.ids;
@@ -68,15 +68,16 @@ class Judge {
     return smoothing::evidence_of_constants(task.problem, derivatives_of(log, task));
   }
 
-  /// Of the whole log; another delay may put the last scans behind its end.
+  /// Of the whole log; another delay may put the last scans after its end.
   smoothing::ConstantsEvidence evidence_here() {
     const core::Recording recording = recording_here();
     if (const std::size_t scans = scans_of(recording); drive_.ids.size() > scans) drive_.ids.resize(scans);
     return evidence_of(recording, nudged(recording), parts_held_out, false);
   }
 
-  /// Kept until judged: what differs from what was told with all others free, and is observable without any part of the log, too.
-  /// With others as told an interval is narrower, and of a log that the model does not quite fit it then excludes the truth.
+  /// Kept until judged: those that differ from the file values with all others free, and are observable without any one part of
+  /// the log, too. With others at their file values an interval is narrower, and for a log that the model does not quite fit it
+  /// then excludes the truth.
   std::vector<Verdict> free_in(const std::vector<Fold>& folds) const {
     std::vector<Verdict> verdicts;
     for (const ConstantFound& found : result_.constants) {
@@ -93,7 +94,7 @@ class Judge {
     return verdicts;
   }
 
-  /// What is kept, with all else as told; what does not differ from what was told then goes back, too.
+  /// The kept ones, with all else at file values; those that then do not differ from their file values go back, too.
   void estimate(std::vector<Verdict>& verdicts) {
     Eigen::VectorXd sigmas = Eigen::VectorXd::Zero(index(constants_.size()));
     constexpr int most_steps = 4;

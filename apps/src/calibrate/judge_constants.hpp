@@ -9,10 +9,10 @@
 
 namespace helixnav::apps {
 
-/// How far constants are usually off; 0 of one that is left as told because it does not settle.
+/// How far constants are usually off; 0 for one left at its file value because it does not settle.
 Eigen::VectorXd usual_of(const Calibration& calibration);
 
-/// The change from settings back to what was told.
+/// The change from settings back to the file values.
 Eigen::VectorXd back_to_told(const Calibration& calibration, const Settings& settings);
 
 /// The drive that constants are judged by.
@@ -23,8 +23,8 @@ struct JudgedDrive {
   core::LandmarkGraph graph;  ///< solved with them
 };
 
-/// Decides which constants are kept (kept_constants.hpp), estimates these with the others as told, and leaves that in the
-/// calibration. Returns the settings fitted to all but the last part of the log.
+/// Decides which constants are kept (kept_constants.hpp), estimates these with the others at their file values, and
+/// stores the result in the calibration. Returns the settings fitted to all but the last part of the log.
 Settings judge_constants(JudgedDrive drive, Calibration& calibration);
 
 }  // namespace helixnav::apps

@@ -7,10 +7,10 @@
 
 namespace helixnav::apps {
 
-/// Scans among the events.
+/// Number of scans among the events.
 std::size_t scans_of(const core::Recording& recording);
 
-/// Ends a recording with its scan number `most`, counted from 1; a shorter one stays as it is. What the truth says stays, too.
+/// Ends a recording at scan number `most`, counted from 1; a shorter one is unchanged. The truth is kept, too.
 /// Test: apps/calibrate/keep_scans_test.cpp
 void keep_scans(core::Recording& recording, std::size_t most);
 

@@ -18,7 +18,7 @@ bool is_any_kept(const std::vector<Verdict>& verdicts) {
 
 Eigen::VectorXd kept_sigmas(const Eigen::MatrixXd& information, const std::vector<Verdict>& verdicts,
                             const Eigen::VectorXd& usual) {
-  Eigen::VectorXd uncertain = usual;  // a constant put back to what was told is known: 0
+  Eigen::VectorXd uncertain = usual;  // a constant put back to its file value is known: 0
   for (std::size_t c = 0; c < verdicts.size(); ++c) {
     if (verdicts[c] != Verdict::kept && verdicts[c] != Verdict::not_observable) uncertain[index(c)] = 0.0;
   }

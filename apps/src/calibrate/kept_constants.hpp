@@ -10,21 +10,22 @@ namespace helixnav::apps {
 
 // Test: apps/calibrate/kept_constants_test.cpp
 
-/// What becomes of a constant that was estimated.
+/// The outcome for an estimated constant.
 enum class Verdict {
-  not_observable,     ///< the log says too little of it
-  unsettled,          ///< goes to and fro between the rounds by more than its interval
-  indistinguishable,  ///< its interval of 95 % holds what was told
-  not_confirmed,      ///< does not explain what was held out better than what was told
+  not_observable,     ///< the log says too little about it
+  unsettled,          ///< swings between the rounds by more than its interval
+  indistinguishable,  ///< its 95 % interval contains the file value
+  not_confirmed,      ///< does not explain the held-out parts better than the file value
   kept
 };
 
-/// Standard deviations of the kept ones: what is not observable is as uncertain as usual, the others as told.
+/// Standard deviations of the kept ones: those not observable are as uncertain as usual, the others are at their file
+/// values.
 Eigen::VectorXd kept_sigmas(const Eigen::MatrixXd& information, const std::vector<Verdict>& verdicts,
                             const Eigen::VectorXd& usual);
 
-/// Of the kept constants the one nearest to what is told (`pinned`: the change back to it), in standard deviations, when its
-/// interval of 95 % holds that: all others fitted again with those that are not kept as told.
+/// Of the kept constants the one nearest to its file value (`pinned`: the change back to it), in standard deviations, if its
+/// 95 % interval contains that value: all others fitted again with those not kept at their file values.
 std::optional<std::size_t> least_significant(const smoothing::ConstantsEvidence& all,
                                              const std::vector<Verdict>& verdicts, const Eigen::VectorXd& usual,
                                              const Eigen::VectorXd& pinned);
@@ -32,8 +33,8 @@ std::optional<std::size_t> least_significant(const smoothing::ConstantsEvidence&
 std::vector<bool> kept_of(const std::vector<Verdict>& verdicts);
 bool is_any_kept(const std::vector<Verdict>& verdicts);
 
-/// Leaves those kept that differ from what is told and that the held-out parts confirm, one by one: each that goes back to what
-/// is told has the others fitted again.
+/// Keeps only those that differ from the file values and that the held-out parts confirm, one by one: whenever one goes back to
+/// its file value, the others are fitted again.
 std::vector<Verdict> judge_kept(const smoothing::ConstantsEvidence& all, const std::vector<Fold>& folds,
                                 std::vector<Verdict> verdicts, const Eigen::VectorXd& usual,
                                 const Eigen::VectorXd& pinned);

@@ -20,7 +20,7 @@
 namespace helixnav::apps {
 namespace {
 
-/// Of landmarks that lasted; clutter and what was seen once say nothing.
+/// Of landmarks that lasted; clutter and landmarks seen only once carry no information.
 Ids ids_of_mature(const std::vector<core::StepReport>& steps, const core::Recording& recording,
                   const std::vector<core::MapLandmark>& map) {
   std::set<std::int64_t> mature;

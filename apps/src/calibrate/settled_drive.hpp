@@ -13,19 +13,19 @@ namespace helixnav::apps {
 /// A log with the associations of a run through it.
 struct SettledDrive {
   SmoothingTask task;                ///< where the run left it
-  Ids ids;                           ///< associations that it was made with
-  std::vector<std::size_t> slipped;  ///< scans before which the odometry slipped, which cuts the task
+  Ids ids;                           ///< associations that it was built with
+  std::vector<std::size_t> slipped;  ///< scans before which the odometry slipped, which splits the task
   std::size_t observations = 0, used = 0;
   std::size_t closings = 0;
   double nis_per_dof = 0.0;           ///< of the run
   double nis_per_dof_held_out = 0.0;  ///< of the run in the last part
 };
 
-/// Parts of a log, of which each judges the constants that are fitted to the others; the last judges by a run, too.
+/// Parts of a log, each of which judges the constants fitted to the others; the last judges by a run, too.
 inline constexpr int parts_held_out = 4;
 
-/// Navigates; observations of mature landmarks are used. core::InputError when the run maps no landmark,
-/// core::NumericalError where the mathematics breaks, Interrupted on SIGINT.
+/// Navigates; observations of mature landmarks are used. core::InputError if the run maps no landmark,
+/// core::NumericalError if the mathematics breaks down, Interrupted on SIGINT.
 SettledDrive drive_through(const core::Recording& recording, const supervisor::NavigatorOptions& options,
                            bool known_association);
 

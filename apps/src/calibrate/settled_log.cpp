@@ -17,7 +17,7 @@
 namespace helixnav::apps {
 namespace {
 
-/// [observation] how far off; 0 of a bearing alone.
+/// [observation] range; 0 if bearing-only.
 std::vector<double> ranges_of(const core::Scan& scan) {
   std::vector<double> ranges_m;
   for (const core::Observation& seen : scan.observations) {
@@ -54,7 +54,7 @@ MotionsAndMountings measured(const core::Recording& recording) {
   return result;
 }
 
-/// [pose] its first scan, −1 when it has none.
+/// [pose] its first scan, −1 if it has none.
 std::vector<int> first_scans(const SmoothingTask& task) {
   std::vector<int> first(task.problem.graph.poses.size(), -1);
   for (std::size_t k = task.pose_of_step.size(); k-- > 0;) first[at(task.pose_of_step[k])] = static_cast<int>(k);
@@ -81,7 +81,7 @@ smoothing::ConstantDerivative none_of(const SmoothingTask& task) {
   return derivative;
 }
 
-/// Of the solved increment minus the measured one.
+/// The solved increment minus the measured one.
 Eigen::Vector3d left_over(const core::LandmarkGraph& graph, const core::LandmarkGraph::PoseEdge& edge) {
   Eigen::Vector3d e =
       core::between(graph.poses[at(edge.from)].T_world_robot, graph.poses[at(edge.to)].T_world_robot).vector() -
@@ -90,8 +90,8 @@ Eigen::Vector3d left_over(const core::LandmarkGraph& graph, const core::Landmark
   return e;
 }
 
-/// Unit vector from the sensor to the landmark as solved, in the frame of the vehicle. As measured its error would be that of the measured
-/// bearing, and the derivative of a bearing then has its residual's sign: offsets of ranges came out 15 mm low.
+/// Unit vector from the sensor to the solved landmark, in the frame of the vehicle. If it were the measured one, its error would be that
+/// of the measured bearing, and the derivative of a bearing would have its residual's sign: offsets of ranges came out 15 mm low.
 Eigen::Vector2d towards_landmark(const core::LandmarkGraph& graph, const core::LandmarkGraph::LandmarkEdge& edge) {
   const core::Pose2& T_world_robot = graph.poses[at(edge.pose)].T_world_robot;
   const Eigen::Vector2d point_m =
@@ -110,7 +110,7 @@ smoothing::ConstantDerivative by_reading(const NudgedLog& log, std::size_t c, co
   for (std::size_t i = 0; i < graph.pose_edges.size(); ++i) {
     const auto& edge = graph.pose_edges[i];
     const int from = first[at(edge.from)], to = first[at(edge.to)];
-    if (from < 0) continue;  // motion before the first scan says nothing: no landmark is seen before it
+    if (from < 0) continue;  // motion before the first scan carries no information: no landmark is seen before it
     derivative.increments[i] = slope(moved_between(log.told, from, to), moved_between(nudged, from, to), nudge);
     if (multiplies) derivative.increments[i] += factor_of.cwiseProduct(left_over(graph, edge)) / log.values[c];
   }
@@ -118,7 +118,7 @@ smoothing::ConstantDerivative by_reading(const NudgedLog& log, std::size_t c, co
     for (std::size_t i = 0; i < task.edge_of[k].size(); ++i) {
       const int edge = task.edge_of[k][i];
       if (edge < 0) continue;
-      // What is seen farther off is what a sensor nearer to it sees.
+      // A longer range has the effect of a sensor nearer to the landmark.
       const double farther_m = nudged.ranges_m[k].at(i) - log.told.ranges_m[k].at(i);
       Eigen::Vector3d& mounting = derivative.mountings[at(edge)];
       mounting = slope(log.told.mounting[k], nudged.mounting[k], nudge);
@@ -130,7 +130,7 @@ smoothing::ConstantDerivative by_reading(const NudgedLog& log, std::size_t c, co
   return derivative;
 }
 
-/// (x, y, heading) a second in the frame of the vehicle, at times.
+/// (x, y, heading) per second in the frame of the vehicle, at given times.
 struct Rates {
   std::vector<core::Nanoseconds> times;
   std::vector<Eigen::Vector3d> values;
@@ -138,7 +138,7 @@ struct Rates {
 
 /// Between every sixth of the solved poses that have a scan.
 Rates solved_rates(const NudgedLog& log, const SmoothingTask& task, const std::vector<int>& first) {
-  constexpr std::size_t every = 6;  // so far apart that what is left of the noise is white
+  constexpr std::size_t every = 6;  // so far apart that the remaining noise is white
   const auto& poses = task.problem.graph.poses;
   std::vector<std::size_t> with_scan;
   for (std::size_t pose = 0; pose < first.size(); ++pose) {
@@ -158,7 +158,7 @@ Rates solved_rates(const NudgedLog& log, const SmoothingTask& task, const std::v
   return rates;
 }
 
-/// As the vehicle is expected to have gone: what noise makes of a steady speed would tell of a delay that nobody can see.
+/// As the vehicle is expected to have moved: noise on a steady speed would suggest a delay that cannot be observed.
 void take_out_noise(Rates& rates) {
   const auto n = static_cast<Eigen::Index>(rates.values.size());
   Eigen::VectorXd apart_s(std::max<Eigen::Index>(n - 1, 0));
@@ -216,14 +216,15 @@ SmoothingTask begun_task(const core::Recording& driven, const Ids& ids, const co
   return task;
 }
 
-/// Takes all that was seen of landmarks out of `ids`.
+/// Takes all observations of landmarks out of `ids`.
 void leave_out(const std::set<std::int64_t>& names, Ids& ids) {
   for (auto& of_scan : ids) {
     for (std::int64_t& id : of_scan) id = names.count(id) > 0 ? core::no_label : id;
   }
 }
 
-/// Takes out of `ids` what a task hardly determines, which may run away to where it cannot be solved; whether there was any.
+/// Takes out of `ids` the landmarks that a task hardly determines, which may diverge until it cannot be solved; returns
+/// whether there were any.
 bool leave_out_hardly_determined(const SmoothingTask& task, Ids& ids, std::set<std::int64_t>& left_out) {
   std::set<std::int64_t> names;
   for (const int landmark : smoothing::hardly_determined_landmarks(task.problem.graph))
@@ -233,7 +234,7 @@ bool leave_out_hardly_determined(const SmoothingTask& task, Ids& ids, std::set<s
   return !names.empty();
 }
 
-/// Without landmarks that are not determined, at the start or where the solver is led.
+/// Without landmarks that are undetermined, at the start or where the solver is led.
 SmoothingTask solve_once(const core::Recording& driven, Ids& ids, const core::LandmarkGraph& from,
                          const smoothing::Options& solver, std::set<std::int64_t>& left_out) {
   while (true) {
@@ -249,10 +250,10 @@ SmoothingTask solve_once(const core::Recording& driven, Ids& ids, const core::La
   }
 }
 
-/// Takes out of `ids` what was seen of a landmark where it stands in the sensor; whether there was any. Where wrong associations
-/// contradict each other the sum of squares may be least there, and it has no derivative.
+/// Takes out of `ids` the observations of a landmark that coincides with the sensor; returns whether there were any. If wrong
+/// associations contradict each other the sum of squares may be least there, and it has no derivative.
 bool leave_out_at_sensors(const SmoothingTask& solved, Ids& ids) {
-  constexpr double nearest_m = 1e-3;  // nothing is seen from so near
+  constexpr double nearest_m = 1e-3;  // nothing is seen at such a short range
   const core::LandmarkGraph& graph = solved.problem.graph;
   bool left_out = false;
   for (std::size_t k = 0; k < ids.size(); ++k) {
@@ -279,7 +280,7 @@ Ids without_returns(const Ids& ids) {
   };
   std::map<std::int64_t, Passage> passages;
   Ids apart = ids;
-  std::int64_t next = 0;  // other names than before, so that nobody takes one for the other
+  std::int64_t next = 0;  // names not used before, so that nobody confuses them
   for (const auto& of_scan : ids) {
     for (const std::int64_t id : of_scan) next = std::max(next, id + 1);
   }

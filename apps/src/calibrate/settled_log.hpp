@@ -15,51 +15,51 @@ namespace helixnav::apps {
 /// Reads the log by the settings, with the noise as known.
 using ReadLog = std::function<core::Recording(const Settings&)>;
 
-/// Associations within one passage alone: a landmark unseen for a while is another one when it is seen again. What drifts
-/// makes a drive return to the wrong landmarks; beside each other they are told apart all the same.
+/// Associations within one passage alone: a landmark unseen for a while becomes a new one when it is seen again. Drift
+/// makes a drive return to the wrong landmarks; landmarks next to each other are still told apart.
 Ids without_returns(const Ids& ids);
 
-/// Associations but for those that a solved task contradicts: whose squared residual, by its covariance, is 15 times the median.
+/// Associations except those that a solved task contradicts: squared residual, by its covariance, more than 15 times the median.
 Ids without_outliers(const Ids& ids, const SmoothingTask& solved);
 
-/// From a start that is good, until no more than this is promised [χ²]; Interrupted from it on SIGINT. A drive along an open road
-/// creeps to its minimum in 100 steps and more, of which the last halves are worth 1e-4 of a χ² of 20 000.
+/// From a good start, until no further gain above this is expected [χ²]; throws Interrupted on SIGINT. A drive along an open road
+/// creeps to its minimum in 100 steps and more, the last half of which gain 1e-4 of a χ² of 20 000.
 smoothing::Options patient_solver(double tolerance_chi2);
 
-/// The least-squares problem of a log read by the settings, with the associations of a drive through it, solved from where
-/// the drive stands. An observation of a landmark that comes to stand in the sensor is left out (edge_of −1), and so are all of a landmark
-/// whose place bearings from nearly one side leave open (smoothing::hardly_determined_landmarks), which are counted. Test:
-/// apps/calibrate/settled_log_test.cpp
+/// The least-squares problem of a log read with the settings, with the associations of a drive through it, solved from the drive's
+/// estimate. An observation of a landmark that ends up inside the sensor is left out (edge_of −1), and so are all of a landmark whose
+/// place is left open by bearings from nearly one side (smoothing::hardly_determined_landmarks); these are counted.
+/// Test: apps/calibrate/settled_log_test.cpp
 SmoothingTask solve_log(const core::Recording& recording, Ids ids, const core::LandmarkGraph& from,
                         const smoothing::RobustKernel& kernel = {});
 
-/// What a log measures between its scans and at them.
+/// The measurements of a log between its scans and at them.
 struct MotionsAndMountings {
   std::vector<core::Nanoseconds> times;       ///< [scan]
   std::vector<core::Pose2> moved;             ///< [scan] since the scan before
   std::vector<core::Pose2> mounting;          ///< [scan]
-  std::vector<std::vector<double>> ranges_m;  ///< [scan][observation], 0 of a bearing alone
+  std::vector<std::vector<double>> ranges_m;  ///< [scan][observation], 0 if bearing-only
 };
 
-/// Whether two readings measure the same.
+/// Whether two readings contain the same measurements.
 bool same(const MotionsAndMountings& a, const MotionsAndMountings& b);
 
-/// A log read once as told and once more for every constant, that changed by its nudge.
+/// A log read once as in the file and once more for every constant, with that one nudged.
 struct NudgedLog {
   MotionsAndMountings told;
-  std::vector<MotionsAndMountings> nudged;  ///< [constant]; empty of a delay
+  std::vector<MotionsAndMountings> nudged;  ///< [constant]; empty for a delay
   std::vector<VehicleConstant> constants;
-  std::vector<double> values;  ///< [constant] as told
+  std::vector<double> values;  ///< [constant] as in the file
 };
 NudgedLog nudge(const ReadLog& read, const Settings& settings, const std::vector<VehicleConstant>& constants,
                 const core::Recording& told);
 
 /// The derivatives of a solved task's measurements by the constants. Factors multiply the error of an increment, too, and a
-/// delay acts through the speed: both are taken of the solution, whose errors have nothing to do with what is left of the
-/// measurements; of the increments measured, they would pull the constant (a noisy regressor). And a delay is the sensor's place
-/// along the path rather than other ends of the increments: where these cut a sample in two, its noise averages out, which
-/// least squares takes for a better fit. The speed is that of drifting_level(): of a steady drive the noise of the solved poses
-/// would be all that changes, and each step of a fit would go where it happens to point.
+/// delay acts through the speed: both are taken from the solution, whose errors are independent of the measurement residuals;
+/// taken from the measured increments, they would bias the constant (a noisy regressor). And a delay shifts the sensor along the
+/// path rather than the ends of the increments: if these cut a sample in two, its noise averages out, which least squares takes
+/// for a better fit. The speed is that of drifting_level(): on a steady drive, the noise of the solved poses would be all that
+/// changes, and each step of a fit would go in a random direction.
 std::vector<smoothing::ConstantDerivative> derivatives_of(const NudgedLog& log, const SmoothingTask& task);
 
 }  // namespace helixnav::apps

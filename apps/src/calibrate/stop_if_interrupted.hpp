@@ -5,10 +5,10 @@
 
 namespace helixnav::apps {
 
-/// Thrown through everything that was begun; no std::exception, so that nobody takes it for a failure.
+/// Unwinds everything in progress; not a std::exception, so that nobody takes it for a failure.
 struct Interrupted {};
 
-/// To be asked at least twice a second (common/interrupt.hpp).
+/// To be called at least twice a second (common/interrupt.hpp).
 inline void stop_if_interrupted() {
   if (interrupted()) throw Interrupted();
 }

@@ -9,15 +9,15 @@ namespace helixnav::apps {
 
 // Test: apps/calibrate/swings_test.cpp
 
-/// The constants as each round left them, from which the next one begins.
+/// The constants at the end of each round, from which the next one begins.
 using RoundValues = std::vector<Eigen::VectorXd>;
 
-/// How far each constant went to and fro in the last three rounds, in standard deviations; 0 where these are 0, and of one
+/// How far each constant swung in the last three rounds, in standard deviations; 0 if these are 0, and after only one
 /// round.
 Eigen::VectorXd swings(const RoundValues& rounds, const Eigen::VectorXd& sigmas);
 
-/// Whether the last round ended where an earlier one did (by a tenth of a standard deviation), but for the one before it: with the
-/// same constants come the same associations, and with these the same constants again.
+/// Whether the last round ended where an earlier one did (within a tenth of a standard deviation), other than the one just before
+/// it: the same constants give the same associations, and these the same constants again.
 bool repeats(const RoundValues& rounds, const Eigen::VectorXd& sigmas);
 
 }  // namespace helixnav::apps

@@ -113,7 +113,7 @@ std::vector<VehicleConstant> constants_of(const Settings& settings, logs::LogFor
   }
   const bool described = vehicle.odometry.wheelbase_m && vehicle.sensors.size() == 1 &&
                          !vehicle.sensors.front().T_vehicle_sensor.vector().isZero(0.0);
-  if (!described) return {};  // what ships would stand for what the file does not say
+  if (!described) return {};  // the shipped vehicle would supply what the file does not give
   if (format == LogFormat::acfr_ascii || format == LogFormat::victoria_park_mat) {
     return of_truck([](Settings& s) -> logs::AcfrSettings& { return s.logs.victoria_park; }, reach_m);
   }

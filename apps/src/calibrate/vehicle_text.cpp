@@ -11,7 +11,7 @@
 namespace helixnav::apps {
 namespace {
 
-/// A line without what stands around it.
+/// A line without surrounding blanks.
 std::string trimmed(const std::string& line) {
   const std::size_t begin = line.find_first_not_of(" \t");
   if (begin == std::string::npos) return {};

@@ -5,7 +5,7 @@
 
 namespace helixnav::apps {
 
-/// The events but for fixes: what calibrate may see.
+/// The events without fixes: what calibrate may see.
 core::Recording without_fixes(const core::Recording& recording);
 
 }  // namespace helixnav::apps

@@ -9,15 +9,16 @@
 
 namespace helixnav::apps {
 
-/// The tables of a log of the user's own in words: rows, times, rates, what they say.
+/// The tables of a log in the user's own format, in words: rows, times, rates, contents.
 std::string tables_text(const logs::OwnLog& log);
 
-/// The events of any log in words: way and speed, scans, kinds of observations, reach and field of view seen and stated,
-/// gaps, truth. Of several sensors seen and stated are told of each, by its name in the vehicle file if there is one. Test:
-/// apps/own_log_test.cpp.
+/// The events of any log in words: path length and speed, scans, kinds of observations, reach and field of view seen and
+/// stated, gaps, truth. For several sensors, seen and stated are given for each, by its name in the vehicle file if there
+/// is one.
+/// Test: apps/own_log_test.cpp.
 std::string events_text(const core::Recording& recording, const logs::Vehicle* vehicle);
 
-/// Whether all that is detected are ranges or bearings alone.
+/// Whether all detections are range-only or bearing-only.
 bool fixes_no_point(const core::Recording& recording);
 
 }  // namespace helixnav::apps

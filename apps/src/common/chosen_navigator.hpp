@@ -14,7 +14,7 @@
 
 namespace helixnav::apps {
 
-/// The navigator of a recording, as core::EventLoop wants it: by its labels when association is known, else without. The
+/// The navigator of a recording, as core::EventLoop expects it: by its labels if association is known, else without. The
 /// labels must outlive it.
 class ChosenNavigator {
  public:
@@ -22,7 +22,7 @@ class ChosenNavigator {
 
   ChosenNavigator(const core::Recording& recording, const supervisor::NavigatorOptions& options, bool known_association)
       : ChosenNavigator(recording, options, known_association, recording.labels) {}
-  /// With the labels of the scans that are fed, where they are not all of the recording's.
+  /// With the labels of the scans that are fed, if these are not all of the recording's.
   ChosenNavigator(const core::Recording& recording, const supervisor::NavigatorOptions& options, bool known_association,
                   const Labels& labels)
       : labels_(&labels), navigator_(chosen(recording, options, known_association)) {}
@@ -31,7 +31,7 @@ class ChosenNavigator {
   ChosenNavigator(Begun&& navigator, const Labels& labels)
       : labels_(&labels), navigator_(std::forward<Begun>(navigator)) {}
 
-  /// Events in order. The report of a scan.
+  /// Events in order. Returns the report of a scan.
   std::optional<core::StepReport> take(const core::Event& event) {
     if (auto* unnamed = std::get_if<supervisor::Navigator>(&navigator_)) return unnamed->take(event);
     auto& named = std::get<supervisor::NamedNavigator>(navigator_);

@@ -9,7 +9,7 @@ class App;
 
 namespace helixnav::apps {
 
-/// Each adds one subcommand to `app`; when the user calls it, it runs within app.parse() and leaves its verdict in
+/// Each adds one subcommand to `app`; when the user calls it, it runs within app.parse() and stores its result in
 /// `code`, which outlives the parse.
 void add_replay_command(CLI::App& app, ExitCode& code);
 void add_stream_command(CLI::App& app, ExitCode& code);

@@ -8,7 +8,7 @@
 
 namespace helixnav::apps {
 
-/// The file, or the files of the folder in order of name, with their digests. InputError when one cannot be read.
+/// The file, or the files of the folder in order of name, with their digests. InputError if one cannot be read.
 std::vector<runs::InputFile> input_files(const std::string& path);
 
 }  // namespace helixnav::apps

@@ -18,7 +18,7 @@ timer_t timer;
 
 constexpr long patience_ns = 700'000'000;
 
-/// Only what POSIX allows in a handler: of timers, timer_settime.
+/// Only what POSIX allows in a handler: of the timer calls, timer_settime.
 void on_signal(int signal) {
   interrupt_count = interrupt_count + 1;
   std::signal(signal, SIG_DFL);
@@ -27,7 +27,8 @@ void on_signal(int signal) {
   if (has_timer != 0) timer_settime(timer, 0, &once, nullptr);
 }
 
-/// A step, a solution or an evaluation under way may take minutes. A run folder is whole up to its last step at any time.
+/// A step, a solution or an evaluation in progress may take minutes. A run folder is complete up to its last step at any
+/// time.
 void on_end_of_patience(int) {
   if (noticed != 0) return;
   constexpr char words[] =

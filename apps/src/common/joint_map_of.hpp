@@ -12,10 +12,10 @@
 
 namespace helixnav::apps {
 
-/// What the drive leaves to the next session; nothing where it is too large to be saved.
+/// What the drive leaves to the next session; nothing if it is too large to be saved.
 std::optional<core::JointMap> joint_map_of(const ChosenNavigator& navigator, const core::Recording& recording);
 
-/// The same of a navigator of either kind; reach_m of the sensor, 0 where it is unknown.
+/// The same for a navigator of either kind; reach_m of the sensor, 0 if unknown.
 template <class Navigator>
 std::optional<core::JointMap> joint_map_of(const Navigator& navigator, double reach_m) {
   const std::vector<core::MapLandmark> landmarks = navigator.sketch();  // the joint estimate has places and covariances

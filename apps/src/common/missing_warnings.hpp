@@ -6,7 +6,8 @@
 
 namespace helixnav::apps {
 
-/// Says on stderr what a run that was read has lost, a warning each. Test: apps/hostile/hostile_run_test.cpp.
+/// Reports on stderr what a run that was read has lost, one warning each. Test:
+/// apps/hostile/hostile_run_test.cpp.
 void warn_of_missing(const std::vector<std::string>& missing);
 
 }  // namespace helixnav::apps

@@ -6,8 +6,8 @@
 
 namespace helixnav::apps {
 
-/// A line on stderr that says how far a run is. Silent unless stderr is a terminal and `quiet` is false; redrawn at most
-/// once per percent, so that it costs nothing.
+/// A line on stderr that shows the progress of a run. Silent unless stderr is a terminal and `quiet` is false; redrawn
+/// at most once per percent, so that it costs nothing.
 class ProgressBar {
  public:
   ProgressBar(std::string what, std::size_t total, bool quiet);

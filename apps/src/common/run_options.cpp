@@ -46,7 +46,7 @@ void prepare_run(CLI::App& command, const RunOptions& options) {
   if (!fs::exists(options.out)) return;
   if (!fs::is_directory(options.out))
     throw core::InputError(options.out + ": expected a folder for --out, found a file");
-  const files::FolderLock nobody_writes_there(options.out);  // RunWriter takes it for good
+  const files::FolderLock nobody_writes_there(options.out);  // RunWriter takes the permanent one
   if (!options.overwrite && !fs::is_empty(options.out)) {
     throw core::InputError(options.out +
                            ": the folder is not empty; choose another --out, or --overwrite to replace the run in it");

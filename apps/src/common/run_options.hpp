@@ -23,10 +23,10 @@ struct RunOptions {
   bool quiet = false;
 };
 
-/// --out, --overwrite and --quiet: of every command that writes a run folder.
+/// --out, --overwrite and --quiet: for every command that writes a run folder.
 void add_folder_options(CLI::App& command, RunOptions& options);
 
-/// These and --config: of the commands that navigate.
+/// These and --config: for the commands that navigate.
 void add_run_options(CLI::App& command, RunOptions& options);
 
 /// Applies --config and refuses an --out that is taken, before anything is read or computed. InputError for --out.
@@ -40,7 +40,7 @@ void choose_filter(Drive& drive, const Settings& settings);
 
 /// The words of this process's command line, for the manifest.
 void remember_command_line(int argc, char** argv);
-/// Those that matter, as one line.
+/// The relevant ones, as one line.
 std::string command_line_text();
 
 }  // namespace helixnav::apps

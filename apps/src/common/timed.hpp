@@ -9,7 +9,7 @@
 
 namespace helixnav::apps {
 
-/// An estimator whose answers are timed by the wall clock.
+/// An estimator whose responses are timed by the wall clock.
 template <typename Estimator>
 class Timed {
  public:
@@ -23,7 +23,7 @@ class Timed {
     return step;
   }
 
-  /// What the last event took.
+  /// The time taken by the last event.
   double last_s() const { return last_s_; }
 
  private:

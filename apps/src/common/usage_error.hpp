@@ -10,8 +10,8 @@ class ParseError;
 
 namespace helixnav::apps {
 
-/// The message for a command line that cannot be understood: what is wrong, the nearest valid name where a name was
-/// unknown, and where help is.
+/// The message for an invalid command line: what is wrong, the nearest valid name if a name was unknown, and where
+/// to find help.
 std::string explain_usage_error(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace helixnav::apps

@@ -71,10 +71,11 @@ bool is_rawlog(const std::string& path) { return std::filesystem::path(path).ext
   hand_over("helixnav-rawlog", arguments);
 }
 
-/// OUT must be neither IN nor a table of the folder IN; what convert wrote there by an extension of its own is no table.
+/// OUT must be neither IN nor a table of the folder IN; a file that convert wrote there with its own extension is not a
+/// table.
 void refuse_to_replace_log(const ConvertJob& job) {
   namespace fs = std::filesystem;
-  std::error_code none;  // a file that is not there yet is another one
+  std::error_code none;  // a file that does not exist yet is a different one
   const bool is_log = fs::equivalent(job.in, job.out, none);
   const bool is_in_log = fs::exists(job.out) && fs::is_directory(job.in) &&
                          fs::equivalent(job.in, fs::canonical(job.out).parent_path(), none) &&

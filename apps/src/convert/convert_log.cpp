@@ -21,7 +21,7 @@
 namespace helixnav::apps {
 namespace {
 
-/// DLR text has no scan before the first STEP. An empty one says nothing that is lost; landmarks seen there would be.
+/// DLR text has no scan before the first STEP. An empty one loses nothing; landmarks seen there would be lost.
 void drop_empty_beginning(core::Recording& recording) {
   const auto* scan = recording.events.empty() ? nullptr : std::get_if<core::Scan>(&recording.events.front());
   if (scan == nullptr || !scan->observations.empty()) return;
@@ -30,7 +30,7 @@ void drop_empty_beginning(core::Recording& recording) {
   for (core::SharedObservation& shared : recording.shared_observations) --shared.scan;
 }
 
-/// What is written is read back by programs that invert covariances; our own does not.
+/// The output is read back by programs that invert covariances; our own does not.
 void check_odometry(const core::Recording& recording) {
   for (const core::Event& event : recording.events) {
     const auto* odometry = std::get_if<core::Odometry>(&event);
@@ -66,12 +66,13 @@ Converted to_dlr(core::Recording recording, const std::string& out) {
   return counts_of(recording);
 }
 
-/// The vehicle.toml that a log of one's own is read by stays, also for lines beside it: they are of the same sensor.
+/// The vehicle.toml by which a log in the user's own format is read stays, also for lines beside it: they are of the
+/// same sensor.
 void write_vehicle(const core::Recording& recording, const std::string& in, const std::string& out, bool overwrite) {
   namespace fs = std::filesystem;
   const fs::path vehicle = fs::path(out).parent_path() / "vehicle.toml";
   const std::string text = logs::vehicle_of_lines(recording);
-  std::error_code none;  // a file that is not there yet is another one
+  std::error_code none;  // a file that does not exist yet is a different one
   if (logs::is_own_log(in) && fs::equivalent(logs::vehicle_beside(in), vehicle, none)) return;
   if (!overwrite && fs::exists(vehicle) && files::read_whole_file(vehicle.string()) != text) {
     throw core::InputError(vehicle.string() + ": the file is there already, and of another log; choose another " +

@@ -30,15 +30,15 @@ struct Converted {
   std::vector<logs::AddedNoise> noise;
 };
 
-/// Reads `in`, adds the noise and writes `out`, whole or not at all. A g2o graph without noise keeps its start values
-/// when written as a graph; all other graphs start from dead reckoning. JSON Lines of the user's own schema need a vehicle.toml,
-/// which is written beside them, unless `in` is read by that one. InputError for what cannot be read or held, and for another
-/// vehicle.toml there unless it is to be overwritten: by that of another sensor the lines would be misread.
+/// Reads `in`, adds the noise and writes `out`, completely or not at all. A g2o graph without noise keeps its start values when
+/// written as a graph; all other graphs start from dead reckoning. JSON Lines of the user's own schema need a vehicle.toml,
+/// which is written next to them, unless `in` is read by that one. InputError for what cannot be read or represented, and for a
+/// different vehicle.toml there unless it is to be overwritten: with that of another sensor the lines would be misread.
 /// Test: apps/convert_test.cpp.
 Converted convert_log(const std::string& in, const std::string& out, GraphFormat format,
                       const std::vector<logs::Noise>& noises, std::uint64_t seed, bool overwrite);
 
-/// The same of a recording that was read from `in`.
+/// The same for a recording that was read from `in`.
 Converted convert_recording(core::Recording recording, const std::string& in, const std::string& out,
                             GraphFormat format, const std::vector<logs::Noise>& noises, std::uint64_t seed,
                             bool overwrite);

@@ -23,7 +23,7 @@ void check_earlier_labels(const EarlierSession& earlier) {
   }
 }
 
-/// Who is carried is found again by what stands about him, in the maps of the navigator and of the localizer.
+/// A carried vehicle is relocalised by the landmarks around it, in the maps of the navigator and of the localizer.
 void check_carried(const Drive& job) {
   const std::vector<core::Event>& events = job.recording.events;
   const bool is_carried = std::any_of(events.begin(), events.end(),
@@ -43,7 +43,7 @@ void check_carried(const Drive& job) {
                          " does not go with");
 }
 
-/// Detections, and not one with a label.
+/// Detections, but none with a label.
 bool names_nothing(const core::Recording& recording) {
   bool seen = false;
   for (const std::vector<core::Label>& labels : recording.labels) {
@@ -84,7 +84,7 @@ void check_all_place(const core::Recording& recording) {
   }
 }
 
-/// The navigator cannot map ranges or bearings alone without identities, FastSLAM none at all.
+/// The navigator cannot map range-only or bearing-only observations without identities, FastSLAM not at all.
 void check_observable(const Drive& job) {
   if (job.fastslam.chosen) return check_all_place(job.recording);
   if (job.known_association || job.given_map) return;

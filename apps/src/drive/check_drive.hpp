@@ -5,8 +5,8 @@
 
 namespace helixnav::apps {
 
-/// InputError, before anything is written, for a recording that the drive asked for cannot be made of: no labels where
-/// association is known, detections that place nothing, a vehicle that was carried where it could not be found again.
+/// InputError, before anything is written, if the requested drive is impossible with the recording: no labels where
+/// association is known, detections that place nothing, a vehicle that was carried where it could not be relocalised.
 void check_drive(const Drive& job);
 
 }  // namespace helixnav::apps

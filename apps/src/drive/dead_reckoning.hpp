@@ -8,7 +8,7 @@
 
 namespace helixnav::apps {
 
-/// Where the vehicle is at a scan that no estimator may see: the last estimate and the odometry since.
+/// Where the vehicle is at a scan withheld from the estimator: the last estimate and the odometry since.
 class DeadReckoning {
  public:
   void move(const core::Odometry& odometry) { since_ = core::chain(since_, odometry); }

@@ -52,11 +52,11 @@ struct Driven {
   std::size_t steps = 0;
   std::vector<double> step_us;          ///< of each scan that was fed
   std::map<std::string, int> closings;  ///< how many of each verdict
-  std::string broken;    ///< what of the mathematics or of the program broke, and where; the run ended there
-  double full_mb = 0.0;  ///< of memory that were taken where the limit ended the run
+  std::string broken;    ///< what broke down, in the mathematics or the program, and where; the run ended there
+  double full_mb = 0.0;  ///< of memory in use when the limit ended the run
 };
 
-/// Most that the process has had resident.
+/// Peak resident memory of the process.
 double peak_memory_mb() {
   rusage usage{};
   return getrusage(RUSAGE_SELF, &usage) == 0 ? static_cast<double>(usage.ru_maxrss) / 1024.0 : 0.0;
@@ -68,7 +68,7 @@ void count_closings(const core::StepReport& report, Driven& driven) {
   }
 }
 
-/// What comes next, or nothing at the end and where the mathematics broke.
+/// The next step, or nothing at the end and if the mathematics broke down.
 template <class Loop>
 std::optional<core::StepReport> next_step(Loop& loop, Driven& driven) {
   try {
@@ -82,7 +82,7 @@ std::optional<core::StepReport> next_step(Loop& loop, Driven& driven) {
   }
 }
 
-/// Feeds all events, but for the scans withheld.
+/// Feeds all events except the withheld scans.
 Driven navigate(const Drive& job, Estimator& estimator, runs::RunWriter& writer, runs::RunRecorder& recorder) {
   Driven driven;
   const std::unique_ptr<runs::DriveFile> file = kept_drive(job);
@@ -111,7 +111,7 @@ Driven navigate(const Drive& job, Estimator& estimator, runs::RunWriter& writer,
   return driven;
 }
 
-/// Says on stderr what is not well.
+/// Reports problems on stderr.
 ExitCode verdict(const Drive& job, const Driven& driven, const runs::Run& run, const evaluation::Evaluation& evaluation,
                  ExitCode smoothed) {
   if (!driven.broken.empty()) {

@@ -45,7 +45,7 @@ void move_clock(core::Recording& recording, core::Nanoseconds by_ns) {
   for (core::Nanoseconds& t_ns : recording.true_slips_ns) t_ns += by_ns;
 }
 
-/// How many scans of the recording were driven already, and are left out.
+/// How many scans of the recording were already driven, and are left out.
 std::size_t begin_behind(const std::vector<core::Event>& before, core::Recording& recording) {
   if (before.empty() || recording.events.empty()) return 0;
   const core::Nanoseconds end_ns = core::time_of(before.back());
@@ -61,7 +61,7 @@ std::size_t begin_behind(const std::vector<core::Event>& before, core::Recording
   return 0;
 }
 
-/// Observations of scans that were driven already are left out, and of the others it is said which scan they are of now.
+/// Observations of scans that were already driven are left out, and the others are assigned their new scan index.
 void take_off_shared(std::size_t driven, std::size_t before, core::Recording& recording) {
   std::vector<core::SharedObservation>& shared = recording.shared_observations;
   shared.erase(std::remove_if(shared.begin(), shared.end(), [&](const auto& one) { return one.scan < driven; }),
@@ -69,7 +69,7 @@ void take_off_shared(std::size_t driven, std::size_t before, core::Recording& re
   for (core::SharedObservation& one : shared) one.scan += before - driven;
 }
 
-/// The first entries, of scans that were driven already, make way for those of the drive before.
+/// The first entries, of scans that were already driven, are replaced by those of the earlier drive.
 template <class Entries>
 void exchange_front(Entries& entries, std::size_t driven, Entries before) {
   entries.erase(entries.begin(), entries.begin() + static_cast<std::ptrdiff_t>(std::min(driven, entries.size())));

@@ -20,7 +20,7 @@ namespace helixnav::apps {
 namespace {
 
 constexpr double most_coordinate = 1e8;          ///< of a pose, as in logs and maps
-constexpr std::ptrdiff_t least_to_be_found = 5;  ///< pairs of a place, see relocalize::ask
+constexpr std::ptrdiff_t least_to_be_found = 5;  ///< pairs for a place, see relocalize::ask
 
 void check_size(const std::string& file, const EarlierSession& session) {
   const auto mature = std::count(session.map.states.begin(), session.map.states.end(), core::LandmarkState::mature);

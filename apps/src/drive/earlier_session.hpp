@@ -14,41 +14,42 @@ namespace helixnav::apps {
 /// Where a session begins on an earlier map.
 struct SessionStart {
   enum class Kind {
-    unknown,  ///< to be found out
-    end,      ///< where the session that made the map ended, known as it was then
+    unknown,  ///< to be determined
+    end,      ///< where the session that made the map ended, known as well as it was then
     pose,     ///< as given, on the map
   };
   Kind kind = Kind::unknown;
-  core::Pose2 T_map_robot;  ///< of `pose`
+  core::Pose2 T_map_robot;  ///< for `pose`
 };
 
-/// "unknown", "end" or "x,y,heading" in metres and radians; says in `objection` what is wrong with another word.
+/// "unknown", "end" or "x,y,heading" in metres and radians; for any other word `objection` reports what is wrong.
 SessionStart session_start_from(const std::string& word, std::string& objection);
 
-/// An earlier session to go on from.
+/// An earlier session to continue from.
 struct EarlierSession {
   core::JointMap map;
   std::map<core::Label, core::LandmarkId> landmark_of;  ///< by label; empty when that run had no labels
   SessionStart start;
   std::vector<std::string> missing;           ///< of that run: lost since it was written
-  std::optional<core::Nanoseconds> ended_ns;  ///< its last scan, where it has one
-  std::optional<core::Pose2> T_truth_map;     ///< where its map lies in the frame of its truth, where that run knows
+  std::optional<core::Nanoseconds> ended_ns;  ///< its last scan, if it has one
+  std::optional<core::Pose2> T_truth_map;     ///< frame of its map in that of its truth, if that run knows
 };
 
-/// From a map itself, `name` in messages. InputError where it holds too few mature landmarks to begin so, or has no end.
+/// From the map itself, `name` in messages. InputError if it has too few mature landmarks to begin this way, or has no
+/// end.
 EarlierSession earlier_session(core::JointMap map, const SessionStart& start, const std::string& name);
 
-/// Reads the folder of a run that came to its end. InputError naming the file where there is no map.bin in it, it cannot be
-/// used, or it holds too few mature landmarks to begin so.
+/// Reads the folder of a completed run. InputError naming the file if there is no map.bin in it, it cannot be used, or it
+/// holds too few mature landmarks to begin this way.
 EarlierSession read_earlier_session(const std::string& folder, const SessionStart& start);
 
-/// The map that a run left in its folder. InputError naming the file where there is none or it cannot be used.
+/// The map that a run left in its folder. InputError naming the file if there is none or it cannot be used.
 core::JointMap read_joint_map_in(const std::string& folder);
 
 /// The map.bin in it.
 std::string joint_map_file_in(const std::string& folder);
 
-/// The map as a session goes on in it from a given pose, independent of it and known to a 60th of the reach and 3°.
+/// The map as a session continues in it from a given pose, independent of it and known to a 60th of the reach and 3°.
 core::JointMap seen_from(core::JointMap map, const core::Pose2& T_map_robot, double reach_m);
 
 }  // namespace helixnav::apps

@@ -36,7 +36,7 @@ bool is_same_map(const core::JointMap& one, const core::JointMap& other) {
   return one.joint.ids == other.joint.ids && one.joint.points_m == other.joint.points_m;
 }
 
-/// Part 0 is the earlier map, and kept where that is, unless the session has gone on in it.
+/// Part 0 is the earlier map, and stays where that is stored, unless the session has continued in it.
 std::map<int, core::JointMap> parts_of(const ChosenNavigator& navigator, const Drive& job) {
   std::map<int, core::JointMap> maps = navigator.maps_apart();
   const auto first = maps.find(0);

@@ -16,11 +16,11 @@ constexpr double points_a_loop = 50.0;  ///< marked on the paths along genealogy
 
 fastslam::Options options_of(const Drive& job) {
   fastslam::Options options = job.fastslam.options;
-  if (job.known_association) options.existence.remove = false;  // what has a name is there
+  if (job.known_association) options.existence.remove = false;  // named landmarks exist
   return options;
 }
 
-/// [scan fed] its step: those withheld have one, too.
+/// [scan fed] its step; withheld scans have one, too.
 std::vector<std::int64_t> steps_fed(const Drive& job) {
   std::vector<std::int64_t> steps;
   std::size_t step = 0;

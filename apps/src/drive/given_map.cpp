@@ -25,7 +25,7 @@ void sort_by_id(std::vector<core::MapLandmark>& landmarks) {
   std::sort(landmarks.begin(), landmarks.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
 }
 
-/// Nothing where the map holds one that `joint` does not.
+/// Nothing if the map holds a landmark that `joint` does not.
 Eigen::MatrixXd covariance_of(const std::vector<core::MapLandmark>& landmarks, const core::JointGaussian& joint) {
   std::vector<Eigen::Index> rows;
   for (const core::MapLandmark& landmark : landmarks) {
@@ -37,7 +37,7 @@ Eigen::MatrixXd covariance_of(const std::vector<core::MapLandmark>& landmarks, c
   return joint.covariance(rows, rows);
 }
 
-/// A map that no single run made, as of join: map.bin beside map.csv holds the same landmarks.
+/// A map made by no single run, such as one from join: map.bin beside map.csv holds the same landmarks.
 void tell_missing_landmarks(const std::filesystem::path& table, const std::filesystem::path& whole, std::size_t found,
                             std::vector<std::string>& missing) {
   if (table.filename() != "map.csv" || !std::filesystem::exists(whole)) return;

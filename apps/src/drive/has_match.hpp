@@ -7,7 +7,7 @@
 
 namespace helixnav::apps {
 
-/// Whether a scan saw a landmark again.
+/// Whether a scan re-observed a landmark.
 inline bool has_match(const core::StepReport& step) {
   return std::any_of(step.associations.begin(), step.associations.end(),
                      [](const core::AssociationReport& a) { return a.outcome == core::Outcome::matched; });

@@ -9,11 +9,11 @@
 
 namespace helixnav::apps {
 
-/// An estimator of which what it has taken is kept, for whoever goes on with its drive.
+/// An estimator whose inputs are recorded, so that its drive can be continued.
 template <typename Estimator>
 class Keeping {
  public:
-  /// `file` null: nothing is kept.
+  /// `file` null: nothing is recorded.
   Keeping(Estimator& estimator, runs::DriveFile* file) : estimator_(estimator), file_(file) {}
 
   std::optional<core::StepReport> take(const core::Event& event) {

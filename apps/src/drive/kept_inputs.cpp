@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
                          " is read, and would be lost by writing there; give --out another folder");
 }
 
-/// Names that join and runs of several robots write besides those of a run.
+/// Names that join and runs of several robots write in addition to those of a run.
 bool is_written(const std::string& name) {
   constexpr std::array<std::string_view, 4> others{"joins.csv", "changes.csv", "joined_from.csv", "sightings.csv"};
   return runs::is_run_file(name) || std::find(others.begin(), others.end(), name) != others.end();
@@ -49,7 +49,7 @@ void check_file(const fs::path& file, const std::string& input, const fs::path& 
 }  // namespace
 
 void refuse_to_replace(const std::vector<std::string>& inputs, const std::string& out) {
-  std::error_code none;  // a folder that is not there yet holds nothing
+  std::error_code none;  // a folder that does not exist yet holds nothing
   const fs::path folder = out.empty() ? fs::path() : fs::canonical(out, none);
   if (out.empty() || none) return;
   for (const std::string& input : inputs) {

@@ -56,7 +56,7 @@ void add_placings(core::StepReport&& from, core::StepReport& report) {
   }
 }
 
-/// The step of a vehicle that is on no map yet: what it maps meanwhile stays its own.
+/// The step of a vehicle that is not yet on any map: what it maps meanwhile is not reported.
 core::StepReport on_no_map(const core::StepReport& own, std::size_t landmarks) {
   core::StepReport report;
   report.t_ns = own.t_ns;
@@ -100,7 +100,7 @@ std::optional<core::StepReport> LocalizerFeed::take(const core::Event& event) {
   return observe(*scan, scans_++);
 }
 
-/// The place on the map is sought as at the begin of a session that does not know it.
+/// The place on the map is searched for as at the start of a session that does not know it.
 void LocalizerFeed::lose() {
   core::CarriedDecision carried;
   carried.from_part = part_;

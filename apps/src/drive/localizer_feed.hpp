@@ -11,9 +11,9 @@
 
 namespace helixnav::apps {
 
-/// The localizer as core::EventLoop wants it, for logs that name landmarks and for maps that are too large for NavigatorOnMap. Told
-/// that the vehicle was carried it has a navigator map on its own from there and ask the map; when that has found its
-/// place, localization goes on from there. Fixes are not used. The job must outlive it.
+/// The localizer as core::EventLoop expects it, for logs that name landmarks and for maps too large for NavigatorOnMap. If it is
+/// told that the vehicle was carried, it has a navigator build its own map from there and query the given map; once that has found
+/// its place, localisation continues from there. Fixes are not used. The job must outlive it.
 class LocalizerFeed {
  public:
   LocalizerFeed(const Drive& job, std::vector<std::vector<core::Label>> labels_fed, LabelAgreement& agreement);

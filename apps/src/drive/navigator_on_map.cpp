@@ -49,7 +49,7 @@ localization::LocalizerOptions tracking_options(const supervisor::NavigatorOptio
   return options;
 }
 
-/// A scan most of which the map explains.
+/// Whether the map explains most of a scan.
 bool confirms(const core::StepReport& report) {
   const auto matched = std::count_if(report.associations.begin(), report.associations.end(),
                                      [](const auto& one) { return one.outcome == core::Outcome::matched; });
@@ -135,8 +135,8 @@ core::StepReport NavigatorOnMap::observe(const core::Scan& scan) {
   return navigated;
 }
 
-/// After a slip, which the navigator weighs and the EKF knows nothing of: where the map explains what is seen from the navigator's pose and
-/// not from the tracked one, at once where a slip was decided, and else in two scans running.
+/// After a slip, which the navigator considers and the EKF does not: if the map explains the observations from the navigator's pose and not
+/// from the tracked one, at once if a slip was decided, else after two consecutive scans.
 bool NavigatorOnMap::knows_better(const core::StepReport& navigated, const core::StepReport& tracked) {
   const bool is_better =
       is_placed_ && navigated.mode == core::Mode::mapping && confirms(navigated) && !confirms(tracked);
@@ -144,7 +144,7 @@ bool NavigatorOnMap::knows_better(const core::StepReport& navigated, const core:
   return is_better && (has_slipped(navigated) || better_scans_ >= 2);
 }
 
-/// Begins anew, as a vehicle that does not know where on the map it is: what was mapped until now was put in wrong places of it.
+/// Begins anew, as a vehicle that does not know where on the map it is: everything mapped so far was put in wrong places of it.
 void NavigatorOnMap::doubt_start(core::StepReport& report) {
   is_start_in_doubt_ = !monitor_.is_confirmed();
   if (!monitor_.is_lost()) return;
@@ -156,7 +156,7 @@ void NavigatorOnMap::doubt_start(core::StepReport& report) {
   report.decisions.emplace_back(carried);
 }
 
-/// The navigator, too, where it has left the map meanwhile.
+/// Resets the navigator, too, if it has left the map meanwhile.
 void NavigatorOnMap::track_from(const core::PoseGaussian& pose) {
   better_scans_ = 0;
   tracker_.emplace(pose, job_.given_map->landmarks, tracking_options(job_.navigator));
@@ -169,7 +169,7 @@ core::StepReport NavigatorOnMap::on_map(core::StepReport report) {
   is_placed_ = is_placed_after(report.decisions, is_placed_);
   if (!is_placed_) report.mode = core::Mode::searching;
   leave_own_out(report.associations);
-  report.revised.clear();  // what was said of earlier scans may have been the tracker's
+  report.revised.clear();  // reports on earlier scans may have been the tracker's
   report.solved.clear();
   report.merged.clear();
   report.mapped_landmarks = static_cast<int>(job_.given_map->landmarks.size());
@@ -178,7 +178,7 @@ core::StepReport NavigatorOnMap::on_map(core::StepReport report) {
 
 bool NavigatorOnMap::is_given(core::LandmarkId id) const { return id <= job_.given_map->landmarks.back().id; }
 
-/// What belongs to a landmark of its own is of none of the map's.
+/// Observations of the navigator's own landmarks belong to none of the map's.
 void NavigatorOnMap::leave_own_out(std::vector<core::AssociationReport>& associations) const {
   for (core::AssociationReport& one : associations) {
     if (one.landmark == core::no_landmark || (is_placed_ && is_given(one.landmark))) continue;

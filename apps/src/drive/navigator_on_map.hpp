@@ -13,12 +13,12 @@
 
 namespace helixnav::apps {
 
-/// Says where on a given map the vehicle is. As long as looks confirm it, that is an EKF of the pose alone on the map's landmarks, which uses
-/// each of them in every scan (localization::Localizer). Beside it, and in its place once nothing has confirmed the pose over a reach, a
-/// navigator takes the map as it is drawn (supervisor::as_drawn) and maps for itself what the map does not hold: so it has all that mapping
-/// has against wrong matches, slips and carrying. Reports name landmarks of the given map only. A start that was said, and that what is
-/// seen contradicts before anything has confirmed it, is forgotten, and the place looked for. Fixes are not
-/// used. The job must outlive it. Test: apps/navigator_on_map_test.cpp.
+/// Reports where on a given map the vehicle is. As long as observations confirm it, that is an EKF of the pose alone on the map's landmarks,
+/// which uses each of them in every scan (localization::Localizer). Beside it, and in its place once nothing has confirmed the pose over a
+/// reach, a navigator takes the map as it is drawn (supervisor::as_drawn) and maps for itself what the map does not contain: so it has all of
+/// mapping's protection against wrong matches, slips and carrying. Reports name landmarks of the given map only. A given start that the
+/// observations contradict before anything has confirmed it is dropped, and the place is searched for. Fixes are not used. The job must
+/// outlive it. Test: apps/navigator_on_map_test.cpp.
 class NavigatorOnMap {
  public:
   NavigatorOnMap(const Drive& job, std::vector<std::vector<core::Label>> labels_fed, LabelAgreement& agreement);
@@ -43,9 +43,9 @@ class NavigatorOnMap {
   supervisor::Navigator navigator_;
   bool is_placed_;  ///< the navigator is on the map
   std::optional<localization::Localizer> tracker_;
-  localization::LostMonitor monitor_;  ///< of what is reported
+  localization::LostMonitor monitor_;  ///< of the reported pose
   bool is_start_in_doubt_;
-  int better_scans_ = 0;   ///< in a row, explained from the navigator's pose and not from the tracked one
+  int better_scans_ = 0;   ///< consecutive, explained from the navigator's pose and not from the tracked one
   double driven_m_ = 0.0;  ///< since the last scan
   std::size_t scans_ = 0;
 };

@@ -16,8 +16,8 @@
 namespace helixnav::apps {
 namespace {
 
-/// A match with its whitened derivatives by the pose and the landmark. The columns of `left` are the residual, and how it
-/// changes with the offset; what poses and landmarks explain of both is taken out of them.
+/// A match with its whitened derivatives by the pose and the landmark. The columns of `left` are the residual and its
+/// derivative by the offset; what poses and landmarks explain of both is taken out of them.
 struct Pair {
   std::size_t scan = 0, landmark = 0;
   Eigen::Matrix<double, 2, 3> by_pose;
@@ -25,8 +25,8 @@ struct Pair {
   Eigen::Matrix2d left;
 };
 
-constexpr double outlier_nis = 30.0;  // one of 3 million
-constexpr double nearest_m = 1e-3;    // nothing is seen from so near
+constexpr double outlier_nis = 30.0;  // one in 3 million
+constexpr double nearest_m = 1e-3;    // nothing is seen at such a short range
 
 std::optional<Pair> pair_of(const core::Observation& seen, const core::Pose2& T_world_robot,
                             const core::Pose2& T_robot_sensor, const Eigen::Vector2d& point_m) {
@@ -39,7 +39,7 @@ std::optional<Pair> pair_of(const core::Observation& seen, const core::Pose2& T_
   pair.by_pose = R.matrixL().solve(Eigen::Matrix<double, 2, 3>(predicted.H_pose));
   pair.by_landmark = R.matrixL().solve(Eigen::Matrix2d(predicted.H_landmark));
   pair.left.col(0) = core::innovation(seen.kind, seen.z, predicted.z_hat);
-  pair.left.col(1) = -Eigen::Vector2d::UnitX();  // ranges measured are short by it
+  pair.left.col(1) = -Eigen::Vector2d::UnitX();  // measured ranges are short by it
   pair.left = R.matrixL().solve(pair.left).eval();
   if (!(pair.left.col(0).squaredNorm() < outlier_nis)) return std::nullopt;
   return pair;
@@ -82,7 +82,7 @@ std::vector<Pair> pairs_of(const core::Recording& recording, const runs::Run& ru
   return pairs;
 }
 
-/// Takes out of what is left what variables of N coordinates explain with the others held fast.
+/// Takes out of the residuals what variables of N coordinates explain with the others held fixed.
 template <int N>
 class Elimination {
  public:
@@ -91,7 +91,7 @@ class Elimination {
       : variable_(variable), derivative_(derivative) {
     std::size_t count = 0;
     for (const Pair& pair : pairs) count = std::max(count, pair.*variable + 1);
-    constexpr double hardly_any = 1e-6;  // 1 km, 1000 rad: what a scan of one pair leaves open
+    constexpr double hardly_any = 1e-6;  // 1 km, 1000 rad: what a scan with a single pair leaves open
     inverse_.assign(count, hardly_any * Matrix::Identity());
     for (const Pair& pair : pairs) inverse_[pair.*variable] += (pair.*derivative).transpose() * (pair.*derivative);
     for (Matrix& matrix : inverse_) matrix = matrix.inverse().eval();
@@ -112,7 +112,7 @@ class Elimination {
   std::vector<Matrix> inverse_;
 };
 
-/// Rows less what landmarks and poses take: of a scan of one pair both of its rows.
+/// Rows less those used by landmarks and poses: for a scan with a single pair both of its rows.
 double degrees_of_freedom(const std::vector<Pair>& pairs) {
   std::map<std::size_t, int> of_scan, of_landmark;
   for (const Pair& pair : pairs) {

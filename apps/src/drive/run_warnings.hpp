@@ -10,8 +10,8 @@
 
 namespace helixnav::apps {
 
-/// What a user should know of a run that came to its end and is not to be trusted: what reports::warnings_of says, and
-/// what only the job explains. Test: apps/hostile/warnings_test.cpp.
+/// What a user should know about a completed run that is not to be trusted: the warnings of reports::warnings_of, and
+/// those that only the job explains. Test: apps/hostile/warnings_test.cpp.
 std::vector<std::string> warnings_of(const Drive& job, const runs::Run& run, const evaluation::Evaluation& evaluation);
 
 }  // namespace helixnav::apps

@@ -17,11 +17,11 @@ namespace {
 
 constexpr double start_sigma_rad = 3.0 * core::pi / 180.0;
 
-/// Points of a scan that have a name on the map.
+/// Points of a scan whose names are on the map.
 struct NamedPoints {
   std::vector<Eigen::Vector2d> on_map_m;
   std::vector<Eigen::Vector2d> from_robot_m;
-  double sigma_m = 0.0;  ///< the largest of an observation
+  double sigma_m = 0.0;  ///< the largest of any observation
 };
 
 NamedPoints named_points(const core::Scan& scan, const std::vector<core::Label>& labels, const NamedMap& map) {
@@ -41,7 +41,7 @@ NamedPoints named_points(const core::Scan& scan, const std::vector<core::Label>&
   return points;
 }
 
-/// The fit, if the points lie far enough apart for a heading and stand to each other as on the map.
+/// The fit, if the points are far enough apart for a heading and their geometry matches the map.
 std::optional<core::Pose2> fit(const NamedPoints& points, double map_sigma_m) {
   if (points.on_map_m.size() < 2) return std::nullopt;
   Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
@@ -60,7 +60,7 @@ std::optional<core::Pose2> fit(const NamedPoints& points, double map_sigma_m) {
   return T_map_robot;
 }
 
-/// The pose before a motion, from that after it.
+/// The pose before a motion, from the one after it.
 core::PoseGaussian before(const core::Odometry& motion, const core::PoseGaussian& after) {
   const core::Pose2 back = core::inverse(motion.T_before_after);
   const core::ComposeJacobians J = core::compose_jacobians(after.mean, back);
@@ -84,7 +84,7 @@ NamedMap named(const GivenMap& given) {
   return map;
 }
 
-/// Whether it may be taken for a start that is given (seen_from), which has no covariance of its own: at most twice as uncertain.
+/// Whether it may be taken as a given start (seen_from), which has no covariance of its own: at most twice as uncertain.
 bool is_as_if_given(const core::PoseGaussian& start, double reach_m) {
   const double sigma_m = reach_m / 60.0;
   const Eigen::Array3d given(sigma_m, sigma_m, start_sigma_rad);

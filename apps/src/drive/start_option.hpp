@@ -12,7 +12,7 @@ class Option;
 
 namespace helixnav::apps {
 
-/// --start of commands that take an earlier map.
+/// --start for commands that take an earlier map.
 CLI::Option* add_start_option(CLI::App& command, std::optional<SessionStart>& start);
 
 }  // namespace helixnav::apps

@@ -16,7 +16,7 @@ namespace {
 /// From a scan to the next one, in the frame of the vehicle before.
 struct StepMotion {
   double way_m = 0.0;                      ///< forwards, by odometry
-  Eigen::Vector2d correction_m{0.0, 0.0};  ///< what the scan added to it
+  Eigen::Vector2d correction_m{0.0, 0.0};  ///< added by the scan
 };
 
 std::vector<StepMotion> motions_of(const core::Recording& recording, const runs::Run& run) {
@@ -37,7 +37,7 @@ std::vector<StepMotion> motions_of(const core::Recording& recording, const runs:
   return motions;
 }
 
-/// Without those that hardly move: of a metre they say less than their jitter does.
+/// Without those that hardly move: per metre their jitter outweighs their information.
 std::vector<StepMotion> moving(std::vector<StepMotion> motions) {
   double sum_m = 0.0;
   for (const StepMotion& m : motions) sum_m += std::abs(m.way_m);
@@ -58,7 +58,7 @@ struct Share {
   double mean = 0.0, sigma = 0.0;
 };
 
-/// Of the way, in corrections along an axis. Their variance goes with the way, hence the weights.
+/// Corrections along an axis as a share of the distance. Their variance grows with distance, hence the weights.
 Share share_of_way(const std::vector<StepMotion>& motions, int axis) {
   std::vector<double> scaled, deviations;
   for (const StepMotion& m : motions) {
@@ -81,7 +81,7 @@ Share share_of_way(const std::vector<StepMotion>& motions, int axis) {
   return {mean, std::sqrt(variance_m2) / way_m};
 }
 
-/// In how many standard deviations; 0 where there is none.
+/// In standard deviations; 0 if there is none.
 double sigmas(double value, double sigma) { return sigma > 0.0 ? std::abs(value) / sigma : 0.0; }
 
 }  // namespace
@@ -100,7 +100,7 @@ void note_systematic_errors(const core::Recording& recording, runs::Run& run) {
   const SystematicMotion motion = systematic_motion_of(recording, run).value_or(SystematicMotion());
   const double offset_z = sigmas(offset.offset_m, offset.sigma_m);
   const double scale_z = sigmas(motion.too_long, motion.too_long_sigma);
-  // Each leaves a trace in the other's number: of a scale alone 0.1 of its sigmas in the offset's, of an offset alone 0.7 in the
+  // Each leaves a trace in the other's number: a scale alone gives 0.1 of its sigmas in the offset's, an offset alone 0.7 in the
   // scale's (docs/your_own_log.md).
   constexpr double offset_sigmas = 5.0;  // 2.6 in forests without an offset, 6.2 and more where one spoils the path
   if (offset_z > offset_sigmas && offset_z > 0.3 * scale_z) {
@@ -108,7 +108,7 @@ void note_systematic_errors(const core::Recording& recording, runs::Run& run) {
     run.numbers.emplace_back("range_offset.sigma_m", offset.sigma_m);
   }
   constexpr double motion_sigmas = 8.0;
-  constexpr double least_scale = 0.005, least_rad = 0.004;  // the filter's covariances hold what is less
+  constexpr double least_scale = 0.005, least_rad = 0.004;  // the filter's covariances cover smaller ones
   if (scale_z > std::max(motion_sigmas, offset_z) && std::abs(motion.too_long) > least_scale) {
     run.numbers.emplace_back("odometry.too_long", motion.too_long);
     run.numbers.emplace_back("odometry.too_long_sigma", motion.too_long_sigma);

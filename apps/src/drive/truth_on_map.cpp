@@ -35,7 +35,7 @@ void put_truth_on_map(Drive& job) {
   } else if (job.given_map) {
     const GivenMap& map = *job.given_map;
     if (map.start && map.start->kind == SessionStart::Kind::unknown) return seek(map.T_truth_map, job.recording);
-    // Without a pose it begins as the log says, which is then what is known of its place on the map.
+    // Without a pose it begins as in the log, which is then all that is known of its place on the map.
     const bool both_known = map.T_truth_map && job.recording.truth_frame.T_truth_map;
     if (map.start || both_known) move_to(map.T_truth_map, job.recording);
   }

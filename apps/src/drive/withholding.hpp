@@ -14,11 +14,11 @@
 
 namespace helixnav::apps {
 
-/// An estimator from which the scans of a blackout are withheld; in the place of each stands a step of dead reckoning.
+/// An estimator from which the scans of a blackout are withheld; each is replaced by a step of dead reckoning.
 template <typename Estimator>
 class Withholding {
  public:
-  /// `withheld` is [scan], empty: none is. `pose` gives the estimator's, at its last scan or fix.
+  /// `withheld` is [scan], empty: none. `pose` gives the estimator's pose at its last scan or fix.
   Withholding(Estimator& estimator, const std::vector<bool>& withheld, std::function<core::PoseGaussian()> pose)
       : estimator_(estimator), withheld_(withheld), pose_(std::move(pose)) {}
 

@@ -27,7 +27,7 @@ struct EvaluateJob {
   evaluation::EvaluationOptions options;
 };
 
-/// Of a team's robot, from when on its covariances are of the frame that its truth is in.
+/// For a team's robot, the time from which its covariances are in the frame that its truth is in.
 void choose_nees(const runs::Run& run, EvaluateJob& job) {
   const std::optional<double> since_s = in_frame_since_s(job.folder);
   if (!since_s || run.steps.empty() || *since_s <= core::seconds(run.steps.front().t_ns)) return;

@@ -76,18 +76,18 @@ void write_components(const std::string& out, const std::vector<core::JointMap>&
                       const std::vector<LandmarkNames>& landmarks) {
   for (std::size_t k = 0; k < components.size(); ++k) {
     const std::string folder = component_folder(out, k);
-    runs::make_run_folder(folder, runs::RunWriter::IfNotEmpty::overwrite);  // its owner was asked
+    runs::make_run_folder(folder, runs::RunWriter::IfNotEmpty::overwrite);  // the user was asked
     runs::write_map(folder, components[k], k < landmarks.size() ? landmarks[k] : LandmarkNames());
   }
 }
 
-/// A map that a run holds, by what its file was.
+/// A map contained in a run, identified by its file's digest.
 struct Held {
   std::string sha256, name;
-  bool joined = false;  ///< by join, else the run went on in it
+  bool joined = false;  ///< by join, else the run continued in it
 };
 
-/// Whether the run looked for its place on the map that it was given and never found it: its own map holds nothing of that one.
+/// Whether the run searched for its place on the given map and never found it: its own map then contains nothing of that one.
 bool stayed_apart(const std::string& folder) {
   const runs::Run run = runs::read_run(folder);
   return runs::began_off_earlier_map(run) && !runs::is_on_earlier_map(run);
@@ -147,7 +147,7 @@ void check_two(const std::string& a, const Holding& of_a, const std::string& b, 
   }
 }
 
-/// What the map of a component is made of, with what that was made of.
+/// What the map of a component is made of, with what those parts were made of.
 std::string joined_from_table(const std::vector<std::string>& runs, const supervisor::JoinedSessions& joined,
                               std::size_t component) {
   std::string text = runs::joined_from_header;

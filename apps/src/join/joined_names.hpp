@@ -11,19 +11,19 @@ namespace helixnav::apps {
 
 using LandmarkNames = std::map<core::LandmarkId, std::string>;
 
-/// Of the map.csv in the folder of a run; none where there is no such file.
+/// From the map.csv in the folder of a run; none if there is no such file.
 LandmarkNames landmark_names_in(const std::string& folder);
 
-/// What the landmarks of a joined map are called.
+/// The names of the landmarks of a joined map.
 struct JoinedNames {
   std::vector<LandmarkNames> of_component;
-  std::vector<std::string> notes;  ///< a sentence for each component on which names contradict one another
+  std::vector<std::string> notes;  ///< a sentence for each component on which names contradict each other
 };
 
-/// `of_runs`: [session] by the ids of its own map, empty where landmarks were not known by name. A landmark of the joined map is called
-/// as its copies are. Maps are joined by where landmarks stand, and names may contradict that: a landmark that runs call differently, and
-/// a name that several landmarks have, stay without; of a landmark that is gone (tentative) and one that has its name now, the latter
-/// keeps it. Test: apps/joined_names_test.cpp.
+/// `of_runs`: [session] by the ids of its own map, empty if landmarks were not known by name. A landmark of the joined map gets
+/// the name of its copies. Maps are joined by landmark positions, and names may contradict that: a landmark with different names
+/// in different runs, and landmarks that share a name, stay unnamed; if a landmark that is gone (tentative) and a current one
+/// have the same name, the latter keeps it. Test: apps/joined_names_test.cpp.
 JoinedNames joined_names(const std::vector<LandmarkNames>& of_runs, const supervisor::JoinedSessions& joined);
 
 }  // namespace helixnav::apps

@@ -39,7 +39,7 @@ std::string path_line(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
          metres_text(-to.y());
 }
 
-/// A mark of the given half width: shapes differ, so that colours alone say nothing.
+/// A mark of the given half width: shapes differ, so that colour alone carries no information.
 std::string change_mark(const std::string& kind, const Eigen::Vector2d& at, double r, const std::string& title) {
   const std::string tip = "<title>" + as_html(title) + "</title>";
   const std::string centre = "cx=\"" + metres_text(at.x()) + "\" cy=\"" + metres_text(-at.y()) + "\" r=\"";
@@ -54,7 +54,7 @@ std::string change_mark(const std::string& kind, const Eigen::Vector2d& at, doub
   return "<path class=\"" + kind + "\" d=\"" + path + "\">" + tip + "</path>\n";
 }
 
-/// A diamond where it stands now, with a line from where it stood: a move is often shorter than a mark is wide.
+/// A diamond at the current place, with a line from the old one: a move is often shorter than a mark is wide.
 std::string moved_mark(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double r, const std::string& title) {
   const Eigen::Vector2d right(r, 0.0), up(0.0, r);
   const std::string path = path_line(from, to) + path_line(to - right, to + up) + path_line(to + up, to + right) +
@@ -86,7 +86,7 @@ std::string component_picture(std::size_t component, const core::JointMap& map,
   for (const ChangedLandmark& landmark : shared) {
     if (landmark.component == component) changed[landmark.id] = &landmark;
   }
-  std::string quiet, loud;  // what changed is drawn over what did not
+  std::string quiet, loud;  // changes are drawn over what did not change
   for (std::size_t i = 0; i < map.joint.ids.size(); ++i) {
     const auto at = changed.find(map.joint.ids[i]);
     if (at == changed.end()) {

@@ -9,8 +9,8 @@
 
 namespace helixnav::apps {
 
-/// report.html of joined sessions: how each was placed, and every component with what changed on it. One text that needs no
-/// network and no script, in the reader's colours (light or dark).
+/// report.html of joined sessions: how each was placed, and every component with what changed on it. A single text without
+/// network access or scripts, in the reader's colours (light or dark).
 std::string joined_page(const std::vector<std::string>& names, const supervisor::JoinedSessions& joined,
                         const std::vector<ChangedLandmark>& shared);
 

@@ -11,7 +11,7 @@
 namespace helixnav::apps {
 namespace {
 
-/// About the landmarks that a session has, in the frame of its component.
+/// The ground around the landmarks of a session, in the frame of its component.
 class Ground {
  public:
   Ground(const core::JointMap& component, const supervisor::JoinedSession& session, double reach_m) {
@@ -25,15 +25,16 @@ class Ground {
     for (const Eigen::Vector2d& point_m : points_m_) radii_m_.push_back(radius_m(point_m, reach_m));
   }
 
-  /// Whether one of this session and the other has half at least of the eight landmarks of the other that are nearest. Where the two
-  /// are bent apart, each has copies of its own, and neither says what the other should have seen; where much grew, the later one has
-  /// those of the earlier one.
+  /// Whether this session or the other has at least half of the other's eight nearest landmarks. If the two are bent apart, each has
+  /// copies of its own, and neither shows what the other should have seen; if much was added, the later one has those of the earlier
+  /// one.
   bool agrees_with(const Ground& other, const Eigen::Vector2d& at_m) const {
     return knows_half_of(other, at_m) || other.knows_half_of(*this, at_m);
   }
 
   bool has(core::LandmarkId id) const { return std::binary_search(ids_.begin(), ids_.end(), id); }
-  /// Near a landmark of the session, and with others on all sides: beyond the rim of what it mapped it may not have looked.
+  /// Near a landmark of the session, and with others on all sides: it may not have looked beyond the edge of what it
+  /// mapped.
   bool looked_at(const Eigen::Vector2d& at_m) const {
     for (std::size_t i = 0; i < points_m_.size(); ++i) {
       if ((points_m_[i] - at_m).norm() <= radii_m_[i]) return is_surrounded(at_m);
@@ -55,7 +56,7 @@ class Ground {
     return 2 * static_cast<std::size_t>(known) >= nearest;
   }
 
-  /// Whether no half plane with the point on its edge is without the eight nearest landmarks.
+  /// Whether every half plane with the point on its edge contains one of the eight nearest landmarks.
   bool is_surrounded(const Eigen::Vector2d& at_m) const {
     constexpr std::size_t nearest = 8;
     if (points_m_.size() < nearest) return false;
@@ -108,7 +109,7 @@ void add_shared(std::size_t number, const core::JointMap& component, const std::
   }
 }
 
-/// Of what is gone and what is new near by, what moved (Benjamini and Hochberg 1995).
+/// Of the landmarks that are gone and those new nearby, the ones that moved (Benjamini and Hochberg 1995).
 class Moves {
  public:
   Moves(const core::JointMap& component, std::vector<ChangedLandmark*> landmarks)
@@ -140,7 +141,7 @@ class Moves {
   }
 
  private:
-  static constexpr double most_wrong = 0.05;  ///< share of the moves told, in the mean
+  static constexpr double most_wrong = 0.05;  ///< share of the reported moves, on average
 
   struct Move {
     ChangedLandmark* gone;
@@ -157,8 +158,8 @@ class Moves {
     return nearest;
   }
 
-  /// Probability that a new landmark is so near that has nothing to do with what is gone there: as dense as the new ones are
-  /// among all, of which the distance of the eighth neighbour says how dense they are here.
+  /// Probability that an unrelated new landmark is this near to the one that is gone: its density is the share of new ones
+  /// among all, times the local density, from the distance of the eighth neighbour.
   double by_chance(const Eigen::Vector2d& at_m, double apart_m) const {
     constexpr std::size_t eighth = 8;
     std::vector<double> distances_m;

@@ -39,7 +39,7 @@ class Workers {
     try {
       for (std::size_t i = 1; i < wanted; ++i) threads.emplace_back([this] { work(); });
     } catch (const std::exception&) {
-      // The system gives no more threads: those that there are do the work.
+      // The system provides no more threads: the existing ones do the work.
     }
     work();
     for (std::thread& thread : threads) thread.join();

@@ -11,7 +11,7 @@
 namespace helixnav::apps {
 namespace {
 
-/// Of what the summary asks a row for; numbers of any other type count as none.
+/// The keys that the summary reads from a row; numbers of any other type count as missing.
 void check_row(const std::string& file, std::size_t line, const Json& row) {
   const std::string here = file + ':' + std::to_string(line) + ": expected the JSON object of a run";
   if (!row.is_object() || !row.contains("seed") || !row.contains("verdict")) throw core::InputError(here);
@@ -31,7 +31,7 @@ void check_row(const std::string& file, std::size_t line, const Json& row) {
   }
 }
 
-/// What others ask a manifest for. Seeds are missing in those of earlier versions.
+/// The keys that others read from a manifest. Seeds are missing in those of earlier versions.
 void check_manifest(const std::string& file, const Json& manifest) {
   const auto require = [&](const char* key, bool right, const char* expected) {
     if (right) return;

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The settings in force, one a line with its section; what only helps to read is left out.
+/// The settings in force, one per line with its section; lines that only help the reader are left out.
 Json config_lines(const std::string& config) {
   Json lines = Json::array();
   std::string section;

@@ -18,20 +18,21 @@ struct Campaign;
 
 using Json = nlohmann::ordered_json;
 
-/// The folder of a campaign: manifest.json (what makes the runs what they are), runs.jsonl (a line a run), summary.json.
+/// The folder of a campaign: manifest.json (what defines the runs), runs.jsonl (one line per run), summary.json.
 class CampaignFolder {
  public:
-  /// Begins the folder, or takes up what it holds: a last line without its end is dropped. InputError when it holds other
-  /// things, another process drives it, or it holds a campaign of another scenario, configuration or build; the message names the first difference.
+  /// Begins the folder, or continues from its contents: an incomplete last line is dropped. InputError if it holds
+  /// other things, another process drives it, or it holds a campaign of another scenario, configuration or build; the
+  /// message names the first difference.
   explicit CampaignFolder(const Campaign& campaign);
 
-  /// Of the runs that it holds.
+  /// Of the runs in the folder.
   std::set<std::uint64_t> seeds() const;
 
-  /// One run, with the operating system when this returns.
+  /// One run, handed to the operating system when this returns.
   void append(const std::string& row);
 
-  /// Rewrites the lines in order of seed, so that they do not tell who finished first, and returns them.
+  /// Rewrites the lines in order of seed, so that they do not show who finished first, and returns them.
   std::vector<Json> sort();
 
   void write_summary(const Json& summary) const;

@@ -8,8 +8,8 @@ namespace helixnav::apps {
 
 struct Campaign;
 
-/// Drives one seed, judges it and gives its line of runs.jsonl (docs/campaign.md), without the line's end. A run whose
-/// mathematics broke down is a line, too: verdict "failed", with the message. Wall-clock figures stand under "wall".
+/// Drives one seed, judges it and returns its line of runs.jsonl (docs/campaign.md), without the newline. A run that
+/// broke down numerically is a line, too: verdict "failed", with the message. Wall-clock figures are under "wall".
 std::string run_and_judge(const Campaign& campaign, std::uint64_t seed);
 
 }  // namespace helixnav::apps

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 std::uint64_t seed_of(const Json& row) { return row.at("seed").get<std::uint64_t>(); }
 
-/// A part that was killed goes on by the command that began it: until then its campaign is not whole.
+/// A part that was killed is resumed by the command that began it: until then its campaign is incomplete.
 void check_whole(const std::string& part, const Json& manifest, const std::vector<Json>& rows) {
   std::set<std::uint64_t> driven;
   for (const Json& row : rows) driven.insert(seed_of(row));
@@ -65,7 +65,7 @@ void add_part(const std::string& part, Merged& merged) {
   }
 }
 
-/// Read first and written over then, a part would be lost.
+/// If a part were read first and then overwritten, it would be lost.
 void check_is_none_of(const std::vector<std::string>& parts, const std::string& out) {
   std::error_code unknown;
   for (const std::string& part : parts) {

@@ -9,8 +9,8 @@
 
 namespace helixnav::apps {
 
-/// Worlds of robots whose starts are unknown and who have no names in common: how often their maps are joined, and how
-/// often falsely. Each seed drives one world of each kind.
+/// Worlds of robots with unknown starts and no names in common: how often their maps are joined, and how often falsely.
+/// Each seed drives one world of each kind.
 struct TeamCampaign {
   std::uint64_t runs = 100;
   std::uint64_t first_seed = 1;
@@ -22,11 +22,11 @@ struct TeamCampaign {
 
 inline constexpr const char* team_scenario = "team";
 
-/// Writes manifest.json, runs.csv, a row a world as they end, and summary.json with Clopper and Pearson's 95 % intervals; prints the summary.
+/// Writes manifest.json, runs.csv, one row per world as it ends, and summary.json with 95 % Clopper-Pearson intervals; prints the summary.
 ExitCode run_team_campaign(const TeamCampaign& campaign);
 
-/// One campaign of its parts: manifest, rows in order of seed, and the summary as if it had been driven at once. InputError for
-/// parts of other builds, a seed in two parts, and seeds of which not all worlds were driven.
+/// One campaign from its parts: manifest, rows in order of seed, and the summary as if it had been driven at once. InputError
+/// for parts of other builds, a seed in two parts, and seeds with worlds not driven.
 void merge_team_campaigns(const std::vector<std::string>& parts, const std::string& out);
 
 }  // namespace helixnav::apps

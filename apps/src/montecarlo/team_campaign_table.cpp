@@ -14,7 +14,7 @@
 namespace helixnav::apps {
 namespace {
 
-/// Clopper and Pearson's two-sided 95 % interval.
+/// Two-sided 95 % Clopper-Pearson interval.
 nlohmann::ordered_json share_of(std::size_t hits, std::size_t trials) {
   using boost::math::binomial_distribution;
   const auto n = static_cast<double>(trials);
@@ -33,7 +33,7 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-/// Throws std::exception of the standard library for what is no number.
+/// Throws std::exception of the standard library if it is not a number.
 TeamWorld world_of(const std::vector<std::string>& cells) {
   TeamWorld world;
   world.seed = std::stoull(cells.at(0));

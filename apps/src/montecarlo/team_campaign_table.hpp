@@ -25,10 +25,10 @@ extern const char* const team_columns;  ///< first line of runs.csv
 /// Lines of runs.csv.
 std::string team_rows(const std::vector<TeamWorld>& worlds, std::size_t from, std::size_t count);
 
-/// The worlds of the runs.csv of a folder; a last line without its end is left out. InputError naming file and line.
+/// The worlds of the runs.csv of a folder; an incomplete last line is left out. InputError naming file and line.
 std::vector<TeamWorld> read_team_rows(const std::string& folder);
 
-/// Shares with Clopper and Pearson's 95 % intervals, by kind of world.
+/// Shares with 95 % Clopper-Pearson intervals, by kind of world.
 nlohmann::ordered_json team_campaign_summary(const std::vector<TeamWorld>& worlds);
 
 void print_team_campaign(const nlohmann::ordered_json& summary);

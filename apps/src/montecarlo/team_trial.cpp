@@ -31,7 +31,7 @@ void judge_pair(const TeamTask& task, const TeamDrive& drive, std::size_t a, std
   verdict.wrong = verdict.wrong || error_m > wrong_m || error_rad > wrong_rad;
 }
 
-/// What a robot's name is in truth: the label that most observations of the name have.
+/// The true identity of a robot's name: the label that most observations of the name have.
 std::map<std::int64_t, core::Label> labels_of(const core::Recording& recording, const TeamDrive::Robot& robot) {
   std::map<std::int64_t, std::map<core::Label, int>> counts;
   for (std::size_t k = 0; k < robot.names.size(); ++k) {
@@ -74,7 +74,7 @@ TeamVerdict judge(const TeamTrial& trial, const TeamTask& task, const TeamDrive&
   }
   judge_merged(task, drive, verdict);
   for (const team::TeamJoin& join : drive.team.joins()) verdict.t_s = core::seconds(join.t_ns);
-  // Nothing is common there: no place is right.
+  // They have nothing in common: no place is right.
   if (trial.world.kind == sim::TeamWorldKind::apart) verdict.wrong = !drive.team.joins().empty();
   return verdict;
 }

@@ -86,7 +86,7 @@ core::Recording example_drive() {
 
 void append_scan(const core::Scan& scan, ExampleLog& log) {
   const double t_s = core::seconds(scan.t_ns);
-  if (scan.observations.empty()) append(log.detections, "%.3f,,\n", t_s);  // seen nothing: that is information, too
+  if (scan.observations.empty()) append(log.detections, "%.3f,,\n", t_s);  // nothing seen: that is information, too
   for (const core::Observation& z : scan.observations)
     append(log.detections, "%.3f,%.3f,%.2f\n", t_s, z.z[0], deg_in_rad * (z.z[1]));
 }

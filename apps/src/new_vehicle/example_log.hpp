@@ -5,7 +5,7 @@
 
 namespace helixnav::apps {
 
-/// Files of a log to begin with: two laps of a simulated cart with a laser that finds poles.
+/// Files of an example log: two laps of a simulated cart with a laser that detects poles.
 struct ExampleLog {
   std::string vehicle;  ///< TOML with a comment on every key
   std::string odometry, detections, truth_poses, truth_landmarks;

@@ -14,7 +14,7 @@
 namespace helixnav::apps {
 namespace {
 
-/// Infinite when the filter broke on the way.
+/// Infinite if the filter broke down on the way.
 double mean_nis(core::Recording recording, double scale, const supervisor::NavigatorOptions& options) {
   divide_ranges(recording, scale);
   ChosenNavigator navigator(recording, options, true);
@@ -46,7 +46,7 @@ void divide_ranges(core::Recording& recording, double scale) {
 
 double estimate_range_scale(const core::Recording& recording, const supervisor::NavigatorOptions& options) {
   supervisor::NavigatorOptions believing = options;
-  believing.names.wrong = 0.0;  // what a wrong scale contradicts is its cost, and not to be left out
+  believing.names.wrong = 0.0;  // contradictions of a wrong scale are its cost, and must not be left out
   const auto cost = [&](double scale) { return mean_nis(recording, scale, believing); };
   constexpr double step = 0.02;
   double best = 1.0;

@@ -17,7 +17,8 @@
 namespace helixnav::apps {
 namespace {
 
-/// Increments across a fix become two, so that it is used where the vehicle was then. What began when no event says so stays whole.
+/// Increments across a fix become two, so that it is used at the vehicle's place then. An increment whose start no event gives
+/// stays whole.
 void split_at_fixes(core::Recording& recording) {
   std::vector<core::Event> events;
   events.reserve(recording.events.size() + recording.true_positions.size());

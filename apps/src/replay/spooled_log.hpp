@@ -5,9 +5,9 @@
 
 namespace helixnav::apps {
 
-/// A log that can be read again and again: itself, or, of a FIFO, which can be read once, a copy of all that came through it,
-/// as JSON Lines in a file that goes away with this, beside a copy of the vehicle.toml
-/// that stands beside the FIFO. Waits for the writer. InputError where the copy cannot be written.
+/// A log that can be read repeatedly: itself or, for a FIFO, which can be read once, a copy of everything that came through
+/// it, as JSON Lines in a file deleted with this object, beside a copy of the vehicle.toml that is beside the FIFO. Waits for
+/// the writer. InputError if the copy cannot be written.
 /// Test: apps/own_log_test.cpp.
 class SpooledLog {
  public:
@@ -22,7 +22,7 @@ class SpooledLog {
   bool is_copy() const { return !folder_.empty(); }
 
   std::string path_;
-  std::string folder_;  ///< of the copy; empty without one
+  std::string folder_;  ///< of the copy; empty if there is none
 };
 
 }  // namespace helixnav::apps

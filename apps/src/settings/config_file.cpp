@@ -52,7 +52,7 @@ std::string shortened(const std::string& key) {
   return key.size() <= longest ? key : key.substr(0, longest) + "...";
 }
 
-/// `given`: by the command line, which wins, or by the file so far, which may say a thing once.
+/// `given`: by the command line, which wins, or by the file so far, which may set a key only once.
 void apply_item(const std::vector<CLI::Option*>& options, const CLI::ConfigItem& item, const std::string& path,
                 const std::string& text, std::map<const CLI::Option*, bool>& given) {
   const std::string key = shortened(item.fullname());

@@ -34,7 +34,7 @@ std::string key_in(const Table& table, const std::string& name) {
   return {};
 }
 
-/// --config of a run gives every key: those that it gives as they are need no word.
+/// --config of a run gives every key: those left at their defaults need no mention.
 bool is_as_by_default(const CLI::Option& option) {
   double given = 0.0, usual = 0.0;
   return CLI::detail::lexical_cast(option.results().back(), given) &&

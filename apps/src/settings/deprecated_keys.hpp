@@ -9,12 +9,12 @@ class App;
 
 namespace helixnav::apps {
 
-/// Of the settings that say what a vehicle file says: its key, as "odometry.scale" for "victoria_park.speed_scale"; empty for
+/// For settings that a vehicle file also states: its key, e.g. "odometry.scale" for "victoria_park.speed_scale"; empty for
 /// any other.
 std::string vehicle_key_of(const std::string& setting);
 
-/// A sentence with those that the command line or --config gives other than they are by default, and the keys that replace
-/// them; empty where there are none. To be asked before a vehicle file sets them. Test: apps/own_log_test.cpp.
+/// A sentence with those that the command line or --config sets to other than their defaults, and the keys that replace
+/// them; empty if there are none. To be called before a vehicle file sets them. Test: apps/own_log_test.cpp.
 std::string deprecated_keys_given(const CLI::App& command);
 
 /// The sentence on stderr, if there is one.

@@ -21,14 +21,14 @@ struct FastSlamSettings {
   std::uint64_t seed = 1;
 };
 
-using GivenOptions = std::set<const CLI::Option*>;  ///< as of options_given
+using GivenOptions = std::set<const CLI::Option*>;  ///< as returned by options_given
 
-/// Refuses settings that the filter chosen does not have, where the command line gives them or a file, which may hold all
-/// keys, has them not at their defaults; and those of FastSLAM that contradict each other. After the configuration file,
-/// before the vehicle. CLI::ValidationError.
+/// Refuses settings that the chosen filter does not have, if the command line gives them or a file, which may hold all
+/// keys, has them at other than their defaults; and those of FastSLAM that contradict each other. To be called after the
+/// configuration file, before the vehicle. CLI::ValidationError.
 void check_filter(const CLI::App& command, const GivenOptions& given, const FastSlamSettings& settings);
 
-/// For commands that know the compressed EKF only: FastSLAM is refused, `why` after its name.
+/// For commands that support the compressed EKF only: FastSLAM is refused, `why` after its name.
 void require_compressed_ekf(const CLI::App& command, const GivenOptions& given, const FastSlamSettings& settings,
                             const std::string& why);
 

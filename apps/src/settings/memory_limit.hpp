@@ -9,7 +9,7 @@
 
 namespace helixnav::apps {
 
-/// For all that drives without a run folder that could be closed at the limit. Throws CLI::ValidationError.
+/// For every drive without a run folder that could be closed at the limit. Throws CLI::ValidationError.
 /// Test: apps/run_folder_test.cpp.
 inline void refuse_memory_limit(const Settings& settings, const std::string& why) {
   if (settings.memory_mb > 0.0) throw CLI::ValidationError("--map.memory_mb", "is for replay and simulate: " + why);

@@ -13,7 +13,7 @@ namespace {
 
 const char* const as_scenario = "auto";
 
-/// A number, or "auto": as the scenario has it.
+/// A number, or "auto": as in the scenario.
 void add_number(CLI::App& command, const char* name, std::optional<double>& value, double low, double high,
                 const char* help) {
   const CLI::Validator number = number_between(low, high);

@@ -12,7 +12,7 @@ class App;
 
 namespace helixnav::apps {
 
-/// What may be set of a named scenario; nothing: as the scenario has it.
+/// The settable parts of a named scenario; nothing: as in the scenario.
 struct ScenarioSettings {
   std::optional<double> slip_every_m;
   std::optional<double> slip_least_m, slip_most_m;
@@ -30,7 +30,7 @@ struct ScenarioSettings {
 /// Options --sim.KEY of a command.
 void add_scenario_settings(CLI::App& command, ScenarioSettings& settings);
 
-/// The scenario of that name with what was set. InputError as of check_scenario.
+/// The scenario of that name with these settings. InputError as in check_scenario.
 sim::Scenario scenario_of(const std::string& name, const ScenarioSettings& settings);
 
 }  // namespace helixnav::apps

@@ -24,7 +24,7 @@ CLI::Option* add_number(CLI::App& command, const char* name, T& value, T low, T 
 CLI::Option* add_length(CLI::App& command, Settings& settings, const std::string& key, double low, double high,
                         const std::string& help);
 
-/// A number that something else decides unless it is given ("auto").
+/// A number that is determined elsewhere unless it is given ("auto").
 CLI::Option* add_automatic(CLI::App& command, const char* name, std::optional<double>& value, double low, double high,
                            const char* help);
 

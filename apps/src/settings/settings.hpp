@@ -22,26 +22,26 @@ namespace helixnav::apps {
 /// Everything that a configuration file may set, bound to the options --section.key of a command.
 struct Settings {
   supervisor::NavigatorOptions navigator;
-  FastSlamSettings fastslam;         ///< in place of the navigator, where it is chosen
+  FastSlamSettings fastslam;         ///< instead of the navigator, if chosen
   bool known_association = false;    ///< association.method is "known": the log's labels are the identities
-  bool unknown_association = false;  ///< it is "unknown": of a team log, whose identities replay uses otherwise
+  bool unknown_association = false;  ///< it is "unknown": for a team log, whose identities replay otherwise uses
   logs::RecordingSettings logs;
   std::map<std::string, double> given_lengths_m;  ///< by their names in supervisor/lengths.cpp; all others by the reach
   logs::GivenFieldOfView field_of_view;
-  double covariance_scale = 1.0;   ///< on the covariances that the log itself states or its sensor settings give
+  double covariance_scale = 1.0;   ///< on the covariances stated in the log or given by its sensor settings
   double plaza_range_scale = 0.0;  ///< 0: estimate it from the log
   GpsSettings gps;
   std::optional<double> names_wrong;  ///< NavigatorOptions::names; nothing: by the log
-  double memory_mb = 0.0;             ///< that a drive may take until it ends there; 0: any
+  double memory_mb = 0.0;             ///< at which a drive ends; 0: no limit
 };
 
-/// Whether the filter chosen takes the labels of the log for identities.
+/// Whether the chosen filter takes the labels of the log as identities.
 bool goes_by_identities(const Settings& settings);
 
 /// All association methods, in the order in which to show them.
 std::vector<association::Method> association_methods();
 
-/// Adds one option a key, with unit, range and default in its help.
+/// Adds one option per key, with unit, range and default in its help.
 void add_settings(CLI::App& command, Settings& settings);
 
 }  // namespace helixnav::apps

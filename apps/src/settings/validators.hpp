@@ -29,7 +29,7 @@ CLI::Validator number_between(T low, T high) {
   return CLI::Validator(objection, range.str());
 }
 
-/// Numbers of robots of a log, with a comma between each two: CLI11 passes over an empty one.
+/// Numbers of robots of a log, separated by commas: CLI11 skips an empty one.
 inline CLI::Validator robot_numbers() {
   const auto objection = [](std::string& word) -> std::string {
     constexpr std::size_t most_digits = 6;

@@ -22,7 +22,7 @@
 namespace helixnav::apps {
 namespace {
 
-/// The least of what the sensors say: a landmark missed by the weakest is no evidence.
+/// The minimum over the sensors: a landmark missed by the weakest is no evidence.
 void set_detection(CLI::App& command, const logs::Vehicle& vehicle) {
   std::optional<double> probability, clutter;
   for (const logs::SensorModel& sensor : vehicle.sensors) {

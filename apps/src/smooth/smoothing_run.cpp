@@ -51,7 +51,7 @@ std::vector<core::MapLandmark> map_of(const smoothing::Problem& problem,
   return map;
 }
 
-/// [pose] its first step, −1 when it has none.
+/// [pose] its first step, −1 if it has none.
 std::vector<std::int64_t> step_of_pose(const SmoothingTask& task) {
   std::vector<std::int64_t> step(task.problem.graph.poses.size(), -1);
   for (std::size_t k = task.pose_of_step.size(); k-- > 0;) {

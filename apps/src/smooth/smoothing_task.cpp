@@ -19,20 +19,20 @@ namespace {
 /// Below this the smallest variance of an increment is rounding: (10 µm)², (10 µrad)².
 constexpr double least_variance = 1e-10;
 
-/// A vehicle that stands, of which noise is told by the way, is where it was but for rounding: with more than that a long stop
-/// would drift, and count as odometry that is better than told.
+/// A stationary vehicle, if noise is per distance, is where it was up to rounding: with more than that a long stop would
+/// drift, and count as odometry that is better than assumed.
 bool stands(const core::LandmarkGraph::PoseEdge& edge) {
   return edge.T_from_to.position_m().squaredNorm() < least_variance &&
          edge.covariance.cwiseAbs().maxCoeff() < least_variance;
 }
 
-/// What moves with certainty in one direction is softened, and then the whole drive, so that its noise is of one kind.
+/// If motion is certain in one direction, it is softened, and then the whole drive, so that its noise is of one kind.
 void soften_rank_two(SmoothingTask& task) {
   bool moves = false;
   for (auto& edge : task.problem.graph.pose_edges) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(edge.covariance, Eigen::EigenvaluesOnly);
     const double least = eigen.eigenvalues().minCoeff();
-    if (least < -least_variance) continue;  // indefinite ones are the solver's to refuse
+    if (least < -least_variance) continue;  // the solver refuses indefinite ones
     if (stands(edge)) {
       edge.covariance.diagonal().array() += least_variance;
     } else {

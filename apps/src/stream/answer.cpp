@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 Json association_json(const core::AssociationReport& a) {
   Json json{{"observation", a.observation}, {"outcome", runs::word_of(runs::outcome_words, a.outcome)}};
   json["landmark"] = a.landmark == core::no_landmark ? Json() : Json(a.landmark);
-  json["nis"] = a.nis;  // null when there was no pair
+  json["nis"] = a.nis;  // null if there was no pair
   json["dof"] = a.dof;
   return json;
 }
@@ -36,7 +36,7 @@ Json decision_json(const core::Decision& decision) {
           {"sentence", reports::sentence_of(decision)}};
 }
 
-/// What changed of what was answered before; left out where nothing did.
+/// Changes to earlier answers; left out if there are none.
 void add_changes(const core::StepReport& report, Json& json) {
   for (const core::MergedLandmarks& merge : report.merged) {
     json["merged"].push_back({{"kept", merge.kept}, {"removed", merge.removed}});

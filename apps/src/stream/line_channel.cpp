@@ -29,7 +29,7 @@ namespace {
 
 [[noreturn]] void fail_errno(const std::string& address) { fail(address, std::strerror(errno)); }
 
-/// One that a process left behind when it was killed.
+/// A socket that a process left behind when it was killed.
 void remove_stale(const sockaddr_un& name, const std::string& address) {
   struct stat status {};
   if (::lstat(name.sun_path, &status) != 0) return;
@@ -78,7 +78,7 @@ int listen_tcp(const std::string& word, std::string& address) {
 }  // namespace
 
 LineChannel::LineChannel(const std::string& address) : address_(address) {
-  std::signal(SIGPIPE, SIG_IGN);  // whoever is gone is met by what write returns
+  std::signal(SIGPIPE, SIG_IGN);  // a closed peer shows in what write returns
   if (address.empty()) {
     in_ = STDIN_FILENO;
     out_ = STDOUT_FILENO;
@@ -98,8 +98,8 @@ LineChannel::~LineChannel() {
   if (!path_.empty()) ::unlink(path_.c_str());
 }
 
-/// False when interrupted and nothing can be done at once. A signal may come just before poll sleeps: it is looked after
-/// often.
+/// False if interrupted and nothing can be done at once. A signal may come just before poll sleeps, so it is checked
+/// for often.
 bool LineChannel::wait_for(int descriptor, short what) {
   constexpr int patience_ms = 100;
   pollfd polled{descriptor, what, 0};
@@ -142,7 +142,7 @@ void LineChannel::fill() {
   if (got == 0 || (got < 0 && errno != EINTR && errno != EAGAIN)) ended_ = true;
 }
 
-/// Off the buffer: a line, or what is left at the end.
+/// Off the buffer: a line, or the remainder at the end.
 bool LineChannel::take_line(std::string& line) {
   const std::size_t end = buffer_.find('\n', searched_);
   const bool whole = end != std::string::npos;
@@ -154,7 +154,7 @@ bool LineChannel::take_line(std::string& line) {
   skipping_ = !whole && !ended_;
   line.assign(buffer_, begin_, std::min(length, longest_line + 1));
   begin_ = searched_ = whole ? end + 1 : searched_;
-  if (was_skipping) return take_line(line);  // the rest of one that was given
+  if (was_skipping) return take_line(line);  // the rest of one already returned
   if (!line.empty() && line.back() == '\r') line.pop_back();
   ++number_;
   return true;
@@ -183,7 +183,7 @@ std::string LineChannel::why_nobody_reads() const {
 bool LineChannel::send(std::string line) {
   if (out_ < 0) return true;
   line += '\n';
-  constexpr std::size_t chunk = 4096;  // poll promises so much of a pipe
+  constexpr std::size_t chunk = 4096;  // poll guarantees this much for a pipe
   for (std::size_t sent = 0; sent < line.size();) {
     if (!wait_for(out_, POLLOUT)) return true;
     const ssize_t n = ::write(out_, line.data() + sent, std::min(chunk, line.size() - sent));
@@ -192,7 +192,7 @@ bool LineChannel::send(std::string line) {
     } else if (n < 0 && errno != EINTR && errno != EAGAIN) {
       write_error_ = errno;
       if (listening_ < 0) return false;
-      out_ = -1;  // what it sent is read all the same
+      out_ = -1;  // what it sent is still read
       return true;
     }
   }

@@ -8,8 +8,8 @@
 
 namespace helixnav::apps {
 
-/// Where lines come from and answers go to: standard input and output, or one client after another on a socket of this
-/// machine. Reading and writing block, but come back at once when the program is interrupted. Test: apps/stream_test.cpp.
+/// Where lines come from and answers go to: standard input and output, or one client after another on a local socket.
+/// Reading and writing block, but return at once when the program is interrupted. Test: apps/stream_test.cpp.
 class LineChannel {
  public:
   /// "" for the standard streams, "unix:PATH" or "tcp:PORT" on 127.0.0.1 (0: a free one). InputError for an address that
@@ -22,18 +22,19 @@ class LineChannel {
   /// Where clients find it; empty for the standard streams.
   const std::string& address() const { return address_; }
 
-  /// Waits for the next line, its end taken off; the last of an input or of a client may have none. Of one longer than
-  /// longest_line only the beginning is given, a byte more than that. False at the end of input, or when interrupted.
+  /// Waits for the next line, without its newline; the last line of an input or client may have none. A line longer
+  /// than longest_line is cut to its beginning, one byte more than that. False at the end of input, or when
+  /// interrupted.
   bool next(std::string& line);
 
-  /// Of the last line, from 1, in its input or of its client.
+  /// Number of the last line, from 1, in its input or of its client.
   std::size_t line_number() const { return number_; }
 
-  /// Writes a line and its end; waits for whoever reads slowly. To a client that is gone nothing is written. False when
+  /// Writes a line and its newline; waits for slow readers. Nothing is written to a client that is gone. False if
   /// nobody reads the standard output any more.
   bool send(std::string line);
 
-  /// In words, after send returned false.
+  /// The reason in words, after send returned false.
   std::string why_nobody_reads() const;
 
   static constexpr std::size_t longest_line = logs::OwnStream::longest_line;

@@ -23,24 +23,24 @@
 
 namespace helixnav::apps {
 
-/// The navigator of a drive that goes on, as core::EventLoop wants it: what replay makes of the same events. It begins with
-/// the first events, whose sensor gives its lengths.
+/// The navigator of an ongoing drive, as core::EventLoop expects it: the same result as replay of the same events. It
+/// begins with the first events, whose sensor determines its lengths.
 class LiveNavigator {
  public:
   explicit LiveNavigator(const Settings& settings) : settings_(settings) {}
 
-  /// Events that come next, with their labels; settings on sensor and covariances are applied to them.
+  /// The next events, with their labels; sensor and covariance settings are applied to them.
   void prepare(core::Recording& next);
 
-  /// A drive that went before, as it was fed: its events come next, as they are.
+  /// An earlier drive, as it was fed: its events come next, unchanged.
   void begin_with(core::Recording& before);
 
-  /// Events of the recording that was prepared last, in order. The report of a scan.
+  /// Events of the last recording prepared, in order. Returns the report of a scan.
   std::optional<core::StepReport> take(const core::Event& event);
 
   bool has_begun() const { return navigator_.has_value(); }
   std::vector<core::MapLandmark> map() const;
-  /// What the drive leaves to the next session; nothing before it has begun, or where the map is too large.
+  /// What the drive leaves to the next session; nothing before it has begun, or if the map is too large.
   std::optional<core::JointMap> joint_map() const;
   /// [part] of the drive before the vehicle was carried.
   std::map<int, core::JointMap> maps_apart() const;
@@ -61,8 +61,8 @@ class LiveNavigator {
   std::size_t scan_ = 0;
 };
 
-/// Feeds the estimator with the events that became known, numbering steps on from `steps`. on_step(report, line) for each scan;
-/// on_refused(line, error, is_numerical) for one that is left out: the estimator stands as before it.
+/// Feeds the estimator with the new events, numbering steps on from `steps`. on_step(report, line) for each scan;
+/// on_refused(line, error, is_numerical) for one that is left out: the estimator is in its state before that scan.
 /// Test: apps/stream_test.cpp, python/test_same_result.py.
 template <class Estimator, class OnStep, class OnRefused>
 void feed_live(const logs::StreamedEvents& next, Estimator& estimator, std::int64_t& steps, const OnStep& on_step,

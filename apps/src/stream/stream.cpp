@@ -61,7 +61,7 @@ class Stream {
     return end();
   }
 
-  /// The last scans: more of them might have come, or the odometry does not tell their motion to its end.
+  /// The last scans: more of them might have come, or the odometry does not cover their motion to its end.
   void answer_end_of_input() {
     input_has_ended_ = true;
     if (drive_) drive_->end_input();
@@ -82,8 +82,8 @@ class Stream {
     navigate(next);
   }
 
-  /// What the drive that is gone on with was fed; into the run folder as well, without answers. What only the end of its input
-  /// brought forth waits: it may come again, and otherwise.
+  /// The input of the drive that is continued; into the run folder as well, without answers. Events that only the end of its
+  /// input produced are held back: they may come again, and differently.
   void drive_again() {
     runs::FedDrive fed = runs::read_drive(drive_file_in(job_.resume));
     const auto end = fed.events.begin() + static_cast<std::ptrdiff_t>(fed.before_end_of_input);
@@ -114,7 +114,7 @@ class Stream {
 
   void drive_held_back() { drive_fed(std::exchange(held_back_, {})); }
 
-  /// What comes goes on behind what was held back, or it is that again, as more is known now.
+  /// New input continues after what was held back, or it is the same again, as more is known now.
   void take_up_held_back(const std::vector<core::Event>& next) {
     if (held_back_.empty()) return;
     const auto is_first_scan = [](const core::Event& event) { return std::holds_alternative<core::Scan>(event); };
@@ -124,7 +124,7 @@ class Stream {
     held_back_.clear();
   }
 
-  /// A scan on which the mathematics breaks down is left out; the navigator stands as before it.
+  /// A scan on which the mathematics breaks down is left out; the navigator is in its state before it.
   void navigate(const logs::StreamedEvents& next) {
     Timed timed(navigator_);
     Keeping kept(timed, drive_.get());
@@ -223,12 +223,12 @@ class Stream {
   LiveNavigator navigator_;
   LineChannel channel_;
   std::unique_ptr<runs::RunWriter> writer_;
-  std::unique_ptr<runs::DriveFile> drive_;            ///< beside it, for whoever goes on
+  std::unique_ptr<runs::DriveFile> drive_;            ///< beside it, so that the drive can be continued
   std::vector<core::StampedPose> solved_;             ///< the last time
   std::vector<core::StampedPose> solved_before_;      ///< of parts of the drive before the vehicle was carried
-  std::optional<core::Nanoseconds> driven_until_ns_;  ///< what comes until then was driven before
-  core::PoseGaussian start_;                          ///< of the drive that is gone on with
-  std::vector<core::Event> held_back_;                ///< of it, behind the end of its input
+  std::optional<core::Nanoseconds> driven_until_ns_;  ///< events up to here were driven before
+  core::PoseGaussian start_;                          ///< of the drive that is continued
+  std::vector<core::Event> held_back_;                ///< of it, after the end of its input
   bool input_has_ended_ = false;
   bool reader_is_there_ = true, end_is_told_ = false;
   std::int64_t steps_ = 0, refused_ = 0, broken_ = 0;

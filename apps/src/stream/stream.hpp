@@ -14,12 +14,12 @@ struct StreamJob {
   std::string listen;  ///< address of a socket; empty: the standard streams
   std::string out;     ///< run folder; empty: none
   bool overwrite = false;
-  std::string resume;  ///< run folder of the drive that is gone on with; empty: none
+  std::string resume;  ///< run folder of the drive to be continued; empty: none
   runs::RunManifest manifest;
 };
 
-/// Navigates along a stream until its end or a signal, with an answer to each scan. The run folder is that of replay, but
-/// for truth, of which a stream knows none.
+/// Navigates along a stream until its end or a signal, with an answer to each scan. The run folder is as for replay,
+/// except for truth, which a stream does not have.
 ExitCode stream(const StreamJob& job);
 
 }  // namespace helixnav::apps

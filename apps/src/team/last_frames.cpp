@@ -17,7 +17,7 @@ bool is_same(const Joins& a, const Joins& b) {
                     [](const team::TeamJoin& one, const team::TeamJoin& other) { return is_same(one, other); });
 }
 
-/// As many as both begin with.
+/// The length of their common beginning.
 std::size_t common_joins(const Joins& a, const Joins& b) {
   std::size_t common = 0;
   while (common < a.size() && common < b.size() && is_same(a[common], b[common])) ++common;

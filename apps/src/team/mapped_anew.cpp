@@ -12,7 +12,7 @@ namespace {
 
 constexpr core::Nanoseconds lately_ns = 10'000'000'000;
 
-/// What landmarks that became another one are now.
+/// The current landmark of those merged into another.
 class LandmarksNow {
  public:
   explicit LandmarksNow(const TeamDrive& drive) {
@@ -23,7 +23,7 @@ class LandmarksNow {
     }
   }
   core::LandmarkId operator()(core::LandmarkId id) const {
-    // What was made one may be taken back, and made one the other way round.
+    // A merge may be taken back, and redone the other way round.
     for (std::size_t hops = 0; hops < became_.size(); ++hops) {
       const auto next = became_.find(id);
       if (next == became_.end()) break;
@@ -67,7 +67,7 @@ Polar seen_from(const core::Pose2& T_frame_robot, const Eigen::Vector2d& point_m
   return {at_m.norm(), std::atan2(at_m.y(), at_m.x())};
 }
 
-/// Where the robot saw what it saw.
+/// The region in which the robot saw landmarks.
 struct View {
   double reach_m = 0.0;
   double least_rad = 0.0, most_rad = 0.0;
@@ -115,7 +115,7 @@ struct Scan {
   int expected = 0, missed = 0, seen = 0, begun = 0;
 };
 
-/// Counts of the scans in which anything was seen.
+/// Counts over the scans in which anything was seen.
 std::vector<Scan> count_scans(const TeamDrive::Robot& robot, const Points& points_m, const View& view,
                               const LandmarksNow& now, const Times& begun_ns) {
   Times since_ns;

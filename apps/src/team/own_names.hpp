@@ -9,12 +9,12 @@
 
 namespace helixnav::apps {
 
-/// Names for the observations of one robot without identities: a navigator of its own tells which landmark each is.
+/// Names for the observations of one robot without identities: its own navigator decides which landmark each is.
 class OwnNames {
  public:
   OwnNames() : navigator_(core::PoseGaussian{}) {}
 
-  /// Of a scan: a name for each observation, below 0 where the navigator did not say.
+  /// For a scan: a name for each observation, below 0 if the navigator gave none.
   std::vector<std::int64_t> take(const core::Event& event);
 
  private:

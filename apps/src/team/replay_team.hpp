@@ -15,16 +15,16 @@ class App;
 
 namespace helixnav::apps {
 
-/// Options of a command that only several robots have.
+/// Options of a command that apply only to several robots.
 struct TeamChoice {
   std::vector<int> robots;  ///< of a log, by number; empty: all
   bool unknown_starts = false;
 };
 
-/// Of the options and settings given, refuses those that several robots do not have.
+/// Refuses the given options and settings that several robots do not have.
 void refuse_settings_of_one_robot(const GivenOptions& given, const Settings& settings);
 
-/// Of `options` of the command and of the settings, refuses those that only several robots have.
+/// Refuses those of the command's `options` and of the settings that only several robots have.
 void refuse_options_of_a_team(const CLI::App& command, const std::vector<std::string>& options,
                               const Settings& settings);
 
@@ -32,7 +32,7 @@ void refuse_options_of_a_team(const CLI::App& command, const std::vector<std::st
 ExitCode replay_team(const std::string& path, const TeamChoice& choice, const RunOptions& run, const Settings& settings,
                      const std::string& config);
 
-/// The same for robots that are simulated, each of which sees the others (sim::simulate_team).
+/// The same for simulated robots, each of which sees the others (sim::simulate_team).
 ExitCode simulate_team(int robots, std::uint64_t seed, bool unknown_starts, const RunOptions& run,
                        const Settings& settings, const std::string& config);
 

@@ -16,7 +16,7 @@
 namespace helixnav::apps {
 namespace {
 
-/// One event of one robot, in the order in which Team wants them: motions, sightings of robots, scans.
+/// One event of one robot, in the order in which Team expects them: motions, sightings of robots, scans.
 struct Fed {
   enum Kind { motion, sighting, scan };
   core::Nanoseconds t_ns;

@@ -10,17 +10,17 @@
 
 namespace helixnav::apps {
 
-/// What a team made of its drive.
+/// The result of a team's drive.
 struct TeamDrive {
   struct Robot {
     std::vector<core::StepReport> steps;  ///< as estimated then; poses in the frame of the component at the end
     std::vector<double> microseconds;     ///< [step]
-    std::vector<std::vector<std::int64_t>> names;  ///< [scan][observation] as told to the team
-    std::vector<std::int64_t> at;    ///< [step] 1 where the log has a sighting, 0 where nothing was seen for a while
+    std::vector<std::vector<std::int64_t>> names;  ///< [scan][observation] as given to the team
+    std::vector<std::int64_t> at;    ///< [step] 1 if the log has a sighting, 0 if nothing was seen for a while
     int component = 0;               ///< at the end: number of its first robot
-    std::size_t wrongly_placed = 0;  ///< steps told while a join held that was taken back later
+    std::size_t wrongly_placed = 0;  ///< steps reported while a join held that was taken back later
     core::Nanoseconds in_frame_since_ns =
-        0;  ///< when it came into that frame; covariances before know nothing of the way
+        0;  ///< when it came into that frame; earlier covariances do not cover the way there
   };
   std::vector<Robot> robots;
   team::Team team;
@@ -31,7 +31,7 @@ struct TeamTask {
   core::TeamRecording recording;
   bool unknown_starts = false;
   bool known_association = true;
-  bool own_names = false;  ///< each robot tells its own landmarks apart by a navigator of its own, and no other's
+  bool own_names = false;  ///< each robot tells its own landmarks apart with its own navigator, and not another's
   team::TeamOptions options;
   bool quiet = false;
 };

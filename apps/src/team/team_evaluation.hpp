@@ -14,14 +14,14 @@ namespace helixnav::apps {
 struct RobotErrors {
   evaluation::ErrorStatistics raw_m;
   evaluation::ErrorStatistics aligned_m;
-  double nees_mean = 0.0;  ///< of (x, y, heading), since the robot is in that frame; 3 when consistent
+  double nees_mean = 0.0;  ///< of (x, y, heading), since the robot has been in that frame; 3 if consistent
 };
 
 /// Landmarks of one component by their labels.
 struct LandmarkErrors {
   int component = 0;
   std::size_t landmarks = 0;
-  double raw_rmse_m = 0.0;      ///< NaN where the frame is unknown
+  double raw_rmse_m = 0.0;      ///< NaN if the frame is unknown
   double aligned_rmse_m = 0.0;  ///< after a rigid alignment of the landmarks
 };
 
@@ -30,7 +30,7 @@ struct TeamEvaluation {
   std::vector<LandmarkErrors> landmarks;
 };
 
-/// T_component_truth: identity where starts are known, else by the true start of the component's first robot; nothing where
+/// T_component_truth: identity if starts are known, else from the true start of the component's first robot; nothing if
 /// that has no truth.
 std::optional<core::Pose2> frame_of_truth(const TeamTask& task, int component);
 

@@ -51,7 +51,7 @@ std::string joins_text(const TeamTask& task, const TeamDrive& drive) {
   return text;
 }
 
-/// One line for all evidence on which the same two were joined, and taken apart at the same time.
+/// One line for all evidence on which the same two were joined, and separated at the same time.
 std::string taken_back_text(const TeamTask& task, const TeamDrive& drive) {
   std::string text;
   const std::vector<team::TakenBackJoin>& all = drive.team.joins_taken_back();
@@ -127,7 +127,7 @@ std::string map_table(const TeamTask& task, const TeamDrive& drive) {
   return text;
 }
 
-/// Whether the robot has a frame to itself at the end, in a team.
+/// Whether the robot, in a team, has a frame to itself at the end.
 bool is_alone(const TeamDrive& drive, std::size_t r) {
   const auto mates = std::count_if(drive.robots.begin(), drive.robots.end(), [&](const TeamDrive::Robot& robot) {
     return robot.component == drive.robots[r].component;

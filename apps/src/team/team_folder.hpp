@@ -9,8 +9,8 @@
 
 namespace helixnav::apps {
 
-/// Writes the run folder of a team (docs/team.md): a run folder robot_N for each robot, and for all of them map.csv,
-/// joins.csv, sightings.csv, summary.json and report.html.
+/// Writes the run folder of a team (docs/team.md): a run folder robot_N for each robot, and for the whole team
+/// map.csv, joins.csv, sightings.csv, summary.json and report.html.
 void write_team(const std::string& folder, bool overwrite, const runs::RunManifest& manifest, const TeamTask& task,
                 const TeamDrive& drive, const TeamEvaluation& evaluation);
 

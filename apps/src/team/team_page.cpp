@@ -13,7 +13,7 @@ namespace {
 constexpr std::array<const char*, 8> colours{"#1f77b4", "#d62728", "#2ca02c", "#9467bd",
                                              "#ff7f0e", "#8c564b", "#17becf", "#e377c2"};
 
-/// As the reports of the robots look (reports/page/report.css). Lines and dots keep their width on any screen.
+/// Styled like the reports of the robots (reports/page/report.css). Lines and dots keep their width on any screen.
 constexpr const char* style =
     ":root{color-scheme:light dark;--paper:#fff;--panel:#f6f7f9;--line:#d9dde3;--ink:#1b2330;--accent:#0b62a8}"
     "@media(prefers-color-scheme:dark){:root{--paper:#14181f;--panel:#1c222b;--line:#333c48;--ink:#e6eaf0;"

@@ -82,7 +82,7 @@ double misfit_m2(const core::Pose2& T_b_a, const std::vector<Eigen::Vector2d>& a
   return sum_m2 / static_cast<double>(a_m.size());
 }
 
-/// The rigid motion from a to b of least squares.
+/// The least-squares rigid motion from a to b.
 core::Pose2 fitted(const std::vector<Eigen::Vector2d>& a_m, const std::vector<Eigen::Vector2d>& b_m) {
   const Spread a = spread_of(a_m);
   const Spread b = spread_of(b_m);
@@ -99,10 +99,10 @@ core::Pose2 fitted(const std::vector<Eigen::Vector2d>& a_m, const std::vector<Ei
   return {shift_m.x(), shift_m.y(), turn_rad};
 }
 
-/// Where the phase begins: at the last clone, or, where a drive comes back to landmarks with an error of more than half a metre,
-/// where these put it, if they agree with each other. The solution is then looked for from a phase that is in its place and a drive before it
-/// that is not. A phase that sees the last landmarks of the drive and old ones tens of metres beside them stays where the drive has it: what fits both
-/// best may be turned by a radian.
+/// Where the phase begins: at the last clone or, if a drive comes back to landmarks with an error of more than half a metre, where these put it,
+/// provided they agree with each other. The solution is then sought from a phase that is in its place and an earlier drive that is not. A phase that
+/// sees the last landmarks of the drive and old ones tens of metres beside them stays where the drive has it: what fits both best may be turned by a
+/// radian.
 core::Pose2 start_of(const State& state, const PhaseFactor& factor, const core::Pose2& T_atlas_entry) {
   std::vector<Eigen::Vector2d> here_m, known_m;
   for (std::size_t i = 0; i < factor.shape.ids.size(); ++i) {
@@ -148,7 +148,7 @@ std::vector<int> variables_for(State& state, const PhaseFactor& factor) {
   return variables;
 }
 
-/// The start, where it is uncertain: a factor of the first clone relative to the map frame.
+/// The start, if it is uncertain: a factor of the first clone relative to the map frame.
 Part start_part(const State& state) {
   auto gaussian = std::make_shared<RelativeGaussian>();
   gaussian->information = state.start.covariance.inverse();
@@ -157,7 +157,7 @@ Part start_part(const State& state) {
   return {{state.world, state.variable_of_clone[0]}, std::move(gaussian), nullptr};
 }
 
-/// The phase whose leaf shares most states with a new one; the latest among equals.
+/// The phase whose leaf shares the most states with a new one; the latest on a tie.
 int closest_phase(const State& state, const std::vector<int>& variables) {
   std::vector<std::pair<int, int>> shared;  // phase, states
   for (const int v : variables) {
@@ -178,8 +178,8 @@ int closest_phase(const State& state, const std::vector<int>& variables) {
   return best;
 }
 
-/// On new ground, where nothing but the phase before is shared, the tree grows like a binary counter: beside the lowest node above
-/// the last leaf whose sibling is the larger. On old ground: beside the leaf.
+/// On new ground, where only the previous phase is shared, the tree grows like a binary counter: beside the lowest node above the
+/// last leaf whose sibling is the larger. On old ground: beside the leaf.
 int node_beside(const State& state, const std::vector<int>& variables, int phase) {
   const int last = static_cast<int>(state.phases.size()) - 1;
   int node = state.leaf_of_phase[State::index(phase)];

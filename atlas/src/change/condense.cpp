@@ -11,7 +11,7 @@
 namespace helixnav::atlas {
 namespace {
 
-/// How much of a phase's landmarks another has to have to be on the same ground.
+/// The share of a phase's landmarks that another has to hold to be on the same ground.
 constexpr double most_of_them = 0.75;
 
 bool was_condensed(const State& state, int phase) { return state.leaf(phase).host >= 0; }
@@ -41,7 +41,7 @@ std::vector<Sharing> on_ground_of(const State& state, int phase) {
   return sharing;
 }
 
-/// The phase before it that has most of its landmarks; −1: none has enough of them.
+/// The earlier phase that holds most of its landmarks; −1: none holds enough of them.
 int host_for(const State& state, int phase) {
   Sharing best{-1, 0};
   for (const Sharing& one : on_ground_of(state, phase)) {
@@ -50,7 +50,7 @@ int host_for(const State& state, int phase) {
   return best.phase;
 }
 
-/// No landmark is held by the phase alone but for those of the host.
+/// No landmark is held by the phase alone, except for those of the host.
 bool leaves_all_landmarks(const State& state, int phase, int host) {
   const std::vector<int> kept = landmarks_of(state.leaf(host));
   for (const int v : landmarks_of(state.leaf(phase))) {
@@ -59,8 +59,8 @@ bool leaves_all_landmarks(const State& state, int phase, int host) {
   return true;
 }
 
-/// How often the vehicle came, of the phases on some ground: one after another they are one visit, up to ten. Those before and after
-/// a phase share most of its landmarks, too, while the vehicle passes; where it stays or turns round and round, all do.
+/// How often the vehicle came, given the phases on some ground: consecutive ones are one visit, up to ten. Those before and after a
+/// phase also share most of its landmarks while the vehicle passes; where it stays or turns round and round, all do.
 int visits(const std::vector<int>& ground) {
   constexpr int longest = 10;
   int count = 0;
@@ -78,7 +78,7 @@ bool has_fix(const State& state, int phase) {
   return std::any_of(parts.begin(), parts.end(), [](const Part& part) { return part.fix != nullptr; });
 }
 
-/// A run that floats and can go without a loss: what it has seen, no other phase has or needs.
+/// A run that floats and can be dropped without loss: no other phase has or needs what it has seen.
 bool can_be_dropped(const State& state, const Run& run, int end) {
   for (int phase = run.first; phase <= run.last; ++phase) {
     if (phase == 0 || phase >= end || state.leaf(phase).revisits >= 0 || has_fix(state, phase)) return false;
@@ -110,7 +110,7 @@ bool condense_phase(State& state, int phase, int end) {
   return true;
 }
 
-/// Condenses one of the phases on the ground of `phase`, where there are too many. `end`: only phases before it.
+/// Condenses one of the phases on the ground of `phase`, if there are too many. `end`: only phases before it.
 bool condense_ground(State& state, int phase, int end) {
   if (was_condensed(state, phase)) return false;
   std::vector<int> ground{phase};

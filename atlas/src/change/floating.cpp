@@ -46,7 +46,7 @@ class Left {
   int phase_;
 };
 
-/// Phases that hang on `phase`: by a pose, or by a landmark.
+/// Phases connected to `phase`: by a pose, or by a landmark.
 std::vector<int> beside(const State& state, int phase) {
   std::vector<int> others{phase - 1, phase + 1};
   for (const int v : landmarks_of(state.leaf(phase))) {

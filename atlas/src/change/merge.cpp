@@ -66,7 +66,7 @@ void Atlas::merge(const std::vector<MergePair>& pairs) {
   for (const auto& [gone, kept] : pairs) {
     const int v = working_->variable_of_landmark[State::index(gone)];
     const int to = working_->variable_of_landmark[State::index(kept)];
-    if (v == to) continue;  // by a pair before
+    if (v == to) continue;  // merged by an earlier pair
     merge_variables(*working_, v, to);
     for (std::size_t id = 0; id < working_->variable_of_landmark.size(); ++id) {
       if (working_->variable_of_landmark[id] == v) working_->variable_of_landmark.write(id) = to;

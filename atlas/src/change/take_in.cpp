@@ -80,7 +80,7 @@ std::optional<MatrixXd> marginal(const MatrixXd& world, const RowOrder& order) {
   return H.bottomRightCorner(rest, rest) - below.transpose() * below;
 }
 
-/// A part that says nothing yet, about a new frame where the host begins. Its pose, which a part has to have, stays without
+/// A part without information yet, about a new frame where the host begins. Its pose, which a part must have, stays without
 /// information; the frame is held to the landmarks by a weight on its three motions, which it is free to meet.
 Part begun_part(State& state, int host, double weight) {
   const Leaf& leaf = state.leaf(host);

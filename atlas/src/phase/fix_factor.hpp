@@ -9,7 +9,7 @@
 namespace helixnav::atlas {
 
 /// A fix as a factor of a pose relative to the frame that it is given in, about `T_world_robot` (x, y, heading).
-/// Linear but for the antenna's arm.
+/// Linear except for the antenna's lever arm.
 RelativeGaussian fix_factor(const core::AbsoluteFix& fix, const Eigen::Vector3d& T_world_robot);
 
 }  // namespace helixnav::atlas

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Where blocks of the equations lie: pose 0 is the entry and has none, poses up to T−1 are in the chain, pose T is kept.
+/// Where blocks of the equations are: pose 0 is the entry and has none, poses up to T−1 are in the chain, pose T is kept.
 class Assembly {
  public:
   Assembly(PhaseEquations& equations, const PhaseShape& shape) : to_(equations), shape_(shape) {
@@ -74,7 +74,7 @@ class Assembly {
   }
 
  private:
-  /// Of an observation with N rows. Inverses of sizes that the compiler did not know were 8 % of a closing of Victoria Park.
+  /// For an observation with N rows. Inverses of sizes unknown to the compiler took 8 % of a loop closure on Victoria Park.
   template <int N>
   void add_rows(const core::PredictedObservation& h, const core::ObsVector& innovation, const core::ObsMatrix& R,
                 Index column, Index k) {
@@ -147,7 +147,7 @@ void eliminate_chain(PhaseEquations& equations) {
     equations.diagonal[k + 1] -= E.transpose() * E;
     equations.to_kept.middleRows<3>(3 * static_cast<Index>(k) + 3) -= E.transpose() * rows;
   }
-  if (poses == 0) return;  // one step: nothing between entry and exit; a product of no depth divides by zero in Eigen
+  if (poses == 0) return;  // one step: nothing between entry and exit; a product of zero depth divides by zero in Eigen
   equations.kept.selfadjointView<Eigen::Lower>().rankUpdate(equations.to_kept.transpose(), -1.0);
 }
 

@@ -45,7 +45,7 @@ RigidMotion fit(const State& state, const int* variables, const Eigen::Vector3d*
 
 bool is_far_frame(const State& state, int variable, std::size_t count) { return variable == state.world && count > 1; }
 
-/// Takes the chord of the map frame's position in motion.rest for what has moved at the centre of the part.
+/// Replaces the chord of the map frame's position in motion.rest by what has moved at the centre of the part.
 void rest_of_far_frame(const Eigen::Vector2d& was_m, Eigen::Index row, Motion& motion) {
   const Eigen::Vector2d to_center_m = motion.rigid.from_m - was_m;
   const double turn_rad = motion.rest[row + 2];

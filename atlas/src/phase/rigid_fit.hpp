@@ -19,10 +19,11 @@ struct RigidMotion {
   Eigen::Vector3d operator()(const Eigen::Vector3d& value, int dim) const;
 };
 
-/// The map frame may be a hundred kilometres away, and a part that turns by 1e-4 rad leaves it 10 m beside where it goes along. What the part
-/// measures of it are places of its own (fixes), so that only what the map frame has moved at the part's centre c counts: its point
-/// there by u, and its heading by φ. The rest of its position is what the linear measurements of the part take for that, u − φJ(c − p), and not
-/// the chord p' − p: the difference, φ²/2 times the distance, would turn the part by the force of its fixes at that lever.
+/// The map frame may be a hundred kilometres away, and a part that turns by 1e-4 rad leaves it 10 m from where it would be if it moved along.
+/// What the part measures relative to it are places of the part's own (fixes), so that only how the map frame has moved at the part's centre c
+/// counts: its point there by u, and its heading by φ. The rest of its position is what the linear measurements of the part assume for it,
+/// u − φJ(c − p), and not the chord p' − p: the difference, φ²/2 times the distance, would turn the part by the force of its fixes
+/// at that lever.
 struct FarFrame {
   Eigen::Index row = -1;                              ///< first of its rows; −1: not among the variables, or alone
   Eigen::Vector2d off_m = Eigen::Vector2d::Zero();    ///< u, in the frame linearised in
@@ -32,7 +33,7 @@ struct FarFrame {
 /// How far some variables have moved since they were linearised: the rigid motion that explains most of it, and the rest.
 struct Motion {
   RigidMotion rigid;
-  Eigen::VectorXd rest;  ///< in the frame linearised in; empty when nothing moved
+  Eigen::VectorXd rest;  ///< in the frame of linearisation; empty when nothing moved
   double rest_m = 0.0;   ///< largest |rest|, headings weighed by the span
   double bend_m = 0.0;   ///< second-order error of linearising there: max |rest|² / span
   double reach_m = 0.0;  ///< farthest variable from the centre, the map frame left out

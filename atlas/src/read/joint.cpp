@@ -15,8 +15,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Calls act(rows, columns) for the tiles on and below the diagonal, as ranges: across a large matrix one goes tile by tile, because
-/// the elements of a row lie far from each other.
+/// Calls act(rows, columns) for the tiles on and below the diagonal, as ranges: a large matrix is traversed tile by tile, because
+/// the elements of a row are far apart in memory.
 template <class Act>
 void for_lower_tiles(Index size, const Act& act) {
   constexpr Index tile = 64;
@@ -40,8 +40,8 @@ void mirror_lower(Eigen::Ref<MatrixXd> P) {
   });
 }
 
-/// A covariance of the map frame and of others, in memory that the covariance of the others alone can stay in: of a large map, the
-/// largest thing there is, there is room for one.
+/// A covariance of the map frame and of others, in memory that can go on to hold the covariance of the others alone: for a large
+/// map this is the largest object there is, and there is room for one.
 class Joint {
  public:
   explicit Joint(Index size) : size_(size), memory_(size - 3, (size * size + spare_rows) / (size - 3) + 1) {
@@ -94,8 +94,8 @@ class Joint {
   MatrixXd memory_;
 };
 
-/// Forward solves on the union of some paths. Columns are laid out in the order in which the tree comes to their variables,
-/// so that those below a node are next to each other.
+/// Forward solves on the union of some paths. Columns are laid out in the order in which the tree reaches their variables,
+/// so that those below a node are contiguous.
 class PathSolve {
  public:
   /// `variables`: each once.

@@ -17,7 +17,7 @@ int find_named(const State& state, core::LandmarkId id) {
 
 core::Pose2 pose_of(const Eigen::Vector3d& value) { return core::Pose2(value); }
 
-/// A clone in the atlas' own frame. One between two phases that were condensed is where the second began, seen from its host.
+/// A clone in the atlas' own frame. One between two condensed phases is where the second began, as seen from its host.
 core::Pose2 T_atlas_clone(const State& state, Estimates& estimates, int k) {
   const int v = state.variable_of_clone[State::index(k)];
   if (state.variable(v).at >= 0 || k == static_cast<int>(state.phases.size())) return pose_of(estimates.of(v));
@@ -109,7 +109,8 @@ std::vector<core::Pose2> poses_along(const Leaf& leaf, const core::Pose2& T_map_
   return poses;
 }
 
-/// Since then the exit may have moved by what a phase is derived again for: the poses follow it, each by its share of the steps.
+/// Since then the exit may have moved by as much as makes a phase be derived again:
+/// the poses follow it, each by its share of the steps.
 void follow_exit(const core::Pose2& T_map_exit, std::vector<core::Pose2>& poses) {
   if (poses.empty()) return;
   const Eigen::Vector2d moved_m = T_map_exit.position_m() - poses.back().position_m();
@@ -121,7 +122,7 @@ void follow_exit(const core::Pose2& T_map_exit, std::vector<core::Pose2>& poses)
   }
 }
 
-/// `clone(k)`: where clone k is. One that was condensed stays as it lies in its host.
+/// `clone(k)`: where clone k is. A condensed one stays where it is in its host.
 template <class Clone>
 std::vector<core::Pose2> poses_between(const Leaf& leaf, int phase, const Clone& clone) {
   if (leaf.host >= 0) return poses_along(leaf, core::compose(clone(leaf.host), leaf.T_host_entry));

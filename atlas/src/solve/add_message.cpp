@@ -16,7 +16,7 @@ class Message {
  public:
   Message(const std::vector<double>& data, Index rows) : data_(data.data()), rows_(rows) {}
 
-  /// Element (0, j) of a column whose elements above the diagonal are not there.
+  /// Element (0, j) of a column whose elements above the diagonal are not stored.
   const double* column(Index j) const { return data_ + j * rows_ - j * (j + 1) / 2; }
 
   Eigen::VectorXd product(const Eigen::VectorXd& e) const {
@@ -55,7 +55,7 @@ void turn_far_frame(const FarFrame& world, Eigen::VectorXd& rhs) {
   if (world.row >= 0) rhs[world.row + 2] += world.lever_m.dot(rhs.segment<2>(world.row));
 }
 
-/// The same of a message: TᵀΛT, T the identity but for the lever above the heading's diagonal.
+/// The same for a message: TᵀΛT, T the identity except for the lever above the heading's diagonal.
 std::vector<double> turn_far_frame(const FarFrame& world, std::vector<double> data, Index rows) {
   const auto at = [&](Index i, Index j) -> double& {
     return data[static_cast<std::size_t>(std::min(i, j) * rows - std::min(i, j) * (std::min(i, j) + 1) / 2 +
@@ -75,8 +75,8 @@ std::vector<double> turn_far_frame(const FarFrame& world, std::vector<double> da
 }
 
 /// What is not rigid turns with the frame that it is measured in. That term of the Jacobian, E = Dᵀ − (J·rest)·fᵀ with f the gradient
-/// of the fit's angle, makes a rigid motion from where the part now is a null vector of EᵀΛE exactly; without it every bent part
-/// would hold the heading of the whole a little, and thousands of them held it more firmly than the drive knew it.
+/// of the fit's angle, makes a rigid motion from where the part is now an exact null vector of EᵀΛE; without it every bent part would
+/// hold the heading of the whole slightly, and thousands of them held it more firmly than the drive determines it.
 void let_turn(const Eigen::VectorXd& f, const Eigen::VectorXd& turned_pull, double weight, const std::vector<Index>& to,
               Eigen::Map<Eigen::MatrixXd> F) {
   for (std::size_t j = 0; j < to.size(); ++j) {

@@ -39,7 +39,7 @@ double chi2_of(const State& state, const Part& part) {
   return g.chi2 + delta.dot(g.information * delta) - 2.0 * g.vector.dot(delta);
 }
 
-/// The least χ² that a part can have. Where it was derived it may have more: a fix that came where the map was wrong, a phase derived
+/// The least χ² that a part can have. It may have more where it was derived: a fix that came where the map was wrong, a phase derived
 /// while the map bent it.
 double least_chi2_of(const RelativeGaussian& g) { return g.chi2 - g.vector.dot(g.information.ldlt().solve(g.vector)); }
 
@@ -55,10 +55,10 @@ LeastChi2 least_chi2(const State& state) {
   return least;
 }
 
-/// Where Cauchy's cost begins to bend: far above what noise makes of a part.
+/// Where Cauchy's cost begins to bend: far above the χ² that noise gives a part.
 double scale_of(const Part& part) { return 25.0 * static_cast<double>(part.gaussian->mean.size()); }
 
-/// Cauchy's cost: what was torn apart by a closing pulls the less the farther.
+/// Cauchy's cost: the farther a loop closure has torn something apart, the less it pulls.
 double cost_of(const State& state, const LeastChi2& least) {
   double cost = 0.0;
   for (std::size_t k = 0; k < state.phases.size(); ++k) {
@@ -71,7 +71,7 @@ double cost_of(const State& state, const LeastChi2& least) {
   return cost;
 }
 
-/// Gives every part the weight with which its own cost goes on as Cauchy's does here. The least of them, and χ² so weighed.
+/// Gives every part the weight with which its own cost continues as Cauchy's does here. The least weight, and χ² so weighted.
 struct Weighed {
   double least = 1.0;
   double chi2 = 0.0;
@@ -109,7 +109,7 @@ void step(State& state, const std::vector<int>& nodes, double share) {
   }
 }
 
-/// Goes so much of the way that the cost falls by a tenth of what the linear problem promises; returns what was promised.
+/// Takes a step short enough for the cost to fall by a tenth of what the linear problem promises; returns the promise.
 double step_down(State& state, const std::vector<int>& nodes, double chi2, const LeastChi2& least) {
   constexpr double least_kept = 0.1, smallest_share = 1e-4, rounding = 1e-9;
   const double promised = chi2 - state.node(state.root).front->message.back();
@@ -127,7 +127,7 @@ double step_down(State& state, const std::vector<int>& nodes, double chi2, const
 }  // namespace
 
 void damp(State& state, int& redone) {
-  constexpr double near = 1.0;  // of a χ² of a thousand and more
+  constexpr double near = 1.0;  // out of a χ² of a thousand and more
   constexpr double no_longer_torn = 0.5;
   finish_descent(state);
   Estimates estimates(state);

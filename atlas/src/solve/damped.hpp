@@ -5,12 +5,11 @@
 
 namespace helixnav::atlas {
 
-/// Brings the values near the solution from where a closing has torn them apart. Every node is linearised at the present values, so that
-/// no message is carried far; every part is weighed as Cauchy's cost weighs it, since what is torn by tens of metres is linearised
-/// where its lever arms are wrong and must not bend the drive; and of the step so much is made, halved as often as need be, as keeps a tenth
-/// of what the linear problem promises. Ends where nothing is torn and a step promises no more than one of χ²; then
-/// all is to be eliminated again. Cost: the whole tree a round. NumericalError where no step leads nearer, or after
-/// options.max_rounds. Test: atlas/damped_test.cpp.
+/// Brings the values near the solution after a loop closure has torn them apart. Every node is linearised at the current values, so that no
+/// message is carried far. Every part is weighted as Cauchy's cost weights it, since what is torn by tens of metres is linearised with wrong
+/// lever arms and must not bend the drive. The step is halved as often as needed until the cost falls by a tenth of what the linear problem
+/// promises. Ends when nothing is torn and a step promises no more than one unit of χ²; everything then has to be eliminated again. Cost:
+/// the whole tree per round. NumericalError if no step leads nearer, or after options.max_rounds. Test: atlas/damped_test.cpp.
 void damp(State& state, int& redone);
 
 }  // namespace helixnav::atlas

@@ -15,17 +15,17 @@ namespace helixnav::atlas {
 Values solve_down(const State& state, const FrontShape& shape, const Front& front, const Motion& boundary,
                   double share = 1.0);
 
-/// Estimates as they follow from the top of the tree. Settling leaves parts of the map alone that have moved as a whole; their
-/// values are brought along here when they are asked for, one path at a time, and the state stays as it is.
+/// Estimates as they follow from the top of the tree. Settling leaves alone those parts of the map that have moved as a whole;
+/// their values are brought up to date here on request, one path at a time, and the state stays as it is.
 class Estimates {
  public:
   explicit Estimates(const State& state) : state_(state) {}
 
-  /// Makes sure of a node and all above it.
+  /// Brings a node and all above it up to date.
   void reach(int node);
-  /// Makes sure of a node whose parent was reached.
+  /// Brings up to date a node whose parent was reached.
   void update(int node);
-  /// Makes sure of the whole tree, or a subtree whose parent was reached.
+  /// Brings the whole tree up to date, or a subtree whose parent was reached.
   void update_all(int node);
 
   /// Of a variable whose node was reached, or that no node has yet.
@@ -35,14 +35,14 @@ class Estimates {
 
   Values of_boundary(int node) const;
 
-  /// Writes what was brought along.
+  /// Writes the values that were brought up to date.
   void store(State& state) const;
 
  private:
   const State& state_;
   std::unordered_map<int, Eigen::Vector3d> moved_;
   std::unordered_set<int> reached_;
-  std::vector<int> changed_;  // nodes, in the order they were brought along
+  std::vector<int> changed_;  // nodes, in the order they were brought up to date
 };
 
 }  // namespace helixnav::atlas

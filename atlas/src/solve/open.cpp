@@ -21,7 +21,7 @@ bool is_bent(const State& state, const Motion& motion) {
   return motion.rest_m > still_m && motion.bend_m > state.options.bend_m;
 }
 
-/// The parent took the child's message as it lay then; turned on by φ, what is `reach` away is off by φ²/2 of that.
+/// The parent took the child's message as it was then; turned on by φ, what is `reach` away is off by φ²/2 of that.
 bool is_turned(const State& state, const Motion& motion, double was_turned_rad) {
   const double turn_rad = std::abs(core::wrap_to_pi(motion.rigid.turn_rad - was_turned_rad));
   const double off_m = turn_rad * (0.5 * turn_rad * motion.reach_m + motion.rest_m);

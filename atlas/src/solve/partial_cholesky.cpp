@@ -30,7 +30,7 @@ void solve_down_columns(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterS
 }
 
 void add_gram(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& Y, double* P, Eigen::Index stride) {
-  constexpr Eigen::Index at_once = 128;  // what is packed of as many rows lies in the first cache
+  constexpr Eigen::Index at_once = 128;  // the packed copy of this many rows fits in the first-level cache
   for (Eigen::Index first = 0; first < Y.rows(); first += at_once) {
     const auto some = Y.middleRows(first, std::min(at_once, Y.rows() - first));
     core::add_product_lower(P, stride, core::Panels::of_transposed(some, core::left_width),

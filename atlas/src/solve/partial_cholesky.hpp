@@ -14,11 +14,12 @@ using Square = Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 bool partial_cholesky(Square F, Eigen::Index ne);
 
 /// [Y; R] ← [L₁₁⁻¹Y; R − L₂₁L₁₁⁻¹Y] in the first rows of F, as many as L = [L₁₁; L₂₁] has, L₁₁ lower triangular. F has
-/// `spare_rows` more at least, finite ones. Test: atlas/joint_test.cpp.
+/// at least `spare_rows` further rows, with finite values. Test: atlas/joint_test.cpp.
 void solve_down_columns(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& L, Eigen::MatrixXd& F);
-constexpr Eigen::Index spare_rows = 7;  ///< the products go by eight rows
+constexpr Eigen::Index spare_rows = 7;  ///< the products work on eight rows at a time
 
-/// Lower triangle of P += YᵀY, P with this stride in a larger array that has `spare_rows` more rows; the upper one gets any value.
+/// Lower triangle of P += YᵀY, P with this stride in a larger array that has `spare_rows` more rows; the upper one
+/// is left with arbitrary values.
 void add_gram(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& Y, double* P, Eigen::Index stride);
 
 }  // namespace helixnav::atlas

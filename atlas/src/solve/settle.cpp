@@ -23,7 +23,7 @@ bool redo(State& state, int id, Workspace& workspace, int& redone, const std::fu
   return !should_stop || !should_stop();
 }
 
-/// One way up and one way down. False when it was stopped.
+/// One upward and one downward pass. False when it was stopped.
 bool sweep(State& state, int& redone, const std::function<bool()>& should_stop) {
   if (!state.descending) {
     const bool stopped = !redo_dirty(state, redone, should_stop);
@@ -41,7 +41,7 @@ bool sweep(State& state, int& redone, const std::function<bool()>& should_stop) 
   return true;
 }
 
-/// Ways up and down until nothing is bent. False when it was stopped.
+/// Upward and downward passes until nothing is bent. False when it was stopped.
 bool go_on(State& state, int& redone, const std::function<bool()>& should_stop) {
   while (!state.is_clean()) {
     if (++state.rounds > state.options.max_rounds) {
@@ -63,8 +63,8 @@ bool redo_dirty(State& state, int& redone, const std::function<bool()>& should_s
   return redo(state, state.root, workspace, redone, should_stop);
 }
 
-/// What the ordinary way does not find is looked for again by steps that are cut, from where it was begun and not from where it
-/// lost its way.
+/// If the ordinary passes find no solution, it is sought again by shortened steps, from where settling began and not from where
+/// the passes went astray.
 bool Atlas::settle(const std::function<bool()>& should_stop) {
   if (working_->root < 0) return true;
   if (working_->begun == nullptr) working_->begun = std::make_shared<const State>(*working_);

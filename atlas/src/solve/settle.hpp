@@ -7,10 +7,10 @@
 
 namespace helixnav::atlas {
 
-/// Draws the estimates of a node from its front and those above, decides what is bent, and which children follow.
+/// Computes a node's estimates from its front and those above, and decides what is bent and which children follow.
 void open(State& state, int node);
 
-/// Ends a way down that was stopped, so that all values belong together. Before every change.
+/// Finishes a downward pass that was stopped, so that all values are consistent. Before every change.
 void finish_descent(State& state);
 
 /// Eliminates dirty nodes, children first. False when it was stopped.

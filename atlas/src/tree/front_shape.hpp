@@ -7,8 +7,8 @@
 
 namespace helixnav::atlas {
 
-/// Decides again what a node eliminates, from its children or its leaf: a variable goes where the last leaf that holds it has
-/// come together. The node is marked as without front.
+/// Decides again what a node eliminates, from its children or its leaf: a variable is eliminated where the last leaf that
+/// holds it joins the others. The node is marked as having no front.
 void shape_front(State& state, int node);
 
 /// The same for all nodes given and all above them, children first, and marks them dirty.

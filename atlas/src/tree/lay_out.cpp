@@ -71,7 +71,7 @@ class Layout {
     return best;
   }
 
-  /// States shared by both sides, weighed by imbalance, at each place from 30 to 70 % of the order.
+  /// States shared by both sides, weighted by imbalance, at each place from 30 to 70 % of the order.
   Cut best_cut(const Order& order) {
     const std::size_t n = order.size();
     first_.clear();

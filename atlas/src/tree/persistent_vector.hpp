@@ -19,7 +19,7 @@ class PersistentVector {
   PersistentVector() = default;
   PersistentVector(const PersistentVector& other)
       : root_(other.root_), size_(other.size_), levels_(other.levels_), owner_(new_owner()) {
-    other.owner_ = new_owner();  // neither writes any more into what both hold
+    other.owner_ = new_owner();  // from now on neither writes into what both hold
   }
   PersistentVector& operator=(const PersistentVector& other) {
     PersistentVector copy(other);
@@ -41,7 +41,7 @@ class PersistentVector {
     return block->values[digit(index, 0)];
   }
 
-  /// The element for writing. The reference is good until this vector is copied.
+  /// The element for writing. The reference is valid until this vector is copied.
   T& write(std::size_t index) {
     std::shared_ptr<Block>* block = &root_;
     for (int level = levels_; level > 0; --level) block = &own(*block, level).below[digit(index, level)];

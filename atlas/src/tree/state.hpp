@@ -17,14 +17,14 @@
 
 namespace helixnav::atlas {
 
-/// Values of variables, poses (x, y, heading), points (x, y, 0), in the atlas' own frame. That frame is arbitrary: the map
-/// frame is where variable `State::world` says.
+/// Values of variables in the atlas' own frame: poses (x, y, heading), points (x, y, 0). That frame is arbitrary: the map
+/// frame is given by variable `State::world`.
 using Values = std::vector<Eigen::Vector3d>;
 
 struct Variable {
   int dim = 0;     ///< 3: pose, 2: point
   int name = -1;   ///< of a landmark or a clone; −1: none, or forgotten
-  int leaves = 0;  ///< that hold it
+  int leaves = 0;  ///< number of leaves that hold it
   int at = -1;     ///< node that eliminates it
 };
 
@@ -41,8 +41,8 @@ struct Leaf {
   std::shared_ptr<const PhaseFactor> phase;  ///< the first part
   std::vector<Part> parts;
   int revisits = -1;  ///< the part that holds what other phases have seen here (condense), about a frame of its own
-  int host = -1;      ///< of a phase that was condensed: the one that holds what it has seen, …
-  core::Pose2 T_host_entry;  ///< … and where it began, from where the host begins
+  int host = -1;      ///< for a condensed phase: the phase that holds what it has seen, …
+  core::Pose2 T_host_entry;  ///< … and where it began, relative to where the host begins
 };
 
 /// The Gaussian of a phase, which lives as long as either.
@@ -50,11 +50,11 @@ inline std::shared_ptr<const RelativeGaussian> gaussian_of(const std::shared_ptr
   return {phase, &phase->gaussian};
 }
 
-/// What a node eliminates and what it passes on, without numbers.
+/// Which variables a node eliminates and which it passes on, without numbers.
 struct FrontShape {
   std::vector<int> variables;                  ///< eliminated ones, then the boundary, each increasing
   std::vector<int> offsets;                    ///< first row of each
-  std::vector<int> counts;                     ///< leaves of the subtree that hold each
+  std::vector<int> counts;                     ///< number of leaves of the subtree that hold each
   int eliminated = 0;                          ///< how many of `variables`
   int ne = 0;                                  ///< rows eliminated
   int nb = 0;                                  ///< rows of the boundary
@@ -63,7 +63,7 @@ struct FrontShape {
   int boundary() const { return static_cast<int>(variables.size()) - eliminated; }
 };
 
-/// A disk that holds the landmarks eliminated in a subtree.
+/// A disk that contains the landmarks eliminated in a subtree.
 struct Disk {
   Eigen::Vector2d center_m = Eigen::Vector2d::Zero();
   double radius_m = -1.0;  ///< negative: empty
@@ -75,7 +75,7 @@ struct Front {
   std::vector<double> message;  ///< lower triangle of (nb+1)×(nb+1), column by column; last row η, last corner χ²
   Values linearised_at;         ///< in the order of FrontShape::variables
   std::array<double, 2> child_turn_rad{0.0, 0.0};  ///< by which the children's messages were turned
-  Disk landmarks;                                  ///< where `linearised_at` has them
+  Disk landmarks;                                  ///< where `linearised_at` puts them
 };
 
 struct TreeNode {
@@ -83,7 +83,7 @@ struct TreeNode {
   std::array<int, 2> child{-1, -1};
   int phase = -1;  ///< of a leaf
   int leaves = 1;
-  bool dirty = true;   ///< front out of date; so are those above, while values of its variables are not
+  bool dirty = true;   ///< front out of date, as are those above; the values of its variables are not
   bool fresh = false;  ///< front new, estimates not yet drawn from it
   std::shared_ptr<const FrontShape> shape;
   std::shared_ptr<const Front> front;
@@ -102,16 +102,16 @@ struct State {
   PersistentVector<std::shared_ptr<const Leaf>> phases;
   PersistentVector<int> leaf_of_phase;
   PersistentVector<TreeNode> nodes;
-  int free_node = -1;  ///< first of a list of nodes that no tree has any more, linked by their parents
+  int free_node = -1;  ///< head of a list of nodes no longer in any tree, linked by their parents
   int condensed = 0;   ///< phases up to here have been looked at by condense
   int root = -1;
-  int world = -1;  ///< variable that stands for the map frame
+  int world = -1;  ///< variable that represents the map frame
 
-  bool descending = false;   ///< settle is in its way down
+  bool descending = false;   ///< settle is on its way down
   std::vector<int> to_open;  ///< a stack
   int rounds = 0;
   std::shared_ptr<const State>
-      begun;  ///< where settling was begun that was stopped and not gone on with, and nothing changed since
+      begun;  ///< where settling began, if it was stopped and not resumed, and nothing has changed since
 
   bool is_leaf(int node) const { return nodes[index(node)].phase >= 0; }
   bool is_clean() const { return root < 0 || (!descending && !nodes[index(root)].dirty); }
@@ -132,13 +132,13 @@ std::vector<int> landmarks_of(const Leaf& leaf);
 /// A variable that no phase holds yet.
 int add_variable(State& state, int dim, int name, const Eigen::Vector3d& value);
 
-/// A node that no tree has yet.
+/// A node not yet in any tree.
 int add_node(State& state, const TreeNode& node);
 
 /// Marks a node and all above it.
 void mark_dirty(State& state, int node);
 
-/// Present values of a front's variables [begin, end).
+/// Current values of a front's variables [begin, end).
 Values values_of(const State& state, const FrontShape& shape, int begin, int end);
 
 }  // namespace helixnav::atlas

@@ -12,7 +12,7 @@ ReservedMatrix product(const core::Panels& left, const core::Panels& right) {
   return result;
 }
 
-/// e·M·fᵀ for a symmetric M of which the lower triangle is given. Weights that no update has reached are left out.
+/// e·M·fᵀ for a symmetric M given by its lower triangle. Weights that no update has reached are left out.
 void add_both_sides(const Eigen::MatrixXd& e, const Eigen::MatrixXd& M, const Eigen::MatrixXd& f,
                     Eigen::MatrixXd& sum) {
   const std::vector<int> touched = columns_not_zero(M);

@@ -15,7 +15,7 @@ constexpr std::size_t many = 128;  ///< passive landmarks that are read at once
 
 ReservedMatrix zeros(Eigen::Index rows, Eigen::Index cols) {
   ReservedMatrix matrix;
-  matrix.reserve(rows, cols);  // exactly: of a whole map's joint covariance there is no room for more
+  matrix.reserve(rows, cols);  // exactly: for a whole map's joint covariance there is no room to spare
   matrix.resize(rows, cols);
   return matrix;
 }
@@ -65,8 +65,8 @@ void add_between(const Eigen::MatrixXd& e, const core::Panels& M, ReservedMatrix
 
 }  // namespace
 
-/// Covariances of many passive landmarks with one another, written where they belong: of a whole map there is no room for a
-/// second matrix of its size.
+/// Covariances of many passive landmarks with one another, written where they belong: for a whole map there is no room for
+/// a second matrix of its size.
 void CompressedEkf::fill_own_of_many(const std::vector<int>& slots, const std::vector<int>& rows,
                                      const Eigen::MatrixXd& e, Eigen::MatrixXd& C) const {
   const Eigen::MatrixXd M = active_.M.view().selfadjointView<Eigen::Lower>();
@@ -129,13 +129,13 @@ core::JointGaussian CompressedEkf::joint(const std::vector<core::LandmarkId>& id
     return result;
   }
   const Eigen::Index rows = e.rows();
-  const bool has_pairs = passive_slots.size() > 1;  // a landmark's own block needs no phase read again
+  const bool has_pairs = passive_slots.size() > 1;  // a landmark's own block does not need any phase read again
   Eigen::MatrixXd own = has_pairs ? phase_start_blocks(passive_slots) : Eigen::MatrixXd::Zero(rows, rows);
   for (std::size_t i = 0; i < passive_slots.size(); ++i) {
     const auto row = 2 * static_cast<Eigen::Index>(i);
     own.block<2, 2>(row, row) = phases_.back().own_covariance_m2.middleRows<2>(2 * passive_slots[i]);
   }
-  constexpr std::size_t few = 4;  // M is then read once in place; to form and pack it costs more
+  constexpr std::size_t few = 4;  // M is then read once in place; forming and packing it costs more
   if (passive_slots.size() <= few) {
     add_both_sides_of_few(e, active_.M.view(), own);
   } else {

@@ -59,7 +59,7 @@ std::vector<core::PointGaussian> CompressedEkf::marginals(const std::vector<core
   return points;
 }
 
-/// Some at a time, so that what is in between is no larger than what an update has.
+/// Some at a time, so that the intermediate matrices are no larger than those of an update.
 std::vector<core::PointGaussian> CompressedEkf::passive_marginals(const std::vector<int>& slots) const {
   constexpr std::size_t at_once = 128;
   std::vector<core::PointGaussian> points;
@@ -104,13 +104,13 @@ double CompressedEkf::landmark_sigma_bound_m(core::LandmarkId id) const {
                        (phases_.back().basis.view().middleRows<2>(2 * place.index) * active_.theta).norm());
 }
 
-/// Of a passive landmark whose mean has moved by moved_m since the phase began.
+/// For a passive landmark whose mean has moved by moved_m since the phase began.
 double CompressedEkf::sigma_bound_m(int slot, double moved_m) const {
   const Phase& phase = phases_.back();
   const auto own = phase.own_covariance_m2.middleRows<2>(2 * slot);
   const double start_m = std::sqrt(std::max(0.0, own(0, 0) + own(1, 1)));
   if (options_.retraction == Retraction::standard) return start_m;
-  constexpr double there_and_back = 2.0;  // the way of a mean over all updates is longer than what is left of it
+  constexpr double there_and_back = 2.0;  // the path of a mean over all updates is longer than what is left of it
   const double heading_rad = std::sqrt(std::max(phase.start_heading_variance_rad2, active_.P.view()(2, 2)));
   return start_m + there_and_back * moved_m * heading_rad;
 }

@@ -7,7 +7,7 @@
 namespace helixnav::cekf {
 namespace {
 
-/// Rows of a landmark, lying as columns: e·θ, by which its mean has moved in this phase, and e·A, its covariance with the pose.
+/// Rows of a landmark, as columns: e·θ, by which its mean has moved in this phase, and e·A, its covariance with the pose.
 using Reached = Eigen::Matrix<double, 4, 2>;
 
 /// Column after column, as the basis lies in memory; the second of an anchor's two is the first turned by a right angle.

@@ -9,7 +9,7 @@
 namespace helixnav::cekf {
 
 std::vector<CompressedEkf::NamedPlace>::const_iterator CompressedEkf::from_name(core::LandmarkId id) const {
-  // std::lower_bound without its branches, which no processor foretells: this is in every look at a landmark.
+  // std::lower_bound without its branches, which no processor can predict: every landmark look-up uses this.
   auto first = places_.begin();
   auto left = static_cast<std::ptrdiff_t>(places_.size());
   while (left > 1) {

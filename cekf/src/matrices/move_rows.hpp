@@ -15,7 +15,7 @@ struct MovedRows {
   Eigen::Index to;
 };
 
-/// In each column, what is in the rows `from` comes to be in the rows `to`; all others are zero. `column` has room for one
+/// In each column, the contents of the rows `from` move to the rows `to`; all others are zero. `column` has room for one
 /// of them. No allocation.
 inline void move_rows(const std::vector<MovedRows>& moves, Eigen::VectorXd& column, ReservedMatrix& matrix) {
   auto view = matrix.view();

@@ -10,7 +10,7 @@
 
 namespace helixnav::cekf {
 
-// Whoever exchanges filters relies on it: half a move that throws would leave neither.
+// Code that swaps filters relies on it: half a move that throws would leave neither.
 static_assert(std::is_nothrow_move_constructible_v<CompressedEkf> && std::is_nothrow_move_assignable_v<CompressedEkf>);
 
 namespace {

@@ -67,7 +67,7 @@ CompressedEkf::BeforeActivations CompressedEkf::before_activations(bool all_acti
   return before;
 }
 
-/// Takes back the activations since then, and a landmark that was begun and not named: both only append.
+/// Undoes the activations since then, and a landmark that was begun and not named: both only append.
 void CompressedEkf::undo_activations(BeforeActivations& before) {
   Phase& phase = phases_.back();
   const int undone = active_count() - before.active;

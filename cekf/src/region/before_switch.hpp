@@ -12,7 +12,7 @@
 
 namespace helixnav::cekf {
 
-/// What closing a phase changes of the filter before the next one stands.
+/// What closing a phase changes in the filter before the next one is in place.
 struct CompressedEkf::BeforeSwitch {
   std::vector<int> slots;
   std::vector<int> free_slots;

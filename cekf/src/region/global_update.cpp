@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The end of a phase: what its weights say is written down, and applied to the passive covariance when nothing needs to
-// be undone any more.
+// The end of a phase: what its weights say is recorded, and applied to the passive covariance when nothing needs to be
+// undone any more.
 #include <algorithm>
 #include <memory>
 #include <sstream>
@@ -85,8 +85,8 @@ ReservedMatrix CompressedEkf::end_columns(int slots) const {
   return columns;
 }
 
-/// The same where nothing is passive, which the filter holds already, with its rows in another order, and which is large:
-/// not copied. The covariance of the vehicle alone stays behind.
+/// The same when nothing is passive: the filter already holds this, with its rows in another order, and it is large, so
+/// it is not copied. The covariance of the vehicle alone stays behind.
 std::shared_ptr<const ReservedMatrix> CompressedEkf::hand_over_covariance(int slots, BeforeSwitch& before) {
   const int n = active_.dimension();
   std::vector<MovedRows> moves = to_rows_of_slots(active_.slots);
@@ -123,7 +123,7 @@ void CompressedEkf::take_back_covariance(BeforeSwitch& before) {
   std::swap(active_.P, P);
 }
 
-/// An own variance that has become negative or is not finite: nothing of such a phase may be written down.
+/// A landmark's own variance that has become negative or is not finite: nothing of such a phase may be recorded.
 void CompressedEkf::check_own_covariances(const Phase& next) const {
   for (const auto& [id, place] : places_) {
     const bool is_active = place.where == Whereabouts::active;
@@ -171,8 +171,8 @@ std::shared_ptr<const ReservedMatrix> CompressedEkf::close_phase(Phase& next, Be
   return columns;
 }
 
-/// Closed phases before `until` become part of the passive covariance. Whatever allocates comes first; packed is one phase
-/// after the other, because a search that ends may have kept hundreds.
+/// Closed phases before `until` become part of the passive covariance. Whatever allocates comes first; phases are packed
+/// one after the other, because a search that ends may have kept hundreds.
 void CompressedEkf::absorb_closed_phases(long until) {
   std::size_t count = 0;
   std::size_t dead = 0;

@@ -38,7 +38,7 @@ std::vector<int> all_columns(Eigen::Index count) {
   return columns;
 }
 
-/// Where the columns of a slot stand among those asked for, and the first closed phase that they have to be carried over.
+/// Where the columns of a slot are among those asked for, and the first closed phase that they have to be carried over.
 struct Carried {
   int slot;
   Eigen::Index column;
@@ -61,10 +61,10 @@ ReservedMatrix change_of_columns(const Phase& phase, const core::Panels& respons
   return change;
 }
 
-/// Carries these columns of the map's covariance over a closed phase that did not write their slots; for all of them the phase is
-/// packed once.
+/// Carries these columns of the map's covariance over a closed phase that did not write their slots; the phase is packed once for
+/// all of them.
 void replay_on_columns(const Phase& phase, const std::vector<Carried>& carried, Eigen::Ref<Eigen::MatrixXd> columns) {
-  constexpr std::size_t few = 2;  // to pack the phase for them costs more than to go through it once
+  constexpr std::size_t few = 2;  // packing the phase for them costs more than going through it once
   constexpr std::size_t at_once = 128;
   core::Panels response(core::left_width);
   if (carried.size() > few) response.pack(phase.response);
@@ -107,7 +107,7 @@ void overwrite_written(const Phase& phase, const std::vector<int>& rows, const s
 
 /// Carries the covariance of the slots, its lower triangle, over a closed phase.
 void replay_on_blocks(const Phase& phase, const std::vector<int>& slots, Eigen::MatrixXd& blocks) {
-  if (!phase.touched.empty()) {  // a product of no depth ends in a division by zero in Eigen
+  if (!phase.touched.empty()) {  // a product of zero depth ends in a division by zero in Eigen
     const Eigen::MatrixXd response = rows_of(phase.response, slots, all_columns(phase.response.cols()));
     const Eigen::MatrixXd basis = rows_of(phase.basis.view(), slots, phase.touched);
     blocks.triangularView<Eigen::Lower>() += response * basis.transpose();

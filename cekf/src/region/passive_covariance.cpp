@@ -78,7 +78,7 @@ void PassiveCovariance::add_symmetric_product(const core::Panels& left, const co
   }
 }
 
-/// Tile by tile, because the panels of two tiles, and the tile, stay in a second-level cache meanwhile.
+/// Tile by tile, so that the panels of two tiles, and the tile, stay in the second-level cache meanwhile.
 void PassiveCovariance::add_to_tile(int I, int J, const core::Panels& left, const core::Panels& right) {
   constexpr int lefts = tile / static_cast<int>(core::left_width);
   constexpr int rights = tile / static_cast<int>(core::right_width);

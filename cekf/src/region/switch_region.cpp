@@ -21,7 +21,7 @@ std::vector<MovedRows> to_rows_of_landmarks(const std::vector<int>& slots) {
 }  // namespace
 
 Eigen::Vector2i CompressedEkf::cell_of(const Eigen::Vector2d& point_m) const {
-  // Beyond the range of int the cast would be anything; half of it leaves room for the neighbours of the last cell.
+  // Beyond the range of int the cast gives anything; half of it leaves room for the neighbours of the last cell.
   constexpr double last = 1 << 30;
   return (point_m / options_.cell_side_m).array().floor().max(-last).min(last).cast<int>();
 }
@@ -46,7 +46,7 @@ bool CompressedEkf::is_region_due() const {
   return outside_m > options_.hysteresis_m || active_count() > (is_whole() ? most_when_whole() : most_active());
 }
 
-/// Where all are active and are to be so again nothing is closed.
+/// If all are active and are to be so again, nothing is closed.
 bool CompressedEkf::switch_region_if_due() {
   if (!is_region_due()) return false;
   const std::vector<core::LandmarkId> region = region_around_vehicle();
@@ -89,8 +89,8 @@ void CompressedEkf::reopen_phase(BeforeSwitch& before) {
   last_phase_ = before.last_phase;
 }
 
-/// Landmarks of the vehicle's cell and its eight neighbours. When they are too many all of the map, where that costs less,
-/// or the nearest, and fewer than may be active, so that the next activation does not make another switch due.
+/// Landmarks of the vehicle's cell and its eight neighbours. When there are too many: the whole map if that costs less,
+/// else the nearest, fewer than may be active, so that the next activation does not make another switch due.
 std::vector<core::LandmarkId> CompressedEkf::region_around_vehicle() const {
   const Eigen::Vector2i cell = cell_of(active_.pose.position_m());
   const Phase& phase = phases_.back();
@@ -117,8 +117,8 @@ std::vector<core::LandmarkId> CompressedEkf::region_around_vehicle() const {
 }
 
 /// Begins a phase with these active landmarks. `columns` are the covariances of all slots with the active part so far.
-/// Where the closed phase is absorbed at once, what allocates comes before and cannot fail behind; where it is kept,
-/// nothing but the list of phases has changed until the end.
+/// If the closed phase is absorbed at once, everything that allocates comes first and nothing after it can fail; if it
+/// is kept, nothing but the list of phases has changed until the end.
 void CompressedEkf::open_phase(Phase&& next, const Eigen::Ref<const Eigen::MatrixXd>& columns,
                                const std::vector<core::LandmarkId>& active) {
   std::vector<int> slots;
@@ -180,8 +180,8 @@ void CompressedEkf::freeze_slots(Phase& phase, const std::vector<core::LandmarkI
   std::sort(phase.by_cell.begin(), phase.by_cell.end());
 }
 
-/// The active part that the phase begins with, all but its covariance. Where nothing is passive there is nothing that the
-/// weights would be of.
+/// The active part that the phase begins with, all but its covariance. If nothing is passive, there is nothing for the
+/// weights to refer to.
 ActivePart CompressedEkf::room_for(const Phase& phase, const std::vector<core::LandmarkId>& active,
                                    const std::vector<int>& slots) const {
   ActivePart part;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one place where a correction enters: means by the retraction, covariances of active part and weights by one
-// product left·rightᵀ of low rank.
+// The only place where a correction is applied: means by the retraction, covariances of the active part and weights by
+// one low-rank product left·rightᵀ.
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -23,7 +23,7 @@ void pick_columns(const ReservedMatrix& from, const std::vector<int>& columns, R
   }
 }
 
-/// left = picked·Gᵀ with `extra` zero columns behind.
+/// left = picked·Gᵀ with `extra` zero columns appended.
 void whiten(const ReservedMatrix& picked, const ReservedMatrix& G, Index extra, ReservedMatrix& left) {
   left.resize(picked.rows(), G.rows() + extra);
   left.set_zero();
@@ -81,7 +81,7 @@ void add_to_lower(ReservedMatrix& target, const ReservedMatrix& left, const Rese
                         right.col(0), right.stride(), left.cols());
 }
 
-/// Whole tiles of 4 × 4, the diagonal's among them, so that a tile is turned in registers; then the rows left over.
+/// Whole tiles of 4 × 4, the diagonal's among them, so that a tile is transposed in registers; then the rows left over.
 void copy_lower_to_upper(ReservedMatrix& target) {
   auto T = target.view();
   const Index n = T.cols();
@@ -129,7 +129,7 @@ void find_variances(const ReservedMatrix& P, const ReservedMatrix& left, const R
 }  // namespace
 
 void CompressedEkf::check_variances(const UpdateWorkspace& w, const char* verb) const {
-  constexpr double rounding = 1e-18;  // (1 nm)², (1 nrad)²: what is known exactly comes out as that, of either sign
+  constexpr double rounding = 1e-18;  // (1 nm)², (1 nrad)²: exactly known values come out this small, with either sign
   const auto variances = w.variances.view();
   if (variances.minCoeff() >= -rounding && variances.allFinite()) return;
   for (Index i = 0; i < variances.rows(); ++i) {

@@ -23,7 +23,7 @@ void size_rows(UpdateWorkspace& w, Index rows) {
   w.R.set_zero();
 }
 
-/// 1/√S_ii, by which S has a diagonal of ones.
+/// 1/√S_ii, which scales S to a unit diagonal.
 void find_scale(const ReservedMatrix& S, ReservedMatrix& scale) {
   scale.resize(S.rows(), 1);
   for (Index i = 0; i < S.rows(); ++i) scale.view()(i, 0) = 1.0 / std::sqrt(S.view()(i, i));
@@ -57,8 +57,8 @@ bool factor_in_place(ReservedMatrix& S, const ReservedMatrix& scale, double& lea
   return true;
 }
 
-/// B becomes L⁻¹·B. Rows of a column before its first that is not zero are passed over: those of H in the columns of a
-/// landmark are not zero from its own sighting on.
+/// B becomes L⁻¹·B. In each column the rows before the first nonzero are skipped: in the columns of a landmark H is
+/// nonzero only from its own sighting on.
 void solve_in_place(const ReservedMatrix& lower, ReservedMatrix& right) {
   const auto L = lower.view();
   auto B = right.view();

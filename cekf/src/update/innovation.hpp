@@ -22,14 +22,15 @@ std::string problem_with(const UpdateWorkspace& w, const char* verb, const char*
 /// Sorts out which landmarks are involved: w.ids and w.landmark_of_row.
 void name_landmarks(const std::vector<Match>& matches, UpdateWorkspace& w);
 
-/// H, R and ν at w.pose and w.points_m, for sightings, for an absolute fix, and for pairs of landmarks said to be one
-/// (landmark_of_row names first and second of each pair in turn).
+/// H, R and ν at w.pose and w.points_m, for sightings, for an absolute fix, and for pairs of landmarks taken to be the
+/// same (landmark_of_row names first and second of each pair in turn).
 void linearise_sightings(const std::vector<Match>& matches, UpdateWorkspace& w, const char* verb);
 void linearise_fix(const core::AbsoluteFix& fix, UpdateWorkspace& w);
 void linearise_pairs(double sigma_m, UpdateWorkspace& w);
 
-/// An update of so many landmarks that H is taken for what it is: zero but for the vehicle and one or two landmarks a row.
-/// Maps are joined so. No scan is (core::most_observations_used aside), and nothing is allocated for others.
+/// An update with so many landmarks that the sparsity of H is used: zero except for the vehicle and one or two landmarks
+/// per row. Maps are joined this way. No scan is this large (core::most_observations_used aside), and nothing is allocated
+/// for others.
 bool is_wide(const UpdateWorkspace& w);
 struct Nonzero {
   Eigen::Index row;

@@ -18,14 +18,15 @@ class InvolvedCorrection {
  public:
   InvolvedCorrection(Retraction retraction, const UpdateWorkspace& w);
 
-  /// δ goes the given fraction of the way from `from` to the one that w.gain stands for.
+  /// Moves δ the given fraction of the way from `from` to the one given by w.gain.
   void go_towards(const InvolvedCorrection& from, double fraction, const UpdateWorkspace& w);
   /// Largest element of the difference.
   double largest() const { return delta_.cwiseAbs().maxCoeff(); }
   double distance(const InvolvedCorrection& other) const { return (delta_ - other.delta_).cwiseAbs().maxCoeff(); }
-  /// By how much rounding may change δ = P·gain: of a map whose place in its frame is known to hundreds of metres, more than a step.
+  /// By how much rounding may change δ = P·gain: more than a step, for a map whose place in its frame is
+  /// known to hundreds of metres.
   double rounding(const UpdateWorkspace& w) const;
-  /// |δ|²_P + |ν|²_R with ν of w; infinite where R is not positive definite.
+  /// |δ|²_P + |ν|²_R with ν of w; infinite if R is not positive definite.
   double cost(const UpdateWorkspace& w) const;
   /// w.pose and w.points_m become x ⊕ δ.
   void place(UpdateWorkspace& w) const;

@@ -11,7 +11,7 @@
 namespace helixnav::logs {
 namespace {
 
-/// The text release has the ranges in metres with two decimals of what left the scanner as whole centimetres.
+/// The text release has the ranges in metres with two decimals; the scanner sent them as whole centimetres.
 std::uint16_t centimetres(TextCursor& cursor) {
   const double range_m = cursor.number_between_in_stream(0.0, 655.35, "a range [m], one of 361 in a scan");
   return static_cast<std::uint16_t>(std::lround(range_m * 100.0));

@@ -12,7 +12,7 @@ namespace helixnav::logs {
 
 inline constexpr const char* laser_file = "LASER.txt";
 
-/// The scans of ACFR's LASER.txt: a time [s] and 361 ranges [m] each, all in one line.
+/// The scans of ACFR's LASER.txt: a time [s] and 361 ranges [m] each, all on one line.
 std::vector<SickScan> parse_laser_text(std::string_view text, const std::string& file_name);
 
 /// The scans of LASER.txt in `folder`, else of the one in victoria_park_ascii.zip there, else none.

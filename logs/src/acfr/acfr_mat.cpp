@@ -16,7 +16,7 @@ namespace helixnav::logs {
 namespace {
 
 constexpr double seconds_per_millisecond = 1e-3;
-/// What the clock of aa3_*.mat shows at time 0 of the text release.
+/// Reading of the aa3_*.mat clock at time 0 of the text release.
 constexpr core::Nanoseconds mat_clock_ahead_ns = 20'967'000'000;
 
 /// A vector of times on the file's clock that never goes back.
@@ -34,7 +34,7 @@ std::vector<core::Nanoseconds> times(const MatFile& file, const std::string& nam
   return times_ns;
 }
 
-/// Names of the variables of one sensor in a file: its time and two columns.
+/// Variable names of one sensor in a file: its time and two columns.
 struct Columns {
   const char* time;
   const char* first;
@@ -73,7 +73,7 @@ std::vector<GpsFix> gps(const MatFile& file, const Columns& names) {
   return fixes;
 }
 
-/// A matrix with a row a scan and a column a beam, as whole multiples of `unit` from 0 to `most`.
+/// A matrix with one row per scan and one column per beam, as whole multiples of `unit` from 0 to `most`.
 MatMatrix beams(const MatFile& file, const std::string& name, std::size_t scans, double unit, double most) {
   MatMatrix matrix = file.matrix(name);
   if (matrix.rows != scans || matrix.columns != SickScan::beams) {
@@ -103,7 +103,7 @@ std::vector<SickScan> ranges(const MatFile& file, const std::string& name, const
   return scans;
 }
 
-/// The scanner's code stands in the top three bits of its word of 16.
+/// The scanner's code is in the top three bits of its 16-bit word.
 void add_reflectivity(const MatFile& file, const std::string& name, std::vector<SickScan>& scans) {
   const MatMatrix code = beams(file, name, scans.size(), 8192.0, 7.0);
   for (std::size_t i = 0; i < scans.size(); ++i) {

@@ -7,7 +7,7 @@
 namespace helixnav::logs {
 namespace {
 
-/// Turns held samples of speed and steering into increments that end where they are asked to end.
+/// Turns held samples of speed and steering into increments that end where requested.
 class HeldSteering {
  public:
   HeldSteering(const AcfrLog& log, const AcfrSettings& settings) : log_(log), settings_(settings) {}
@@ -43,7 +43,7 @@ class HeldSteering {
     return odometry;
   }
 
-  /// By the way and not by the sample, so that parts add up to the whole; across the middle of the arc.
+  /// In proportion to distance, not per sample, so that parts add up to the whole; across the middle of the arc.
   Eigen::Matrix3d side_slip(const core::Pose2& moved) const {
     const double sigma = settings_.sigma_sideways_m_per_sqrt_m;
     const double half_turn_rad = 0.5 * moved.heading_rad;
@@ -117,7 +117,7 @@ AcfrSettings car_park_settings() {
   settings.sigma_range_m = 0.05;
   settings.sigma_bearing_rad = 0.01;
   settings.view_range_m = 5.0;
-  settings.extraneous_per_scan = 0.5;  // hardly anything else shines: 22 landmarks begun in 586 scans
+  settings.extraneous_per_scan = 0.5;  // hardly anything else is bright: 22 landmarks started in 586 scans
   return settings;
 }
 

@@ -70,7 +70,7 @@ void reject_crowded(const std::vector<Return>& returns, const TreeRules& rules, 
   }
 }
 
-/// Of two clusters that touch in angle, the farther may go on behind the nearer: its width is unknown.
+/// Of two clusters that touch in angle, the farther may continue behind the nearer: its width is unknown.
 void reject_occluded(const std::vector<Return>& returns, const TreeRules& rules, std::vector<Cluster>& clusters) {
   for (std::size_t i = 0; i + 1 < clusters.size(); ++i) {
     const Return& right = returns[clusters[i].last];

@@ -5,7 +5,7 @@
 
 namespace helixnav::logs {
 
-/// Axes of the DLR robot (X left, Y backward) into ours (x ahead, y left): x = −Y, y = X.
+/// DLR robot axes (X left, Y backward) to ours (x ahead, y left): x = −Y, y = X.
 inline Eigen::Vector2d from_dlr_axes(const Eigen::Vector2d& v) { return {-v.y(), v.x()}; }
 inline Eigen::Vector2d to_dlr_axes(const Eigen::Vector2d& v) { return {v.y(), -v.x()}; }
 

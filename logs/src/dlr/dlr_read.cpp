@@ -17,14 +17,14 @@
 namespace helixnav::logs {
 namespace {
 
-/// Place of the camera on the robot, dlr_kurlbaum2009 §3.2.2, in the file's axes.
+/// Position of the camera on the robot, dlr_kurlbaum2009 §3.2.2, in the file's axes.
 const Eigen::Vector2d published_camera_offset_m(0.0179777, -0.0808609);
 
-/// What the camera's picture holds of lines.
+/// The camera's field of view for lines.
 constexpr core::FieldOfView lines_field{0.0, std::numeric_limits<double>::infinity(), -0.75, 0.75};
 
 /// Joins lines that end in a backslash with the next one; line ends move behind the joined line, so that the numbers of
-/// all later lines stay.
+/// all later lines are unchanged.
 void join_continued_lines(std::string& text) {
   std::string joined;
   joined.reserve(text.size());
@@ -132,7 +132,7 @@ class DlrReader {
     add(core::make_bearing(bearing_rad, sigma_rad));
   }
 
-  /// The first landmark of a file decides what all scans of the file are, those before it too.
+  /// The first landmark of a file decides what all scans of the file are, including those before it.
   void expect_content(Content content) {
     if (recording_.events.empty()) cursor_.fail("a landmark before the first STEP");
     if (content_ == content) return;
@@ -178,7 +178,7 @@ std::optional<DlrCamera> camera_beside(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
     if (entry.path().extension() != ".cam") continue;
-    if (found) return std::nullopt;  // several runs in one folder: it is unknown whose
+    if (found) return std::nullopt;  // several runs in one folder: unknown which one it belongs to
     found = entry.path();
   }
   if (!found) return std::nullopt;
@@ -203,7 +203,7 @@ void for_each_bearing(core::Recording& recording, Action&& action) {
   }
 }
 
-/// Bearings counted from ahead, counter-clockwise. The camera's field is narrower than ±π/4, so a mean tells where 0 is.
+/// Bearings counted from ahead, counter-clockwise. The camera's field is narrower than ±π/4, so a mean shows where 0 is.
 void count_bearings_from_ahead(core::Recording& recording, DlrBearingZero zero) {
   if (zero == DlrBearingZero::from_file) {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();

@@ -16,7 +16,7 @@
 namespace helixnav::logs {
 namespace {
 
-/// Edges name vertices that may come later: lines are read twice, vertices first.
+/// Edges may name vertices that come later: lines are read twice, vertices first.
 class G2oReader {
  public:
   G2oReader(std::string_view text, std::string file_name) : text_(text), file_name_(std::move(file_name)) {}

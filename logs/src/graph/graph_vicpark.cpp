@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* variable = "VicPark_clean_data";
 
-/// Rows of the matrix, sorted by the pose that they speak of.
+/// Rows of the matrix, sorted by the pose they refer to.
 class VicParkReader {
  public:
   explicit VicParkReader(const std::filesystem::path& path) : file_(path), rows_(file_.matrix(variable)) {

@@ -51,7 +51,7 @@ class GraphText {
   std::string text;
 
  private:
-  /// 0 when names of landmarks and poses are apart.
+  /// 0 when the names of landmarks and poses do not overlap.
   static std::int64_t shift(const Graph& graph) {
     std::set<std::int64_t> names;
     for (const auto& pose : graph.poses) names.insert(pose.name);
@@ -111,7 +111,7 @@ void write_landmark_edge(const Graph::LandmarkEdge& edge, GraphText& out) {
 }
 
 /// Lines as a robot would have written them: motion into a pose before what is seen from it. `form` turns a covariance
-/// into the matrix that the format asks for.
+/// into the matrix that the format requires.
 template <class Form>
 std::string chronological_text(const Graph& graph, Form&& form) {
   GraphText out(graph);

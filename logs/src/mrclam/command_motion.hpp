@@ -10,13 +10,13 @@
 
 namespace helixnav::logs {
 
-/// Integrates velocity commands, each held until the next one; before the first the robot stands.
+/// Integrates velocity commands, each held until the next one; before the first it stands still.
 class CommandMotion {
  public:
   CommandMotion(const std::vector<MrclamTables::Command>& commands, const MrclamSettings& settings)
       : commands_(commands), settings_(settings), now_ns_(commands.front().t_ns) {}
 
-  /// The increment from the end of the one before until t_ns; t_ns never goes back.
+  /// The increment from the end of the previous one until t_ns; t_ns never goes back.
   core::Odometry until(core::Nanoseconds t_ns);
 
  private:

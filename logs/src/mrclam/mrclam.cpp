@@ -49,7 +49,7 @@ void check_span(const Robot& robot, int number, core::Nanoseconds begin_ns, core
                          ": expected one clock");
 }
 
-/// A command is held until the next one; for hours it is not, and an increment each half a second would fill the memory.
+/// A command is held until the next one, but not for hours: increments every half second would fill the memory.
 void check_gaps(const Robot& robot, const std::string& name) {
   constexpr core::Nanoseconds most_held_ns = 3'600'000'000'000;
   for (std::size_t k = 1; k < robot.commands.size(); ++k) {
@@ -67,7 +67,7 @@ bool is_seen(const MrclamTables& tables, const std::vector<int>& chosen, int num
   });
 }
 
-/// A robot of which nothing is known but its commands is none of the team, as long as others are.
+/// A robot of which only the commands are known is not part of the team, as long as there are others.
 void leave_out_unseen(MrclamTables& tables, std::vector<int>& chosen) {
   const auto is_known = [&](int number) {
     return !tables.robots.at(number).sightings.empty() || is_seen(tables, chosen, number);
@@ -84,7 +84,8 @@ void leave_out_unseen(MrclamTables& tables, std::vector<int>& chosen) {
   chosen = known;
 }
 
-/// The longest time that a command was held for, up to the last sighting, where it is out of all proportion: somebody lost rows.
+/// The longest time that a command was held for, up to the last sighting, if it is out of all proportion: rows were
+/// lost.
 void remark_on_longest_gap(const Robot& robot, int number, std::vector<std::string>& remarks) {
   std::vector<core::Nanoseconds> gaps_ns;
   core::Nanoseconds longest_ns = 0, from_ns = 0;
@@ -134,7 +135,7 @@ int sort_by_time(std::vector<Row>& rows) {
   return swapped;
 }
 
-/// Where increments end: sightings by the robot and of it, and once in a while.
+/// Times at which increments end: sightings by the robot and of it, and at intervals in between.
 std::vector<core::Nanoseconds> ends_of_increments(const MrclamTables& tables, const std::vector<int>& chosen,
                                                   int number) {
   const Robot& robot = tables.robots.at(number);
@@ -158,7 +159,7 @@ core::Observation observation_of(const MrclamTables::Sighting& sighting, const M
                                   settings.sigma_bearing_rad);
 }
 
-/// All sightings of one instant in one scan. Where nothing was seen for a while, an empty one lets a run tell where the
+/// All sightings of one instant in one scan. If nothing was seen for a while, an empty scan lets a run report where the
 /// robot is.
 class RobotWeaver {
  public:
@@ -211,7 +212,7 @@ class RobotWeaver {
   core::Nanoseconds last_ns_ = 0;  ///< of the last scan
 };
 
-/// The true pose at t_ns, on the straight line between those around it, half a second apart at most.
+/// The true pose at t_ns, on the straight line between those around it, at most half a second apart.
 std::optional<core::Pose2> true_pose_at(const std::vector<core::TruePose>& truth, core::Nanoseconds t_ns) {
   constexpr core::Nanoseconds most_ns = 500'000'000;
   const auto after = std::lower_bound(truth.begin(), truth.end(), t_ns,
@@ -289,7 +290,7 @@ core::TeamRecording read_mrclam(const fs::path& path, const std::vector<int>& ro
   core::TeamRecording team;
   team.name = (path.has_filename() ? path : path.parent_path()).filename().string();
   team.true_landmarks = tables.landmarks;
-  if (robots.empty()) team.remarks = tables.remarks;  // else it is left out by choice
+  if (robots.empty()) team.remarks = tables.remarks;  // otherwise it is left out by choice
   team.starts_known = true;
   team.looks_as_one = settings.looks_as_one;
   for (const int number : chosen) {

@@ -23,7 +23,7 @@ struct CloseFile {
   void operator()(gzFile_s* file) const { gzclose(file); }
 };
 
-/// zlib reads both packed and plain files.
+/// zlib reads both compressed and plain files.
 std::string read_packed(const fs::path& path) {
   constexpr std::size_t most_bytes = 512u << 20;
   const std::unique_ptr<gzFile_s, CloseFile> file(gzopen(path.c_str(), "rb"));
@@ -50,7 +50,7 @@ fs::path required(const fs::path& folder, const std::string& name) {
   return path;
 }
 
-/// Of a comma-separated file, packed or not.
+/// Calls read_row for each row of a comma-separated file, compressed or not.
 template <class ReadRow>
 void for_each_row(const fs::path& path, std::string_view columns, const ReadRow& read_row) {
   const std::string text = read_packed(path);

@@ -75,7 +75,7 @@ std::map<std::int64_t, int> read_barcodes(const DatFiles& files, const Subjects&
   return subject_of;
 }
 
-/// A robot without commands is none of the team; other files of it say that it was meant to be one.
+/// A robot without commands is not part of the team; other files of it show that it was meant to be.
 void remark_on_missing(const DatFiles& files, int number, std::vector<std::string>& remarks) {
   for (const char* what : {"Measurement", "Groundtruth"}) {
     if (!files.has(name_of(number, what))) continue;

@@ -12,9 +12,9 @@
 
 namespace helixnav::logs {
 
-// The fields that both forms of the files have, in the same order.
+// The fields that both forms of the files share, in the same order.
 
-/// Of the log's own origin, or of Unix; exact, because a double of Unix time is not.
+/// Time since the log's own origin, or Unix time; exact, because a double of Unix time is not.
 inline core::Nanoseconds read_time(TextCursor& cursor) {
   constexpr core::Nanoseconds most_ns = 4'000'000'000'000'000'000;
   const std::string_view word = cursor.word();
@@ -60,7 +60,7 @@ inline core::TrueLandmark read_landmark(TextCursor& cursor) {
   return landmark;
 }
 
-/// Whom a sighting may be of: nobody, a robot, a landmark of the list (any, where there is no list).
+/// What a sighting may be of: nobody, a robot, a landmark of the list (any, if there is no list).
 class Subjects {
  public:
   explicit Subjects(const std::vector<core::TrueLandmark>& landmarks) {

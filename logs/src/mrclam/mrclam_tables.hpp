@@ -13,7 +13,7 @@
 
 namespace helixnav::logs {
 
-/// What the files of one run hold, whatever their form. Subjects: robots 1 to 5, landmarks from 6, 0 nobody.
+/// Contents of the files of one run, in either form. Subjects: robots 1 to 5, landmarks from 6, 0 nobody.
 struct MrclamTables {
   struct Command {
     core::Nanoseconds t_ns = 0;
@@ -32,11 +32,11 @@ struct MrclamTables {
     std::vector<core::TruePose> truth;
     std::string
         file;         ///< that its commands stand in, with the line of the first in a table of all robots; for messages
-    int swapped = 0;  ///< commands that stood after a later one
+    int swapped = 0;  ///< commands that came after a later one
   };
   std::map<int, Robot> robots;
   std::vector<core::TrueLandmark> landmarks;
-  std::vector<std::string> remarks;  ///< what was left out, a sentence each
+  std::vector<std::string> remarks;  ///< what was left out, one sentence each
 };
 
 inline constexpr int most_robots = 5;
@@ -46,7 +46,7 @@ constexpr bool is_robot(int subject) { return subject >= 1 && subject <= most_ro
 MrclamTables read_mrclam_csv(const std::filesystem::path& folder);
 MrclamTables read_mrclam_dat(const std::filesystem::path& folder_or_archive);
 
-/// The file of that name, or of that name with .gz; empty when neither is there.
+/// The file of that name, or of that name with .gz; empty when neither exists.
 std::filesystem::path plain_or_packed(const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace helixnav::logs

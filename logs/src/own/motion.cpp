@@ -32,14 +32,14 @@ void check_geometry(const OwnLog& log, const Vehicle& vehicle) {
       "as sigma_along_m_per_sqrt_m and sigma_heading_deg_per_sqrt_m; 'helixnav new-vehicle' writes an example");
 }
 
-/// How far a twist's chord is turned against its ends.
+/// Rotation of a twist's chord relative to its ends.
 Eigen::Matrix3d half_turned(double turn_rad) {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   R.topLeftCorner<2, 2>() = core::rotation(0.5 * turn_rad);
   return R;
 }
 
-/// How an increment changes with the rates that it is made by, to first order.
+/// Jacobian of an increment with respect to the rates it is made from, to first order.
 Eigen::Matrix3d by_rates(const Eigen::Vector3d& twist, double duration_s) {
   if (!(square(duration_s) > 0.0)) return Eigen::Matrix3d::Zero();
   Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
@@ -48,8 +48,8 @@ Eigen::Matrix3d by_rates(const Eigen::Vector3d& twist, double duration_s) {
   return duration_s * half_turned(twist.z()) * J;
 }
 
-/// Of what a random walk of variance 1 a second has come to, s seconds after its begin: ∫ t² dt. No rate changes without
-/// end: after ten seconds it grows no faster.
+/// Variance of the integral of a random walk of variance 1 per second, s seconds after its start: ∫ t² dt. No rate
+/// changes without limit: after ten seconds it grows no faster.
 double walked_s3(double s) {
   constexpr double most_s = 10.0;
   const double walking_s = std::min(s, most_s);
@@ -103,7 +103,7 @@ Motion Motions::stretch(std::size_t row, core::Nanoseconds last_ns) const {
   return motion;
 }
 
-/// The interval before the row, where it says that the vehicle stands through a gap.
+/// The interval before the row, if it reports that the vehicle stands still through a gap.
 std::optional<core::Nanoseconds> Motions::stands_through_gap(std::size_t row, const Motion& motion) const {
   if (!holds() || row == 0) return std::nullopt;
   const Eigen::Vector3d& value = log_.odometry[row].value;
@@ -115,7 +115,7 @@ std::optional<core::Nanoseconds> Motions::stands_through_gap(std::size_t row, co
   return is_gap ? std::optional(usual_ns) : std::nullopt;
 }
 
-/// Twist of a held sample of speed and steering; its covariance by the way.
+/// Twist of a held sample of speed and steering; its covariance by distance.
 Eigen::Vector3d Motions::steered(Motion& motion, const Eigen::Vector3d& value) const {
   core::AckermannSample sample;
   sample.wheel_speed_mps = model_.scale * value[0];
@@ -171,7 +171,7 @@ void Motions::add_model_noise(Motion& motion) const {
   motion.covariance += R * variances.asDiagonal() * R.transpose();
 }
 
-/// Variances of speed and turn rate. Two wheels err each by itself where no noise of the turn rate is told.
+/// Variances of speed and turn rate. The two wheels err independently if no noise of the turn rate is given.
 Eigen::Matrix3d Motions::sample_noise() const {
   const double v = square(model_.sigma_v_mps.value_or(0.0));
   Eigen::Matrix3d rates = Eigen::Matrix3d::Zero();
@@ -185,7 +185,7 @@ Eigen::Matrix3d Motions::sample_noise() const {
   return rates;
 }
 
-/// Constant over the sample.
+/// Noise that is constant over the sample.
 void Motions::add_sample_noise(Motion& motion, std::size_t row) const {
   const double duration_s = core::seconds(motion.end_ns - motion.begin_ns);
   const bool given = !log_.odometry_covariances.empty() && !log_.odometry_covariances[row].isZero(0.0);
@@ -194,7 +194,7 @@ void Motions::add_sample_noise(Motion& motion, std::size_t row) const {
   motion.covariance += J * rates * J.transpose();
 }
 
-/// Of the rows up to this one.
+/// Takes the rates of the rows up to this one.
 void Motions::take_rates(std::size_t row) {
   for (; taken_ <= row; ++taken_) {
     Motion second;
@@ -221,7 +221,7 @@ std::optional<Motion> Motions::of_row(std::size_t row, core::Nanoseconds last_ns
   if (log_.odometry_kind == OdometryKind::velocities || log_.odometry_kind == OdometryKind::wheels) {
     add_sample_noise(motion, row);
   }
-  if (usual_ns) motion.twist.setZero();  // of a bias, too
+  if (usual_ns) motion.twist.setZero();  // also if it came from a bias
   motion.end_ns = end_ns;
   if (holds()) take_rates(row);
   if (holds() && !usual_ns && changes_.is_gap(end_ns - motion.begin_ns)) motion.rate_walk = changes_.variance_per_s();

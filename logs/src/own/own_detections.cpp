@@ -33,7 +33,7 @@ double variance(const Row& row, std::size_t column) {
   return sigma * sigma;
 }
 
-/// Both or neither. Of range and bearing one may have no column: then it is the sensor's.
+/// Both or neither. Of range and bearing one may have no column: then the sensor's value is used.
 void read_two_variances(const Row& row, std::size_t first, std::size_t second, OwnDetection& detection) {
   const bool is_point = detection.kind == OwnDetection::Kind::cartesian;
   const bool has_both_columns = row.columns().has(first) && row.columns().has(second);

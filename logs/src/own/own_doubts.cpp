@@ -87,7 +87,8 @@ void doubt_speeds(const core::Recording& recording, Doubts& doubts) {
   }
 }
 
-/// How far the vehicle came until the row from the one before it, as the rows say; 0 where that takes its geometry.
+/// How far the vehicle moved between the previous row and this one, according to the rows; 0 if that needs its
+/// geometry.
 double length_m(const OwnLog& log, std::size_t row) {
   const Eigen::Vector3d& value = log.odometry[row].value;
   if (log.odometry_kind == OdometryKind::increments) return value.head<2>().norm();
@@ -97,7 +98,7 @@ double length_m(const OwnLog& log, std::size_t row) {
   return log.odometry[row - 1].value.head<2>().norm() * core::seconds(log.odometry[row].t_ns - before_ns);
 }
 
-/// A row that goes beyond what the log itself drives: a slipped digit, or a vehicle that was put elsewhere.
+/// A row that exceeds what the log itself drives: a wrong digit, or a vehicle that was moved elsewhere.
 void doubt_jumps(const OwnLog& log, Doubts& doubts) {
   constexpr std::size_t least_rows = 20;
   constexpr double beyond = 10.0, least_m = 1.0;
@@ -127,7 +128,7 @@ void doubt_jumps(const OwnLog& log, Doubts& doubts) {
       length_m(log, farthest + 1), speeds_mps[farthest]));
 }
 
-/// The turn that a row speaks of, against the one before it: an angle, or a rate.
+/// The turn that a row reports, relative to the one before it: an angle, or a rate.
 double turn_of(const OwnLog& log, std::size_t row) {
   const Eigen::Vector3d& value = log.odometry[row].value;
   if (log.odometry_kind == OdometryKind::increments || log.odometry_kind == OdometryKind::velocities) return value.z();
@@ -183,8 +184,8 @@ struct Seen {
   double farthest_m = 0.0;
 };
 
-/// All lengths of the navigator follow from the reach. Of many detections the farthest comes near to it wherever the sensor is what
-/// ends them; few may all be near by chance.
+/// All lengths of the navigator follow from the reach. Among many detections the farthest comes close to it if the
+/// sensor is what limits them; a few may all be near by chance.
 void doubt_reach(const Vehicle& vehicle, const core::Recording& recording, Doubts& doubts) {
   constexpr double beyond = 3.0, beyond_few = 10.0;
   constexpr std::size_t many = 200;

@@ -19,12 +19,12 @@
 namespace helixnav::logs {
 namespace {
 
-/// A scan is compared with the first later one of its sensor to which the vehicle turned so far; at most so many scans later, since
-/// the motion between is known the worse and what was seen leaves the view.
+/// A scan is compared with the first later one of its sensor by which the vehicle has turned this far; at most this
+/// many scans later, since the motion between becomes less certain and what was seen leaves the view.
 constexpr double least_turn_rad = 0.1;
 constexpr std::size_t most_scans_apart = 10;
 
-/// Of a scan, enough to tell by, and few enough to be quick on a sensor of many.
+/// Per scan: enough to decide, and few enough to be fast for a sensor with many.
 constexpr std::size_t most_points = 64;
 
 struct Point {
@@ -38,8 +38,8 @@ struct PastScan {
   std::vector<Point> points;
 };
 
-/// How many points of a scan are found again in a later one by one of two ways to read the log alone. What both find tells nothing: a
-/// vehicle that turned little, a landmark straight ahead.
+/// How many points of a scan are found again in a later one by only one of two ways of reading the log. What both find
+/// is not informative: a vehicle that turned little, a landmark straight ahead.
 struct FoundByOne {
   std::size_t as_it_stands = 0, by_other = 0;
 
@@ -63,7 +63,7 @@ std::vector<Point> points_of(const core::Scan& scan) {
   return points;
 }
 
-/// The motion as it looks in a mirror along the vehicle.
+/// The motion mirrored about the vehicle's longitudinal axis.
 core::Pose2 mirrored(const core::Pose2& T) { return {T.x_m, -T.y_m, -T.heading_rad}; }
 
 core::Pose2 between_sensors(const core::Pose2& T_robot_before, const core::Pose2& T_before_after,
@@ -71,7 +71,7 @@ core::Pose2 between_sensors(const core::Pose2& T_robot_before, const core::Pose2
   return core::between(T_robot_before, core::compose(T_before_after, T_robot_after));
 }
 
-/// Of a point of the scan before, where it is now, and how surely.
+/// Where a point of the earlier scan is now, and how certain that is.
 Point carried(const Point& point, const core::Pose2& T_before_after, const core::Odometry& motion) {
   const Eigen::Vector2d now_m = core::transform(core::inverse(T_before_after), point.position_m);
   const Eigen::Matrix2d R = core::rotation(-T_before_after.heading_rad);
@@ -96,7 +96,7 @@ void compare(const PastScan& before, const core::Pose2& T_robot_sensor, const st
   const core::Pose2 other_turns = between_sensors(before.T_robot_sensor, mirrored(moved), T_robot_sensor);
   for (const Point& point : before.points) {
     const bool is_as_it_stands = is_found(carried(point, as_it_stands, before.since), points);
-    // Both scans with bearings of the other sign show what the mirrored motion of the sensor shows of both as they stand.
+    // Negating the bearings of both scans is equivalent to mirroring the sensor motion with both as they are.
     const bool is_by_bearings = is_found(carried(point, mirrored(as_it_stands), before.since), points);
     const bool is_by_turns = is_found(carried(point, other_turns, before.since), points);
     found.other_bearings.add(is_as_it_stands, is_by_bearings);
@@ -106,7 +106,8 @@ void compare(const PastScan& before, const core::Pose2& T_robot_sensor, const st
 
 bool is_of_same_sensor(const core::Pose2& a, const core::Pose2& b) { return a.vector() == b.vector(); }
 
-/// Compares a scan with the latest of its sensor that the vehicle has turned from; what was compared, and before it, is done with.
+/// Compares a scan with the latest of its sensor that the vehicle has turned from; that scan, and those before it, are
+/// then dropped.
 void compare_with_past(const core::Scan& scan, const std::vector<Point>& points, std::deque<PastScan>& past,
                        Found& found) {
   const auto turned = std::find_if(past.rbegin(), past.rend(), [&](const PastScan& before) {

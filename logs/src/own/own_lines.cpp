@@ -106,7 +106,7 @@ void append(const core::Scan& scan, const std::vector<core::Label>* labels, std:
   text += "]}\n";
 }
 
-/// In the frame in which it was given, so that truths of several logs stay in one.
+/// In the frame in which it was given, so that truths of several logs stay in one frame.
 void append_truth(const core::Recording& recording, std::string& text) {
   const core::Pose2 T_truth_map = recording.truth_frame.T_truth_map.value_or(core::Pose2());
   for (const core::TruePose& pose : recording.true_poses) {
@@ -139,7 +139,7 @@ const core::Scan* first_scan(const core::Recording& recording) {
   return nullptr;
 }
 
-/// Of the first class that is given: a sensor has one.
+/// From the first class that is given: a sensor has one.
 std::optional<double> class_error_of(const core::Recording& recording) {
   for (const core::Event& event : recording.events) {
     const auto* scan = std::get_if<core::Scan>(&event);
@@ -151,7 +151,8 @@ std::optional<double> class_error_of(const core::Recording& recording) {
   return std::nullopt;
 }
 
-/// A scan at the end of a motion has its time, and a vehicle that was carried is taken to be so after a scan of that time.
+/// A scan at the end of a motion has its time, and a vehicle that was carried is assumed to have been so after a scan
+/// of that time.
 bool may_share_time(const core::Event& event, const core::Event& before) {
   if (std::holds_alternative<core::Scan>(event)) return std::holds_alternative<core::Odometry>(before);
   return std::holds_alternative<core::Lost>(event);

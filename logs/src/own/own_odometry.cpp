@@ -14,8 +14,8 @@ namespace {
 
 struct KindColumns {
   OdometryKind kind;
-  std::vector<std::size_t> needed;    ///< all of them say that it is this kind, and any one is a sign of it
-  std::vector<std::size_t> optional;  ///< belong to it, too
+  std::vector<std::size_t> needed;    ///< all are required for this kind, and any one is a sign of it
+  std::vector<std::size_t> optional;  ///< also belong to it
 };
 
 const std::vector<KindColumns>& kinds() {
@@ -41,7 +41,7 @@ std::string names(const TableColumns& columns, const std::vector<std::size_t>& l
   return text;
 }
 
-/// The one kind of odometry that the columns make.
+/// The only kind of odometry that the columns allow.
 const KindColumns& kind_of(const TableColumns& columns) {
   const KindColumns* found = nullptr;
   const KindColumns* nearly = nullptr;

@@ -10,14 +10,15 @@
 
 namespace helixnav::logs {
 
-/// The mean time between rows of which the first and the last are given.
+/// The mean time between rows, given the first and the last.
 core::Nanoseconds mean_interval_ns(core::Nanoseconds first_ns, core::Nanoseconds last_ns, std::size_t rows);
 
-/// Until when increments and poses tell where a scan was taken: a mean interval beyond the last row. Speeds are held.
+/// Until when increments and poses determine where a scan was taken: a mean interval beyond the last row. Speeds are
+/// held.
 core::Nanoseconds told_until_ns(core::Nanoseconds first_ns, core::Nanoseconds last_ns, std::size_t rows);
 
-/// Adds a sentence with number and times of the scans more than a mean interval before the odometry begins, and one of those as
-/// long after it ends. Test: logs/own/own_overlap_test.cpp.
+/// Adds a sentence with number and times of the scans more than a mean interval before the odometry begins, and one for
+/// those that long after it ends. Test: logs/own/own_overlap_test.cpp.
 void doubt_overlap(const OwnLog& log, const core::Recording& recording, std::vector<std::string>& doubts);
 
 }  // namespace helixnav::logs

@@ -61,7 +61,7 @@ std::vector<LabelledScan> scans_of(const OwnLog& log, const std::vector<SensorMo
   return scans;
 }
 
-/// Of each sensor, as its observations say where the vehicle file does not.
+/// Adds each sensor's view, estimated from its observations if the vehicle file does not state it.
 void add_views(std::vector<LabelledScan>& scans, const std::vector<SensorModel>& sensors) {
   for (std::size_t s = 0; s < sensors.size(); ++s) {
     core::Recording alone;
@@ -93,8 +93,9 @@ void check_clocks(const OwnLog& log, const std::vector<LabelledScan>& scans) {
   fail(log, text);
 }
 
-/// Increments and poses say nothing of where a scan was taken after their end: such scans are left out, and counted in a remark. Where
-/// they are nearly all, the two are of different clocks or units, as with times in milliseconds in a column of seconds.
+/// Increments and poses do not determine where a scan was taken after their end: such scans are left out, and counted
+/// in a remark. If nearly all are, the two have different clocks or units, as with times in milliseconds in a column of
+/// seconds.
 void leave_out_untold(const OwnLog& log, std::vector<LabelledScan>& scans, std::vector<std::string>& remarks) {
   if (log.odometry_kind != OdometryKind::increments && log.odometry_kind != OdometryKind::poses) return;
   const core::Nanoseconds end_ns =
@@ -116,8 +117,8 @@ void leave_out_untold(const OwnLog& log, std::vector<LabelledScan>& scans, std::
   scans.erase(first, scans.end());
 }
 
-/// Lets motion and scans of the whole log come in; that the vehicle was carried, before the first scan after it. When the first
-/// motion begins.
+/// Adds motion and scans of the whole log; that the vehicle was carried, before the first scan after it. Returns when
+/// the first motion begins.
 core::Nanoseconds weave(const OwnLog& log, const Vehicle& vehicle, std::vector<LabelledScan>& scans,
                         core::Recording& recording) {
   Motions motions(log, vehicle);
@@ -152,7 +153,7 @@ core::Nanoseconds weave(const OwnLog& log, const Vehicle& vehicle, std::vector<L
   return first_ns;
 }
 
-/// The first row of increments says what was driven until its time.
+/// The first row of increments describes what was driven until its time.
 Beginning beginning_of(const OwnLog& log, const Vehicle& vehicle, core::Nanoseconds first_ns) {
   Beginning beginning;
   beginning.t_ns = first_ns;

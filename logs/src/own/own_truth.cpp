@@ -10,7 +10,7 @@
 namespace helixnav::logs {
 namespace {
 
-/// Between the two poses around it, at most a second away.
+/// Interpolated between the two poses around it, at most a second away.
 std::optional<core::Pose2> pose_at(const std::vector<core::TruePose>& poses, core::Nanoseconds t_ns) {
   constexpr core::Nanoseconds near_ns = 1'000'000'000;
   const auto after = std::lower_bound(poses.begin(), poses.end(), t_ns,
@@ -27,7 +27,7 @@ std::optional<core::Pose2> pose_at(const std::vector<core::TruePose>& poses, cor
   return core::compose(before.T_world_robot, core::Pose2(Eigen::Vector3d(share * way)));
 }
 
-/// From where the drive begins to where it is at a time, by odometry.
+/// From the start of the drive to its position at a given time, by odometry.
 core::Pose2 driven_until(const std::vector<core::Event>& events, core::Nanoseconds start_ns, core::Nanoseconds t_ns) {
   core::Pose2 T_start_now;
   core::Nanoseconds now_ns = start_ns;
@@ -44,8 +44,8 @@ core::Pose2 driven_until(const std::vector<core::Event>& events, core::Nanosecon
   return T_start_now;
 }
 
-/// Where the vehicle stood before the first event. Truth that begins later, by a second at most, was driven to by odometry until then.
-/// Without truth of that time, where it stood after the first increment, less that.
+/// Where the vehicle was before the first event. If truth begins later, by a second at most, odometry covers the motion
+/// until then. Without truth at that time: where it was after the first increment, minus that increment.
 std::optional<core::Pose2> start_of(const std::vector<core::TruePose>& poses, const Beginning& beginning,
                                     const std::vector<core::Event>& events) {
   const core::TruePose& first = poses.front();

@@ -9,21 +9,22 @@
 
 namespace helixnav::logs {
 
-/// How a vehicle's rates (speed ahead and to the left in m/s, turn rate in rad/s) changed so far, and how far apart its rows
-/// were: what a gap in them leaves open. Rates are taken for a random walk, whose variance in a second is the mean square of
-/// their changes over a second or more. It knows the rows before only, so that a stream and the whole log say the same.
-/// Test: logs/own/rate_changes_test.cpp.
+/// How a vehicle's rates (speed ahead and to the left in m/s, turn rate in rad/s) have changed so far, and how far
+/// apart its rows were: how uncertain a gap in them is. Rates are modelled as a random walk, whose variance per second
+/// is the mean square of their changes over a second or more. It only knows the earlier rows, so that a stream and the
+/// whole log give the same result. Test: logs/own/rate_changes_test.cpp.
 class RateChanges {
  public:
-  /// Rows in order of time.
+  /// Rows in time order.
   void take(core::Nanoseconds t_ns, const Eigen::Vector3d& rates);
 
-  /// Whether rows are missing in an interval that begins at the last one: longer than a second and than ten intervals in the
-  /// mean. A log that has a row only where the speed changes has none.
+  /// Whether rows are missing in an interval that begins at the last one: longer than a second and than ten mean
+  /// intervals. A log that has a row only when the speed changes has none.
   bool is_gap(core::Nanoseconds interval_ns) const;
 
-  /// Variance of the rates' changes in a second, (m/s)²/s and (rad/s)²/s. The vehicle is taken to have begun from rest in a second,
-  /// turning by 0.1 rad/s, so that one that has always gone straight on may turn, and one of one speed may stop.
+  /// Variance of the rates' changes per second, (m/s)²/s and (rad/s)²/s. The vehicle is assumed to have started from
+  /// rest within a second, turning by 0.1 rad/s, so that one that has always gone straight may turn, and one of
+  /// constant speed may stop.
   Eigen::Vector3d variance_per_s() const;
 
  private:

@@ -10,7 +10,7 @@ namespace helixnav::logs {
 
 namespace {
 
-/// A heading that is open bends the way behind it: of a gap, pieces of a tenth of a second are chained.
+/// An uncertain heading bends the path after it: in a gap, pieces of a tenth of a second are chained.
 int pieces_of(core::Nanoseconds duration_ns) {
   constexpr core::Nanoseconds piece_ns = 100'000'000, most = 100;
   return static_cast<int>(std::clamp<core::Nanoseconds>(duration_ns / piece_ns, 1, most));

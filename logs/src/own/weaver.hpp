@@ -9,20 +9,20 @@
 
 namespace helixnav::logs {
 
-/// Makes events of motions and scans in order of time: before a scan, the motion since the one before as one increment.
-/// Whole logs and streams are woven by it. Test: logs/own/own_recording_test.cpp, logs/own/own_stream_test.cpp.
+/// Turns motions and scans in time order into events: before a scan, the motion since the previous one as one
+/// increment. Used for whole logs and streams. Test: logs/own/own_recording_test.cpp, logs/own/own_stream_test.cpp.
 class Weaver {
  public:
   Weaver(const core::Pose2& T_vehicle_odometry, std::vector<core::Event>& events)
       : T_vehicle_odometry_(T_vehicle_odometry), events_(events) {}
 
-  /// On to t_ns, as far as the motion goes there.
+  /// Moves on to t_ns, as far as the motion goes there.
   void move(const Motion& motion, core::Nanoseconds t_ns);
 
   /// The motion so far, then the scan.
   void add(core::Scan scan);
 
-  /// The motion so far, then that the vehicle was carried.
+  /// The motion so far, then the event that the vehicle was carried.
   void lose(core::Nanoseconds t_ns);
 
   /// The motion so far.

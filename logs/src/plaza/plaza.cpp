@@ -31,7 +31,7 @@ struct Range {
   double range_m;
 };
 
-/// The run's path up to and without "_odometry.csv".
+/// The run's path up to but not including "_odometry.csv".
 std::string run_prefix(const std::filesystem::path& folder_or_odometry) {
   std::string found = folder_or_odometry.string();
   if (std::filesystem::is_directory(folder_or_odometry)) {
@@ -52,7 +52,7 @@ std::string run_prefix(const std::filesystem::path& folder_or_odometry) {
   return found.substr(0, found.size() - odometry_ending.size());
 }
 
-/// Of a comma-separated file.
+/// Reads a comma-separated file.
 template <class ReadRow>
 void for_each_row(const std::string& path, std::string_view columns, const ReadRow& read_row) {
   const std::string text = read_file(path);
@@ -137,8 +137,8 @@ core::Scan scan_of(const Range& range, const PlazaSettings& settings) {
   return scan;
 }
 
-/// Weaves increments and ranges together in time, splitting the increments; labels go along with the scans. Where no
-/// range came for a while, an empty scan lets the run tell where the robot is.
+/// Weaves increments and ranges together in time, splitting the increments; labels go along with the scans. If no
+/// range came for a while, an empty scan lets the run report where the robot is.
 void weave(const std::vector<Increment>& increments, const std::vector<Range>& ranges, const PlazaSettings& settings,
            core::Recording& recording) {
   std::vector<core::Event>& events = recording.events;

@@ -20,7 +20,7 @@ struct Node {
   float y_m = 0.0F;
   float farthest_m2 = std::numeric_limits<float>::infinity();  ///< to the last of eight neighbours; infinite with fewer
   Slot next = no_slot;                                         ///< in its grid cell, or in the list of free slots
-  std::array<Slot, neighbours> near{};  ///< in no order: a place keeps its neighbour while it is one
+  std::array<Slot, neighbours> near{};  ///< in no order: an entry keeps its neighbour while it is one
 };
 
 /// What only refinement and evidence read.

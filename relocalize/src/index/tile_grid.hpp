@@ -50,7 +50,7 @@ class TileGrid {
     }
   }
 
-  /// Where the bit of a point stands; null where there is no tile.
+  /// Where the bit of a point is; null if there is no tile.
   struct Probe {
     const std::uint64_t* word = nullptr;
     std::uint64_t mask = 0;
@@ -70,7 +70,7 @@ class TileGrid {
     return probe(x_m, y_m).set() && holds(nodes, x_m, y_m, radius_m);
   }
 
-  /// The same without the look at the bit.
+  /// The same without checking the bit.
   bool holds(const Nodes& nodes, float x_m, float y_m, float radius_m) const {
     bool found = false;
     within(nodes, x_m, y_m, radius_m, [&](Slot, float) { found = true; });

@@ -21,7 +21,7 @@ struct Canonical {
 };
 
 /// Orientation and start of a triangle of points; none when a side is shorter than `least_m` or the height above the
-/// longest side is less than 0.8 of that: noise decides the orientation of such a one.
+/// longest side is less than 0.8 of that: noise would decide the orientation of such a triangle.
 template <class Point>
 std::optional<Canonical> canonical(const Point& a, const Point& b, const Point& c, float least_m) {
   const auto squared = [](const Point& p, const Point& q) {
@@ -56,7 +56,7 @@ using Corners = std::array<Slot, 3>;
 /// Code of {owner, its neighbours at places i < j}, whose corner k is order[k] of these three.
 Code encode(Slot owner, int i, int j, const std::array<int, 3>& order);
 
-/// What a code's lower byte says: places among the neighbours, and which of (owner, i, j) each corner is.
+/// What a code's lower byte holds: places among the neighbours, and which of (owner, i, j) each corner is.
 struct Decoded {
   std::uint8_t i, j;
   std::array<std::uint8_t, 3> order;
@@ -72,7 +72,7 @@ inline Corners corners_of(const Nodes& nodes, Code code) {
   return {points[how.order[0]], points[how.order[1]], points[how.order[2]]};
 }
 
-/// Place of `other` among the neighbours of `slot`, −1 when it is none.
+/// Place of `other` among the neighbours of `slot`, −1 if it is not one.
 inline int place_among(const Nodes& nodes, Slot slot, Slot other) {
   const auto& near = nodes[slot].near;
   for (int k = 0; k < neighbours; ++k)

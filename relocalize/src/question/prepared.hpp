@@ -32,7 +32,7 @@ struct Prepared {
   double extent_m = 0.0;        ///< of the points from the centre
   double density_per_m2 = 0.0;  ///< of the question's landmarks on the ground it looked at
   double near_m = 0.0;          ///< a point this near to a landmark of the map hits
-  double chance_hit = 0.0;      ///< share of the map's ground that is so near
+  double chance_hit = 0.0;      ///< share of the map's ground that is this near
   double ln_poses = 0.0;        ///< ln(2πA) over the ground A of the map
 };
 

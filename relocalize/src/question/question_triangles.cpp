@@ -29,7 +29,7 @@ std::vector<int> nearest(const std::vector<Point>& points, std::size_t self) {
   return list;
 }
 
-/// Appends the triangle in each order whose first side is the longest but for noise.
+/// Appends the triangle in each order whose first side is the longest up to noise.
 void append_turns(const Prepared& asked, const std::array<int, 3>& corners, int stratum,
                   std::vector<QuestionTriangle>& list) {
   const auto point = [&](int k) {

@@ -17,9 +17,9 @@ struct QuestionTriangle {
   Sides sides_m{};
 };
 
-/// The triangles to look up, in order: near neighbours first, the rarest first among these, and no landmark more often
-/// than its share, so that one spurious landmark does not spoil them all. Near-equal sides are asked in each order they
-/// may have in the map.
+/// The triangles to look up, in order: near neighbours first, the rarest of these first, and no landmark more often
+/// than its share, so that one spurious landmark does not spoil them all. Nearly equal sides are looked up in each
+/// order they may have in the map.
 std::vector<QuestionTriangle> question_triangles(const Prepared& asked, std::size_t most);
 
 }  // namespace helixnav::relocalize

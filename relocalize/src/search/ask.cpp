@@ -66,13 +66,14 @@ double lead(const std::vector<Place>& places, double least_rival) {
   return rival_scale(places).score(places.front().evidence - std::max({0.0, least_rival, rival}));
 }
 
-/// How many poses on the map's ground the pairs of a place tell apart, ln of it.
+/// How many poses on the map's ground the pairs of a place can tell apart, as ln.
 double ln_poses_apart(const Prepared& asked, const Place& place) {
   return asked.ln_poses + 0.5 * std::log(place.information.determinant()) - 1.5 * std::log(2.0 * core::pi);
 }
 
-/// A wrong place fits like other wrong ones: in an avenue all of them by the jitter of its trees. The first place without those
-/// rivals whose residuals are of another scale, so that it would not fit so much better at any of all poses, if it were one of them.
+/// A wrong place fits like other wrong ones: in an avenue, all of them to within the jitter of its trees. The first place without
+/// those rivals whose residuals are of another scale, so that, if it were one of them, it would not fit so much better at any
+/// of all poses.
 std::vector<Place> without_other_scales(const std::vector<Place>& places, double least_ln_chance) {
   const auto residuals = [](const Place& place) {
     constexpr double fixed_by_pose = 3.0;

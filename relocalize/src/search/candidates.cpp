@@ -32,7 +32,7 @@ class PoseCells {
     if (!is_new && before(fresh, at->second)) at->second = fresh;
   }
 
-  /// Do more poses than are kept score like the best, but for one nat?
+  /// Do more poses than are kept score like the best, to within one nat?
   bool crowded() const {
     float best = 0.0F;
     for (const auto& entry : best_) best = std::max(best, entry.second.score);
@@ -98,7 +98,7 @@ struct Laid {
   TileGrid::Probe first_look;
 };
 
-/// Sides within the tolerance of a triangle's. One branch for all three: which of them disagrees cannot be foretold.
+/// Sides within the tolerance of a triangle's. One branch for all three: which of them disagrees cannot be predicted.
 class SideGate {
  public:
   SideGate(const Sides& sides_m, float tolerance_m) {
@@ -148,7 +148,7 @@ class Search {
   std::vector<Candidate> sorted() const { return cells_.sorted(); }
 
  private:
-  /// Landmarks come from all over the map: all of a batch are called from memory before the first is looked at.
+  /// Landmarks come from all over the map: all of a batch are prefetched before the first is looked at.
   static constexpr std::size_t batch_size = 64;
 
   double consider_batch(const Fan& fan, const SideGate& gate) {
@@ -231,7 +231,7 @@ Candidates find_candidates(const Prepared& asked, double most_candidates) {
   Search search(asked);
   for (const QuestionTriangle& triangle : question_triangles(asked, most_triangles)) {
     result.capped = result.looked_at > most_candidates;
-    // Where hundreds of poses tie after that many triangles, more of them will not part them.
+    // If hundreds of poses tie after that many triangles, more of them will not separate them.
     if (result.triangles % 32 == 0 && result.triangles >= 96) result.crowded = search.crowded();
     if (result.capped || result.crowded) break;
     result.looked_at += search.look_up(triangle);

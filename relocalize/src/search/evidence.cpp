@@ -13,7 +13,7 @@ namespace helixnav::relocalize {
 
 namespace {
 
-/// A kind or size is wrong altogether this often; bounds what a single label can say.
+/// How often a kind or size is wrong altogether; bounds what a single label can say.
 constexpr double appearance_error = 0.05;
 
 /// One to one, the likeliest first.
@@ -59,7 +59,7 @@ struct Counts {
   int missed = 0;     ///< landmarks without a pair, on the question's ground
 };
 
-/// Ground that the question looked at, laid on the map, without a rim of three pair noises.
+/// Ground that the question looked at, placed on the map, without a rim of three pair noises.
 class LookedGround {
  public:
   LookedGround(const Prepared& asked, const core::Pose2& T) : map_(asked.map) {

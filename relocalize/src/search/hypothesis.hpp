@@ -10,7 +10,7 @@
 
 namespace helixnav::relocalize {
 
-/// Point of the question and landmark of the map taken for the same.
+/// A point of the question and a landmark of the map taken to be the same.
 struct Match {
   std::size_t point = 0;
   Slot slot = no_slot;

@@ -24,7 +24,7 @@ void drop_unsupported(std::vector<Hypothesis>& list) {
   list.erase(first, list.end());
 }
 
-/// Do three points of the question stand near landmarks?
+/// Are three points of the question near landmarks?
 bool supported(const Prepared& asked, const core::Pose2& T) {
   int hits = 0;
   for (std::size_t i = 0; i < asked.points.size() && hits < 3; ++i) {

@@ -9,7 +9,7 @@ namespace helixnav::relocalize {
 
 namespace {
 
-/// The nearest landmark within reach of a point; by id where two are equally near.
+/// The nearest landmark within reach of a point; ties are broken by id.
 Slot nearest_landmark(const Prepared& asked, const core::Pose2& T, const Point& point, double radius_m) {
   const Eigen::Vector2f at = laid(T, point);
   Slot best = no_slot;

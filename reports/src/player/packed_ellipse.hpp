@@ -10,8 +10,8 @@
 
 namespace helixnav::reports {
 
-/// Ellipses of one σ for the player: the longer half axis to 3 % (in 24ths of a doubling from 1 mm), by how many 24ths the other is
-/// less, angle of the longer one in 64ths of half a turn.
+/// Ellipses of one σ for the player: the longer semi-axis to 3 % (in 24ths of a doubling from 1 mm), by how many 24ths the other is
+/// shorter, angle of the longer one in 64ths of half a turn.
 class PackedEllipses {
  public:
   void add(const Eigen::Matrix2d& covariance_m2);

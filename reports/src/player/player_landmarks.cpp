@@ -58,7 +58,7 @@ std::map<core::LandmarkId, std::int64_t> last_sightings(const runs::Run& run) {
   return last;
 }
 
-/// What the next look at the map no longer found died in between: it is taken away soon after it was last seen.
+/// Landmarks that the next look at the map no longer found were removed in between: soon after they were last seen.
 void end_short_lives(const runs::Run& run, Histories& histories) {
   constexpr std::int64_t soon = 20;
   const std::map<core::LandmarkId, std::int64_t> last = last_sightings(run);
@@ -78,7 +78,7 @@ void end_short_lives(const runs::Run& run, Histories& histories) {
   }
 }
 
-/// Nothing but the last map is known: its landmarks stand there from the step that began them.
+/// Only the last map is known: its landmarks are shown from the step that began them.
 void put_map(const runs::Run& run, Histories& histories) {
   std::map<core::LandmarkId, std::int64_t> begun;
   for (const core::StepReport& step : run.steps) {

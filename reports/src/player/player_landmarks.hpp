@@ -6,8 +6,8 @@
 
 namespace helixnav::reports {
 
-/// The landmarks of a drive as they were known from step to step, packed: per landmark "id", "until" (step from which it was
-/// gone; -1: it stayed), "count" of its places, and for each place "step" from which it holds, "x", "y", "state", ellipse.
+/// The landmarks of a drive as known at each step, packed: per landmark "id", "until" (step from which it was gone; -1: it
+/// stayed), "count" of its places, and for each place "step" from which it holds, "x", "y", "state", ellipse.
 Json player_landmarks(const runs::Run& run);
 
 }  // namespace helixnav::reports

@@ -9,7 +9,7 @@ namespace helixnav::reports {
 constexpr std::size_t most_particles = 100'000;  ///< of all clouds of a report: 1 MB
 
 /// The clouds of the searches, packed: {"step", "count", "x", "y", "heading"}; lengths in cm, headings in mrad. Thinned
-/// alike when there are too many particles.
+/// equally if there are too many particles.
 Json clouds_data(const runs::Run& run);
 
 }  // namespace helixnav::reports

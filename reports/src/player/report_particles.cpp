@@ -11,10 +11,10 @@ namespace helixnav::reports {
 namespace {
 
 constexpr double least_share =
-    0.5;  ///< of a landmark of the mixture that is drawn: of others most particles know nothing
+    0.5;  ///< of a landmark of the mixture that is drawn: most particles do not have the others
 constexpr std::size_t most_paths = 200;
 
-/// Blocks of scans: of the effective size the mean, of the ancestors the least, which is the alarm.
+/// Blocks of scans: the mean of the effective size, the minimum of the ancestors, which is the alarm.
 Json particle_health_json(const std::vector<core::StepReport>& steps) {
   std::vector<const core::StepReport*> scans;
   for (const core::StepReport& step : steps) {
@@ -42,7 +42,7 @@ Json particle_health_json(const std::vector<core::StepReport>& steps) {
   return json;
 }
 
-/// From the end of each path back to where it joins one that is there already, all in one line with gaps.
+/// From the end of each path back to where it joins one already drawn, all in one line with gaps.
 Json paths_json(const std::vector<core::PathPoint>& points) {
   std::vector<bool> has_next(points.size(), false), drawn(points.size(), false);
   std::vector<std::ptrdiff_t> ends;

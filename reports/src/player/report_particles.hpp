@@ -6,7 +6,8 @@
 
 namespace helixnav::reports {
 
-/// What the page draws of a cloud of particles: its health over time, its paths, its landmarks as all of it knows them.
+/// What the page draws of a particle cloud: its health over time, its paths, its landmarks as estimated by the whole
+/// cloud.
 Json particles_data(const runs::Run& run);
 
 }  // namespace helixnav::reports

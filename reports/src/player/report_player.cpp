@@ -23,7 +23,7 @@ std::int64_t milliseconds_since(core::Nanoseconds begin_ns, core::Nanoseconds t_
   return (t_ns - begin_ns) / 1'000'000;
 }
 
-/// Columns of poses; headings go on beyond half a turn.
+/// Columns of poses; headings continue beyond half a turn.
 class PackedPoses {
  public:
   void add(const core::Pose2& pose) {
@@ -71,7 +71,7 @@ Json modes_data(const runs::Run& run) {
   return modes;
 }
 
-/// What was seen, scan by scan: landmark and outcome in one number (difference of the landmark's id times 8, plus 4 where the
+/// Observations, scan by scan: landmark and outcome in one number (difference of the landmark's id times 8, plus 4 if the
 /// observation is a point, plus the outcome), and the points in the robot's frame.
 class PackedScans {
  public:
@@ -143,7 +143,7 @@ Json truth_data(const runs::Run& run, const evaluation::Evaluation& evaluation) 
   return {{"t", packed(t, 2)}, {"x", packed(x, 1)}, {"y", packed(y, 1)}, {"aligned", evaluation.position->aligned}};
 }
 
-/// Null where none is known.
+/// Null if none is known.
 Json true_landmarks_data(const runs::Run& run, const evaluation::Evaluation& evaluation) {
   if (run.truth.landmarks.empty()) return nullptr;
   Numbers x, y;

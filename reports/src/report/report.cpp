@@ -17,7 +17,7 @@ struct Filling {
   std::string_view content;
 };
 
-// The page with each {{name}} replaced. What is put in is not looked at again.
+// The page with each {{name}} replaced. Inserted text is not scanned again.
 std::string fill(std::string_view page, const std::vector<Filling>& fillings) {
   std::string text;
   while (true) {

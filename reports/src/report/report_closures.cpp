@@ -20,7 +20,7 @@ bool begins_attempt(const core::Decision& decision) {
   return core::is_trigger(decision) || std::holds_alternative<core::AttemptStarted>(decision);
 }
 
-/// Where the attempt began that step `k` belongs to.
+/// The beginning of the attempt that step `k` belongs to.
 std::size_t attempt_begin(const std::vector<core::StepReport>& steps, std::size_t k) {
   std::size_t begin = k;
   const auto has_begin = [](const core::StepReport& step) {
@@ -45,7 +45,7 @@ Json view_json(const runs::Run& run, const core::StepReport& step, std::int64_t 
           {"truth", true_pose_json(run.truth, step.t_ns)}};
 }
 
-/// Points of the landmarks that were kept, as the map at the end has them.
+/// Points of the landmarks that were kept, as in the final map.
 Json matched_json(const runs::Run& run, const core::StepReport& step) {
   Json matched = Json::array();
   for (const core::MergedLandmarks& merge : step.merged) {

@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t most_decisions = 1000;
 constexpr std::size_t most_map_landmarks = 4000;
 
-/// Every n-th: more would cover each other in a chart, cost it seconds and the page megabytes. The player has all.
+/// Every n-th: more would overlap in a chart, and cost it seconds and the page megabytes. The player has all.
 Json landmarks_json(const std::vector<core::MapLandmark>& map, std::size_t stride) {
   Json json = Json::array();
   for (std::size_t i = 0; i < map.size(); i += stride) {
@@ -82,7 +82,7 @@ bool is_placing(const core::Decision& decision) {
          (placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted);
 }
 
-// All closures and placings, and of the rest the first most_decisions.
+// All closures and placings, and the first most_decisions of the rest.
 void put_decisions(Json& json, const runs::Run& run, const evaluation::Evaluation& evaluation) {
   Json& list = json["decisions"] = Json::array();
   std::size_t others = 0;
@@ -99,7 +99,7 @@ void put_decisions(Json& json, const runs::Run& run, const evaluation::Evaluatio
 }
 
 // What the map chart shows at first: the path, the truth and the landmarks, and not a fix left out or one seen from
-// afar. Tentative landmarks count where there are no others, as after a single scan.
+// afar. Tentative landmarks count if there are no others, as after a single scan.
 Json map_extent(const runs::Run& run, const evaluation::Evaluation& evaluation) {
   Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Array2d high = -low;
@@ -136,14 +136,14 @@ bool has_fused_fixes(const runs::Run& run) {
   });
 }
 
-/// {number: name} of what the map calls by words; null where it has numbers alone.
+/// {number: name} for labels that the map gives as words; null if it has only numbers.
 Json names_json(const runs::Run& run) {
   Json json;
   for (const auto& [id, name] : run.names) json[std::to_string(id)] = name;
   return json;
 }
 
-/// Where the antenna of the fixes is on the vehicle, whose path is drawn; null where they are of one point.
+/// Where the antenna of the fixes is on the vehicle, whose path is drawn; null if they are of one point.
 Json antenna_json(const runs::Run& run) {
   const Eigen::Vector2d& antenna_m = run.truth.antenna_robot_m;
   if (run.truth.positions.empty() || antenna_m.isZero(0.0)) return nullptr;
@@ -171,7 +171,7 @@ double path_length_m(const std::vector<core::StepReport>& steps) {
 Json report_data(const runs::Run& run, const evaluation::Evaluation& evaluation) {
   const std::vector<core::StepReport>& steps = run.steps;
   Json json = Json::object();
-  json["manifest"] = Json::parse(runs::manifest_json(run.manifest));  // as it stands in the file
+  json["manifest"] = Json::parse(runs::manifest_json(run.manifest));  // as in the file
   json["seed"] = std::to_string(run.manifest.seed);                   // JavaScript's numbers end at 2⁵³
   json["finished"] = run.finished;
   json["opening"] = opening_data(run, evaluation);

@@ -5,7 +5,8 @@
 
 namespace helixnav::reports {
 
-/// What reports/page/report.js draws, in columns; thinned to a few thousand points a line. No wall-clock figure.
+/// What reports/page/report.js draws, in columns; thinned to a few thousand points per line. No wall-clock
+/// figures.
 Json report_data(const runs::Run& run, const evaluation::Evaluation& evaluation);
 
 /// The wall-clock figures of the report: totals, and step times by blocks (maximum and median).

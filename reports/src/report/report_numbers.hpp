@@ -13,7 +13,7 @@ constexpr std::size_t most_line_points = 3600;
 constexpr std::size_t most_dots = 2400;
 constexpr std::size_t most_blocks = 240;
 
-/// Digits that no screen shows cost bytes: lengths to 0.1 mm, times to 1 ms.
+/// Digits that no screen shows waste bytes: lengths to 0.1 mm, times to 1 ms.
 inline Json rounded(double value, double unit = 1e-4) {
   if (!std::isfinite(value)) return nullptr;
   return std::round(value / unit) * unit == 0.0 ? 0.0 : std::round(value / unit) / std::round(1.0 / unit);

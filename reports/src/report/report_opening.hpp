@@ -9,10 +9,10 @@
 
 namespace helixnav::reports {
 
-/// What the report says first: {"sentences": […], "warnings": […]}. Test: reports/opening_test.cpp.
+/// The opening of the report: {"sentences": […], "warnings": […]}. Test: reports/opening_test.cpp.
 Json opening_data(const runs::Run& run, const evaluation::Evaluation& evaluation);
 
-/// Position error where the truth is known last before a step of the run and next at or after it.
+/// Position error at the last known truth before a step of the run and at the next one at or after it.
 struct ErrorAround {
   std::optional<double> before_m, after_m;
 };

@@ -57,7 +57,7 @@ std::vector<evaluation::PositionError> errors_with(const evaluation::PositionEva
   return chosen;
 }
 
-// A sum of independent χ² is χ² with the sum of their degrees of freedom: that gives the band of a block's mean.
+// A sum of independent χ² is χ² with the summed degrees of freedom: this gives the band of a block's mean.
 void append_nis_block(Json& json, double t_s, double nis, int dof) {
   json["t"].push_back(rounded(t_s, 1e-3));
   json["mean"].push_back(rounded(nis / dof));

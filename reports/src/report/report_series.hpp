@@ -10,9 +10,9 @@
 
 namespace helixnav::reports {
 
-/// What the page draws over time or along the path, thinned out to what a screen shows.
+/// What the page draws over time or along the path, thinned to what a screen shows.
 Json path_json(const std::vector<core::StepReport>& steps);
-/// Null where the path was not corrected.
+/// Null if the path was not corrected.
 Json final_path_json(const runs::Run& run);
 Json truth_json(const evaluation::PositionEvaluation& position);
 Json errors_json(const evaluation::PositionEvaluation& position);

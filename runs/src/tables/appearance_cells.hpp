@@ -12,7 +12,7 @@ namespace helixnav::runs {
 /// Cells of the likeliest class and of the size, each after a comma; empty where they are unknown.
 void append_appearance(std::string& text, const core::LandmarkAppearance& known);
 
-/// From these cells on, four of them; RunRow refuses what cannot be a class or a size.
+/// Reads four cells from here on; RunRow refuses what cannot be a class or a size.
 core::LandmarkAppearance read_appearance(const RunRow& row, std::size_t column);
 
 }  // namespace helixnav::runs

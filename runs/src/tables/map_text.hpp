@@ -9,8 +9,8 @@
 
 namespace helixnav::runs {
 
-/// The text of map.csv; with a column `name` where there are any. A comma, a quotation mark or a control character in a name
-/// becomes a space.
+/// The text of map.csv; with a column `name` if there are any. A comma, a quotation mark or a control character in a
+/// name becomes a space.
 std::string map_text(const std::vector<core::MapLandmark>& map,
                      const std::map<core::LandmarkId, std::string>& names = {});
 

@@ -8,9 +8,9 @@
 
 namespace helixnav::runs {
 
-/// Makes `association` what is known of that observation of step number `step`, in place of what was known before. Steps
-/// are ascending, and so are the observations of a step; a step that is not there is passed over. Cost: a bisection, where
-/// observations come in order.
+/// Makes `association` what is known of that observation of step number `step`, replacing what was known before. Steps
+/// are ascending, and so are the observations of a step; a missing step is skipped. Cost: a bisection, if observations
+/// come in order.
 void put_association(std::int64_t step, const core::AssociationReport& association,
                      std::vector<core::StepReport>& steps);
 

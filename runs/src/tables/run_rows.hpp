@@ -12,7 +12,8 @@
 
 namespace helixnav::runs {
 
-/// One line of a table. Every accessor throws InputError (file:line, column, what was expected) on another content.
+/// One line of a table. Every accessor throws InputError (file:line, column, what was expected) for any other
+/// content.
 class RunRow {
  public:
   RunRow(const std::string& path, const RunTable& table, int line, std::vector<std::string_view>& cells)
@@ -37,7 +38,7 @@ class RunRow {
 /// Whether the first line of the file is the header of the table; InputError for a missing file.
 bool begins_with(const std::string& path, const RunTable& table);
 
-/// Calls `read_row` with every line below the header. A last line without its end is dropped, also when it is the
+/// Calls `read_row` with every line below the header. A last line without a line end is dropped, even if it is the
 /// header. InputError for a missing file, another header, another number of cells.
 void for_each_row(const std::string& path, const RunTable& table, const std::function<void(const RunRow&)>& read_row);
 

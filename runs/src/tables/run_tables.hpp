@@ -23,7 +23,7 @@ inline constexpr RunTable health_table{
     "health.csv",
     "step,t_s,mode,sxx,sxy,sxh,syy,syh,shh,nis,dof,active,mapped,switched,association_rows,decision_rows,merge_rows,"
     "cloud_rows,least_pivot,asymmetry,repaired,refused,microseconds"};
-/// As earlier versions wrote it; still read.
+/// As written by earlier versions; still read.
 inline constexpr RunTable health_table_without_numerics{
     "health.csv",
     "step,t_s,mode,sxx,sxy,sxh,syy,syh,shh,nis,dof,active,mapped,switched,association_rows,decision_rows,merge_rows,"
@@ -35,10 +35,10 @@ inline constexpr RunTable particles_table{"particles.csv",
 inline constexpr RunTable paths_table{"paths.csv", "point,before,step,x,y,heading,share"};
 inline constexpr RunTable mixture_table{"mixture.csv", "id,x,y,sxx,sxy,syy,share,mature_share"};
 inline constexpr RunTable map_table{"map.csv", "id,x,y,sxx,sxy,syy,observations,state"};
-/// Where a class or a size was told.
+/// If a class or a size was reported.
 inline constexpr RunTable map_table_with_appearance{
     "map.csv", "id,x,y,sxx,sxy,syy,observations,state,class,class_nats,size,sigma_size"};
-/// Where landmarks were known by name.
+/// If landmarks were known by name.
 inline constexpr RunTable map_table_with_names{"map.csv", "id,x,y,sxx,sxy,syy,observations,state,name"};
 inline constexpr RunTable map_table_with_appearance_and_names{
     "map.csv", "id,x,y,sxx,sxy,syy,observations,state,class,class_nats,size,sigma_size,name"};

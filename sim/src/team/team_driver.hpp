@@ -13,10 +13,10 @@ namespace helixnav::sim {
 
 inline constexpr double team_period_s = 1.0;  ///< of odometry and scans
 
-/// What every robot's scanner is.
+/// The scanner that every robot has.
 Scenario team_scanner(const TeamScene& scene, double clutter_per_scan);
 
-/// One robot of a team under way on its circle.
+/// One robot of a team driving on its circle.
 class TeamDriver {
  public:
   TeamDriver(const TeamScene& scene, std::size_t robot, const Scenario& scanner, const World& world,
@@ -24,12 +24,13 @@ class TeamDriver {
 
   const core::Pose2& pose() const { return pose_; }
 
-  /// Drives for a period. Measured speed and turn rate are the true ones with noise; the truth is exactly on the circle.
+  /// Drives for one period. Measured speed and turn rate are the true ones with noise; the truth is exactly on the
+  /// circle.
   core::Odometry move(core::Nanoseconds t_ns);
 
   LabelledScan scan(core::Nanoseconds t_ns) { return scanner_.look(pose_, 0.0, t_ns); }
 
-  /// Another robot, where it is in view and detected.
+  /// Another robot, if it is in view and detected.
   std::optional<core::Observation> look_at(const Eigen::Vector2d& point_m);
 
  private:

@@ -29,7 +29,7 @@ TeamScene circles_in_a_row(int robots, double apart_m, core::RandomStream& rando
   return scene;
 }
 
-/// Adds landmarks in the disc of robot `in` that stand, of all other discs, in that of robot `also` alone; also == in: in none.
+/// Adds landmarks in the disc of robot `in` that are in no other disc than that of robot `also`; also == in: in none.
 void scatter(int count, std::size_t in, std::size_t also, core::RandomStream& random, TeamScene& scene) {
   const double disc = disc_m(scene);
   const auto is_seen = [&](std::size_t robot, const Eigen::Vector2d& p) {
@@ -47,7 +47,7 @@ void scatter(int count, std::size_t in, std::size_t also, core::RandomStream& ra
 }
 
 TeamScene shared(const TeamWorldOptions& options, core::RandomStream& random) {
-  constexpr double apart_m = 33.5;  // discs of 33 m: next but one touch nowhere
+  constexpr double apart_m = 33.5;  // discs of 33 m: next but one do not touch
   TeamScene scene = circles_in_a_row(options.robots, apart_m, random);
   const std::size_t robots = scene.circles.size();
   for (std::size_t r = 0; r < robots; ++r) {
@@ -65,7 +65,7 @@ TeamScene apart(const TeamWorldOptions& options, core::RandomStream& random) {
   return scene;
 }
 
-/// Each robot 1 to 5 columns and 0 to 2 rows from the one before; trees on all that any robot sees.
+/// Each robot is 1 to 5 columns and 0 to 2 rows from the previous one; trees wherever any robot sees.
 TeamScene orchard(const TeamWorldOptions& options, core::RandomStream& random) {
   TeamScene scene = circles_in_a_row(options.robots, 0.0, random);
   const double pitch_m = options.pitch_m;
@@ -77,7 +77,7 @@ TeamScene orchard(const TeamWorldOptions& options, core::RandomStream& random) {
     column += 1 + static_cast<int>(random.below(5));
     row += static_cast<int>(random.below(3));
   }
-  constexpr int margin = 4;  // of columns and rows around the circles' centres: more than a view and its jitter
+  constexpr int margin = 4;  // columns and rows around the circles' centres: more than a view and its jitter
   for (int i = -margin; i <= column + margin; ++i) {
     for (int k = -margin; k <= row + margin; ++k) {
       const double x_m = pitch_m * i + random.normal(0.0, options.jitter_m);

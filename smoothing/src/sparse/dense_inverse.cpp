@@ -14,7 +14,7 @@ using Index = Eigen::Index;
 
 constexpr int widest = 64;  ///< columns of a block
 
-/// Column j + 1 is the parent of j and has the rows of j but j itself.
+/// Column j + 1 is the parent of j and has the rows of j except j itself.
 bool continues(const FactorView& L, int j) {
   return parent(L, j) == j + 1 && L.column_size[j] == L.column_size[j + 1] + 1;
 }

@@ -11,7 +11,7 @@ namespace helixnav::smoothing {
 
 /// Z = (L·Lᵀ)⁻¹ among the chosen positions of the elimination order, all pairs of them, a band of columns at a time: the
 /// two triangular solves, but only along the paths from the chosen columns to the root of the elimination tree, the second
-/// one no farther down than the band, and by blocks of columns with one structure, so that all is dense products.
+/// no farther down than the band, and by blocks of columns with the same structure, so that all is dense products.
 /// nnz(L on the paths)·n multiplications for n positions. Test: smoothing/marginals_test.cpp.
 class DenseInverse {
  public:
@@ -27,7 +27,7 @@ class DenseInverse {
  private:
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  /// Columns of L that have one structure: all rows of the first one's but their own stand below each of them.
+  /// Columns of L with the same structure: below each of them are all rows of the first one except their own.
   struct Block {
     int row = 0;                 ///< of its first column among all on the paths, the root's block first
     std::vector<int> below;      ///< rows of the block's boundary

@@ -9,8 +9,8 @@ namespace helixnav::smoothing {
 
 /// Z = (L·Lᵀ)⁻¹ on the pattern of L, computed only in the columns on the elimination tree's paths from the chosen columns
 /// to the root (Takahashi's recursion: Z_kj = −Σ_{i>j} Z_ki·L_ij / L_jj below the diagonal, Z_jj = (1/L_jj − Σ Z_ij·L_ij) / L_jj).
-/// Indices are positions in the elimination order. Cost: Σ over those columns of the lengths of the columns that theirs
-/// refers to.
+/// Indices are positions in the elimination order. Cost: the sum, over those columns, of the lengths of the columns
+/// that each of them refers to.
 class SelectedInverse {
  public:
   SelectedInverse(const FactorView& L, const std::vector<int>& chosen_positions);

@@ -10,12 +10,13 @@
 
 namespace helixnav::supervisor {
 
-/// [matched landmark, as landmarks_with(matched) lists them] what the class and size that were given add to the evidence of a
-/// hit, before they are taken in. Empty where nothing is given.
+/// [matched landmark, in the order of landmarks_with(matched)] what the class and size given add to the evidence of a hit,
+/// before they are taken in. Empty if none are given.
 std::vector<double> appearance_nats(const core::MapAppearance& appearance, const core::Scan& scan,
                                     const std::vector<core::AssociationReport>& associations);
 
-/// Takes in the class and size of every observation: for the landmark that it is matched to or begins, else for the population.
+/// Takes in the class and size of every observation: for the landmark it is matched to or begins, otherwise for the
+/// population.
 void look_at(const core::Scan& scan, const std::vector<core::AssociationReport>& associations,
              association::LandmarkLife& existence);
 

@@ -10,10 +10,10 @@
 
 namespace helixnav::supervisor {
 
-/// The outcome of every observation. Observations to augment carry no landmark yet.
+/// The outcome of every observation. Observations to be augmented have no landmark yet.
 std::vector<core::AssociationReport> association_reports(const association::Assignment& assignment);
 
-/// The matched observations, as the filter wants them.
+/// The matched observations, in the form that the filter takes.
 std::vector<cekf::Match> matches(const core::Scan& scan, const std::vector<core::AssociationReport>& associations);
 
 /// Landmarks of all observations with this outcome, in the order of the scan.

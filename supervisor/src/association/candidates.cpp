@@ -10,13 +10,13 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// Where an observation sees its landmark, and how uncertain that is by pose and noise together.
+/// Where an observation places its landmark, and the uncertainty of that from pose and noise together.
 struct LocatedObservation {
   Eigen::Vector2d point_m;
   double sigma_m;
 };
 
-/// Largest standard deviation of any direction, bounded by the trace.
+/// Upper bound, from the trace, on the standard deviation in any direction.
 double sigma_bound(const Eigen::Matrix2d& covariance) { return std::sqrt(std::max(0.0, covariance.trace())); }
 
 std::vector<LocatedObservation> seen_points(const core::PoseGaussian& pose, const core::Scan& scan) {
@@ -38,14 +38,14 @@ bool fixes_points(const core::Scan& scan) {
                      [](const core::Observation& o) { return core::dimension(o.kind) == 2; });
 }
 
-/// Whether any observation may be of the landmark if their errors were anything at all to each other.
+/// Whether any observation may be of the landmark whatever the correlation of their errors.
 bool is_near(const std::vector<LocatedObservation>& seen, const cekf::Outlook& landmark, double sigmas) {
   return std::any_of(seen.begin(), seen.end(), [&](const LocatedObservation& s) {
     return (s.point_m - landmark.mean_m).norm() < sigmas * (s.sigma_m + landmark.sigma_bound_m);
   });
 }
 
-/// Whether any may be of it as their errors are correlated: sigma_m is that of the landmark's place.
+/// The same with the actual correlation of their errors: sigma_m is that of the landmark's position.
 bool is_near(const std::vector<LocatedObservation>& seen, const core::Pose2& pose, const cekf::Outlook& landmark,
              double sigma_m, double sigmas) {
   const Eigen::Matrix<double, 2, 3>& cross = landmark.with_pose;
@@ -57,7 +57,7 @@ bool is_near(const std::vector<LocatedObservation>& seen, const core::Pose2& pos
   });
 }
 
-/// How far from the sensor a landmark may be that any observation is of, if its own deviation is no larger.
+/// How far from the sensor the landmark of any observation may be, if its deviation is no larger than the observation's.
 double reach_of(const std::vector<LocatedObservation>& seen, const Eigen::Vector2d& sensor_m, double sigmas) {
   double reach_m = 0.0;
   for (const LocatedObservation& s : seen)
@@ -89,7 +89,7 @@ std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, cons
     return within(filter, sensor_m, is_known ? reach_m : std::numeric_limits<double>::infinity(), excluded);
   }
 
-  constexpr double wider = 1.5;  // the gate is by the Mahalanobis distance, this by the trace and a linear step
+  constexpr double wider = 1.5;  // the gate uses the Mahalanobis distance, this the trace and a linear step
   const std::vector<LocatedObservation> seen = seen_points(pose, scan);
   const std::vector<core::LandmarkId> about = within(filter, sensor_m, reach_of(seen, sensor_m, sigmas), excluded);
   const std::vector<cekf::Outlook> outlooks = filter.outlooks(about);

@@ -10,7 +10,7 @@ namespace helixnav::supervisor {
 /// docs/adr/0009-integrity.md.
 class Confirmation {
  public:
-  /// A hit on the landmark, `path_m` along the drive. True when it was also the last one hit, at most `reach_m` before.
+  /// A hit on the landmark, `path_m` along the drive. True if it was also the last one hit, at most `reach_m` earlier.
   bool confirms(core::LandmarkId landmark, double path_m, double reach_m) {
     const bool again = landmark == landmark_ && path_m - path_m_ <= reach_m;
     landmark_ = landmark;

@@ -15,7 +15,7 @@ using core::Outcome;
 
 namespace {
 
-/// Where on the drive the last but one of the old landmarks was seen last, of which `seen` are seen now.
+/// Where on the drive the second most recently seen of the old landmarks was last seen; those in `seen` are seen now.
 double second_last_old_m(const association::LandmarkLife& existence, double old_before_m,
                          const std::vector<LandmarkId>& seen) {
   double last_m = -std::numeric_limits<double>::infinity();
@@ -30,7 +30,7 @@ double second_last_old_m(const association::LandmarkLife& existence, double old_
   return second_m;
 }
 
-/// Standard deviation of where the landmark is relative to the vehicle (root of the trace).
+/// Standard deviation of the landmark's position relative to the vehicle (root of the trace).
 double relative_sigma_m(const cekf::CompressedEkf& filter, LandmarkId id) {
   const core::PoseGaussian pose = filter.pose();
   const core::PointGaussian landmark = filter.landmark(id);

@@ -25,8 +25,8 @@ std::vector<core::LandmarkId> returned_to(const std::vector<core::LandmarkId>& a
   return both;
 }
 
-/// What is seen where the vehicle returns to may be of something that changed meanwhile, or of ground beside that which it takes it
-/// for: as much may stand there that is in no map as there is in it.
+/// What is seen on a return may be something that has changed meanwhile, or ground next to the ground it is taken for:
+/// there may be as many objects in no map there as there are in it.
 double extraneous_on_return(const association::LandmarkLife& existence, const SearchOptions& search,
                             const core::FieldOfView& view) {
   const double begun = with_extraneous_density(search, existence.born_per_scan(), view).extraneous_per_scan;
@@ -49,7 +49,7 @@ void defer_isolated_match(const std::vector<RevisitAmbiguity>& returns, const Se
   if (ambiguous || (informative && !met_again)) isolated->outcome = core::Outcome::ambiguous;
 }
 
-/// The others say where the vehicle is, but not where these are.
+/// The other matches show where the vehicle is, but not where these are.
 void defer_matches(const std::vector<core::LandmarkId>& loose, std::vector<core::AssociationReport>& reports) {
   for (core::AssociationReport& report : reports) {
     if (report.outcome == core::Outcome::matched && std::binary_search(loose.begin(), loose.end(), report.landmark)) {
@@ -74,9 +74,9 @@ core::JointGaussian with_pose(const cekf::CompressedEkf& filter, core::LandmarkI
   return joint;
 }
 
-/// Of many candidates those that keep some observation from being a new landmark's, each gated by itself, O(q²) all together in products that fill the caches: where the
-/// vehicle does not know where it is there are hundreds, and their joint covariance costs O(candidates²·q). Of few it costs
-/// no more than gating them one by one.
+/// Of many candidates, those that keep some observation from being a new landmark, each gated by itself, O(q²)
+/// altogether in products that fill the caches: if the vehicle does not know where it is, there are hundreds, and their
+/// joint covariance costs O(candidates²·q). For a few, that costs no more than gating them one by one.
 std::vector<core::LandmarkId> inside_gates(const cekf::CompressedEkf& filter, std::vector<core::LandmarkId> candidates,
                                            const core::Scan& scan, const association::Gates& gates) {
   constexpr std::size_t few = 48;

@@ -20,7 +20,7 @@ struct GatedScan {
   std::unique_ptr<Gating> gating;
   association::Assignment assignment;
   std::vector<RevisitAmbiguity> returns;
-  PlaceEvidence place;  ///< weighed where a return alone is too ambiguous
+  PlaceEvidence place;  ///< weighed if a return alone is too ambiguous
   /// Tentative landmarks that the vehicle has drifted from, ascending: left unused.
   std::vector<core::LandmarkId> doubtful;
 };
@@ -35,22 +35,22 @@ void look_for_returns(const cekf::CompressedEkf& filter, const association::Land
                       const core::Scan& scan, const NavigatorOptions& options, const core::FieldOfView& view,
                       GatedScan& gated);
 
-/// None of the old landmarks is matched: where a search is open none can begin for those that have become old since, and the pose that
-/// they would be matched by is in question.
+/// Leaves all old landmarks unmatched: while a search is open, none can begin for those that have become old since, and
+/// the pose by which they would be matched is in question.
 void leave_returns_unused(GatedScan& gated);
 
-/// Of the old landmarks those that alone are ambiguous are not matched (defer_confusers), however many others are.
+/// Old landmarks that are ambiguous by themselves (defer_confusers) are not matched, however many others are.
 void leave_ambiguous_unused(const SearchOptions& options, GatedScan& gated);
 
-/// A range or a bearing alone is of too many landmarks: without identities it is left unused.
+/// A range or a bearing alone fits too many landmarks: without identities it is left unused.
 void leave_unplaced_unused(const core::Scan& scan, std::vector<core::AssociationReport>& reports);
 
-/// Whether something in the scan is a range or a bearing alone: what it did not see is then not known.
+/// Whether any observation is a range or a bearing alone: it is then not known what the scan did not see.
 bool has_unplaced(const core::Scan& scan);
 
-/// The outcome of every observation. Two matched old landmarks confirm each other; an isolated match is deferred when other
-/// objects may be in its gate, and, until its second hit, when it would correct the pose by much. So is one that hangs loose
-/// (place_evidence.hpp) however many others are matched.
+/// The outcome of every observation. Two matched old landmarks confirm each other; an isolated match is deferred if other
+/// objects may be in its gate, and, until its second hit, if it would correct the pose by a lot. A loose match
+/// (place_evidence.hpp) is deferred too, however many others there are.
 /// Test: supervisor/association/revisit_ambiguity_test.cpp.
 std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, const NavigatorOptions& options,
                                                     double path_m, Confirmation& confirmation);

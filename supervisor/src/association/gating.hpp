@@ -9,7 +9,8 @@
 
 namespace helixnav::supervisor {
 
-/// What the filter expects a scan to look like; `appearance` null where nothing is known of classes and sizes. The problem refers to the joint estimate beside it: not copyable.
+/// What the filter expects a scan to look like; `appearance` is null if nothing is known about classes and sizes. Not
+/// copyable, because the problem refers to the joint estimate next to it.
 struct Gating {
   Gating(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& ids, const core::Scan& scan,
          const association::Gates& gates, const core::MapAppearance* appearance = nullptr)

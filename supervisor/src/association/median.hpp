@@ -7,7 +7,7 @@
 
 namespace helixnav::supervisor {
 
-/// The upper one of the two in the middle of an even number; 0 of none.
+/// The upper of the two middle values if their number is even; 0 if there are none.
 inline double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

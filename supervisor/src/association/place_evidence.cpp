@@ -30,7 +30,7 @@ double add_exponents(double a, double b) {
   return std::isinf(greater) ? greater : greater + std::log1p(std::exp(std::min(a, b) - greater));
 }
 
-/// One question about one scan: what of it is old, and what is given.
+/// One question about one scan: which of its matches are old, and which are given.
 class Question {
  public:
   Question(const cekf::CompressedEkf& filter, const InnovationProblem& problem, const Assignment& assignment,
@@ -69,7 +69,7 @@ class Question {
     return place;
   }
 
-  /// Of the half of the matches that is known worst those that hang loose (fixes_pose).
+  /// The loose ones (fixes_pose) in the half of the matches that is known least well.
   std::vector<LandmarkId> loose(double extraneous_per_scan, double defer_confusers) const {
     const OldPairs pairs = old_pairs_given(problem_, matched_, given_);
     const auto may_be = [&](int k, const Eigen::Matrix2d& S) {
@@ -90,7 +90,7 @@ class Question {
     return loose;
   }
 
-  /// Old landmarks that should be in view and that the assignment does not match.
+  /// Old landmarks that should be in view but that the assignment does not match.
   int missing(double view_margin_m) const {
     std::vector<LandmarkId> met;
     for (const int p : matched_) met.push_back(landmark(pair_at(p)));
@@ -137,7 +137,7 @@ class Question {
   bool is_old(LandmarkId id) const { return std::binary_search(old_.begin(), old_.end(), id); }
   bool is_old(const GatedPair& pair) const { return is_old(landmark(pair)); }
 
-  /// All pairs with old landmarks of the observations that nothing else has explained.
+  /// All pairs of old landmarks with observations that nothing else explains.
   std::vector<int> gated_with_old() const {
     std::vector<int> pairs;
     for (std::size_t p = 0; p < problem_.pairs.size(); ++p) {

@@ -31,7 +31,7 @@ double density_at(const association::Prediction& prediction, const core::FieldOf
   return prediction.kind == core::ObservationKind::range_bearing ? per_m2 * prediction.z_hat.x() : per_m2;
 }
 
-/// By how much the gate is larger than the sensor's noise makes it.
+/// By how much the gate is larger than sensor noise alone would make it.
 double widened_area(const Eigen::Matrix2d& S, const Eigen::Matrix2d& R) {
   return core::pi * confuser_gate() * (std::sqrt(std::max(0.0, S.determinant())) - std::sqrt(R.determinant()));
 }
@@ -74,7 +74,7 @@ bool may_be(const association::InnovationProblem& problem, int observation, core
                      });
 }
 
-/// How likely it is to look so compared to what the pair says, 1 at the most. By class and size alone.
+/// How likely it is to look like that compared with what the pair says, at most 1. By class and size alone.
 double share_alike(double nats, const association::GatedPair& pair) {
   return std::exp(std::min(0.0, nats - pair.appearance_nats));
 }
@@ -109,7 +109,7 @@ Neighbours neighbours_in_gate(const cekf::CompressedEkf& filter, const core::Sca
   return neighbours;
 }
 
-/// One entry a landmark, ascending: the most ambiguous one.
+/// One entry per landmark, ascending: the most ambiguous one.
 void keep_worst(const RevisitAmbiguity& here, std::vector<RevisitAmbiguity>& returns) {
   const auto at = std::lower_bound(returns.begin(), returns.end(), here.landmark,
                                    [](const RevisitAmbiguity& r, core::LandmarkId l) { return r.landmark < l; });
@@ -136,7 +136,7 @@ std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
                                               const std::vector<core::LandmarkId>& old, double extraneous_per_scan,
                                               const core::MapAppearance& appearance) {
   std::vector<RevisitAmbiguity> returns;
-  if (old.empty() || !scan.field_of_view.reach()) return returns;  // a sensor of no known view
+  if (old.empty() || !scan.field_of_view.reach()) return returns;  // a sensor of unknown view
   std::vector<core::LandmarkId> others;                            // looked up when the first old landmark is gated
   for (const association::GatedPair& pair : problem.pairs) {
     const core::LandmarkId id = problem.ids[static_cast<std::size_t>(pair.candidate)];

@@ -37,7 +37,7 @@ std::vector<std::vector<int>> pairs_of_some_observations(const OldPairs& old, st
   return some;
 }
 
-/// Any two pairs of different observations, at least one of them not of the best matching; nothing when there are more than
+/// Any two pairs of different observations, at least one of them not in the best matching; nothing if there are more than
 /// `most`.
 std::optional<std::vector<std::pair<int, int>>> starts(const std::vector<std::vector<int>>& some, const Matching& best,
                                                        std::size_t most) {

@@ -5,7 +5,7 @@
 
 namespace helixnav::supervisor {
 
-/// Of the ground that a sensor with this view sees.
+/// Area of the ground that a sensor with this view sees.
 inline double view_area_m2(const core::FieldOfView& view) {
   return 0.5 * (view.max_bearing_rad - view.min_bearing_rad) *
          (view.max_range_m * view.max_range_m - view.min_range_m * view.min_range_m);

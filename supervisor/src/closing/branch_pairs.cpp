@@ -15,7 +15,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// From an old landmark to its nearest old neighbour, as far as that matters.
+/// Distance from an old landmark to its nearest old neighbour, as far as that matters.
 double nearest_old_m(const cekf::CompressedEkf& filter, core::LandmarkId kept, const std::vector<core::LandmarkId>& old,
                      double matters_m) {
   const Eigen::Vector2d at_m = filter.landmark_mean(kept);
@@ -27,9 +27,9 @@ double nearest_old_m(const cekf::CompressedEkf& filter, core::LandmarkId kept, c
   return nearest_m;
 }
 
-/// At the rim of what was mapped a copy has one partner only, right or wrong. Is it a thousand times likelier to be that
-/// one's than an unmapped neighbour's, on any side as near as the nearest is? The copies of one segment
-/// have their error in common, so that a likelier mistake would be one of whole rows in one of some hundred closings.
+/// At the rim of the mapped ground a copy has only one partner, right or wrong. Is it a thousand times likelier to be a
+/// copy of that one than of an unmapped neighbour, on any side and as near as the nearest one is? The copies of one
+/// segment share their error, so a likelier mistake would be one of whole rows in one of some hundred closings.
 bool may_be_a_neighbours(const Leftover& leftover, double neighbour_m) {
   constexpr int sides = 16;
   static const double least_excess = 2.0 * std::log(1000.0);
@@ -64,7 +64,7 @@ void note(const KeptRemoved& pairs, Closing& closing) {
 
 namespace {
 
-/// Of few pairs one, after which the rest is solved anew; of many, as sessions have in common, all that contradict the rest.
+/// One of few pairs, after which the rest is solved again; of many, as sessions share, all that contradict the rest.
 std::vector<std::size_t> worst_pairs(const cekf::CompressedEkf& filter, const SearchOptions& options,
                                      const std::vector<double>& parts, const KeptRemoved& pairs, MayLeaveOut may) {
   constexpr std::size_t many = 64;
@@ -74,7 +74,8 @@ std::vector<std::size_t> worst_pairs(const cekf::CompressedEkf& filter, const Se
   return {static_cast<std::size_t>(std::max_element(parts.begin(), parts.end()) - parts.begin())};
 }
 
-/// Where trees stand as twins some pairs of a right closing are of one with the other: few, and each far beyond its deviation.
+/// If trees grow as twins, some pairs of a correct closing match one twin with the other: few, and each far beyond its
+/// deviation.
 MayLeaveOut may_still_leave_out(const SearchOptions& options, const Closing& closing, std::size_t pairs) {
   constexpr std::size_t pairs_an_outlier = 20;
   const auto any = static_cast<std::size_t>(options.most_dropped);

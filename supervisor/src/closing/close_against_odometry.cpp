@@ -23,7 +23,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-constexpr double largest_factor = 1000.0;  ///< of a variance; beyond it was no noise
+constexpr double largest_factor = 1000.0;  ///< of a variance; beyond it, it was not noise
 constexpr int free_dof = 3;                ///< of a pose
 
 struct Input {
@@ -35,13 +35,13 @@ struct Input {
   Branch branch;
 };
 
-/// By how much the variance of odometry was too small, had the pairs cost what they should.
+/// The factor by which the odometry variance was too small, if the pairs should have their expected cost.
 double factor_from(const Closing& closing) {
   const double should_cost = closing.dof - free_dof;
   return (closing.cost - should_cost) / free_dof;
 }
 
-/// Since any of the old landmarks was last seen: along that drive odometry was wrong.
+/// Length driven since any of the paired old landmarks was last seen: over it, odometry was wrong.
 double length_of_loop(const ClosingView& view, const std::vector<pf_relocalize::ConstellationPair>& pairs) {
   double last_seen_m = 0.0;
   for (const association::LandmarkRecord& record : view.life.records()) {
@@ -56,7 +56,7 @@ double reach_of(const ClosingView& view, double when_unbounded_m) {
   return view.scan.field_of_view.reach().value_or(when_unbounded_m);
 }
 
-/// The drive solved with the tape, and the branch merged at the place; false when either is refused.
+/// Solves the drive with the tape, and merges the branch at the place; false if either is refused.
 bool solve_and_merge(const Input& in, Tape tape, Reconciled& result) {
   DriveMap drive(in.start, phase_length_m(reach_of(in.view, reference_reach_m)));
   std::optional<cekf::CompressedEkf> solved;
@@ -89,9 +89,9 @@ bool close_with_larger_noise(const Input& in, Reconciled& result) {
   return false;
 }
 
-/// From where the filter has the vehicle to where the place says it was: known to within the sensor's reach at both ends of the
-/// drive since, unless the jump itself is smaller. The pairs know it far better; a wider prior only costs digits, and with a
-/// jump of 250 m and half a turn the covariance was not positive definite any more.
+/// From where the filter has the vehicle to where the place puts it: known to within the sensor's reach at both ends of
+/// the drive since, unless the jump itself is smaller. The pairs fix it far better; a wider prior only costs digits,
+/// and with a jump of 250 m and half a turn the covariance was no longer positive definite.
 core::Odometry jump_from(const core::PoseGaussian& pose, const core::Pose2& T_map_branch, double driven_since_m,
                          double reach_m) {
   core::Odometry jump = core::no_motion(0);
@@ -111,8 +111,8 @@ bool is_born_in(const Tape::Scan& scan, core::LandmarkId id) {
   });
 }
 
-/// When each landmark, as it is called now, was seen on the tape since a position, from which those here are counted. One that was
-/// mapped before was seen at 0.
+/// When each landmark, by its present id, was seen on the tape since a position, from which positions are counted here.
+/// One that was mapped before counts as seen at 0.
 class Sightings {
  public:
   Sightings(const Tape& tape, Tape::Position from) : from_(from) {
@@ -135,7 +135,7 @@ class Sightings {
   Tape::Position on_tape(Tape::Position position) const { return from_ + position; }
   double driven_m(Tape::Position from, Tape::Position until) const { return driven_m_[until] - driven_m_[from]; }
 
-  /// Of any of the branch's landmarks that are paired.
+  /// First sighting of any paired branch landmark.
   Tape::Position first_of(const std::vector<pf_relocalize::ConstellationPair>& pairs) const {
     Tape::Position first = end();
     for (const pf_relocalize::ConstellationPair& pair : pairs) {
@@ -145,7 +145,7 @@ class Sightings {
     return first;
   }
 
-  /// [position] how often a landmark begun until there was seen after it.
+  /// [position] how often landmarks begun by then were seen after it.
   std::vector<int> across() const {
     std::vector<int> count(driven_m_.size(), 0);
     for (const auto& [id, positions] : at_) {
@@ -186,13 +186,13 @@ Cut cut_at(Tape::Position position, const Sightings& sightings, const Tape& tape
   return cut;
 }
 
-/// One who is carried away sees no more of what he has mapped: the last such place before the branch.
+/// A vehicle that is carried away no longer sees what it has mapped: the last such place before the branch.
 std::optional<Tape::Position> last_place_without_view_across(const Sightings& sightings, Tape::Position branch) {
   const std::vector<int> across = sightings.across();
   Tape::Position unseen = branch;
   while (unseen > 0 && across[unseen - 1] > 0) --unseen;
   if (unseen > 0) --unseen;
-  // From there back to the scan that saw something last.
+  // From there back to the last scan that saw something.
   Tape::Position position = 0;
   for (const auto& [id, positions] : sightings.at()) {
     for (const Tape::Position at : positions) position = at <= unseen ? std::max(position, at) : position;
@@ -200,8 +200,8 @@ std::optional<Tape::Position> last_place_without_view_across(const Sightings& si
   return position > 0 ? std::optional(position) : std::nullopt;
 }
 
-/// A vehicle that is put down among trees that fit those it expects matches some of them all the same: of the last `within_m`
-/// before the branch the place with the fewest such matches, where they are few among all matches since.
+/// A vehicle put down among trees that fit those it expects still matches some of them: the place within the last
+/// `within_m` before the branch with the fewest such matches, if they are few among all matches since.
 std::optional<Tape::Position> place_with_fewest_across(const Sightings& sightings, Tape::Position branch,
                                                        double within_m) {
   const std::vector<int> across = sightings.across();
@@ -255,8 +255,8 @@ bool replay_with_jump(const Input& in, Tape::Position position, const core::Odom
   return true;
 }
 
-/// Where the drive as a whole is not known any more: the jump is where the vehicle saw no more of what it had mapped, else where
-/// the search began.
+/// For a drive that is no longer kept as a whole: the jump is where the vehicle stopped seeing what it had mapped,
+/// otherwise where the search began.
 bool replay_after_jump(const Input& in, Reconciled& result) {
   const BranchRecord& record = in.view.record;
   const Sightings sightings(record.tape, record.trigger.position);

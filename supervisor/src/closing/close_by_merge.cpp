@@ -8,7 +8,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// False, and the filter as before, where cost_of would give nothing one iteration later.
+/// False, with the filter as before, if cost_of would give nothing one iteration later.
 bool try_merge(cekf::CompressedEkf& filter, const KeptRemoved& pairs, double sigma_m) {
   try {
     filter.merge(pairs, sigma_m);

@@ -12,8 +12,8 @@
 namespace helixnav::supervisor {
 
 /// Conditions the map on every branch landmark of the pairs being its old partner, jointly and iterated; the worst pair
-/// is dropped while the cost exceeds its χ² limit. Then what else of the branch has become a duplicate of one of `old`
-/// (ascending) is merged under a joint gate of its own, and unconfirmed copies are removed. Refused: filter as before.
+/// is dropped while the cost exceeds its χ² limit. Then whatever else of the branch has become a duplicate of one of `old`
+/// (ascending) is merged under a joint gate of its own, and unconfirmed copies are removed. If refused: filter as before.
 /// Exact: equal to a full EKF given the same equalities. Source: PROTOTYPE §6. Test: supervisor/closing/closing_test.cpp.
 Closing close_by_merge(cekf::CompressedEkf& filter, const std::vector<pf_relocalize::ConstellationPair>& pairs,
                        const Branch& branch, const std::vector<core::LandmarkId>& old, const SearchOptions& options);

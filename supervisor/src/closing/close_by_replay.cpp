@@ -14,7 +14,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// The filter as the pairs make it; false, with the filter in between, when it cannot believe them.
+/// Replays the filter with the pairs; false, with the filter left part-way, if it cannot accept them.
 bool replay(cekf::CompressedEkf& filter, const BranchRecord& record, const KeptRemoved& pairs,
             const SearchOptions& options, Closing& closing) {
   const std::set<core::LandmarkId> born = born_in(record);
@@ -41,7 +41,7 @@ bool replay(cekf::CompressedEkf& filter, const BranchRecord& record, const KeptR
   return closing.cost <= closing.limit;
 }
 
-/// Replays with more and more pairs, as long as the filter believes them; true when there are no more.
+/// Replays with more and more pairs, as long as the filter accepts them; true if there are no more.
 bool replay_leftovers(cekf::CompressedEkf& filter, const DuplicateSegment& duplicate_segment,
                       const BranchRecord& record, const Branch& branch, const std::vector<core::LandmarkId>& old,
                       const SearchOptions& options, KeptRemoved& pairs, Closing& closing) {

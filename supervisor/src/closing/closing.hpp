@@ -14,8 +14,8 @@ struct Closing {
   double cost = 0.0;  ///< J of the pairs kept, χ² with dof
   int dof = 0;
   double limit = 0.0;
-  double limit_of_leftovers = 0.0;            ///< sum, of what was merged after the pairs
-  core::NumericalHealth numerics;             ///< repairs and refusals alone
+  double limit_of_leftovers = 0.0;            ///< sum, for what was merged after the pairs
+  core::NumericalHealth numerics;             ///< repairs and refusals only
   int dropped = 0;                            ///< pairs dropped because of their cost
   std::vector<core::MergedLandmarks> merged;  ///< empty unless accepted
   std::vector<core::LandmarkId> forgotten;    ///< unconfirmed ones that coincided with an old landmark
@@ -27,7 +27,7 @@ struct Branch {
   std::vector<core::LandmarkId> unconfirmed;  ///< may be clutter: never merged
   pf_relocalize::Coverage old_drive;          ///< map frame
   pf_relocalize::Coverage new_drive;          ///< map frame as it was before the closing
-  core::MapAppearance appearance = {};        ///< of all landmarks: different ones are no copies
+  core::MapAppearance appearance = {};        ///< of all landmarks: different ones are not copies
 };
 
 }  // namespace helixnav::supervisor

@@ -13,10 +13,10 @@ namespace {
 
 using core::LandmarkId;
 
-/// The landmarks of a part of the question and all that one of them may be, ascending.
+/// Some of the landmarks in question, and all old ones that any of them may be, ascending.
 struct Neighbourhood {
   std::vector<LandmarkId> ids, old;
-  std::vector<std::vector<LandmarkId>> near;  ///< of each of ids
+  std::vector<std::vector<LandmarkId>> near;  ///< for each of ids
 };
 
 Neighbourhood look_around(const cekf::CompressedEkf& filter, std::vector<LandmarkId> ids,
@@ -35,7 +35,7 @@ Neighbourhood look_around(const cekf::CompressedEkf& filter, std::vector<Landmar
   return about;
 }
 
-/// One covariance of all with all: the pairs share the rows that they are made of.
+/// One covariance of all with all: the pairs share its rows.
 std::vector<std::vector<Leftover>> compare(const cekf::CompressedEkf& filter, const Neighbourhood& about,
                                            const Likeness& likeness) {
   std::vector<std::vector<Leftover>> result(about.ids.size());
@@ -72,7 +72,7 @@ std::vector<LandmarkId> held_by(const cekf::CompressedEkf& filter, const std::ve
 std::vector<std::vector<Leftover>> compatible(const cekf::CompressedEkf& filter, const std::vector<LandmarkId>& ids,
                                               const std::vector<LandmarkId>& old, const std::vector<double>& look_m,
                                               const Likeness& likeness) {
-  constexpr std::size_t at_once = 64;  // those named together are near each other
+  constexpr std::size_t at_once = 64;  // those with neighbouring ids are near each other
   std::vector<std::vector<Leftover>> found;
   for (std::size_t begin = 0; begin < ids.size(); begin += at_once) {
     const auto from = ids.begin() + static_cast<std::ptrdiff_t>(begin);

@@ -49,7 +49,7 @@ Differences differences(const cekf::CompressedEkf& filter, const KeptRemoved& pa
   return result;
 }
 
-/// χ² of the pairs that are left, and S⁻¹ of those.
+/// χ² of the remaining pairs, and their S⁻¹.
 class Remaining {
  public:
   explicit Remaining(const Differences& differences)
@@ -64,7 +64,7 @@ class Remaining {
 
   struct Worst {
     std::size_t pair = 0;
-    double nis = -1.0;  ///< of the pair given the others: by which χ² falls without it
+    double nis = -1.0;  ///< of the pair given the others: by this much χ² falls without it
   };
   Worst worst() const {
     Worst worst;

@@ -20,20 +20,20 @@ using pf_relocalize::Constellation;
 using pf_relocalize::ConstellationPair;
 
 constexpr std::size_t most_anchors = 6;
-// Ten times what orchards need. A stretch that may be nearly anywhere is for the whole map to place (search/whole_map).
+// Ten times what orchards need. A stretch that may be almost anywhere is left to the whole map (search/whole_map).
 constexpr std::size_t most_placings = 1000;
-// χ² of what a copy may be. To first order the true one was beyond 9.2 for most trees of a stretch in one of 50 orchards;
-// the cost of merging, which is iterated, was 41 for 42 degrees of freedom there.
+// χ² gate of what a copy may be. To first order the true one was beyond 9.2 for most trees of a stretch in one of 50
+// orchards; the cost of merging, which is iterated, was 41 for 42 degrees of freedom there.
 constexpr double wide_gate = 40.0;
 const double least_nats = std::log(1000.0);
 
 struct Copy {
   LandmarkId id;
   std::vector<Leftover> may_be;
-  double variance_m2;  ///< of what it is off by
+  double variance_m2;  ///< of its offset
 };
 
-/// Confirmed landmarks that stand where an old one may be, best known first.
+/// Confirmed landmarks that are where an old one may be, best known first.
 std::vector<Copy> copies_among(const std::vector<LandmarkId>& confirmed, const cekf::CompressedEkf& filter,
                                const std::vector<LandmarkId>& old, const SearchOptions& options,
                                const core::MapAppearance& appearance) {
@@ -53,14 +53,14 @@ std::vector<Copy> copies_among(const std::vector<LandmarkId>& confirmed, const c
   return copies;
 }
 
-/// A place of the stretch in the map, and what speaks for and against it.
+/// A place of the stretch in the map, and the evidence for and against it.
 struct Placing {
   core::Pose2 T_world_stretch;
   std::vector<ConstellationPair> pairs;
   double nats = 0.0;
 };
 
-/// The motion that brings a and b, as far apart as they are, to the middle and the direction of two others.
+/// The motion that brings a and b, at their own distance, to the midpoint and the direction of two others.
 core::Pose2 motion_between(const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m, const Eigen::Vector2d& to_a_m,
                            const Eigen::Vector2d& to_b_m) {
   const Eigen::Vector2d from = b_m - a_m;
@@ -97,7 +97,7 @@ class Stretch {
 
   bool holds(LandmarkId id) const { return at_m_.count(id) > 0; }
 
-  /// Every place that brings two far apart copies onto old landmarks that they may be; none where there are too many.
+  /// Every place that brings two far-apart copies onto old landmarks that they may be; none if there are too many.
   std::vector<Placing> placings(const std::vector<Copy>& copies) const {
     std::vector<Copy> far = copies;
     std::sort(far.begin(), far.end(),
@@ -124,7 +124,7 @@ class Stretch {
   }
 
  private:
-  /// False where there are too many to try.
+  /// False if there are too many to try.
   bool add_placings(const Copy& a, const Copy& b, std::vector<Placing>& found, std::size_t& tried) const {
     if (a.id == b.id) return true;
     const Eigen::Vector2d& a_m = at_m_.at(a.id);
@@ -146,7 +146,7 @@ class Stretch {
     return true;
   }
 
-  /// Landmarks of either drive on ground that both looked at, with no partner.
+  /// Landmarks of either drive without a partner, on ground that both looked at.
   int count_alone(const Placing& placing) const {
     std::map<LandmarkId, bool> paired;
     for (const ConstellationPair& pair : placing.pairs) paired[pair.branch] = paired[pair.old_landmark] = true;

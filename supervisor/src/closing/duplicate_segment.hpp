@@ -13,14 +13,14 @@
 
 namespace helixnav::supervisor {
 
-/// Alignment of a segment of duplicates that was mapped before the loop was closed. Their error is large against the
+/// Alignment of a segment of duplicates that was mapped before the loop was closed. Their error is large compared with the
 /// distance between old landmarks, so that each one alone is ambiguous, but it is common to all: a segment is aligned as a
 /// whole, and the cost of wrong alignments grows with its size. Built before the closing moves the branch, used after it.
 class DuplicateSegment {
  public:
   DuplicateSegment(const cekf::CompressedEkf& filter, const Branch& branch);
 
-  /// Pairs of the segment around the copy that the closed map knows best, nothing when there is no such segment or when a
+  /// Pairs of the segment around the copy that the closed map knows best, nothing if there is no such segment or if a
   /// rival alignment is not a thousand times less likely. An alignment is weighed by log ∫ rᴹ(1 − r)ᵘ dr − (J − dof)/2: M
   /// landmarks coincide with one of the other drive, u have no partner on ground that both covered, at an unknown rate r
   /// with a uniform prior, and J is the cost of merging the M. E[J] = dof at the right alignment, so that more pairs do not

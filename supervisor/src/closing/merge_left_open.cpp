@@ -13,7 +13,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// The landmarks of the segment as a branch of their own, beside all that was mapped before it.
+/// The landmarks of the segment as a branch of their own, beside everything mapped before it.
 Branch branch_of(const Belief& belief, const LeftOpen& segment, const core::FieldOfView& view, int least_hits) {
   Branch branch;
   for (const association::LandmarkRecord& record : belief.existence.records()) {
@@ -36,8 +36,8 @@ std::vector<core::LandmarkId> mature_before(double path_m, const association::La
   return ids;
 }
 
-/// As many copies as make a constellation, and most of what now stands on ground that was mapped before: in a lattice a few fit
-/// anywhere.
+/// As many copies as make a constellation, and most of what is now on ground that was mapped before: in a lattice a few
+/// fit anywhere.
 bool are_most_copies(const Closing& closing, const Branch& branch, const cekf::CompressedEkf& filter,
                      const SearchOptions& options) {
   std::size_t alone = 0;
@@ -48,7 +48,7 @@ bool are_most_copies(const Closing& closing, const Branch& branch, const cekf::C
          closing.merged.size() >= static_cast<std::size_t>(options.constellation.least_matches);
 }
 
-/// Those that views do not tie to the present.
+/// The landmarks that views do not tie to the present.
 Branch beyond(const Branch& branch, const std::vector<core::LandmarkId>& tied) {
   Branch rest = branch;
   rest.confirmed.clear();
@@ -67,8 +67,9 @@ Closing merge_copies(cekf::CompressedEkf& filter, const Branch& branch, const st
 
 }  // namespace
 
-/// After a closing: merges what it shows to be copies, by the rules for what a closing leaves over. Of what was mapped before
-/// `tied_since_m` either most or none: odometry that was wrong somewhere says too little of where it is.
+/// After a closing: merges what it shows to be copies, by the rules for a closing's leftovers. Of what was mapped
+/// before `tied_since_m`, either most is merged or nothing: odometry that was wrong somewhere says too little about
+/// where it is.
 void NavigationLoop::merge_left_open(const core::FieldOfView& view, double tied_since_m, core::StepReport& report) {
   for (const LeftOpen& segment : belief_.left_open) {
     Branch tied = branch_of(belief_, segment, view, options_.search.constellation.least_hits);

@@ -12,7 +12,7 @@ namespace {
 
 using OldOf = std::map<core::LandmarkId, core::LandmarkId>;
 
-/// The observations of the scan that began the landmarks of its map then.
+/// The observations of the scan that began landmarks at the time.
 template <class Visit>
 void for_each_birth(const Tape::Scan& scan, const Visit& visit) {
   for (const core::AssociationReport& association : scan.fate) {
@@ -41,7 +41,7 @@ void augment_again(cekf::CompressedEkf& filter, const Tape::Scan& scan, const Ol
   for_each_birth(scan, [&](core::LandmarkId born, const core::Observation& observation) {
     const core::LandmarkId id = filter.augment(observation, scan.scan.T_robot_sensor);
     if (id != born) throw core::PreconditionError("replay_branch: the filter was changed behind the tape's back");
-    if (old_of.count(id) > 0) filter.remove(id);  // born only so that those after it get the ids that they had
+    if (old_of.count(id) > 0) filter.remove(id);  // born only so that those after it get the ids they had
   });
 }
 

@@ -20,9 +20,9 @@ struct BranchRecord {
 std::set<core::LandmarkId> born_in(const BranchRecord& branch);
 
 /// Restores the filter to the trigger and processes everything again, with each branch landmark in `old_of` replaced by
-/// the old one from its birth on; scans that see such a one are iterated. Every other landmark keeps its id. Returns
-/// the cost, to be compared with innovation_cost of the branch. Throws what the filter throws, which is then left in
-/// between. Cost: a few times that of the scans themselves. Test: supervisor/closing/replay_test.cpp.
+/// the old one from its birth on; scans that see one of these are iterated. Every other landmark keeps its id. Returns
+/// the cost, to be compared with innovation_cost of the branch. Throws what the filter throws, which is then left
+/// part-way. Cost: a few times that of the scans themselves. Test: supervisor/closing/replay_test.cpp.
 cekf::UpdateResult replay_branch(cekf::CompressedEkf& filter, const BranchRecord& branch,
                                  const std::map<core::LandmarkId, core::LandmarkId>& old_of);
 

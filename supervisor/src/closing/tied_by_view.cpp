@@ -8,7 +8,7 @@
 namespace helixnav::supervisor {
 
 double tied_since_m(const Tape& tape, double path_m, double gap_m) {
-  std::vector<double> driven_m{0.0};  // at each scan, the begin of the tape first
+  std::vector<double> driven_m{0.0};  // at each scan, the beginning of the tape first
   std::vector<int> change{0};         // of how many landmarks reach from a scan to the next, against the next
   std::unordered_map<core::LandmarkId, std::size_t> last_seen;
   tape.read_from(0, [&](const Tape::Entry& entry) {

@@ -13,7 +13,7 @@ namespace {
 
 using pf_relocalize::ConstellationPair;
 
-/// Of the branch landmarks to the nearest other one, the median.
+/// Median distance of the branch landmarks to the nearest other one.
 double spacing_m(const cekf::CompressedEkf& filter, const std::vector<ConstellationPair>& pairs) {
   std::vector<double> nearest_m;
   for (const ConstellationPair& one : pairs) {
@@ -27,7 +27,7 @@ double spacing_m(const cekf::CompressedEkf& filter, const std::vector<Constellat
   return median(std::move(nearest_m));
 }
 
-/// [pair] a number that it has in common with the other pairs of its piece.
+/// [pair] a number that it shares with the other pairs of its piece.
 std::vector<std::size_t> pieces_of(const cekf::CompressedEkf& filter, const std::vector<ConstellationPair>& pairs) {
   std::vector<core::LandmarkId> ids;
   for (const ConstellationPair& pair : pairs) ids.push_back(pair.old_landmark);

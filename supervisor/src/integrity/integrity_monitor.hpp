@@ -16,7 +16,7 @@ namespace helixnav::supervisor {
 /// that old landmarks are missing while new ones spawn. Each landmark counts once, however often it is looked for.
 /// The pose is confirmed when two scans in a row match two revisited landmarks each (clutter may do it once); all counts
 /// restart there.
-/// Cost of a scan: O(expected + landmarks returned to lately). Source: PROTOTYPE §7.
+/// Cost of a scan: O(expected + landmarks returned to recently). Source: PROTOTYPE §7.
 /// Test: supervisor/integrity_monitor_test.cpp.
 class IntegrityMonitor {
  public:
@@ -33,7 +33,7 @@ class IntegrityMonitor {
   void observe(const association::LandmarkLife& life, const std::vector<core::LandmarkId>& expected,
                const std::vector<core::LandmarkId>& matched, double old_after_m);
 
-  /// A closing recognised these landmarks at `path_m` of the drive. They count as revisited, as others do by a
+  /// A closing recognised these landmarks at `path_m` of the drive. They count as revisited, as others do after a
   /// match, and confirm the pose from here on; without them only landmarks that the closing missed would be looked for.
   void close(double path_m, const std::vector<core::LandmarkId>& recognised);
 
@@ -52,9 +52,9 @@ class IntegrityMonitor {
   Returned* find_returned(const association::LandmarkLife& life, core::LandmarkId id, double old_after_m);
 
   std::map<core::LandmarkId, Returned> returned_;
-  int hits_before_ = 0;  ///< revisited landmarks matched in the scan before
+  int hits_before_ = 0;  ///< revisited landmarks matched in the previous scan
   bool clear_ = true;
-  std::optional<double> clear_path_m_;  ///< when clear_ was true last, or the first scan came
+  std::optional<double> clear_path_m_;  ///< when clear_ was last true, or the first scan came
 };
 
 }  // namespace helixnav::supervisor

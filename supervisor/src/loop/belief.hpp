@@ -17,13 +17,13 @@
 
 namespace helixnav::supervisor {
 
-/// A part of the drive in which a question was open that was never decided, by lengths of the drive.
+/// A part of the drive during which a question was open and was never decided, as lengths of the drive.
 struct LeftOpen {
   double begun_path_m = 0.0;
   double ended_path_m = 0.0;
 };
 
-/// Everything that rolls back: pose and map, which landmarks exist, what ground was covered, which old landmark awaits its
+/// Everything that rolls back: pose and map, which landmarks exist, what ground was covered, which old landmark awaits
 /// confirmation, how the vehicle slipped, what may move, and the number of scans so far.
 struct Belief {
   cekf::CompressedEkf filter;
@@ -39,9 +39,9 @@ struct Belief {
   MovingThings moving = {};
 };
 
-/// A belief to come back to, and where the tape was then. A snapshot of O(n_a²) bytes and the landmarks' existence; good as
-/// long as the filter keeps the snapshot's phase, which take_checkpoint() tells it: several scans may be taken in one call, and the
-/// filter may have begun anew in it.
+/// A belief to return to, and where the tape was then. A snapshot of O(n_a²) bytes and the landmarks' existence; valid as
+/// long as the filter keeps the snapshot's phase, as take_checkpoint() tells it to: several scans may be processed in one
+/// call, and the filter may have begun anew in it.
 struct Checkpoint {
   cekf::Snapshot filter;
   association::LandmarkLife existence;

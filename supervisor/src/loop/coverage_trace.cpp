@@ -11,7 +11,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// Poses by square cells.
+/// Poses in square cells.
 class Seen {
  public:
   explicit Seen(double near_m) : near_m_(near_m) {}

@@ -25,15 +25,16 @@ class CoverageTrace {
   /// Forgets what was passed until `path_m`.
   void begin_after(double path_m);
 
-  /// Of the poses passed before `path_m`, drops those from which nothing was seen that an older one did not see: less than
-  /// three quarters of the spacing away from it and turned by less than 0.3 rad. Those that `needed(path_m)` are kept. Does
-  /// nothing before there are twice as many poses as it left last time, and never below 4096, so that it costs O(log n) a
-  /// pose and poses are as many as the ground is large, however long the drive. Throws nothing but std::bad_alloc, with nothing changed.
+  /// Of the poses passed before `path_m`, drops those that saw nothing that an older one did not see: less than three
+  /// quarters of the spacing away from it and turned by less than 0.3 rad. Those with `needed(path_m)` are kept. Does
+  /// nothing until there are twice as many poses as it last left, and never below 4096, so that it costs O(log n) per pose
+  /// and the number of poses grows with the ground covered, however long the drive. Throws only std::bad_alloc, with
+  /// nothing changed.
   /// Test: supervisor/coverage_trace_test.cpp.
   void thin_before(double path_m, const std::function<bool(double)>& needed);
   std::size_t size() const { return points_.size(); }
 
-  /// Everything so far was in another frame.
+  /// Moves everything so far into a new frame.
   void change_frame(const core::Pose2& T_new_old);
 
   /// Sensor poses passed at path lengths in [from_m, to_m).

@@ -6,7 +6,7 @@
 
 namespace helixnav::supervisor {
 
-/// Updates the pose with the fix when its NIS passes the χ² gate of this probability, and says so either way.
+/// Updates the pose with the fix if its NIS passes the χ² gate of this probability, and reports the decision either way.
 /// Test: supervisor/absolute_fix_test.cpp.
 core::FixDecision judge_fix(cekf::CompressedEkf& filter, const core::AbsoluteFix& fix, double probability);
 

@@ -47,7 +47,7 @@ void NavigationLoop::move(const core::Odometry& measured) {
   pending_.driven_m += odometry.T_before_after.position_m().norm();
 }
 
-/// To the first sensor that says how far it sees.
+/// To the first sensor that reports how far it sees.
 void NavigationLoop::fit_to(const core::FieldOfView& view) {
   if (view_.reach() || !view.reach()) return;
   if (fit_to_sensor(view, belief_.step == 0, options_, belief_.filter)) {
@@ -112,7 +112,7 @@ StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* not
   });
 }
 
-/// With the noise that is assumed by now.
+/// With the noise assumed by now.
 StepReport NavigationLoop::take_as_assumed(const Scan& scan) {
   if (noise_.scale.observations() == 1.0) return step(scan);
   Scan assumed = scan;
@@ -121,7 +121,7 @@ StepReport NavigationLoop::take_as_assumed(const Scan& scan) {
 }
 
 bool NavigationLoop::fix(const core::AbsoluteFix& fix) {
-  if (apart_.part != 0) return false;  // nobody knows where its frame is
+  if (apart_.part != 0) return false;  // the place of its frame is unknown
   return all_or_nothing([&] { return use_fix(fix); });
 }
 
@@ -186,7 +186,7 @@ const std::vector<LandmarkId>& NavigationLoop::excluded() const {
   return open != nullptr ? open->search.old_landmarks() : none;
 }
 
-/// While a search is open the landmarks that were old when it began are no candidates. Others become old while it lasts.
+/// While a search is open the landmarks that were old when it began are not candidates. Others become old while it lasts.
 GatedScan NavigationLoop::gate(const Scan& scan) const {
   const std::vector<LandmarkId> ids = candidates(belief_.filter, scan, options_.candidate_sigmas, excluded());
   GatedScan gated = gate_scan(belief_.filter, ids, scan, options_, belief_.existence.appearance());
@@ -266,7 +266,7 @@ std::vector<LandmarkId> NavigationLoop::update_existence(const Scan& scan, const
   return changes.died;
 }
 
-/// Of their landmarks those that are still there: a search may have been closed since they were seen.
+/// Drops those of their landmarks that still exist: a search may have been closed since they were seen.
 void NavigationLoop::drop_movers(const std::vector<Mover>& movers, StepReport& report, std::vector<LandmarkId>& died) {
   for (const Mover& mover : movers) {
     core::MovingDecision decision{0, mover.nats, mover.speed_mps};

@@ -62,10 +62,10 @@ class NavigationLoop {
     std::optional<core::Odometry> motion;
     double driven_m = 0.0;  ///< length along the road
     std::vector<core::Decision> decisions;
-    core::NumericalHealth numerics = {};                     ///< that no report has yet
+    core::NumericalHealth numerics = {};                     ///< not yet in any report
     std::vector<association::UnusedSighting> doubtful = {};  ///< matches of this scan that are left unused
     std::vector<pf_relocalize::ConstellationPair> forbidden =
-        {};  ///< of a place that the whole map has and to which it could not be closed in this step
+        {};  ///< of a place that the whole map has, at which it could not be closed in this step
   };
   /// What a call has replaced so far, for recover().
   struct Undo {
@@ -80,7 +80,7 @@ class NavigationLoop {
     std::optional<std::pair<std::shared_ptr<const DriveMap>, Window>> drive = {};
   };
 
-  /// All that a part of the drive has of its own.
+  /// Everything that a part of the drive has of its own.
   struct Part {
     core::PoseGaussian start;
     Belief belief;
@@ -243,20 +243,20 @@ class NavigationLoop {
   Belief belief_;
   Tape tape_;
   NoiseLearner noise_;
-  NoiseLearner noise_before_;  ///< this call, for recover(); kept so that its memory is used again
+  NoiseLearner noise_before_;  ///< this call, for recover(); kept so that its memory is reused
   Mode mode_;
   Pending pending_;
   Undo undo_;
   ScanRhythm rhythm_;
-  std::optional<double> pause_m_;  ///< where on the drive a pause was that no scan has decided yet
+  std::optional<double> pause_m_;  ///< where on the drive there was a pause that no scan has decided yet
   std::vector<UnsurePause>
-      pauses_;  ///< since the place was last certain, of which no scan said surely that it was the same
+      pauses_;  ///< since the place was last certain, for which no scan established that it was the same
   std::uint64_t searches_ = 0;
   WholeMapQuestions questions_;
   WholeMapQuestions questions_before_;  ///< this call, for recover()
-  MapsApart apart_;                     ///< maps on which a place is sought
+  MapsApart apart_;                     ///< maps in which a place is sought
   std::map<std::int64_t, std::vector<std::size_t>>
-      used_;  ///< [step] observations of scans that were thinned since the checkpoint
+      used_;  ///< [step] observations used of scans thinned since the checkpoint
 };
 
 }  // namespace helixnav::supervisor

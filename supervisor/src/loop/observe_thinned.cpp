@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scans of more observations than are worked with: a bound on the work of a scan.
+// Scans with more observations than are used: a bound on the work per scan.
 #include <utility>
 
 #include "helixnav/core/thin_scan.hpp"
@@ -7,7 +7,7 @@
 
 namespace helixnav::supervisor {
 
-/// As if the sensor had made no more of it; the report names the observations as they stand in the whole scan.
+/// As if the sensor had made only these; the report numbers the observations as in the whole scan.
 core::StepReport NavigationLoop::observe_thinned(const core::Scan& scan) {
   const std::size_t count = scan.observations.size();
   const auto place = used_.insert_or_assign(belief_.step, core::observations_to_use(scan)).first;

@@ -8,7 +8,7 @@
 
 namespace helixnav::supervisor {
 
-/// Takes what came in since a checkpoint once more, after a rollback to it. Calls after_fix(fix, accepted now) and
+/// Processes what came in since a checkpoint again, after a rollback to it. Calls after_fix(fix, accepted now) and
 /// after_scan(report).
 template <class AfterFix, class AfterScan>
 void NavigationLoop::process_again(const std::vector<Tape::Entry>& since, const AfterFix& after_fix,

@@ -23,7 +23,7 @@ void NavigationLoop::commit() {
   try {
     belief_.filter.keep_since(checkpoint().filter.phase);
   } catch (const std::bad_alloc&) {
-    // The closed phases stay as they are, which is as exact, and are absorbed at the next occasion.
+    // The closed phases stay as they are, which is just as exact, and are absorbed at the next opportunity.
   }
   const bool is_long = tape_.stops() > options_.search.smooth_up_to_scans || !tape_.holds_since(0);
   if (belief_.drive && is_long) tape_.hand_on(belief_.drive->end());
@@ -31,7 +31,7 @@ void NavigationLoop::commit() {
   thin_coverage();
 }
 
-/// Poses on ground that was covered before, where nothing goes back to any more.
+/// Thins the poses on ground that was covered before, where nothing goes back to them any more.
 void NavigationLoop::thin_coverage() {
   if (searching() != nullptr || apart_.any()) return;
   const auto left_open = [this](double path_m) {
@@ -47,7 +47,7 @@ void NavigationLoop::thin_coverage() {
   }
 }
 
-/// Back to the checkpoint, and through what came since again: everything is as before the call, its motion pending again.
+/// Rolls back to the checkpoint and processes what came since again: all is as before the call, its motion pending again.
 void NavigationLoop::recover() {
   Undo undo = std::exchange(undo_, Undo{});
   if (undo.filter) belief_.filter = std::move(*undo.filter);

@@ -17,7 +17,7 @@ bool is_stop(const Tape::Entry& entry) {
   return std::holds_alternative<Tape::Scan>(entry) || (fix != nullptr && fix->accepted);
 }
 
-/// Measured or not; null for what is no motion.
+/// Measured or not; null for what is not a motion.
 const core::Odometry* motion_of(const Tape::Entry& entry) {
   if (const auto* measured = std::get_if<Tape::Motion>(&entry)) return &measured->odometry;
   if (const auto* slip = std::get_if<Tape::Slip>(&entry)) return &slip->motion;
@@ -28,7 +28,7 @@ bool is_used(const core::AssociationReport& association) {
   return association.outcome == core::Outcome::matched || association.outcome == core::Outcome::augmented;
 }
 
-/// In place: what frees memory must not fail for want of it. (shrink_to_fit then leaves the vector as it is.)
+/// In place: code that frees memory must not fail for lack of it. (shrink_to_fit then leaves the vector as it is.)
 void drop_unused(Tape::Scan& entry) {
   std::vector<core::Observation>& observations = entry.scan.observations;
   std::size_t used = 0;

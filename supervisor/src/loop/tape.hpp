@@ -15,9 +15,9 @@
 namespace helixnav::supervisor {
 
 /// What came in and what became of it, in order. Replaying a search, rolling back and solving the drive all read this.
-/// Memory: about 200 bytes a scan and 200 an observation used, over the whole drive while its scans and fixes are at most
-/// `most_stops`; beyond, or after drop_drive(), only what a checkpoint may still need. Scans are kept with all their
-/// observations since the last checkpoint and with those that were used before it. Test: supervisor/tape_test.cpp.
+/// Memory: about 200 bytes per scan and 200 per observation used, over the whole drive while its scans and fixes are at
+/// most `most_stops`; beyond that, or after drop_drive(), only what a checkpoint may still need. Scans since the last
+/// checkpoint keep all their observations, earlier ones only those that were used. Test: supervisor/tape_test.cpp.
 class Tape {
  public:
   /// Motion as one prediction of the filter, with the length of road it covers.
@@ -25,7 +25,7 @@ class Tape {
     core::Odometry odometry;
     double driven_m = 0.0;
   };
-  /// Motion that odometry did not measure. Whoever goes through the scans again decides it again.
+  /// Motion that odometry did not measure. It is decided again when the scans are processed again.
   struct Slip {
     core::Odometry motion;
   };
@@ -42,19 +42,20 @@ class Tape {
     std::vector<core::LandmarkId> died;  ///< removed after it
     bool slipped = false;                ///< updated by update_after_slip
   };
-  /// Landmarks merged by a closing, and the χ² that it may cost: its J is that of a filter linearised elsewhere, by tens too
-  /// small where the pose was uncertain by a radian, and any solution of the drive within the limit would have been accepted.
+  /// Landmarks merged by a closing, and the χ² that it may cost: its J is that of a filter linearised elsewhere, too
+  /// small by tens if the pose was uncertain by a radian, and any solution of the drive within the limit would have
+  /// been accepted.
   struct Merge {
     std::vector<core::MergedLandmarks> merged;
     double cost = 0.0;
   };
-  /// The drive was solved as a whole: cost of all measurements before.
+  /// The drive was solved as a whole: cost of all earlier measurements.
   struct Solved {
     double cost = 0.0;
   };
   using Entry = std::variant<Motion, Slip, Fix, Scan, Merge, Solved>;
 
-  /// Counts entries from the begin of the drive.
+  /// Counts entries from the beginning of the drive.
   using Position = std::size_t;
 
   explicit Tape(int most_stops) : most_stops_(most_stops) {}
@@ -63,18 +64,18 @@ class Tape {
   Position end() const { return forgotten_ + entries_.size(); }
 
   /// The tape of the same drive, had the covariances of all observations and of all measured motion been this many
-  /// times as large. What that would have cost is not known: costs are what it was at least.
+  /// times as large. Costs are divided by the smaller factor: an upper bound, since nothing is solved again.
   Tape rescaled(double observations, double odometry) const;
 
   /// The tape, had the covariance of the motion measured over the last `length_m` been this many times as large; costs stay
-  /// what they were, which is what they are at most.
+  /// as they were, which is an upper bound.
   Tape with_larger_noise(double odometry, double length_m) const;
 
-  /// The tape with a motion that nothing measured at `position`.
+  /// The tape with an unmeasured motion inserted at `position`.
   Tape with_jump(Position position, const core::Odometry& jump) const;
 
-  /// The tape without matches after `position` but with these landmarks (ids as they are now); costs stay what they were, which
-  /// is what they are at most.
+  /// The tape without matches after `position` except those with these landmarks (ids as they are now); costs stay as they
+  /// were, which is an upper bound.
   Tape without_matches_since(Position position, const std::set<core::LandmarkId>& but_with) const;
 
   /// The tape as it was before the merges at its end, and what these may cost.
@@ -84,8 +85,8 @@ class Tape {
   /// Takes off everything from `position` on and returns it.
   std::vector<Entry> cut(Position position);
 
-  /// Nothing rolls back behind `position` any more: unused observations before it are dropped, and all entries when the
-  /// drive is not kept. Amortised O(1) an entry.
+  /// Nothing rolls back behind `position` any more: unused observations before it are dropped, and all entries if the
+  /// drive is not kept. Amortised O(1) per entry.
   void settle(Position position);
 
   /// The drive before `position` is kept elsewhere (DriveMap): its entries are forgotten as soon as nothing rolls back
@@ -114,7 +115,7 @@ class Tape {
   Position settled_ = 0;
   Position handed_on_ = 0;
   int most_stops_;
-  int stops_ = 0;  ///< scans and fixes used since the begin of the drive, or since it was handed on
+  int stops_ = 0;  ///< scans and fixes used since the beginning of the drive, or since it was handed on
 };
 
 /// Observations that a scan's update and augmentation used: the matched ones, then those that began landmarks.
@@ -124,13 +125,13 @@ std::vector<cekf::Match> used_observations(const Tape::Scan& scan);
 cekf::UpdateResult innovation_cost(const Tape& tape, Tape::Position position);
 
 /// Cost of all measurements and closings of the drive: for a linear filter the minimum over all drives and maps. `before`:
-/// that of what is before `position`.
+/// the cost of what is before `position`.
 double drive_cost(const Tape& tape, Tape::Position position = 0, double before = 0.0);
 
 /// The present id of every landmark merged by a closing since `position`.
 core::MergedIds merged_ids(const Tape& tape, Tape::Position position = 0);
 
-/// A place where something may have been observed, and how the vehicle came there from the one before.
+/// A place where something may have been observed, and how the vehicle got there from the previous one.
 struct Stop {
   core::Nanoseconds t_ns = 0;
   std::optional<core::Odometry> motion;

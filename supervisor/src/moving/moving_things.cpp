@@ -14,12 +14,12 @@ using core::AssociationReport;
 using core::LandmarkId;
 using core::Outcome;
 
-constexpr int most_misses = 3;  // in a row, until a track ends
+constexpr int most_misses = 3;  // in a row, before a track ends
 constexpr int nobody = -1;
 
-/// As uncertain as an odometry that nobody has calibrated: what all that stands seems to do, at some hundredths of the vehicle's
-/// speed, is no motion. With 0.02 DLR, whose odometry is 8 % too long against its detector, is what it is without; with 0.05
-/// walkers pass for standing (docs/slips.md).
+/// As uncertain as uncalibrated odometry: what everything that stands still seems to do, at a few hundredths of the
+/// vehicle's speed, is not motion. With 0.02, DLR, whose odometry is 8 % too long against its detector, is the same as
+/// without; with 0.05, walkers pass for standing (docs/slips.md).
 core::Odometry as_uncalibrated(core::Odometry motion) {
   constexpr double share = 0.03;
   const double off_m = share * motion.T_before_after.position_m().norm();
@@ -43,8 +43,8 @@ const SeenPoint* seen_standing(const Track& track, const std::vector<SeenPoint>&
   return found == seen.end() ? nullptr : &*found;
 }
 
-/// The likeliest observation of a mover among those that are nobody's yet: that would begin a landmark, or that lie between the
-/// track's own landmark and the next place where one might begin; any that is no landmark's if it is known to move.
+/// The likeliest observation of a mover among those not taken yet: one that would begin a landmark, or one between the
+/// track's own landmark and the nearest place where one might begin; any unmatched one if it is known to move.
 const SeenPoint* seen_moving(const Track& track, bool is_known, const std::vector<SeenPoint>& seen,
                              const std::vector<int>& taken_by, std::vector<AssociationReport>& fate) {
   const SeenPoint* best = nullptr;
@@ -81,7 +81,7 @@ void MovingThings::move(const core::Odometry& motion) {
 std::vector<Mover> MovingThings::watch(core::Nanoseconds t_ns, const std::vector<SeenPoint>& seen,
                                        const SightingRates& rates, const MovingOptions& options,
                                        std::vector<AssociationReport>& fate) {
-  // The surest first: an observation is of one thing only.
+  // The surest first: each observation is of one thing only.
   std::stable_sort(tracks_.begin(), tracks_.end(), [](const Track& a, const Track& b) { return a.nats() > b.nats(); });
   taken_by_.assign(fate.size(), nobody);
   const double missed = 1.0 - rates.detection_probability;

@@ -9,43 +9,44 @@
 
 namespace helixnav::supervisor {
 
-/// What is known of sensor and world.
+/// What is known of the sensor and the world.
 struct SightingRates {
   double detection_probability = 0.9;
-  double extraneous_per_m2 = 0.0;  ///< observations of nothing mapped, a scan
+  double extraneous_per_m2 = 0.0;  ///< observations of nothing mapped, per scan
   core::FieldOfView sure_view;     ///< within which a landmark is expected to be seen
   core::Pose2 T_robot_sensor;
 };
 
-/// What was found to move by a scan.
+/// Something that a scan showed to be moving.
 struct Mover {
   std::vector<core::LandmarkId> landmarks;  ///< that it had begun, oldest first
   double nats = 0.0;                        ///< "it moves" against "it stands"
   double speed_mps = 0.0;                   ///< over the ground
 };
 
-/// Which of the things seen lately move. Each landmark that begins is followed as a Track until its sightings say that it stands,
-/// or nothing is seen of it any more. By what a scan shows:
+/// Which of the things seen lately move. Each new landmark is followed as a Track until its sightings show that it
+/// stands still, or nothing more is seen of it. The contributions of a scan:
 ///
-/// - matched to where it stands: ln (N_moving / N_standing), or what a missed mover and an extraneous observation say;
-/// - not where it stands, and an observation that began a landmark where it should be if it moves:
-///   ln (P_D N_moving / (P_missed λ)), with P_missed = 1 − P_D where it stands in view and was seen more than once, else 1:
-///   a false alarm is not missed.
+/// - matched to where it stands: ln (N_moving / N_standing), or that of a missed mover and an extraneous observation;
+/// - not where it stands, but an observation that began a landmark is where it should be if it moves:
+///   ln (P_D N_moving / (P_missed λ)), with P_missed = 1 − P_D if it stands in view and was seen more than once, else
+///   1: a false alarm is not missed.
 ///
-/// It moves once the sum exceeds the limit. Then its landmarks are dropped, and its observations begin none. A prior that
-/// knows no velocity charges a pair of clutter observations for the distance that it could have explained.
-/// Cost of a scan: tracks × observations; a track lives for some scans. Test: supervisor/moving/moving_things_test.cpp.
+/// It moves once the sum exceeds the limit. Then its landmarks are dropped, and its observations begin no more. A prior
+/// that does not know the velocity charges a pair of clutter observations for the distance that it could have
+/// explained.
+/// Cost per scan: tracks × observations; a track lives for a few scans. Test: supervisor/moving/moving_things_test.cpp.
 class MovingThings {
  public:
   void move(const core::Odometry& motion);
 
-  /// One scan, after association and before it is used: observations of what moves become rejected in `fate`. Returns
-  /// those found by this scan, whose landmarks are to be dropped. `seen`: the observations as points in the frame of the
-  /// vehicle.
+  /// One scan, after association and before it is used: observations of moving things become rejected in `fate`.
+  /// Returns the movers found by this scan, whose landmarks are to be dropped. `seen`: the observations as points in
+  /// the vehicle frame.
   std::vector<Mover> watch(core::Nanoseconds t_ns, const std::vector<SeenPoint>& seen, const SightingRates& rates,
                            const MovingOptions& options, std::vector<core::AssociationReport>& fate);
 
-  /// After the scan began its landmarks: what was begun is followed from now on.
+  /// After the scan has begun its landmarks: these are followed from now on.
   void begin(core::Nanoseconds t_ns, const std::vector<SeenPoint>& seen, const MovingOptions& options,
              const std::vector<core::AssociationReport>& fate);
 

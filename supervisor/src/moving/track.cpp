@@ -24,7 +24,7 @@ double density(const Eigen::Vector2d& nu, const Eigen::Matrix2d& S, double gate)
   return std::exp(-0.5 * nis) / (2.0 * core::pi * llt.matrixL().toDenseMatrix().diagonal().prod());
 }
 
-/// Of a point by the vehicle's motion (x, y, heading), in the frame after it.
+/// Jacobian of a point with respect to the vehicle's motion (x, y, heading), in the frame after it.
 Eigen::Matrix<double, 2, 3> by_motion(const Eigen::Matrix2d& R_after_before, const Eigen::Vector2d& point_m) {
   Eigen::Matrix<double, 2, 3> J;
   J << -R_after_before, Eigen::Vector2d(point_m.y(), -point_m.x());

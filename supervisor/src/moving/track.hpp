@@ -12,14 +12,14 @@
 
 namespace helixnav::supervisor {
 
-/// Something that was seen lately, under two hypotheses: it moves at a constant velocity, or it stands, and what was seen
-/// elsewhere is another thing. Frame of the vehicle, which drifts with nothing. Test: supervisor/moving/track_test.cpp.
+/// Something seen lately, under two hypotheses: it moves at a constant velocity, or it stands still and what was seen
+/// elsewhere is something else. Vehicle frame, which does not drift. Test: supervisor/moving/track_test.cpp.
 class Track {
  public:
   /// At its first sighting, which began `landmark`. `sigma_mps`: of its velocity, along each axis.
   Track(core::LandmarkId landmark, const SeenPoint& seen, core::Nanoseconds t_ns, double sigma_mps);
 
-  /// Into the frame of the vehicle after a motion, as uncertain as that.
+  /// Into the vehicle frame after a motion, with the uncertainty of that motion.
   void change_frame(const core::Odometry& motion);
 
   /// To the time of a scan.
@@ -29,15 +29,15 @@ class Track {
   double density_if_moving(const SeenPoint& seen) const;
   double density_if_standing(const SeenPoint& seen) const;
 
-  /// Where the last of its landmarks stands was seen again; the moving one, too, if that is within its gate.
+  /// Seen again where the last of its landmarks stands; the moving one as well, if that is within its gate.
   void see_standing(const SeenPoint& seen, double nats);
   /// Seen where it should be if it moves.
   void see_moving(const SeenPoint& seen, double nats);
   void miss() { ++misses_in_a_row_; }
 
-  /// The sighting that see_moving() took last began a landmark.
+  /// The sighting that see_moving() took last has begun a landmark.
   void begin_landmark(core::LandmarkId landmark) { landmarks_.push_back(landmark); }
-  /// Of them all, oldest first; forgets them.
+  /// All of its landmarks, oldest first; forgets them.
   std::vector<core::LandmarkId> take_landmarks();
   const std::vector<core::LandmarkId>& landmarks() const { return landmarks_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What moves in a scan: it is no landmark.
+// Things that move in a scan: they are not landmarks.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace helixnav::supervisor {
 
-/// Before the scan is used. Landmarks that were found to move are dropped at its end.
+/// Before the scan is used. Landmarks found to move are dropped at the end of the scan.
 std::vector<Mover> NavigationLoop::watch_moving(const core::Scan& scan, const std::vector<SeenPoint>& seen,
                                                 core::StepReport& report) {
   if (seen.empty()) return {};
@@ -20,7 +20,7 @@ std::vector<Mover> NavigationLoop::watch_moving(const core::Scan& scan, const st
   return belief_.moving.watch(scan.t_ns, seen, rates, options_.moving, report.associations);
 }
 
-/// The observations as points, if what moves is looked for and the view is bounded, so that a density of false ones exists.
+/// The observations as points, if moving things are watched for and the view is bounded, so that clutter has a density.
 std::vector<SeenPoint> NavigationLoop::points_to_watch(const core::Scan& scan) const {
   const double view_m2 = view_area_m2(scan.field_of_view);
   if (!options_.moving.enabled || !std::isfinite(view_m2) || !(view_m2 > 0.0)) return {};

@@ -24,7 +24,7 @@ int rows_of(const std::vector<cekf::Match>& matches) {
   return rows;
 }
 
-/// The vehicle anywhere about where it is predicted (standard deviations).
+/// The vehicle anywhere around its predicted pose (standard deviations).
 cekf::CompressedEkf moved_by_up_to(const cekf::CompressedEkf& filter, double moved_m, double turned_rad) {
   cekf::CompressedEkf moved = filter;
   core::PoseGaussian pose = filter.pose();
@@ -42,7 +42,7 @@ double log_likelihood(const cekf::Innovation& innovation, double noise_scale) {
          0.5 * rows * std::log(2.0 * core::pi);
 }
 
-/// Density of a sighting of anything, which may stand anywhere in view, in the units of the observation.
+/// Density of a sighting of anything, which may be anywhere in view, in the units of the observation.
 double density_of_any(core::ObservationKind kind, const AssumedOfNames& assumed) {
   const core::FieldOfView& view = assumed.view;
   const double far_m = view.reach().value_or(assumed.reach_m);
@@ -61,8 +61,8 @@ double density_of_any(core::ObservationKind kind, const AssumedOfNames& assumed)
   return 0.0;
 }
 
-/// Each sighting given all others that are still in: from S⁻¹ and S⁻¹ν of these, of which its own block and rows are the
-/// information and the weighted residual of the sighting given the rest.
+/// Each sighting given all others still included: from their S⁻¹ and S⁻¹ν, whose block and rows for a sighting are the
+/// information and the weighted residual of that sighting given the rest.
 class GivenOthers {
  public:
   GivenOthers(const cekf::Innovation& innovation, const std::vector<cekf::Match>& matches, double noise_scale) {
@@ -87,7 +87,7 @@ class GivenOthers {
     return 0.5 * (std::log(own(i).determinant()) - nis(i) - dof(i) * std::log(2.0 * core::pi));
   }
 
-  /// The others no longer know of it.
+  /// The others are no longer conditioned on it.
   void leave_out(std::size_t i) {
     const Index first = rows_[i].first, count = rows_[i].count;
     const Eigen::MatrixXd columns = information_.middleCols(first, count);
@@ -110,8 +110,8 @@ class GivenOthers {
   Eigen::VectorXd residual_;
 };
 
-/// At the minimum over pose and landmarks. Infinite where the way there leads onto a landmark, which nothing can be seen from: no
-/// pose explains the sightings then.
+/// At the minimum over pose and landmarks. Infinite if the way there leads onto a landmark, from where nothing can be
+/// seen: then no pose explains the sightings.
 double least_cost(const cekf::CompressedEkf& filter, const std::vector<cekf::Match>& matches) {
   try {
     return filter.iterated_cost(matches).cost;

@@ -113,7 +113,7 @@ std::vector<LandmarkId> clones_of(const Sightings& sightings) {
   return ids;
 }
 
-/// Where a landmark stands by its sightings, and how well they agree about it.
+/// Where a landmark is according to its sightings, and how well they agree.
 struct Located {
   std::optional<cekf::DerivedPoint> point;
   double nis = 0.0;              ///< of the best solution
@@ -145,7 +145,8 @@ Located locate(const cekf::CompressedEkf& filter, const Sightings& sightings, co
   return located;
 }
 
-/// One sighting bore another landmark's name where all others agree without it, and it is far off: two of them and noise do not do that.
+/// One sighting bore another landmark's name if all others agree without it and it is far off: two sightings and noise
+/// do not do that.
 template <class Sightings>
 std::optional<cekf::DerivedPoint> locate_without_one(const cekf::CompressedEkf& filter, const Sightings& sightings,
                                                      double nis, const DelayedOptions& options) {
@@ -158,7 +159,7 @@ std::optional<cekf::DerivedPoint> locate_without_one(const cekf::CompressedEkf& 
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     Located located = locate(filter, others, options);
     if (!located.point || nis - located.nis < least_gain) continue;
-    if (point) return std::nullopt;  // any of two might be the wrong one
+    if (point) return std::nullopt;  // either of the two might be the wrong one
     point = std::move(located.point);
   }
   return point;

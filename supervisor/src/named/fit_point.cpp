@@ -20,7 +20,7 @@ using Index = Eigen::Index;
 
 constexpr double at_the_sensor_m = 1e-6;  // there no direction is defined, whatever the world's size
 
-/// A row by the coordinates of P that it depends on, from FitRow::first on.
+/// Derivative of a row by the coordinates of P that it depends on, from FitRow::first on.
 using PlaceRow = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, 4>;
 
 struct Linearised {
@@ -129,7 +129,7 @@ std::optional<FittedPoint> fit_point(const std::vector<FitRow>& rows, const Eige
     if (!move_m.allFinite()) return std::nullopt;
     if ((information.inverse() * gradient).norm() < settled_m) return finish(rows, P.cols(), now, point_m, information);
     const Linearised next = linearise(rows, P, point_m + move_m);
-    // S is held while steps are judged: its own dependence on the point is no part of the Gauss-Newton descent.
+    // S is held fixed while steps are judged: its own dependence on the point is not part of the Gauss-Newton descent.
     if (next.good && next.nu.dot(now.S.solve(next.nu)) <= now.nis) {
       point_m += move_m;
       now = next;

@@ -11,7 +11,7 @@
 
 namespace helixnav::supervisor {
 
-/// One row of a fit: where the sensor stood, and how its pose depends on the coordinates of `P`: on two to four of them.
+/// One row of a fit: where the sensor was, and how its pose depends on two to four coordinates of `P`.
 struct FitRow {
   core::ObservationKind kind = core::ObservationKind::range;
   double z = 0.0;
@@ -21,8 +21,8 @@ struct FitRow {
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 4> J;  ///< (x, y, heading) of the sensor by those coordinates
 };
 
-/// A point with its dependence: error = G · error of the coordinates + noise. `cost` is νᵀS⁻¹ν + ln|S|, twice the negative
-/// log-likelihood but for a constant.
+/// A point with its dependence: error = G · error of the coordinates + noise. `cost` is νᵀS⁻¹ν + ln|S|, twice the
+/// negative log-likelihood up to a constant.
 struct FittedPoint {
   Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Zero();
@@ -32,8 +32,8 @@ struct FittedPoint {
   double cost = 0.0;
 };
 
-/// Weighted least squares by Levenberg-Marquardt, S = H·P·Hᵀ + R taken anew at every step. Nothing when it has not settled
-/// (a step far below `same_m`) or the point is not determined. O(rows³) a step, of which H·P·Hᵀ is O(rows²).
+/// Weighted least squares by Levenberg-Marquardt, S = H·P·Hᵀ + R recomputed at every step. Nothing if it has not
+/// settled (a step far below `same_m`) or the point is not determined. O(rows³) a step, of which H·P·Hᵀ is O(rows²).
 std::optional<FittedPoint> fit_point(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P,
                                      const Eigen::Vector2d& start_m, double same_m);
 
@@ -42,8 +42,8 @@ std::optional<FittedPoint> fit_point(const std::vector<FitRow>& rows, const Eige
 std::vector<FittedPoint> fit_from_everywhere(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P,
                                              double spacing_m, double same_m);
 
-/// True when the cost three standard deviations from the point, along both axes of its ellipse and to both sides, rises
-/// by 9 as a Gaussian's does, within a factor of 1.6. Two basins that have run together do not pass.
+/// True if the cost three standard deviations from the point, along both axes of its ellipse and on both sides, rises
+/// by 9 as a Gaussian's does, within a factor of 1.6. Two basins that have merged do not pass.
 bool looks_gaussian(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P, const FittedPoint& fitted);
 
 }  // namespace helixnav::supervisor

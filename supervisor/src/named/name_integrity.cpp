@@ -6,7 +6,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// Up where a value is above the estimate, down where it is below: equally often where that is the median.
+/// Up if a value is above the estimate, down if it is below: equally often when the estimate is the median.
 constexpr double median_step = 1.1;
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// Every landmark that has a name is worth it, and keeps that name.
+/// Every landmark that has a name is worth a place in the map, and keeps its name.
 PhaseNames all_names() {
   PhaseNames names;
   names.is_worth_it = [](core::LandmarkId) { return true; };
@@ -48,7 +48,7 @@ void NamedDrive::drop() noexcept {
   motion_.reset();
 }
 
-/// Those that close_phase takes, or none while the vehicle is still in that phase.
+/// The stops that close_phase takes, or none while the vehicle is still in that phase.
 std::size_t NamedDrive::stops_of_phase(double length_m) const {
   double driven_m = 0.0;
   for (std::size_t i = 0; i < stops_.size(); ++i) {
@@ -81,7 +81,7 @@ void NamedDrive::close_phase(double length_m, const atlas::PointPrior* known) {
   phases_ += static_cast<int>(phases.size());
 }
 
-/// From dead reckoning three steps of Gauss and Newton bring a phase to its minimum.
+/// From dead reckoning, three Gauss-Newton steps bring a phase to its minimum.
 void NamedDrive::add(const std::vector<DrivePhase>& phases, const atlas::PointPrior* known, atlas::Atlas& atlas) const {
   for (const DrivePhase& phase : phases) {
     const atlas::PhaseShape start = atlas::dead_reckon(*phase.log, &phase == &phases.front() ? known : nullptr);

@@ -15,15 +15,16 @@
 
 namespace helixnav::supervisor {
 
-/// The drive of a NamedNavigator since its begin: closed phases in an atlas, and the stops since the last of them. Nothing of it
-/// is ever decided otherwise, so that a phase goes into the atlas as soon as it was driven. Memory: 250 bytes an observation
-/// and 30 kB a phase, half a kilobyte once it was condensed (Atlas::condense). Test: supervisor/named/named_window_test.cpp.
+/// The drive of a NamedNavigator since its start: closed phases in an atlas, and the stops since the last of them. None
+/// of it is ever decided differently later, so a phase goes into the atlas as soon as it has been driven. Memory:
+/// 250 bytes per observation and 30 kB per phase, half a kilobyte once it is condensed (Atlas::condense).
+/// Test: supervisor/named/named_window_test.cpp.
 class NamedDrive {
  public:
-  /// `most_stops`: how many may wait for the atlas; of a longer drive that nobody puts into it nothing is kept.
+  /// `most_stops`: how many may wait for the atlas; a longer drive that is not put into it is not kept at all.
   NamedDrive(const core::PoseGaussian& start, int most_stops);
 
-  /// Where the drive was, to come back to. Good until a phase is closed.
+  /// Where the drive was, to roll back to. Valid until a phase is closed.
   struct Mark {
     std::size_t stops = 0;
     std::optional<core::Odometry> motion;
@@ -35,19 +36,19 @@ class NamedDrive {
   /// A scan or a fix after the motion so far; strong guarantee.
   void stop(Stop stop);
 
-  /// The drive is no longer of use: forgets it and whatever comes.
+  /// The drive is no longer needed: forgets it and whatever follows.
   void drop() noexcept;
   bool is_kept() const { return kept_; }
 
-  /// The stops since the last phase are a whole one.
+  /// Whether the stops since the last phase make a whole one.
   bool has_phase(double length_m) const;
   /// Puts one into the atlas. `known`: landmarks in the frame of its entry, where it is looked for. Strong guarantee.
   void close_phase(double length_m, const atlas::PointPrior* known);
-  /// Motion by odometry over the stops that close_phase would take, or over all as long as they are no whole phase.
+  /// Motion by odometry over the stops that close_phase would take, or over all while they do not make a whole phase.
   core::Pose2 T_entry_exit(double length_m) const;
 
-  /// Puts all stops into the atlas and settles it; `known` as above, of the first phase. After an error the drive is to be thrown
-  /// away.
+  /// Puts all stops into the atlas and settles it; `known` as above, for the first phase. After an error the drive has
+  /// to be discarded.
   void settle(double length_m, const atlas::PointPrior* known);
   const atlas::Atlas& atlas() const { return atlas_; }
   int phases() const { return phases_; }  ///< in the atlas, settled or not

@@ -37,7 +37,8 @@ DelayedOptions delayed_of(const NavigatorOptions& options) {
   return delayed;
 }
 
-/// One step with a scan's identities. Where the mathematics breaks on what they claim, one without any: no scan ends a drive.
+/// One step with a scan's identities. If the mathematics fails on what they claim, one without any: no scan ends a
+/// drive.
 template <class StepWith>
 StepReport with_identities_or_none(const std::vector<std::int64_t>& identities, const StepWith& step_with) {
   try {
@@ -60,7 +61,7 @@ NamedNavigator::NamedNavigator(const core::PoseGaussian& start, const NavigatorO
   core::check_start(start);
 }
 
-/// The strong guarantee: the call takes effect as a whole, or what was before is made again from the checkpoint.
+/// The strong guarantee: the call takes effect as a whole, or the previous state is rebuilt from the checkpoint.
 template <class Call>
 auto NamedNavigator::all_or_nothing(const Call& call) {
   if (!checkpoint_) checkpoint();

@@ -40,7 +40,7 @@ double FadingErrors::scale() const {
   return lower_edge(bins) / median_of_chi2_2;
 }
 
-/// A median of n has variance 1/(4 n f²) with density f there; of ln χ²₂ that is f = ln 2 / 2.
+/// A median of n has variance 1/(4 n f²) with density f there; for ln χ²₂, f = ln 2 / 2.
 double FadingErrors::log_sigma() const { return 1.0 / (std::log(2.0) * std::sqrt(weight_)); }
 
 }  // namespace helixnav::supervisor

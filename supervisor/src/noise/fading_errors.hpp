@@ -6,12 +6,12 @@
 
 namespace helixnav::supervisor {
 
-/// Squared normalised errors of two degrees of freedom each, fading exponentially, by a histogram of their logarithm. The
-/// scale is the median's ratio to that of χ²₂: a third of wrong pairs moves it little, a mean would follow the largest.
-/// Test: supervisor/noise/fading_errors_test.cpp.
+/// Squared normalised errors of two degrees of freedom each, fading exponentially, as a histogram of their logarithm.
+/// The scale is the ratio of their median to that of χ²₂: a third of wrong pairs moves it little, whereas a mean would
+/// follow the largest. Test: supervisor/noise/fading_errors_test.cpp.
 class FadingErrors {
  public:
-  /// Sums fade by `keep` a scan.
+  /// Sums fade by the factor `keep` per scan.
   explicit FadingErrors(double keep) : keep_(keep) {}
 
   void fade();
@@ -19,10 +19,11 @@ class FadingErrors {
 
   double weight() const { return weight_; }
 
-  /// Factor on the variance that was assumed; 1 without errors.
+  /// Factor on the assumed variance; 1 without errors.
   double scale() const;
 
-  /// The same by the mean of errors that are no outliers under what was assumed: larger than scale() where tails are heavy.
+  /// The same from the mean of errors that are not outliers under the assumed noise: larger than scale() if tails are
+  /// heavy.
   double mean_scale() const { return weight_ > 0.0 ? 0.5 * sum_ / weight_ : 1.0; }
 
   /// Standard deviation of ln scale().

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Noise that is learnt: what a scan says of it, and the drive solved anew once it is known.
+// Learning the noise: what a scan tells about it, and solving the drive again once it is known.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -13,8 +13,9 @@
 
 namespace helixnav::supervisor {
 
-/// Before the scan is associated, with the covariances that it claims. What is learnt holds for this scan already: the
-/// second scan of a drive would else begin a second copy of every landmark where the noise is assumed far too small.
+/// Before the scan is associated, with the covariances that it claims. What is learnt already applies to this scan:
+/// otherwise the second scan of a drive would begin a second copy of every landmark if the assumed noise were far too
+/// small.
 void NavigationLoop::learn_noise(const core::Scan& scan) {
   const Eigen::Matrix3d Q = std::exchange(noise_.moved, Eigen::Matrix3d::Zero());
   if (!options_.noise.adapt || searching() != nullptr) return;
@@ -40,11 +41,11 @@ void NavigationLoop::learn_noise(const core::Scan& scan) {
   noise_.scale.observe(PairEquations(geometry, seen, pairs, Eigen::Vector3d::Zero()), new_sides, Q);
 }
 
-/// What was processed with another noise before that was known is solved once more, with the noise as it is known now; where
-/// that cannot be solved all stays as it was.
+/// What was processed with other noise before it was known is solved again with the noise as it is known now; if it
+/// cannot be solved, everything stays as it was.
 void NavigationLoop::solve_with_learnt_noise(core::StepReport& report) {
-  constexpr double too_little = 1.25;   // overconfident: mended at once
-  constexpr double too_much = 1.0 / 3;  // only cautious: worth its cost rarely
+  constexpr double too_little = 1.25;   // overconfident: corrected at once
+  constexpr double too_much = 1.0 / 3;  // merely cautious: rarely worth its cost
   const double observations = noise_.scale.observations() / noise_.scale.applied_observations;
   const double odometry = noise_.scale.odometry() / noise_.scale.applied_odometry;
   const auto is_worth_it = [&](double change) { return change > too_little || change < too_much; };

@@ -8,7 +8,7 @@
 
 namespace helixnav::supervisor {
 
-/// What is known of the noise. It is the sensors', not the belief's: a roll-back does not take it back.
+/// What is known of the noise. It belongs to the sensors, not to the belief: rolling back does not undo it.
 struct NoiseLearner {
   NoiseScale scale;
   SidesSeen sides;

@@ -23,7 +23,7 @@ double to_next_m(const std::vector<SeenPoint>& seen, std::size_t s) {
   return nearest_m;
 }
 
-/// The landmark near `point_m` [world] that nothing within `spacing_m` could be taken for.
+/// The landmark near `point_m` [world], if nothing else within `spacing_m` could be mistaken for it.
 std::optional<core::LandmarkId> only_landmark(const cekf::CompressedEkf& filter, const Eigen::Vector2d& point_m,
                                               double spacing_m) {
   std::optional<core::LandmarkId> nearest;

@@ -9,24 +9,24 @@
 
 namespace helixnav::supervisor {
 
-/// A point that was seen and the only landmark that it can be, however large the noise may be.
+/// An observed point and the only landmark that it can be, however large the noise may be.
 struct NoisePair {
   SeenPoint seen;
   core::LandmarkId landmark;
 };
 
-/// Pairs four times nearer to each other than either is to the next of its kind. No gate takes part: with noise assumed far
-/// too small a gate admits only what happens to fit. O(n²) in the points seen, at most 24, nearest to the sensor first.
-/// Test: supervisor/noise/noise_pairs_test.cpp.
+/// Pairs four times nearer to each other than either is to the next of its kind. No gate is involved: if the assumed
+/// noise is far too small, a gate admits only what happens to fit. O(n²) in the points seen, at most 24, nearest to the
+/// sensor first. Test: supervisor/noise/noise_pairs_test.cpp.
 std::vector<NoisePair> noise_pairs(const cekf::CompressedEkf& filter, const core::Scan& scan);
 
-/// From which side each landmark was seen when its error last counted as independent. Landmarks that were out of view for a
+/// The side from which each landmark was seen when its error last counted as independent. Landmarks out of view for a
 /// while are forgotten: O(landmarks in view) bytes. Test: supervisor/noise/noise_pairs_test.cpp.
 class SidesSeen {
  public:
   void next_scan();
 
-  /// True when the landmark is seen from a side half a radian or more from the last that counted, which this then is.
+  /// True if the landmark is seen from a side half a radian or more from the last that counted; this one then counts.
   bool is_new_side(core::LandmarkId id, double bearing_to_vehicle_rad);
 
  private:

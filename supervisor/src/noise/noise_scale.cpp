@@ -13,7 +13,7 @@ namespace {
 using Eigen::Index;
 
 constexpr double prior_errors = 20.0;       // of the belief that the detector is as assumed
-constexpr double most_pose_nis = 16.3;      // χ²₃ of 99.9 %: a slip is no noise
+constexpr double most_pose_nis = 16.3;      // χ²₃ of 99.9 %: a slip is not noise
 constexpr double least_weight = 2.0;        // scans in which odometry's share is all that there is
 constexpr double least_independent = 20.0;  // pairs from new sides, before less noise is believed
 constexpr double dead_band = 1.35;
@@ -21,14 +21,14 @@ constexpr double most = 25.0;
 constexpr double sure_sigmas = 3.0;
 constexpr double keep_mean = 1.0 - 1.0 / 100.0;
 
-/// A factor that is not in force yet has to be sure; one that is, only likelier than none.
+/// A factor not yet in force has to be sure; one in force only has to be likelier than none.
 double most_sigmas(double in_force) { return in_force == 1.0 ? sure_sigmas : 1.0; }
 
 double bounded(double factor) { return std::clamp(factor, 1.0 / most, most); }
 
 }  // namespace
 
-/// E[nis / 3] = share · q + (1 − share) · detector for motion whose noise is q times as assumed.
+/// E[nis / 3] = share · q + (1 − share) · detector for motion whose noise is q times the assumed noise.
 void NoiseScale::Displacements::add(double nis, double share, double detector, double in_force) {
   sum = keep * sum + in_force * share * (nis / 3.0 - (1.0 - share) * detector);
   weight = keep * weight + share * share;
@@ -53,7 +53,7 @@ void NoiseScale::observe(const PairEquations& pairs, const std::vector<bool>& ne
   observations_ = detector;
 }
 
-/// What no displacement explains, by pairs: e = ν − Aδ with covariance S − A(AᵀS⁻¹A)⁻¹Aᵀ.
+/// What no displacement explains, from the pairs: e = ν − Aδ with covariance S − A(AᵀS⁻¹A)⁻¹Aᵀ.
 void NoiseScale::add_rest(const PairEquations& pairs, const Eigen::Vector3d& displacement,
                           const Eigen::Matrix3d& information, const std::vector<bool>& new_sides) {
   const Index rows = pairs.nu.size();
@@ -85,7 +85,7 @@ void NoiseScale::add_displacement(const Eigen::Vector3d& w, double share) {
   biased_motion_.add(std::min(most_pose_nis, w.squaredNorm()), share, detector, odometry_);
 }
 
-/// Up by all errors, a rise that the quick window is sure of at once. Down only where independent errors say so as well.
+/// Up from all errors, at once if the quick window is sure of the rise. Down only if independent errors confirm it.
 double NoiseScale::detector_factor() const {
   const double sigmas = most_sigmas(observations_);
   const double rise = std::log(quick_.scale()) - sure_sigmas * quick_.log_sigma();
@@ -99,16 +99,17 @@ double NoiseScale::detector_factor() const {
   return bounded(std::min(1.0, std::max({std::exp(slow), slow_.mean_scale(), std::exp(independent - sigma)})));
 }
 
-/// Where displacements are larger than odometry and such a detector explain, the detector errs for all landmarks alike, and
-/// its errors are not white. A factor that is not in force yet needs more: withdrawn and believed again in turn, it would
-/// have the whole drive solved anew each time.
+/// If displacements are larger than odometry and such a detector explain, the detector errs for all landmarks alike,
+/// and its errors are not white. A factor not yet in force needs more: withdrawn and believed again in turn, it would
+/// have the whole drive solved again each time.
 bool NoiseScale::motion_is_as_assumed_at_most() const {
   const double doubt = observations_ < 1.0 ? -biased_motion_.sigma() : 0.0;
   return biased_motion_.weight > least_weight && biased_motion_.scale() + doubt < dead_band;
 }
 
-/// Likewise; down by what is left with the mean in it, and never by more than it is sure of: what little odometry has moved in few scans may
-/// seem to be less than nothing, and 25 times less variance was believed and withdrawn in turn, the drive solved anew each time.
+/// Likewise; down by what is left including the mean, and never by more than it is sure of: the little that odometry
+/// has moved in a few scans may seem to be less than nothing, and 25 times less variance was believed and withdrawn in
+/// turn, with the drive solved again each time.
 double NoiseScale::odometry_factor() const {
   const double sigmas = most_sigmas(odometry_);
   const double rise = quick_motion_.scale() * (1.0 - sure_sigmas * quick_motion_.sigma());

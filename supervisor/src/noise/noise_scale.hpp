@@ -11,15 +11,15 @@
 namespace helixnav::supervisor {
 
 /// Factors on the covariances that odometry and detector claim, learnt from where landmarks are seen. The innovation of
-/// three pairs or more falls into what a displacement of the vehicle explains (3 degrees of freedom, wᵀw with w ~ N(0, I))
-/// and the rest, which odometry has no part in: the rest says the detector's factor, and what of w is odometry's share
-/// says odometry's.
+/// three or more pairs splits into what a displacement of the vehicle explains (3 degrees of freedom, wᵀw with
+/// w ~ N(0, I)) and the rest, in which odometry has no part: the rest gives the detector's factor, and odometry's share
+/// of w gives odometry's.
 ///
-/// Up: every scan counts, and of w only what is not a constant. A mean over many scans is a bias (a wheel's radius, a wrong
-/// scale of ranges) and no noise, or DLR's forward motion, 8 % too long against its detector, would pass for four times the
-/// variance. Down: the detector's factor needs errors that are independent as well, of landmarks seen from another side than
-/// when they last counted, and displacements that odometry explains; odometry's needs all of w. Rules and figures:
-/// docs/slips.md. Test: supervisor/noise/noise_scale_test.cpp.
+/// Up: every scan counts, and of w only what is not constant. A mean over many scans is a bias (a wheel's radius, a
+/// wrong scale of ranges) and not noise; otherwise DLR's forward motion, 8 % too long against its detector, would pass
+/// for four times the variance. Down: the detector's factor also needs independent errors, of landmarks seen from
+/// another side than when they last counted, and displacements that odometry explains; odometry's needs all of w. Rules
+/// and figures: docs/slips.md. Test: supervisor/noise/noise_scale_test.cpp.
 class NoiseScale {
  public:
   /// One scan while nothing is in question; Q: the covariance of the motion before it (x, y, heading; robot frame);
@@ -29,7 +29,7 @@ class NoiseScale {
   double odometry() const { return odometry_; }          ///< factor on covariances
   double observations() const { return observations_; }  ///< factor on covariances
 
-  /// The factors that the whole drive was processed with; 1 at its begin.
+  /// The factors that the whole drive was processed with; 1 at its start.
   double applied_odometry = 1.0;
   double applied_observations = 1.0;
 
@@ -59,7 +59,7 @@ class NoiseScale {
   Displacements quick_motion_{1.0 - 1.0 / 60.0};
   Displacements biased_motion_{1.0 - 1.0 / 1000.0};
   Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();  ///< of w
-  double mean_weight_ = 20.0;                       ///< so many scans of the belief that there is no bias
+  double mean_weight_ = 20.0;                       ///< weight, in scans, of the belief that there is no bias
   double odometry_ = 1.0;
   double observations_ = 1.0;
 };

@@ -9,8 +9,8 @@
 
 namespace helixnav::supervisor {
 
-/// What a session has mapped on its own bends, and its landmarks share errors: the evidence, of independent pairs, is asked for
-/// without what its density would spare.
+/// A session's map bends, and its landmarks share errors, but the evidence is that of independent pairs: it is asked
+/// for without what its density would spare.
 inline relocalize::AskOptions session_options(double alpha) {
   relocalize::AskOptions options;
   options.alpha = alpha;
@@ -26,8 +26,8 @@ struct Asked {
   std::vector<core::LandmarkId> with;  ///< ascending
   std::size_t most_about = 0;          ///< landmarks about the vehicle at once, before the first question
 
-  /// Enough landmarks to ask with, and enough of them new since the last question: a fifth where somebody waits for the answer,
-  /// half where nobody does.
+  /// Enough landmarks to ask with, and enough of them new since the last question: a fifth if somebody is waiting for
+  /// the answer, half if nobody is.
   bool is_due(const std::vector<core::LandmarkId>& landmarks, double least_new = 0.2) const {
     const auto fresh = std::count_if(landmarks.begin(), landmarks.end(), [&](core::LandmarkId id) {
       return !std::binary_search(with.begin(), with.end(), id);

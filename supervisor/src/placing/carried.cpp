@@ -21,7 +21,7 @@ namespace {
 using core::LandmarkId;
 using core::StepReport;
 
-constexpr std::size_t least_to_keep = 5;    ///< pairs that a place has at least
+constexpr std::size_t least_to_keep = 5;    ///< fewest pairs that a place has
 constexpr std::size_t most_to_keep = 3000;  ///< joint covariance of 290 MB
 
 /// The landmarks nearest to a point, ascending by name.
@@ -37,8 +37,8 @@ std::vector<core::MapLandmark> nearest(std::vector<core::MapLandmark> landmarks,
   return landmarks;
 }
 
-/// What cancellation has taken from a covariance is added to the variance of every landmark: as if that were noise of its own.
-/// Cost O(n³).
+/// What cancellation has taken from a covariance is added to the variance of every landmark, as if it were noise of its
+/// own. Cost O(n³).
 void make_definite(Eigen::MatrixXd& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance, Eigen::EigenvaluesOnly);
   const double least = solver.eigenvalues().minCoeff();
@@ -67,7 +67,7 @@ core::CarriedDecision with_sigmas(core::CarriedDecision::Cause cause, const Eige
 
 }  // namespace
 
-/// The mature landmarks begun and last seen until then; none where they are too few to be found again.
+/// The mature landmarks begun and last seen up to then; none if they are too few to be found again.
 core::JointMap NavigationLoop::map_to_keep(core::CarriedDecision& decision, double until_m) const {
   std::vector<core::MapLandmark> kept;
   std::size_t begun = 0;
@@ -97,7 +97,7 @@ core::JointMap NavigationLoop::map_to_keep(core::CarriedDecision& decision, doub
   return map;
 }
 
-/// Nothing is known of where: the frame begins at the vehicle.
+/// Nothing is known about where it is: the frame begins at the vehicle.
 Belief NavigationLoop::belief_elsewhere() const {
   return {cekf::CompressedEkf(core::PoseGaussian{}, options_.filter),
           association::LandmarkLife(options_.life),
@@ -106,7 +106,7 @@ Belief NavigationLoop::belief_elsewhere() const {
           belief_.step};
 }
 
-/// Nothing of the loop is changed.
+/// Changes nothing in the loop.
 NavigationLoop::Part NavigationLoop::part_elsewhere(const core::CarriedDecision& decision) const {
   core::CarriedDecision kept = decision;
   core::JointMap map = map_to_keep(kept, std::numeric_limits<double>::infinity());
@@ -173,8 +173,8 @@ void NavigationLoop::lose(const core::Lost&) {
   pauses_.clear();
 }
 
-/// Where on the drive the pause was of which this scan may tell: the one that ends with it, or one that the scans since have left
-/// undecided.
+/// Where on the drive the pause was that this scan may tell about: the one that ends with it, or one that the scans
+/// since have left undecided.
 std::optional<double> NavigationLoop::pause_to_weigh(const core::Scan& scan) const {
   if (!is_monitored()) return std::nullopt;
   if (rhythm_.is_pause(scan.t_ns, pending_.driven_m)) return belief_.existence.path_m();
@@ -194,7 +194,7 @@ StepReport NavigationLoop::observe_elsewhere(const core::Scan& scan, const Still
   return begin_part_with(scan, found_out(there));
 }
 
-/// As observe(), from a part of the drive that begins with this scan.
+/// As observe(), but in a part of the drive that begins with this scan.
 StepReport NavigationLoop::begin_part_with(const core::Scan& scan, const core::CarriedDecision& decision) {
   Part other = part_elsewhere(decision);
   exchange(other);
@@ -206,9 +206,10 @@ StepReport NavigationLoop::begin_part_with(const core::Scan& scan, const core::C
   }
 }
 
-/// Where variances of 10⁵ m² and more have cancelled until nothing is left of a landmark's 0.01 m², the map is kept as it was and the
-/// drive goes on beside it: its place is found by landmarks alone, which needs no prior. A part that begins like that and
-/// breaks at once, or one of which nothing can be kept, has another cause, and the error stays one.
+/// If variances of 10⁵ m² and more have cancelled until nothing is left of a landmark's 0.01 m², the map is kept as it
+/// was and the drive goes on beside it: its place is found by landmarks alone, which needs no prior. If a part that
+/// begins like that fails at once, or nothing of it can be kept, the cause is another one, and the error remains an
+/// error.
 StepReport NavigationLoop::observe_somewhere(const core::Scan& scan) {
   try {
     return observe_here(scan);

@@ -10,7 +10,7 @@ namespace helixnav::supervisor {
 /// The mature landmarks of an earlier session, in its frame, ready to be asked. Tentative ones are left out.
 class EarlierMap {
  public:
-  /// PreconditionError when the parts of the map do not fit each other.
+  /// PreconditionError if the parts of the map do not fit together.
   explicit EarlierMap(const core::JointMap& map);
 
   /// Landmarks with covariances relative to their neighbours within reach, on top of the noise of a pair.
@@ -22,7 +22,7 @@ class EarlierMap {
   const core::MapAppearance& appearance() const { return appearance_; }
   core::LandmarkId next_name() const { return next_name_; }
 
-  /// Where a landmark is, with its covariance when the nearest ones, a dozen, are moved and turned together as fits them best. O(N).
+  /// Where a landmark is, with its covariance once the nearest dozen are moved and turned together to fit best. O(N).
   core::PointGaussian relative_to_neighbours(std::size_t landmark, double reach_m) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The loop of a session that does not know where on an earlier map it is.
+// The loop of a session that does not know where it is on an earlier map.
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -80,7 +80,8 @@ relocalize::IndexOptions NavigationLoop::index_lengths() const {
   return lengths;
 }
 
-/// The indices are made when the sensor is known. Of an earlier session's map the first scan says that it is sought.
+/// The indices are built once the sensor is known. For an earlier session's map, the first scan reports that it is
+/// sought.
 void NavigationLoop::index_maps_apart(core::StepReport& report) {
   for (MapApart& apart : apart_.maps) {
     if (apart.search) continue;
@@ -92,7 +93,7 @@ void NavigationLoop::index_maps_apart(core::StepReport& report) {
   }
 }
 
-/// After a scan, while there are maps of which it is not known how this one lies to them.
+/// After a scan, while there are maps whose pose relative to this one is not known.
 void NavigationLoop::find_place(const core::FieldOfView& view, core::StepReport& report) {
   if (searching() != nullptr) return;
   index_maps_apart(report);
@@ -115,12 +116,13 @@ void NavigationLoop::find_place(const core::FieldOfView& view, core::StepReport&
   }
   report.decisions.reserve(report.decisions.size() + answers.size());
   for (const PlacedDecision& decision : answers) {
-    if (decision.questions > 0) report.decisions.emplace_back(decision);  // to others nobody can put one
+    if (decision.questions > 0) report.decisions.emplace_back(decision);  // the others cannot be asked
   }
   apart_.asked.note(about.ids);
 }
 
-/// Before the first question to an earlier session's map: how many landmarks there are to ask with, whenever there were never more.
+/// Before the first question to an earlier session's map: reports the number of landmarks to ask with, whenever it is
+/// the largest so far.
 void NavigationLoop::note_too_few(std::size_t landmarks, core::StepReport& report) {
   if (apart_.asked.questions > 0 || apart_.maps.front().part > 0 || landmarks <= apart_.asked.most_about) return;
   PlacedDecision decision;
@@ -131,8 +133,8 @@ void NavigationLoop::note_too_few(std::size_t landmarks, core::StepReport& repor
   apart_.asked.most_about = landmarks;
 }
 
-/// From here on one map, in the frame of the earlier one, or everything as before. What lies behind can no longer be solved
-/// as a whole, since it says nothing of how the earlier map was made.
+/// From here on one map, in the frame of the earlier one, or everything as before. The drive so far can no longer be
+/// solved as a whole, since it says nothing about how the earlier map was made.
 bool NavigationLoop::join(const MapApart& apart, const relocalize::Place& place, PlacedDecision& decision,
                           core::StepReport& report) {
   const PlaceSearch& search = *apart.search;

@@ -14,7 +14,7 @@ core::PoseGaussian pose_of(const core::JointMap& earlier) {
 
 }  // namespace
 
-/// Existence: as sure as what was mature or tentative then was when it became so; old is what is far away.
+/// Existence: as sure as mature or tentative landmarks were when they became so; old is what is far away.
 NavigationLoop::NavigationLoop(const core::JointMap& earlier, const NavigatorOptions& options)
     : NavigationLoop(pose_of(earlier), options) {
   belief_.filter = cekf::CompressedEkf(earlier.joint, earlier.next_name, options.filter);

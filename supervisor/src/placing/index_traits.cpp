@@ -7,7 +7,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// FNV-1a of the name, 31 bits: of a hundred classes two have the same number once in half a million maps.
+/// FNV-1a of the name, 31 bits: of a hundred classes, two share a number once in half a million maps.
 int number_of(const core::ClassName& name) {
   std::uint32_t hash = 2166136261U;
   for (const char letter : name.text()) hash = (hash ^ static_cast<unsigned char>(letter)) * 16777619U;

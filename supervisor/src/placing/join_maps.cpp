@@ -27,7 +27,7 @@ SearchOptions across_sessions(SearchOptions options, double pair_noise_m, std::s
   return options;
 }
 
-/// From a landmark to its nearest neighbour, the median of a map; 0 of a map of one.
+/// Median distance of a map's landmarks to their nearest neighbours; 0 for a map of one.
 double spacing_m(const std::vector<Eigen::Vector2d>& points_m) {
   std::vector<double> nearest_m;
   for (std::size_t i = 0; i < points_m.size(); ++i) {
@@ -43,15 +43,15 @@ double spacing_m(const std::vector<Eigen::Vector2d>& points_m) {
   return *middle;
 }
 
-/// A session that was placed late is off by metres where it began: how far a copy may be from its landmark is what the map's own
-/// spacing allows, not what a closing assumes of any map.
+/// A session that was placed late is off by metres where it began: how far a copy may be from its landmark is limited
+/// by the map's own spacing, not by what a closing assumes of any map.
 SearchOptions with_spacing(SearchOptions options, const core::JointGaussian& earlier) {
   options.leftover_most_m = std::max(options.leftover_most_m, leftover_reach_share * spacing_m(earlier.points_m));
   return options;
 }
 
-/// Merges what the joint covariance leaves no doubt of, the nearest first: each pair ties the session's drive more firmly to the map
-/// where it was long before, and so the next one. Every pass removes a landmark.
+/// Merges pairs that the joint covariance leaves no doubt about, nearest first: each ties the session's drive more
+/// firmly to the map where it was long before, and so helps the next one. Every pass removes a landmark.
 void merge_leftovers_of_session(const std::vector<core::LandmarkId>& confirmed, const core::JointGaussian& earlier,
                                 const SearchOptions& across, JoinedMaps& joined) {
   const SearchOptions options = with_spacing(across, earlier);
@@ -87,7 +87,7 @@ Eigen::MatrixXd turned(const Eigen::MatrixXd& covariance, double angle_rad) {
   return twice;
 }
 
-/// Errors of a point in the map by those of T, which moved it there.
+/// Errors of a point in the map per error of T, which moved it there.
 Eigen::Matrix<double, 2, 3> point_by_place(const core::Pose2& T, const Eigen::Vector2d& point_m) {
   const Eigen::Vector2d arm_m = point_m - T.position_m();
   Eigen::Matrix<double, 2, 3> J;
@@ -95,8 +95,8 @@ Eigen::Matrix<double, 2, 3> point_by_place(const core::Pose2& T, const Eigen::Ve
   return J;
 }
 
-/// How T moves when the map's landmarks of the pairs do: by the rigid motion that fits theirs best. Any fit would serve, since what
-/// it leaves is far within the loosened covariance.
+/// How T moves when the map's landmarks of the pairs do: by the rigid motion that fits theirs best. Any fit would do,
+/// since its residual is far within the loosened covariance.
 Eigen::MatrixXd place_by_map(const core::Pose2& T, const core::JointGaussian& earlier, const KeptRemoved& pairs) {
   const auto rows = 2 * static_cast<Eigen::Index>(pairs.size());
   Eigen::MatrixXd B(rows, 3);

@@ -11,9 +11,9 @@
 
 namespace helixnav::supervisor {
 
-/// Where a session lies on an earlier map, as far as it is known before its landmarks are compared with the map's.
+/// Where a session is on an earlier map, as far as it is known before its landmarks are compared with the map's.
 struct PlaceOnMap {
-  core::PoseGaussian T_map_session;  ///< covariance (x, y, heading): of T where the errors of the map are known
+  core::PoseGaussian T_map_session;  ///< covariance (x, y, heading): of T given the errors of the map
   Eigen::MatrixXd by_map;            ///< errors of T per error of the map's landmarks, 3 rows, 2 columns a landmark
 };
 
@@ -29,13 +29,15 @@ struct JoinedMaps {
   core::Pose2 T_map_session;   ///< in which the session was linearised
 };
 
-/// One map of both. The place's pose is where the session is linearised, and what is known of it comes from the pairs, each of which
-/// says that two landmarks differ by no more than pair_noise_m. It enters with a covariance of a hundred of its standard deviations
-/// about where the map's own landmarks of the pairs lie: relative to these and not to the frame, so that it says nothing of where
-/// in the frame they are, however little the map knows of it. Then further pairs that the joint covariance leaves no doubt of are merged. Refused when the cost
-/// of the pairs exceeds options.closing_probability, whatever few were dropped.
+/// One map of both. The session is linearised at the place's pose, and what is known of that pose comes from the pairs,
+/// each of which says that two landmarks differ by no more than pair_noise_m. It enters with a covariance of a hundred
+/// of its standard deviations around where the map's own landmarks of the pairs are: relative to these and not to the
+/// frame, so that it says nothing about where in the frame they are, however little the map knows of it. Then further
+/// pairs that the joint covariance leaves no doubt about are merged. Refused if the cost of the pairs exceeds
+/// options.closing_probability, whichever few were dropped.
 /// confirmed: landmarks of the session that may be merged, unconfirmed: those that may be clutter; ascending.
-/// Cost O(N²·pairs) for N landmarks in all. Test: supervisor/placing/join_maps_test.cpp (equal to least squares over both maps).
+/// Cost O(N²·pairs) for N landmarks in all. Test: supervisor/placing/join_maps_test.cpp (equal to least squares over
+/// both maps).
 JoinedMaps join_maps(const cekf::CompressedEkf& session, const core::JointGaussian& earlier,
                      const relocalize::Place& place, const std::vector<core::LandmarkId>& confirmed,
                      const std::vector<core::LandmarkId>& unconfirmed, double pair_noise_m,

@@ -34,7 +34,7 @@ struct AnsweredQuestion {
   std::size_t landmarks = 0;  ///< of the question
 };
 
-/// All answers: closed ones first, the surest first among each other.
+/// All answers: closed ones first, the surest first within each group.
 std::vector<AnsweredQuestion> ask_for(const EarlierMap& session, const relocalize::MapIndex& index,
                                       const std::function<void()>& now_and_then) {
   const std::vector<relocalize::Question> questions = map_questions(session, index.options());
@@ -60,7 +60,7 @@ core::JointGaussian renamed(const EarlierMap& session, LandmarkId from) {
   return joint;
 }
 
-/// All landmarks active: pairs are all over the map, and nothing is to be left passive and brought up to date later.
+/// All landmarks active: the pairs are all over the map, and nothing is to be left passive and updated later.
 cekf::FilterOptions without_regions(cekf::FilterOptions options, std::size_t landmarks) {
   constexpr double whole_world_m = 1e9;
   options.cell_side_m = whole_world_m;
@@ -101,7 +101,8 @@ void tell_appearances(const core::MapAppearance& appearance, core::JointMap& map
   for (const LandmarkId id : map.joint.ids) map.appearances.push_back(appearance.of(id));
 }
 
-/// The component with the session in it. What was merged keeps the component's name and is as often observed as both.
+/// The component with the session in it. Merged landmarks keep the component's name and count as observed as often as
+/// both.
 void take_in(const EarlierMap& session, const JoinedMaps& joined, JoinedSession& result, core::JointMap& component) {
   const LandmarkId offset = component.next_name;
   std::map<LandmarkId, int> observations;
@@ -164,7 +165,7 @@ bool place_in(const core::JointMap& session_map, const std::function<void()>& no
   return false;
 }
 
-/// The session alone, without what is not mature.
+/// The session alone, without its immature landmarks.
 core::JointMap begin(const core::JointMap& session, JoinedSession& result) {
   const EarlierMap mature(session);
   core::JointMap component = session;
@@ -221,7 +222,7 @@ JoinedSessions join_sessions(const std::vector<core::JointMap>& sessions, const 
       }
       session.component = number;
       apart.erase(apart.begin() + static_cast<std::ptrdiff_t>(k));
-      k = 0;  // the others may fit what it brought
+      k = 0;  // the others may fit what it added
     }
     result.components.push_back(std::move(component));
   }

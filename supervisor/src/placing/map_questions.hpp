@@ -9,8 +9,8 @@
 
 namespace helixnav::supervisor {
 
-/// A whole map as questions to another one: constellations of the 40 landmarks nearest to a centre, overlapping by half, so
-/// that ground that both maps hold is asked about wherever it lies. None for fewer than eight landmarks.
+/// A whole map as questions to another one: constellations of the 40 landmarks nearest to a centre, overlapping by
+/// half, so that ground common to both maps is asked about wherever it is. None for fewer than eight landmarks.
 std::vector<relocalize::Question> map_questions(const EarlierMap& map, const relocalize::IndexOptions& lengths);
 
 }  // namespace helixnav::supervisor

@@ -11,15 +11,15 @@
 
 namespace helixnav::supervisor {
 
-/// A map of which it is not known how the present one lies to it: that of an earlier session, or of a part of the drive before
-/// the vehicle was carried.
+/// A map whose pose relative to the present one is not known: that of an earlier session, or of a part of the drive
+/// before the vehicle was carried.
 struct MapApart {
   int part = 0;  ///< of the drive, see core::CarriedDecision
   std::shared_ptr<const core::JointMap> map;
   std::shared_ptr<const PlaceSearch> search = {};  ///< in it, from the first scan on
 };
 
-/// All of those, in order of part, and what was asked of them: every question goes to each.
+/// All such maps, in order of part, and what they were asked: every question goes to each.
 struct MapsApart {
   std::vector<MapApart> maps;
   Asked asked;

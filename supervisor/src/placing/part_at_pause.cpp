@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The vehicle was carried during a pause and nobody noticed then: the landmarks mapped since are found elsewhere on the map, where
-// no motion that was measured leads. They become a part of the drive of their own, as if it had been noticed.
+// The vehicle was carried during a pause and nobody noticed: the landmarks mapped since are found elsewhere on the map,
+// where no measured motion leads. They become a separate part of the drive, as if it had been noticed.
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -25,13 +25,14 @@ bool has_certain_place(const StepReport& report) {
 
 }  // namespace
 
-/// Those before the vehicle knew where it is.
+/// The pauses before the vehicle knew where it is.
 void NavigationLoop::forget_pauses(const StepReport& report) {
   if (has_certain_place(report)) pauses_.clear();
 }
 
-/// The last one before all that is paired was mapped, if the vehicle can have been carried then: the old landmarks were mapped before
-/// it, few others of before were matched since, and it is no longer ago than a search may last.
+/// The last pause before the paired branch landmarks were mapped, if the vehicle can have been carried then: the old
+/// landmarks were mapped before it, few other earlier ones were matched since, and it is no longer ago than a search
+/// may last.
 std::optional<UnsurePause> NavigationLoop::pause_before(
     const std::vector<pf_relocalize::ConstellationPair>& pairs) const {
   const association::LandmarkLife& existence = belief_.existence;
@@ -58,7 +59,7 @@ std::optional<UnsurePause> NavigationLoop::pause_before(
   return few * across <= since ? std::optional(pause) : std::nullopt;
 }
 
-/// Pose and landmarks begun since, in the frame that they are in.
+/// Pose and landmarks begun since, in the frame they are in.
 Belief NavigationLoop::belief_since(const UnsurePause& pause) const {
   std::vector<core::LandmarkId> ids;
   association::LandmarkLife existence = belief_.existence;
@@ -80,8 +81,9 @@ Belief NavigationLoop::belief_since(const UnsurePause& pause) const {
   return belief;
 }
 
-/// Only where the part is then found on the map of before: else everything stays as it is. Of several pauses since the place was
-/// certain nobody knows in which one it was: what was mapped between them is dropped, and so is what was matched since.
+/// Only if the part is then found on the map from before: otherwise everything stays as it is. If there were several
+/// pauses since the place was certain, nobody knows which one it was: what was mapped between them is dropped, and so
+/// is what was matched since.
 void NavigationLoop::part_at_pause(const core::Scan& scan, StepReport& report) {
   const std::optional<UnsurePause> pause = pause_before(std::exchange(pending_.forbidden, {}));
   if (!pause || apart_.any()) return;

@@ -19,7 +19,7 @@ class PlaceSearch {
   /// Whether it covers any ground.
   bool can_be_asked() const { return index_.looked_at_m2() > 0.0; }
 
-  /// The answer to the next question after those, and what it says as a decision (nothing merged yet).
+  /// The answer to the next question after `before`, also as a decision (nothing merged yet).
   relocalize::Answer ask(const relocalize::Question& question, const Asked& before,
                          core::PlacedDecision& decision) const;
 

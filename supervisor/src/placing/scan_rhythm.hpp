@@ -15,10 +15,10 @@ struct UnsurePause {
   std::int64_t step = 0;  ///< of the first scan after it
 };
 
-/// How often scans come and how far the vehicle drives between two of them, and hence what is a pause.
+/// How often scans come and how far the vehicle drives between two of them, and hence what counts as a pause.
 class ScanRhythm {
  public:
-  /// Ten times as long as the scans of this drive are apart in the mean, and driven no farther than twice the mean, pauses
+  /// Ten times the mean interval between the scans of this drive, and driven no farther than twice the mean, pauses
   /// left out; not before twenty intervals are known.
   bool is_pause(core::Nanoseconds until_ns, double driven_m) const {
     constexpr double longer = 10.0, farther = 2.0;
@@ -26,8 +26,9 @@ class ScanRhythm {
            static_cast<double>(until_ns - *last_ns_) > longer * sum_ns_ / intervals_;
   }
 
-  /// Whether odometry leaves open which way the vehicle turned since the last scan: by more than an eighth of a turn, where all that is
-  /// computed to first order in the heading fails, and by ten times what it usually is; not before twenty intervals are known.
+  /// Whether odometry leaves open which way the vehicle turned since the last scan: by more than an eighth of a turn,
+  /// where everything computed to first order in the heading fails, and by ten times the usual; not before twenty
+  /// intervals are known.
   bool leaves_heading_open(double heading_variance_rad2) const {
     constexpr double eighth_turn_rad = 0.785, larger = 10.0;
     return last_ns_ && intervals_ >= enough && heading_variance_rad2 > eighth_turn_rad * eighth_turn_rad &&
@@ -36,7 +37,7 @@ class ScanRhythm {
 
   double driven_mean_m() const { return intervals_ > 0 ? sum_m_ / intervals_ : 0.0; }
 
-  /// A gap in the odometry is not what is usual, and one that counted would hide the next; two in succession are.
+  /// A gap in the odometry is not usual, and one that counted would hide the next; two in succession do count.
   void note(core::Nanoseconds t_ns, double driven_m, double heading_variance_rad2) {
     const bool was_open = was_open_;
     was_open_ = leaves_heading_open(heading_variance_rad2);
@@ -49,7 +50,7 @@ class ScanRhythm {
     last_ns_ = t_ns;
   }
 
-  /// The time until the next scan is no pause.
+  /// The time until the next scan is not a pause.
   void lose_last() { last_ns_.reset(); }
 
  private:

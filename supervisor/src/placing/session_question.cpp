@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t most_asked_with = 40;
 constexpr double surely_seen = 0.8;  ///< of the reach
 
-/// The largest disc in the view: about the sensor where it looks all around, else ahead of it.
+/// The largest disc in the view: around the sensor if it looks all around, else ahead of it.
 relocalize::Disc disc_in_view(const core::FieldOfView& view, double reach_m, const core::Pose2& T_world_sensor) {
   const double half_rad = 0.5 * (view.max_bearing_rad - view.min_bearing_rad);
   const double range_m = surely_seen * reach_m;

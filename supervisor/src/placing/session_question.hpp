@@ -11,8 +11,8 @@
 
 namespace helixnav::supervisor {
 
-/// What the session has mapped about the vehicle: the mature landmarks nearest to it that were seen within the length of a
-/// branch and begun after `born_after_path_m`, 40 at most.
+/// What the session has mapped around the vehicle: the mature landmarks nearest to it that were seen within the length
+/// of a branch and begun after `born_after_path_m`, 40 at most.
 struct LandmarksAbout {
   std::vector<core::LandmarkId> ids;                          ///< nearest first
   double within_m = std::numeric_limits<double>::infinity();  ///< of the vehicle: beyond, landmarks were left out
@@ -20,8 +20,8 @@ struct LandmarksAbout {
 LandmarksAbout landmarks_about(const Belief& belief, double seen_within_m,
                                double born_after_path_m = -std::numeric_limits<double>::infinity());
 
-/// They as a question to another map, session frame: covariances relative to each other on top of the noise of a pair, and
-/// the ground that the sensor looked at meanwhile.
+/// These as a question to another map, session frame: covariances relative to each other on top of the noise of a pair,
+/// and the ground that the sensor looked at meanwhile.
 relocalize::Question session_question(const Belief& belief, const LandmarksAbout& about, const core::FieldOfView& view,
                                       const relocalize::IndexOptions& lengths, double seen_within_m);
 

@@ -26,8 +26,9 @@ std::vector<core::Pose2> in_frame(const core::Pose2& T_world_frame, std::vector<
   return poses;
 }
 
-/// Ground looked at on the old drive (base frame) and lately (vehicle frame). Of the old drive only views that may show a branch
-/// landmark at one of `hypotheses` (base frame): others see nothing that is asked about, and a drive is long.
+/// Ground looked at on the old drive (base frame) and lately (vehicle frame). Of the old drive, only views that may
+/// show a branch landmark at one of `hypotheses` (base frame): others see nothing that is asked about, and a drive is
+/// long.
 void add_coverage(const SearchView& view, const core::Pose2& T_world_base, double search_begun_path_m,
                   const SearchOptions& options, const std::vector<core::Pose2>& hypotheses,
                   pf_relocalize::Constellation& constellation) {

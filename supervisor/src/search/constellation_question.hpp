@@ -17,8 +17,8 @@ std::vector<core::LandmarkId> reference_landmarks(const SearchView& view, const 
 /// The joint estimate of those among them that locate the vehicle (old_ground).
 core::JointGaussian reference_ground(const SearchView& view, const std::vector<core::LandmarkId>& old, double reach_m);
 
-/// Landmarks of the branch in the frame of the vehicle: all that were seen recently and from which the vehicle has since
-/// drifted by less than the tolerance of a pair, because the constellation is compared as a rigid one.
+/// Landmarks of the branch in the frame of the vehicle: all that were seen recently and from which the vehicle has
+/// since drifted by less than the tolerance of a pair, because the constellation is compared as a rigid body.
 std::vector<pf_relocalize::BranchLandmark> branch_landmarks(const SearchView& view,
                                                             const std::vector<core::LandmarkId>& old,
                                                             const SearchOptions& options);

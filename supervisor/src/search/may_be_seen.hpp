@@ -10,8 +10,8 @@
 
 namespace helixnav::supervisor {
 
-/// Where any of the branch may stand, and what sees it: all that the coverage of the old drive is asked about. Conservative: a box
-/// around the hypotheses. Test: supervisor/search/may_be_seen_test.cpp (against all views).
+/// Where any of the branch may be, and what sees it: all that the coverage of the old drive is asked about.
+/// Conservative: a box around the hypotheses. Test: supervisor/search/may_be_seen_test.cpp (against all views).
 class MayBeSeen {
  public:
   MayBeSeen(const std::vector<pf_relocalize::BranchLandmark>& branch, double view_m) {
@@ -21,7 +21,7 @@ class MayBeSeen {
     reach_m_ = (1.0 + rounding) * (radius_m + view_m);
   }
 
-  /// Another place of the vehicle, in the frame of the views.
+  /// Another possible position of the vehicle, in the frame of the views.
   void add(const Eigen::Vector2d& vehicle_m) { box_.extend(vehicle_m); }
 
   bool seen_from(const Eigen::Vector2d& sensor_m) const {

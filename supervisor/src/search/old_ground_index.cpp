@@ -16,8 +16,9 @@ using core::LandmarkId;
 constexpr std::size_t most_neighbours = 11;
 constexpr std::size_t at_once = 40;
 
-/// The landmark itself, and the nearest others of `old` within reach. That it is among those within reach is not certain:
-/// where parts of the passive map have moved far apart since they were left, some are missed (CompressedEkf::landmarks_within).
+/// The landmark itself, and the nearest others of `old` within reach. It is not certain to be among those within reach:
+/// if parts of the passive map have moved far apart since they were left, some are missed
+/// (CompressedEkf::landmarks_within).
 std::vector<LandmarkId> neighbours_of(LandmarkId id, const cekf::CompressedEkf& filter,
                                       const std::vector<LandmarkId>& old, double reach_m) {
   const Eigen::Vector2d at_m = filter.landmark_mean(id);
@@ -33,7 +34,7 @@ std::vector<LandmarkId> neighbours_of(LandmarkId id, const cekf::CompressedEkf& 
   return ids;
 }
 
-/// Where the first of `ids` is, as uncertain as it is relative to the others.
+/// Where the first of `ids` is, with its uncertainty relative to the others.
 core::PointGaussian point_of(const std::vector<LandmarkId>& ids, const core::JointGaussian& joint) {
   std::vector<Eigen::Vector2d> points_m;
   std::vector<Eigen::Index> rows;

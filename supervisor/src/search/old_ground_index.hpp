@@ -9,15 +9,15 @@
 
 namespace helixnav::supervisor {
 
-/// The old landmarks of the present map, ready to be asked for a place. They stand in it where they were when they became old:
-/// a closing moves a part of the map as a whole, and what decides a place are pairs.
+/// The old landmarks of the present map, ready to be asked for a place. They stay in it where they were when they
+/// became old: a closing moves a part of the map as a whole, and a place is decided by pairs.
 /// Test: supervisor/placing/whole_map_test.cpp.
 class OldGroundIndex {
  public:
   explicit OldGroundIndex(const relocalize::IndexOptions& lengths) : index_(lengths) {}
 
-  /// Takes in those of `old` (ascending) that it lacks and drops those that the filter has no more. A joint covariance for
-  /// every forty new ones with their neighbours.
+  /// Adds those of `old` (ascending) that it lacks and drops those that the filter no longer has. A joint covariance
+  /// for every forty new ones with their neighbours.
   void follow(const cekf::CompressedEkf& filter, const core::MapAppearance& appearance,
               const std::vector<core::LandmarkId>& old);
 

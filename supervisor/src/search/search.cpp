@@ -108,7 +108,7 @@ void Search::wait(double path_m) { last_in_gate_m_ = seeing_m(path_m) - options_
 
 bool Search::is_promising(const SearchView& view) {
   if (!sees_enough(view.scan)) return false;
-  // One landmark at a time: the marginal with the pose is all that a gate needs, and two in gate are enough to know.
+  // One landmark at a time: the marginal with the pose is all that a gate needs, and two in a gate are enough to know.
   std::vector<bool> in_gate(view.scan.observations.size(), false);
   int count = 0;
   for (const core::LandmarkId id : reference_landmarks(view, old_, 0.0)) {

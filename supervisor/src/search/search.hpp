@@ -23,7 +23,7 @@ struct SearchView {
   const core::Scan& scan;
 };
 
-/// The search for where on the old map the vehicle is. Mapping goes on meanwhile with the old landmarks excluded (the
+/// The search for where the vehicle is on the old map. Mapping continues meanwhile with the old landmarks excluded (the
 /// branch); the particle filter runs beside it, started from the branch's pose and restarted when an attempt fails; the
 /// answer is a constellation of branch landmarks that matches old ones better than anywhere else.
 /// Nothing here changes filter or map. Source: PROTOTYPE §3, §4. Test: supervisor/closing/closing_test.cpp.
@@ -37,7 +37,7 @@ class Search {
 
   void move(const core::Odometry& odometry);
 
-  /// One scan after the branch has mapped it. Pairs that pass every test, when there are some; what was decided is
+  /// One scan after the branch has mapped it. Pairs that pass every test, if there are any; what was decided is
   /// appended. The caller closes, or calls refuse().
   std::optional<std::vector<pf_relocalize::ConstellationPair>> look(const SearchView& view,
                                                                     std::vector<core::Decision>& decisions);
@@ -45,9 +45,10 @@ class Search {
   /// The closing was refused: this attempt is over.
   void refuse(double path_m);
 
-  /// Nothing of the old map has been in a gate for long, or the search is over. Bare ground tells nothing and counts for neither.
+  /// Nothing of the old map has been in a gate for long, or the search is over. Bare ground tells nothing and counts
+  /// for neither.
   bool is_undecided(double path_m) const;
-  /// Has gone on for longer than one that finds its place does.
+  /// Has gone on for longer than a search that finds its place does.
   bool goes_on(double path_m) const { return seeing_m(path_m) > options_.idle_m; }
   /// Has gone on for as long as any search may.
   bool is_over(double path_m) const;
@@ -61,7 +62,7 @@ class Search {
   /// T_world_robot of the particles, every n-th; empty while no attempt runs.
   std::vector<core::Pose2> cloud(const cekf::CompressedEkf& filter) const;
 
-  /// Same, as they were drawn on helices, when the last look began an attempt; else empty.
+  /// Same, as they were drawn on helices, if the last look began an attempt; else empty.
   std::vector<core::Pose2> drawn(const cekf::CompressedEkf& filter) const;
 
  private:
@@ -75,7 +76,7 @@ class Search {
   };
 
   bool sees_enough(const core::Scan& scan) const;
-  /// Driven since the search began where there was something to see.
+  /// Distance driven since the search began where there was something to see.
   double seeing_m(double path_m) const;
   bool is_promising(const SearchView& view);
   void start(const SearchView& view, std::vector<core::Decision>& decisions);

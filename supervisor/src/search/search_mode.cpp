@@ -59,7 +59,7 @@ void NavigationLoop::search(const Scan& scan, StepReport& report) {
   end_search(nullptr);
 }
 
-/// Where the landmarks, asked without the prior, decide for another place, that is believed and not the search.
+/// If the landmarks, asked without the prior, decide for another place, that is believed instead of the search.
 void NavigationLoop::close(const Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
                            StepReport& report) {
   const Searching& open = *searching();
@@ -82,13 +82,13 @@ bool NavigationLoop::close_as_measured(const Scan& scan, const std::vector<pf_re
   return closing.accepted;
 }
 
-/// A vehicle that slips may have slipped where nothing was in view: what lies beyond is tied by odometry alone.
+/// A vehicle that slips may have slipped where nothing was in view: what is beyond is tied by odometry alone.
 double NavigationLoop::tied_if_slipping_m() const {
   if (belief_.slips.count == 0) return 0.0;
   return tied_since_m(tape_, belief_.existence.path_m(), options_.search.old_after_m);
 }
 
-/// The filter has been closed: so is everything else.
+/// The filter has been closed: closes everything else.
 void NavigationLoop::accept(const Closing& closing, const ClosingView& view, StepReport& report) {
   const double begun_m = view.search.begun_path_m() - options_.search.old_after_m;
   if (view.tied_since_m > begun_m) belief_.left_open.push_back({begun_m, view.tied_since_m});
@@ -119,7 +119,7 @@ void NavigationLoop::report_closing(const Closing& closing, std::size_t pairs, d
   report.numerics.note(closing.numerics);
 }
 
-/// Mapping goes on with the whole map; the landmarks that a closing has recognised confirm the pose.
+/// Mapping continues with the whole map; the landmarks recognised by a closing confirm the pose.
 void NavigationLoop::end_search(const Closing* closing) {
   Mapping mapping;
   if (closing != nullptr) {

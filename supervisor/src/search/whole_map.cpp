@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where odometry was wrong by more than its noise, no prior holds the place where the vehicle is: the whole map is asked.
+// If odometry was wrong by more than its noise, no prior contains the vehicle's place: the whole map is asked.
 #include <algorithm>
 #include <memory>
 #include <utility>
@@ -66,7 +66,7 @@ LandmarksAbout NavigationLoop::branch_about() const {
   return landmarks_about(belief_, options_.search.branch_seen_within_m, born_after_m);
 }
 
-/// Before a search ends undecided: closes the map where the answer allows it.
+/// Before a search ends undecided: closes the map if the answer allows it.
 AskedWholeMap NavigationLoop::ask_whole_map(const core::Scan& scan, core::StepReport& report) {
   LandmarksAbout about = branch_about();
   if (!asks_whole_map() || !questions_.asked.is_due(about.ids)) return {};
@@ -77,9 +77,9 @@ AskedWholeMap NavigationLoop::ask_whole_map(const core::Scan& scan, core::StepRe
   return asked;
 }
 
-/// Attempts to find the place within the prior may go on and on where the prior does not hold it: a search that has seen enough for
-/// long asks the whole map beside them. That ends it only at a place that odometry as measured forbids: another one it finds by
-/// itself, and that nothing fits is asked at its end.
+/// Attempts to find the place within the prior may go on and on if the prior does not contain it: a search that has
+/// long seen enough asks the whole map as well. That ends it only at a place that odometry as measured forbids: it
+/// finds any other by itself, and whether nothing fits is asked at its end.
 void NavigationLoop::ask_meanwhile(const core::Scan& scan, core::StepReport& report) {
   const double path_m = belief_.existence.path_m();
   if (!asks_whole_map() || !searching()->search.goes_on(path_m) || path_m < questions_.next_path_m) return;
@@ -105,7 +105,7 @@ void NavigationLoop::ask_meanwhile(const core::Scan& scan, core::StepReport& rep
   if (is_news) report.decisions.emplace_back(asked.decision);
 }
 
-/// Of a place that a search has found with these pairs: what the landmarks say without the prior that it was found with.
+/// For a place that a search has found with certain pairs: what the landmarks say without the prior it was found with.
 AskedWholeMap NavigationLoop::ask_about_place(const core::Scan& scan) {
   LandmarksAbout about = branch_about();
   if (!asks_whole_map() || about.ids.size() < Asked::least_to_ask) return {};
@@ -117,7 +117,7 @@ void NavigationLoop::ask_whether_new(const core::Scan& scan, core::StepReport& r
   const double path_m = belief_.existence.path_m();
   if (!asks_whole_map() || std::get_if<Mapping>(&mode_) == nullptr || path_m < questions_.next_path_m) return;
   questions_.next_path_m = path_m + options_.search.ask_again_m;
-  // One that was not seen for longer is old, and would be compared with itself.
+  // A landmark not seen for longer is old, and would be compared with itself.
   const double within_m = std::min(options_.search.branch_seen_within_m, options_.search.old_after_m);
   LandmarksAbout about = landmarks_about(belief_, within_m, path_m - within_m);
   constexpr double least_new = 0.5;
@@ -137,7 +137,7 @@ void NavigationLoop::ask_whether_new(const core::Scan& scan, core::StepReport& r
   report.mapped_landmarks = static_cast<int>(belief_.existence.records().size());
 }
 
-/// A copy, since a call that fails goes on with the one before it.
+/// A copy, since a call that fails goes on with the previous one.
 const relocalize::MapIndex& NavigationLoop::follow_old_ground(const Search& search) {
   const auto& before = questions_.old_ground;
   auto old_ground = std::make_shared<OldGroundIndex>(before ? *before : OldGroundIndex(index_lengths()));
@@ -149,7 +149,7 @@ const relocalize::MapIndex& NavigationLoop::follow_old_ground(const Search& sear
 /// Counts as a question, unless there is nothing to ask.
 AskedWholeMap NavigationLoop::ask(LandmarksAbout& about, const Search& search, const core::Scan& scan) {
   const relocalize::MapIndex& index = follow_old_ground(search);
-  // Where the drive was rolled back behind a question, some that were old then are of the branch now.
+  // If the drive was rolled back past a question, some that were old then belong to the branch now.
   const auto is_old = [&](LandmarkId id) { return index.contains(id); };
   about.ids.erase(std::remove_if(about.ids.begin(), about.ids.end(), is_old), about.ids.end());
   const relocalize::Question question =
@@ -167,7 +167,7 @@ AskedWholeMap NavigationLoop::ask(LandmarksAbout& about, const Search& search, c
   return asked;
 }
 
-/// The atlas of a drive whose odometry is believed less than it was. False when it cannot be solved.
+/// The atlas of a drive whose odometry is trusted less than it was. False if it cannot be solved.
 bool NavigationLoop::begin_drive_anew(const Tape& tape, const cekf::CompressedEkf& filter) {
   try {
     auto drive = begun_drive();
@@ -182,7 +182,7 @@ bool NavigationLoop::begin_drive_anew(const Tape& tape, const cekf::CompressedEk
   }
 }
 
-/// With the odometry as it was measured if that allows it, else against it.
+/// With the odometry as it was measured if it allows that, else against it.
 bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair>& pairs, const Search& search,
                               const Checkpoint& trigger, const core::Scan& scan, WholeMapDecision& decision,
                               core::StepReport& report) {
@@ -197,7 +197,7 @@ bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair
   if (!closing.accepted) {
     report.numerics.note(closing.numerics);
     if (was_no_noise(closing) && pause_before(pairs)) {
-      pending_.forbidden = pairs;  // a pause says when it was carried, matches only since when nothing fitted
+      pending_.forbidden = pairs;  // a pause tells when it was carried, matches only since when nothing fitted
       return false;
     }
     decision.needed += nats_against_odometry(closing);
@@ -213,7 +213,8 @@ bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair
     if (changes_drive && !begin_drive_anew(*reconciled.tape, *reconciled.filter)) return false;
     decision.odometry_factor = reconciled.odometry_factor;
     decision.loop_m = reconciled.loop_m;
-    // Odometry had the vehicle elsewhere all the while: what was begun there may be copies, old or not when the search began.
+    // Odometry had the vehicle elsewhere all along: landmarks begun there may be copies, old or not when the search
+    // began.
     belief_.left_open.push_back({belief_.existence.path_m() - reconciled.loop_m, belief_.existence.path_m()});
     closing = std::move(reconciled.closing);
     report.numerics.note(belief_.filter.take_health());

@@ -13,10 +13,11 @@
 
 namespace helixnav::supervisor {
 
-/// What was asked of the whole map so far, by all searches and outside of any: they share one probability of a false answer.
+/// What the whole map has been asked so far, by all searches and outside of any: all share one probability of a false
+/// answer.
 struct WholeMapQuestions {
   Asked asked;
-  std::vector<core::LandmarkId> asked_meanwhile = {};  ///< with which a search that went on asked last, ascending
+  std::vector<core::LandmarkId> asked_meanwhile = {};  ///< with which a continuing search asked last, ascending
   double next_path_m = 0.0;  ///< length of the drive when it is asked next whether ground is new
   std::shared_ptr<const OldGroundIndex> old_ground;  ///< null before the first question
 };
@@ -28,15 +29,16 @@ struct AskedWholeMap {
 
   bool is_asked() const { return decision.questions > 0; }
   bool is_closed() const { return !pairs.empty(); }
-  /// No place fits better than the best of a map of elsewhere does by chance in one question of twenty, and of as many landmarks
-  /// one would: with twenty 0.998 of the places that are on the map are found where 30 % have changed (docs/relocalize.md).
+  /// No place fits better than the best on an unrelated map does by chance in one question of twenty, though with that
+  /// many landmarks a place on the map would: with twenty, 0.998 of the places on the map are found if 30 % have
+  /// changed (docs/relocalize.md).
   bool is_nowhere() const {
     constexpr int enough = 20;
     static const double by_chance = -std::log(0.05);
     return is_asked() && decision.verdict == core::WholeMapDecision::Verdict::not_here &&
            decision.landmarks >= enough && decision.evidence < by_chance;
   }
-  /// At another place than these pairs have: none is the same.
+  /// At another place than that of these pairs: it shares none of them.
   bool is_closed_elsewhere(const std::vector<pf_relocalize::ConstellationPair>& found) const {
     const auto is_found = [&](const pf_relocalize::ConstellationPair& pair) {
       return std::any_of(found.begin(), found.end(), [&](const pf_relocalize::ConstellationPair& other) {

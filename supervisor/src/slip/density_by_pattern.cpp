@@ -11,7 +11,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-constexpr double mapped_within = 1.25;  // spacings of a landmark: there others were seen
+constexpr double mapped_within = 1.25;  // spacings from a landmark: others were seen there
 constexpr double prior_landmarks = 2.0;
 
 }  // namespace

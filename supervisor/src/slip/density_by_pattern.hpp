@@ -10,18 +10,18 @@
 
 namespace helixnav::supervisor {
 
-/// How well a map falls on itself when it is displaced. Where one place of the vehicle has observations on known landmarks,
-/// another may have them on new ones; and a new landmark stands where the pattern of the known ones goes on, which in a
-/// lattice displaced by a pitch is where the other place wants it. Built once for a pair of places, O(n²) in the landmarks.
-/// Test: supervisor/slip/density_by_pattern_test.cpp.
+/// How well a map falls on itself when it is displaced. Where one place of the vehicle has observations on known
+/// landmarks, another may have them on new ones; and a new landmark is where the pattern of the known ones continues,
+/// which in a lattice displaced by a pitch is where the other place needs it. Built once for a pair of places, O(n²) in
+/// the landmarks. Test: supervisor/slip/density_by_pattern_test.cpp.
 class DensityByPattern {
  public:
-  /// `T_other_one`: takes a landmark from where it is to where the other place sees what the one takes for it.
+  /// `T_other_one`: takes a landmark from where it is to where the other place sees what the first takes for it.
   DensityByPattern(const RelativeGeometry& geometry, const core::Pose2& T_other_one);
 
-  /// Density [1/m²] with which the pattern has a landmark where an observation of this covariance [m²] wants one: the mean, over
-  /// the landmarks that are displaced onto mapped ground, of the density of the difference to the nearest other landmark
-  /// there. Two more that fell on nothing are the prior. O(n).
+  /// Density [1/m²] with which the pattern has a landmark where an observation of this covariance [m²] needs one: the
+  /// mean, over the landmarks displaced onto mapped ground, of the density of the difference to the nearest other
+  /// landmark there. The prior is two more that fell on nothing. O(n).
   double per_m2(const Eigen::Matrix2d& seen_covariance_m2) const;
 
  private:

@@ -11,11 +11,11 @@
 
 namespace helixnav::supervisor {
 
-/// Of all observations the nearest; what is weighed, and so what the question of a slip costs.
+/// How many observations, the nearest of all, are weighed; this sets the cost of the slip question.
 constexpr std::size_t most_weighed = 24;
 
-/// Of a scan with as many observations as are weighed, or more: only those landmarks that one of the weighed may be of, and
-/// their neighbours. What is left out would be paired with nothing. `seen`: nearest first.
+/// If a scan has as many observations as are weighed, or more: keeps only landmarks that one of the weighed may be of,
+/// and their neighbours. What is left out would be paired with nothing. `seen`: nearest first.
 /// Test: supervisor/slip/keep_weighed_test.cpp (the same slips as without).
 void keep_weighed(const cekf::CompressedEkf& filter, const core::Scan& scan, const std::vector<SeenPoint>& seen,
                   const SlipComponent& widest, SlipReach reach, std::vector<core::LandmarkId>& near);

@@ -11,8 +11,8 @@
 
 namespace helixnav::supervisor {
 
-/// Landmarks in the frame of the predicted vehicle, r = R(−φ)(m − p), with their joint covariance: what vehicle and
-/// landmarks have drifted together is not in it. O(n²). Test: supervisor/slip/relative_geometry_test.cpp (dense twin).
+/// Landmarks in the frame of the predicted vehicle, r = R(−φ)(m − p), with their joint covariance, which excludes the
+/// drift common to vehicle and landmarks. O(n²). Test: supervisor/slip/relative_geometry_test.cpp (dense twin).
 struct RelativeGeometry {
   explicit RelativeGeometry(const core::JointGaussian& joint);
 

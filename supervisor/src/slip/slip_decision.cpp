@@ -12,7 +12,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// A place for the vehicle to be, or "where it was predicted".
+/// A possible place of the vehicle, or "where it was predicted".
 struct Hypothesis {
   core::Pose2 T_predicted_here;
   const std::vector<PointPair>& pairs;
@@ -22,8 +22,9 @@ bool has(const std::vector<PointPair>& pairs, std::size_t seen) {
   return std::any_of(pairs.begin(), pairs.end(), [&](const PointPair& pair) { return pair.seen == seen; });
 }
 
-/// What the pairs of one place are worth less beside another that leaves their observations over: they are new landmarks
-/// there, of the pattern of the map or of ground that was not looked at: ln λ/λ₀ each, where that is denser than what is in no map.
+/// How much less the pairs of one place are worth beside another that leaves their observations unpaired: there they
+/// are new landmarks, of the pattern of the map or on ground not looked at: ln λ/λ₀ each, if that is denser than what
+/// is in no map.
 double nats_of_pattern(const SlipQuestion& question, const Hypothesis& one, const Hypothesis& other) {
   const DensityByPattern pattern(question.geometry,
                                  core::compose(other.T_predicted_here, core::inverse(one.T_predicted_here)));

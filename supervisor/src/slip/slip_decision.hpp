@@ -19,7 +19,7 @@ struct SlipPair {
 /// A slip that is believed.
 struct Slip {
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the motion nobody measured: the component's
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the unmeasured motion: the component's
   std::vector<SlipPair> pairs;
   core::SlipDecision figures;
 };
@@ -38,8 +38,9 @@ struct SlipQuestion {
   SlipReach reach = SlipReach::next_neighbour;
 };
 
-/// The slip that explains a scan, when it does so better than no slip with new landmarks where the pattern of the map has
-/// them or where nobody has looked yet, and than a slip to anywhere else. Test: supervisor/slip/slip_decision_test.cpp.
+/// The slip that explains a scan, if it does so better than no slip with new landmarks where the pattern of the map has
+/// them or where nobody has looked yet, and better than a slip to anywhere else.
+/// Test: supervisor/slip/slip_decision_test.cpp.
 std::optional<Slip> decide_slip(const SlipQuestion& question, const SlipOptions& options);
 
 }  // namespace helixnav::supervisor

@@ -14,7 +14,7 @@ namespace helixnav::supervisor {
 struct SlipComponent {
   double sigma_m = 0.0;
   double sigma_rad = 0.0;
-  double probability = 0.0;  ///< of a scan
+  double probability = 0.0;  ///< per scan
 
   Eigen::Matrix3d covariance() const { return Eigen::Vector3d(sigma_m, sigma_m, sigma_rad).cwiseAbs2().asDiagonal(); }
 };
@@ -33,9 +33,9 @@ struct SlipExplanation {
   double nats = 0.0;
 };
 
-/// ln p(component) + m·pair_nats + ln N(ν; 0, S + A Q Aᵀ), linearised at the likeliest δ, of the best component: what that
-/// costs which explains too much (the Occam factor) is in the determinant. `start`: where the iteration begins. Very low
-/// where S is not positive definite. O(m³). Test: supervisor/slip/slip_decision_test.cpp (numeric integration).
+/// ln p(component) + m·pair_nats + ln N(ν; 0, S + A Q Aᵀ), linearised at the likeliest δ, of the best component: the
+/// price of explaining too much (the Occam factor) is in the determinant. `start`: where the iteration begins. Very low
+/// if S is not positive definite. O(m³). Test: supervisor/slip/slip_decision_test.cpp (numeric integration).
 SlipExplanation explain_by_slip(const RelativeGeometry& geometry, const std::vector<SeenPoint>& seen,
                                 const std::vector<PointPair>& pairs, double nats_a_pair,
                                 const std::vector<SlipComponent>& components, const Eigen::Vector3d& start);

@@ -25,7 +25,7 @@ using core::LandmarkId;
 using core::Outcome;
 
 constexpr std::size_t least_observations = 3;
-constexpr int least_hits = 2;  // a landmark that one false alarm began is no evidence
+constexpr int least_hits = 2;  // a landmark begun by one false alarm is not evidence
 
 bool is_among(const std::vector<LandmarkId>& ids, LandmarkId id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
@@ -37,7 +37,7 @@ std::vector<Eigen::Vector2d> means_m(const cekf::CompressedEkf& filter, const st
   return points_m;
 }
 
-/// Unmatched observations that have an unmatched landmark beside them, as far as a slip may displace it.
+/// Unmatched observations that have an unmatched landmark within the distance that a slip may displace it.
 int contradictions(const cekf::CompressedEkf& filter, const std::vector<LandmarkId>& near,
                    const std::vector<SeenPoint>& seen, const std::vector<AssociationReport>& fate,
                    const SlipComponent& widest, SlipReach reach) {
@@ -66,7 +66,7 @@ std::vector<PointPair> associated_pairs(const RelativeGeometry& geometry, const 
   return pairs;
 }
 
-/// The pairs of the slip are matched, whatever else wanted their landmarks.
+/// The pairs of the slip are matched, whatever else claimed their landmarks.
 void match_pairs(const std::vector<SlipPair>& pairs, std::vector<AssociationReport>& fate) {
   for (AssociationReport& one : fate) {
     const auto pair =
@@ -86,7 +86,7 @@ void match_pairs(const std::vector<SlipPair>& pairs, std::vector<AssociationRepo
 
 }  // namespace
 
-/// Landmarks that may be seen, as far as no open question excludes them.
+/// Landmarks that may be seen, unless an open question excludes them.
 std::vector<LandmarkId> NavigationLoop::landmarks_near(const core::Scan& scan) const {
   const Eigen::Vector2d sensor_m = core::transform(belief_.filter.pose().mean, scan.T_robot_sensor.position_m());
   std::vector<LandmarkId> near =
@@ -101,8 +101,9 @@ std::vector<LandmarkId> NavigationLoop::landmarks_near(const core::Scan& scan) c
   return near;
 }
 
-/// Landmarks stand closer to each other than a slip displaces where stems are in clumps; there nobody would look at the one that an
-/// observation is of. Only where nothing that is seen is where it should be: it takes ten times as long.
+/// Where stems are in clumps, landmarks are closer to each other than a slip displaces; the landmark that an
+/// observation is of would not be considered there. Only if nothing seen is where it should be: it takes ten times as
+/// long.
 std::optional<Slip> NavigationLoop::find_slip(const core::Scan& scan,
                                               const std::vector<AssociationReport>& fate) const {
   const double view_m2 = view_area_m2(scan.field_of_view);
@@ -161,7 +162,7 @@ pf_relocalize::Coverage NavigationLoop::ground_looked_at(const core::FieldOfView
   return looked_at;
 }
 
-/// What was not measured: no motion in the mean, so much covariance. On the tape beside the motion that was.
+/// The unmeasured motion: zero mean, with this covariance. On the tape beside the measured motion.
 void NavigationLoop::move_unmeasured(const Eigen::Matrix3d& covariance, core::Nanoseconds t_ns) {
   core::Odometry unmeasured = core::no_motion(t_ns);
   unmeasured.covariance = covariance;
@@ -170,9 +171,9 @@ void NavigationLoop::move_unmeasured(const Eigen::Matrix3d& covariance, core::Na
   tape_.append(Tape::Slip{unmeasured});
 }
 
-/// True when the vehicle slipped: the motion is wider by then, and the scan is associated as it looks from where the
-/// slip's pairs put the vehicle; `before`: the confirmation as it was before the scan, so that one scan is no second hit.
-/// Else nothing changes.
+/// True if the vehicle slipped: the motion is wider then, and the scan is associated as it looks from where the slip's
+/// pairs put the vehicle; `before`: the confirmation as it was before the scan, so that one scan is not a second hit.
+/// Otherwise nothing changes.
 bool NavigationLoop::allow_for_slip(const core::Scan& scan, const Confirmation& before, core::StepReport& report) {
   const std::optional<Slip> slip = find_slip(scan, report.associations);
   if (!slip) return false;
@@ -180,7 +181,7 @@ bool NavigationLoop::allow_for_slip(const core::Scan& scan, const Confirmation& 
   belief_.slips.add(slip->displacement);
   core::Odometry slipped = core::no_motion(scan.t_ns);
   slipped.T_before_after = core::Pose2(slip->displacement);
-  belief_.moving.move(slipped);  // else what stands would seem to have moved by it
+  belief_.moving.move(slipped);  // else standing things would seem to have moved by it
   move_unmeasured(slip->covariance, scan.t_ns);
 
   std::vector<cekf::Match> pairs;

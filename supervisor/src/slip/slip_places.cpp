@@ -15,7 +15,7 @@ namespace {
 
 constexpr double same_heading_rad = 2.0 * core::pi / 180.0;
 constexpr double reach_sigmas = 2.5;  // of the widest component
-constexpr double neighbours = 1.25;   // how many spacings rivals are looked for
+constexpr double neighbours = 1.25;   // within how many spacings rivals are looked for
 constexpr double pair_gate_probability = 0.999;
 constexpr std::size_t least_pairs_of_slip = 3;
 constexpr std::size_t most_refined = 8;
@@ -46,7 +46,7 @@ class Proposer {
     return found;
   }
 
-  /// Nearest first, one to one, where the vehicle is displaced so.
+  /// Nearest first, one to one, with the vehicle displaced like that.
   Proposal pair_up(const Eigen::Vector3d& displacement, const Eigen::Matrix3d& covariance) const {
     static const double gate = core::chi2_quantile(pair_gate_probability, 2);
     std::vector<Candidate> candidates;
@@ -145,7 +145,7 @@ class Proposer {
     return A;
   }
 
-  /// Of a displacement that two pairs say.
+  /// Covariance of a displacement given by two pairs.
   Eigen::Matrix3d covariance_by(const PointPair& first, const PointPair& second, const Eigen::Vector3d& at) const {
     const Eigen::Matrix2d turn = core::rotation(-at.z());
     Eigen::Matrix3d information = widest_.covariance().inverse();
@@ -185,7 +185,7 @@ class Proposer {
   std::vector<std::vector<std::size_t>> in_reach_;
 };
 
-/// Half of the pairs of `one`, or more, are pairs of the other: what is weighed anew from there would settle on the same.
+/// At least half of the pairs of `one` are pairs of the other: weighed again from there, it would settle on the same.
 bool pairs_alike(const std::vector<PointPair>& one, const std::vector<PointPair>& other) {
   const auto shared = std::count_if(one.begin(), one.end(), [&](const PointPair& a) {
     return std::any_of(other.begin(), other.end(),

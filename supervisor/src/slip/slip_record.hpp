@@ -7,8 +7,8 @@
 
 namespace helixnav::supervisor {
 
-/// The slips of the drive so far. Who has slipped before may slip again, also where nothing is in view that would show it:
-/// there the motion is as uncertain as slips at the rate and of the size seen so far make it.
+/// The slips of the drive so far. A vehicle that has slipped before may slip again, even if nothing is in view that
+/// would show it: then the motion is as uncertain as slips at the rate and of the size seen so far make it.
 /// Test: supervisor/slip/slip_decision_test.cpp.
 struct SlipRecord {
   int count = 0;

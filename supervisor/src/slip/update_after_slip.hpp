@@ -8,7 +8,7 @@
 
 namespace helixnav::supervisor {
 
-/// A slip is far for one linearisation: iterated, and once only where that does not settle, which is a repair.
+/// A slip is far for one linearisation: iterated, or once only if that does not settle, which is a repair.
 inline cekf::UpdateResult update_after_slip(cekf::CompressedEkf& filter, const std::vector<cekf::Match>& matches,
                                             core::NumericalHealth& numerics) {
   try {
@@ -20,7 +20,7 @@ inline cekf::UpdateResult update_after_slip(cekf::CompressedEkf& filter, const s
   }
 }
 
-/// Once more, of a scan that was reported: no new repair.
+/// Again, for a scan that was already reported: not a new repair.
 inline cekf::UpdateResult update_after_slip(cekf::CompressedEkf& filter, const std::vector<cekf::Match>& matches) {
   core::NumericalHealth numerics;
   return update_after_slip(filter, matches, numerics);

@@ -39,7 +39,7 @@ void DriveMap::take(const Tape& tape, const cekf::CompressedEkf& filter) {
   end_ = tape.end();
 }
 
-/// Over the length of a phase dead reckoning is a start that three steps of Gauss and Newton bring to its minimum.
+/// Over the length of a phase, dead reckoning is a start from which three Gauss-Newton steps reach its minimum.
 void DriveMap::add(const DrivePhase& phase) {
   atlas::PhaseFactor factor = atlas::derive_factor(*phase.log, atlas::dead_reckon(*phase.log));
   for (const core::LandmarkId id : factor.shape.ids) {
@@ -52,7 +52,7 @@ void DriveMap::add(const DrivePhase& phase) {
   if (phase.fix) atlas_.fix(clone, *phase.fix);
 }
 
-/// Landmarks that had both names before; the observations since have the present ones already.
+/// Landmarks that had both names before; observations since then already have the present ones.
 void DriveMap::merge(const Tape& tape, const core::MergedIds& ids) {
   tape.read_from(end_, [&](const Tape::Entry& entry) {
     const auto* merged = std::get_if<Tape::Merge>(&entry);

@@ -14,12 +14,14 @@
 
 namespace helixnav::supervisor {
 
-/// The drive up to a position on its tape as an atlas: what was measured until there is in its phases, and the tape need not keep
-/// it. A copy costs O(phases). Errors: core::NumericalError where mathematics breaks; the map is then to be thrown away.
-/// Test: supervisor/smoothing/drive_map_test.cpp (taken in by pieces), supervisor/smoothing/smooth_drive_test.cpp (least squares over all poses).
+/// The drive up to a position on its tape as an atlas: what was measured up to there is in its phases, and the tape
+/// need not keep it. A copy costs O(phases). Errors: core::NumericalError if the mathematics fails; the map then has to
+/// be discarded.
+/// Test: supervisor/smoothing/drive_map_test.cpp (taken in by pieces), supervisor/smoothing/smooth_drive_test.cpp
+/// (least squares over all poses).
 class DriveMap {
  public:
-  /// `phase_m`: length of a phase. `options`: how near to the solution the atlas goes; tests go all the way.
+  /// `phase_m`: length of a phase. `options`: how close to the solution the atlas gets; tests go all the way.
   DriveMap(const core::PoseGaussian& start, double phase_m, const atlas::Options& options = {});
 
   /// Takes in what the tape holds from end() on: scans, fixes, motion and merges. Landmarks lost again after a single look,
@@ -33,12 +35,12 @@ class DriveMap {
   void remember(const cekf::CompressedEkf& filter);
   /// The covariances that another map of the same drive has kept.
   void remember(const DriveMap& other) { covariances_m2_ = other.covariances_m2_; }
-  /// Where landmarks were solved last, with the covariances that were remembered of them last. O(paths to them).
+  /// Where landmarks were last solved, with the covariances last remembered for them. O(paths to them).
   std::vector<core::PointGaussian> remembered(const std::vector<core::LandmarkId>& ids) const;
 
   const atlas::Atlas& atlas() const { return atlas_; }
   Tape::Position end() const { return end_; }
-  /// What the filter paid for the measurements until there, see drive_cost.
+  /// What the filter paid for the measurements up to there, see drive_cost.
   double cost() const { return cost_; }
 
   /// Poses of all stops as they are solved.

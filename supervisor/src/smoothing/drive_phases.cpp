@@ -27,7 +27,7 @@ class Cutter {
     if (stop.fix || driven_m_ >= length_m_) close();
   }
 
-  /// Motion that ends where nothing is to be known of the vehicle.
+  /// Motion that ends where nothing needs to be known about the vehicle.
   void wait(const core::Odometry& odometry) { waiting_ = waiting_ ? core::chain(*waiting_, odometry) : odometry; }
 
   std::vector<DrivePhase> phases() && {

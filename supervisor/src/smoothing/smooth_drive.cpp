@@ -8,12 +8,12 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// χ² of three more degrees of freedom, exceeded once in a million times: by less the two costs differ that would be one
-/// if everything were linear. Measured: −12 to 17 (docs/adr/0010-solving-the-drive.md).
+/// χ² of three more degrees of freedom, exceeded once in a million times: two costs that would be equal if everything
+/// were linear differ by less. Measured: −12 to 17 (docs/adr/0010-solving-the-drive.md).
 double slack() { return core::chi2_quantile(0.999999, 3); }
 
-/// What the drive may cost by what it costs without the closing that has just been made. Assumed noise of half its size, and errors that
-/// last, make right closings cost several times what they should; another minimum costs more than that.
+/// What the drive may cost, given what it costs without the closing just made. Noise assumed at half its size, and
+/// persistent errors, make right closings cost several times what they should; another minimum costs more than that.
 double limit_by_closing(const cekf::CompressedEkf& filter, const Tape& tape, DriveMap without) {
   without.take(tape.without_last_merges(), filter);
   without.settle();

@@ -20,16 +20,17 @@ struct Smoothing {
   int iterations = 0;                   ///< fronts eliminated
 };
 
-/// Solves the whole drive with the associations known now: `map` takes in what the tape holds since it was solved last, and is
-/// settled. After a closing that turned a part of the map by many degrees the filter is linearised where that part was drawn,
-/// and no retraction of its own undoes that (docs/adr/0010-solving-the-drive.md). Not accepted: a solution that costs more than
-/// the filter's own and, solved without the closing at the end of the tape, more than that by more than the closing may cost. Cost: the phases that the closing turned and their paths to the root.
-/// Errors: core::NumericalError, with `map` to be thrown away. Test: supervisor/smoothing/smooth_drive_test.cpp (least squares
-/// over all poses of the recording).
+/// Solves the whole drive with the associations known now: `map` takes in what the tape holds since it was last solved,
+/// and is settled. After a closing that turned a part of the map by many degrees, the filter is linearised where that
+/// part was drawn, and no retraction of its own undoes that (docs/adr/0010-solving-the-drive.md). Not accepted: a
+/// solution that costs more than the filter's own and also exceeds, by more than the closing may cost, what it costs
+/// solved without the closing at the end of the tape. Cost: the phases that the closing turned and their paths to the
+/// root. Errors: core::NumericalError; `map` then has to be discarded. Test: supervisor/smoothing/smooth_drive_test.cpp
+/// (least squares over all poses of the recording).
 Smoothing smooth_drive(const cekf::CompressedEkf& filter, const Tape& tape, DriveMap& map);
 
-/// The filter begun anew with the pose and the landmarks that it holds as `map` has them: their joint estimate, everything else
-/// eliminated. Landmarks keep their ids. Errors: core::NumericalError. Test: as smooth_drive.
+/// The filter begun anew with the pose and the landmarks that it holds, as `map` has them: their joint estimate,
+/// everything else eliminated. Landmarks keep their ids. Errors: core::NumericalError. Test: as smooth_drive.
 cekf::CompressedEkf filter_at_solution(const DriveMap& map, const cekf::CompressedEkf& filter);
 
 }  // namespace helixnav::supervisor

@@ -33,7 +33,7 @@ void NavigationLoop::solve_drive(core::StepReport& report) {
   report.solved = std::move(smoothing.path);
 }
 
-/// A drive that was to be solved and was too long to be kept.
+/// A drive that should have been solved but was too long to be kept.
 void NavigationLoop::report_unsolved(core::StepReport& report) const {
   const int most = options_.search.smooth_up_to_scans;
   if (belief_.drive || options_.search.closing == ClosingMethod::restart || most == 0 || tape_.stops() <= most) return;
@@ -41,7 +41,7 @@ void NavigationLoop::report_unsolved(core::StepReport& report) const {
                                                         static_cast<double>(tape_.stops()), static_cast<double>(most)});
 }
 
-/// What cannot be solved leaves everything as it is.
+/// If it cannot be solved, everything stays as it is.
 Smoothing NavigationLoop::solve_on_atlas(core::NumericalHealth& numerics) {
   Smoothing smoothing;
   try {

@@ -9,10 +9,10 @@
 
 namespace helixnav::supervisor {
 
-/// Leaves out of a drive what a vehicle that stands sees again and again: an hour at ten scans a second is 36 000 scans of the same
-/// landmarks. Of a place the first 64 looks at each landmark are kept, which bring white noise to an eighth, and the last scan of
-/// every piece of the drive, so that the pose is known where the piece ends. To leave out measurements is conservative.
-/// Test: supervisor/smoothing/standing_looks_test.cpp.
+/// Leaves out of a drive what a stationary vehicle sees again and again: an hour at ten scans a second is 36 000 scans
+/// of the same landmarks. At each place, the first 64 looks at each landmark are kept, which reduce white noise to an
+/// eighth, and the last scan of every piece of the drive, so that the pose is known where the piece ends. Leaving out
+/// measurements is conservative. Test: supervisor/smoothing/standing_looks_test.cpp.
 class StandingLooks {
  public:
   /// The vehicle stands within a four-hundredth of this length and a fiftieth of a radian.

@@ -14,10 +14,10 @@
 namespace helixnav::supervisor {
 namespace {
 
-constexpr double pause_m = 20.0;  ///< driven from one trial to the next
+constexpr double pause_m = 20.0;  ///< driven between attempts
 
-/// How far from the estimated vehicle what it sees may be mapped: both it and what is mapped there may be off by its deviation
-/// since the start.
+/// How far from the estimated vehicle the things it sees may be mapped: both the vehicle and what is mapped there may
+/// be off by its deviation since the start.
 double drift_m(const cekf::CompressedEkf& filter) {
   constexpr double sigmas = 4.0;
   const double variance_m2 = filter.pose().covariance.topLeftCorner<2, 2>().trace();
@@ -26,7 +26,7 @@ double drift_m(const cekf::CompressedEkf& filter) {
 
 }  // namespace
 
-/// The drive is known from its begin, and no other map is asked for a place in it.
+/// The drive is known from its start, and no other map is asked for a place in it.
 bool NavigationLoop::may_have_window() const {
   const bool is_whole = belief_.drive ? tape_.holds_since(belief_.drive->end()) : tape_.holds_drive();
   return is_whole && !apart_.any() && options_.search.closing != ClosingMethod::restart;
@@ -47,7 +47,7 @@ WindowNeeds NavigationLoop::window_to_map() const {
   return {5.0 * reach_m + drift_m(belief_.filter), options_.map.window, options_.map.most};
 }
 
-/// A search is decided within one attempt, mostly; the filter is not handed over meanwhile.
+/// Most searches are decided within one attempt; the filter is not handed over meanwhile.
 WindowNeeds NavigationLoop::window_to_search() const {
   const double reach_m = view_.reach().value_or(reference_reach_m) + options_.search.reach_m;
   return {reach_m + options_.search.attempt_m + drift_m(belief_.filter), options_.map.window, options_.map.most};
@@ -65,8 +65,8 @@ std::shared_ptr<DriveMap> NavigationLoop::begun_drive() const {
   return std::make_shared<DriveMap>(start_, phase_length_m(view_.reach().value_or(reference_reach_m)));
 }
 
-/// The filter becomes the joint estimate of the pose and of the landmarks of the window; covariances of those that are left out
-/// are remembered as they are now.
+/// The filter becomes the joint estimate of the pose and of the landmarks of the window; the covariances of those left
+/// out are remembered as they are now.
 void NavigationLoop::begin_window(std::shared_ptr<DriveMap> drive, const WindowNeeds& needs) {
   const atlas::Atlas& atlas = drive->atlas();
   const Eigen::Vector2d here_m = atlas.pose().position_m();
@@ -103,14 +103,14 @@ int NavigationLoop::would_hold(const WindowNeeds& needs) const {
   return std::min(needs.most, std::max(needs.landmarks, near));
 }
 
-/// When the vehicle nears the edge of its window, or the filter holds half as much again as a new one would; the first one is to
-/// halve it.
+/// If the vehicle nears the edge of its window, or the filter holds half as much again as a new one would; the first
+/// hand-over has to halve it.
 bool NavigationLoop::is_hand_over_due() const {
   const bool is_part = std::isfinite(belief_.window.radius_m);
   if (!is_part && !needs_window()) return false;
   if (belief_.existence.path_m() - belief_.window.begun_path_m <= pause_m) return false;
   // Early: where the vehicle sees little, on a street without trees, it may be long before it is trusted again.
-  // No farther than that of a window that does not reach so far, or it would be handed over all the time.
+  // But at most a share of the window's radius, or a small window would be handed over all the time.
   constexpr double most_share = 0.6;
   const double needed_m = std::min(3.0 * view_.reach().value_or(reference_reach_m) + 0.5 * drift_m(belief_.filter),
                                    most_share * belief_.window.radius_m);
@@ -122,9 +122,9 @@ bool NavigationLoop::is_hand_over_due() const {
   return held > most_growth * options_.map.window && held > most_growth * would_hold(window_to_map());
 }
 
-/// A long drive, before the tape ceases to hold it from its begin; where it could not be solved it is tried again a few times. From
-/// then on what came since, a little at a time, also where one filter holds the map for ever: a tape that nobody takes in grows
-/// without bound.
+/// A long drive, before the tape ceases to hold it from its start; if it could not be solved, it is tried again a few
+/// times. From then on what came since, a little at a time, even if one filter holds the map for ever: a tape that is
+/// never taken in grows without bound.
 bool NavigationLoop::is_drive_due() const {
   constexpr double longer = 1.125;
   constexpr Tape::Position portion = 1000;  // entries: 20 ms
@@ -156,7 +156,7 @@ bool NavigationLoop::is_at_edge() const {
   return belief_.window.reach_from(belief_.filter.pose().mean.position_m()) < needed_m;
 }
 
-/// Where the belief has just become trusted; at the edge of the window as it is, and then nothing rolls back over it.
+/// When the belief has just become trusted; at the edge of the window as it is, and then nothing rolls back past it.
 void NavigationLoop::hand_over_if_due() {
   Mapping* mapping = std::get_if<Mapping>(&mode_);
   if (mapping == nullptr || !may_have_window()) return;
@@ -174,7 +174,7 @@ void NavigationLoop::hand_over_if_due() {
   become(belief_.drive, tried);
 }
 
-/// Before a search: all that it may ask for has to be in the filter.
+/// Before a search: everything that it may ask for has to be in the filter.
 void NavigationLoop::widen_for_search() {
   if (!std::isfinite(belief_.window.radius_m) || !may_have_window()) return;
   const WindowNeeds needs = window_to_search();

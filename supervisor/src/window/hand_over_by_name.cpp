@@ -23,7 +23,7 @@ int landmarks_wanted(const MapOptions& map) {
   return std::min(map.window, enough);
 }
 
-/// Everything within three times the sensor's reach of the last clone, more as long as there are few.
+/// Everything within three times the sensor's reach of the last clone, more while there are few.
 std::vector<LandmarkId> landmarks_about(const atlas::Atlas& atlas, double reach_m, int mapped, const MapOptions& map) {
   const WindowNeeds needs{3.0 * reach_m, landmarks_wanted(map), map.most};
   const auto wanted = static_cast<std::size_t>(std::min(needs.landmarks, mapped));
@@ -37,7 +37,7 @@ std::vector<LandmarkId> landmarks_about(const atlas::Atlas& atlas, double reach_
   return choose_window(places, center_m, needs).ids;
 }
 
-/// Active landmarks in the frame of a pose that lies behind the filter's own by `T_entry_robot`.
+/// Active landmarks in the frame of a pose that is behind the filter's own by `T_entry_robot`.
 template <class NameInMap>
 atlas::PointPrior active_from(const cekf::CompressedEkf& filter, const core::Pose2& T_entry_robot,
                               const NameInMap& name_in_map) {
@@ -77,8 +77,8 @@ LandmarkId NamedNavigator::FilterNames::in_map(LandmarkId name) const {
   return name < began_with ? first[static_cast<std::size_t>(name)] : name - began_with + next;
 }
 
-/// Known landmarks that the filter does not hold: it begins anew with all that the scan sees. Where it cannot, they are left out
-/// of this scan.
+/// Known landmarks that the filter does not hold: it begins anew with everything that the scan sees. If it cannot, they
+/// are left out of this scan.
 void NamedNavigator::bring_into_filter(std::vector<core::AssociationReport>& associations) {
   if (!names_.is_part) return;
   const auto is_missing = [&](const core::AssociationReport& one) {
@@ -93,8 +93,8 @@ void NamedNavigator::bring_into_filter(std::vector<core::AssociationReport>& ass
   }
 }
 
-/// Points that the filter finds by several looks at a range or a bearing have no phase that determines them: where there are
-/// such, one filter holds the whole map.
+/// No phase determines points that the filter finds from several looks at a range or a bearing: if there are any, one
+/// filter holds the whole map.
 void NamedNavigator::record(const core::Scan& scan, const core::StepReport& report) {
   if (recovering_ || !drive_->is_kept()) return;
   if (!names_.is_part && std::any_of(scan.observations.begin(), scan.observations.end(), has_one_row)) {
@@ -115,7 +115,7 @@ void NamedNavigator::record(const core::AbsoluteFix& fix) {
   drive_->stop(std::move(stop));
 }
 
-/// Phases go into the atlas one a scan at most, from where half of what one filter may hold is mapped.
+/// At most one phase per scan goes into the atlas, once half of what one filter may hold is mapped.
 void NamedNavigator::go_on_with_drive() {
   const auto mapped = static_cast<int>(observations_.size());
   if (recovering_ || !drive_->is_kept() || 2 * mapped <= options_.map.whole) return;

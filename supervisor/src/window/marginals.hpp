@@ -9,8 +9,8 @@
 
 namespace helixnav::supervisor {
 
-/// Marginals of landmarks at the settled estimate, in the order given. Landmarks named one after another are near each
-/// other, mostly, and share their paths.
+/// Marginals of landmarks at the settled estimate, in the order given. Landmarks named one after another are mostly
+/// near each other and share their paths.
 std::vector<core::PointGaussian> marginals_of(const atlas::Atlas& atlas, const std::vector<core::LandmarkId>& ids);
 
 }  // namespace helixnav::supervisor

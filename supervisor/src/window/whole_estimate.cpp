@@ -9,7 +9,7 @@
 
 namespace helixnav::supervisor {
 
-/// A landmark that only one scan has placed, and that the filter left out, may be in no phase of the drive.
+/// A landmark placed by only one scan and left out by the filter may be in no phase of the drive.
 bool NavigationLoop::is_placed(core::LandmarkId id) const {
   return belief_.filter.contains(id) || (belief_.drive && belief_.drive->atlas().knows(id));
 }
@@ -23,7 +23,7 @@ std::vector<core::LandmarkId> NavigationLoop::landmarks() const {
   return ids;
 }
 
-/// What the filter does not hold as it was remembered when the filter left it out.
+/// What the filter does not hold, as it was remembered when the filter left it out.
 std::vector<core::PointGaussian> NavigationLoop::sketched(const std::vector<core::LandmarkId>& ids) const {
   const auto is_held = [&](core::LandmarkId id) { return belief_.filter.contains(id); };
   std::vector<core::LandmarkId> held, left_out;

@@ -28,11 +28,11 @@ std::string_view name(Method method);
 struct Options {
   double detection_probability = 0.9;  ///< P_D of a landmark of the map in one scan
   ExtraneousDensity extraneous;
-  bool joint_test = true;             ///< false: let a set of pairs pass that is not jointly compatible
+  bool joint_test = true;             ///< false: accept a set of pairs that is not jointly compatible
   double joint_probability = 0.99;    ///< the set's joint NIS must not exceed this χ² quantile
   int joint_alternatives = 10;        ///< likelihood-ratio assignments tried, best first, when the joint test fails
-  double min_margin_nats = 0.0;       ///< a match whose best alternative is nearer is ambiguous; 0: none
-  std::int64_t node_budget = 30'000;  ///< nodes of JCBB (10 ms at the most), combinations of IHGR's tie rule
+  double min_margin_nats = 0.0;       ///< a match whose best alternative is closer than this is ambiguous; 0: none
+  std::int64_t node_budget = 30'000;  ///< nodes of JCBB (at most 10 ms), combinations of IHGR's tie rule
 };
 
 enum class Outcome {
@@ -48,11 +48,11 @@ struct ObservationOutcome {
   core::LandmarkId landmark = core::no_landmark;
   int candidate = -1;                                     ///< index into InnovationProblem::ids
   int pair = -1;                                          ///< index into InnovationProblem::pairs
-  double nis = std::numeric_limits<double>::quiet_NaN();  ///< to the landmark named; NaN without
+  double nis = std::numeric_limits<double>::quiet_NaN();  ///< to the landmark named; NaN without one
   int dof = 0;
-  /// Likelihood-ratio cost of the best alternative minus that of the choice: for the likelihood-ratio methods of the
-  /// whole scan's assignment, for the others of what the other observations leave to this one, where it may be negative;
-  /// +inf without an alternative.
+  /// Likelihood-ratio cost of the best alternative minus that of the choice: for the likelihood-ratio methods, over the
+  /// assignment of the whole scan; for the others, over what the other observations leave for this one, where it may be
+  /// negative; +inf without an alternative.
   double margin_nats = std::numeric_limits<double>::infinity();
   bool dropped_by_joint_test = false;
 };
@@ -68,13 +68,13 @@ struct Assignment {
   int alternative = 0;      ///< 0: the method's own first choice; k: its k-th alternative passed the joint test
   std::int64_t nodes = 0;   ///< of the search, where there was one
   bool budget_hit = false;  ///< the search ended early: best found, not proven best
-  int roundings = 0;        ///< variables that IHGR rounded; 0 for a whole-numbered solution
+  int roundings = 0;        ///< variables that IHGR rounded; 0 for an integral solution
 };
 
-/// Which observation belongs to which landmark. An empty scan gives an empty assignment; no candidates make every
-/// observation new. Throws PreconditionError for options outside their range, NumericalError when a joint covariance is
-/// not positive definite or CLP fails. Never runs longer than the node budget allows.
-/// Tests: association/associate_test.cpp, and one file a method.
+/// Which observation belongs to which landmark. An empty scan gives an empty assignment; without candidates every
+/// observation is new. Throws PreconditionError for options outside their range, NumericalError when a joint covariance
+/// is not positive definite or CLP fails. Never runs longer than the node budget allows.
+/// Tests: association/associate_test.cpp, and one file per method.
 Assignment associate(Method method, const InnovationProblem& problem, const Options& options = {});
 
 }  // namespace helixnav::association

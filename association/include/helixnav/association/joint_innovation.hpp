@@ -9,12 +9,12 @@
 
 namespace helixnav::association {
 
-/// Covariance between the innovations of two pairs, 2×2 with padding: H_a P H_bᵀ, plus R when both are the same
-/// observation. Cost: about 40 multiplications. Test: association/joint_innovation_test.cpp (dense H P Hᵀ).
+/// Covariance between the innovations of two pairs, 2×2 with padding: H_a P H_bᵀ, plus R when both are of the
+/// same observation. Cost: about 40 multiplications. Test: association/joint_innovation_test.cpp (dense H P Hᵀ).
 Eigen::Matrix2d innovation_cross_covariance(const InnovationProblem& problem, const GatedPair& a, const GatedPair& b);
 
-/// Innovation of a set of pairs taken together, with the covariance that the shared pose and the map's correlations
-/// give it. Two padded rows for each pair, in the order given.
+/// Joint innovation of a set of pairs, with the covariance that results from the shared pose and the correlations of
+/// the map. Two padded rows per pair, in the order given.
 struct JointInnovation {
   Eigen::VectorXd nu;
   Eigen::MatrixXd S;

@@ -7,7 +7,7 @@
 
 namespace helixnav::association {
 
-/// The k cheapest assignments, cheapest first; fewer when there are not so many. Murty's partition (1968); each part is
+/// The k cheapest assignments, cheapest first; fewer if there are not that many. Murty's partition (1968); each part is
 /// solved by one shortest path from its parent's prices. Cost O(k × rows) paths.
 /// Throws PreconditionError for k < 1 and as solve_assignment does.
 /// Test: association/k_best_test.cpp (enumeration of all assignments).

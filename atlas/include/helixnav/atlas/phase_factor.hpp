@@ -33,24 +33,26 @@ struct PhaseFactor {
   PhaseShape shape;           ///< where it was linearised
 };
 
-/// Landmarks of a joint estimate in the frame of its pose, with what the pose's own uncertainty adds.
+/// Landmarks of a joint estimate in the frame of its pose, including what the uncertainty of that pose adds.
 /// Test: atlas/phase_factor_test.cpp.
 PointPrior relative_to_pose(const core::JointGaussian& joint);
 
-/// A first shape by dead reckoning; landmarks stand where `known` has them, else where the first observation that fixes a
-/// point puts them, else 3 m ahead along a bearing or at the range measured. Errors as check_log.
+/// An initial shape by dead reckoning; landmarks are placed where `known` has them, otherwise where the first
+/// observation that fixes a point puts them, otherwise 3 m ahead along a bearing or at the measured range. Errors as
+/// check_log.
 PhaseShape dead_reckon(const PhaseLog& log, const PointPrior* known = nullptr);
 
-/// The factor of a log. `rounds` Gauss–Newton steps from `start` find where to linearise; `prior` helps in finding the
-/// place and does not enter the factor. The interior poses form a chain, which is eliminated block by block:
-/// Λ = H_KK − H_KI H_II⁻¹ H_IK, likewise the vector and χ². Cost O(T·n²) for T steps and n landmarks.
-/// Errors: check_log; PreconditionError when the shape does not fit the log; NumericalError when a residual is not finite.
-/// Test: atlas/phase_factor_test.cpp (dense Schur complement, 1e-9; the same at any rigid motion).
+/// The factor of a log. `rounds` Gauss–Newton steps from `start` find the linearisation point; `prior` helps to find it
+/// and does not enter the factor. The interior poses form a chain, which is eliminated block by block: Λ = H_KK − H_KI
+/// H_II⁻¹ H_IK, likewise the vector and χ². Cost O(T·n²) for T steps and n landmarks.
+/// Errors: check_log; PreconditionError when the shape does not fit the log; NumericalError when a residual is not
+/// finite.
+/// Test: atlas/phase_factor_test.cpp (dense Schur complement, 1e-9; the same under any rigid motion).
 PhaseFactor derive_factor(const PhaseLog& log, PhaseShape start, const PointPrior* prior = nullptr, int rounds = 3);
 
-/// The factor linearised again about another exit and other points, relative to the entry: they stay, only interior
-/// poses move (`rounds` Gauss–Newton steps from those of `old`). Repeated with the solution of the whole, this ends at the optimum of all measurements.
-/// Errors as derive_factor. Test: atlas/real_drives_test.cpp.
+/// The factor relinearised about another exit and other points, relative to the entry: these stay fixed, only interior
+/// poses move (`rounds` Gauss–Newton steps from those of `old`). Repeated with the solution of the whole, this ends at
+/// the optimum of all measurements. Errors as derive_factor. Test: atlas/real_drives_test.cpp.
 PhaseFactor rederive_factor(const PhaseLog& log, const PhaseFactor& old, const core::Pose2& T_entry_exit,
                             const std::vector<Eigen::Vector2d>& points_m, int rounds = 3);
 

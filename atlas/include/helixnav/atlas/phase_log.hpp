@@ -26,7 +26,7 @@ struct LoggedStep {
   std::vector<SeenLandmark> seen;
 };
 
-/// A stretch of the drive as it was measured: what goes into the map, and what it can be linearised from again.
+/// A stretch of the drive as measured: what goes into the map, and from which it can be relinearised.
 /// What was seen at the pose where it begins belongs to the phase before; only the first phase of a drive has `seen_at_entry`.
 /// A fix ends a phase (Atlas::fix).
 struct PhaseLog {

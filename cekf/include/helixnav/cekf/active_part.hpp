@@ -15,32 +15,32 @@ namespace helixnav::cekf {
 /// Everything that changes between two region switches, and what a snapshot copies.
 ///
 /// The state is (vehicle; active landmarks; weights s). The error of a passive landmark is its error at the start of
-/// the phase plus E·s, E being its rows of the phase's basis; the weights are carried as further states of the same
-/// filter:
+/// the phase plus E·s, where E is its rows of the phase's basis; the weights are carried as additional states of the
+/// same filter:
 ///   mean of s = theta,  cov(s, active) = A,  cov(s, s) = M,
 /// so that P_ab = AᵀEᵀ, P_bb = P_bb0 + E·M·Eᵀ, x_b = x_b0 + E·theta. In THEORY §1 these are Φ = Aᵀ, Ψ = −M, θ = theta.
-/// Anchors are the vehicle's coordinates and, of each active landmark, its error relative to the vehicle: that of the
-/// landmark minus that of a rigid motion by the vehicle's error. What all have in common is thus one weight, which
-/// sightings do not touch, and E·M·Eᵀ has no terms that are larger than what they add up to by (drift / noise)².
+/// Anchors are the vehicle's coordinates and, for each active landmark, its error relative to the vehicle: the
+/// landmark's error minus that of a rigid motion by the vehicle's error. What all have in common is thus one weight,
+/// which sightings do not affect, and E·M·Eᵀ has no terms that are larger than their sum by (drift / noise)².
 /// One anchor coordinate (a coordinate of the active part at the start of the phase) has one weight in the standard
-/// filter and, in the right-invariant one, a pair of weights that turns like a landmark.
+/// filter and, in the right-invariant one, a pair of weights that rotates like a landmark.
 struct ActivePart {
   core::Pose2 pose;
   std::vector<Eigen::Vector2d> points_m;  ///< active landmarks, parallel to ids
   std::vector<core::LandmarkId> ids;
-  std::vector<int> slots;                      ///< place in the passive store, −1 for landmarks born in this phase
+  std::vector<int> slots;                      ///< index in the passive store, −1 for landmarks born in this phase
   ReservedMatrix P;                            ///< (3+2n)², symmetric, both triangles
   ReservedMatrix A;                            ///< q × (3+2n)
   ReservedMatrix M;                            ///< q × q, lower triangle valid
   Eigen::VectorXd theta;                       ///< q
   std::vector<core::LandmarkId> left_passive;  ///< landmarks activated or removed from the passive part in this phase
   std::vector<int> dead_slots;                 ///< slots of landmarks removed in this phase
-  std::vector<int> late_anchors;  ///< slots activated in this phase, in order: anchors behind the first ones
+  std::vector<int> late_anchors;  ///< slots activated in this phase, in order: anchors after the first ones
   core::LandmarkId next_id = 0;
   int last_seen = 0;                               ///< landmarks of the last update
   Eigen::Vector2i cell = Eigen::Vector2i::Zero();  ///< of the vehicle when the region was chosen
   double rows = 0.0;                               ///< of the observations used since the phase began
-  PhaseCosts costs;                                ///< of the phases before
+  PhaseCosts costs;                                ///< of the previous phases
 
   /// All but P and M.
   ActivePart without_symmetric() const {

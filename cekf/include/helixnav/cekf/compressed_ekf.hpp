@@ -27,29 +27,29 @@ namespace helixnav::cekf {
 
 struct MovedRows;
 
-/// EKF-SLAM over a pose and point landmarks, exactly, at a cost per step that does not depend on the size of the map:
-/// only the landmarks of the vehicle's neighbourhood are active; what the steps of a phase mean for all others is
-/// gathered in the weights of ActivePart and applied when the region switches.
+/// Exact EKF-SLAM over a pose and point landmarks, at a cost per step that does not depend on the size of the map: only
+/// the landmarks in the vehicle's neighbourhood are active; the effect of a phase's steps on all others is accumulated
+/// in the weights of ActivePart and applied when the region switches.
 ///
 /// Frames: everything is in the map frame; the pose is T_world_robot, covariances in (x, y, heading) [m, m, rad].
-/// A copy shares the covariance of the passive landmarks until one of the two absorbs a phase into it: O(N·q) a phase kept.
-/// Every call either succeeds or throws PreconditionError (arguments), NumericalError (S not positive definite, a variance
-/// that would be negative or not finite) or std::bad_alloc and leaves the filter as it was. Cost below with n active landmarks, q weights
-/// (2·3+4·n right-invariant, 3+2·n standard, none where all landmarks are active), m rows of innovation.
-/// Source: THEORY §1 and §1b. Test: tests/cekf (equal
-/// to a plain full EKF on random programs, both retractions).
+/// A copy shares the covariance of the passive landmarks until one of the two absorbs a phase into it: O(N·q) per phase
+/// kept. Every call either succeeds or throws PreconditionError (arguments), NumericalError (S not positive definite, a
+/// variance that would be negative or not finite) or std::bad_alloc and leaves the filter as it was. Costs below are
+/// for n active landmarks, q weights (2·3+4·n right-invariant, 3+2·n standard, none where all landmarks are active),
+/// m rows of innovation.
+/// Source: THEORY §1 and §1b. Test: tests/cekf (equal to a plain full EKF on random programs, both retractions).
 class CompressedEkf {
  public:
-  /// Two landmarks said to be one: the one that stays and the one that goes.
+  /// Two landmarks declared to be the same: the one kept and the one removed.
   using LandmarkPair = std::pair<core::LandmarkId, core::LandmarkId>;
 
   /// Start covariance symmetric positive semidefinite; all zero is allowed (map frame = pose at start).
   explicit CompressedEkf(const core::PoseGaussian& start, const FilterOptions& options = {});
 
-  /// From the joint estimate of the pose and of all landmarks of the map, which keep their ids; those named later are
-  /// `next_name` and above. The region around the vehicle is active. PreconditionError for ids that are twice, negative or
-  /// not below `next_name`, sizes that do not fit, values that are not finite or variances below zero; that the covariance
-  /// is positive semidefinite is the caller's word. O(N²). Test: cekf/joint_start_test.cpp.
+  /// From the joint estimate of the pose and all landmarks of the map, which keep their ids; later ones are named
+  /// `next_name` and above. The region around the vehicle is active. PreconditionError for ids that are duplicate,
+  /// negative or not below `next_name`, sizes that do not fit, values that are not finite or negative variances; the
+  /// caller guarantees that the covariance is positive semidefinite. O(N²). Test: cekf/joint_start_test.cpp.
   CompressedEkf(const core::JointGaussian& start, core::LandmarkId next_name, const FilterOptions& options = {});
 
   const FilterOptions& options() const { return options_; }
@@ -57,35 +57,36 @@ class CompressedEkf {
   /// Moves the vehicle: F and the noise from core::compose_jacobians. O(n + q).
   void predict(const core::Odometry& odometry);
 
-  /// Puts the vehicle elsewhere, independent of the whole map. For comparison with filters that restart; what is known of
-  /// the vehicle is thrown away. Covariance symmetric positive semidefinite. O(n + q). Test: cekf/closing_test.cpp.
+  /// Puts the vehicle elsewhere, independent of the whole map. For comparison with filters that restart; what is known
+  /// about the vehicle is discarded. Covariance symmetric positive semidefinite. O(n + q). Test: cekf/closing_test.cpp.
   void replace_pose(const core::PoseGaussian& pose);
 
   /// Joint EKF update with all matches. Passive landmarks are activated first: nothing is discarded. O((n + q)²·m).
   UpdateResult update(const std::vector<Match>& matches);
-  /// The same, unless νᵀS⁻¹ν is above `most_nis`: then nothing, and nothing has changed. Test: cekf/update_within_test.cpp.
+  /// The same, unless νᵀS⁻¹ν is above `most_nis`: then returns nothing and changes nothing.
+  /// Test: cekf/update_within_test.cpp.
   std::optional<UpdateResult> update_within(const std::vector<Match>& matches, double most_nis);
-  /// What update would see, for a caller who weighs its matches one by one; read-only. O(m²·n).
+  /// The innovation that update would use, for a caller that weighs its matches one by one; read-only. O(m²·n).
   /// Test: cekf/update_within_test.cpp.
   Innovation innovation(const std::vector<Match>& matches) const;
   /// Joint Gauss-Newton update to the minimum of J = |x ⊖ x̂|²_P + |ν|²_R, for closings where one linearisation is not
   /// enough; the covariance is that of an update linearised at the minimum. Result: J and its degrees of freedom.
-  /// NumericalError when the iteration has not settled (step below 1e-9) after max_iterations.
+  /// NumericalError when the iteration has not converged (step below 1e-9) after max_iterations.
   UpdateResult update_iterated(const std::vector<Match>& matches, int max_iterations = 50);
-  /// J of update_iterated and the share of each match in it, without updating; infinite when it does not settle.
+  /// J of update_iterated and the share of each match in it, without updating; infinite when it does not converge.
   CostByPart iterated_cost(const std::vector<Match>& matches, int max_iterations = 50) const;
 
-  /// νᵀS⁻¹ν of a fix of the position of a point on the robot, for the caller's gate.
+  /// νᵀS⁻¹ν of a position fix of a point on the robot, for the caller's gate.
   UpdateResult position_innovation(const core::AbsoluteFix& fix) const;
-  /// Update with the fix; touches the vehicle only and so costs no more than one observation.
+  /// Update with the fix; involves only the vehicle and so costs no more than one observation.
   UpdateResult update_position(const core::AbsoluteFix& fix);
 
   /// New active landmark where the observation (kind with two rows) sees it.
   core::LandmarkId augment(const core::Observation& observation, const core::Pose2& T_robot_sensor);
-  /// The same with a name of the caller's, which no landmark has. Names given to others later are above it.
+  /// The same with a name chosen by the caller that no landmark has yet. Names given later are above it.
   void augment(const core::Observation& observation, const core::Pose2& T_robot_sensor, core::LandmarkId name);
   /// New active landmark as a linear function of pose and landmarks, with all its correlations; the landmarks it
-  /// depends on are activated first. Its mean is the caller's, who linearised there. O((n + q)·ids).
+  /// depends on are activated first. Its mean is set by the caller, who linearised there. O((n + q)·ids).
   /// Test: cekf/equality_test.cpp, cekf/bad_input_test.cpp.
   core::LandmarkId augment(const DerivedPoint& point);
 
@@ -96,7 +97,7 @@ class CompressedEkf {
   UpdateResult merge(core::LandmarkId kept, core::LandmarkId removed, double sigma_m = 0.02) {
     return merge({{kept, removed}}, sigma_m);
   }
-  /// J of merge and the share of each pair in it, without merging; infinite when the iteration does not settle.
+  /// J of merge and the share of each pair in it, without merging; infinite when the iteration does not converge.
   CostByPart merge_cost(const std::vector<LandmarkPair>& kept_removed, double sigma_m = 0.02) const;
 
   /// Forgets a landmark, active or passive. O(n + q).
@@ -106,9 +107,9 @@ class CompressedEkf {
   /// O(N·phases kept + q²).
   void activate(core::LandmarkId id);
 
-  /// Switches to the region around the vehicle when it has left its cell by the hysteresis, or when more than
-  /// max_active_landmarks, and twice as many as the last update saw, are active; when all of the map is, 1 + w times as many,
-  /// w weights an anchor. True when it did. Test: cekf/law_test.cpp.
+  /// Switches to the region around the vehicle when it has left its cell by the hysteresis, or when the number of
+  /// active landmarks is above both max_active_landmarks and twice the number seen by the last update; if the whole map
+  /// is active, above 1 + w times that, with w weights per anchor. True if it switched. Test: cekf/law_test.cpp.
   bool switch_region_if_due();
   /// Switches to the region around the vehicle.
   void switch_region();
@@ -117,21 +118,22 @@ class CompressedEkf {
   /// Brings the passive part up to date and keeps the active set. O(N²·q).
   void global_update();
 
-  /// Of updates since the last call, of questions (iterated_cost, merge_cost, position_innovation) not. A restore changes
-  /// nothing in it: it is no part of the estimate. Test: cekf/numerical_health_test.cpp.
+  /// Health of the updates since the last call, not of queries (iterated_cost, merge_cost, position_innovation). A
+  /// restore does not change it: it is not part of the estimate. Test: cekf/numerical_health_test.cpp.
   core::NumericalHealth take_health() noexcept { return std::exchange(workspace_.health, {}); }
 
   core::PoseGaussian pose() const;
   /// Marginal of any landmark, read-only. O(1) active, O(q²) passive.
   core::PointGaussian landmark(core::LandmarkId id) const;
-  /// The same of many: O(q²) each, at the speed of a product of matrices. Test: cekf/law_test.cpp.
+  /// The same for many: O(q²) each, at the speed of a matrix product. Test: cekf/law_test.cpp.
   std::vector<core::PointGaussian> marginals(const std::vector<core::LandmarkId>& ids) const;
   /// Mean of any landmark. O(1) active, O(q) passive.
   Eigen::Vector2d landmark_mean(core::LandmarkId id) const;
-  /// At least the standard deviation in any direction (root of the trace), for searches that must not cost a marginal.
-  /// A passive landmark's is that of the phase's begin, which shrinks with every update of the phase; the right-invariant
-  /// transport P' = N·P·Nᵀ, N = I + J·Δ·e_θᵀ, adds at most |Δ|·σ_θ where an update moves the mean by Δ (THEORY §1b): twice
-  /// that of the whole way since. O(1) active, O(q) passive. Test: cekf/law_test.cpp.
+  /// Upper bound on the standard deviation in any direction (square root of the trace), for searches that must not pay
+  /// for a marginal. For a passive landmark it is that of the start of the phase, which shrinks with every update of the
+  /// phase; the right-invariant transport P' = N·P·Nᵀ, N = I + J·Δ·e_θᵀ, adds at most |Δ|·σ_θ where an update moves the
+  /// mean by Δ (THEORY §1b): twice that for the total displacement since. O(1) active, O(q) passive.
+  /// Test: cekf/law_test.cpp.
   double landmark_sigma_bound_m(core::LandmarkId id) const;
   /// Covariance of a landmark, active or passive, with the pose. O(q). Test: cekf/law_test.cpp.
   Eigen::Matrix<double, 2, 3> covariance_with_pose(core::LandmarkId id) const;
@@ -141,8 +143,8 @@ class CompressedEkf {
   /// Pose and the landmarks in the order given, active or passive, read-only.
   core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;
   /// Covariance of landmarks (rows) with others (columns), two rows and columns each, active or passive, read-only: for
-  /// differences of many pairs, which a joint of each would cost the phases kept every time. O((r + c)·q·phases kept), and products of
-  /// that depth. Test: cekf/law_test.cpp.
+  /// the differences of many pairs, where a joint for each would go through the kept phases every time.
+  /// O((r + c)·q·phases kept), and products of that depth. Test: cekf/law_test.cpp.
   Eigen::MatrixXd cross_covariance(const std::vector<core::LandmarkId>& rows,
                                    const std::vector<core::LandmarkId>& columns) const;
 
@@ -150,8 +152,8 @@ class CompressedEkf {
   bool is_active(core::LandmarkId id) const;
   std::vector<core::LandmarkId> landmarks() const;
   const std::vector<core::LandmarkId>& active_landmarks() const { return active_.ids; }
-  /// Landmarks whose mean is within radius_m of the point, in order of id. Looks only where the passive landmarks were
-  /// when the phase began, widened by how far those found there have moved since: cost O(landmarks near · q).
+  /// Landmarks whose mean is within radius_m of the point, in order of id. Searches only where the passive landmarks
+  /// were when the phase began, widened by how far those found there have moved since: cost O(nearby landmarks · q).
   std::vector<core::LandmarkId> landmarks_within(const Eigen::Vector2d& point_m, double radius_m) const;
   int active_count() const { return static_cast<int>(active_.ids.size()); }
   int mapped_count() const { return static_cast<int>(places_.size()); }
@@ -162,19 +164,19 @@ class CompressedEkf {
   /// phase older than the snapshot's has been absorbed in between. PreconditionError when the snapshot's phase is out of reach.
   void restore(const Snapshot& snapshot);
   bool can_restore(const Snapshot& snapshot) const;
-  /// Landmarks named from now on have ids from `id` on: after a restore, names given since the snapshot are not given
-  /// again to others. No effect when all ids below are taken.
+  /// Landmarks named from now on get ids from `id` upwards, so that after a restore, names given since the snapshot are
+  /// not given to others. No effect if all ids below are taken.
   void name_from(core::LandmarkId id);
   /// Id of the next landmark.
   core::LandmarkId next_name() const { return active_.next_id; }
-  /// Phases from `phase` on are kept restorable instead of being absorbed when they close; each costs
-  /// 2N·(2q + 2n) doubles and lengthens switches and activations. Default: none but the open one.
+  /// Phases from `phase` on are kept restorable instead of being absorbed when they close; each costs 2N·(2q + 2n)
+  /// doubles and slows down switches and activations. Default: only the open one.
   void keep_since(long phase);
-  /// The open phase is kept restorable as well as those that are kept already; nothing is absorbed by this call.
+  /// Keeps the open phase restorable in addition to those already kept; this call does not absorb anything.
   /// Test: supervisor/tape_test.cpp.
   void keep_open_phase() noexcept;
   long phase() const { return phases_.back().number; }
-  /// Memory of the closed phases kept.
+  /// Memory used by the closed phases that are kept.
   std::size_t kept_bytes() const;
   int phases_kept() const { return static_cast<int>(phases_.size()); }
 
@@ -224,7 +226,7 @@ class CompressedEkf {
   void remove_active(int index);
   struct BeforeActivations {
     int active = 0;
-    Eigen::VectorXd theta;  ///< where something was passive
+    Eigen::VectorXd theta;  ///< if something was passive
   };
   BeforeActivations before_activations(bool all_active) const;
   void undo_activations(BeforeActivations& before);
@@ -288,9 +290,9 @@ class CompressedEkf {
   ActivePart active_;
   std::vector<Phase> phases_;  ///< closed ones that are kept, then the open one
   std::shared_ptr<PassiveCovariance> absorbed_ =
-      std::make_shared<PassiveCovariance>();  ///< copies share it, until one writes
+      std::make_shared<PassiveCovariance>();  ///< shared by copies until one writes
   std::vector<int> free_slots_;
-  std::vector<NamedPlace> places_;  ///< of the landmarks that there are, ascending by id
+  std::vector<NamedPlace> places_;  ///< of all existing landmarks, ascending by id
   long last_phase_ = 0;             ///< numbers are never used twice, not even after a restore
   long keep_since_;
   UpdateWorkspace workspace_;

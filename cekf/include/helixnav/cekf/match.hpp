@@ -11,14 +11,14 @@
 
 namespace helixnav::cekf {
 
-/// An observation that has been attributed to a landmark of the map.
+/// An observation that has been associated with a landmark of the map.
 struct Match {
   core::LandmarkId landmark = core::no_landmark;
   core::Observation observation;
   core::Pose2 T_robot_sensor;
 };
 
-/// A point that is known as a function of the pose and of points of the map: its error is G times their errors (pose in
+/// A point known as a function of the pose and of points of the map: its error is G times their errors (pose in
 /// (x, y, heading) first, then (x, y) of each landmark in the order of `ids`) plus independent noise.
 struct DerivedPoint {
   Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
@@ -27,20 +27,20 @@ struct DerivedPoint {
   Eigen::Matrix2d noise_m2 = Eigen::Matrix2d::Zero();  ///< symmetric positive semidefinite
 };
 
-/// The statistics of an update: nis is νᵀS⁻¹ν, or, of an iterated update, the cost J at its minimum; either is
+/// The statistics of an update: nis is νᵀS⁻¹ν or, for an iterated update, the cost J at its minimum; either is
 /// χ²-distributed with dof degrees of freedom when the model holds.
 struct UpdateResult {
   double nis = 0.0;
   int dof = 0;
 };
 
-/// What the filter did not expect of sightings: ν and its covariance S = H·P·Hᵀ + R, one or two rows a match in turn.
+/// Innovation of sightings: ν and its covariance S = H·P·Hᵀ + R, one or two rows per match, in order.
 struct Innovation {
   Eigen::VectorXd nu;
   Eigen::MatrixXd S;
 };
 
-/// The same with the share of each match (or pair) in the cost, for a caller who wants to drop the worst.
+/// The same with the share of each match (or pair) in the cost, for a caller that wants to drop the worst.
 struct CostByPart {
   double cost = 0.0;
   int dof = 0;

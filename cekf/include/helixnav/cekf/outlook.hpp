@@ -5,10 +5,11 @@
 
 namespace helixnav::cekf {
 
-/// What a search for landmarks near the vehicle needs of one: no marginal, which would cost O(q²).
+/// What a search for landmarks near the vehicle needs to know of each: not a marginal, which would
+/// cost O(q²).
 struct Outlook {
-  Eigen::Vector2d mean_m;                 ///< in the world
-  double sigma_bound_m;                   ///< at least the root of its covariance's trace
+  Eigen::Vector2d mean_m;                 ///< in the world frame
+  double sigma_bound_m;                   ///< at least the root of the trace of its covariance
   Eigen::Matrix<double, 2, 3> with_pose;  ///< covariance with (x, y, heading) of the vehicle
 };
 

@@ -9,12 +9,12 @@
 
 namespace helixnav::cekf {
 
-/// Copy of a symmetric matrix in half of its memory: the lower triangle, column after column.
+/// Copy of a symmetric matrix in half its memory: the lower triangle, column by column.
 /// Test: cekf/pieces_test.cpp.
 class PackedTriangle {
  public:
   PackedTriangle() = default;
-  /// Of which the lower triangle is read.
+  /// Only the lower triangle is read.
   explicit PackedTriangle(const ReservedMatrix& symmetric);
 
   /// Both triangles.

@@ -21,14 +21,14 @@ class PassiveCovariance {
   int rows() const { return rows_; }
   /// New rows are zero.
   void grow(int rows);
-  /// Becomes this symmetric matrix, of which the lower triangle is read.
+  /// Becomes this symmetric matrix; only its lower triangle is read.
   void assign(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& symmetric);
   double at(int i, int j) const;
   Eigen::Matrix2d block(int slot_i, int slot_j) const;
   /// Columns 2s and 2s+1, rows() × 2.
   void copy_columns(int slot, Eigen::Ref<Eigen::MatrixXd> columns) const;
-  /// this += left·rightᵀ over the columns named, a product known to be symmetric, n × q each with n ≤ rows(). Cost n²
-  /// flops a column.
+  /// this += left·rightᵀ over the given columns, a product known to be symmetric; both factors are n × q with
+  /// n ≤ rows(). Cost n² flops per column.
   void add_symmetric_product(const Eigen::Ref<const Eigen::MatrixXd>& left,
                              const Eigen::Ref<const Eigen::MatrixXd>& right, const std::vector<int>& columns);
   /// The same with both sides packed (widths of packed_product.hpp). No allocation.

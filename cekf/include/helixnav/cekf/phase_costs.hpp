@@ -3,11 +3,11 @@
 
 namespace helixnav::cekf {
 
-/// What the latest phases with passive landmarks have cost, in multiply-adds and as a polynomial of the coordinates D that
-/// are mapped, so that it can be held against an update of a map of which all is active: D² for each row of an observation. A phase with n
-/// coordinates and q weights active costs (n + q)² a row, and when it ends, t of its weights reached, 2q(n + t) a
-/// coordinate mapped and t a pair of them (docs/cekf.md). Each phase counts half as much as the next one.
-/// Test: cekf/law_test.cpp.
+/// Cost of the latest phases with passive landmarks, in multiply-adds and as a polynomial in the number D of mapped
+/// coordinates, so that it can be compared with the cost of updating a map that is entirely active: D² for each row of
+/// an observation. A phase with n active coordinates and q weights costs (n + q)² per row and, when it ends with t of
+/// its weights reached, 2q(n + t) per mapped coordinate and t per pair of them (docs/cekf.md). Each phase counts half
+/// as much as the next one. Test: cekf/law_test.cpp.
 struct PhaseCosts {
   double rows = 0.0;
   double updates = 0.0;
@@ -21,7 +21,7 @@ struct PhaseCosts {
     quadratic = 0.5 * quadratic + t;
   }
 
-  /// Whether the same rows would have cost less, had all been active. False as long as nothing is known.
+  /// Whether the same rows would have cost less had all landmarks been active. False as long as nothing is known.
   bool is_whole_cheaper(double D) const {
     return rows > 0.0 && rows * D * D < updates + linear * D + quadratic * D * D;
   }

@@ -6,8 +6,8 @@
 namespace helixnav::cekf {
 
 /// Column-major matrix that grows and shrinks in place, so that the per-step path never allocates. Columns begin at
-/// multiples of eight doubles and everything outside rows() × cols() is zero: the kernels may run over whole blocks of
-/// eight rows. A copy is compact; assignment keeps the storage of the target where it suffices.
+/// multiples of eight doubles and everything outside rows() × cols() is zero, so kernels may run over whole blocks of
+/// eight rows. A copy is compact; assignment keeps the storage of the target if it is large enough.
 /// Test: cekf/pieces_test.cpp.
 class ReservedMatrix {
  public:
@@ -26,8 +26,8 @@ class ReservedMatrix {
   void resize(Eigen::Index rows, Eigen::Index cols);
   /// Room for rows × cols without a later allocation.
   void reserve(Eigen::Index rows, Eigen::Index cols);
-  /// Room for a resize to rows × cols, with what a resize would add for later ones, an eighth more unless it is the first:
-  /// that resize then cannot throw.
+  /// Room for a resize to rows × cols, including what a resize would add for later ones (an eighth more, unless it is
+  /// the first): that resize then cannot throw.
   void make_room(Eigen::Index rows, Eigen::Index cols);
   void set_zero();
 

@@ -8,8 +8,8 @@
 
 namespace helixnav::cekf {
 
-/// The filter at one instant. Small, O(n_a²), because the passive part is frozen inside a phase; good as long as the
-/// filter that made it keeps that phase (CompressedEkf::keep_since).
+/// The filter at one instant. Small, O(n_a²), because the passive part is frozen inside a phase; valid as long as
+/// the filter that made it keeps that phase (CompressedEkf::keep_since).
 struct Snapshot {
   long phase = -1;
   ActivePart active;  ///< without P and M

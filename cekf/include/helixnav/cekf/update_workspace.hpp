@@ -12,19 +12,19 @@
 
 namespace helixnav::cekf {
 
-/// Scratch of one update, kept between updates so that none allocates. The columns "involved" are the vehicle's three
-/// and two for each landmark seen; H is m × involved.
+/// Scratch space of an update, kept between updates so that none allocates. The "involved" columns are the vehicle's
+/// three and two for each landmark seen; H is m × involved.
 struct UpdateWorkspace {
-  std::vector<int> involved;              ///< column in the active part of each column of H
+  std::vector<int> involved;              ///< for each column of H, its column in the active part
   std::vector<core::LandmarkId> ids;      ///< landmarks involved, in the order of their columns
-  std::vector<int> landmark_of_row;       ///< for each match (or pair) the index in ids
+  std::vector<int> landmark_of_row;       ///< for each match (or pair), its index in ids
   core::Pose2 pose;                       ///< where the measurement is linearised
-  std::vector<Eigen::Vector2d> points_m;  ///< same, landmarks involved
+  std::vector<Eigen::Vector2d> points_m;  ///< same, for the landmarks involved
 
   ReservedMatrix H;     ///< m × involved
   ReservedMatrix R;     ///< m × m
   ReservedMatrix nu;    ///< m × 1
-  ReservedMatrix P;     ///< covariance of what is involved
+  ReservedMatrix P;     ///< covariance of the involved columns
   ReservedMatrix L;     ///< S = L·Lᵀ
   ReservedMatrix G;     ///< L⁻¹H
   ReservedMatrix y;     ///< L⁻¹ν
@@ -32,14 +32,14 @@ struct UpdateWorkspace {
 
   // The covariance of (active; weights) changes by left·rightᵀ, left = [W n g], right = [−W g n], W = P(:,
   // involved)·Gᵀ.
-  ReservedMatrix picked_active, picked_weights;  ///< columns involved of P and of A
+  ReservedMatrix picked_active, picked_weights;  ///< involved columns of P and of A
   ReservedMatrix left_active, left_weights;
   ReservedMatrix right_active, right_weights;
   ReservedMatrix delta_active, delta_weights;  ///< correction δ, then Δ of the retraction
   ReservedMatrix variances;                    ///< diagonal of the active covariance after the update
 
   ReservedMatrix scale;          ///< 1/√S_ii
-  core::NumericalHealth health;  ///< of the updates since it was taken
+  core::NumericalHealth health;  ///< of the updates since it was last taken
 };
 
 }  // namespace helixnav::cekf

@@ -4,7 +4,7 @@
 namespace helixnav::core {
 
 /// x with P(χ²_dof ≤ x) = probability; probability in (0, 1), dof ≥ 1, else PreconditionError. Boost.Math; a call costs
-/// about a microsecond: keep the value where it is asked for in a loop.
+/// about a microsecond: keep the value where it is needed in a loop.
 /// Test: core/chi2_test.cpp against tabulated values.
 double chi2_quantile(double probability, int dof);
 

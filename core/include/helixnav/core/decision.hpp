@@ -24,7 +24,7 @@ struct TriggerDecision {
 };
 
 /// The integrity monitor found the pose wrong: old landmarks were missing while new ones spawned. The navigator rolls
-/// back to the trusted checkpoint, begins a search there and processes the drive since then again.
+/// back to the trusted checkpoint, begins a search there and reprocesses the drive since then.
 struct RollbackDecision {
   int missing = 0;    ///< landmarks revisited, looked for and not seen
   int seen = 0;       ///< landmarks revisited and mostly seen
@@ -34,9 +34,9 @@ struct RollbackDecision {
 };
 
 /// The vehicle slipped: it is not where its odometry says. Figures in nats: by how much the slip explains the scan better
-/// than what stands beside it (supervisor/slip_decision).
+/// than the alternative named at each (supervisor/slip_decision).
 struct SlipDecision {
-  int pairs = 0;                 ///< of observation and landmark that say so
+  int pairs = 0;                 ///< of observation and landmark that support it
   double nats = 0.0;             ///< than no slip, with new landmarks where the pattern of the map has them
   double pattern_nats = 0.0;     ///< what that pattern takes from `nats`
   double same_pairs_nats = 0.0;  ///< than the same pairs without a slip
@@ -50,7 +50,7 @@ struct SlipDecision {
 struct MovingDecision {
   int landmarks = 0;       ///< dropped
   double nats = 0.0;       ///< log-likelihood ratio of "it moves" against "it stands"
-  double speed_mps = 0.0;  ///< over the ground, when it was found out
+  double speed_mps = 0.0;  ///< over the ground, when it was detected
 };
 
 /// An attempt of a search began: particles drawn on helices around old landmarks.
@@ -114,13 +114,13 @@ struct ClosureDecision {
   double moved_m = 0.0;   ///< by how much the closing moved the pose
 };
 
-/// A search was given up: mapping goes on, the loop stays open.
+/// A search was given up: mapping continues, the loop stays open.
 struct UndecidedDecision {
   double driven_m = 0.0;  ///< since the search began
 };
 
-/// A search found that the vehicle is not on old ground: the landmarks mapped lately fit nowhere on it, and they are so many
-/// that they would.
+/// A search found that the vehicle is not on old ground: the landmarks mapped lately fit nowhere on it, and they are so
+/// many that they should.
 struct NewGroundDecision {
   double driven_m = 0.0;  ///< since the search began
   int landmarks = 0;      ///< asked with
@@ -145,23 +145,24 @@ struct FixDecision {
   double pose_sigma_m = 0.0;  ///< after it
 };
 
-/// The vehicle was carried: an event said so (core::Lost), or after a pause what had been in view was gone. The drive goes on
-/// as a new part, with a map of its own, and its place on the parts before is sought (PlacedDecision). Part 0 is what the drive
-/// began on; where that was sought on an earlier map, part 0 is that map and the drive began as part 1.
+/// The vehicle was carried: an event reported it (core::Lost), or after a pause what had been in view was gone. The
+/// drive continues as a new part, with a map of its own, and its place on the earlier parts is sought (PlacedDecision).
+/// Part 0 is what the drive began on; where that was sought on an earlier map, part 0 is that map and the drive began
+/// as part 1.
 struct CarriedDecision {
   enum class Cause {
-    told,         ///< an event said so
+    told,         ///< an event reported it
     found_out,    ///< by the scan after a pause: missing to elsewhere_nats
     broken_off,   ///< it was not carried: the part that ends cannot be computed any further
-    by_place,     ///< landmarks mapped since a pause stand elsewhere on the map: it was carried then
+    by_place,     ///< landmarks mapped since a pause are elsewhere on the map: it was carried then
     no_odometry,  ///< it may not have been carried: odometry leaves open which way it turned since the scan before
-    wrong_start,  ///< it was not carried: on the map, what is seen does not stand about the start that was given
+    wrong_start,  ///< it was not carried: on the map, what is seen does not fit the start that was given
   };
   int part = 0;           ///< that begins with this scan
   int from_part = 0;      ///< that ends
   int landmarks = 0;      ///< of the part that ends, kept as a map of its own
   int dropped = 0;        ///< of it: tentative ones, and those of a map that is too small or too large to be kept
-  int apart = 0;          ///< parts of which it is not known how they lie to the one that begins
+  int apart = 0;          ///< parts whose pose relative to the one that begins is unknown
   double driven_m = 0.0;  ///< in the part that ends
   Cause cause = Cause::told;
   int missing = 0;                 ///< landmarks that were in view before the pause and were not after it
@@ -173,14 +174,15 @@ struct CarriedDecision {
   int scans = 0;                   ///< before this one, with which the part begins already: those since the pause
 };
 
-/// The session and the map of an earlier one: whether, where and by which evidence the one was found in the other. A row is
-/// one answer; of `sought`, how many landmarks were about the vehicle before the first question, whenever more than ever.
+/// The session and the map of an earlier one: whether, where and by which evidence the one was found in the other. A
+/// row is one answer; for `sought`, how many landmarks were around the vehicle before the first question, whenever more
+/// than ever.
 struct PlacedDecision {
   enum class Verdict {
     sought,     ///< the place is unknown: the session maps on its own and asks
     accepted,   ///< found: from here on one map, in the frame of the earlier one
     ambiguous,  ///< a place fits, and so may others
-    refused,    ///< the best place, of which the landmarks contradict each other
+    refused,    ///< the best place, but its landmarks contradict each other
     not_here,   ///< no place fits better than chance would
   };
   Verdict verdict = Verdict::sought;
@@ -200,13 +202,13 @@ struct PlacedDecision {
   int part = 0;           ///< of the drive on which it is, see CarriedDecision
 };
 
-/// The whole map was asked where the vehicle is, without the prior: by a search whose prior holds no place or whose odometry
-/// forbids the one that was found, or on ground that seems new. Figures of the place as in PlacedDecision.
+/// The whole map was asked where the vehicle is, without the prior: by a search whose prior contains no place or whose
+/// odometry rules out the one that was found, or on ground that seems new. Figures of the place as in PlacedDecision.
 struct WholeMapDecision {
   enum class Verdict {
     accepted,   ///< found, and the map was closed there
     ambiguous,  ///< a place fits, and so may others
-    refused,    ///< the best place, of which the landmarks contradict each other
+    refused,    ///< the best place, but its landmarks contradict each other
     not_here,   ///< no place fits better than chance would
   };
   Verdict verdict = Verdict::not_here;
@@ -239,7 +241,7 @@ struct PostponedDecision {
   double limit = 0.0;  ///< of what is done at most; association: hypotheses
 };
 
-/// A row of decisions.csv of a kind that this version does not know: listed as it stands.
+/// A row of decisions.csv of a kind that this version does not know: listed as it is.
 struct OtherDecision {
   std::string kind;
   std::string verdict;

@@ -15,8 +15,7 @@ namespace helixnav::core {
 
 /// The loop over the events of a drive. The estimator is anything with
 ///   std::optional<StepReport> take(const Event&)
-/// that answers a scan with its step. The caller decides when to stop, and sees the estimator as it was
-/// after each:
+/// that returns its step for a scan. The caller decides when to stop, and sees the estimator as it was after each:
 ///   EventLoop loop(recording.events, estimator);
 ///   while (const auto step = loop.next()) …
 /// Events and estimator must outlive the loop. A live drive comes in parts: a loop for each, numbering on with `first_step`.
@@ -27,8 +26,8 @@ class EventLoop {
   EventLoop(const std::vector<Event>& events, Estimator& estimator, std::int64_t first_step = 0)
       : events_(events), estimator_(estimator), steps_(first_step) {}
 
-  /// Feeds the events up to and with the next one that makes a step; nothing when none is left. Steps are numbered as
-  /// they come. NumericalError and PreconditionError of the estimator pass with step and time before their words.
+  /// Feeds the events up to and including the next one that makes a step; nothing when none is left. Steps are numbered
+  /// as they come. NumericalError and PreconditionError of the estimator pass with step and time before their text.
   std::optional<StepReport> next() {
     while (fed_ < events_.size()) {
       std::optional<StepReport> step = take(events_[fed_++]);

@@ -56,13 +56,13 @@ struct AbsoluteFix {
   Eigen::Vector2d antenna_robot_m = Eigen::Vector2d::Zero();
 };
 
-/// Since the event before, the vehicle was moved by something else than its wheels, and nobody measured how: where it is now
-/// is unknown.
+/// Since the event before, the vehicle was moved by something other than its wheels, and nobody measured how: where it
+/// is now is unknown.
 struct Lost {
   Nanoseconds t_ns = 0;
 };
 
-/// Everything that may enter an estimator. Labels and truth travel beside events (core/recording.hpp), never inside.
+/// Everything that may enter an estimator. Labels and truth travel alongside events (core/recording.hpp), never inside.
 using Event = std::variant<Odometry, Scan, AbsoluteFix, Lost>;
 
 inline Nanoseconds time_of(const Event& event) {

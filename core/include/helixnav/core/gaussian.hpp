@@ -22,7 +22,7 @@ struct PointGaussian {
   Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Zero();
 };
 
-/// Joint estimate of the robot's pose and of n landmarks, what data association needs to know of a filter.
+/// Joint estimate of the robot's pose and of n landmarks, what data association needs from a filter.
 /// covariance is (3+2n)×(3+2n): pose first, then (x, y) of each landmark in the order of `ids`.
 struct JointGaussian {
   Pose2 pose;

@@ -13,8 +13,9 @@ inline bool is_all_around(const FieldOfView& view) {
   return view.max_bearing_rad - view.min_bearing_rad >= 2.0 * pi - 1e-6;
 }
 
-/// Whether a bearing, in the sensor frame [rad], lies between those of the view, drawn in by margin_rad at both; any of a view all
-/// around. The view's own may be beyond ±π: from 90° to 270° is across the back. Test: core/in_view_test.cpp.
+/// Whether a bearing, in the sensor frame [rad], is between those of the view, narrowed by margin_rad at both ends;
+/// any for a view all around. The view's own bearings may be beyond ±π: from 90° to 270° is across the back.
+/// Test: core/in_view_test.cpp.
 inline bool is_between_bearings(const FieldOfView& view, double bearing_rad, double margin_rad = 0.0) {
   if (is_all_around(view)) return true;
   const double middle_rad = 0.5 * (view.min_bearing_rad + view.max_bearing_rad);

@@ -55,11 +55,11 @@ struct GraphFromEvents {
   int unlocated_landmarks = 0;      ///< left out with their observations: too few rows to fix a point
 };
 
-/// Pose 0 stands at `start`; every scan or fix that follows motion opens the next pose (increments are chained), named by
+/// Pose 0 is at `start`; every scan or fix that follows motion opens the next pose (increments are chained), named by
 /// its index. ids[scan][observation] names the landmark observed, below zero: unknown. Poses are dead reckoned,
 /// landmarks placed by locate_landmarks; those whose observations have fewer than two rows are left out and counted.
-/// Motion after the last scan or fix is dropped. PreconditionError when the shape of ids does not fit the events, InputError
-/// where the vehicle was carried (Lost): no motion ties the poses before to those after.
+/// Motion after the last scan or fix is dropped. PreconditionError when the shape of ids does not match the events,
+/// InputError where the vehicle was carried (Lost): no motion ties the poses before to those after.
 /// Test: core/landmark_graph_test.cpp.
 GraphFromEvents graph_from_events(const std::vector<Event>& events, const std::vector<std::vector<std::int64_t>>& ids,
                                   const Pose2& start = Pose2());

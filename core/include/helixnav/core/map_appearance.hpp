@@ -13,14 +13,14 @@ namespace helixnav::core {
 /// What class and size say about a pair of an observation and a landmark, or of two landmarks.
 struct AppearanceEvidence {
   double nats = 0.0;  ///< ln p(appearance | the same object) − ln p(appearance | any object)
-  double gate = 0.0;  ///< −2 ln of the probability that the same object is given a class as unlikely: adds to a NIS
+  double gate = 0.0;  ///< −2 ln of the probability that the same object is given a class this unlikely: adds to a NIS
   double size_nis = 0.0;  ///< squared distance of the sizes, …
   int size_dof = 0;       ///< … and 1 where both are known
 };
 
-/// How often which class and size is given: what an object of no known landmark looks like, and therefore what it says that two
-/// look alike. A class k is given with p(c | k) = (1 − ε) 1[c = k] + ε q_c, q the shares of the population and ε the
-/// observation's class_error, so that ln p(c | landmark) − ln q_c is bounded below by ln ε. Sizes are Gaussian.
+/// How often which class and size is given: what an object of no known landmark looks like, and therefore what it means
+/// that two look alike. A class k is given with p(c | k) = (1 − ε) 1[c = k] + ε q_c, q the shares of the population and
+/// ε the observation's class_error, so that ln p(c | landmark) − ln q_c is bounded below by ln ε. Sizes are Gaussian.
 /// Test: core/map_appearance_test.cpp (enumeration of all classes, batch of all sizes).
 class AppearancePopulation {
  public:
@@ -35,7 +35,7 @@ class AppearancePopulation {
   AppearanceEvidence compare(const LandmarkAppearance& known, const Appearance& seen) const;
   AppearanceEvidence compare(const LandmarkAppearance& one, const LandmarkAppearance& other) const;
 
-  /// Whether neither class nor size speaks against the two being one, each with 99.9 % if they were.
+  /// Whether neither class nor size contradicts the two being one, each with 99.9 % if they are.
   bool look_alike(const LandmarkAppearance& one, const LandmarkAppearance& other) const;
 
  private:
@@ -46,7 +46,7 @@ class AppearancePopulation {
   double ln_density(double size_m, double variance_m2) const;
 
   static constexpr std::size_t enough_sizes = 8;
-  static constexpr std::size_t most_classes = 256;  ///< those beyond share what is left
+  static constexpr std::size_t most_classes = 256;  ///< those beyond share the remainder
 
   std::vector<std::pair<ClassName, std::size_t>> classes_;  ///< ascending by name
   std::size_t given_ = 0;
@@ -55,8 +55,8 @@ class AppearancePopulation {
   double size_squares_m2_ = 0.0;  ///< Σ of squared distances from the mean
 };
 
-/// Class and size of the landmarks of a map, and the population that they come from. Nothing is held for landmarks of which
-/// neither was given. Test: core/map_appearance_test.cpp.
+/// Class and size of the landmarks of a map, and the population that they come from. Nothing is stored for landmarks
+/// for which neither was given. Test: core/map_appearance_test.cpp.
 class MapAppearance {
  public:
   bool is_empty() const { return landmarks_.empty(); }
@@ -64,7 +64,7 @@ class MapAppearance {
 
   /// One observation of no landmark in particular, or of one of the map. O(log classes).
   void count(const Appearance& seen) { population_.count(seen); }
-  /// The landmark was observed to look so. O(log landmarks), and an insertion the first time.
+  /// The landmark was observed to look like this. O(log landmarks), and an insertion the first time.
   void see(LandmarkId id, const Appearance& seen);
   /// A landmark of an earlier drive; counts once in the population.
   void adopt(LandmarkId id, const LandmarkAppearance& known);

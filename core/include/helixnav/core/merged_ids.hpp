@@ -9,8 +9,8 @@
 
 namespace helixnav::core {
 
-/// Which landmark each one is by now, after merges. What a merge keeps exists, whatever happened to it before: a merge
-/// that a rollback has undone may be followed by one the other way round, and no chain of merges runs in a circle.
+/// Which landmark each one is now, after merges. What a merge keeps exists, whatever happened to it before: a merge
+/// that a rollback has undone may be followed by one the other way round, and no chain of merges is circular.
 /// Test: core/merged_ids_test.cpp.
 class MergedIds {
  public:

@@ -9,7 +9,7 @@
 namespace helixnav::core {
 
 /// The candidate with the fewest letters to insert, delete or replace (Levenshtein distance), the first of equals: what
-/// an error about an unknown name proposes. Empty without candidates. Cost: letters × letters per candidate.
+/// an error about an unknown name suggests. Empty without candidates. Cost: letters × letters per candidate.
 /// Test: core/nearest_name_test.cpp.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 

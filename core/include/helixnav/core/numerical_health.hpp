@@ -3,12 +3,12 @@
 
 namespace helixnav::core {
 
-/// How far the arithmetic of one step was from its limits, and where it failed. Filled by what is computed anyway: no pass over
-/// the covariance of the map. Test: cekf/numerical_health_test.cpp, supervisor/numerical_health_test.cpp.
+/// How far the arithmetic of one step was from its limits, and where it failed. Filled from what is computed anyway: no
+/// pass over the covariance of the map. Test: cekf/numerical_health_test.cpp, supervisor/numerical_health_test.cpp.
 struct NumericalHealth {
-  /// Least pivot of the Cholesky factors of innovation covariances S, each by the S_ii that it is what is left of: the share
-  /// of an innovation's variance that the rows before it do not foretell. 1 without an update. So many digits of S as this has
-  /// zeros are lost.
+  /// Least pivot of the Cholesky factors of innovation covariances S, each relative to the S_ii of which it is the
+  /// remainder: the share of an innovation's variance that the rows before it do not predict. 1 without an update. As
+  /// many digits of S are lost as this has zeros.
   double least_pivot = 1.0;
   double asymmetry = 0.0;  ///< largest |S_ij − S_ji| / √(S_ii·S_jj) before S is factored; 0 in exact arithmetic
   int repaired = 0;        ///< failed as asked, done in another way
@@ -23,7 +23,7 @@ struct NumericalHealth {
   }
 };
 
-/// Fewer than four digits of S are left to decide by, or of its sixteen half are rounding.
+/// Fewer than four digits of S are left to decide by, or half of its sixteen are rounding.
 inline bool is_near_limit(const NumericalHealth& health) {
   constexpr double least_trusted_pivot = 1e-12;
   constexpr double most_trusted_asymmetry = 1e-8;

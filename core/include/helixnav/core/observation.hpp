@@ -47,8 +47,8 @@ struct PredictedObservation {
   ObsByPoint H_landmark;
 };
 
-/// Predicts the observation of a landmark. Bearings are in (-π, π]. Throws NumericalError when the landmark stands at
-/// the sensor itself (closer than 1 µm), where bearing and range have no derivative.
+/// Predicts the observation of a landmark. Bearings are in (-π, π]. Throws NumericalError when the landmark is at the
+/// sensor itself (closer than 1 µm), where bearing and range have no derivative.
 /// Source: dlr_kurlbaum2009 eq (8)-(10) for cartesian; polar form of the same. Test: core/observation_test.cpp (Jacobians
 /// against central differences).
 PredictedObservation predict_observation(ObservationKind kind, const Pose2& T_world_robot, const Pose2& T_robot_sensor,
@@ -69,8 +69,9 @@ struct LocatedLandmark {
 LocatedLandmark locate_landmark(const Observation& observation, const Pose2& T_world_robot,
                                 const Pose2& T_robot_sensor);
 
-/// Throws PreconditionError unless z is finite, ranges are positive, bearings lie within ±2π, shapes fit the kind, R is
-/// symmetric positive definite, a class error lies in (0, 1) and a size and its deviation are positive. No allocation unless it throws. Test: core/observation_test.cpp.
+/// Throws PreconditionError unless z is finite, ranges are positive, bearings are within ±2π, shapes fit the kind, R is
+/// symmetric positive definite, a class error is in (0, 1) and a size and its deviation are positive. No allocation
+/// unless it throws. Test: core/observation_test.cpp.
 void check_observation(const Observation& observation);
 
 }  // namespace helixnav::core

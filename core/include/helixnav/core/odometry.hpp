@@ -6,7 +6,7 @@
 namespace helixnav::core {
 
 /// The increment that is `first` followed by `second`, with covariance J₁P₁J₁ᵀ + J₂P₂J₂ᵀ. Predicting an EKF with the
-/// result equals predicting with the two in turn (the chain rule), so a filter may predict once a scan.
+/// result equals predicting with the two in turn (the chain rule), so a filter may predict once per scan.
 /// Test: core/odometry_test.cpp.
 Odometry chain(const Odometry& first, const Odometry& second);
 

@@ -8,8 +8,9 @@
 namespace helixnav::core {
 
 /// A rows × depth matrix copied into panels of `width` rows, each panel contiguous with `width` as its stride and zero
-/// beyond the last row. Columns of a tall matrix lie whole pages or powers of two apart, so that a kernel that walks along
-/// the depth would miss the first cache at every step; in a panel it reads line after line. Test: core/packed_product_test.cpp.
+/// beyond the last row. Columns of a tall matrix are whole pages or powers of two apart, so that a kernel that walks
+/// along the depth would miss the first cache at every step; in a panel it reads line after line.
+/// Test: core/packed_product_test.cpp.
 class Panels {
  public:
   using Source = Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
@@ -43,7 +44,7 @@ class Panels {
   std::vector<double> data_;
 };
 
-/// Widths that fit the kernels: both panels of a depth of 150 lie in 32 KiB.
+/// Widths that fit the kernels: both panels of a depth of 150 fit in 32 KiB.
 constexpr Eigen::Index left_width = 16;
 constexpr Eigen::Index right_width = 8;
 
@@ -53,7 +54,7 @@ void add_product(double* C, Eigen::Index stride_C, const Panels& left, const Pan
 /// The first `columns` of it.
 void add_product(double* C, Eigen::Index stride_C, const Panels& left, const Panels& right, Eigen::Index columns);
 
-/// The same for the lower triangle of a square C; what of its tiles is above the diagonal gets any value.
+/// The same for the lower triangle of a square C; the parts of its tiles above the diagonal get arbitrary values.
 void add_product_lower(double* C, Eigen::Index stride_C, const Panels& left, const Panels& right);
 
 }  // namespace helixnav::core

@@ -8,7 +8,7 @@
 #include "helixnav/core/landmark_id.hpp"
 #include "helixnav/core/se2.hpp"
 
-/// What an estimator that is a cloud of particles, each with a path and a map of its own, says of itself.
+/// What an estimator that is a cloud of particles, each with a path and a map of its own, reports about itself.
 namespace helixnav::core {
 
 /// The health of the cloud after a scan.
@@ -17,12 +17,13 @@ struct CloudReport {
   double effective_size = 0.0;  ///< 1 / Σ w² before resampling
   bool resampled = false;
   double log_evidence = 0.0;  ///< log of Σ w before normalisation
-  /// Of how many particles a loop's length ago the particles of today descend: 1 says that the path of before is a single
-  /// guess. The effective size says nothing of it (docs/fastslam.md). Until so much was driven, since the start.
+  /// How many particles of a loop's length ago the present particles descend from: 1 means that the earlier path is a
+  /// single guess. The effective size says nothing about it (docs/fastslam.md). Until that much was driven, since the
+  /// start.
   std::size_t distinct_ancestors = 0;
 };
 
-/// A point on the paths of the particles that live: paths part and, looking back, join, so that they are a tree.
+/// A point on the paths of the surviving particles: paths part and, looking back, join, so that they form a tree.
 struct PathPoint {
   std::int64_t step = 0;
   std::ptrdiff_t before = -1;  ///< index of the point before it; -1: none

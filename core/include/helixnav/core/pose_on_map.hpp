@@ -9,9 +9,9 @@
 
 namespace helixnav::core {
 
-/// EKF over a pose alone, among points whose places are taken as exact. Map frame, covariance in (x, y, heading)
+/// EKF over a pose alone, among points whose positions are taken as exact. Map frame, covariance in (x, y, heading)
 /// [m, m, rad]. Every call succeeds or throws NumericalError (a result that is not finite) and leaves the pose as it was.
-/// No allocation unless it throws. Source: THEORY §1 with a map of no uncertainty. Test: core/pose_on_map_test.cpp.
+/// No allocation unless it throws. Source: THEORY §1 with a map without uncertainty. Test: core/pose_on_map_test.cpp.
 class PoseOnMap {
  public:
   explicit PoseOnMap(const PoseGaussian& start) : pose_(start) {}

@@ -23,10 +23,10 @@ struct TruePose {
   Pose2 T_world_robot;
 };
 
-/// The frame that true poses are in. Truths of several drives are taken to be given in one frame, that of one motion capture
-/// room or of one grid, so that a drive on the map of another can be judged.
+/// The frame that true poses are in. Truths of several drives are assumed to be in one frame, that of one motion
+/// capture room or of one grid, so that a drive on the map of another can be judged.
 struct TruthFrame {
-  bool is_map = true;  ///< they are in the map frame; false: nobody knows where the map lies in theirs
+  bool is_map = true;  ///< they are in the map frame; false: unknown where the map is in theirs
   std::optional<Pose2>
       T_truth_map;  ///< of the map frame in the frame in which the truth was given, where that is known
 };
@@ -45,14 +45,15 @@ struct TruePosition {
   double sigma_m = 0.0;  ///< of x and of y; 0: the log does not say
 };
 
-/// An observation that shows several objects at once, as a detector joins lines that it cannot part: all their labels.
+/// An observation that shows several objects at once, as when a detector joins lines that it cannot separate: all their
+/// labels.
 struct SharedObservation {
   std::size_t scan = 0;
   std::size_t observation = 0;
   std::vector<Label> labels;
 };
 
-/// What a reader or a simulator hands out: the events, in time order, and beside them what only evaluation may see.
+/// What a reader or a simulator hands out: the events, in time order, and alongside them what only evaluation may see.
 /// Estimators never include this header (checked by the include-graph test).
 struct Recording {
   std::string name;
@@ -71,11 +72,11 @@ struct Recording {
       true_carries_ns;  ///< of the first measurement after each time that it was carried, ascending (simulator)
   std::vector<Nanoseconds> true_slips_ns;  ///< ends of the increments that a slip made wrong, ascending (simulator)
   std::vector<TruePosition> true_positions;
-  /// Observations of no mapped landmark in a scan, clutter and new ones together, as known of the sensor; 0:
+  /// Observations of no mapped landmark in a scan, clutter and new ones together, as known for the sensor; 0:
   /// unknown, to be learnt from the drive. Nothing: the navigator's default.
   std::optional<double> extraneous_per_scan;
   Eigen::Vector2d antenna_robot_m = Eigen::Vector2d::Zero();  ///< lever arm that true_positions refer to
-  std::vector<std::string> remarks;  ///< what the reader mended, left out or doubts, a sentence each
+  std::vector<std::string> remarks;  ///< what the reader repaired, left out or doubts, a sentence each
 };
 
 }  // namespace helixnav::core

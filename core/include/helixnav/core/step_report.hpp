@@ -28,7 +28,7 @@ enum class LandmarkState { tentative, mature, dead };
 
 enum class Mode { mapping, searching };
 
-/// One observation's fate with the number that decided it.
+/// One observation's outcome with the number that decided it.
 struct AssociationReport {
   int observation = 0;  ///< index in the scan, from 0
   Outcome outcome = Outcome::ambiguous;
@@ -45,8 +45,8 @@ struct MergedLandmarks {
   LandmarkId removed = no_landmark;
 };
 
-/// What became of the observations of an earlier scan when it was gone through again: this holds, and not what its own
-/// report says.
+/// What became of the observations of an earlier scan when it was reprocessed: this holds, and not what its own report
+/// says.
 struct RevisedScan {
   std::int64_t step = 0;
   std::vector<AssociationReport> associations;

@@ -9,16 +9,17 @@
 
 namespace helixnav::core {
 
-/// So many observations of a scan an estimator works with; the work of a scan goes by their third power. The fullest scan of
-/// DLR has 13, of a forest 20 m around 168.
+/// An estimator works with at most this many observations of a scan; the work of a scan grows with their third power.
+/// The fullest scan of DLR has 13, of a forest 20 m around 168.
 inline constexpr std::size_t most_observations_used = 256;
 
 /// Places in the scan of the observations to work with, ascending: all, where there are no more than most_observations_used.
-/// Of more, those that no other one kept may be, as far as the sensor can tell (their difference is within its 99 % gate),
-/// spread evenly over the scan's order. Cost: observations × most_observations_used. Test: core/thin_scan_test.cpp.
+/// Of more, those that cannot be the same as another one kept, as far as the sensor can tell (their difference is
+/// within its 99 % gate), spread evenly over the scan's order. Cost: observations × most_observations_used.
+/// Test: core/thin_scan_test.cpp.
 std::vector<std::size_t> observations_to_use(const Scan& scan);
 
-/// The scan with these observations alone.
+/// The scan with these observations only.
 Scan thinned(const Scan& scan, const std::vector<std::size_t>& used);
 
 /// Reports of a thinned scan as reports of the whole one: places are those in `used`, and what is not among them is
@@ -26,10 +27,10 @@ Scan thinned(const Scan& scan, const std::vector<std::size_t>& used);
 void name_in_whole_scan(const std::vector<std::size_t>& used, std::vector<AssociationReport>& all,
                         std::vector<AssociationReport>& reports) noexcept;
 
-/// An ambiguous observation each.
+/// An ambiguous observation for each.
 std::vector<AssociationReport> reports_of_none(std::size_t observations);
 
-/// Says in the report of a step that a scan was thinned.
+/// Notes in the report of a step that a scan was thinned.
 Decision thinning_decision(std::size_t observations, std::size_t used);
 
 }  // namespace helixnav::core

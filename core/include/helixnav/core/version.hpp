@@ -9,7 +9,7 @@ namespace helixnav::core {
 std::string_view version();
 
 /// Abbreviated git commit of the sources, read when the library is built; ends in "+changes" when tracked files
-/// differed from that commit, "unknown" when the sources were no git checkout.
+/// differed from that commit, "unknown" when the sources were not a git checkout.
 std::string_view commit();
 
 }  // namespace helixnav::core

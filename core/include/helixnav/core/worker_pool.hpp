@@ -15,7 +15,7 @@ namespace helixnav::core {
 
 /// Threads that share the indices of a loop. Which thread takes which index is left to chance; callers write to places
 /// that belong to the index, so that results do not depend on it. One thread: no threads at all. Nothing is allocated by
-/// for_each(). A function that throws ends the loop, and for_each() throws the same, once no thread is in it any more.
+/// for_each(). A function that throws ends the loop, and for_each() throws the same once no thread is in it any more.
 /// Test: core/worker_pool_test.cpp.
 class WorkerPool {
  public:

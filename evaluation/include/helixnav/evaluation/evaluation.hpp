@@ -16,7 +16,7 @@
 
 namespace helixnav::evaluation {
 
-/// Of a list of non-negative errors; quantiles interpolate between order statistics. NaN when count is 0.
+/// Statistics of a list of non-negative errors; quantiles interpolate between order statistics. NaN when count is 0.
 struct ErrorStatistics {
   std::size_t count = 0;
   double rmse = 0.0;
@@ -26,34 +26,35 @@ struct ErrorStatistics {
 };
 ErrorStatistics error_statistics(std::vector<double> errors);
 
-/// The `fraction` quantile of an ascending list, linear between order statistics; NaN of an empty list.
+/// The `fraction` quantile of an ascending list, linear between order statistics; NaN for an empty list.
 double quantile_of_sorted(const std::vector<double>& sorted, double fraction);
 
-/// Estimate against truth at one instant, in the map frame; of a part of the drive whose place was never found, in the part's own.
+/// Estimate against truth at one instant, in the map frame; in the part's own frame for a part of the drive that was
+/// never placed.
 struct PositionError {
   core::Nanoseconds t_ns = 0;
   Eigen::Vector2d true_map_m = Eigen::Vector2d::Zero();  ///< the fix, brought into the map frame
   Eigen::Vector2d error_m = Eigen::Vector2d::Zero();     ///< estimate − truth, along x and y of the map
-  Eigen::Vector2d sigma_m = Eigen::Vector2d::Zero();     ///< of the estimate, as the filter says
+  Eigen::Vector2d sigma_m = Eigen::Vector2d::Zero();     ///< of the estimate, as reported by the filter
   bool used = true;
 };
 
 /// Position of the reference point (against true poses) or of the antenna (against true positions).
 struct PositionEvaluation {
-  bool aligned = false;  ///< a rigid alignment stands between the frames; false: the truth is in the map frame
+  bool aligned = false;  ///< a rigid alignment was applied between the frames; false: the truth is in the map frame
   bool against_poses = false;
   bool off_earlier_map =
       false;                ///< its place there was sought and not found: the errors are of the path since its begin
   core::Pose2 T_truth_map;  ///< identity when not aligned
-  double limit_m = 0.0;     ///< beyond it a fix is left out; infinite against true poses
+  double limit_m = 0.0;     ///< fixes with larger errors are left out; infinite against true poses
   ErrorStatistics error_m;  ///< over the fixes used
   double rmse_aligned_m =
       0.0;  ///< against poses: what a rigid alignment leaves of it, whether it stands between or not
   std::size_t fixes_used = 0;
-  std::size_t fixes_left_out = 0;  ///< farther than limit_m after the alignment
+  std::size_t fixes_left_out = 0;  ///< farther away than limit_m after the alignment
   std::size_t fixes_outside = 0;   ///< before the first or after the last step: nothing to compare with
   std::size_t fixes_in_gaps = 0;   ///< between steps farther apart than `gap_s`: the path there is a guess
-  double gap_s = 0.0;              ///< three times the interval that nine in ten of the run's are no longer than
+  double gap_s = 0.0;              ///< three times the 90 % quantile of the run's step intervals
   std::vector<PositionError> errors;
 };
 
@@ -61,16 +62,16 @@ struct HeadingError {
   core::Nanoseconds t_ns = 0;
   double error_rad = 0.0;  ///< estimate − truth, wrapped
   double sigma_rad = 0.0;
-  double nees = 0.0;  ///< eᵀP⁻¹e of (x, y, heading); NaN where P is singular, or there is nothing to compare with
+  double nees = 0.0;  ///< eᵀP⁻¹e of (x, y, heading); NaN if P is singular, or there is nothing to compare with
 };
 
-/// Against true poses only.
+/// Only against true poses.
 struct PoseEvaluation {
   ErrorStatistics heading_error_rad;
   std::size_t nees_count = 0;
   std::size_t nees_in_own_frame =
       0;                          ///< of these: against the truth since the session or part began, before it was placed
-  std::size_t nees_left_out = 0;  ///< no truth at that begin, or reported in a frame that was known to be wrong later
+  std::size_t nees_left_out = 0;  ///< no truth at that start, or reported in a frame later known to be wrong
   double nees_mean = 0.0;         ///< 3 when the filter is consistent
   double nees_inside_95 = 0.0;    ///< fraction within the two-sided 95 % band of χ²₃
   std::vector<HeadingError> errors;
@@ -79,11 +80,11 @@ struct PoseEvaluation {
 /// Mature landmarks against true landmarks, one to one.
 struct MapEvaluation {
   bool by_label = false;       ///< paired by the labels of their observations; else by distance
-  double limit_m = 0.0;        ///< of pairing by distance, where the map does not say that it is less certain
+  double limit_m = 0.0;        ///< for pairing by distance, unless the map itself reports a larger uncertainty
   ErrorStatistics error_m;     ///< over the pairs
-  std::size_t missing = 0;     ///< true landmarks without partner; by label: of those in ≥ 10 observations
-  std::size_t duplicates = 0;  ///< further landmarks on a true landmark that has its partner
-  std::size_t spurious = 0;    ///< landmarks that belong to no true landmark
+  std::size_t missing = 0;     ///< true landmarks without a partner; by label: only those in ≥ 10 observations
+  std::size_t duplicates = 0;  ///< further landmarks on a true landmark that already has a partner
+  std::size_t spurious = 0;    ///< landmarks that match no true landmark
 };
 
 /// Innovations of the joint updates against χ² with their degrees of freedom.
@@ -95,19 +96,19 @@ struct NisEvaluation {
   double inside_95 = 0.0;  ///< fraction within the two-sided 95 % band
 };
 
-/// First matches of landmarks that had not been seen for `unseen_steps` steps: what the map says after a detour, before it
-/// is corrected. Needs no truth, and systematic errors of odometry and sensor show in it first.
+/// First matches of landmarks that had not been seen for `unseen_steps` steps: how well the map predicts after a
+/// detour, before it is corrected. Needs no truth, and shows systematic errors of odometry and sensor first.
 struct RevisitEvaluation {
   static constexpr std::int64_t unseen_steps = 150;
   std::size_t revisits = 0;
   double mean_nis_per_dof = 0.0;  ///< NaN without revisits
 };
 
-/// Of an estimator that is a cloud of particles: whether its covariance may be believed. Mean effective size is no alarm;
-/// few ancestors are (core::CloudReport).
+/// For a particle-cloud estimator: whether its covariance can be trusted. The mean effective size is no cause for
+/// alarm; few ancestors are (core::CloudReport).
 struct ParticleEvaluation {
   std::size_t scans = 0;
-  double mean_effective_share = 0.0;  ///< effective size by the hypotheses weighed
+  double mean_effective_share = 0.0;  ///< effective size divided by the number of hypotheses weighed
   std::size_t resamplings = 0;
   double mean_ancestors = 0.0;
   std::size_t least_ancestors = 0;
@@ -116,7 +117,7 @@ struct ParticleEvaluation {
 struct Evaluation {
   std::size_t steps = 0;
   std::optional<PositionEvaluation> position;
-  std::optional<PositionEvaluation> final_position;  ///< of the path as known at the end, where it was corrected
+  std::optional<PositionEvaluation> final_position;  ///< of the path as known at the end, if it was corrected
   std::optional<PoseEvaluation> pose;
   std::optional<MapEvaluation> map;
   NisEvaluation nis;
@@ -127,18 +128,19 @@ struct Evaluation {
 struct EvaluationOptions {
   double fix_limit_m = 10.0;
   double landmark_limit_m = 2.0;  ///< or four of a landmark's standard deviations, up to half-way to the next true one
-  /// NEES counts from here on, as of a robot that came into the common frame of its team then: what its covariances said before was of
-  /// another frame.
+  /// NEES is counted from here on, e.g. for a robot that joined the common frame of its team then: its earlier
+  /// covariances referred to another frame.
   core::Nanoseconds nees_from_ns = std::numeric_limits<core::Nanoseconds>::min();
 };
 
-/// Compares a run with `truth`. The estimate is interpolated at the instants of the truth along arcs of constant twist; instants in
-/// gaps between scans (PositionEvaluation::gap_s) count for nothing, neither for positions and headings nor for NEES.
-/// True positions: the antenna's estimated position (pose ∘ lever arm), rigid alignment with outliers left out. True
-/// poses: no alignment where the map frame is theirs (runs::RunTruth::frame), else a rigid one of all; NEES at the same instants
-/// with the covariance of the step before. What was reported in a frame of its own, before a session or a part found its place, has a
-/// covariance since its begin: NEES compares it with the truth since then. Of a part that never found its place errors are of that, too.
-/// Landmarks: after the same alignment. Test: evaluation/evaluation_test.cpp (hand-computed values).
+/// Compares a run with `truth`. The estimate is interpolated at the instants of the truth along arcs of constant twist;
+/// instants in gaps between scans (PositionEvaluation::gap_s) are ignored, for positions and headings as well as for
+/// NEES. True positions: the antenna's estimated position (pose ∘ lever arm), rigid alignment with outliers left out.
+/// True poses: no alignment if they are in the map frame (runs::RunTruth::frame), else a rigid one of all of them; NEES
+/// at the same instants with the covariance of the step before. Steps reported in a frame of their own, before a
+/// session or part was placed, have a covariance relative to the start of that frame: NEES compares it with the truth
+/// since then. For a part that was never placed, the errors are relative to that start, too. Landmarks: after the same
+/// alignment. Test: evaluation/evaluation_test.cpp (hand-computed values).
 Evaluation evaluate(const runs::Run& run, const runs::RunTruth& truth, const EvaluationOptions& options = {});
 inline Evaluation evaluate(const runs::Run& run, const EvaluationOptions& options = {}) {
   return evaluate(run, run.truth, options);

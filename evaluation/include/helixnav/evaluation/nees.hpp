@@ -6,7 +6,7 @@
 
 namespace helixnav::evaluation {
 
-/// eᵀP⁻¹e of e = estimate − truth in (x, y, heading), heading wrapped; NaN where P is not positive definite.
+/// eᵀP⁻¹e of e = estimate − truth in (x, y, heading), heading wrapped; NaN if P is not positive definite.
 /// Test: evaluation/evaluation_test.cpp.
 double nees(const core::PoseGaussian& estimate, const core::Pose2& truth);
 

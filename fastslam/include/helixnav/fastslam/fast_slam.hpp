@@ -20,14 +20,14 @@ inline constexpr KnownName no_name = -1;  ///< an observation to leave out
 
 /// Bytes that maps occupy.
 struct MemoryReport {
-  std::size_t nodes = 0;       ///< of the particles' maps, what they share counted once
+  std::size_t nodes = 0;       ///< of the particles' maps, shared ones counted once
   std::size_t most_nodes = 0;  ///< the largest value of `nodes` so far
   std::size_t lineages = 0;    ///< of the grid over lineages
-  std::size_t reserved = 0;    ///< of nodes, with those that are free
+  std::size_t reserved = 0;    ///< of nodes, including those that are free
   std::size_t landmarks = 0;   ///< lineages that some particle may hold
 };
 
-/// FastSLAM: particles over the path, each with its own small EKF for every landmark that it knows (Rao–Blackwell).
+/// FastSLAM: particles over the path, each with its own small EKF for every landmark it knows (Rao–Blackwell).
 ///
 ///   FastSlam slam(start, options, seed);
 ///   slam.predict(odometry);                            // as often as it comes
@@ -42,7 +42,7 @@ struct MemoryReport {
 ///
 /// Frames: world is that of the start; covariances in (x, y, heading) [m, m, rad]. Observations with two rows only
 /// (range_bearing, cartesian). One filter may carry several robots that share the map: a particle then has a pose for
-/// each, and predict and update say whose turn it is.
+/// each, and predict and update state whose turn it is.
 /// The pose's mean and covariance are those of the weighted cloud. They are for display: the covariance forgets what
 /// resampling lost and must not be fused with another estimate (docs/fastslam.md has figures).
 /// Errors: PreconditionError for arguments, NumericalError when no particle can explain a scan; everything is then as it
@@ -67,7 +67,7 @@ class FastSlam {
   /// One scan, association unknown: PreconditionError with Association::known.
   core::StepReport update(const core::Scan& scan, std::size_t robot = 0);
 
-  /// One scan whose landmarks are known: one name an observation. A name not heard before begins a landmark.
+  /// One scan whose landmarks are known: one name per observation. A name not seen before begins a landmark.
   core::StepReport update_known(const core::Scan& scan, const std::vector<KnownName>& names, std::size_t robot = 0);
 
   /// T_world_robot with the motion since the robot's last scan.
@@ -92,7 +92,7 @@ class FastSlam {
 
   const core::CloudReport& cloud() const;
 
-  /// [particle] index of that it descends from, among the particles before the last scan.
+  /// [particle] index of the one it descends from, among the particles before the last scan.
   const std::vector<std::uint32_t>& parents() const;
 
   MemoryReport memory() const;

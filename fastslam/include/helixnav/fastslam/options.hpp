@@ -11,21 +11,21 @@ enum class Proposal {
   motion_and_scan,  ///< FastSLAM 2.0: odometry corrected by the landmarks that the scan matched
 };
 
-/// How a particle decides which of its landmarks an observation is of.
+/// How a particle decides which of its landmarks an observation belongs to.
 enum class Association {
   known,               ///< given by the caller
   nearest_neighbour,   ///< least normalised distance within the gate
-  likelihood_ratio,    ///< best ratio of likelihoods first, while it speaks for a match
+  likelihood_ratio,    ///< best likelihood ratio first, while it favours a match
   sampled,             ///< drawn with the probabilities of the alternatives
   multiple_hypotheses  ///< one child for each alternative: n matches, spurious, new
 };
 
-/// Evidence for a landmark's existence, kept by each particle (nats), as association::LifeOptions has it.
+/// Evidence for a landmark's existence, kept by each particle (nats), as in association::LifeOptions.
 struct ExistenceOptions {
   bool remove = true;                  ///< false: landmarks never die and are mature after `mature_looks`
   double detection_probability = 0.7;  ///< that an expected landmark is seen in one look
   double false_hit_probability = 0.1;  ///< that clutter stands in for one that does not exist
-  double look_distance_m = 0.25;       ///< a look is what the sensor sees along so much of the drive
+  double look_distance_m = 0.25;       ///< a look is what the sensor sees along this much of the drive
   double max_log_odds = 8.0;
   int mature_looks = 3;
   double mature_log_odds = 3.0;
@@ -35,8 +35,8 @@ struct ExistenceOptions {
 
 /// What Association::multiple_hypotheses adds.
 struct HypothesisOptions {
-  bool split_always = false;      ///< false: only where several landmarks are in the gate, as the paper has it
-  int resample_every_scans = 3;   ///< scans with observations between resamplings, in place of resample_below
+  bool split_always = false;      ///< false: only where several landmarks are in the gate, as in the paper
+  int resample_every_scans = 3;   ///< scans with observations between resamplings, instead of resample_below
   std::size_t most_children = 6;  ///< times `particles`: beyond, they are resampled at once
 };
 
@@ -51,8 +51,8 @@ struct Options {
 
   double detection_probability = 0.9;  ///< that a landmark in the field of view is observed in one scan
   double new_density = 0.01;  ///< observations of new landmarks per scan and unit of z (m·rad, or m² if cartesian)
-  double clutter_density = 0.01;  ///< observations of nothing, likewise
-  bool weigh_unseen = true;       ///< weights know of landmarks in view that were not seen; needs a bounded view
+  double clutter_density = 0.01;  ///< observations of clutter, likewise
+  bool weigh_unseen = true;       ///< weights include landmarks in view that were not seen; needs a bounded view
 
   double resample_below = 0.5;  ///< resample when the effective sample size falls below this share of `particles`
   HypothesisOptions hypotheses;

@@ -10,8 +10,8 @@
 
 namespace helixnav::fastslam {
 
-/// The paths of the particles that live, as points where they were marked. Paths of particles that died are forgotten:
-/// the memory is that of the points that are left, which some drive back is a single line.
+/// The paths of the surviving particles, as points where they were marked. Paths of particles that died are forgotten:
+/// the memory is that of the remaining points, which some distance back is a single line.
 ///
 ///   FastSlam slam(…); PathTree paths;
 ///   slam.update(scan); paths.descend(slam.parents());      // every scan

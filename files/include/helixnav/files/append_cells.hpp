@@ -9,7 +9,7 @@
 
 namespace helixnav::files {
 
-/// Further cells of a row, each with the comma before it. Test: runs/run_writer_test.cpp.
+/// Further cells of a row, each preceded by a comma. Test: runs/run_writer_test.cpp.
 inline void append_cells(std::string& text, std::initializer_list<double> values) {
   for (const double value : values) {
     text += ',';

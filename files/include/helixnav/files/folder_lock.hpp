@@ -5,9 +5,9 @@
 
 namespace helixnav::files {
 
-/// Keeps a folder to one process as long as it lives: two that wrote the same run or campaign would mix their tables.
-/// InputError where another has it. A file system that knows no locks, and a folder that is none, are taken at their word
-/// that nobody else is there. Test: runs/run_writer_test.cpp.
+/// Reserves a folder for one process as long as this object lives: two writing the same run or campaign would mix their
+/// tables. InputError if another process holds it. If the file system has no locks, or the path is not a folder, nobody
+/// else is assumed to be there. Test: runs/run_writer_test.cpp.
 class FolderLock {
  public:
   explicit FolderLock(const std::string& folder);

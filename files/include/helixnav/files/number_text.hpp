@@ -10,11 +10,11 @@
 
 namespace helixnav::files {
 
-/// The shortest text that reads back as the same double; nan, inf and -inf by these names.
+/// The shortest text that reads back as the same double; else nan, inf or -inf.
 void append_number(std::string& text, double value);
 void append_number(std::string& text, std::int64_t value);
 
-/// Exact decimal seconds, such as 1.25.
+/// Exact decimal seconds, e.g. 1.25.
 void append_seconds(std::string& text, core::Nanoseconds t_ns);
 
 /// The whole of `text` as a number, or nothing.

@@ -10,23 +10,25 @@
 
 namespace helixnav::localization {
 
-/// Finds out that a vehicle is not where on a map it is believed to be, such as where it was said to begin. A look is a scan taken at least a 30th of the reach from the one
-/// before. Either nearly all landmarks of the map that should be seen are missing: a look that sees at most a fifth of three or
-/// more adds ln(P(missed | elsewhere) / P(missed | here)) for each, one that sees half of them takes all of it away, and 20
-/// nats over a third of the reach mean lost. Or the vehicle has driven twice the reach since the last look that confirmed its
-/// place, and things that are not on the map were seen in five looks. Neither says where the vehicle is.
+/// Detects that a vehicle is not where on a map it is believed to be, for example not at its given start. A look is a
+/// scan taken at least a 30th of the reach from the one before. Either nearly all landmarks of the map that should be
+/// seen are missing: a look that sees at most a fifth of three or more adds ln(P(missed | elsewhere) / P(missed | here))
+/// for each one missed, a look that sees half of them resets the sum, and 20 nats over a third of the reach mean lost. Or
+/// the vehicle has driven twice the reach since the last look that confirmed its place, and things that are not on the
+/// map were seen in five looks. Neither tells where the vehicle is.
 /// Test: localization/lost_monitor_test.cpp.
 class LostMonitor {
  public:
-  /// The map's landmarks; how far the sensor sees them.
+  /// The map's landmarks, and how far the sensor sees them.
   LostMonitor(const std::vector<core::MapLandmark>& map, double reach_m);
 
-  /// One scan and what became of it; driven_m: since the scan before.
+  /// One scan and what became of it; driven_m: since the previous scan.
   void observe(const core::Scan& scan, const core::StepReport& report, double driven_m);
 
   bool is_lost() const;
 
-  /// A look has confirmed the place since the begin, or since reset(); and how far the vehicle has driven since the last one.
+  /// Whether a look has confirmed the place since the start or since reset(); and how far the vehicle has driven since
+  /// the last such look.
   bool is_confirmed() const { return is_confirmed_; }
   double since_confirmed_m() const { return since_confirmed_m_; }
 

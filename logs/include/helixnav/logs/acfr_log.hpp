@@ -14,10 +14,10 @@
 
 namespace helixnav::logs {
 
-/// One reading of the truck's rear-left wheel encoder and steering sensor, 40 a second.
+/// One reading of the truck's rear-left wheel encoder and steering sensor, 40 per second.
 struct DeadReckoning {
   core::Nanoseconds t_ns = 0;
-  double wheel_speed_mps = 0.0;  ///< of the wheel, not of the axle's middle
+  double wheel_speed_mps = 0.0;  ///< of the wheel, not of the centre of the axle
   double steering_rad = 0.0;     ///< positive to the left
 };
 
@@ -36,33 +36,33 @@ struct AcfrLog {
   std::vector<GpsFix> gps;
   std::vector<core::TrueLandmark> beacons;  ///< surveyed, in the frame of the GPS; label = row in the file
 
-  /// In the order of the codes 1, 2, 3 of ACFR's event tables.
+  /// In the order of the codes 1, 2, 3 in ACFR's event tables.
   enum class Sensor { gps, dead_reckoning, laser };
   struct Reading {
     Sensor sensor = Sensor::gps;
     std::size_t index = 0;
   };
-  std::vector<Reading> order;  ///< all readings as they came in
+  std::vector<Reading> order;  ///< all readings in the order they arrived
 };
 
-/// Reads ACFR's text release: a folder, or a zip, that holds DRS.txt, LASER.txt, GPS.txt and Sensors_manager.txt (at
-/// any depth in the zip). Seconds and metres in the files; LASER.txt is one line without ends. Victoria Park: 0.6 s.
-/// Throws core::InputError with file and line (LASER.txt: byte) for a missing or broken file, a number that is none,
-/// time going backwards, an index or time in Sensors_manager.txt that the other files do not have. Test:
+/// Reads ACFR's text release: a folder or a zip that holds DRS.txt, LASER.txt, GPS.txt and Sensors_manager.txt (at any
+/// depth in the zip). Seconds and metres in the files; LASER.txt is one line without line breaks. Victoria Park: 0.6 s.
+/// Throws core::InputError with file and line (LASER.txt: byte) for a missing or broken file, an invalid number, time
+/// going backwards, or an index or time in Sensors_manager.txt that the other files do not have. Test:
 /// logs/acfr_ascii_test.cpp.
 AcfrLog read_acfr_ascii(const std::filesystem::path& folder_or_zip);
 
 /// Reads Victoria Park from its MATLAB files in one folder: aa3_dr.mat and aa3_gpsx.mat; scans from aa3_lsr2.mat, else
-/// from LASER.txt, else from that in victoria_park_ascii.zip, else none. Times are shifted to the clock of the text
-/// release, which begins 20.967 s later, at the first GPS fix, so that results and GPS of the two can be compared.
-/// The steering differs from the text release's (data README). Errors as read_acfr_ascii. Test: logs/acfr_mat_test.cpp.
+/// from LASER.txt, else from the one in victoria_park_ascii.zip, else none. Times are shifted to the clock of the text
+/// release, which starts 20.967 s later, at the first GPS fix, so that results and GPS of the two can be compared. The
+/// steering differs from the text release's (data README). Errors as read_acfr_ascii. Test: logs/acfr_mat_test.cpp.
 AcfrLog read_victoria_park_mat(const std::filesystem::path& folder);
 
 /// All 4466 fixes of Victoria Park from aa3_gpsx.mat, on the clock of the text release, which has only 948 of them.
 std::vector<GpsFix> read_victoria_park_gps(const std::filesystem::path& aa3_gpsx);
 
-/// Reads the ACFR car park: data_set.mat, and the surveyed poles from beac_juan3.mat beside it when it is there.
-/// Errors as read_acfr_ascii. Test: logs/acfr_mat_test.cpp.
+/// Reads the ACFR car park: data_set.mat and, if present, the surveyed poles from beac_juan3.mat beside it. Errors as
+/// read_acfr_ascii. Test: logs/acfr_mat_test.cpp.
 AcfrLog read_car_park_mat(const std::filesystem::path& data_set);
 
 }  // namespace helixnav::logs

@@ -7,7 +7,7 @@
 
 namespace helixnav::logs {
 
-/// What makes a run of beams a pole with retroreflective tape.
+/// What makes a run of beams count as a pole with retroreflective tape.
 struct ReflectorRules {
   double max_range_m = 30.0;
   int max_gap_beams = 3;              ///< between successive bright beams of one pole
@@ -16,8 +16,8 @@ struct ReflectorRules {
 };
 
 /// Finds poles by the scanner's reflectivity code: runs of bright beams. Range and bearing are means over the beams of
-/// the run. In order of bearing from the right. Cost O(beams).
-/// Test: logs/detect_reflectors_test.cpp (equal to the recorded detections of the ACFR car park).
+/// the run. Ordered by bearing, from the right. Cost O(beams). Test: logs/detect_reflectors_test.cpp (equal to the
+/// recorded detections of the ACFR car park).
 std::vector<SickDetection> detect_reflectors(const SickScan& scan, const ReflectorRules& rules = {});
 
 }  // namespace helixnav::logs

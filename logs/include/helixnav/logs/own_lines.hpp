@@ -8,19 +8,21 @@
 
 namespace helixnav::logs {
 
-/// JSON Lines are put in order by their times, and rows of one time are one scan; a rawlog has frames of one stamp with motion
-/// between them. Makes such an event a nanosecond later than the one before it; returns how many were.
+/// JSON Lines are ordered by time, and rows of one time are one scan; a rawlog has frames with the same stamp and
+/// motion between them. Moves each such event to a nanosecond after the one before it; returns how many there were.
 /// Test: logs/own/own_lines_test.cpp.
 std::size_t tell_times_apart(core::Recording& recording);
 
 /// The recording as JSON Lines of the user's own schema (docs/your_own_log.md): increments and detections with their
-/// covariances, labels as id, classes and sizes, times at which the vehicle was carried, truth. A line an event, in its order.
-/// Read back, where times tell the events apart, everything is as it was but for sensors, which are in the vehicle file, and the correlation of a range with its
-/// bearing, which the schema does not hold. PreconditionError for fixes among the events.
+/// covariances, labels as id, classes and sizes, times at which the vehicle was carried, truth. One line per event, in
+/// order. If times tell the events apart, reading it back restores everything except the sensors, which are in the
+/// vehicle file, and the correlation of a range with its bearing, which the schema does not hold. PreconditionError for
+/// fixes among the events.
 std::string own_lines(const core::Recording& recording);
 
-/// The vehicle.toml that goes with the lines: where the sensor is and what it sees. Everything else the lines say.
-/// core::InputError for scans by several sensors, which have no names in a recording. Test: logs/own/own_lines_test.cpp.
+/// The vehicle.toml that goes with the lines: where the sensor is and what it sees. The lines contain everything else.
+/// core::InputError for scans by several sensors, which have no names in a recording. Test:
+/// logs/own/own_lines_test.cpp.
 std::string vehicle_of_lines(const core::Recording& recording);
 
 }  // namespace helixnav::logs

@@ -29,8 +29,9 @@ enum class LogFormat {
 };
 std::string_view name_of(LogFormat format);
 
-/// Tells the format by what is inside, never by the name of the file given. Throws core::InputError for a path that is
-/// not there, and for one that is nothing known, naming all that was looked for. Test: logs/read_recording_test.cpp.
+/// Detects the format from the content, never from the name of the file given. Throws core::InputError for a path that
+/// does not exist, and for an unknown format, naming everything that was looked for. Test:
+/// logs/read_recording_test.cpp.
 LogFormat recognise(const std::filesystem::path& path);
 
 /// One set of settings for each family of logs.
@@ -40,11 +41,11 @@ struct RecordingSettings {
   PlazaSettings plaza;
   NoiseColumns noise_columns = NoiseColumns::recognise;
   DlrOptions dlr;
-  MrclamSettings mrclam;           ///< of logs of several robots (read_mrclam)
-  std::optional<Vehicle> vehicle;  ///< of a log of the user's own; nothing: the vehicle.toml beside it
+  MrclamSettings mrclam;           ///< for logs of several robots (read_mrclam)
+  std::optional<Vehicle> vehicle;  ///< for a log of the user's own; nothing: the vehicle.toml beside it
 };
 
-/// Recognises and reads. Errors are core::InputError, and nothing else.
+/// Detects the format and reads. Errors are core::InputError, and nothing else.
 core::Recording read_recording(const std::filesystem::path& path, const RecordingSettings& settings = {});
 
 }  // namespace helixnav::logs

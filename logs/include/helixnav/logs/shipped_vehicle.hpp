@@ -11,20 +11,20 @@
 
 namespace helixnav::logs {
 
-/// Names of the vehicles of published logs whose files ship: victoria_park, car_park, plaza, dlr.
+/// Names of the vehicles of published logs whose files are shipped: victoria_park, car_park, plaza, dlr.
 std::vector<std::string> shipped_vehicle_names();
 
-/// The text of such a file. InputError for another name, with the nearest one.
+/// The text of such a file. InputError for another name, suggesting the nearest one.
 std::string_view shipped_vehicle_text(const std::string& name);
 
-/// Of the logs of a format; nothing where none ships.
+/// The shipped vehicle for a format's logs; nothing if none is shipped.
 std::optional<std::string> shipped_vehicle_of(LogFormat format);
 
-/// What it says. The defaults of RecordingSettings are the same: apps/shipped_vehicle_test.cpp.
+/// The parsed file. The defaults of RecordingSettings are the same: apps/shipped_vehicle_test.cpp.
 Vehicle shipped_vehicle(const std::string& name);
 
-/// A vehicle file, or where no file is called so the vehicle of that name that ships. InputError for what is neither, with the
-/// names there are. Test: logs/shipped_vehicle_test.cpp.
+/// A vehicle file or, if no file has that name, the shipped vehicle of that name. InputError for what is neither,
+/// listing the names there are. Test: logs/shipped_vehicle_test.cpp.
 Vehicle find_vehicle(const std::string& file_or_name);
 
 }  // namespace helixnav::logs

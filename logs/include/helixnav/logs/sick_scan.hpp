@@ -23,7 +23,7 @@ struct SickDetection {
   double range_m = 0.0;      ///< to the centre, not the surface
   double bearing_rad = 0.0;  ///< counter-clockwise from straight ahead
   double diameter_m = 0.0;
-  int beams_hit = 0;  ///< returns that it is made of
+  int beams_hit = 0;  ///< number of returns that it consists of
 };
 
 }  // namespace helixnav::logs

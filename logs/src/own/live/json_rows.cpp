@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Table = OwnTables::Table;
 
-/// The table called so; nothing for another name.
+/// The table of that name; nothing for another name.
 std::optional<Table> table_called(std::string_view name) {
   for (const Table table : OwnTables::all) {
     if (OwnTables::name_of(table) == name) return table;
@@ -22,7 +22,7 @@ std::optional<Table> table_called(std::string_view name) {
   return std::nullopt;
 }
 
-/// Where a name stands in quotes in the line, from 1.
+/// Position of a quoted name in the line, from 1.
 std::size_t place_of(const std::string& name, std::string_view line) {
   const std::size_t at = line.find('"' + name + '"');
   return at == std::string_view::npos ? 1 : at + 1;
@@ -40,7 +40,7 @@ struct JsonRows::Line {
     fail_at(rows.path_, number, column, message);
   }
 
-  /// JSON takes the last of two values of one name, and nobody knows which was meant.
+  /// JSON takes the last of two values with the same name, and nobody knows which was meant.
   Json parsed() const {
     std::vector<std::vector<std::string>> open;  // names so far of the objects about what is read
     return Json::parse(text, [&](int, Json::parse_event_t event, const Json& read) {

@@ -14,18 +14,18 @@
 namespace helixnav::logs {
 
 /// Lines of JSON Lines as rows of OwnTables: {"odometry": {"t": 0.1, …}}, {"detections": [{…}, {…}]}, with the names of
-/// files and columns. Throws PlacedInputError for what is no such line; rows before the bad one of a line are added.
+/// files and columns. Throws PlacedInputError for anything else; rows before the bad one of a line are added.
 class JsonRows {
  public:
   explicit JsonRows(std::string path) : path_(std::move(path)) {}
 
-  /// Adds the rows of a line; blank ones have none.
+  /// Adds the rows of a line; blank lines have none.
   void read(std::string_view line, std::size_t number, OwnTables& tables);
 
-  /// Whether a row of that table was met.
+  /// Whether a row of that table has been met.
   bool has(OwnTables::Table table) const { return states_[static_cast<std::size_t>(table)].columns != nullptr; }
 
-  /// Whether the detections of the last line stood in brackets, all of a scan together.
+  /// Whether the detections of the last line were in brackets, i.e. all those of a scan together.
   bool last_was_list() const { return list_; }
 
  private:

@@ -97,7 +97,7 @@ void LiveMotion::weave_old(core::Nanoseconds before_ns) {
   drop_woven();
 }
 
-/// All but the row before the next one, which poses are measured from.
+/// All but the row before the next one, from which poses are measured.
 void LiveMotion::drop_woven() {
   constexpr std::size_t many = 256;
   if (next_ < many) return;

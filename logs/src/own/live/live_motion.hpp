@@ -23,31 +23,31 @@ class StreamRefusal : public core::InputError {
   std::string key_;
 };
 
-/// The odometry of a stream: rows that come, motion that is due. Keeps the rows since the last scan, at most those of the
-/// last second and of the sensors' delays; older ones become one increment.
+/// The odometry of a stream: rows that arrive, motion that is due. Keeps the rows since the last scan, at most those of
+/// the last second plus the sensors' delays; older ones become one increment.
 class LiveMotion {
  public:
   LiveMotion(const Vehicle& vehicle, double late_s);
 
-  /// Throws StreamRefusal for rows that go back in time or are of another kind, core::InputError for noise or geometry that
-  /// nobody gives. Changes nothing.
+  /// Throws StreamRefusal for rows that go back in time or are of another kind, core::InputError for noise or geometry
+  /// that is not given anywhere. Changes nothing.
   void check(const OwnLog& log) const;
   void add(const OwnLog& log);
 
-  /// Whether a row at or after that time has come.
+  /// Whether a row at or after that time has arrived.
   bool covers(core::Nanoseconds t_ns) const { return !rows_.odometry.empty() && rows_.odometry.back().t_ns >= t_ns; }
 
-  /// Whether, at the end of all rows, the odometry tells where a scan of that time was taken: speeds are held, and without any rows
-  /// the vehicle stands.
+  /// Whether, after the last row, the odometry determines where a scan of that time was taken: speeds are held, and
+  /// without any rows the vehicle stands still.
   bool tells(core::Nanoseconds t_ns) const;
 
-  /// The motion up to t_ns, which is covered or at the end, appended to the events. Times must not go back.
+  /// Appends the motion up to t_ns, which is covered or at the end, to the events. Times must not go back.
   void weave_to(core::Nanoseconds t_ns, std::vector<core::Event>& events);
 
-  /// Motion too old for any scan that may still come, none behind `before_ns`, is put together.
+  /// Combines motion too old for any scan that may still come; none of these is before `before_ns`.
   void weave_old(core::Nanoseconds before_ns);
 
-  /// No rows come any more: the last one holds until there.
+  /// No more rows will come: the last one holds until there.
   void end_at(core::Nanoseconds last_ns) { last_ns_ = last_ns; }
 
   /// Nothing before that may come any more.
@@ -61,7 +61,7 @@ class LiveMotion {
   core::Nanoseconds late_ns_;
   OwnLog rows_;  ///< from the one before next_ on, always with covariances
   std::optional<Motions> motions_;
-  std::size_t count_ = 0;           ///< rows that came
+  std::size_t count_ = 0;           ///< rows that arrived
   core::Nanoseconds first_ns_ = 0;  ///< of the first
   std::size_t next_ = 0;            ///< row whose motion is not all woven
   std::optional<core::Nanoseconds> last_ns_;

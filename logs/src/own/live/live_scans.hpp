@@ -14,23 +14,23 @@
 
 namespace helixnav::logs {
 
-/// A scan that came in and is not due yet.
+/// A scan that has arrived and is not due yet.
 struct LiveScan {
   core::Scan scan;
   std::vector<core::Label> labels;
-  core::Nanoseconds row_ns = 0;  ///< as it stands in its rows, before the sensor's delay
+  core::Nanoseconds row_ns = 0;  ///< as in its rows, before the sensor's delay
   std::size_t sensor = 0;        ///< in the order in which they came
   std::size_t line = 0;
-  bool closed = false;  ///< no row is added any more
+  bool closed = false;  ///< no more rows are added
 
   std::tuple<core::Nanoseconds, core::Nanoseconds, std::size_t> order() const { return {scan.t_ns, row_ns, sensor}; }
 };
 
-/// The scans of a stream that wait for odometry, in order of time.
+/// The scans of a stream that wait for odometry, in time order.
 class LiveScans {
  public:
-  /// `by_identity`: labels are as make_recording numbers them. Else they only tell whether two identities are the same, and
-  /// no memory is kept of them.
+  /// `by_identity`: labels are as make_recording numbers them. Otherwise they only show whether two identities are the
+  /// same, and are not remembered.
   LiveScans(const Vehicle& vehicle, bool by_identity) : vehicle_(vehicle), by_identity_(by_identity) {}
 
   /// A row of detections as an observation, or as a scan that saw nothing.
@@ -41,11 +41,12 @@ class LiveScans {
     core::Label label = core::no_label;
   };
 
-  /// Throws StreamRefusal or core::InputError for rows that cannot be used; what was woven up to `woven_ns` is done.
+  /// Throws StreamRefusal or core::InputError for rows that cannot be used; everything up to `woven_ns` is already
+  /// woven.
   std::vector<Seen> check(const OwnLog& log, core::Nanoseconds woven_ns);
 
-  /// Adds rows that were checked. `whole`: they are all of their scans. Else their scans are closed by the next rows of
-  /// anything else, and with no rows the open ones are.
+  /// Adds rows that were checked. `whole`: they are all the rows of their scans. Otherwise their scans are closed by
+  /// the next rows of any other kind; an empty list closes the open ones.
   void add(const std::vector<Seen>& rows, bool whole, std::size_t line);
 
   void close_all();

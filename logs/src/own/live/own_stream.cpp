@@ -34,14 +34,14 @@ void check_told(const Vehicle& vehicle) {
   }
 }
 
-/// The key in quotes at this place of the line, from 1; empty where none begins.
+/// The quoted key at this position of the line, from 1; empty if none starts there.
 std::string key_at(std::string_view line, std::size_t column) {
   if (column == 0 || column > line.size() || line[column - 1] != '"') return {};
   const std::size_t end = line.find('"', column);
   return end == std::string_view::npos ? std::string() : std::string(line.substr(column, end - column));
 }
 
-/// A list is a whole scan: of one time, by each sensor.
+/// A list is a whole scan: of one time per sensor.
 void check_is_one_scan(const std::vector<OwnDetection>& rows) {
   std::map<std::size_t, core::Nanoseconds> time_of;  // [sensor]
   for (const OwnDetection& row : rows) {
@@ -82,7 +82,7 @@ struct OwnStream::State {
   std::unique_ptr<JsonRows> rows;
   OwnTables tables{true};
   core::Nanoseconds newest_ns = nothing_yet_ns;
-  core::Nanoseconds jumped_ns = nothing_yet_ns;  ///< an event that was refused because it was so far ahead
+  core::Nanoseconds jumped_ns = nothing_yet_ns;  ///< an event that was refused because it was too far ahead
   std::vector<std::string> said;
   StreamedEvents out;
 };
@@ -109,7 +109,7 @@ void OwnStream::State::check_jump(core::Nanoseconds t_ns) {
   newest_ns = std::max(newest_ns, t_ns);
 }
 
-/// Whatever a sensor is called, it is the only one where that has no name.
+/// Whatever a sensor is called, it is taken for the only one if that has no name.
 void OwnStream::State::tell_unnamed_sensor(const std::string& name) {
   if (name.empty() || vehicle.sensors.size() != 1 || !vehicle.sensors.front().name.empty()) return;
   remark_once("stream: sensor '" + name + "' is taken for the only [[sensor]], which has no name");
@@ -152,7 +152,7 @@ void OwnStream::State::read(std::string_view line, std::size_t number) {
   } catch (const core::InputError& error) {
     refuse(number, "", error.what());
   }
-  // A line that is refused leaves nothing behind: neither rows, nor a kind of odometry, nor columns.
+  // A refused line leaves nothing behind: no rows, no kind of odometry, no columns.
   tables = OwnTables(true);
   rows = std::make_unique<JsonRows>("stream");
 }

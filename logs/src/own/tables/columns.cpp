@@ -48,7 +48,8 @@ std::pair<const Unit*, std::size_t> units_of(Measure measure) {
   }
 }
 
-/// "Range [m]" → "range_m": small letters, whatever is no letter or digit an underscore, none at the ends. Letters beyond ASCII stay.
+/// "Range [m]" → "range_m": lower case, anything but a letter or digit becomes an underscore, none at the ends. Letters
+/// beyond ASCII stay.
 std::string plain(std::string_view name) {
   std::string result;
   for (const char c : name) {
@@ -63,7 +64,7 @@ std::string plain(std::string_view name) {
   return result;
 }
 
-/// The factor of the unit when `name` is `stem` with or without one.
+/// The factor of the unit when `name` is `stem` with or without a unit.
 std::optional<double> factor_of(const std::string& name, std::string_view stem, Measure measure) {
   if (name == stem) return 1.0;
   const auto [units, count] = units_of(measure);
@@ -83,7 +84,7 @@ std::optional<double> factor_of(const std::string& name, const ColumnKind& kind)
   return {};
 }
 
-/// All spellings that an error may propose.
+/// All spellings that an error may suggest.
 std::vector<std::string> spellings(const ColumnKind& kind) {
   std::vector<std::string> names{std::string(kind.name)};
   const auto [units, count] = units_of(kind.measure);
@@ -97,7 +98,7 @@ std::string with_unit(const ColumnKind& kind) {
   return std::string(kind.name) + (count > 0 ? "_" + std::string(units[0].ending) : "");
 }
 
-/// So near that the one was meant: a letter wrong, two in a long name, or two swapped.
+/// So close that the other was meant: a letter wrong, two in a long name, or two swapped.
 bool is_near(const std::string& a, const std::string& b) {
   const std::size_t distance = core::edit_distance(a, b);
   const bool swapped = distance == 2 && a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin());
@@ -212,7 +213,7 @@ core::Nanoseconds Row::time(std::size_t kind) const {
   const double time_s = number_between(kind, -longest_s, longest_s);
   if (!columns_.found(kind).nanoseconds) return core::nanoseconds_from_seconds(time_s);
   const std::string_view text = cell(kind).text;
-  core::Nanoseconds t_ns = 0;  // a double has not enough digits for these
+  core::Nanoseconds t_ns = 0;  // a double does not have enough digits for these
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), t_ns);
   const bool whole = error == std::errc{} && stop == text.data() + text.size();
   return whole ? t_ns : core::nanoseconds_from_seconds(time_s);

@@ -11,10 +11,11 @@
 
 namespace helixnav::logs {
 
-/// What a column holds, which says which units its name may end in.
+/// What a column holds, which determines the units its name may end in.
 enum class Measure { time, length, angle, speed, turn_rate, number, text };
 
-/// A column that a table may have: "heading" of Measure::angle is met as heading, heading_rad, heading_deg, "heading [deg]".
+/// A column that a table may have: "heading" of Measure::angle is recognised as heading, heading_rad, heading_deg,
+/// "heading [deg]".
 struct ColumnKind {
   std::string_view name;
   Measure measure = Measure::number;
@@ -24,8 +25,8 @@ struct ColumnKind {
 /// Which columns of a table are which.
 class TableColumns {
  public:
-  /// Throws core::InputError, with the place, for a column that is there twice, and for one that nobody knows and that is
-  /// spelt nearly like a known one that is not there. Others that nobody knows are `unused()`.
+  /// Throws core::InputError, with the place, for a column that occurs twice, and for an unknown one spelt nearly like
+  /// a known one that is missing. Other unknown columns are `unused()`.
   TableColumns(std::string path, const std::vector<ColumnKind>& kinds, const std::vector<std::string>& header,
                const std::vector<std::size_t>& header_columns, std::size_t header_line);
 
@@ -34,10 +35,10 @@ class TableColumns {
   const std::string& path() const { return path_; }
   std::size_t header_line() const { return header_line_; }
 
-  /// As the header has it, else as one would write it.
+  /// As in the header, else as one would write it.
   std::string name_of(std::size_t kind) const;
 
-  /// "path:line:1: no column …": throws unless the column is there.
+  /// "path:line:1: no column …": throws unless the column exists.
   void require(std::size_t kind) const;
 
   [[noreturn]] void fail_header(const std::string& message) const { fail_at(path_, header_line_, 1, message); }
@@ -68,13 +69,13 @@ class TableColumns {
   std::vector<std::string> unused_;
 };
 
-/// One row read by TableColumns. All lives with the table it is of.
+/// One row read by TableColumns. Valid as long as the table it is from.
 class Row {
  public:
   Row(const TableColumns& columns, const std::vector<Cell>& cells, std::size_t line)
       : columns_(columns), cells_(cells), line_(line) {}
 
-  /// The column is there and its cell is not empty.
+  /// The column exists and its cell is not empty.
   bool has(std::size_t kind) const { return columns_.has(kind) && !cell(kind).text.empty(); }
 
   /// Finite, in SI units; core::InputError with the place otherwise.

@@ -38,7 +38,7 @@ void sort_odometry(OwnLog& log) {
   log.odometry_covariances = std::move(covariances);
 }
 
-/// Which rows of a scan, from `begin` to `end`, say the same as one before. By order: a scan may have thousands of rows.
+/// Which rows of a scan, from `begin` to `end`, repeat an earlier one. By sorting: a scan may have thousands of rows.
 void mark_repeated(const std::vector<OwnDetection>& rows, std::size_t begin, std::size_t end,
                    std::vector<std::size_t>& order, std::vector<bool>& repeated) {
   const auto said = [&](std::size_t i) { return std::tie(rows[i].kind, rows[i].z, rows[i].label); };

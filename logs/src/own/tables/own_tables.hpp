@@ -28,7 +28,7 @@ class RowTimes {
   std::size_t out_of_order_ = 0;
 };
 
-/// Words by number in the order in which they come.
+/// Words, numbered in the order in which they appear.
 class WordNumbers {
  public:
   std::int64_t of(std::string_view word);
@@ -39,11 +39,11 @@ class WordNumbers {
   std::vector<std::string> words_;
 };
 
-/// The number that an identity is, from 0 on and below 2⁵³; nothing for a name.
+/// The number that an identity is, from 0 and below 2⁵³; nothing for a name.
 std::optional<std::int64_t> whole_number(const std::string& word);
 
-/// The tables of a log as they fill it. Each reads the rows of one kind: begin() once its columns are known (again, where
-/// they change, as in JSON Lines), add() for each row. finish() sorts, numbers identities and says what was done.
+/// The tables of a log as they are filled. Each reads the rows of one kind: begin() once its columns are known (again,
+/// if they change, as in JSON Lines), add() for each row. finish() sorts, numbers identities and reports what was done.
 class OwnTables {
  public:
   enum class Table { odometry, detections, fixes, truth_poses, truth_landmarks, lost };
@@ -53,16 +53,17 @@ class OwnTables {
   static std::string_view name_of(Table table);
   static const std::vector<ColumnKind>& columns_of(Table table);
 
-  /// `rows_alone`: each row names its own columns, and one may hold a time and nothing else.
+  /// `rows_alone`: each row names its own columns, and a row may contain only a time.
   explicit OwnTables(bool rows_alone) : rows_alone_(rows_alone) {}
 
-  /// Throws core::InputError for columns that do not make such a table.
+  /// Throws core::InputError for columns that do not form such a table.
   void begin(Table table, const TableColumns& columns);
   void add(Table table, const Row& row);
   OwnLog finish(std::string name);
 
-  /// What was added since the last call, in the order in which it came and without a name, for what comes line by line:
-  /// sensors and identities (by id_names) are numbered in it alone, and so is the order of times judged.
+  /// What was added since the last call, in order of arrival and without a name, for input that comes line by line:
+  /// sensors and identities (by id_names) are numbered within it alone, and the order of times is checked within it,
+  /// too.
   OwnLog take_rows();
 
  private:

@@ -33,13 +33,13 @@ core::Appearance appearance_of(const OwnDetection& row, const SensorModel& senso
   return seen;
 }
 
-/// Of a recorded range.
+/// For a recorded range.
 double true_range_m(double recorded_m, const SensorModel& sensor) {
   constexpr double least_m = 1e-3;
   return std::max(recorded_m / sensor.range_scale + sensor.range_offset_m, std::min(recorded_m, least_m));
 }
 
-/// Of a recorded point.
+/// For a recorded point.
 Eigen::Vector2d true_point_m(const Eigen::Vector2d& recorded_m, const SensorModel& sensor) {
   const double range_m = recorded_m.norm();
   if (range_m == 0.0 || sensor.range_offset_m == 0.0) return recorded_m / sensor.range_scale;

@@ -9,11 +9,11 @@
 
 namespace helixnav::logs {
 
-/// The vehicle's sensor of that name; a log that names none, and a vehicle that has but one, need no names. The default
-/// where the vehicle has none at all; core::InputError where it has others only.
+/// The vehicle's sensor of that name; a log that names none, and a vehicle that has only one, need no names. The
+/// default if the vehicle has none at all; core::InputError if it only has others.
 SensorModel sensor_called(const std::string& name, const std::string& log, const Vehicle& vehicle);
 
-/// As the sensor measures it, with the noise of the row, else of the sensor; core::InputError where neither gives it.
+/// As the sensor measures it, with the noise of the row, else of the sensor; core::InputError if neither gives it.
 core::Observation observation_of(const OwnDetection& row, const SensorModel& sensor, const Vehicle& vehicle);
 
 }  // namespace helixnav::logs

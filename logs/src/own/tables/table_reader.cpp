@@ -146,7 +146,7 @@ void TableReader::split(std::string_view line, std::vector<Cell>& cells) {
   }
 }
 
-/// From its opening quote at `at`, which moves to the separator or the line's end behind it.
+/// From its opening quote at `at`, which moves to the separator or the end of the line behind it.
 std::string_view TableReader::quoted_cell(std::string_view line, std::size_t& at) {
   const std::size_t begin = at;
   std::string& text = unquoted_.emplace_back();

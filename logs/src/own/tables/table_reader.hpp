@@ -12,20 +12,20 @@
 
 namespace helixnav::logs {
 
-/// One cell of a table, with the character of its line that it begins at, from 1.
+/// One cell of a table, with the column in its line where it starts, from 1.
 struct Cell {
   std::string_view text;
   std::size_t column = 1;
 };
 
 /// Lines of a file of any length, read in blocks: "\n" or "\r\n" ends one, a UTF-8 byte order mark before the first is
-/// passed over.
+/// skipped.
 class LineReader {
  public:
   /// Throws core::InputError when the file cannot be read.
   explicit LineReader(const std::filesystem::path& path);
 
-  /// False at the end. `line` lives until the next call.
+  /// False at the end. `line` is valid until the next call.
   bool next(std::string_view& line);
 
   std::size_t line_number() const { return number_; }  ///< of the last line, from 1
@@ -39,8 +39,8 @@ class LineReader {
   std::size_t number_ = 0;
 };
 
-/// A table with a header, row by row: cells parted by commas, semicolons or tabs, whichever the header has most of, and
-/// quoted where they hold one. Empty lines and lines that begin with # are passed over. A row has as many cells as the
+/// A table with a header, row by row: cells separated by commas, semicolons or tabs, whichever the header has most of,
+/// and quoted if they contain one. Empty lines and lines that begin with # are skipped. A row has as many cells as the
 /// header, else core::InputError. Memory does not grow with the file. Test: logs/table_reader_test.cpp.
 class TableReader {
  public:
@@ -51,7 +51,7 @@ class TableReader {
   const std::vector<std::size_t>& header_columns() const { return header_columns_; }
   std::size_t header_line() const { return header_line_; }
 
-  /// False at the end. `cells` live until the next call.
+  /// False at the end. `cells` are valid until the next call.
   bool next(std::vector<Cell>& cells);
 
   std::size_t line_number() const { return lines_.line_number(); }
@@ -67,7 +67,7 @@ class TableReader {
   std::vector<std::string> header_;
   std::vector<std::size_t> header_columns_;
   std::size_t header_line_ = 0;
-  std::vector<std::string> unquoted_;  ///< cells whose text is not as in the file
+  std::vector<std::string> unquoted_;  ///< cells whose text differs from the file
 };
 
 /// A core::InputError that knows its place.

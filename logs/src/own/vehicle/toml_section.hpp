@@ -11,7 +11,7 @@
 
 namespace helixnav::logs {
 
-/// A table of a TOML file whose keys are taken one by one; what was not taken at the end is an error that names the
+/// A table of a TOML file whose keys are taken one by one; any not taken at the end is an error that suggests the
 /// nearest key of this section. All errors are core::InputError with file:line:column.
 class TomlSection {
  public:
@@ -19,7 +19,7 @@ class TomlSection {
       : table_(table), path_(std::move(path)), name_(std::move(name)) {}
 
   std::optional<double> number(std::string_view key, double low, double high);
-  /// Of key_rad or key_deg, in radians, between the bounds [rad].
+  /// The value of key_rad or key_deg, in radians, between the bounds [rad].
   std::optional<double> angle(const std::string& key, double low_rad, double high_rad, std::string_view suffix = "");
   std::optional<std::string> text(std::string_view key);
   /// An array of two angles in order, key_rad or key_deg.

@@ -29,8 +29,8 @@ std::optional<core::Nanoseconds> time_of(const mrpt::obs::CObservation& observat
 
 /// The motion that actions state: the best CActionRobotMovement2D (in MRPT's sense: least uncertain), else the first
 /// CActionRobotMovement3D in the plane; covariance in (x, y, heading), in the frame of the pose before, with its
-/// correlations. None without either. `t_ns` is 0: actions do not say when they end. InputError when mean or covariance is not finite or
-/// the covariance is not positive semidefinite.
+/// correlations. None without either. `t_ns` is 0: actions do not state when they end. InputError when mean or
+/// covariance is not finite or the covariance is not positive semidefinite.
 std::optional<core::Odometry> odometry_of(const mrpt::obs::CActionCollection& actions);
 
 /// The increment between two readings of CObservationOdometry, its covariance by MRPT's Gaussian motion model with
@@ -38,16 +38,16 @@ std::optional<core::Odometry> odometry_of(const mrpt::obs::CActionCollection& ac
 core::Odometry increment_between(const mrpt::poses::CPose2D& before, const mrpt::poses::CPose2D& after,
                                  const MapBuilderOptions& options);
 
-/// Pose in the plane of a sensor that may stand at any height; InputError when it is tilted (roll, pitch).
+/// Pose in the plane of a sensor that may be at any height; InputError when it is tilted (roll, pitch).
 core::Pose2 planar_pose_of(const mrpt::poses::CPose3D& pose, const std::string& whose);
 
-/// A scan with names beside it.
+/// A scan with names alongside it.
 struct NamedScan {
   core::Scan scan;                        ///< t_ns is 0 when has_time is false
   bool has_time = false;                  ///< the observation has a time stamp
   std::vector<std::int64_t> identities;   ///< landmarkID of each observation, −1 without
-  std::vector<std::size_t> measurements;  ///< where in sensedData each observation stood
-  std::vector<std::string> dropped;       ///< why measurements were left out, a sentence each
+  std::vector<std::size_t> measurements;  ///< where in sensedData each observation was
+  std::vector<std::string> dropped;       ///< why measurements were left out, one sentence each
 };
 
 /// Measurements of one instant. Yaw is wrapped, pitch projected out (the range becomes the planar one). R is the
@@ -56,7 +56,7 @@ struct NamedScan {
 NamedScan scan_of(const mrpt::obs::CObservationBearingRange& observation, const MapBuilderOptions& options);
 
 /// What options.detector finds. The detectors know a SICK scanner of 361 beams over 180°; a scan of another geometry is
-/// resampled to that, each beam taking the nearest ray, and what lies more than 90° to the side is not looked at.
+/// resampled to that, each beam taking the nearest ray, and what is more than 90° to the side is ignored.
 NamedScan scan_of(const mrpt::obs::CObservation2DRangeScan& observation, const MapBuilderOptions& options);
 
 /// Geodetic reference of the map frame: x east, y north, WGS84.

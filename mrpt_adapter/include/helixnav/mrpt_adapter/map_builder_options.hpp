@@ -21,11 +21,11 @@ class MapBuilderOptions : public mrpt::config::CLoadableOptions {
   void saveToConfigFile(mrpt::config::CConfigFileBase& target, const std::string& section) const override;
 
   // Keys of kf-slam.
-  double stdXY_no_odo = 0.10;                         ///< of the motion between frames where no action says more
+  double stdXY_no_odo = 0.10;                         ///< of the motion between frames where no action states more
   double stdPhi_no_odo_rad = 4.0 * core::pi / 180.0;  ///< key stdPhi_no_odo_deg
-  bool force_ignore_odometry = false;                 ///< take every motion for unknown
-  double std_sensor_range = 0.0;             ///< of bearing-range measurements without covariance; 0: as they say
-  double std_sensor_yaw_rad = 0.0;           ///< key std_sensor_yaw_deg; 0: as they say
+  bool force_ignore_odometry = false;                 ///< treat every motion as unknown
+  double std_sensor_range = 0.0;             ///< of bearing-range measurements without covariance; 0: as they state
+  double std_sensor_yaw_rad = 0.0;           ///< key std_sensor_yaw_deg; 0: as they state
   double quantiles_3D_representation = 3.0;  ///< size of ellipses in pictures, in standard deviations
   bool create_simplemap = true;              ///< keep all sensory frames for getCurrentlyBuiltMap
   double data_assoc_IC_chi2_thres = 0.999;   ///< gate of a pair, as the probability that a right one is inside
@@ -36,12 +36,12 @@ class MapBuilderOptions : public mrpt::config::CLoadableOptions {
   bool use_landmark_ids = true;                  ///< landmarkID of bearing-range measurements names the landmark
 
   // The sensor.
-  double max_sensor_range = 0.0;   ///< a landmark nearer is expected to be seen; 0: as the observation says
+  double max_sensor_range = 0.0;   ///< a landmark nearer is expected to be seen; 0: as the observation states
   std::string detector = "trees";  ///< of landmarks in 2D range scans: trees, reflectors, none
   // Of what a detector finds; 0: as measured for it, see logs::AcfrSettings and logs::car_park_settings.
   double std_detector_range = 0.0;
   double std_detector_yaw_rad = 0.0;
-  double detector_view_range = 0.0;  ///< in place of max_sensor_range
+  double detector_view_range = 0.0;  ///< instead of max_sensor_range
 
   // CObservationOdometry, which states no uncertainty: MRPT's Gaussian motion model.
   double odo_a1 = 0.01;                                 ///< [m/m]
@@ -60,7 +60,7 @@ class MapBuilderOptions : public mrpt::config::CLoadableOptions {
   double gps_altitude = 0.0;
 
   std::string filter =
-      "compressed-ekf";  ///< or fastslam, with the keys that begin so and no other of filter and search
+      "compressed-ekf";  ///< or fastslam, with the keys that begin like this and no others of filter and search
   // As in `helixnav replay --filter fastslam` (docs/fastslam.md).
   std::uint64_t fastslam_particles = 200;
   std::uint64_t fastslam_version = 2;  ///< 1: poses drawn from odometry; 2: corrected by the landmarks matched
@@ -81,7 +81,7 @@ class MapBuilderOptions : public mrpt::config::CLoadableOptions {
   std::uint64_t search_seed = 1;
   double search_old_after = 60.0;
   std::uint64_t search_threads = 2;         ///< results do not depend on it
-  double search_scale = 1.0;                ///< obsolete: reach over 30 m, in place of what observations state
+  double search_scale = 1.0;                ///< obsolete: reach over 30 m, instead of what observations state
   double search_extraneous_per_scan = 0.0;  ///< observations of no old landmark in a scan; 0: 2.5, of reflectors 0.5
   double search_view_area = 0.0;            ///< [m²] where these are seen; 0: by the reach
 

@@ -9,14 +9,14 @@
 
 namespace helixnav::pf_relocalize {
 
-/// Two landmarks that carry a frame: origin at A, x axis through B. Indices into JointGaussian::points_m.
+/// Two landmarks that define a frame: origin at A, x axis through B. Indices into JointGaussian::points_m.
 struct Bases {
   int a = 0;
   int b = 1;
 };
 
-/// The pair whose frame leaves the least mean variance of all landmarks, tr Cov(y_i)/n. Far apart, well observed and
-/// correlated with the rest, the three rules of thumb, are what makes this number small: closeness of A and B returns as
+/// The pair whose frame leaves the least mean variance of all landmarks, tr Cov(y_i)/n. The three rules of thumb (far
+/// apart, well observed, correlated with the rest) are what makes this number small: closeness of A and B comes back as
 /// lever × heading error, their own noise is added to every landmark, and only what they share with it cancels.
 /// The 16 origins that are best without rotation are tried with every second base: O(n²) + O(16 n²), n = 100 in a few
 /// milliseconds. PreconditionError with fewer than two landmarks.
@@ -34,7 +34,7 @@ core::Pose2 base_frame(const core::JointGaussian& joint, const Bases& bases);
 /// Test: pf_relocalize/reference_map_test.cpp (J against central differences).
 core::JointGaussian in_base_frame(const core::JointGaussian& joint, const Bases& bases);
 
-/// Pose and landmarks in the frame of the bases, each by itself.
+/// Pose and landmarks in the frame of the bases, each on its own.
 struct MarginalsInBaseFrame {
   core::PoseGaussian pose;
   std::vector<core::PointGaussian> points;

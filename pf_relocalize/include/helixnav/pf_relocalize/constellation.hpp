@@ -12,7 +12,7 @@
 
 namespace helixnav::pf_relocalize {
 
-/// A landmark mapped since the trigger, in the frame of the vehicle as it stands now.
+/// A landmark mapped since the trigger, in the frame of the vehicle where it is now.
 struct BranchLandmark {
   core::LandmarkId id = core::no_landmark;
   Eigen::Vector2d point_robot_m = Eigen::Vector2d::Zero();
@@ -28,7 +28,7 @@ struct OldLandmark {
 };
 
 /// Ground that a drive has looked at: sensor poses on it and what the sensor sees from each, shrunk by margins, because
-/// at the rim of the view a landmark may well be missed.
+/// at the edge of the view a landmark may well be missed.
 struct Coverage {
   std::vector<core::Pose2> T_frame_sensor;
   core::FieldOfView field_of_view;
@@ -36,7 +36,7 @@ struct Coverage {
   double bearing_margin_rad = 0.1;  ///< off both sides, unless the view is all around
   int least_views = 1;
 
-  /// True when `point_m` lies in the shrunk view of at least least_views poses. Cost: linear in poses.
+  /// True when `point_m` is in the shrunk view of at least least_views poses. Cost: linear in poses.
   bool covers(const Eigen::Vector2d& point_m) const;
 };
 
@@ -61,7 +61,7 @@ struct ConstellationLimits {
   double rival_ratio = 0.75;       ///< refuse when a rival that counts reaches this share of the winner's ratio
 };
 
-/// One branch landmark that stands on an old one.
+/// One branch landmark that coincides with an old one.
 struct ConstellationPair {
   core::LandmarkId branch = core::no_landmark;
   core::LandmarkId old_landmark = core::no_landmark;
@@ -72,13 +72,13 @@ struct ConstellationPair {
 struct ConstellationScore {
   core::Pose2 T_map_robot;
   int matched = 0;           ///< M: largest one-to-one matching within min(3σ + lever·r, most_tolerance)
-  int unmatched_branch = 0;  ///< u1: branch landmarks without partner on ground that the old drive covered
-  int unmatched_old = 0;     ///< u2: old landmarks without partner on ground that the new drive covered
+  int unmatched_branch = 0;  ///< u1: branch landmarks without a partner on ground that the old drive covered
+  int unmatched_old = 0;     ///< u2: old landmarks without a partner on ground that the new drive covered
   double ratio = 0.0;        ///< M / (M + (u1 + u2)/2), 0 when M is 0; ground not covered by both is neutral
   std::vector<ConstellationPair> pairs;
   /// What class and size of the pairs say, in pairs: Σ nats / g, g = −ln of the probability that chance puts an old landmark
-  /// within a pair's tolerance. M pairs that fix a pose of three numbers are worth (M − 3/2)·g nats, so that with class and
-  /// size fewer say as much. 0 where nothing is given.
+  /// within a pair's tolerance. M pairs that fix a pose of three numbers are worth (M − 3/2)·g nats, so with class and
+  /// size fewer pairs carry as much evidence. 0 where nothing is given.
   double appearance_matches = 0.0;
 };
 
@@ -96,14 +96,14 @@ struct ConstellationVerdict {
   ConstellationScore winner;
   ConstellationScore rival;  ///< best ratio among those that count; matched = 0 when none does
   int rivals_tried = 0;
-  /// rival.ratio / winner.ratio, to be kept below limits.rival_ratio. Of a winner without a pair 0; where classes or sizes are
-  /// given, as if it had one pair.
+  /// rival.ratio / winner.ratio, to be kept below limits.rival_ratio. 0 for a winner without a pair; where classes or
+  /// sizes are given, as if it had one pair.
   double rival_share = 0.0;
 };
 
 /// Winner against rivals. A rival is beaten only by contradictions on ground that both maps cover, never by lack of
-/// coverage. What repeated looks cost is the caller's to charge. Test: pf_relocalize/constellation_test.cpp (a shifted
-/// lattice is refused, a lattice whose end is in view accepted).
+/// coverage. The caller has to account for the cost of repeated looks. Test: pf_relocalize/constellation_test.cpp (a
+/// shifted lattice is refused, a lattice whose end is in view accepted).
 ConstellationVerdict judge_constellation(const Constellation& constellation, const core::Pose2& winner,
                                          const std::vector<core::Pose2>& rivals,
                                          const ConstellationLimits& limits = {});

@@ -22,7 +22,7 @@ struct ModeRadius {
   double heading_rad = 6.0 * core::pi / 180.0;
 };
 
-/// Splits a cloud with normalised weights into modes: the heaviest particle not yet taken gathers what lies within the
+/// Splits a cloud with normalised weights into modes: the heaviest particle not yet taken gathers what is within the
 /// radius, the centre moves to their mean and gathers once more. Stops at `most` modes or when less than `rest` of the
 /// weight is left. Heaviest mode first. `taken` is working memory, `modes` the result; both keep their capacity.
 /// Cost O(modes · n). Test: pf_relocalize/modes_test.cpp.

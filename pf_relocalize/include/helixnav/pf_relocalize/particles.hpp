@@ -8,7 +8,7 @@
 
 namespace helixnav::pf_relocalize {
 
-/// Weighted poses T_base_robot, one array a coordinate so that loops over particles vectorise. log_weight is up to a
+/// Weighted poses T_base_robot, one array per coordinate so that loops over particles vectorise. log_weight is up to a
 /// common constant. latent[k][i]: coordinate k of particle i's map realisation ξ; empty without latent modes.
 struct Particles {
   std::vector<double> x_m, y_m, heading_rad, log_weight;
@@ -30,7 +30,7 @@ struct Particles {
 };
 
 /// Sorts a cloud along a space-filling curve through (x, y, heading), coordinates scaled by the cloud's extent, so that
-/// neighbours in memory stand together. Resampling keeps that order. Cost O(n log n), allocates; for starts.
+/// neighbours in memory are close together. Resampling keeps that order. Cost O(n log n), allocates; for starts.
 void order_by_place(Particles& particles);
 
 }  // namespace helixnav::pf_relocalize

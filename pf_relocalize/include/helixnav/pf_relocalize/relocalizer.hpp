@@ -20,7 +20,7 @@ struct RelocalizerOptions {
   HelixOptions helix;
   std::size_t least_particles = 1000;  ///< floor of the adapted number
   std::size_t most_particles = 5000;   ///< ceiling, and the number at the start
-  double bin_m = 0.5;                  ///< bins that the number is adapted by (kld_sample_size)
+  double bin_m = 0.5;                  ///< bins by which the number is adapted (kld_sample_size)
   double bin_rad = 3.0 * core::pi / 180.0;
   double kld_error = 0.05;
   double resample_below = 0.5;      ///< resample when ESS / n falls below this
@@ -33,25 +33,25 @@ struct RelocalizerOptions {
 /// The state after one scan.
 struct CloudState {
   core::Nanoseconds t_ns = 0;
-  int scans = 0;                ///< used so far, the first included
+  int scans = 0;                ///< used so far, including the first
   std::size_t particles = 0;    ///< before resampling
   double effective_size = 0.0;  ///< ESS before resampling
   bool resampled = false;
   double log_evidence = 0.0;  ///< Σ over scans of log(mean Λ): nats against "nothing here is in the map"
   core::PoseGaussian cloud;   ///< of all particles, T_base_robot
-  std::vector<Mode> modes;    ///< heaviest first, most_modes at the most
+  std::vector<Mode> modes;    ///< heaviest first, at most most_modes
 };
 
-/// Resolves where the vehicle is on an old map by a particle filter (SIR) that is started on helices:
+/// Resolves where the vehicle is on an old map with a particle filter (SIR) that starts on helices:
 ///
 ///   Relocalizer search(build_reference_map(joint), first_scan, options, seed);
 ///   search.step(odometry_since_last_scan, scan);      // …
 ///   search.state().modes.front();                     // heaviest hypothesis
 ///
-/// The result is for association only. Its covariance leaves out that map errors are the same in every scan and must not
-/// be fused into the map (THEORY §3.3). Poses are in the frame of the reference map; map().T_world_base leads back.
-/// step() allocates nothing (scans of up to 64 observations) and costs about 0.3 µs of one core a particle with
-/// 10 observations. The same input and seed give the same bytes, for any number of threads.
+/// The result is for association only. Its covariance ignores that map errors are the same in every scan, and must not
+/// be fused into the map (THEORY §3.3). Poses are in the frame of the reference map; map().T_world_base converts back.
+/// step() allocates nothing (scans of up to 64 observations) and costs about 0.3 µs of one core per particle with 10
+/// observations. The same input and seed give the same bytes, for any number of threads.
 /// Source: hybrid_masson2003 §2.1, §3.1; THEORY §3. Test: pf_relocalize/relocalizer_test.cpp.
 class Relocalizer {
  public:
@@ -61,7 +61,7 @@ class Relocalizer {
   Relocalizer(Relocalizer&&) noexcept;
   Relocalizer& operator=(Relocalizer&&) noexcept;
 
-  /// Moves the cloud, weighs it with the scan (an empty one says that nothing was in view), resamples when due.
+  /// Moves the cloud, weighs it with the scan (an empty one means that nothing was in view), resamples when due.
   void step(const core::Odometry& motion, const core::Scan& scan);
 
   const CloudState& state() const;
@@ -81,11 +81,11 @@ class Relocalizer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Convergence as the paper has it: standard deviations of the whole cloud below twice those of the propagation noise
-/// in x, y and heading. A baseline; it accepts false closings (PROTOTYPE §0).
+/// Convergence as in the paper: standard deviations of the whole cloud below twice those of the propagation noise in x,
+/// y and heading. A baseline; it accepts false closings (PROTOTYPE §0).
 bool meets_paper_rule(const CloudState& state, const core::Odometry& motion);
 
-/// The cheap gate before verification: one mode, tight, seen by a few scans, likelier than being off the map. It is no
+/// The cheap gate before verification: one mode, tight, seen by a few scans, likelier than being off the map. It is not
 /// evidence: on the map of another crowded place it is met more often than not.
 struct GateLimits {
   double least_mass = 0.99;
@@ -96,7 +96,7 @@ struct GateLimits {
 };
 bool meets_gate(const CloudState& state, const GateLimits& limits = {});
 
-/// When to give a start up: no single mode in time, or evidence that the vehicle is not on the map at all.
+/// When to give up a start: no single mode in time, or evidence that the vehicle is not on the map at all.
 struct GiveUpLimits {
   int most_scans = 20;
   int null_after_scans = 8;

@@ -15,7 +15,7 @@ struct RivalOptions {
   std::size_t starts = 60;     ///< best of them that are refined
   std::size_t most_rivals = 25;
   /// Rivals stay inside this squared distance from the map's prior (3 dof). Far beyond what is likely: a map that fits
-  /// itself when it is shifted proves nothing, wherever the shifted pose lies. Orchards of seeds 1-60: false closings 3
+  /// itself when it is shifted proves nothing, wherever the shifted pose is. Orchards of seeds 1-60: false closings 3
   /// at 16, where poses a pitch beyond the winner were out of bounds.
   double prior_chi2 = 64.0;
   double apart_m = 2.5;  ///< further than this from the winner, or turned further …
@@ -30,13 +30,14 @@ struct RivalOptions {
 /// The winner's pose, refined on the constellation, and the best poses elsewhere inside the prior.
 struct RivalPoses {
   core::Pose2 winner;
-  std::vector<core::Pose2> rivals;  ///< by falling likelihood
+  std::vector<core::Pose2> rivals;  ///< by descending likelihood
 };
 
-/// Where else could the constellation of branch landmarks stand? Helices of the branch landmarks over the reference map
+/// Where else could the constellation of branch landmarks be? Helices of the branch landmarks over the reference map
 /// (built from the state as it is now, so that map.prior is the branch's pose), best ones refined by expectation
-/// maximisation of the scan likelihood with σ of the points shrinking from soften_m, then kept apart from the winner and
-/// from one another. All poses T_base_robot. Cost: about 10 ms for 20 × 60 landmarks. Fewer than three branch landmarks: no rivals.
+/// maximisation of the scan likelihood with σ of the points shrinking from soften_m, then kept apart from the winner
+/// and from one another. All poses T_base_robot. Cost: about 10 ms for 20 × 60 landmarks. Fewer than three branch
+/// landmarks: no rivals.
 /// Source: PROTOTYPE §4. Test: pf_relocalize/rivals_test.cpp (all shifts of a lattice are found; none in a world without).
 RivalPoses find_rivals(const ReferenceMap& map, const std::vector<BranchLandmark>& branch, const core::Pose2& winner,
                        const RivalOptions& options, std::uint64_t seed);

@@ -16,7 +16,7 @@ struct Pair {
   core::LandmarkId map = core::no_landmark;
 };
 
-/// A pose of the branch in the map, with what speaks for it.
+/// A pose of the branch in the map, with the evidence for it.
 struct Place {
   core::Pose2 T_map_branch;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the pairs on (x, y, heading) of T_map_branch
@@ -29,7 +29,7 @@ struct Place {
 };
 
 enum class Verdict {
-  closed,     ///< the best place is the true one, but for the probability α
+  closed,     ///< the best place is the true one, except with probability α
   ambiguous,  ///< a place fits, and so may others; or the search was cut short
   not_here,   ///< no place fits better than chance would
 };
@@ -39,7 +39,7 @@ const char* name_of(Verdict verdict);
 
 struct Answer {
   Verdict verdict = Verdict::not_here;
-  std::vector<Place> places;  ///< different ones by falling evidence, at most 20; the first is the answer
+  std::vector<Place> places;  ///< distinct ones by descending evidence, at most 20; the first is the answer
   double rival_scale =
       1.0;  ///< β: how much evidence rivals have by chance here, in nats; 1 where places do not look alike
   /// Lead of the first place over its best rival (over 0 when there is none), in units of β and less where β is known from

@@ -22,8 +22,9 @@ double evidence_needed(const AskOptions& options);
 /// Where in the map is this constellation? Without a prior every place of the map is looked at; a prior only weighs places.
 /// Deterministic; reads the index only, so that several threads may ask it. Cost: a few milliseconds for a map of 10⁴
 /// landmarks, in proportion to the map beyond (docs/relocalize.md).
-/// PreconditionError for a map of which no ground was looked at, values in the question that are not finite, covariances
-/// that are not positive definite, a question with landmarks but without looked-at ground, or α or density outside (0, 1) and (0, 1].
+/// PreconditionError for a map without looked-at ground, values in the question that are not finite, covariances that
+/// are not positive definite, a question with landmarks but without looked-at ground, or α or density outside (0, 1)
+/// and (0, 1].
 /// Test: relocalize/ask_test.cpp, relocalize/evidence_test.cpp, relocalize/campaign_test.cpp.
 Answer ask(const MapIndex& map, const Question& question, const AskOptions& options = {});
 

@@ -17,22 +17,22 @@ struct IndexOptions {
 };
 
 /// A landmark map prepared for `ask`: triangles that landmarks form with two of their eight nearest neighbours, in bins of
-/// their sides; where landmarks stand; which ground was looked at. Contents, and therefore answers, depend on the landmarks
-/// and discs given and not on the order of calls, but for the rounding of positions to 1e-7 of the distance from the first.
-/// At most 2²⁴ landmarks, within 4e5 pair noises of the first.
+/// their sides; where landmarks are; which ground was looked at. Contents, and therefore answers, depend on the
+/// landmarks and discs given and not on the order of calls, except for the rounding of positions to 1e-7 of the
+/// distance from the first. At most 2²⁴ landmarks, within 4e5 pair noises of the first.
 ///
-/// Cost: about 20 µs an insertion or removal, over and above which the bins are rebuilt whenever the map has almost doubled;
-/// below 200 bytes a landmark from some thousands on, 16 more with kinds or sizes. Equations: docs/relocalize.md.
+/// Cost: about 20 µs per insertion or removal; in addition the bins are rebuilt whenever the map has almost doubled;
+/// below 200 bytes per landmark from some thousands on, 16 more with kinds or sizes. Equations: docs/relocalize.md.
 /// Test: relocalize/map_index_test.cpp (equals brute force and an index built anew after any calls).
 class MapIndex {
  public:
   /// PreconditionError unless both lengths are positive and the reach is at least 20 pair noises.
   explicit MapIndex(const IndexOptions& options);
 
-  /// The index of many landmarks at once, about five times as quick as inserting them.
+  /// The index of many landmarks at once, about five times as fast as inserting them.
   MapIndex(const IndexOptions& options, const std::vector<Landmark>& landmarks);
 
-  MapIndex(const MapIndex& other);  ///< as much to do as there is memory
+  MapIndex(const MapIndex& other);  ///< cost in proportion to the memory
   MapIndex& operator=(const MapIndex& other);
   MapIndex(MapIndex&&) noexcept;
   MapIndex& operator=(MapIndex&&) noexcept;
@@ -52,7 +52,7 @@ class MapIndex {
   /// Replaces the landmark of the same id: erase and insert in one. PreconditionError as for these.
   void move(const Landmark& landmark);
 
-  /// Marks ground where the map's sensor would have found landmarks. What is marked stays so.
+  /// Marks ground where the map's sensor would have found landmarks. What is marked stays marked.
   void look_at(const Disc& ground);
 
   /// For a map whose covered ground was not recorded: a disc about each landmark, 0.6 of the way to its eighth neighbour.

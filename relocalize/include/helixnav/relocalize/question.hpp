@@ -10,7 +10,7 @@
 namespace helixnav::relocalize {
 
 /// What was believed of the branch's pose. With probability ε the belief is wrong and the branch is anywhere on the map's
-/// ground: p(T) = (1 − ε) N(T; prior) + ε / (2πA). It weighs places and never hides one.
+/// ground: p(T) = (1 − ε) N(T; prior) + ε / (2πA). It weighs places and never excludes one.
 struct Prior {
   core::PoseGaussian T_map_branch;
   double epsilon = 0.03;  ///< in (0, 1); 0.01 to 0.1 is sensible

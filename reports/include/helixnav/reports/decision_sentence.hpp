@@ -7,17 +7,17 @@
 
 namespace helixnav::reports {
 
-/// A decision of supervisor::Navigator in words, without the line's end. One of a kind that is not known here is listed as
-/// it stands.
+/// A decision of supervisor::Navigator in words, without the line's end. A decision of an unknown kind is listed as it
+/// is.
 std::string sentence_of(const core::Decision& decision);
 
-/// How join placed a session, or why it did not: whole maps are asked there, and nobody drives.
+/// How join placed a session, or why it did not: there whole maps are compared, and nobody drives.
 std::string sentence_of_join(const core::PlacedDecision& decision);
 
 /// `value` with three significant digits and the noun, in the plural unless it is 1: "3 pairs".
 std::string counted(double value, const std::string& noun);
 
-/// Three significant digits, and all before the point.
+/// Three significant digits, and all digits before the point.
 std::string short_number(double value);
 
 }  // namespace helixnav::reports

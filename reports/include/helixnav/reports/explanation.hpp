@@ -9,13 +9,13 @@
 
 namespace helixnav::reports {
 
-/// A run in sentences, from its recorded numbers only: nothing is computed again.
+/// A run in sentences, from its recorded numbers only: nothing is recomputed.
 
-/// How many loops were closed, refused or left open, and each in a sentence.
+/// How many loops were closed, refused or left open, and a sentence on each.
 std::string explain_run(const runs::Run& run);
 
-/// The closure number `closure`, from 1, and everything since the trigger that led to it. InputError when the run has
-/// fewer.
+/// Closure number `closure`, counted from 1, and everything since the trigger that led to it. InputError when the run
+/// has fewer.
 std::string explain_closure(const runs::Run& run, std::size_t closure);
 
 /// What became of every observation of a step, and why; what was decided. InputError when the run has no such step.

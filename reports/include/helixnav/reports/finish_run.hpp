@@ -7,8 +7,8 @@
 
 namespace helixnav::reports {
 
-/// The end of a run that is written: judges it by its truth and hands map, report page and summary to the writer.
-/// Test: runs/run_writer_test.cpp.
+/// Finishes a run that is being written: evaluates it against its truth and hands map, report page and summary to
+/// the writer. Test: runs/run_writer_test.cpp.
 evaluation::Evaluation finish_run(const runs::Run& run, runs::RunWriter& writer);
 
 }  // namespace helixnav::reports

@@ -9,7 +9,7 @@
 namespace helixnav::reports {
 
 /// The page report.html of a run: data, charts and charting library in one text that needs no network. Wall-clock
-/// figures stand in the element with id "wall-clock" and nowhere else. Test: reports/report_test.cpp.
+/// figures appear only in the element with id "wall-clock". Test: reports/report_test.cpp.
 std::string render_report(const runs::Run& run, const evaluation::Evaluation& evaluation);
 
 }  // namespace helixnav::reports

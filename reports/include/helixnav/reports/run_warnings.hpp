@@ -9,21 +9,21 @@
 
 namespace helixnav::reports {
 
-/// What a user should know of a run that is not to be trusted, with what to do: a map without landmarks, matching that
-/// collapsed, innovations that contradict the assumed noise, truth of another clock. A sentence each; none of a run that is well.
-/// Test: apps/hostile/warnings_test.cpp.
+/// What a user should know about a run that is not to be trusted, and what to do: a map without landmarks, matching
+/// that collapsed, innovations that contradict the assumed noise, truth from another clock. One sentence each; none for
+/// a good run. Test: apps/hostile/warnings_test.cpp.
 std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Evaluation& evaluation);
 
-/// That the whole map was sure of another place than the vehicle was believed to be at, again and again, and nothing came of it: empty
-/// otherwise. Test: reports/opening_test.cpp.
+/// Warns that the whole map was repeatedly sure of another place than the vehicle was believed to be at, and nothing
+/// came of it: otherwise empty. Test: reports/opening_test.cpp.
 std::string contradicted_place_text(const runs::Run& run);
 
-/// That the place on an earlier map, or on what was mapped before the vehicle was carried, was sought and not found, and what the best answer
-/// lacked: empty otherwise. Test: reports/opening_test.cpp.
+/// Warns that the place on an earlier map, or on what was mapped before the vehicle was carried, was sought and not
+/// found, and what the best answer lacked: otherwise empty. Test: reports/opening_test.cpp.
 std::string place_not_found_text(const runs::Run& run);
 
-/// Where the run ended without knowing its place, or went on for long without a landmark that it knew.
-/// Test: reports/opening_test.cpp.
+/// Warns if the run ended without knowing its place, or went on for long without a landmark that it knew. Test:
+/// reports/opening_test.cpp.
 std::vector<std::string> warnings_of_place(const runs::Run& run);
 
 }  // namespace helixnav::reports

@@ -12,7 +12,7 @@ namespace helixnav::reports {
 /// Test: reports/summary_test.cpp.
 std::string summary_json(const runs::Run& run, const evaluation::Evaluation& evaluation);
 
-/// An evaluation for the terminal: one figure a line, with units.
+/// An evaluation for the terminal: one figure per line, with units.
 std::string evaluation_text(const evaluation::Evaluation& evaluation);
 
 /// The same as one JSON object, with the key names of summary.json.

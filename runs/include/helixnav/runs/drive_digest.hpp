@@ -9,15 +9,16 @@
 
 namespace helixnav::runs {
 
-/// What a drive is known by, whatever was made of it and however far it went: the SHA-256 of its first observations, 16 or more of
-/// whole scans, by time and measurement. Maps with a drive in common know the same thing and must not be joined, where it would count
-/// twice. Options, covariances and mountings are not in it. Test: runs/drive_digest_test.cpp.
+/// Identifies a drive, whatever was made of it and however far it went: the SHA-256 of its first observations, 16 or
+/// more from whole scans, by time and measurement. Maps with a drive in common share information and must not be
+/// joined, because it would count twice. Options, covariances and mountings are not included. Test:
+/// runs/drive_digest_test.cpp.
 class DriveDigest {
  public:
-  /// The next scan of the drive. Nothing is done for any after the first few.
+  /// The next scan of the drive. Scans after the first few are ignored.
   void add(const core::Scan& scan);
 
-  /// 64 hexadecimal digits; empty where there were not enough observations, which make no map that could be joined either.
+  /// 64 hexadecimal digits; empty if there were too few observations, which make no map that could be joined either.
   std::string text() const;
 
  private:
@@ -25,10 +26,10 @@ class DriveDigest {
   std::size_t observations_ = 0;
 };
 
-/// Of the scans among the events; empty or one.
+/// From the scans among the events; empty or one.
 std::vector<std::string> drives_of(const std::vector<core::Event>& events);
 
-/// Of both, sorted, each once.
+/// The union of both, sorted, without repeats.
 std::vector<std::string> united_drives(std::vector<std::string> drives, const std::vector<std::string>& others);
 
 }  // namespace helixnav::runs

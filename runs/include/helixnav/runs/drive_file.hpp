@@ -15,28 +15,29 @@ class AppendFile;
 
 namespace helixnav::runs {
 
-/// A drive as a navigator was fed it. Fed again to one with the same settings it gives the same belief to the byte, with open
-/// search, particles, learnt noise and all (docs/adr/0017-driving-again.md).
+/// A drive as it was fed to a navigator. Feeding it again to one with the same settings gives the same belief to the
+/// byte, including open search, particles and learnt noise (docs/adr/0017-driving-again.md).
 struct FedDrive {
   core::PoseGaussian start;
   std::vector<core::Event> events;
-  /// Of the events: those before the input ended. What comes behind, the end alone brought forth: scans of which more might have
-  /// come, or whose motion was not told to its end. As many as there are where nothing ended.
+  /// Number of events before the input ended. Later ones were released by the end alone: scans that might have had
+  /// more to come, or whose motion was not known to its end. All events if nothing ended.
   std::size_t before_end_of_input = 0;
 };
 
-/// Writes drive.bin (docs/run-folder.md) while the drive goes on. Cost of a scan: its bytes and one write.
+/// Writes drive.bin (docs/run-folder.md) while the drive goes on. Cost per scan: its bytes and one write.
 class DriveFile {
  public:
-  /// InputError where the file cannot be written.
+  /// InputError if the file cannot be written.
   DriveFile(const std::string& path, const core::PoseGaussian& start);
   ~DriveFile();
   DriveFile(const DriveFile&) = delete;
   DriveFile& operator=(const DriveFile&) = delete;
 
-  /// What the navigator has taken. A scan, with what came before it, is with the operating system when this returns.
+  /// What the navigator has taken. A scan, with what came before it, has been handed to the operating system when this
+  /// returns.
   void add(const core::Event& event);
-  /// What is added from here on is so because the input has ended (FedDrive::before_end_of_input).
+  /// Whatever is added from here on was released because the input has ended (FedDrive::before_end_of_input).
   void end_input();
   /// What has come since the last scan.
   void finish();
@@ -46,9 +47,9 @@ class DriveFile {
   std::string block_;  ///< since the last scan
 };
 
-/// Reads a drive.bin, bit for bit; a last block that was not written to its end, as of a process that was killed, is left out.
-/// InputError naming file and byte where it cannot be read, is none, is of another version or damaged, or holds what no
-/// navigator takes. Test: runs/drive_file_test.cpp (every byte flipped, every length).
+/// Reads a drive.bin, bit for bit; an incomplete last block, as left by a killed process, is dropped. InputError naming
+/// file and byte if it cannot be read, is not a drive.bin, is of another version or damaged, or holds what no navigator
+/// accepts. Test: runs/drive_file_test.cpp (every byte flipped, every length).
 FedDrive read_drive(const std::string& path);
 
 }  // namespace helixnav::runs

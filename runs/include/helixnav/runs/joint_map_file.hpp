@@ -8,16 +8,17 @@
 
 namespace helixnav::runs {
 
-/// Landmarks of the largest map that is saved with its joint covariance: 64 MB.
+/// Landmarks in the largest map that is saved with its joint covariance: 64 MB.
 inline constexpr std::size_t most_joint_landmarks = 2000;
 
-/// The bytes of map.bin (docs/run-folder.md): version, sizes, pose, landmarks, the lower triangle of the joint covariance,
-/// SHA-256 of all before. PreconditionError for a map whose parts do not fit each other or with more landmarks than that.
+/// The bytes of map.bin (docs/run-folder.md): version, sizes, pose, landmarks, the lower triangle of the joint
+/// covariance, SHA-256 of everything before. PreconditionError for a map whose parts do not fit together or with more
+/// landmarks than that.
 std::string joint_map_bytes(const core::JointMap& map);
 
-/// Reads a map.bin. InputError naming the file where it cannot be read, is none, is cut short or too long, is of another
-/// version, does not have the digest written in it, or holds what is no map. O(N²).
-/// Test: runs/joint_map_file_test.cpp (there and back bit for bit; every byte flipped; every length).
+/// Reads a map.bin. InputError naming the file if it cannot be read, is not a map.bin, is cut short or too long, is of
+/// another version, does not match the digest written in it, or does not hold a valid map. O(N²). Test:
+/// runs/joint_map_file_test.cpp (there and back bit for bit; every byte flipped; every length).
 core::JointMap read_joint_map(const std::string& path);
 
 }  // namespace helixnav::runs

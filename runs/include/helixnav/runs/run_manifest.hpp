@@ -14,14 +14,14 @@ struct InputFile {
   std::string sha256;
 };
 
-/// What made a run: enough to make it again. Holds no time of day and no host, so that the same command writes the
-/// same bytes.
+/// What produced a run: enough to reproduce it. Contains neither time of day nor host, so that the same command writes
+/// the same bytes.
 struct RunManifest {
   std::string version;    ///< of HelixNav, such as 0.1.0
   std::string commit;     ///< of the source tree; empty when unknown
   std::string command;    ///< see command_text
   std::string recording;  ///< Recording::name; title of the report
-  std::string config;     ///< every key in force; JSON stands in the file as JSON, other text as one string
+  std::string config;     ///< every key in force; JSON is embedded as JSON, other text as one string
   std::uint64_t seed = 0;
   std::vector<InputFile> inputs;
 };
@@ -34,9 +34,9 @@ std::string manifest_json(const RunManifest& manifest);
 std::string sha256_of_file(const std::string& path);
 std::string sha256_of_bytes(std::string_view bytes);
 
-/// `arguments` (program first, path of the program dropped) as one line that a POSIX shell reads back as the same
-/// words, without `--out X`, `--out=X`, `-o X` and `--overwrite`: where a run is kept does not change what it is.
-/// Test: runs/run_manifest_test.cpp.
+/// `arguments` (program first, its path dropped) as one line that a POSIX shell reads back as the same words, without
+/// `--out X`, `--out=X`, `-o X` and `--overwrite`: where a run is stored does not change what it is. Test:
+/// runs/run_manifest_test.cpp.
 std::string command_text(const std::vector<std::string>& arguments);
 
 }  // namespace helixnav::runs

@@ -9,10 +9,10 @@
 
 namespace helixnav::runs {
 
-/// Makes a run of the reports of a drive. The run is, number by number, the one that read_run finds in a folder whose
-/// RunWriter was given the same, so that a run is judged alike at its end and later: rows that a later step revises
-/// are replaced, covariances are symmetric by their upper triangle, headings go through a quaternion.
-/// Cost of a step: a copy of its report. Test: runs/run_recorder_test.cpp.
+/// Makes a run from the reports of a drive. The run is, number by number, the one that read_run finds in a folder whose
+/// RunWriter was given the same, so that a run is evaluated identically at its end and later: rows that a later step
+/// revises are replaced, covariances are made symmetric from their upper triangle, headings go through a quaternion.
+/// Cost per step: a copy of its report. Test: runs/run_recorder_test.cpp.
 class RunRecorder {
  public:
   /// `path` is where the run's folder is, or will be.
@@ -23,11 +23,11 @@ class RunRecorder {
 
   void add(const core::StepReport& report, double microseconds);
 
-  /// Whether a picture of the drive needs the map after the step last added: some hundred times a drive, and after every
-  /// closing.
+  /// Whether a picture of the drive needs the map after the step last added: some hundred times per drive, and after
+  /// every closing.
   bool wants_map() const;
 
-  /// The map after the step last added. Kept is what can be seen to have changed.
+  /// The map after the step last added. Only visible changes are kept.
   void add_map(const std::vector<core::MapLandmark>& map);
 
   /// The run with its map, at its end. Nothing may be added afterwards.

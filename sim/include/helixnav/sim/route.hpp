@@ -13,9 +13,8 @@ struct Stretch {
   double to_m = 0.0;
 };
 
-/// The way a vehicle takes, as a polyline parametrised by the distance along it [m], in the world frame. A road driven
-/// twice is in it twice: laps are unrolled.
-/// Test: sim/route_test.cpp.
+/// The path of a vehicle, as a polyline parametrised by the distance along it [m], in the world frame. A road driven
+/// twice is in it twice: laps are unrolled. Test: sim/route_test.cpp.
 class Route {
  public:
   /// At least two points, no two neighbours equal; else PreconditionError.
@@ -23,13 +22,13 @@ class Route {
 
   double length_m() const { return along_m_.back(); }
 
-  /// Point at a distance along; beyond the ends, the end. O(log n).
+  /// Point at a distance along the route; beyond the ends, the end point. O(log n).
   Eigen::Vector2d at(double along_m) const;
 
   /// Unit vector of travel, from the points half a metre before and after. O(log n).
   Eigen::Vector2d direction(double along_m) const;
 
-  /// Distance along of the point of `stretch` that is nearest to a point. Cost: segments of the stretch.
+  /// Distance along the route of the point of `stretch` nearest to a given point. Cost: segments of the stretch.
   double nearest_along_m(const Eigen::Vector2d& point_m, const Stretch& stretch) const;
 
   /// How far a point is from the whole route. O(n).

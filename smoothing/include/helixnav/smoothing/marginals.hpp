@@ -22,12 +22,13 @@ struct MarginalCovariances {
 MarginalCovariances marginal_covariances(const Problem& problem, const std::vector<int>& poses,
                                          const std::vector<int>& landmarks);
 
-/// The same of every landmark.
+/// The same for every landmark.
 std::vector<Eigen::Matrix2d> landmark_covariances(const Problem& problem);
 
 /// The joint covariance of the chosen poses and landmarks, (3p+2n)×(3p+2n) in the order given, poses first. The same
-/// recursion with dense blocks for all pairs: 2·nnz(L)·(3p+2n) flops at most, 8·(3p+2n)² bytes beside the result, some
-/// more for poses that lie on the paths from landmarks to the root. Errors as optimize(). Test: smoothing/marginals_test.cpp.
+/// recursion with dense blocks for all pairs: at most 2·nnz(L)·(3p+2n) flops, 8·(3p+2n)² bytes in addition to the
+/// result, somewhat more for poses on the paths from landmarks to the root. Errors as optimize().
+/// Test: smoothing/marginals_test.cpp.
 Eigen::MatrixXd joint_covariance(const Problem& problem, const std::vector<int>& poses,
                                  const std::vector<int>& landmarks);
 

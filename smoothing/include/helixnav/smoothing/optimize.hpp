@@ -38,22 +38,22 @@ struct Options {
   RobustKernel kernel;
   Ordering ordering = Ordering::least_fill;
   int max_iterations = 200;
-  /// λ of the first Levenberg–Marquardt step. From a good start (a filter's result) 1e-8 saves half of the steps: DLR from
+  /// λ of the first Levenberg–Marquardt step. From a good start (a filter's result) 1e-8 saves half the steps: DLR from
   /// odometry takes 11 instead of 36. From a bad one 1e-4 is safer: labelled Victoria Park with softened odometry ends at
   /// χ² 9012.7 instead of 158 000.
   double first_damping = 1e-4;
   double tolerance_chi2 =
-      1e-6;  ///< converged when the quadratic model promises less than this [χ²], or 1e-11 of the cost
-  /// Asked before every factorisation with the accepted steps so far (none before the first); false ends the iteration at
-  /// the best state found. For progress, and for a caller who has a clock and no more patience. Empty: goes on.
+      1e-6;  ///< converged when the quadratic model predicts less than this [χ²], or 1e-11 of the cost
+  /// Called before every factorisation with the accepted steps so far (none before the first); false ends the iteration
+  /// at the best state found. For progress, and for a caller with a time limit. Empty: goes on.
   std::function<bool(const std::vector<Iteration>&)> go_on;
 };
 
 enum class Reason {
-  converged,  ///< the quadratic model promises nothing more
-  stalled,    ///< no damping gives a decrease although the model promises one
+  converged,  ///< the quadratic model predicts no further decrease
+  stalled,    ///< no damping gives a decrease although the model predicts one
   max_iterations,
-  stopped,  ///< Options::go_on said so
+  stopped,  ///< Options::go_on returned false
 };
 
 struct Report {
@@ -66,10 +66,10 @@ struct Report {
   double factor_nonzeros = 0.0;       ///< of L, with the ordering kept
 };
 
-/// Moves the graph's values to the minimum of χ² near the start. The structure is analysed once; a factorisation per step.
+/// Moves the graph's values to the minimum of χ² near the start. The structure is analysed once; one factorisation per step.
 /// Levenberg–Marquardt: damped by λ·diag(H), gain-controlled. Errors: those of check_problem; NumericalError naming the
-/// variable when H is singular at the solution, or when a residual is not finite at the start. The problem is left as it was
-/// when anything is thrown.
+/// variable when H is singular at the solution, or when a residual is not finite at the start. If anything is thrown, the
+/// problem is left as it was.
 /// Licence: CHOLMOD's simplicial LLᵀ (LGPL); no GPL module is called.
 /// Test: smoothing/optimize_test.cpp, smoothing/dlr_test.cpp (published χ² 56871.4), smoothing/victoria_park_test.cpp.
 Report optimize(Problem& problem, const Options& options = {});

@@ -13,7 +13,7 @@ struct Residual {
   enum class Kind { odometry, landmark, fix };
   Kind kind = Kind::landmark;
   int edge = 0;       ///< index in pose_edges, landmark_edges or fix_edges of the graph
-  int pose = 0;       ///< index of the pose the measurement was made at (odometry: it leads to)
+  int pose = 0;       ///< index of the pose it was measured at (odometry: that it leads to)
   int landmark = -1;  ///< index, −1 when none
   Eigen::VectorXd e;  ///< measured minus predicted, in the measurement's units
   double nis = 0.0;   ///< eᵀC⁻¹e

@@ -4,7 +4,7 @@
 namespace helixnav::smoothing {
 
 /// How a landmark observation with whitened squared residual s = eᵀC⁻¹e enters the cost: ρ(s). `width` is in standard
-/// deviations: residuals below it count about as squares.
+/// deviations: residuals below it count approximately as squares.
 struct RobustKernel {
   enum class Shape {
     none,    ///< ρ = s

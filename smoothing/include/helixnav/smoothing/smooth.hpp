@@ -11,7 +11,7 @@ namespace helixnav::smoothing {
 /// Where the solution starts from.
 enum class Start {
   as_given,  ///< the values in the graph
-  softened,  ///< the solution of the same problem with soften_odometry, begun at the values in the graph
+  softened,  ///< the solution of the same problem with soften_odometry, started from the values in the graph
   grown,     ///< grow_start: needs nothing but the measurements
 };
 
@@ -22,7 +22,7 @@ struct SmoothOptions {
   int poses_per_stage = 200;
 };
 
-/// optimize() from the start chosen; what `helixnav smooth` calls. Report::start is where the last solution began.
+/// optimize() from the chosen start; what `helixnav smooth` calls. Report::start is where the last solution began.
 /// Errors as optimize(); the problem is left as it was when anything is thrown.
 /// Test: smoothing/victoria_park_test.cpp (all three starts side by side).
 Report smooth(Problem& problem, const SmoothOptions& options = {});

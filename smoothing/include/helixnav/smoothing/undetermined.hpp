@@ -10,8 +10,8 @@
 
 namespace helixnav::smoothing {
 
-/// The measurements leave open where a landmark stands: what a solver raises whose normal equations are singular there. `name` is that
-/// of the graph. Test: smoothing/optimize_test.cpp
+/// The measurements do not determine where a landmark is: thrown by a solver whose normal equations are singular there.
+/// `name` is its name in the graph. Test: smoothing/optimize_test.cpp
 class UndeterminedLandmark : public core::NumericalError {
  public:
   UndeterminedLandmark(const std::string& message, std::int64_t landmark)
@@ -20,8 +20,9 @@ class UndeterminedLandmark : public core::NumericalError {
   std::int64_t name;
 };
 
-/// Landmarks (indices, ascending) of which one coordinate has a standard deviation above a fifth of the distance that they are seen
-/// from, even if all poses were known: bearings from nearly one side, of which the least squares may lie at infinity.
+/// Landmarks (indices, ascending) with one coordinate whose standard deviation is above a fifth of the distance they
+/// are seen from, even if all poses were known: bearings from nearly one side, whose least-squares solution may be at
+/// infinity.
 /// Test: smoothing/undetermined_test.cpp
 std::vector<int> hardly_determined_landmarks(const core::LandmarkGraph& graph);
 

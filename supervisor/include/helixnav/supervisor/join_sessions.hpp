@@ -15,27 +15,27 @@ namespace helixnav::supervisor {
 struct JoinedSession {
   std::size_t component = 0;        ///< of the result
   core::Pose2 T_component_session;  ///< identity for the session that gave the component its frame
-  /// How it was placed. Of a session that stayed apart: why its best place on the first component was not taken; of the
-  /// first session of all: `sought`, with no numbers.
+  /// How it was placed. For a session that stayed apart: why its best place on the first component was not accepted;
+  /// for the very first session: `sought`, without numbers.
   core::PlacedDecision decision;
   std::map<core::LandmarkId, core::LandmarkId> name_of;  ///< mature landmarks of the session, by their names in it
 };
 
-/// Maps of several sessions as few as can be said.
+/// Maps of several sessions, joined into as few as the evidence allows.
 struct JoinedSessions {
-  std::vector<core::JointMap> components;  ///< mature landmarks only, no end; that of the largest session first
+  std::vector<core::JointMap> components;  ///< mature landmarks only, no end pose; that of the largest session first
   std::vector<JoinedSession> sessions;     ///< [session]
 };
 
-/// Joins maps that were made independently of each other, each in a frame of its own, without a prior. The session with the
-/// most mature landmarks gives a component its frame; every other session asks that component where it is
-/// (relocalize::ask, with constellations of up to 40 landmarks from all over its map), and is merged with it when the answer
-/// is closed and χ² of the pairs passes (join_maps); what was joined is asked again by those still apart, and those that stay
-/// apart begin the next component. α = 1e-5 bounds the probability of a false answer for each pair of sessions. The result
-/// does not depend on the order of the sessions, but for the numbering of those as large as each other.
-/// PreconditionError for a map of which the parts do not fit each other. Cost: for each pair of sessions an index and a
-/// question every 20 landmarks, and O(N²·pairs) for each join. `now_and_then` is called before each question; what it throws
-/// ends the call. Test: supervisor/placing/join_sessions_test.cpp.
+/// Joins maps made independently of each other, each in its own frame, without a prior. The session with the most
+/// mature landmarks gives a component its frame; every other session queries that component for its place
+/// (relocalize::ask, with constellations of up to 40 landmarks from all over its map) and is merged with it if the
+/// answer is closed and the χ² of the pairs passes (join_maps); the sessions still apart query the joined component
+/// again, and those that stay apart begin the next component. α = 1e-5 bounds the probability of a false answer for
+/// each pair of sessions. The result does not depend on the order of the sessions, except for the numbering of sessions
+/// of equal size. PreconditionError for a map whose parts do not fit together. Cost: for each pair of sessions an index
+/// and a query every 20 landmarks, and O(N²·pairs) for each join. `now_and_then` is called before each query; an
+/// exception it throws ends the call. Test: supervisor/placing/join_sessions_test.cpp.
 JoinedSessions join_sessions(
     const std::vector<core::JointMap>& sessions, const std::function<void()>& now_and_then = [] {});
 

@@ -9,25 +9,26 @@
 
 namespace helixnav::supervisor {
 
-/// What a session leaves to the next one: its landmarks, as its navigator's map() lists them, and its pose with all
+/// What a session hands on to the next: its landmarks, as listed by its navigator's map(), and its pose, with all
 /// correlations. O(N²).
 core::JointMap joint_map(const cekf::CompressedEkf& filter, const std::vector<core::MapLandmark>& landmarks);
-/// The same of any navigator that has joint() and filter().
+/// The same for any navigator that has joint() and filter().
 core::JointMap joint_map(core::JointGaussian joint, core::LandmarkId next_name,
                          const std::vector<core::MapLandmark>& landmarks);
-/// PreconditionError for a joined map, in which nobody can go on from the pose that it has.
+/// PreconditionError for a joined map, since no session can continue from the pose in it.
 void check_has_end(const core::JointMap& map);
 
 /// In the order of `landmarks`.
 std::vector<core::LandmarkId> ids_of(const std::vector<core::MapLandmark>& landmarks);
 
-/// The mature landmarks of a map as it is drawn, for who asks where on it the vehicle is: each independent of the others, with its
-/// covariance relative to its neighbours within `reach_m` and half the variance of what two drives see of one landmark
-/// (`pair_noise_m`) besides. By what the map as a whole is bent is not in it. The pose is at the origin and certain. O(N²).
-/// PreconditionError when the parts of the map do not fit each other. Test: supervisor/placing/as_drawn_test.cpp.
+/// The mature landmarks of a map as drawn, for finding where on it the vehicle is: each independent of the others, with
+/// its covariance relative to its neighbours within `reach_m` plus half the variance between two drives' views of one
+/// landmark (`pair_noise_m`). Distortion of the map as a whole is not included. The pose is at the origin and certain.
+/// O(N²). PreconditionError when the parts of the map do not fit together. Test: supervisor/placing/as_drawn_test.cpp.
 core::JointMap as_drawn(const core::JointMap& map, double reach_m, double pair_noise_m);
 
-/// The same of a navigator with all landmarks of its map, as listed: a filter that holds a part of them may have names of its own.
+/// The same for a navigator with all landmarks of its map, as listed: a filter that holds only some of them may use its
+/// own names.
 template <class Navigator>
 core::JointMap joint_map(const Navigator& navigator, const std::vector<core::MapLandmark>& landmarks) {
   const core::LandmarkId after_last = landmarks.empty() ? 0 : landmarks.back().id + 1;

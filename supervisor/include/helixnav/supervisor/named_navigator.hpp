@@ -21,40 +21,42 @@ namespace helixnav::supervisor {
 
 class NamedDrive;
 
-/// The Navigator's counterpart for observations that are known by name: the same identity is the same landmark, nothing is
-/// ambiguous, and no search is ever needed. A sighting that contradicts its name is left out (Outcome::rejected), and a landmark
-/// that its own sightings contradict is begun anew (docs/names.md). Landmarks seen as a range or a bearing only enter when their sightings fix them
-/// (DelayedLandmarks).
+/// The counterpart of Navigator for observations known by name: the same identity is the same landmark, nothing is
+/// ambiguous, and a search is never needed. A sighting that contradicts its name is left out (Outcome::rejected), and a
+/// landmark contradicted by its own sightings is created anew (docs/names.md). Landmarks seen only as a range or a
+/// bearing enter once their sightings determine them (DelayedLandmarks).
 ///
-/// Of a map of more than MapOptions::whole landmarks the filter holds those near the vehicle. It begins anew, from the atlas of
-/// the whole drive, with a scan that sees a landmark which it does not hold, and when it has grown by half; no step costs more
-/// where more is mapped. For that the drive has to be known from its begin, and every observation so far to have fixed a landmark.
-/// From there on ranges and bearings of new landmarks are left out (Outcome::ambiguous). docs/adr/0015-window.md.
+/// If the map has more than MapOptions::whole landmarks, the filter holds those near the vehicle. It is rebuilt from
+/// the atlas of the whole drive by a scan that sees a landmark it does not hold, and when it has grown by half; a step
+/// does not cost more when more is mapped. This requires that the drive is known from its start and that every
+/// observation so far has fixed a landmark. From there on, ranges and bearings of new landmarks are left out
+/// (Outcome::ambiguous). docs/adr/0015-window.md.
 ///
 /// Frames, errors and the strong guarantee: as Navigator.
-/// Test: supervisor/named/named_navigator_test.cpp, supervisor/named/named_window_test.cpp, supervisor/named/delayed_landmarks_test.cpp,
-/// supervisor/guarantee_test.cpp.
+/// Test: supervisor/named/named_navigator_test.cpp, supervisor/named/named_window_test.cpp,
+/// supervisor/named/delayed_landmarks_test.cpp, supervisor/guarantee_test.cpp.
 class NamedNavigator {
  public:
-  /// PreconditionError for a start that core::check_start refuses.
+  /// PreconditionError for a start that core::check_start rejects.
   explicit NamedNavigator(const core::PoseGaussian& start, const NavigatorOptions& options = {});
 
-  /// Goes on in the map of an earlier session, from the pose in it and with its correlations, as if that session had not
-  /// ended: `landmark_of` names its landmarks. Sightings of ranges or bearings alone that had fixed no landmark yet are lost.
-  /// PreconditionError where cekf::CompressedEkf refuses the joint estimate, for a landmark that the map does not have, and for
-  /// a joined map, which has no end.
+  /// Continues in the map of an earlier session, from the pose in it and with its correlations, as if that session had
+  /// not ended: `landmark_of` names its landmarks. Range-only and bearing-only sightings that had not yet fixed a
+  /// landmark are lost. PreconditionError if cekf::CompressedEkf rejects the joint estimate, for a landmark that the
+  /// map does not have, and for a joined map, which has no end pose.
   /// Test: supervisor/placing/find_place_test.cpp (equal to 1e-7).
   NamedNavigator(const core::JointMap& earlier, const std::map<std::int64_t, core::LandmarkId>& landmark_of,
                  const NavigatorOptions& options = {});
 
-  /// Any event; `identities` belong to a scan. The report of a scan, nothing for others.
+  /// Any event; `identities` belong to a scan. Returns the report for a scan, nothing for others.
   std::optional<core::StepReport> take(const core::Event& event, const std::vector<std::int64_t>& identities);
 
-  /// Collects motion; it reaches the filter with the next scan or fix.
+  /// Accumulates motion; it is applied to the filter with the next scan or fix.
   void move(const core::Odometry& odometry);
 
-  /// One scan, with an identity for each observation; a negative one is no landmark, and of a new identity twice in one scan
-  /// the first counts. PreconditionError unless there are as many identities as observations.
+  /// One scan, with an identity for each observation; a negative identity means that it is not a landmark, and if a new
+  /// identity occurs twice in one scan, the first counts. PreconditionError unless there are as many identities as
+  /// observations.
   core::StepReport observe(const core::Scan& scan, const std::vector<std::int64_t>& identities);
 
   /// As Navigator::fix.
@@ -63,13 +65,13 @@ class NamedNavigator {
   /// Pose at the last scan or fix.
   core::PoseGaussian pose() const { return filter_.pose(); }
 
-  /// All landmarks, in order of id; costs as Navigator's.
+  /// All landmarks, in order of id; cost as for Navigator.
   std::vector<core::MapLandmark> map() const;
-  /// As Navigator's.
+  /// As for Navigator.
   std::vector<core::MapLandmark> sketch() const;
   core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;
 
-  /// The filter. Where it holds a part of the map, its names for landmarks are its own.
+  /// The filter. While it holds only part of the map, it uses its own names for landmarks.
   const cekf::CompressedEkf& filter() const { return filter_; }
 
  private:
@@ -89,11 +91,11 @@ class NamedNavigator {
    private:
     std::unique_ptr<NamedDrive> drive_;
   };
-  /// What the filter calls the landmarks that it holds: 0, 1, … those that it began with, by increasing id, then those
-  /// that it began since, one after another here as there. Of a whole map the same.
+  /// The filter's names for the landmarks it holds: 0, 1, … for those it began with, by increasing id, then those added
+  /// since, consecutive here as in the map. If it holds the whole map, names and ids are the same.
   struct FilterNames {
-    std::vector<core::LandmarkId> first;  ///< ids of those that it began with, unless it holds the whole map
-    core::LandmarkId next = 0;            ///< id of the first that it began since
+    std::vector<core::LandmarkId> first;  ///< ids of those it began with, unless it holds the whole map
+    core::LandmarkId next = 0;            ///< id of the first one added since
     bool is_part = false;
 
     core::LandmarkId in_filter(core::LandmarkId id) const;  ///< no_landmark: not held
@@ -103,15 +105,15 @@ class NamedNavigator {
   struct Pending {
     std::optional<core::Odometry> motion;
     std::vector<core::Decision> decisions;
-    core::NumericalHealth numerics = {};  ///< that no report has yet
+    core::NumericalHealth numerics = {};  ///< not yet in any report
   };
   struct NamedScan {
     core::Scan scan;
     std::vector<std::int64_t> identities;
-    std::vector<core::LandmarkId> counted;  ///< as observed by it
+    std::vector<core::LandmarkId> counted;  ///< as observed by this scan
   };
   using Taken = std::variant<core::Odometry, NamedScan, core::AbsoluteFix>;
-  /// To come back to; what came in since is `taken_`.
+  /// To roll back to; what has come in since is `taken_`.
   struct Checkpoint {
     cekf::Snapshot filter;
     DelayedLandmarks delayed;
@@ -162,7 +164,7 @@ class NamedNavigator {
   std::vector<core::MapLandmark> map_with(const PointOf& point_of) const;
 
   NavigatorOptions options_;
-  bool fitted_ = false;  ///< the lengths of the options to the sensor
+  bool fitted_ = false;  ///< the lengths in the options have been scaled to the sensor
   double reach_m_;
   cekf::CompressedEkf filter_;
   DelayedLandmarks delayed_;
@@ -173,14 +175,14 @@ class NamedNavigator {
   Pending pending_;
   std::optional<Checkpoint> checkpoint_;
   std::vector<Taken> taken_;  ///< since the checkpoint
-  bool recovering_ = false;   ///< what is taken again is on the drive already
+  bool recovering_ = false;   ///< what is processed again is already in the drive
 
   OwnDrive drive_;
   FilterNames names_;
-  int begun_with_ = 0;                          ///< landmarks, when the filter began or was to begin anew
-  std::int64_t next_try_ = 0;                   ///< step before which no hand-over is tried, after one that failed
-  std::optional<BeforeHandOver> before_;        ///< this call
-  std::vector<Eigen::Matrix2d> remembered_m2_;  ///< covariances, by id, of landmarks when the filter left them
+  int begun_with_ = 0;                          ///< landmarks held when the filter was, or was to be, rebuilt
+  std::int64_t next_try_ = 0;                   ///< no hand-over is tried before this step, after one that failed
+  std::optional<BeforeHandOver> before_;        ///< in this call
+  std::vector<Eigen::Matrix2d> remembered_m2_;  ///< covariances, by id, of landmarks when they left the filter
 };
 
 }  // namespace helixnav::supervisor

@@ -3,8 +3,8 @@
 
 namespace helixnav::supervisor {
 
-/// Whether the covariances that odometry and detector claim are believed, or multiplied by factors learnt while driving.
-/// Figures: docs/slips.md.
+/// Whether the covariances reported by odometry and detector are used as given or multiplied by factors learnt while
+/// driving. Figures: docs/slips.md.
 struct NoiseOptions {
   bool adapt = true;
 };

@@ -6,13 +6,13 @@
 
 namespace helixnav::team {
 
-/// Two landmarks of one component that turned out to be one, without a name that says so: `removed` became `kept`.
+/// Two landmarks of one component that turned out to be one, without a name to show it: `removed` became `kept`.
 /// Decisions of one time were taken together: cost, dof and limit are those of all of them.
 struct SameLandmarks {
   core::Nanoseconds t_ns = 0;
   core::LandmarkId kept = core::no_landmark;
   core::LandmarkId removed = core::no_landmark;
-  double nats = 0.0;  ///< ln of the likelihood ratio against another landmark that stands there by chance
+  double nats = 0.0;  ///< ln of the likelihood ratio against another landmark that is there by chance
   double cost = 0.0;  ///< by how much least squares with the two as one exceeds that with two, or, of copies that
                       ///< were seen in turn, what all looks at them cost then: χ² with dof
   int dof = 0;

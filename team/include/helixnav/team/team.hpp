@@ -15,7 +15,7 @@
 
 namespace helixnav::team {
 
-/// A robot that was seen by another, and what came of it.
+/// A robot that was seen by another, and the outcome.
 struct JudgedSighting {
   core::Nanoseconds t_ns = 0;
   int robot = 0;
@@ -27,17 +27,19 @@ struct JudgedSighting {
 
 /// Several robots in one map. Each robot leaves poses where it saw something or was seen; landmarks, motions and sightings
 /// of robots by one another tie them into one sparse least-squares problem, solved again every few seconds from where it
-/// was. Between two solutions an EKF over the robots' present poses and the landmarks, begun at the solution, takes in
-/// what comes. A robot that is seen is a clone of its pose at that time, interpolated along its motion, never a landmark.
-/// Robots whose start is known share a frame; every other robot is a component of its own until common names, sightings one
-/// each way or a constellation of landmarks place it in another's frame, and χ² of the joint solution does not object.
+/// was. Between two solutions an EKF over the robots' present poses and the landmarks, started at the solution, takes
+/// in what arrives. A robot that is seen is a clone of its pose at that time, interpolated along its motion, never a
+/// landmark. Robots whose start is known share a frame; every other robot is a component of its own until common names,
+/// sightings one each way or a constellation of landmarks place it in another's frame, and χ² of the joint solution
+/// does not object.
 ///
-/// The estimate is a function of the events in order of time: what comes late is put in its place, and everything since is
-/// gone through again from the checkpoint before it, so that late messages give the same bytes. A sighting waits until the
-/// motion of the robot seen has reached its time.
-/// Cost: O(N²) an observation, N = 3 robots + 2 landmarks of the component; a solution is a few sparse factorisations.
-/// Errors: PreconditionError for events that core::check refuses, fixes and carried robots, robots that are not there or see
-/// themselves, landmarks observed by range or bearing alone; NumericalError for broken mathematics. Test: team/team_test.cpp.
+/// The estimate is a function of the events in order of time: what arrives late is put in its place, and everything
+/// since is reprocessed from the checkpoint before it, so that late messages give the same bytes. A sighting waits
+/// until the motion of the robot seen has reached its time.
+/// Cost: O(N²) per observation, N = 3 robots + 2 landmarks of the component; a solution is a few sparse factorisations.
+/// Errors: PreconditionError for events that core::check refuses, fixes and carried robots, robots that do not exist or
+/// see themselves, landmarks observed by range or bearing alone; NumericalError for broken mathematics.
+/// Test: team/team_test.cpp.
 class Team {
  public:
   /// [robot] its start in the common frame, nothing where it is unknown. PreconditionError for a start that core::check_start
@@ -57,7 +59,7 @@ class Team {
   /// `robot` sees another one.
   void sight(int robot, const core::RobotSighting& sighting);
 
-  /// Solves the graph with all that has come; at the end of a drive, or before something rests on the answer.
+  /// Solves the graph with all that has arrived; at the end of a drive, or before something relies on the answer.
   void solve();
 
   /// T_component_robot after the last event.
@@ -71,17 +73,18 @@ class Team {
   /// The landmark that a robot's name means now; no_landmark where the robot has not seen it.
   core::LandmarkId landmark_of(int robot, std::int64_t name) const;
   const std::vector<TeamJoin>& joins() const;
-  /// Joins that held for a while and are none of joins(), in the order in which they were taken back.
+  /// Joins that held for a while and are no longer in joins(), in the order in which they were taken back.
   const std::vector<TakenBackJoin>& joins_taken_back() const;
   std::vector<JudgedSighting> sightings() const;
-  /// Landmarks that were made one by where they stand (JoinOptions::by_place).
+  /// Landmarks that were made one by their position (JoinOptions::by_place).
   const std::vector<SameLandmarks>& same_landmarks() const;
 
-  /// Takes a join back, and everything that came of it; the same two are not joined by the same kind of evidence again.
-  /// PreconditionError for one that is not there; so of remove_same().
+  /// Takes back a join and everything that followed from it; the same two are not joined by the same kind of evidence
+  /// again. PreconditionError for one that does not exist; likewise for remove_same().
   void remove_join(std::size_t join);
 
-  /// Makes two landmarks two again, with all that came of their being one; these two are not made one by their places again.
+  /// Makes two landmarks two again and undoes all that followed from their being one; these two are not made one by
+  /// their places again.
   void remove_same(std::size_t same);
 
  private:

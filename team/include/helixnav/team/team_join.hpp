@@ -14,7 +14,7 @@ struct TeamJoin {
   By by = By::names;
   core::Nanoseconds t_ns = 0;
   int robot = 0;                  ///< of the component that kept its frame: the first of its robots
-  int other = 0;                  ///< of the component that came into it
+  int other = 0;                  ///< of the component that joined it
   core::Pose2 T_component_other;  ///< frame of the one that came, by the joint solution then
   int merged = 0;                 ///< landmarks that were two
   int left_out = 0;               ///< names common to both that contradict the others
@@ -24,12 +24,12 @@ struct TeamJoin {
   double limit = 0.0;
 };
 
-/// A join that sightings since then contradicted, or that was taken back by hand.
+/// A join that later sightings contradicted, or that was taken back by hand.
 struct TakenBackJoin {
   TeamJoin join;
   core::Nanoseconds t_ns = 0;  ///< when it was taken back
   int refused = 0;             ///< sightings between its two sides since then that were refused,
-  int seen = 0;                ///< of so many; 0: taken back by hand
+  int seen = 0;                ///< out of so many; 0: taken back by hand
 };
 
 /// "names", "sightings", "constellation".

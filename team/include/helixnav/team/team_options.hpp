@@ -8,13 +8,13 @@ struct JoinOptions {
   bool by_names = true;
   bool by_sightings = true;
   bool by_constellation = false;
-  double pair_s = 0.5;          ///< two robots that see each other within so long
-  double window_s = 30.0;       ///< sightings as old as this still speak of how two robots stand to each other
+  double pair_s = 0.5;          ///< two robots that see each other within this time
+  double window_s = 30.0;       ///< sightings as old as this still count for the relative pose of two robots
   double probability = 0.999;   ///< χ² test of a join
   double max_sigma_m = 0.5;     ///< of the joined robots' relative position, else it is too early for a join by names
   double max_sigma_rad = 0.1;   ///< of their relative heading, likewise
-  int mature_observations = 5;  ///< of a landmark that may speak for a join
-  bool by_place = false;        ///< landmarks of one component that stand in one place become one (SameLandmarks)
+  int mature_observations = 5;  ///< of a landmark that may support a join
+  bool by_place = false;        ///< landmarks of one component that are in one place become one (SameLandmarks)
 };
 
 struct TeamOptions {
@@ -24,7 +24,7 @@ struct TeamOptions {
   double clone_sigma_rad = 0.01;  ///< uncertain as this
   double gate_probability = 0.999999;  ///< of the innovation of a sighting
   double looks_as_one =
-      1.0;  ///< so many looks at a landmark in a row say what one would, and the noise given is that of
+      1.0;  ///< this many looks at a landmark in a row say what one would, and the noise given is that of
             ///< all of them: scans without names are told apart by the noise of one look, R divided by it
   JoinOptions join;
 };
