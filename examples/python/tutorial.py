@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""From a drive to a judged map, three times: as a whole, step by step, and with events of one's own.
+"""From a drive to an evaluated map, three ways: as a whole, step by step, and with your own events.
 
     PYTHONPATH=build/dev/python python3 examples/python/tutorial.py [PICTURE.svg]
 """
@@ -10,7 +10,7 @@ import numpy as np
 
 import helixnav
 
-# 1. A log as a whole. Of your own: helixnav.read_log("my_drive"), as docs/your_own_log.md says.
+# 1. A log as a whole. For your own: helixnav.read_log("my_drive"), see docs/your_own_log.md.
 log = helixnav.simulate("circuit", seed=1)
 run = helixnav.replay(log)  # out="runs/circuit" writes the run folder with report.html
 judged = run.evaluate()
@@ -27,14 +27,14 @@ assert np.array_equal(navigator.map.means, run.map.means)
 sigma_m = np.sqrt(navigator.map.covariances.trace(axis1=1, axis2=2))
 print(f"landmarks are known to {np.median(sigma_m):.2f} m, the vehicle is at {navigator.pose}")
 
-# 3. Events of one's own: a robot that drives a circle among four poles and knows its sensor.
+# 3. Your own events: a robot that drives in a circle among four poles and knows its sensor.
 poles = np.array([[6.0, 0.0], [0.0, 6.0], [-6.0, 0.0], [0.0, -6.0]])
 view = helixnav.FieldOfView(max_range=15.0)
 robot = helixnav.Navigator(options={"slip.enabled": False})
 noise = np.random.default_rng(1)
 truth = np.zeros(3)
 for k in range(200):
-    step = np.array([0.1, 0.0, 0.1 / 3.0])  # a circle of 3 m
+    step = np.array([0.1, 0.0, 0.1 / 3.0])  # a circle of radius 3 m
     c, s = np.cos(truth[2]), np.sin(truth[2])
     truth += [c * step[0], s * step[0], step[2]]
     robot.move(helixnav.Odometry(0.1 * k, step + noise.normal(0, [0.005, 0.001, 0.002]), np.diag([25e-6, 1e-6, 4e-6])))
@@ -46,7 +46,7 @@ error_m = np.linalg.norm(robot.pose.mean[:2] - truth[:2])
 print(f"own robot: {len(robot.map)} poles, {error_m:.2f} m from the truth")
 assert len(robot.map) == 4 and error_m < 0.2
 
-# 4. A picture, without a library: ways and landmarks, y upwards.
+# 4. A picture, without a plotting library: paths and landmarks, y upwards.
 if len(sys.argv) > 1:
     estimate, truth, landmarks = run.trajectory[:, 1:3], log.true_poses[:, 1:3], run.map.means
     left, low = np.vstack([estimate, truth, landmarks]).min(axis=0) - 5.0

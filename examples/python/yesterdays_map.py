@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Going on in yesterday's map: from anywhere on it, after having been carried, and joining two drives afterwards.
+"""Continuing in yesterday's map: from anywhere on it, after being carried, and joining two drives afterwards.
 
     PYTHONPATH=build/dev/python python3 examples/python/yesterdays_map.py
 """
@@ -10,7 +10,7 @@ import helixnav
 
 TREES = np.random.default_rng(7).uniform([-30.0, -14.0], [30.0, 46.0], size=(60, 2))
 VIEW = helixnav.FieldOfView(max_range=15.0)
-RADIUS = 16.0  # of the circle that the robot drives, 1 m a scan
+RADIUS = 16.0  # of the circle that the robot drives, 1 m per scan
 
 
 def pose_at(along):
@@ -19,7 +19,7 @@ def pose_at(along):
 
 
 def drive(navigator, begin, end, noise):
-    """Feeds the way from one metre to another; yields what was decided."""
+    """Feeds the navigator the path from one distance [m] to another; yields the decisions as sentences."""
     for along in np.arange(begin, end):
         step = np.array([1.0, 0.0, 1.0 / RADIUS]) + noise.normal(0.0, [0.02, 0.005, 0.005])
         navigator.move(helixnav.Odometry(along, step, np.diag([4e-4, 25e-6, 25e-6])))
@@ -36,9 +36,9 @@ noise = np.random.default_rng(1)
 options = {"slip.enabled": False}
 monday = helixnav.Navigator(options=options)
 list(drive(monday, 0.0, 110.0, noise))
-map_of_monday = monday.joint_map(reach=15.0)  # or helixnav.read_map("runs/monday") of a run folder
+map_of_monday = monday.joint_map(reach=15.0)  # or helixnav.read_map("runs/monday") for a run folder
 
-# 1. Tuesday begins 35 m along the way, which nobody tells.
+# 1. Tuesday begins 35 m along the path, which the navigator is not told.
 tuesday = helixnav.Navigator(options=options)
 tuesday.look_for_place_in(map_of_monday)
 for sentence in drive(tuesday, 35.0, 95.0, noise):
@@ -48,7 +48,7 @@ error = np.linalg.norm(tuesday.pose.mean[:2] - pose_at(95.0)[:2])
 print(f"on Monday's map, {error:.2f} m from the truth")
 assert error < 0.5
 
-# 2. Carried, and told so: the place is sought again on all that was mapped.
+# 2. Carried, and told so: it searches for its place again in everything mapped so far.
 tuesday.take(helixnav.Lost(95.0))
 for sentence in drive(tuesday, 120.0, 180.0, noise):
     print(sentence)
@@ -56,7 +56,7 @@ error = np.linalg.norm(tuesday.pose.mean[:2] - pose_at(180.0)[:2])
 print(f"found again, {error:.2f} m from the truth")
 assert not tuesday.maps_apart and error < 0.5
 
-# 3. Two drives that nothing tied while they went become one map.
+# 3. Two drives with nothing connecting them as they ran become one map.
 wednesday = helixnav.Navigator(options=options)
 list(drive(wednesday, 50.0, 150.0, noise))
 joined = helixnav.join([map_of_monday, wednesday.joint_map(reach=15.0)])

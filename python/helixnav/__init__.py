@@ -4,7 +4,7 @@
     import helixnav
 
     log = helixnav.read_log("my_drive")              # or helixnav.simulate("large-loop", seed=1)
-    run = helixnav.replay(log, out="runs/mine")      # as the program of the same name, to the last digit
+    run = helixnav.replay(log, out="runs/mine")      # same as helixnav replay, to the last digit
     print(run.explain(), run.evaluate()["nis"])
 
     navigator = helixnav.Navigator(log)              # or step by step
@@ -12,12 +12,12 @@
         report = navigator.take(event)
     print(navigator.pose, navigator.map.means)
 
-    stream = helixnav.Stream("vehicle.toml")         # or live, by times: scans may come late, rows need not be divided
+    stream = helixnav.Stream("vehicle.toml")         # or live, by times: scans may come late, rows need no splitting
     reports = stream.take({"odometry": {"t": 0.1, "v": 1.2, "omega_degps": 3}})
 
-    tuesday = helixnav.replay(helixnav.read_log("tuesday"), map="runs/mine")      # goes on in that map
-    week = helixnav.join(["runs/robot_1", "runs/robot_2"], out="runs/week")       # one map of several
-    slam = helixnav.FastSlam(options={"fastslam.particles": 200})                 # to compare with
+    tuesday = helixnav.replay(helixnav.read_log("tuesday"), map="runs/mine")      # continues in that map
+    week = helixnav.join(["runs/robot_1", "runs/robot_2"], out="runs/week")       # one map from several
+    slam = helixnav.FastSlam(options={"fastslam.particles": 200})                 # for comparison
     team = helixnav.Team(starts=[helixnav.Pose(), None])                          # several robots, live
 
 Metres and radians, headings counter-clockwise, order (x, y, heading); times in seconds, or in whole nanoseconds as t_ns.
@@ -116,6 +116,6 @@ __all__ = [
     "simulate_team",
 ]
 
-for _name in __all__:  # where they are imported from is where messages say they are
+for _name in __all__:  # so that messages name this module, from which they are imported
     globals()[_name].__module__ = __name__
 del _name

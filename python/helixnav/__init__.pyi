@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 __version__: str
 __commit__: str
 
-# For this file alone: the module has no such names.
+# For this file only: the module has no such names.
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 _Path = Union[str, bytes, PathLike[str], PathLike[bytes]]

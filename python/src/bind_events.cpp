@@ -102,27 +102,27 @@ void bind_times(py::class_<Event>& type) {
 }
 
 void bind_view(py::module_& module) {
-  py::class_<core::FieldOfView>(module, "FieldOfView",
-                                "Where a sensor sees landmarks: metres, radians, counter-clockwise.")
+  py::class_<core::FieldOfView>(
+      module, "FieldOfView", "The region in which a sensor sees landmarks, in metres and radians, counter-clockwise.")
       .def(py::init([](double max_range, double min_range, double min_bearing, double max_bearing, double reach) {
              return core::FieldOfView{min_range, max_range, min_bearing, max_bearing, reach};
            }),
            py::arg("max_range") = std::numeric_limits<double>::infinity(), py::arg("min_range") = 0.0,
            py::arg("min_bearing") = -core::pi, py::arg("max_bearing") = core::pi, py::arg("reach") = 0.0)
       .def_readwrite("max_range", &core::FieldOfView::max_range_m,
-                     "Up to where landmarks are surely seen [m]; infinite: nobody knows.")
-      .def_readwrite("min_range", &core::FieldOfView::min_range_m, "From where on [m].")
-      .def_readwrite("min_bearing", &core::FieldOfView::min_bearing_rad,
-                     "On the right, in the frame of the sensor [rad].")
+                     "Range up to which landmarks are reliably seen [m]; infinite: unknown.")
+      .def_readwrite("min_range", &core::FieldOfView::min_range_m, "Least range at which landmarks are seen [m].")
+      .def_readwrite("min_bearing", &core::FieldOfView::min_bearing_rad, "Right-hand limit, in the sensor frame [rad].")
       .def_readwrite("max_bearing", &core::FieldOfView::max_bearing_rad,
-                     "On the left [rad]; from pi/2 to 3 pi/2 is across the back.")
-      .def_readwrite("reach", &core::FieldOfView::reach_m, "Up to where they are seen at all [m]; 0: up to max_range.");
+                     "Left-hand limit, in the sensor frame [rad]; a view from pi/2 to 3 pi/2 covers the rear.")
+      .def_readwrite("reach", &core::FieldOfView::reach_m,
+                     "Range up to which landmarks are seen at all [m]; 0: up to max_range.");
 }
 
 void bind_odometry(py::module_& module) {
   py::class_<core::Odometry> odometry(
       module, "Odometry",
-      "Motion since the odometry before, in the frame of the robot before it moved, with its covariance.");
+      "Motion since the previous odometry, in the robot's frame before the motion, with its covariance.");
   odometry
       .def(py::init([](double t_s, const py::object& increment, const py::object& covariance) {
              const core::Odometry made{time_from(t_s), Pose2(vector3_from(increment, "increment")),
@@ -131,8 +131,8 @@ void bind_odometry(py::module_& module) {
              return made;
            }),
            py::arg("t"), py::arg("increment"), py::arg("covariance"),
-           "At the end of the increment (x, y, heading) [m, m, rad]; covariance 3×3. PreconditionError for NaN or no "
-           "covariance.")
+           "t is the time at the end of the increment (x, y, heading) [m, m, rad]; covariance 3×3. PreconditionError "
+           "for NaN or an invalid covariance.")
       .def_property_readonly(
           "increment", [](const core::Odometry& o) { return o.T_before_after.vector(); },
           "(3,): x, y, heading [m, m, rad].")
@@ -141,25 +141,24 @@ void bind_odometry(py::module_& module) {
 }
 
 void bind_scan(py::module_& module) {
-  py::class_<core::Scan> scan(module, "Scan", "What one sensor saw at one instant; nothing seen is information, too.");
-  scan.def(py::init([](double t_s, const std::string& kind, const py::object& z, const py::object& R,
-                       const py::object& mounting, const core::FieldOfView& view, const py::object& classes,
-                       const py::object& sizes, const py::object& sigma_sizes, double class_error) {
-             core::Scan made = scan_from(t_s, kind, z, R, mounting, view);
-             tell_appearance(classes, sizes, sigma_sizes, class_error, made);
-             core::check(made);
-             return made;
-           }),
-           py::arg("t"), py::arg("kind"), py::arg("z"), py::arg("R"),
-           py::arg("mounting") = py::make_tuple(0.0, 0.0, 0.0), py::arg("view") = core::FieldOfView(),
-           py::arg("classes") = py::none(), py::arg("sizes") = py::none(), py::arg("sigma_sizes") = 0.0,
-           py::arg("class_error") = core::Appearance().class_error,
-           "kind: 'range_bearing', 'cartesian', 'bearing' or 'range'; z (N, d) in metres and radians, R (d, d) or (N, "
-           "d, d); "
-           "mounting (x, y, heading) of the sensor on the robot. What the objects are, where the detector tells: "
-           "classes, "
-           "names of at most 23 bytes or None each, one of which is wrong with probability class_error; sizes [m], NaN "
-           "where unknown, with standard deviations sigma_sizes. PreconditionError for what no sensor measures.")
+  py::class_<core::Scan> scan(module, "Scan", "What one sensor saw at one instant; seeing nothing is information too.");
+  scan.def(
+          py::init([](double t_s, const std::string& kind, const py::object& z, const py::object& R,
+                      const py::object& mounting, const core::FieldOfView& view, const py::object& classes,
+                      const py::object& sizes, const py::object& sigma_sizes, double class_error) {
+            core::Scan made = scan_from(t_s, kind, z, R, mounting, view);
+            tell_appearance(classes, sizes, sigma_sizes, class_error, made);
+            core::check(made);
+            return made;
+          }),
+          py::arg("t"), py::arg("kind"), py::arg("z"), py::arg("R"),
+          py::arg("mounting") = py::make_tuple(0.0, 0.0, 0.0), py::arg("view") = core::FieldOfView(),
+          py::arg("classes") = py::none(), py::arg("sizes") = py::none(), py::arg("sigma_sizes") = 0.0,
+          py::arg("class_error") = core::Appearance().class_error,
+          "kind: 'range_bearing', 'cartesian', 'bearing' or 'range'; z (N, d) in metres and radians, R (d, d) or (N, "
+          "d, d); mounting (x, y, heading) of the sensor on the robot. If the detector classifies or measures objects: "
+          "classes, each None or a name of at most 23 bytes that is wrong with probability class_error; sizes [m], NaN "
+          "where unknown, with standard deviations sigma_sizes. PreconditionError for values that no sensor measures.")
       .def_property_readonly("classes", &classes_of, "'' where none is given.")
       .def_property_readonly(
           "sizes", [](const core::Scan& s) { return sizes_of(s, &core::Appearance::size_m); },
@@ -168,7 +167,7 @@ void bind_scan(py::module_& module) {
           "sigma_sizes", [](const core::Scan& s) { return sizes_of(s, &core::Appearance::sigma_size_m); }, "(N,) [m].")
       .def_property_readonly("z", &z_of, "(N, 2); NaN in the second column of a bearing or range alone.")
       .def_property_readonly("R", &R_of, "(N, 2, 2); NaN in the second row and column of a bearing or range alone.")
-      .def_property_readonly("kinds", &kinds_of, "Of each observation, as the argument kind.")
+      .def_property_readonly("kinds", &kinds_of, "The kind of each observation, as in the argument kind.")
       .def_property_readonly(
           "mounting", [](const core::Scan& s) { return s.T_robot_sensor.vector(); },
           "(3,): x, y, heading of the sensor on the robot [m, m, rad].")
@@ -178,7 +177,7 @@ void bind_scan(py::module_& module) {
 }
 
 void bind_fix(py::module_& module) {
-  py::class_<core::AbsoluteFix> fix(module, "AbsoluteFix", "An absolute position in the map frame, as by GPS.");
+  py::class_<core::AbsoluteFix> fix(module, "AbsoluteFix", "An absolute position in the map frame, e.g. from GPS.");
   fix.def(py::init([](double t_s, const py::object& position, const py::object& covariance, const py::object& antenna) {
             const core::AbsoluteFix made{time_from(t_s), vector2_from(position, "position"),
                                          matrix2_from(covariance, "covariance"), vector2_from(antenna, "antenna")};
@@ -186,17 +185,16 @@ void bind_fix(py::module_& module) {
             return made;
           }),
           py::arg("t"), py::arg("position"), py::arg("covariance"), py::arg("antenna") = py::make_tuple(0.0, 0.0),
-          "Of the antenna, which stands there on the robot; covariance 2×2.")
-      .def_readonly("position", &core::AbsoluteFix::position_world_m, "(2,): of the antenna in the map frame [m].")
+          "position is that of the antenna, antenna where it is mounted on the robot; covariance 2×2.")
+      .def_readonly("position", &core::AbsoluteFix::position_world_m, "(2,): the antenna in the map frame [m].")
       .def_readonly("covariance", &core::AbsoluteFix::covariance_m2, "(2, 2) [m²].")
-      .def_readonly("antenna", &core::AbsoluteFix::antenna_robot_m, "(2,): where it stands on the robot [m].");
+      .def_readonly("antenna", &core::AbsoluteFix::antenna_robot_m, "(2,): where it is mounted on the robot [m].");
   bind_times(fix);
 }
 
 void bind_lost(py::module_& module) {
-  py::class_<core::Lost> lost(module, "Lost",
-                              "The vehicle was moved by something else than its wheels, and nobody "
-                              "measured how.");
+  py::class_<core::Lost> lost(
+      module, "Lost", "The vehicle was moved by something other than its wheels, and the motion was not measured.");
   lost.def(py::init([](double t_s) { return core::Lost{time_from(t_s)}; }), py::arg("t"));
   bind_times(lost);
 }
@@ -212,7 +210,7 @@ core::PoseGaussian make_pose(const py::object& mean, const py::object& covarianc
 void bind_pose(py::module_& module) {
   py::class_<core::PoseGaussian>(module, "Pose", "A pose (x, y, heading) [m, m, rad] with its covariance.")
       .def(py::init(&make_pose), py::arg("mean") = py::make_tuple(0.0, 0.0, 0.0), py::arg("covariance") = py::none(),
-           "Covariance 3×3, zero unless given. PreconditionError for NaN or no covariance.")
+           "Covariance 3×3, zero by default. PreconditionError for NaN or an invalid covariance.")
       .def_property_readonly(
           "mean", [](const core::PoseGaussian& pose) { return pose.mean.vector(); }, "(3,): x, y, heading [m, m, rad].")
       .def_readonly("covariance", &core::PoseGaussian::covariance, "(3, 3) of x, y, heading.")

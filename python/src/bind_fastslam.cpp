@@ -101,28 +101,26 @@ core::PoseGaussian pose_of_slam(LockedSlam& self) {
 
 void bind_fastslam(py::module_& module) {
   using Released = py::call_guard<WithoutGil>;
-  py::class_<LockedSlam>(
-      module, "FastSlam",
-      "FastSLAM 1.0 and 2.0: particles over the path, each with a map of its own. To compare with: its "
-      "covariances forget what resampling lost. Fixes are not used.")
+  py::class_<LockedSlam>(module, "FastSlam",
+                         "FastSLAM 1.0 and 2.0: particles over the path, each with its own map. Meant for comparison: "
+                         "its covariances forget what resampling lost. Fixes are not used.")
       .def(py::init(&slam_of_options), py::arg("start") = core::PoseGaussian(), py::arg("options") = py::dict(),
-           "Options are the keys fastslam.* of a configuration file; with fastslam.association 'known' scans come with "
-           "identities.")
-      .def(py::init(&slam_of_log), py::arg("log"), "With the start and the options of a log.")
-      .def("move", &move_slam, py::arg("odometry"), Released(), "Collects motion.")
+           "Options are the fastslam.* keys of a configuration file; with fastslam.association 'known', scans come "
+           "with identities.")
+      .def(py::init(&slam_of_log), py::arg("log"), "Uses the start and options of a log.")
+      .def("move", &move_slam, py::arg("odometry"), Released(), "Accumulates motion.")
       .def("observe", &observe_slam, py::arg("scan"), py::arg("identities") = py::none(),
-           "One scan; a negative identity is no landmark.")
+           "Processes one scan; a negative identity is not a landmark.")
       .def("take", &take_slam, py::arg("event"), py::arg("identities") = py::none(),
-           "Odometry or a scan; the report of a scan, None for odometry.")
-      .def_property_readonly(
-          "pose", py::cpp_function(&pose_of_slam, Released()),
-          "Mean and covariance of the cloud, moved on by the odometry since the last scan (that of a "
-          "navigator is as of the scan).")
+           "Takes odometry or a scan; returns the report of a scan, None for odometry.")
+      .def_property_readonly("pose", py::cpp_function(&pose_of_slam, Released()),
+                             "Mean and covariance of the particle cloud, moved by the odometry since the last scan (a "
+                             "navigator's pose is as of the scan).")
       .def_property_readonly(
           "map", py::cpp_function([](LockedSlam& self) { return Map{locked(&FastSlam::map)(self)}; }, Released()),
           "Landmarks of the heaviest particle.")
       .def_property_readonly("particles", &particles_of, "(M, 3): x, y, heading at the last scan.")
-      .def_property_readonly("weights", &weights_of, "(M,), their sum is 1.");
+      .def_property_readonly("weights", &weights_of, "(M,); they sum to 1.");
 }
 
 }  // namespace helixnav::python

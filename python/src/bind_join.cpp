@@ -89,50 +89,51 @@ std::optional<Decided> decision_on(const supervisor::JoinedSession& session) {
 
 void bind_parts(py::module_& module) {
   using supervisor::JoinedSession;
-  py::class_<JoinedSession>(module, "JoinedSession", "What became of one session of join.")
+  py::class_<JoinedSession>(module, "JoinedSession", "What join made of one session.")
       .def_readonly("component", &JoinedSession::component, "Index in Joined.components.")
       .def_property_readonly(
           "transform", [](const JoinedSession& s) { return s.T_component_session.vector(); },
           "(x, y, heading): the session's frame in that of its component.")
-      .def_property_readonly(
-          "decision", &decision_on,
-          "How it was placed, or why it was not; None for the session that gave the first component its frame: it was "
-          "not asked.")
-      .def_readonly("landmark_of", &JoinedSession::name_of, "Ids in the component by the session's own; mature ones.");
+      .def_property_readonly("decision", &decision_on,
+                             "How it was placed, or why it was not; None for the session that gave the first component "
+                             "its frame, which needs no placing.")
+      .def_readonly("landmark_of", &JoinedSession::name_of,
+                    "Ids in the component by the session's own ids; mature landmarks only.");
   using apps::ChangedLandmark;
-  py::class_<ChangedLandmark>(module, "ChangedLandmark", "A landmark on ground that several sessions looked at.")
+  py::class_<ChangedLandmark>(module, "ChangedLandmark", "A landmark in an area that several sessions observed.")
       .def_readonly("component", &ChangedLandmark::component, "Index in Joined.components.")
       .def_readonly("landmark", &ChangedLandmark::id, "Id in the component.")
       .def_readonly("position", &ChangedLandmark::point_m, "(2,): in the frame of the component [m].")
       .def_property_readonly(
           "change", [](const ChangedLandmark& l) { return apps::name_of(l.change()); },
-          "'kept', 'gone', 'new', 'both' (it went and came) or 'moved'.")
+          "'kept', 'gone', 'new', 'both' (it both came and went) or 'moved'.")
       .def_property_readonly(
           "counterpart",
           [](const ChangedLandmark& l) {
             return l.counterpart == core::no_landmark ? std::optional<core::LandmarkId>() : l.counterpart;
           },
-          "Of what moved: the new landmark of the one that is gone, and the other way round; else None.")
-      .def_readonly("seen_in", &ChangedLandmark::seen_in, "Indices of sessions.")
-      .def_readonly("missing_in", &ChangedLandmark::missing_in, "Likewise, that looked there.");
+          "For a moved landmark: the new landmark if this one is gone, and vice versa; otherwise None.")
+      .def_readonly("seen_in", &ChangedLandmark::seen_in, "Indices of the sessions that saw it.")
+      .def_readonly("missing_in", &ChangedLandmark::missing_in,
+                    "Indices of the sessions that looked there without seeing it.");
 }
 
 }  // namespace
 
 void bind_join(py::module_& module) {
   bind_parts(module);
-  py::class_<Joined>(module, "Joined", "Several sessions as few maps as can be said.")
+  py::class_<Joined>(module, "Joined", "Several sessions joined into as few maps as the evidence allows.")
       .def_property_readonly(
           "components", [](const Joined& j) { return j.joined.components; },
-          "JointMaps; that of the largest session first.")
+          "JointMaps, the one with the largest session first.")
       .def_property_readonly(
           "sessions", [](const Joined& j) { return j.joined.sessions; }, "In the order given.")
-      .def_readonly("changes", &Joined::changes, "What is new or gone, sessions taken as in order of time.");
+      .def_readonly("changes", &Joined::changes, "What is new or gone, taking the sessions to be in time order.");
   module.def(
       "join", &join, py::arg("sessions"), py::arg("out") = py::none(), py::arg("overwrite") = false,
-      "One map of several sessions that began anywhere: JointMaps or run folders, oldest first. Each is found on "
-      "the others by its landmarks, or stays a component of its own. With `out`, the folder of helixnav join is "
-      "written. InputError for a map that is in the list twice, and for two that hold what one drive saw.");
+      "Joins several sessions that began anywhere into one map: JointMaps or run folders, oldest first. Each is placed "
+      "on the others by its landmarks, or remains a separate component. With `out`, the folder of helixnav join is "
+      "written. InputError if a map is listed twice, or if two maps contain observations of the same drive.");
 }
 
 }  // namespace helixnav::python

@@ -98,38 +98,37 @@ Rows true_landmarks_of(const Log& log) {
 }  // namespace
 
 void bind_log(py::module_& module) {
-  py::class_<Log>(module, "Log",
-                  "A drive as it was recorded or simulated, with the navigator's options for its sensor.")
+  py::class_<Log>(module, "Log", "A recorded or simulated drive, with the navigator options for its sensor.")
       .def_property_readonly(
-          "name", [](const Log& log) { return text_with_paths(log.recording.name); }, "Of the file or the scenario.")
+          "name", [](const Log& log) { return text_with_paths(log.recording.name); }, "Name of the file or scenario.")
       .def_property_readonly(
           "start", [](const Log& log) { return log.recording.start; },
-          "The Pose that the drive begins with, in the map frame.")
+          "The Pose at the start of the drive, in the map frame.")
       .def_property_readonly(
           "events", [](const Log& log) { return log.recording.events; },
-          "Odometry, Scan, AbsoluteFix and Lost in order; a copy.")
+          "Odometry, Scan, AbsoluteFix and Lost events in order; a copy.")
       .def_property_readonly(
           "labels", [](const Log& log) { return log.recording.labels; },
-          "Of each scan, of each observation: the identity, -1 for none; empty when the log has none.")
+          "For each scan, the identity of each observation, -1 for none; empty if the log has no identities.")
       .def_property_readonly("true_poses", &true_poses_of, "(N, 4): t, x, y, heading in the map frame.")
-      .def_property_readonly("true_positions", &true_positions_of, "(N, 3): t, x, y in a frame of their own.")
+      .def_property_readonly("true_positions", &true_positions_of, "(N, 3): t, x, y in their own frame.")
       .def_property_readonly("true_landmarks", &true_landmarks_of, "(N, 2).")
       .def_property_readonly(
           "remarks", [](const Log& log) { return texts_with_paths(log.recording.remarks); },
-          "What was mended, left out or is doubtful, a sentence each.")
-      .def_readonly("known_association", &Log::known_association, "Whether replay takes the labels for identities.")
+          "What was repaired, left out or is doubtful, one sentence each.")
+      .def_readonly("known_association", &Log::known_association, "Whether replay uses the labels as identities.")
       .def_property_readonly(
           "config", [](const Log& log) { return text_with_paths(log.config); },
           "The configuration in force, as helixnav config --dump writes it.")
       .def("__len__", [](const Log& log) { return log.recording.events.size(); });
   module.def("read_log", &read_log, py::arg("path"), py::arg("vehicle") = py::none(), py::arg("options") = py::dict(),
              py::arg("blackouts") = std::vector<std::pair<double, double>>(),
-             "Reads a log as helixnav replay does; without `vehicle`, by the vehicle.toml beside a log of one's own. "
-             "Options are keys and values as in a configuration file; the scans of `blackouts`, (begin, end) each in "
-             "seconds, are withheld from the navigator. InputError names file, line and column.");
+             "Reads a log as helixnav replay does; without `vehicle`, a log in your own format uses the vehicle.toml "
+             "next to it. Options are keys and values as in a configuration file; scans within `blackouts`, each "
+             "(begin, end) in seconds, are withheld from the navigator. InputError names file, line and column.");
   module.def("simulate", &simulate, py::arg("scenario") = "large-loop", py::arg("seed") = 1,
              py::arg("options") = py::dict(),
-             "A drive through a world with known truth; the same seed gives the same drive.");
+             "Simulates a drive through a world with known truth; the same seed gives the same drive.");
 }
 
 }  // namespace helixnav::python

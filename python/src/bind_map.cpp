@@ -93,8 +93,8 @@ void bind_landmarks(py::module_& module) {
       .def_property_readonly("means", &means_of, "(N, 2) [m]")
       .def_property_readonly("covariances", &covariances_of, "(N, 2, 2) [m²]")
       .def_property_readonly("observations", &counts_of, "(N,)")
-      .def_property_readonly("states", &states_of, "'tentative' or 'mature' each")
-      .def_property_readonly("classes", &classes_of, "The likeliest class of each; '' where none was given")
+      .def_property_readonly("states", &states_of, "'tentative' or 'mature' for each")
+      .def_property_readonly("classes", &classes_of, "The most likely class of each; '' where none was given")
       .def_property_readonly("sizes", &sizes_of, "(N, 2), mean and standard deviation [m]; NaN where none was given")
       .def("__len__", [](const Map& map) { return map.landmarks.size(); });
 }
@@ -111,24 +111,22 @@ void save(const core::JointMap& map, const fs::path& folder, bool overwrite) {
 }
 
 void bind_joint_map(py::module_& module) {
-  py::class_<core::JointMap>(module, "JointMap",
-                             "A map with all correlations and the pose at its end: what another session needs to go on "
-                             "in it.")
+  py::class_<core::JointMap>(
+      module, "JointMap",
+      "A map with all correlations and the pose at its end: what another session needs to continue in it.")
       .def_property_readonly(
           "landmarks", [](const core::JointMap& map) { return Map{runs::landmarks_of(map)}; },
-          "A Map: the landmarks without what they have in common.")
-      .def_property_readonly("pose", &pose_in, "Of the vehicle at the end of that session.")
+          "A Map: the landmarks without their cross-correlations.")
+      .def_property_readonly("pose", &pose_in, "The vehicle's pose at the end of that session.")
       .def_property_readonly(
           "covariance", [](const core::JointMap& map) { return map.joint.covariance; },
-          "(3 + 2 N, 3 + 2 N) of x, y, heading and the landmarks' x, y.")
-      .def_readonly("reach", &core::JointMap::reach_m, "Of the sensor that drew it [m]; 0: unknown.")
+          "(3 + 2 N, 3 + 2 N): covariance of x, y, heading and the landmarks' x, y.")
+      .def_readonly("reach", &core::JointMap::reach_m, "Reach of the sensor that mapped it [m]; 0: unknown.")
       .def_readonly("drives", &core::JointMap::drives,
-                    "Digests of the drives that went into it; maps that have one in common are not joined. Empty: "
-                    "unknown.")
-      .def(
-          "save", &save, py::arg("folder"), py::arg("overwrite") = false, py::call_guard<WithoutGil>(),
-          "Writes map.csv and, up to 2000 landmarks, map.bin with drives.csv; replay goes on in the folder. InputError "
-          "where that is not empty; with overwrite the files of a run that was there are gone.")
+                    "Digests of the drives that went into it; maps that share one are not joined. Empty: unknown.")
+      .def("save", &save, py::arg("folder"), py::arg("overwrite") = false, py::call_guard<WithoutGil>(),
+           "Writes map.csv and, for up to 2000 landmarks, map.bin with drives.csv; replay can continue in the folder. "
+           "InputError if it is not empty; with overwrite, the files of any earlier run there are deleted.")
       .def("__len__", [](const core::JointMap& map) { return map.joint.ids.size(); });
 }
 
@@ -140,7 +138,7 @@ void bind_map(py::module_& module) {
   bind_landmarks(module);
   bind_joint_map(module);
   module.def("read_map", &read_map, py::arg("folder"), py::call_guard<WithoutGil>(),
-             "The JointMap that a run, or join, left in its folder.");
+             "Reads the JointMap that a run or join left in its folder.");
 }
 
 }  // namespace helixnav::python

@@ -58,17 +58,17 @@ std::string words_of(const Decided& decided) {
 }
 
 void bind_report_parts(py::module_& module) {
-  py::class_<core::AssociationReport>(module, "Association", "What became of one observation of a scan.")
+  py::class_<core::AssociationReport>(module, "Association", "What became of one observation in a scan.")
       .def_readonly("observation", &core::AssociationReport::observation, "Index in the scan.")
       .def_property_readonly(
           "outcome", [](const core::AssociationReport& a) { return runs::word_of(runs::outcome_words, a.outcome); },
           "'matched', 'augmented', 'ambiguous' or 'rejected'")
       .def_property_readonly("landmark", &landmark_of, "Its id, or None.")
       .def_readonly("nis", &core::AssociationReport::nis,
-                    "Squared innovation by its covariance; NaN without a landmark.")
-      .def_readonly("dof", &core::AssociationReport::dof, "Degrees of freedom of the nis.")
+                    "The innovation squared, normalised by its covariance; NaN without a landmark.")
+      .def_readonly("dof", &core::AssociationReport::dof, "Degrees of freedom of nis.")
       .def_readonly("margin_nats", &core::AssociationReport::margin_nats,
-                    "ln of the likelihood ratio to the best alternative.");
+                    "ln of the likelihood ratio against the best alternative.");
   py::class_<Decided>(module, "Decision", "A row of decisions.csv.")
       .def_property_readonly(
           "kind", [](const Decided& d) { return core::row_of(d.decision).kind; },
@@ -76,8 +76,8 @@ void bind_report_parts(py::module_& module) {
       .def_property_readonly(
           "verdict", [](const Decided& d) { return core::row_of(d.decision).verdict; },
           "As in decisions.csv: accepted, refused …")
-      .def_property_readonly("numbers", &numbers_of, "Name with unit: value.")
-      .def_property_readonly("sentence", &words_of, "The same in words.")
+      .def_property_readonly("numbers", &numbers_of, "Values by name with unit.")
+      .def_property_readonly("sentence", &words_of, "The decision in words.")
       .def("__repr__", [](const Decided& d) { return "<Decision: " + words_of(d) + ">"; });
 }
 
@@ -100,14 +100,16 @@ std::vector<std::pair<std::int64_t, std::vector<core::AssociationReport>>> revis
 }
 
 void bind_report(py::module_& module) {
-  py::class_<core::NumericalHealth>(module, "NumericalHealth", "How far the arithmetic of a step was from its limits.")
+  py::class_<core::NumericalHealth>(module, "NumericalHealth", "How far a step's arithmetic was from its limits.")
       .def_readonly("least_pivot", &core::NumericalHealth::least_pivot,
-                    "Of the innovation covariances, by their diagonals; 1 without an update.")
-      .def_readonly("asymmetry", &core::NumericalHealth::asymmetry, "Of the same, by rounding.")
-      .def_readonly("repaired", &core::NumericalHealth::repaired, "Failed as asked, done in another way.")
-      .def_readonly("refused", &core::NumericalHealth::refused, "Failed and left undone.");
+                    "Least pivot of the innovation covariances, relative to their diagonals; 1 without an update.")
+      .def_readonly("asymmetry", &core::NumericalHealth::asymmetry,
+                    "Asymmetry of the innovation covariances, from rounding.")
+      .def_readonly("repaired", &core::NumericalHealth::repaired,
+                    "Operations that failed as requested and were done another way.")
+      .def_readonly("refused", &core::NumericalHealth::refused, "Operations that failed and were not done.");
   py::class_<core::StepReport>(module, "StepReport", "What one scan did to the map and the pose.")
-      .def_readonly("step", &core::StepReport::step, "Number of the scan, from 0 on.")
+      .def_readonly("step", &core::StepReport::step, "Number of the scan, from 0.")
       .def_readonly("t_ns", &core::StepReport::t_ns, "Time of the scan [ns].")
       .def_property_readonly(
           "t", [](const core::StepReport& r) { return core::seconds(r.t_ns); }, "Time of the scan [s].")
@@ -117,14 +119,14 @@ void bind_report(py::module_& module) {
       .def_readonly("pose", &core::StepReport::pose, "A Pose in the map frame, after the scan.")
       .def_readonly("associations", &core::StepReport::associations, "An Association for each observation.")
       .def_property_readonly("decisions", &decisions_of, "What was decided with this scan.")
-      .def_property_readonly("merged", &merged_of, "(kept, removed) of landmarks that became one.")
-      .def_property_readonly("revised", &revised_of,
-                             "(step, associations) of earlier scans gone through again: these hold, not what their own "
-                             "reports say.")
-      .def_readonly("joint_nis", &core::StepReport::joint_nis, "Of all matched observations together.")
+      .def_property_readonly("merged", &merged_of, "(kept, removed) for landmarks that were merged.")
+      .def_property_readonly(
+          "revised", &revised_of,
+          "(step, associations) of earlier scans that were reprocessed: these supersede their own reports.")
+      .def_readonly("joint_nis", &core::StepReport::joint_nis, "NIS of all matched observations together.")
       .def_readonly("joint_dof", &core::StepReport::joint_dof, "Degrees of freedom of joint_nis; 0 without an update.")
       .def_readonly("numerics", &core::StepReport::numerics, "The NumericalHealth.")
-      .def_readonly("landmarks", &core::StepReport::mapped_landmarks, "How many are on the map.");
+      .def_readonly("landmarks", &core::StepReport::mapped_landmarks, "Number of landmarks on the map.");
 }
 
 using Released = py::call_guard<WithoutGil>;
@@ -240,19 +242,19 @@ void look_for_place(Locked<Navigator>& self, const core::JointMap& earlier) {
 
 template <class AnyNavigator>
 void bind_common(py::class_<Locked<AnyNavigator>>& type) {
-  type.def(py::init(&of_options<AnyNavigator>), py::arg("start") = core::PoseGaussian(),
-           py::arg("options") = py::dict(),
-           "Options are keys and values as in a configuration file; lengths follow the sensor of the first scan.")
-      .def(py::init(&of_log<AnyNavigator>), py::arg("log"), "With the start and the options of a log.")
-      .def("move", locked(&AnyNavigator::move), py::arg("odometry"), Released(), "Collects motion.")
+  type.def(
+          py::init(&of_options<AnyNavigator>), py::arg("start") = core::PoseGaussian(), py::arg("options") = py::dict(),
+          "Options are keys and values as in a configuration file; lengths are fitted to the sensor of the first scan.")
+      .def(py::init(&of_log<AnyNavigator>), py::arg("log"), "Uses the start and options of a log.")
+      .def("move", locked(&AnyNavigator::move), py::arg("odometry"), Released(), "Accumulates motion.")
       .def("fix", locked(&AnyNavigator::fix), py::arg("fix"), Released(),
-           "True when the fix passed its gate and was used.")
+           "True if the fix passed its gate and was used.")
       .def_property_readonly("pose", py::cpp_function(locked(&AnyNavigator::pose), Released()),
-                             "At the last scan or fix.")
-      .def_property_readonly("map", py::cpp_function(&map_of<AnyNavigator>, Released()), "The landmarks as of now.")
+                             "The pose at the last scan or fix.")
+      .def_property_readonly("map", py::cpp_function(&map_of<AnyNavigator>, Released()), "The landmarks now.")
       .def("joint_map", &joint_map_of<AnyNavigator>, py::arg("reach") = 0.0, Released(),
-           "The map with all correlations and the pose, for another session to go on in; None above 2000 landmarks. "
-           "`reach` is the sensor's [m], 0 where it is unknown.");
+           "The map with all correlations and the pose, for another session to continue in; None above 2000 landmarks. "
+           "`reach` is the sensor's [m], 0 if unknown.");
 }
 
 }  // namespace
@@ -261,31 +263,32 @@ void bind_navigator(py::module_& module) {
   bind_report_parts(module);
   bind_report(module);
   py::class_<Locked<Navigator>> unnamed(module, "Navigator",
-                                        "Navigates with unknown data association; searches and closes loops.");
+                                        "Navigates with unknown data association; searches for loops and closes them.");
   bind_common(unnamed);
-  unnamed.def("observe", &observe_unnamed, py::arg("scan"), Released(), "One scan.")
+  unnamed.def("observe", &observe_unnamed, py::arg("scan"), Released(), "Processes one scan.")
       .def("lose", locked(&Navigator::lose), py::arg("lost"), Released(),
-           "The vehicle was carried: its place is sought on what was mapped so far.")
-      .def("take", &take_unnamed, py::arg("event"), Released(), "Any event; the report of a scan, None for others.")
+           "The vehicle was carried: searches for its place in what has been mapped so far.")
+      .def("take", &take_unnamed, py::arg("event"), Released(),
+           "Takes any event; returns the report of a scan, None for others.")
       .def_static("go_on_in", &go_on, py::arg("earlier"), py::arg("options") = py::dict(),
-                  "Goes on in the JointMap of an earlier session, from the pose in it.")
+                  "Continues in the JointMap of an earlier session, from its pose.")
       .def("look_for_place_in", &look_for_place, py::arg("earlier"), Released(),
-           "This session begins somewhere on the JointMap, or elsewhere: it maps on its own until the place is found, "
-           "and "
-           "then goes on in the frame of that map. Before the first scan only.")
+           "For a session that begins somewhere on the JointMap, or elsewhere: maps on its own until its place is "
+           "found, then continues in the frame of that map. Only before the first scan.")
       .def_property_readonly("maps_apart", py::cpp_function(&maps_apart, Released()),
-                             "JointMaps of which it is not known how the present one lies to them, by part of the "
-                             "drive; 0: the earlier map of look_for_place_in.");
-  py::class_<Locked<NamedNavigator>> named(module, "NamedNavigator", "For observations that are known by an identity.");
+                             "JointMaps whose pose relative to the present map is unknown, by part of the drive; 0: "
+                             "the earlier map of look_for_place_in.");
+  py::class_<Locked<NamedNavigator>> named(module, "NamedNavigator",
+                                           "Navigates with observations whose identities are known.");
   bind_common(named);
   named
       .def("observe", &observe_named, py::arg("scan"), py::arg("identities"),
-           "One scan, with an identity for each observation; a negative one is no landmark.")
+           "Processes one scan, with an identity for each observation; a negative one is not a landmark.")
       .def("take", &take_named, py::arg("event"), py::arg("identities") = py::tuple(),
-           "Any event; the report of a scan, None for others.")
+           "Takes any event; returns the report of a scan, None for others.")
       .def_static("go_on_in", &go_on_named, py::arg("earlier"), py::arg("landmark_of"), py::arg("options") = py::dict(),
-                  "Goes on in the JointMap of an earlier session, from the pose in it; landmark_of says which landmark "
-                  "of it an identity is.");
+                  "Continues in the JointMap of an earlier session, from its pose; landmark_of maps identities to "
+                  "landmarks of that map.");
 }
 
 }  // namespace helixnav::python

@@ -113,42 +113,42 @@ py::dict figures_of(const runs::Run& run) {
 }  // namespace
 
 void bind_run(py::module_& module) {
-  py::class_<runs::Run>(module, "Run", "A drive that was navigated: what helixnav replay writes into a run folder.")
+  py::class_<runs::Run>(module, "Run", "A navigated drive: what helixnav replay writes into a run folder.")
       .def_property_readonly(
-          "path", [](const runs::Run& run) { return text_with_paths(run.path); }, "Its folder; empty without one.")
+          "path", [](const runs::Run& run) { return text_with_paths(run.path); },
+          "The run folder; empty if there is none.")
       .def_readonly("steps", &runs::Run::steps, "A StepReport for each scan.")
       .def_property_readonly("trajectory", &trajectory_of, "(N, 4): t, x, y, heading at each scan, as estimated then.")
       .def_property_readonly(
-          "map", [](const runs::Run& run) { return Map{run.map}; }, "The landmarks at its end, in the map frame.")
+          "map", [](const runs::Run& run) { return Map{run.map}; }, "The landmarks at the end, in the map frame.")
       .def_readonly("joint_map", &runs::Run::joint_map,
-                    "The map to go on in, a JointMap; None of a run that was read (read_map reads it), that only "
-                    "localized, of FastSLAM and above 2000 landmarks.")
-      .def_property_readonly("final_trajectory", &final_trajectory_of,
-                             "(N, 4): the same as known at the end; the trajectory where nothing corrected it.")
-      .def_property_readonly("numbers", &figures_of, "Figures of a smoother and of a map given, by name.")
-      .def("evaluate", &evaluation_of, "Errors against the truth of the log, as helixnav evaluate --json.")
+                    "The JointMap to continue in; None for a run that was read (use read_map), that only localised or "
+                    "that used FastSLAM, and above 2000 landmarks.")
+      .def_property_readonly(
+          "final_trajectory", &final_trajectory_of,
+          "(N, 4): the trajectory as known at the end; equal to trajectory where nothing corrected it.")
+      .def_property_readonly("numbers", &figures_of, "Figures from smoothing and from a given map, by name.")
+      .def("evaluate", &evaluation_of, "Errors against the log's truth, as in helixnav evaluate --json.")
       .def(
           "explain", [](const runs::Run& run) { return text_with_paths(reports::explain_run(run)); },
-          "How many loops were closed, refused or left open, in sentences.")
-      .def(
-          "warnings", &warnings_of,
-          "What is not well, a sentence each, as helixnav replay says it. Of a run that was read, without what the log "
-          "alone tells: constants that err all along.")
+          "Says in sentences how many loops were closed, refused or left open.")
+      .def("warnings", &warnings_of,
+           "What is wrong, one sentence each, as helixnav replay reports it. For a run that was read, without what "
+           "only the log shows: constants that are wrong throughout.")
       .def("__len__", [](const runs::Run& run) { return run.steps.size(); });
-  module.def(
-      "replay", &replay_as_asked, py::arg("log"), py::arg("out") = py::none(), py::arg("overwrite") = false,
-      py::arg("map") = py::none(), py::arg("start") = py::none(), py::arg("localize") = false,
-      py::arg("smooth") = false,
-      "Navigates along a log by the filter that its options choose. With `out`, a run folder is written as helixnav "
-      "replay writes it. `map`, the folder of an earlier run or a JointMap, is gone on in, or with `localize` stays as "
-      "it is and the pose alone is estimated in it (then map.csv will do); `start` on it is 'unknown', 'end' or a pose "
-      "(x, y, heading). `smooth`: least squares over the filter's own associations afterwards. NumericalError names "
-      "step and time; what was navigated until then is in the run folder.");
+  module.def("replay", &replay_as_asked, py::arg("log"), py::arg("out") = py::none(), py::arg("overwrite") = false,
+             py::arg("map") = py::none(), py::arg("start") = py::none(), py::arg("localize") = false,
+             py::arg("smooth") = false,
+             "Navigates along a log with the filter chosen by its options. With `out`, writes a run folder as helixnav "
+             "replay does. `map`, the folder of an earlier run or a JointMap, is continued in, or with `localize` left "
+             "unchanged while only the pose is estimated in it (map.csv is then enough); `start` on it is 'unknown', "
+             "'end' or a pose (x, y, heading). `smooth`: least squares over the filter's own associations afterwards. "
+             "NumericalError names step and time; what was navigated until then is in the run folder.");
   module.def(
       "read_run", [](const fs::path& path) { return runs::read_run(path.string()); }, py::arg("path"),
-      py::call_guard<WithoutGil>(), "Reads a run folder, also one whose run was killed.");
-  module.def("evaluate", &evaluation_of, py::arg("run"), "As Run.evaluate.");
-  module.def("evaluate", &evaluation_of_folder, py::arg("run"), "Of the run folder at a path.");
+      py::call_guard<WithoutGil>(), "Reads a run folder, even if its run was killed.");
+  module.def("evaluate", &evaluation_of, py::arg("run"), "The same as Run.evaluate.");
+  module.def("evaluate", &evaluation_of_folder, py::arg("run"), "Evaluates the run folder at a path.");
 }
 
 }  // namespace helixnav::python

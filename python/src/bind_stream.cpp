@@ -116,11 +116,10 @@ std::string line_of(const py::object& line) {
 void bind_stream(py::module_& module) {
   py::class_<Stream>(
       module, "Stream",
-      "helixnav stream for a program of one's own: rows of odometry and detections with their times, as "
-      "they come. A scan is put where it was taken: the motion is divided there, and one that comes up to "
-      "a second late is waited for.")
+      "helixnav stream for your own program: takes rows of odometry and detections with their times, as they arrive. A "
+      "scan is processed where it was taken: the motion is split there, and a scan up to a second late is waited for.")
       .def(py::init(&stream_of), py::arg("vehicle"), py::arg("options") = py::dict(),
-           "`vehicle`: a vehicle.toml, which says reach and view of each sensor. Options as in a configuration file.")
+           "`vehicle`: a vehicle.toml, which gives each sensor's reach and view. Options as in a configuration file.")
       .def(
           "take",
           [](Stream& self, const py::object& line) {
@@ -129,24 +128,24 @@ void bind_stream(py::module_& module) {
             return self.take(text);
           },
           py::arg("line"),
-          "A line of JSON Lines, or the dictionary of one, as {'odometry': {'t': 0.1, 'v': 1.2, 'omega_degps': 3}}. "
-          "The "
-          "StepReports of the scans that became due by it: a scan is once the odometry has reached its time.")
+          "Takes a line of JSON Lines, or the equivalent dictionary, e.g. {'odometry': {'t': 0.1, 'v': 1.2, "
+          "'omega_degps': 3}}. Returns the StepReports of the scans that it made due: a scan is due once the odometry "
+          "has reached its time.")
       .def("finish", &Stream::finish, py::call_guard<WithoutGil>(),
-           "Nothing comes any more: StepReports of what still waits.")
+           "Ends the input; returns the StepReports of scans still waiting.")
       .def("take_refused", &Stream::take_refused, py::call_guard<WithoutGil>(),
-           "(line, key, why) of what was not used since this was called last.")
+           "(line, key, why) for input that was not used since the last call.")
       .def("take_remarks", &Stream::take_remarks, py::call_guard<WithoutGil>(),
-           "Sentences on what is doubtful, since this was called last.")
+           "Sentences on what is doubtful since the last call.")
       .def_property_readonly(
           "map",
           [](Stream& self) {
             const WithoutGil released;
             return self.map();
           },
-          "The Map now.")
+          "The current Map.")
       .def("joint_map", &Stream::joint_map, py::call_guard<WithoutGil>(),
-           "The JointMap for another session; None before the first scan, or where the map is too large.");
+           "The JointMap for another session; None before the first scan, or if the map is too large.");
 }
 
 }  // namespace helixnav::python

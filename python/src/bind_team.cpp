@@ -115,57 +115,61 @@ void bind_sightings(py::module_& module) {
       .def_property_readonly(
           "t", [](const RobotSighting& s) { return core::seconds(s.t_ns); }, "Time [s].")
       .def_readonly("t_ns", &RobotSighting::t_ns, "Time [ns].")
-      .def_readonly("seen", &RobotSighting::seen, "Index of the robot that is seen.")
+      .def_readonly("seen", &RobotSighting::seen, "Index of the robot seen.")
       .def_property_readonly(
           "z", [](const RobotSighting& s) { return Eigen::Vector2d(s.observation.z); },
-          "(2,): range and bearing [m, rad], or x and y [m], in the frame of the sensor.")
+          "(2,): range and bearing [m, rad], or x and y [m], in the sensor frame.")
       .def_property_readonly(
           "R", [](const RobotSighting& s) { return Eigen::Matrix2d(s.observation.R); }, "(2, 2): covariance of z.");
-  py::class_<JudgedSighting>(module, "JudgedSighting", "A robot that was seen, and what came of it.")
+  py::class_<JudgedSighting>(module, "JudgedSighting", "A sighting of one robot by another, and its outcome.")
       .def_property_readonly(
           "t", [](const JudgedSighting& s) { return core::seconds(s.t_ns); }, "Time [s].")
-      .def_readonly("robot", &JudgedSighting::robot, "Index of the one that saw.")
-      .def_readonly("seen", &JudgedSighting::seen, "Index of the one that was seen.")
-      .def_readonly("used", &JudgedSighting::used, "Whether it is in the solution.")
+      .def_readonly("robot", &JudgedSighting::robot, "Index of the robot that saw.")
+      .def_readonly("seen", &JudgedSighting::seen, "Index of the robot that was seen.")
+      .def_readonly("used", &JudgedSighting::used, "Whether it is used in the solution.")
       .def_readonly("residual", &JudgedSighting::residual,
-                    "Against the last solution; None between robots that have no common frame.");
+                    "Residual against the last solution; None between robots without a common frame.");
 }
 
 void bind_joins(py::module_& module) {
-  py::class_<TeamJoin>(module, "TeamJoin", "Two components of a team became one.")
+  py::class_<TeamJoin>(module, "TeamJoin", "A join of two components of a team.")
       .def_property_readonly(
           "by", [](const TeamJoin& j) { return team::name_of(j.by); }, "'names', 'sightings' or 'constellation'.")
       .def_property_readonly(
           "t", [](const TeamJoin& j) { return core::seconds(j.t_ns); }, "Time [s].")
       .def_readonly("robot", &TeamJoin::robot, "First robot of the component that kept its frame.")
-      .def_readonly("other", &TeamJoin::other, "First robot of the one that came into it.")
+      .def_readonly("other", &TeamJoin::other, "First robot of the component that joined it.")
       .def_property_readonly(
-          "transform", [](const TeamJoin& j) { return j.T_component_other.vector(); }, "(x, y, heading) of its frame.")
-      .def_readonly("merged", &TeamJoin::merged, "Landmarks of the two that became one.")
-      .def_readonly("left_out", &TeamJoin::left_out, "Names that both have and that contradict the others.")
-      .def_readonly("sightings", &TeamJoin::sightings, "Of robots by each other, where these joined.")
-      .def_readonly("cost", &TeamJoin::cost, "Chi squared of what joined.")
+          "transform", [](const TeamJoin& j) { return j.T_component_other.vector(); },
+          "(x, y, heading): frame of the component that joined, in the frame that was kept.")
+      .def_readonly("merged", &TeamJoin::merged, "Number of landmarks that both had and that were merged.")
+      .def_readonly("left_out", &TeamJoin::left_out, "Number of names common to both that contradict the others.")
+      .def_readonly("sightings", &TeamJoin::sightings,
+                    "Number of sightings of robots by each other, if these made the join.")
+      .def_readonly("cost", &TeamJoin::cost, "Chi-squared of the join.")
       .def_readonly("dof", &TeamJoin::dof, "Its degrees of freedom.")
-      .def_readonly("limit", &TeamJoin::limit, "That the cost had to stay below.");
+      .def_readonly("limit", &TeamJoin::limit, "Limit that the cost had to stay below.");
   py::class_<TakenBackJoin>(module, "TakenBackJoin",
-                            "A join that sightings since then contradicted, or that was taken back by hand.")
+                            "A join that later sightings contradicted, or that was taken back by hand.")
       .def_readonly("join", &TakenBackJoin::join, "The TeamJoin.")
       .def_property_readonly(
           "t", [](const TakenBackJoin& one) { return core::seconds(one.t_ns); }, "When it was taken back [s].")
-      .def_readonly("refused", &TakenBackJoin::refused, "Sightings between its two sides since then that were refused.")
-      .def_readonly("seen", &TakenBackJoin::seen, "Of so many; 0: by hand.");
+      .def_readonly("refused", &TakenBackJoin::refused,
+                    "Number of refused sightings between its two sides since the join.")
+      .def_readonly("seen", &TakenBackJoin::seen, "Out of this many; 0: taken back by hand.");
 }
 
 void bind_same_landmarks(py::module_& module) {
-  py::class_<SameLandmarks>(module, "SameLandmarks", "Two landmarks of a team became one by where they stand.")
+  py::class_<SameLandmarks>(module, "SameLandmarks", "Two landmarks of a team merged by their position.")
       .def_property_readonly(
           "t", [](const SameLandmarks& s) { return core::seconds(s.t_ns); }, "Time [s].")
-      .def_readonly("kept", &SameLandmarks::kept, "Id that stays.")
-      .def_readonly("removed", &SameLandmarks::removed, "Id that went.")
-      .def_readonly("nats", &SameLandmarks::nats, "ln of the likelihood ratio against another one that stands there.")
-      .def_readonly("cost", &SameLandmarks::cost, "Chi squared of the two as one.")
+      .def_readonly("kept", &SameLandmarks::kept, "Id that was kept.")
+      .def_readonly("removed", &SameLandmarks::removed, "Id that was removed.")
+      .def_readonly("nats", &SameLandmarks::nats,
+                    "ln of the likelihood ratio against a different landmark standing there.")
+      .def_readonly("cost", &SameLandmarks::cost, "Chi-squared of the two as one.")
       .def_readonly("dof", &SameLandmarks::dof, "Its degrees of freedom.")
-      .def_readonly("limit", &SameLandmarks::limit, "That the cost had to stay below.");
+      .def_readonly("limit", &SameLandmarks::limit, "Limit that the cost had to stay below.");
 }
 
 }  // namespace
@@ -175,43 +179,41 @@ void bind_team(py::module_& module) {
   bind_sightings(module);
   bind_joins(module);
   bind_same_landmarks(module);
-  py::class_<LockedTeam>(
-      module, "Team",
-      "Several robots in one map; a robot of unknown start is a component of its own until something "
-      "joins it. Robots by their index.")
-      .def(
-          py::init(&make_team), py::arg("starts"), py::arg("by_names") = true, py::arg("by_sightings") = true,
-          py::arg("by_constellation") = false, py::arg("by_place") = false, py::arg("looks_as_one") = 1.0,
-          "A Pose for each robot, None where the start is unknown. With by_names a name means the same landmark to all "
-          "robots, else to its own; with by_place landmarks of one place become one. looks_as_one: so many looks in a "
-          "row say "
-          "what one would (1 or more), and scans without names are told apart by the noise of one.")
-      .def(
-          "take", &take_of_robot, py::arg("robot"), py::arg("event"), py::arg("names") = py::tuple(),
-          "Odometry, or a scan with a name for each observation, a negative one for none, or without names: associated "
-          "by place. The report of a scan; None "
-          "for odometry, and for a scan that came late. PreconditionError for AbsoluteFix and Lost.")
+  py::class_<LockedTeam>(module, "Team",
+                         "Several robots in one map; a robot with an unknown start is a separate component until "
+                         "something joins it. Robots are given by index.")
+      .def(py::init(&make_team), py::arg("starts"), py::arg("by_names") = true, py::arg("by_sightings") = true,
+           py::arg("by_constellation") = false, py::arg("by_place") = false, py::arg("looks_as_one") = 1.0,
+           "starts: a Pose for each robot, None if unknown. With by_names, a name means the same landmark to all "
+           "robots, otherwise only to its own robot; with by_place, landmarks in the same place are merged. "
+           "looks_as_one (1 or more): this many consecutive looks carry as much information as one, and landmarks in "
+           "scans without names are told apart using the noise of a single look.")
+      .def("take", &take_of_robot, py::arg("robot"), py::arg("event"), py::arg("names") = py::tuple(),
+           "Takes odometry, or a scan with a name for each observation (negative for none); a scan without names is "
+           "associated by place. Returns the report of a scan; None for odometry and for a scan that came late. "
+           "PreconditionError for AbsoluteFix and Lost.")
       .def("sight", locked(&Team::sight), py::arg("robot"), py::arg("sighting"), Released(),
-           "`robot` sees another one.")
-      .def("solve", locked(&Team::solve), Released(), "Solves the graph with all that has come.")
+           "`robot` sees another robot.")
+      .def("solve", locked(&Team::solve), Released(), "Solves the graph with everything received so far.")
       .def("pose", of_robot(&Team::pose), py::arg("robot"), Released(),
-           "After the last event, in its component's frame.")
-      .def("component", of_robot(&Team::component), py::arg("robot"), Released(), "Index of its first robot.")
+           "Pose after the last event, in its component's frame.")
+      .def("component", of_robot(&Team::component), py::arg("robot"), Released(),
+           "Index of the component's first robot.")
       .def("map", &map_of_robot, py::arg("robot"), Released(), "Landmarks of the robot's component.")
       .def("path", &path_of_robot, py::arg("robot"),
            "(N, 4): t, x, y, heading where it saw something or was seen, as known at the last solution.")
       .def("landmark_of", &landmark_of_robot, py::arg("robot"), py::arg("name"), Released(),
-           "Id of the landmark that a name means to the robot; None where it has not seen it.")
+           "Id of the landmark that a name refers to for the robot; None if the robot has not seen it.")
       .def_property_readonly("joins", py::cpp_function(&joins_of, Released()), "TeamJoins so far.")
       .def_property_readonly("joins_taken_back", py::cpp_function(&joins_taken_back_of, Released()),
-                             "TakenBackJoins: held for a while, and none of joins.")
+                             "TakenBackJoins: joins that held for a while and are no longer in joins.")
       .def_property_readonly("sightings", py::cpp_function(locked(&Team::sightings), Released()), "JudgedSightings.")
       .def("remove_join", locked(&Team::remove_join), py::arg("join"), Released(),
-           "Takes a join back, by its index, and everything that came of it.")
+           "Takes back a join, by its index, and everything that followed from it.")
       .def_property_readonly("same_landmarks", py::cpp_function(&same_landmarks_of, Released()),
-                             "SameLandmarks so far, of by_place.")
+                             "SameLandmarks so far, from by_place.")
       .def("remove_same", locked(&Team::remove_same), py::arg("same"), Released(),
-           "Makes two landmarks two again, by the index, with everything that came of their being one.");
+           "Separates two merged landmarks again, by index, and undoes everything that followed from the merge.");
 }
 
 }  // namespace helixnav::python

@@ -84,27 +84,29 @@ py::array_t<double> true_poses_of_member(const core::TeamMember& member) {
 void bind_log_parts(py::module_& module) {
   using core::TeamMember;
   py::class_<TeamMember>(module, "TeamMember", "One robot of a team: its own drive, and whom it saw.")
-      .def_readonly("number", &TeamMember::number, "What the log calls it.")
+      .def_readonly("number", &TeamMember::number, "Its number in the log.")
       .def_property_readonly(
-          "start", [](const TeamMember& m) { return m.recording.start; }, "The Pose that its drive begins with.")
+          "start", [](const TeamMember& m) { return m.recording.start; }, "The Pose at the start of its drive.")
       .def_property_readonly(
-          "events", [](const TeamMember& m) { return m.recording.events; }, "Odometry and Scan in order; a copy.")
+          "events", [](const TeamMember& m) { return m.recording.events; },
+          "Odometry and Scan events in order; a copy.")
       .def_property_readonly(
           "labels", [](const TeamMember& m) { return m.recording.labels; },
-          "Of each scan, of each observation: the identity, -1 for none.")
-      .def_readonly("sightings", &TeamMember::sightings, "RobotSightings in order of time.")
+          "For each scan, the identity of each observation, -1 for none.")
+      .def_readonly("sightings", &TeamMember::sightings, "RobotSightings in time order.")
       .def_property_readonly("true_poses", &true_poses_of_member, "(N, 4): t, x, y, heading.");
-  py::class_<TeamLog>(module, "TeamLog", "The drives of several robots in one world, by one clock.")
+  py::class_<TeamLog>(module, "TeamLog", "The drives of several robots in one world, on one clock.")
       .def_property_readonly(
-          "name", [](const TeamLog& log) { return text_with_paths(log.recording.name); }, "Of the log or the scenario.")
+          "name", [](const TeamLog& log) { return text_with_paths(log.recording.name); },
+          "Name of the log or scenario.")
       .def_property_readonly(
           "robots", [](const TeamLog& log) { return log.recording.robots; }, "TeamMembers; a copy.")
       .def_property_readonly(
           "starts_known", [](const TeamLog& log) { return log.recording.starts_known; },
-          "Whether the starts lie in one frame.")
+          "Whether the starts are known in a common frame.")
       .def_property_readonly(
           "remarks", [](const TeamLog& log) { return texts_with_paths(log.recording.remarks); },
-          "What was mended, left out or is doubtful, a sentence each.")
+          "What was repaired, left out or is doubtful, one sentence each.")
       .def("__len__", [](const TeamLog& log) { return log.recording.robots.size(); });
 }
 
@@ -140,9 +142,10 @@ py::object summary_of(const TeamRun& run) {
 }
 
 void bind_team_run(py::module_& module) {
-  py::class_<TeamRun>(module, "TeamRun", "The drives of several robots, navigated in one map. Robots by their index.")
+  py::class_<TeamRun>(module, "TeamRun",
+                      "The drives of several robots, navigated in one map. Robots are given by index.")
       .def("steps", &steps_of_robot, py::arg("robot"),
-           "A StepReport for each scan, in the frame of the component at the end.")
+           "A StepReport for each scan, in the frame of its component at the end.")
       .def("trajectory", &trajectory_of_robot, py::arg("robot"),
            "(N, 4): t, x, y, heading at each scan, as estimated then.")
       .def("map", &map_in_run, py::arg("robot"), "Landmarks of its component.")
@@ -153,10 +156,10 @@ void bind_team_run(py::module_& module) {
           "joins_taken_back", [](const TeamRun& run) { return run.drive.team.joins_taken_back(); }, "TakenBackJoins.")
       .def_property_readonly(
           "sightings", [](const TeamRun& run) { return run.drive.team.sightings(); }, "JudgedSightings.")
-      .def("evaluate", &summary_of, "Errors against the truth of the log, as in summary.json of the run folder.")
+      .def("evaluate", &summary_of, "Errors against the log's truth, as in summary.json of the run folder.")
       .def(
           "explain", [](const TeamRun& run) { return apps::team_text(run.task, run.drive, run.evaluation); },
-          "Robots, errors and joins, a line each.")
+          "Robots, errors and joins, one line each.")
       .def("__len__", [](const TeamRun& run) { return run.drive.robots.size(); });
 }
 
@@ -167,13 +170,13 @@ void bind_team_log(py::module_& module) {
   bind_log_parts(module);
   bind_team_run(module);
   module.def("read_team_log", &read_team_log, py::arg("path"), py::arg("robots") = std::vector<int>(), Released(),
-             "Reads a log of several robots (MRCLAM): those with these numbers, or all.");
+             "Reads a log of several robots (MRCLAM): the robots with these numbers, or all.");
   module.def("simulate_team", &simulate_team, py::arg("robots") = 2, py::arg("seed") = 1, Released(),
-             "Several robots that see each other, in one world with known truth.");
+             "Simulates several robots that see each other, in one world with known truth.");
   module.def("replay_team", &replay_team, py::arg("log"), py::arg("out") = py::none(), py::arg("overwrite") = false,
              py::arg("unknown_starts") = false, py::arg("known_association") = true, Released(),
-             "Navigates all robots of a log in one map, as helixnav replay does; with `out`, the team's run folder is "
-             "written. Without known_association landmarks have no names, and robots are joined by constellations.");
+             "Navigates all robots of a log in one map, as helixnav replay does; with `out`, writes the team's run "
+             "folder. Without known_association, landmarks have no names and robots are joined by constellations.");
 }
 
 }  // namespace helixnav::python

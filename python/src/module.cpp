@@ -26,11 +26,11 @@ py::exception<Error>& bind_error(py::module_& module, const char* name, PyObject
 /// The three kinds of error (docs/adr/0005-error-kinds.md) by what Python calls their kind.
 void bind_errors(py::module_& module) {
   bind_error<core::InputError>(module, "InputError", PyExc_ValueError).doc() =
-      "A file, an option or a value that cannot be used; says where and what was expected.";
+      "A file, option or value that cannot be used; the message says where and what was expected.";
   bind_error<core::PreconditionError>(module, "PreconditionError", PyExc_ValueError).doc() =
-      "A call whose arguments break what its documentation asks for; the object is as it was.";
+      "A call whose arguments violate its documented requirements; the object is as it was before the call.";
   bind_error<core::NumericalError>(module, "NumericalError", PyExc_ArithmeticError).doc() =
-      "The mathematics broke down; the object is as it was before the call.";
+      "The computation broke down numerically; the object is as it was before the call.";
 }
 
 /// `Class.__new__(Class)` would hand out an object that nothing has begun, and that ends the process when it is used. Classes made

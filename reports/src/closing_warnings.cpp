@@ -40,18 +40,17 @@ std::vector<std::string> closing_warnings(const runs::Run& run) {
   const bool is_mostly_undecided = closings.undecided >= 2 && closings.undecided > closings.accepted;
   if (is_mostly_refused || is_mostly_undecided) {
     warnings.push_back(
-        "returns to old ground stayed open (" + counted(closings.accepted, "closing") + " accepted, " +
+        "returns to old ground were left open (" + counted(closings.accepted, "closing") + " accepted, " +
         std::to_string(closings.refused) +
         " refused; searches that ended undecided: " + std::to_string(closings.undecided) +
-        "): what stands there may be in the map twice, and the path is off by what it drifted. "
-        "Slips, noise assumed too small, and errors of the detector that last (a trunk's near side taken "
-        "for its middle) do that; 'helixnav calibrate' estimates the noise from the log");
+        "): landmarks there may be in the map twice, and the path keeps the drift until then. Typical causes are wheel "
+        "slip, assumed noise that is too small, and lasting errors of the detector (a trunk's near side taken "
+        "for its centre); 'helixnav calibrate' estimates the noise from the log");
   }
   if (!closings.is_path_solved) {
     warnings.emplace_back(
-        "after the last closing the drive could not be solved as a whole: trajectory_final.tum is the path as it was "
-        "known "
-        "before; 'helixnav explain --closure N' has the numbers");
+        "after the last closing the drive could not be solved as a whole: trajectory_final.tum is the path from before "
+        "it; 'helixnav explain --closure N' has the numbers");
   }
   return warnings;
 }

@@ -13,7 +13,7 @@ namespace {
 std::string degrees(double angle_rad) { return short_number(angle_rad * 180.0 / core::pi) + "°"; }
 
 std::string sentence(const core::RollbackDecision& d) {
-  return "The pose is not to be trusted: " + counted(d.missing, "landmark") +
+  return "The pose cannot be trusted: " + counted(d.missing, "landmark") +
          " mapped earlier that should be in view are missing, " + short_number(d.seen) + " were seen, and " +
          counted(d.spawned, "new one") + " matured meanwhile (" + short_number(d.nats) +
          " nats against the pose). The navigator rolls back by " + counted(d.scans, "scan") +
@@ -37,9 +37,9 @@ std::string sentence(const core::SlipDecision& d) {
 }
 
 std::string sentence(const core::MovingDecision& d) {
-  return "Something that moves, at " + short_number(d.speed_mps) +
-         " m/s, had been mapped: " + counted(d.landmarks, "landmark") +
-         " dropped. That it moves explains its sightings " + short_number(d.nats) + " nats better than that it stands.";
+  return "A moving object, at " + short_number(d.speed_mps) +
+         " m/s, had been mapped: " + counted(d.landmarks, "landmark") + " dropped. Motion explains its sightings " +
+         short_number(d.nats) + " nats better than a static landmark.";
 }
 
 std::string attempt_number(int attempt) { return "Attempt " + std::to_string(attempt); }
@@ -111,7 +111,7 @@ std::string sentence(const core::UndecidedDecision& d) {
 
 std::string sentence(const core::NewGroundDecision& d) {
   return "New ground: after " + short_number(d.driven_m) + " m, " + counted(d.landmarks, "landmark") +
-         " mapped lately fit nowhere on the old ground, where so many would. Mapping goes on.";
+         " mapped recently fit nowhere on the old ground, although that many would be enough. Mapping goes on.";
 }
 
 std::string refusal(const core::ClosureDecision& d, const std::string& cost, const std::string& limit,
@@ -162,16 +162,16 @@ std::string why_carried(const core::CarriedDecision& d) {
   using Cause = core::CarriedDecision::Cause;
   if (d.cause == Cause::told) return "The vehicle was carried (event lost).";
   if (d.cause == Cause::broken_off) {
-    return "The arithmetic could not go on with a pose uncertain by " + short_number(d.pose_sigma_m) + " m and " +
+    return "The computation could not go on with a pose uncertain by " + short_number(d.pose_sigma_m) + " m and " +
            short_number(d.heading_sigma_deg) + "°.";
   }
   if (d.cause == Cause::no_odometry) {
-    return "Odometry does not say where the vehicle went since the scan before: uncertain by " +
+    return "Odometry does not tell where the vehicle went since the previous scan: uncertain by " +
            short_number(d.pose_sigma_m) + " m and " + short_number(d.heading_sigma_deg) + "°.";
   }
   if (d.cause == Cause::by_place) {
     return "The vehicle was carried during the pause " + counted(d.scans, "scan") +
-           " ago: what was mapped since stands elsewhere on the map.";
+           " ago: the landmarks mapped since are elsewhere on the map.";
   }
   return "The vehicle was carried during a pause: after it " + std::to_string(d.missing) + " of " +
          counted(d.missing + d.seen, "landmark") + " that had been in view " + (d.missing == 1 ? "was" : "were") +
@@ -181,16 +181,16 @@ std::string why_carried(const core::CarriedDecision& d) {
 
 std::string sentence(const core::CarriedDecision& d) {
   if (d.cause == core::CarriedDecision::Cause::wrong_start) {
-    return "The start is another than was given, or than the run of the map ended at: what the first scans show does "
-           "not stand about it on the map. The vehicle looks for its place there.";
+    return "The start differs from the one given, or from where the run of the map ended: the landmarks of the first "
+           "scans are not around it on the map. The vehicle searches for its place there.";
   }
   const std::string ended = why_carried(d) + " Part " + std::to_string(d.from_part) + " of the drive ends after " +
                             short_number(d.driven_m) + " m";
   const std::string kept = d.landmarks > 0 ? ": " + counted(d.landmarks, "landmark") + " of it " +
                                                  (d.landmarks == 1 ? "is" : "are") + " kept as a map of its own"
                                            : ", with too few landmarks to be found again: they are dropped";
-  return ended + kept + ". Part " + std::to_string(d.part) + " begins where the vehicle is, maps on its own and asks " +
-         counted(d.apart, "map") + " where that is.";
+  return ended + kept + ". Part " + std::to_string(d.part) +
+         " begins where the vehicle is, maps on its own and searches for its place in " + counted(d.apart, "map") + '.';
 }
 
 std::string map_of(const core::PlacedDecision& d) {
@@ -204,10 +204,10 @@ std::string begin_of(const core::PlacedDecision& d) {
 }
 
 template <class OfPlace>
-std::string evidence_of(const OfPlace& d, const char* which = " about the vehicle") {
-  return counted(d.pairs, "landmark") + " of " + short_number(d.landmarks) + which + " stand as on the map, " +
-         short_number(d.evidence) + " nats better than by chance and " + short_number(d.lead) +
-         " ahead of any other place (" + short_number(d.needed) + " are needed of each)";
+std::string evidence_of(const OfPlace& d, const char* which = " around the vehicle") {
+  return short_number(d.pairs) + " of " + counted(d.landmarks, "landmark") + which + " agree with the map, " +
+         short_number(d.evidence) + " nats better than chance and " + short_number(d.lead) +
+         " ahead of any other place (" + short_number(d.needed) + " are needed for each)";
 }
 
 std::string sentence(const core::PlacedDecision& d) {
@@ -215,7 +215,7 @@ std::string sentence(const core::PlacedDecision& d) {
   switch (d.verdict) {
     case core::PlacedDecision::Verdict::sought:
       return "This session does not know where it is on a map of " + counted(d.earlier_landmarks, "landmark") +
-             " from an earlier one: it maps on its own and asks.";
+             " from an earlier one: it maps on its own and searches for its place.";
     case core::PlacedDecision::Verdict::accepted:
       return "Found its place on " + map_of(d) + after + evidence_of(d) + "; their joint cost " + short_number(d.cost) +
              " is within " + short_number(d.limit) + ". From here on both are one map (" +
@@ -227,14 +227,14 @@ std::string sentence(const core::PlacedDecision& d) {
              " exceeds " + short_number(d.limit) + ". " + evidence_of(d) + '.';
     case core::PlacedDecision::Verdict::not_here:
       return "Not placed" + after + "no place on " + map_of(d) + " fits the " + counted(d.landmarks, "landmark") +
-             " about the vehicle better than chance would" + (d.pairs > 0 ? "; the best: " + evidence_of(d) : "") + '.';
+             " around the vehicle better than chance" + (d.pairs > 0 ? "; the best: " + evidence_of(d) : "") + '.';
   }
   return {};
 }
 
 /// How odometry was made to agree with the place.
 std::string odometry_of(const core::WholeMapDecision& d) {
-  const std::string apart = "Odometry has the vehicle " + short_number(d.displaced_m) + " m from there";
+  const std::string apart = "Odometry puts the vehicle " + short_number(d.displaced_m) + " m from there";
   if (d.odometry_factor == 1.0) return apart + ", which is within its noise.";
   const std::string forbids = apart + ", and the pairs would cost " + short_number(d.cost) + " (limit " +
                               short_number(d.limit) + "): it was wrong. ";
@@ -244,8 +244,8 @@ std::string odometry_of(const core::WholeMapDecision& d) {
 }
 
 std::string sentence(const core::WholeMapDecision& d) {
-  const std::string asked = "The whole map of " + counted(d.old_landmarks, "old landmark") + " was asked (question " +
-                            std::to_string(d.questions) + "): ";
+  const std::string asked = "The whole map of " + counted(d.old_landmarks, "old landmark") +
+                            " was searched (question " + std::to_string(d.questions) + "): ";
   switch (d.verdict) {
     case core::WholeMapDecision::Verdict::accepted:
       return asked + evidence_of(d) + ". " + odometry_of(d);
@@ -255,7 +255,7 @@ std::string sentence(const core::WholeMapDecision& d) {
       return asked + "the pairs of the best place contradict each other. " + evidence_of(d) + '.';
     case core::WholeMapDecision::Verdict::not_here:
       return asked + "no place fits the " + counted(d.landmarks, "landmark") +
-             " about the vehicle better than chance would.";
+             " around the vehicle better than chance.";
   }
   return {};
 }
@@ -264,12 +264,13 @@ std::string sentence(const core::PostponedDecision& d) {
   switch (d.work) {
     case core::PostponedDecision::Work::association:
       return "The search for the best association of " + counted(d.size, "observation") + " was ended after " +
-             short_number(d.limit) + " hypotheses: what is reported is the best found, and not proven to be the best.";
+             short_number(d.limit) + " hypotheses: the best one found is reported; it is not proven optimal.";
     case core::PostponedDecision::Work::window:
-      return "The filter was to be handed over to a part of the map, which could not be solved: it goes on with its " +
-             counted(d.size, "landmark") + " (meant are " + short_number(d.limit) + ") and is tried again later.";
+      return "The filter could not be handed over to another part of the map, which could not be solved: it goes on "
+             "with its " +
+             counted(d.size, "landmark") + " (the target is " + short_number(d.limit) + ") and tries again later.";
     case core::PostponedDecision::Work::drive:
-      return "The drive of " + counted(d.size, "scan") + " and fixes is not solved as a whole: it is kept up to " +
+      return "The drive of " + counted(d.size, "scan") + " and fixes is not solved as a whole: it is kept for up to " +
              short_number(d.limit) + " of them (search.smooth_up_to_scans).";
   }
   return {};
@@ -305,7 +306,7 @@ std::string sentence_of_join(const core::PlacedDecision& d) {
       " (" + counted(d.questions, "question") + " to a map of " + counted(d.earlier_landmarks, "landmark") + "): ";
   switch (d.verdict) {
     case core::PlacedDecision::Verdict::sought:
-      return "Gave its component the frame; it was not asked.";
+      return "Defines the frame of its component; no question was asked.";
     case core::PlacedDecision::Verdict::accepted:
       return "Found its place" + asked + best + "; their joint cost " + short_number(d.cost) + " is within " +
              short_number(d.limit) + ". Both are one map (" + counted(d.merged, "landmark") + " merged); " +
@@ -316,8 +317,8 @@ std::string sentence_of_join(const core::PlacedDecision& d) {
       return "Not placed" + asked + "the pairs contradict each other, their joint cost " + short_number(d.cost) +
              " exceeds " + short_number(d.limit) + ". " + best + '.';
     case core::PlacedDecision::Verdict::not_here:
-      return "Not placed" + asked + "no place fits better than chance would" +
-             (d.pairs > 0 ? "; the best: " + best : "") + '.';
+      return "Not placed" + asked + "no place fits better than chance" + (d.pairs > 0 ? "; the best: " + best : "") +
+             '.';
   }
   return {};
 }

@@ -86,7 +86,7 @@ std::string landmark_of(const runs::Run& run, core::LandmarkId id) {
 std::string fate_by_name(const core::AssociationReport& a, const std::string& landmark) {
   if (a.outcome == core::Outcome::augmented) return "began " + landmark + ": its name was new.";
   if (a.outcome == core::Outcome::ambiguous && a.dof == 0) {
-    return "waits: its landmark has not been seen from places far enough apart for where it stands to be told.";
+    return "waits: its landmark has not been seen from places far enough apart to be located.";
   }
   return {};
 }
@@ -155,10 +155,10 @@ std::string places_of(const runs::Run& run, const std::vector<Decided>& decided)
     carried = carried || placed == nullptr;
   }
   if (text.empty()) return {};
-  const char* const alone = only_localized(run)
-                                ? "  It did not find its place: no pose of it is on the map, which stays as given.\n"
-                            : carried ? "  It did not find its place since: the map is that of the last part alone.\n"
-                                      : "  It never found its place: the map is that of this session alone.\n";
+  const char* const alone =
+      only_localized(run) ? "  It did not find its place: none of its poses is on the map, which stays as given.\n"
+      : carried           ? "  It has not found its place since: the map covers the last part only.\n"
+                          : "  It never found its place: the map covers this session only.\n";
   return std::string(carried ? "\nWhere the vehicle is:\n" : "\nThe earlier map:\n") + text +
          (accepted ? "" : alone + questions_text(questions_in(run))) + '\n';
 }
@@ -215,7 +215,7 @@ std::string explain_run(const runs::Run& run) {
   if (!run.steps.empty() && run.steps.back().particles) {
     return std::to_string(run.steps.size()) +
            " steps of a cloud of particles, each of which associates for itself: there are no closings to explain. "
-           "--step N says what the heaviest made of a scan.\n";
+           "--step N shows what the heaviest one made of a scan.\n";
   }
   std::string text = std::to_string(run.steps.size()) +
                      " steps; closings: " + std::to_string(count_of(closures, "accepted")) + " accepted, " +

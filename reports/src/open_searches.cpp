@@ -109,24 +109,24 @@ double driven_in(const OpenSearch& search, const runs::Run& run) {
 std::string twice_text(const Begun& begun, const std::string& when) {
   const std::string twice =
       counted(static_cast<double>(begun.all), "landmark") + " mapped " + when + " may be on the map twice";
-  return begun.on_old == 0 ? twice : twice + ", " + std::to_string(begun.on_old) + " stand where old ones do";
+  return begun.on_old == 0 ? twice : twice + ", " + std::to_string(begun.on_old) + " of them stand where old ones do";
 }
 
 std::string text_of(const OpenSearch& search, const Begun& begun, const runs::Run& run) {
   const std::string since = short_number(driven_in(search, run)) + " m, from " +
                             short_number(core::seconds(run.steps[search.from].t_ns)) + " s on";
   const std::string advice =
-      ". More of the old ground before the end would decide it; 'helixnav explain RUN' has the numbers, 'helixnav "
-      "calibrate' finds what makes returns ambiguous: noise and constants";
+      ". Driving over more of the old ground would decide it; 'helixnav explain RUN' has the numbers, and 'helixnav "
+      "calibrate' estimates the noise and constants that make returns ambiguous where they are wrong";
   switch (search.end) {
     case OpenSearch::End::none:
-      return "a search was still open at the end (" + since + "): whether this is old ground is not decided, and " +
+      return "a search was still open at the end (" + since + "): it is undecided whether this is old ground, and " +
              twice_text(begun, "since") + advice;
     case OpenSearch::End::undecided:
-      return "a search ended undecided (" + since + ") and nothing was closed after it: " + twice_text(begun, "in it") +
+      return "a search ended undecided (" + since + ") and no loop was closed after it: " + twice_text(begun, "in it") +
              advice;
     case OpenSearch::End::new_ground:
-      return "a search ended as on new ground (" + since + "), which is in doubt: " + twice_text(begun, "in it") +
+      return "a search ended as on new ground (" + since + "), which is doubtful: " + twice_text(begun, "in it") +
              advice;
   }
   return {};

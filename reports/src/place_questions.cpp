@@ -31,9 +31,9 @@ std::string had(double nats, double needed) {
 
 std::string answer_text(const core::PlacedDecision& d) {
   const std::string question = "question " + std::to_string(d.questions) + " after " + short_number(d.driven_m) +
-                               " m, with " + std::to_string(d.landmarks) + " landmarks about the vehicle: ";
-  if (d.pairs == 0) return question + "they stand nowhere on the map as they do here.";
-  const std::string pairs = std::to_string(d.pairs) + " of them stand as on the map, with evidence" +
+                               " m, with " + std::to_string(d.landmarks) + " landmarks around the vehicle: ";
+  if (d.pairs == 0) return question + "they agree with no place on the map.";
+  const std::string pairs = std::to_string(d.pairs) + " of them agree with the map, with evidence" +
                             had(d.evidence, d.needed) + " and a lead over other places" + had(d.lead, d.needed);
   return question + pairs + (d.verdict == Verdict::refused ? "; but the pairs contradict each other." : ".");
 }
@@ -53,23 +53,23 @@ PlaceQuestions questions_in(const runs::Run& run) {
 
 std::string best_answer_text(const PlaceQuestions& asked) {
   if (!asked.best) {
-    return "nothing was asked, never more than " + std::to_string(asked.most_landmarks) +
-           " landmarks were known well enough about the vehicle at once";
+    return "no question was asked, because never more than " + std::to_string(asked.most_landmarks) +
+           " landmarks around the vehicle were known well enough at once";
   }
-  std::string text = "nearest to an answer was " + answer_text(*asked.best);
+  std::string text = "closest to an answer was " + answer_text(*asked.best);
   text.pop_back();
   return text;
 }
 
 std::string questions_text(const PlaceQuestions& asked) {
   if (asked.questions == 0) {
-    return "  Nothing was asked: never more than " + std::to_string(asked.most_landmarks) +
-           " landmarks were known well enough about the vehicle at once, too few to tell a place by.\n";
+    return "  No question was asked: never more than " + std::to_string(asked.most_landmarks) +
+           " landmarks around the vehicle were known well enough at once, too few to identify a place.\n";
   }
   std::string text = "  " + std::to_string(asked.questions) +
                      (asked.questions == 1 ? " question was" : " questions were") + " asked, from " +
                      short_number(asked.from_m) + " to " + short_number(asked.to_m) + " m.\n";
-  text += "  Nearest to an answer was " + answer_text(*asked.best) + '\n';
+  text += "  Closest to an answer was " + answer_text(*asked.best) + '\n';
   if (asked.last->questions != asked.best->questions) text += "  The last was " + answer_text(*asked.last) + '\n';
   return text;
 }

@@ -49,10 +49,10 @@ double share(std::size_t part, std::size_t whole) {
 }
 
 std::string no_landmark_text(const ObservationCounts& counts) {
-  if (counts.seen == 0) return "the log holds no detections: nothing was mapped, and the path is that of the odometry";
+  if (counts.seen == 0) return "the log holds no detections: nothing was mapped, and the path is odometry alone";
   return warning(
-      "the map has no landmark: of %zu detections %zu were matched and %zu began landmarks that were not seen "
-      "again; are reach, mounting and noise those of this sensor? 'helixnav check' shows what was understood",
+      "the map has no landmark: of %zu detections %zu were matched, and %zu started landmarks that were never seen "
+      "again. Are reach, mounting and noise right for this sensor? 'helixnav check' shows what was understood",
       counts.seen, counts.matched, counts.began);
 }
 
@@ -62,9 +62,9 @@ std::string collapse_text(const ObservationCounts& counts, const runs::Run& run)
                    100.0 * share(counts.matched, counts.seen), text.c_str());
   }
   return warning(
-      "matching collapsed: of %zu detections %.0f %% were matched, %.0f %% began landmarks; odometry or detections "
-      "are worse than assumed, or mounting, units or times are wrong. 'helixnav check' shows what was understood, "
-      "'helixnav calibrate' estimates the noise from the log",
+      "matching collapsed: of %zu detections only %.0f %% were matched and %.0f %% started landmarks. Odometry or "
+      "detections are worse than assumed, or mounting, units or times are wrong. "
+      "'helixnav check' shows what was understood, 'helixnav calibrate' estimates the noise from the log",
       counts.seen, 100.0 * share(counts.matched, counts.seen), 100.0 * share(counts.began, counts.seen));
 }
 
@@ -72,13 +72,13 @@ std::string nis_text(double mean_per_dof) {
   const double factor = std::sqrt(std::max(mean_per_dof, 1e-6));
   if (mean_per_dof > 1.0) {
     return warning(
-        "innovations are %.2g times larger than the assumed noise allows (NIS %.3g per degree of freedom): "
-        "covariances are too small; 'helixnav calibrate' estimates the noise from the log",
+        "innovations are %.2g times larger than the assumed noise predicts (NIS %.3g per degree of freedom): "
+        "the covariances are too small; 'helixnav calibrate' estimates the noise from the log",
         factor, mean_per_dof);
   }
   return warning(
-      "innovations are %.2g times smaller than the assumed noise (NIS %.3g per degree of freedom): the log is better "
-      "than assumed, and returns will be harder to tell apart than they need be; 'helixnav calibrate' estimates "
+      "innovations are %.2g times smaller than the assumed noise predicts (NIS %.3g per degree of freedom): the data "
+      "are better than assumed, and loops are harder to close than they need be; 'helixnav calibrate' estimates "
       "the noise from the log",
       1.0 / factor, mean_per_dof);
 }
@@ -96,9 +96,8 @@ std::string fixes_text(const runs::Run& run) {
   constexpr double most_refused = 0.2;
   if (used + refused < enough || share(refused, used + refused) <= most_refused) return {};
   return warning(
-      "%zu of %zu position fixes were refused: their noise is larger than they say (sigma, gps.sigma_m), the antenna "
-      "stands elsewhere than [antenna] says, their clock is another, or the first ones, which align the start, were "
-      "wrong",
+      "%zu of %zu position fixes were refused: they are noisier than stated (sigma, gps.sigma_m), [antenna] gives a "
+      "wrong position, their clock differs from the log's, or the first ones, which align the start, were wrong",
       refused, used + refused);
 }
 
@@ -140,14 +139,14 @@ std::string calibration_text(const runs::Run& run) {
   constexpr std::size_t enough = 200, many_slips = 10;
   constexpr double most_rejected = 0.2, most_slips = 0.04;
   const char* const advice =
-      "mounting, delay, scale or bias are other than assumed, and the map is not to be trusted. 'helixnav calibrate' "
+      "mounting, delay, scale or bias differ from what is assumed; do not trust the map. 'helixnav calibrate' "
       "estimates them from the log, 'helixnav check' shows what was understood";
   if (slips >= many_slips && share(slips, run.steps.size()) > most_slips) {
-    return warning("the odometry slipped in %zu of %zu scans, as it seems, which no wheel does: %s", slips,
+    return warning("the odometry seems to have slipped in %zu of %zu scans, which no wheel does: %s", slips,
                    run.steps.size(), advice);
   }
   if (seen >= enough && share(rejected, seen) > most_rejected) {
-    return warning("%.0f %% of %zu detections were rejected as fitting nothing: unless that much moves, %s",
+    return warning("%.0f %% of %zu detections were rejected because they fit nothing: unless that much is moving, %s",
                    100.0 * share(rejected, seen), seen, advice);
   }
   return {};
@@ -203,23 +202,24 @@ std::string contradicted_place_text(const runs::Run& run) {
   if (times < least) return {};
   const bool on_earlier_map = run.manifest.command.find(" --map") != std::string::npos;
   return warning(
-      "the landmarks seen fit another place on the map, %.3g m from where the vehicle was taken to be: the whole map "
-      "said so %d times, and nothing came of it. %s",
+      "the landmarks seen fit another place on the map, %.3g m from the estimated pose: the search of the whole map "
+      "found it %d times, but it was not adopted. %s",
       away_m, times,
       on_earlier_map ? "The start given (--start) is wrong, or the place was lost, and the map may hold landmarks "
-                       "twice. 'replay --map RUN --start unknown' finds the start by itself"
-                     : "The place was lost, and the map may hold landmarks twice: odometry, mounting or delay are "
-                       "other than assumed. 'helixnav calibrate' estimates them from the log");
+                       "twice. 'replay --map RUN --start unknown' finds the start itself"
+                     : "The place was lost, and the map may hold landmarks twice: odometry, mounting or delay "
+                       "differ from what is assumed. 'helixnav calibrate' estimates them from the log");
 }
 
 std::string place_not_found_text(const runs::Run& run) {
   if (!sought_in_vain(run)) return {};
   const char* const what =
-      only_localized(run) ? "the vehicle never found its place on the earlier map: its poses are not on it; "
-      : was_carried(run)  ? "the vehicle did not find its place since it was carried: the map is that of the last part "
-                            "of the drive alone; "
-                          : "the vehicle never found its place on the earlier map: the map is that of this session "
-                            "alone; ";
+      only_localized(run)
+          ? "the vehicle never found its place on the earlier map: its poses are not in the frame of that map; "
+      : was_carried(run) ? "the vehicle has not found its place since it was carried: the map covers only the last "
+                           "part of the drive; "
+                         : "the vehicle never found its place on the earlier map: the map covers this session "
+                           "only; ";
   return what + best_answer_text(questions_in(run));
 }
 
@@ -243,7 +243,7 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
   if (evaluation.nis.updates >= 50 && (nis < least_nis || nis > most_nis)) warnings.push_back(nis_text(nis));
   if (evaluation.position && evaluation.position->error_m.count == 0) {
     warnings.push_back(
-        warning("none of the %zu positions of truth lies within the time of the run; is it of the same clock? "
+        warning("none of the %zu true positions is within the time span of the run; do both use the same clock? "
                 "'helixnav evaluate' takes --truth-offset-s",
                 evaluation.position->fixes_outside));
   }
@@ -266,11 +266,11 @@ std::vector<std::string> warnings_of_place(const runs::Run& run) {
   if (end - begin >= many && static_cast<double>(end - begin) > much * static_cast<double>(run.steps.size())) {
     const double from_s = core::seconds(run.steps[begin].t_ns);
     warnings.push_back("no landmark was matched in " + counted(static_cast<double>(end - begin), "scan") +
-                       " in a row, from " + short_number(from_s) + " s on: there the pose is that of the odometry");
+                       " in a row, from " + short_number(from_s) + " s on: there the pose is odometry alone");
   }
   if (const std::string text = place_not_found_text(run); !text.empty()) warnings.push_back(text);
   if (run.steps.back().mode == core::Mode::searching && open_search_text(run).empty()) {
-    warnings.emplace_back("a search was still open at the end: where on the map the vehicle then was is not decided");
+    warnings.emplace_back("a search was still open at the end: where on the map the vehicle was then is undecided");
   }
   return warnings;
 }

@@ -46,9 +46,9 @@ std::string scans_apart_text(const runs::Run& run) {
   const double between_m = quantile_of(ways_m, half);
   const double shown_m = quantile_of(ahead_m, 1.0 - few) - quantile_of(ahead_m, few);
   if (shown_m > twice * between_m) return {};
-  return "scans lie " + short_number(between_m) + " m apart and show landmarks along " + short_number(shown_m) +
-         " m of the way: most landmarks are in view of two scans at most, which is too few to match them by. Record "
-         "scans more often, or drive more slowly";
+  return "scans are " + short_number(between_m) + " m apart and show landmarks along " + short_number(shown_m) +
+         " m of the path: most landmarks are in view of two scans at most, too few to match them. Record scans more "
+         "often, or drive more slowly";
 }
 
 }  // namespace helixnav::reports

@@ -32,24 +32,24 @@ std::vector<std::string> systematic_errors_texts(const runs::Run& run) {
   const double missing_m = number_of(run, "range_offset.missing_m");
   if (missing_m != 0.0) {
     texts.push_back(text_of(
-        "ranges seem to be %s by %.3f +- %.3f m at least, in every scan alike, which is no noise: the path is less "
-        "certain than it seems. 'helixnav calibrate LOG' finds range_offset_m",
+        "ranges seem to be too %s by at least %.3f +- %.3f m in every scan, which is not noise: the path is less "
+        "certain than stated. 'helixnav calibrate LOG' estimates range_offset_m",
         missing_m > 0.0 ? "short" : "long", std::abs(missing_m), 1.96 * number_of(run, "range_offset.sigma_m")));
   }
   const double too_long = number_of(run, "odometry.too_long");
   if (too_long != 0.0) {
     texts.push_back(text_of(
-        "by what is seen, ways of the odometry are about %.1f %% too %s all along (or ranges too %s), which is no "
-        "noise: the map's scale is in doubt. 'helixnav calibrate LOG' finds scale",
+        "judging by the detections, odometry distances are about %.1f %% too %s throughout (or ranges too %s), which "
+        "is not noise: the map's scale is in doubt. 'helixnav calibrate LOG' estimates scale",
         100.0 * std::abs(too_long), too_long > 0.0 ? "long" : "short", too_long > 0.0 ? "short" : "long"));
   }
   const double sideways_rad = number_of(run, "odometry.sideways_rad");
   if (sideways_rad != 0.0) {
     texts.push_back(
-        text_of("by what is seen, the vehicle moves %.1f deg or more to the %s of its odometry all along, as if the "
-                "sensor looked "
-                "that much farther to the %s than heading_deg says: the path is less certain than it seems. 'helixnav "
-                "calibrate LOG' finds heading_deg",
+        text_of("judging by the detections, the vehicle moves at least %.1f deg to the %s of its odometry throughout, "
+                "as if the sensor looked that much farther to the %s than heading_deg says: the path is less certain "
+                "than stated. "
+                "'helixnav calibrate LOG' estimates heading_deg",
                 std::abs(sideways_rad) * 180.0 / core::pi, sideways_rad > 0.0 ? "left" : "right",
                 sideways_rad > 0.0 ? "right" : "left"));
   }

@@ -84,7 +84,7 @@ TEST_F(FastSlamFilter, GoesOnWhereNoParticleExplainsTheScan) {
     const Outcome outcome = filter({"replay", out("robot"), "--vehicle", vehicle}, seed,
                                    {"--fastslam.seed", seed, "--fastslam.version", "2"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_NE(outcome.err.find("times larger than the assumed noise allows"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("times larger than the assumed noise predicts"), std::string::npos) << outcome.err;
     for (const char* file : {"trajectory.tum", "map.csv"}) {
       EXPECT_EQ(text_of(out(seed) / file).find("nan"), std::string::npos) << file;
       EXPECT_EQ(text_of(out(seed) / file).find("inf"), std::string::npos) << file;

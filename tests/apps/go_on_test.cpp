@@ -126,7 +126,7 @@ TEST_F(GoOn, AnotherPlaceIsNotHereAndSaidSo) {
   const Outcome mapped = replay("elsewhere.circles", {"--map", folder("monday")}, "elsewhere");
   ASSERT_EQ(mapped.exit_code, 0) << mapped.err;
   EXPECT_NE(mapped.err.find(never), std::string::npos) << mapped.err;
-  EXPECT_NE(mapped.err.find("nearest to an answer was question"), std::string::npos) << mapped.err;
+  EXPECT_NE(mapped.err.find("closest to an answer was question"), std::string::npos) << mapped.err;
   EXPECT_EQ(mapped.err.find("holds this drive"), std::string::npos) << mapped.err;
   const Outcome localised =
       replay("elsewhere.circles", {"--map", folder("monday"), "--localize", "--start", "unknown"}, "localised");

@@ -101,7 +101,7 @@ TEST(SystematicMotion, IsSaidOfASpoiltLogAndNotOfTheExample) {
   EXPECT_NE(spoilt.err.find(side), std::string::npos) << spoilt.err;
   ASSERT_EQ(run({"new-vehicle", folder.path() / "example"}).exit_code, 0);
   const Outcome example = run({"replay", folder.path() / "example", "--out", folder.path() / "right", "--quiet"});
-  EXPECT_EQ(example.err.find("by what is seen"), std::string::npos) << example.err;
+  EXPECT_EQ(example.err.find("judging by the detections"), std::string::npos) << example.err;
 }
 
 }  // namespace

@@ -39,5 +39,5 @@ def test_of_sessions_it_is_told_how_they_were_placed(joined):
     assert len(asked) == 1 and asked[0].verdict == "accepted"
     sentence = asked[0].sentence
     assert sentence.startswith("Found its place (") and "0 m" not in sentence.split(":")[0]
-    assert "of the best question stand as on the map" in sentence and " of 0 " not in sentence
+    assert "of the best question agree with the map" in sentence and " of 0 " not in sentence
     assert sentence in repr(asked[0])

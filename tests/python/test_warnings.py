@@ -17,4 +17,4 @@ def test_a_sensor_that_looks_aside_is_said_as_by_the_program(own_log, tmp_path):
     done = subprocess.run([os.environ["HELIXNAV_PROGRAM"], "replay", log, "--out", tmp_path / "program", "--quiet"],
                           check=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     said = [line.removeprefix("helixnav: warning: ") for line in done.stderr.splitlines() if "warning" in line]
-    assert run.warnings() == said and any("of its odometry all along" in text for text in said)
+    assert run.warnings() == said and any("of its odometry throughout" in text for text in said)

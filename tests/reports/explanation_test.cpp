@@ -40,7 +40,7 @@ TEST(Explanation, SaysOfALocalisedRunThatTheMapStays) {
   core::CarriedDecision carried;
   carried.cause = core::CarriedDecision::Cause::wrong_start;
   run.steps[3].decisions = {carried};
-  EXPECT_TRUE(says(run, "The start is another than was given")) << explain_run(run);
+  EXPECT_TRUE(says(run, "The start differs from the one given")) << explain_run(run);
   EXPECT_FALSE(says(run, "event lost")) << explain_run(run);
 }
 
@@ -71,7 +71,7 @@ TEST(Explanation, SaysWhatSlippedAndWhatMovesBesideASearch) {
   run.steps[3].decisions = {slip, core::MovingDecision{2, 13.0, 1.5}};
   EXPECT_TRUE(says(run, "No return was ambiguous enough for a search")) << explain_run(run);
   EXPECT_TRUE(says(run, "Slips that the odometry did not show, 1:\n  step 3 (0 s)  The vehicle slipped"));
-  EXPECT_TRUE(says(run, "What moves, 1:\n  step 3 (0 s)  Something that moves, at 1.5 m/s")) << explain_run(run);
+  EXPECT_TRUE(says(run, "What moves, 1:\n  step 3 (0 s)  A moving object, at 1.5 m/s")) << explain_run(run);
   run.steps[20].decisions = {core::UndecidedDecision{}};
   EXPECT_FALSE(says(run, "No return was ambiguous enough for a search"));
   EXPECT_TRUE(says(run, "Slips that the odometry did not show, 1:"));
@@ -111,7 +111,7 @@ TEST(Explanation, SaysHowOftenAPlaceWasAskedForAndWhatWasLacking) {
   EXPECT_EQ(text.find("step 3 ("), std::string::npos) << "says the same as the one before\n" << text;
   EXPECT_TRUE(says(run, "3 questions were asked, from 100 to 300 m.")) << text;
   EXPECT_TRUE(
-      says(run, "Nearest to an answer was question 2 after 200 m, with 20 landmarks about the vehicle: 12 of them"))
+      says(run, "Closest to an answer was question 2 after 200 m, with 20 landmarks around the vehicle: 12 of them"))
       << text;
   EXPECT_TRUE(says(run, "evidence of 40 nats and a lead over other places of 11 nats (15 are needed).")) << text;
   EXPECT_TRUE(says(run, "The last was question 3 after 300 m")) << text;
@@ -124,7 +124,7 @@ TEST(Explanation, SaysThatThereWasTooLittleToAskWith) {
   core::PlacedDecision few;
   few.landmarks = 5;
   run.steps[0].decisions = {core::PlacedDecision{}, few};
-  EXPECT_TRUE(says(run, "Nothing was asked: never more than 5 landmarks")) << explain_run(run);
+  EXPECT_TRUE(says(run, "No question was asked: never more than 5 landmarks")) << explain_run(run);
 }
 
 }  // namespace

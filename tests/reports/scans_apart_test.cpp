@@ -31,7 +31,7 @@ std::string first_warning(const runs::Run& run) { return warnings_of(run, evalua
 
 TEST(ScansApart, AreBlamedForMatchingThatCollapsed) {
   const std::string text = first_warning(unmatched_run(18.0));
-  EXPECT_NE(text.find("scans lie 18 m apart"), std::string::npos) << text;
+  EXPECT_NE(text.find("scans are 18 m apart"), std::string::npos) << text;
   EXPECT_EQ(text.find("worse than assumed"), std::string::npos) << text;
 }
 

@@ -72,13 +72,13 @@ std::string verdict_on(const ConstantFound& found) {
   const double unit = found.constant.unit;
   switch (found.verdict) {
     case Verdict::not_observable:
-      return "not observable from this log: left as told";
+      return "not observable from this log: left as given";
     case Verdict::unsettled:
-      return "observable; goes to and fro between the rounds: left as told";
+      return "observable; alternates between rounds: left as given";
     case Verdict::indistinguishable:
-      return "observable; indistinguishable from the told value: left as told";
+      return "observable; indistinguishable from the given value: left as given";
     case Verdict::not_confirmed:
-      return "observable; does not explain the held-out part better: left as told";
+      return "observable; does not explain the held-out part better: left as given";
     case Verdict::kept:
       break;
   }
@@ -90,8 +90,8 @@ std::string verdict_on(const ConstantFound& found) {
 void print_constant(const ConstantFound& found) {
   const double unit = found.constant.unit, half = 1.96 * found.sigma / unit;
   const std::string sensor = found.constant.sensor > 0 ? " (sensor " + std::to_string(found.constant.sensor) + ")" : "";
-  std::printf("%-20s told %9.5g  found %9.5g +- %-8.3g  %s\n", (found.constant.key + sensor).c_str(), found.told / unit,
-              found.value / unit, half, verdict_on(found).c_str());
+  std::printf("%-20s given %9.5g  found %9.5g +- %-8.3g  %s\n", (found.constant.key + sensor).c_str(),
+              found.told / unit, found.value / unit, half, verdict_on(found).c_str());
 }
 
 void print_constants(const Calibration& found) {
@@ -102,9 +102,8 @@ void print_constants(const Calibration& found) {
   }
   for (const ConstantFound& constant : found.constants) print_constant(constant);
   std::printf(
-      "held out, each quarter of the scans with what is kept fitted to the others: ln L %+.1f; NIS per degree of "
-      "freedom of "
-      "the last %.3f as told, %.3f so\n",
+      "held-out test, each quarter of the scans with what is kept fitted to the others: ln L %+.1f; NIS per degree of "
+      "freedom of the last quarter: %.3f as given, %.3f as kept\n",
       found.held_out_gain, found.nis_told, found.nis_found);
 }
 
@@ -120,7 +119,7 @@ void print_result(const Calibration& result) {
     std::printf("left out of the noise of the odometry: %zu %s of the vehicle, as the landmarks say\n", result.slips,
                 result.slips == 1 ? "slip" : "slips");
   }
-  if (!result.settled) std::printf("not settled after %d rounds: the intervals are not to be trusted\n", result.rounds);
+  if (!result.settled) std::printf("not settled after %d rounds: do not trust the intervals\n", result.rounds);
   if (result.without_returns) {
     std::printf(
         "the returns of this drive do not fit the rest of it, and are not used: associations may be wrong, or the "
@@ -157,7 +156,7 @@ void write_out(const std::string& out, const logs::Vehicle& vehicle, const Calib
         " of the detections: associations or what the vehicle file says are far off; see to mounting, units, "
         "signs and gaps first ('helixnav check')");
   }
-  const std::string head = result.settled ? "" : "# calibrate had not settled: the intervals are not to be trusted\n";
+  const std::string head = result.settled ? "" : "# calibrate had not settled: do not trust the intervals\n";
   files::write_whole_file(out, head + calibrated_text(vehicle, result));
   std::printf("written: %s\n", out.c_str());
 }
@@ -206,17 +205,13 @@ void add_calibrate_command(CLI::App& app, ExitCode& code) {
       ->type_name("FILE");
   add_settings(*command, job->settings);
   command->footer(
-      "Navigates the log, solves the drive as a whole and fits the constants of the vehicle file and both noises to "
-      "it; then\n"
-      "again with what was found, until it stays. A constant is kept where its interval of 95 % excludes what was told "
-      "and\nwhere, fitted to three quarters of the log, it explains the fourth better; others are left as told, the "
-      "rest "
-      "estimated\nagain, and so is one of which the log says too little or that does not settle. Noise goes into "
-      "vehicle.toml as\n"
-      "noise_scale. Of a published log it begins with the vehicle that ships. What does not settle "
-      "and\nleaves out more than a quarter of the detections, or asks for four times the noise, is printed, not "
-      "written "
-      "(exit\ncode 3).\n\n"
+      "Navigates the log, solves the whole drive, fits the constants of the vehicle file and both noises to it, and\n"
+      "repeats this with the result until it settles. A constant is kept where its 95 % interval excludes the given\n"
+      "value and where, fitted to three quarters of the log, it explains the fourth better. Others are left as given\n"
+      "and the rest is estimated again; so is a constant that the log says too little about or that does not settle.\n"
+      "Noise goes into vehicle.toml as noise_scale. For a published log it begins with the vehicle that ships. What\n"
+      "does not settle and leaves out more than a quarter of the detections, or asks for four times the noise, is\n"
+      "printed, not written (exit code 3).\n\n"
       "Examples:\n"
       "  helixnav calibrate my_drive --out calibrated.toml\n"
       "  helixnav replay my_drive --vehicle calibrated.toml --out runs/calibrated\n"

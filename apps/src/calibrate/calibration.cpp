@@ -212,7 +212,7 @@ class Calibrator {
     if (least == nullptr) return;
     least->verdict = Verdict::unsettled;
     least->constant.add(result_.settings, least->told - least->constant.value(result_.settings));
-    std::printf("the rounds repeat: %s is left as told\n", least->constant.key.c_str());
+    std::printf("the rounds repeat: %s is left as given\n", least->constant.key.c_str());
     values_.clear();
   }
 

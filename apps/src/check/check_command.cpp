@@ -26,7 +26,7 @@ struct CheckJob {
   Settings settings;
 };
 
-/// What the log lacks for a use of it, a line each.
+/// What the log lacks for each use of it, one line each.
 std::string missing_text(const core::Recording& recording) {
   std::string text;
   if (recording.labels.empty()) {
@@ -90,7 +90,7 @@ ExitCode check(CLI::App& command, CheckJob& job) {
 }  // namespace
 
 void add_check_command(CLI::App& app, ExitCode& code) {
-  CLI::App* command = app.add_subcommand("check", "Say what of a log was understood, and what is doubtful");
+  CLI::App* command = app.add_subcommand("check", "Report what was understood of a log, and what is doubtful");
   const auto job = std::make_shared<CheckJob>();
   command->add_option("PATH", job->path, "Log: file or folder; the format is recognised")->required();
   add_vehicle_option(*command, job->vehicle);

@@ -34,7 +34,7 @@ std::string names_text(const runs::Run& run) {
                                      [](const auto& a, const auto& b) { return a.second < b.second; });
   return std::to_string(all) + " sightings contradict their names and were left out, most of them (" +
          std::to_string(most->second) + ") of landmark " + name_of(run, most->first) +
-         ": identities are wrong at times, or landmarks were moved. 'helixnav explain --step N' shows a scan";
+         ": some identities are wrong, or landmarks were moved. 'helixnav explain --step N' shows a scan";
 }
 
 /// Of detections: those of landmarks of the map given (a landmark that began in this run is none), and all in the scans that have one.
@@ -71,8 +71,8 @@ std::string given_start_text(const runs::Run& run) {
       of_map < little * static_cast<double>(counts.seen) && of_map < chance * static_cast<double>(counts.seen_beside);
   if (counts.seen < enough || (most_times * counts.of_map > counts.seen && !by_chance)) return {};
   return "of " + std::to_string(counts.seen) + " detections " + std::to_string(counts.of_map) +
-         " were matched with the map given: the vehicle left it at once, or the start given is wrong and the map holds "
-         "landmarks twice now; --start unknown finds the start by itself";
+         " were matched with the map given: the vehicle left it at once, or the start given is wrong and the map now "
+         "holds landmarks twice; --start unknown finds the start itself";
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ std::vector<std::string> warnings_of(const Drive& job, const runs::Run& run, con
     return landmark.state == core::LandmarkState::mature;
   });
   if (job.known_association && mature && std::none_of(run.steps.begin(), run.steps.end(), has_match)) {
-    warnings.emplace_back("no identity was seen twice: --association known needs identities that last");
+    warnings.emplace_back("no identity was seen twice: --association known needs persistent identities");
   }
   if (job.known_association) {
     const std::string text = names_text(run);

@@ -20,9 +20,8 @@ CLI::Option* add_start_option(CLI::App& command, std::optional<SessionStart>& st
   return command
       .add_option_function<std::string>(
           "--start", take,
-          "Where on that map: unknown (mapping on its own until the place is found; the "
-          "default, but for --localize, which begins as the log says), end (where that run "
-          "ended), or a pose in metres and radians")
+          "Where on that map: unknown (the session maps on its own until its place is found; the default except with "
+          "--localize, which starts where the log says), end (where that run ended), or a pose in metres and radians")
       ->type_name("unknown|end|x,y,heading")
       ->check(objection_to);
 }

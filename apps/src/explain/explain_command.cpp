@@ -34,7 +34,8 @@ void explain(const ExplainJob& job) {
 }  // namespace
 
 void add_explain_command(CLI::App& app, ExitCode&) {
-  CLI::App* command = app.add_subcommand("explain", "Say why loops were closed or not, and observations dropped");
+  CLI::App* command =
+      app.add_subcommand("explain", "Explain why loops were closed or not, and why observations were dropped");
   const auto job = std::make_shared<ExplainJob>();
   command->add_option("DIR", job->folder, "Run folder, also one whose run was killed")->required();
   CLI::Option* step = command->add_option("--step", job->step, "What became of every observation of this step");

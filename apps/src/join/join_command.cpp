@@ -41,8 +41,8 @@ void note_unknown_drives(const std::vector<std::string>& runs, const std::vector
   for (std::size_t k = 0; k < runs.size(); ++k) {
     if (!maps[k].drives.empty()) continue;
     std::fprintf(stderr,
-                 "helixnav: note: %s: no drives.csv says what drive its map is of; whether another run is of the same "
-                 "one, and counts twice, cannot be told\n",
+                 "helixnav: note: %s: no drives.csv says which drive its map is from; whether another run is of the "
+                 "same drive, and counts twice, is unknown\n",
                  runs[k].c_str());
   }
 }
@@ -98,7 +98,7 @@ void join(CLI::App& command, const JoinJob& job) {
 }  // namespace
 
 void add_join_command(CLI::App& app, ExitCode&) {
-  CLI::App* command = app.add_subcommand("join", "Make one map of several runs that began anywhere");
+  CLI::App* command = app.add_subcommand("join", "Join the maps of several runs that began anywhere");
   const auto job = std::make_shared<JoinJob>();
   command->add_option("RUN", job->runs, "Run folders with a map.bin, oldest first")
       ->required()

@@ -55,7 +55,7 @@ std::vector<std::string> names_of_campaigns() {
   return names;
 }
 
-/// Nothing is driven: what was said of a drive must have been meant otherwise.
+/// Nothing is driven: options for a drive must have been meant otherwise.
 ExitCode merge(const CLI::App& command, const GivenOptions& given, const MonteCarloJob& job) {
   if (!given.empty()) throw CLI::ValidationError("--" + key_of(**given.begin()), "has no part in --merge");
   for (const char* name : {"SCENARIO", "--runs", "--first-seed", "--seeds", "--jobs", "--config"}) {
@@ -154,7 +154,7 @@ void add_options(CLI::App& command, MonteCarloJob& job) {
 
 void add_montecarlo_command(CLI::App& app, ExitCode& code) {
   CLI::App* command =
-      app.add_subcommand("montecarlo", "Drive a scenario with many seeds and judge every run by the truth");
+      app.add_subcommand("montecarlo", "Run a scenario with many seeds and judge every run against the truth");
   const auto job = std::make_shared<MonteCarloJob>();
   add_options(*command, *job);
   add_scenario_settings(*command, job->scenario_settings);

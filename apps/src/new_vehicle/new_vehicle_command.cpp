@@ -19,7 +19,7 @@
 namespace helixnav::apps {
 namespace {
 
-/// Whether the folder was not there before.
+/// Whether the folder did not exist before.
 bool make_folder(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -34,7 +34,7 @@ bool make_folder(const std::filesystem::path& folder) {
 
 using NamedFiles = std::vector<std::pair<const char*, std::string>>;
 
-/// All of them or none, and then no folder that was not there before.
+/// All of them or none, and then no folder that did not exist before.
 void write_files(const std::filesystem::path& folder, const NamedFiles& texts) {
   const bool is_new = make_folder(folder);
   try {
@@ -59,8 +59,7 @@ void write_example(const std::filesystem::path& folder) {
 }  // namespace
 
 void add_new_vehicle_command(CLI::App& app, ExitCode&) {
-  CLI::App* command =
-      app.add_subcommand("new-vehicle", "Write an example log with its vehicle.toml, to be made your own");
+  CLI::App* command = app.add_subcommand("new-vehicle", "Write an example log with its vehicle.toml, to start from");
   const auto folder = std::make_shared<std::string>();
   command->add_option("DIR", *folder, "Folder to write; must be empty or new")->required();
   command->footer(

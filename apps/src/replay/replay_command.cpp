@@ -57,7 +57,7 @@ void take_drive_before(const std::string& folder, Drive& task) {
   put_truth_behind(folder, driven, task.recording);
 }
 
-/// What a user may not have meant: the map of a drive that is driven on it again, or the end of a run of which only the map is left.
+/// What a user may not have meant: driving again on the map of the same drive, or on the end of a run of which only the map is left.
 void note_what_map_holds(const ReplayJob& job, const Drive& task) {
   if (job.start && job.start->kind == SessionStart::Kind::end) {
     if (!job.settings.known_association && lacks_its_drive(job.map))
@@ -78,7 +78,7 @@ void note_what_map_holds(const ReplayJob& job, const Drive& task) {
   }
 }
 
-/// To localise in, or to go on in.
+/// To localise in, or to continue in.
 void take_map(const ReplayJob& job, Drive& task) {
   if (job.map.empty()) return;
   if (job.localize) {
@@ -98,7 +98,7 @@ void take_map(const ReplayJob& job, Drive& task) {
   }
 }
 
-/// Where the run ended, with all that its navigator believed.
+/// The end of the run, with its navigator's full belief.
 bool goes_on_from_drive(const ReplayJob& job) {
   return !job.localize && !job.settings.known_association && is_driven_again(job.map, job.start);
 }
@@ -180,8 +180,8 @@ void add_blackouts(CLI::App& command, ReplayJob& job) {
   };
   command
       .add_option_function<std::vector<std::string>>("--blackout", take,
-                                                     "Withhold the scans from T0 to T1, seconds as in trajectory.tum; "
-                                                     "odometry goes on. May be given several times")
+                                                     "Withhold the scans from T0 to T1, in seconds as in "
+                                                     "trajectory.tum; odometry continues. May be given several times")
       ->type_name("T0:T1")
       ->allow_extra_args(false)
       ->check(objection_to);
@@ -199,11 +199,11 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
       "--smooth", job->smooth,
       "Then smooth with the filter's associations: trajectory_final.tum, chi2 and dof (GPS fixes left out)");
   CLI::Option* map = command->add_option(
-      "--map", job->map, "Go on in the map of an earlier run: its folder. With --localize a map.csv will do");
+      "--map", job->map, "Continue in the map of an earlier run: its folder. With --localize a map.csv is enough");
   map->type_name("RUN")->excludes(smooth);
   add_start_option(*command, job->start)->needs(map);
   CLI::Option* localize =
-      command->add_flag("--localize", job->localize, "Estimate the pose alone, in the map given, which stays as it is");
+      command->add_flag("--localize", job->localize, "Only estimate the pose, in the given map, which is not changed");
   localize->needs(map);
   add_blackouts(*command, *job);
   const auto take_robots = [job](const std::vector<std::string>& lists) {
@@ -215,11 +215,11 @@ void add_replay_command(CLI::App& app, ExitCode& code) {
   };
   command
       ->add_option_function<std::vector<std::string>>("--robots", take_robots,
-                                                      "Of a log of several robots: those with these numbers alone")
+                                                      "For a log of several robots: only the robots with these numbers")
       ->check(robot_numbers())
       ->type_name("N,N");
   command->add_flag("--unknown-starts", job->team.unknown_starts,
-                    "Of a log of several robots: where they start is not taken from the truth");
+                    "For a log of several robots: do not take their starts from the truth");
   add_run_options(*command, job->run);
   add_settings(*command, job->settings);
   command->footer(

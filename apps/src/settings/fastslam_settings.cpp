@@ -36,7 +36,7 @@ void add_switch(CLI::App& command, const std::string& name, bool& value, const s
 void add_cloud(CLI::App& command, FastSlamSettings& settings) {
   fastslam::Options& options = settings.options;
   add_number(command, "--fastslam.particles", options.particles, std::size_t{1}, std::size_t{1'000'000},
-             "Particles, each with a path and a map of its own");
+             "Number of particles, each with its own path and map");
   const auto set_version = [&options](int version) {
     options.proposal = version == 1 ? fastslam::Proposal::motion : fastslam::Proposal::motion_and_scan;
   };
@@ -56,7 +56,7 @@ void add_cloud(CLI::App& command, FastSlamSettings& settings) {
              "Noise added to the odometry of each scan, in x and in y: keeps the particles apart");
   add_number(command, "--fastslam.added_sigma_rad", options.added_sigma_rad, 0.0, 1.0, "The same in heading");
   add_number(command, "--fastslam.genealogy_m", options.genealogy_m, 0.1, 1e6,
-             "A loop's length: the report says of how many particles so far back those of today descend");
+             "Loop length: the report states how many distinct ancestors the particles have this far back");
 }
 
 void add_association(CLI::App& command, fastslam::Options& options) {
@@ -65,49 +65,48 @@ void add_association(CLI::App& command, fastslam::Options& options) {
   command
       .add_option_function<std::string>(
           "--fastslam.association", [&options](const std::string& word) { choose_association(word, options); },
-          "How each particle decides which landmark an observation is of; known: by the log's labels; sampled: drawn "
-          "with the probabilities of the alternatives; multiple-hypotheses: a child for each alternative")
+          "How each particle associates; known: by the log's labels; sampled: drawn with the probabilities of the "
+          "alternatives; multiple-hypotheses: one child for each alternative")
       ->check(one_of(names))
       ->default_str("likelihood-ratio")
       ->group(settings_group);
   add_number(command, "--fastslam.match_gate", options.match_gate, 0.1, 1000.0,
-             "NIS up to which a landmark may be matched; 13.82: 99.9 % of right pairs are inside");
-  add_number(
-      command, "--fastslam.new_gate", options.new_gate, 0.1, 1000.0,
-      "NIS beyond which, from every landmark, an observation begins a new one; between the gates it is of nothing");
+             "NIS up to which a landmark may be matched; 13.82: 99.9 % of correct pairs are inside");
+  add_number(command, "--fastslam.new_gate", options.new_gate, 0.1, 1000.0,
+             "An observation with a larger NIS than this from every landmark starts a new one; between the gates it is "
+             "ignored");
   add_switch(command, "--fastslam.exclusive", options.exclusive,
              "Two observations of one scan are never of the same landmark");
   add_number(command, "--fastslam.detection_probability", options.detection_probability, 0.01, 0.999,
              "P_D that a landmark in view is seen in one scan");
-  add_switch(
-      command, "--fastslam.weigh_unseen", options.weigh_unseen,
-      "Weigh particles by the landmarks that were in view and not seen; needs a log whose view is known, and the "
-      "right P_D");
-  add_number(command, "--fastslam.new_density", options.new_density, 1e-9, 1e3,
-             "Observations of new landmarks in a scan per m rad of the view, or per m^2 of a sensor of points");
-  add_number(command, "--fastslam.clutter_density", options.clutter_density, 1e-9, 1e3,
-             "Observations of nothing, likewise");
+  add_switch(command, "--fastslam.weigh_unseen", options.weigh_unseen,
+             "Weight particles by the landmarks that were in view but not seen; needs a log with known field of view, "
+             "and a correct P_D");
+  add_number(
+      command, "--fastslam.new_density", options.new_density, 1e-9, 1e3,
+      "Density of observations of new landmarks in a scan, per m rad of the view, or per m^2 for a sensor of points");
+  add_number(command, "--fastslam.clutter_density", options.clutter_density, 1e-9, 1e3, "Density of clutter, likewise");
 }
 
 void add_hypotheses(CLI::App& command, fastslam::HypothesisOptions& hypotheses) {
   add_switch(command, "--fastslam.split_always", hypotheses.split_always,
-             "multiple-hypotheses: also where one landmark alone is in the gate");
+             "multiple-hypotheses: split even if only one landmark is in the gate");
   add_number(command, "--fastslam.resample_every_scans", hypotheses.resample_every_scans, 1, 1'000'000,
              "multiple-hypotheses: scans with observations between resamplings, in place of resample_below");
   add_number(command, "--fastslam.most_children", hypotheses.most_children, std::size_t{1}, std::size_t{1000},
-             "multiple-hypotheses: times particles; beyond, the children are resampled at once");
+             "multiple-hypotheses: with more children than this times the particles, they are resampled at once");
 }
 
 void add_existence(CLI::App& command, fastslam::ExistenceOptions& existence) {
   add_switch(command, "--fastslam.remove", existence.remove,
              "A particle removes landmarks that it should see and does not; never with association known");
   add_number(command, "--fastslam.look_probability", existence.detection_probability, 0.11, 0.999,
-             "That an existing landmark is seen in one look, occlusion included: for remove");
+             "Probability that an existing landmark is seen in one look, occlusion included; used by remove");
   add_number(command, "--fastslam.mature_looks", existence.mature_looks, 1, 1000,
              "Sightings from different places that make a landmark mature");
 }
 
-/// True where the option has another value than its default.
+/// True if the option is not at its default.
 bool is_changed(const CLI::Option& option) {
   return option.count() > 0 && option.results().back() != option.get_default_str();
 }

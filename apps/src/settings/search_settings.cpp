@@ -32,7 +32,7 @@ void add_decorrelation(CLI::App& command, supervisor::SearchOptions& search) {
   command
       .add_option_function<std::string>("--search.decorrelation", set_decorrelation,
                                         "How the correlations of the old landmarks are removed for the particle "
-                                        "filter, which takes their errors as independent")
+                                        "filter, which treats their errors as independent")
       ->check(one_of(decorrelations()))
       ->default_str(std::string(pf_relocalize::name_of(search.reference.decorrelation)))
       ->group(settings_group);
@@ -46,7 +46,7 @@ void add_particle_filter(CLI::App& command, supervisor::SearchOptions& search) {
   };
   command
       .add_option_function<std::size_t>("--search.particles", set_particles,
-                                        "Particles of an attempt at its start; later fewer where that is enough")
+                                        "Particles at the start of an attempt; later fewer if that is enough")
       ->check(number_between(std::size_t{100}, std::size_t{10'000'000}))
       ->default_str(std::to_string(relocalizer.most_particles))
       ->group(settings_group);
@@ -56,7 +56,7 @@ void add_particle_filter(CLI::App& command, supervisor::SearchOptions& search) {
   command
       .add_option_function<std::string>("--search.init", set_start,
                                         "Where particles start; helix: where an observation meets a landmark; "
-                                        "gaussian: all over the prior (baseline)")
+                                        "gaussian: drawn from the prior (baseline)")
       ->check(one_of({"helix", "gaussian"}))
       ->default_str("helix")
       ->group(settings_group);
@@ -92,7 +92,7 @@ void add_trigger(CLI::App& command, Settings& settings) {
   command
       .add_option_function<std::string>(
           "--search.enabled", [&search](const std::string& word) { search.enabled = word == "true"; },
-          "Search with particles where a return is ambiguous; false: always associate scan by scan")
+          "Search with particles if a return is ambiguous; false: always associate scan by scan")
       ->check(one_of({"true", "false"}))
       ->default_str("true")
       ->group(settings_group);
@@ -100,18 +100,17 @@ void add_trigger(CLI::App& command, Settings& settings) {
       .add_option_function<std::string>(
           "--search.integrity_monitor,--search.missing_spawn",
           [&search](const std::string& word) { search.integrity.enabled = word == "true"; },
-          "Rolls back and searches where old landmarks go missing while new ones are mapped in their stead")
+          "Roll back and search if old landmarks go missing while new ones are mapped in their place")
       ->check(one_of({"true", "false"}))
       ->default_str("true")
       ->group(settings_group);
   add_number(command, "--search.seed", search.seed, std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max(),
-             "Seed of the particle filter and of the rivals tried; apart from the seed of a simulated world");
-  add_length(
-      command, settings, "search.old_after_m", 1e-3, 1e6,
-      "A mature landmark unseen over this driven distance is old, and so is one of which the vehicle has lost the "
-      "direction: seeing it again may begin a search; auto: twice the sensor's reach");
+             "Seed of the particle filter and of the rivals tried; independent of the seed of a simulated world");
+  add_length(command, settings, "search.old_after_m", 1e-3, 1e6,
+             "A mature landmark that stays unseen over this driven distance is old, and so is one whose direction from "
+             "the vehicle has become uncertain: seeing it again may start a search; auto: twice the sensor's reach");
   add_number(command, "--search.expected_confusers,--search.foreign_objects", search.expected_confusers, 1e-6, 1e3,
-             "A search begins at this expected number of other objects that may have caused the observation");
+             "A search starts at this expected number of other objects that may have caused the observation");
 }
 
 void add_closing(CLI::App& command, Settings& settings) {
@@ -132,19 +131,18 @@ void add_closing(CLI::App& command, Settings& settings) {
       ->default_str("replay")
       ->group(settings_group);
   add_length(command, settings, "search.undecided_m", 1e-3, 1e6,
-             "A search without a closing is given up after this distance; auto: 11 times the reach");
+             "A search without a closing is abandoned after this distance; auto: 11 times the reach");
   command
       .add_option_function<std::string>(
           "--search.whole_map", [&search](const std::string& word) { search.whole_map = word == "true"; },
-          "Before a search ends undecided, and where the motion forbids the closing that it found, the whole map is "
-          "asked "
-          "for the place; false: it is not")
+          "Before a search ends undecided, and if odometry contradicts the closing that it found, search the whole map "
+          "for the place; false: do not")
       ->check(one_of({"true", "false"}))
       ->default_str("true")
       ->group(settings_group);
   add_number(command, "--search.smooth_up_to_scans", search.smooth_up_to_scans, 0, 100'000'000,
-             "Scans up to which a drive is kept as it was measured, to be solved anew with other noise if need be; "
-             "after a closing any drive is solved, with 0 none");
+             "Keep the raw measurements of up to this many scans, so that the drive can be solved again with other "
+             "noise. After a closing a drive of any length is solved; with 0, none is");
 }
 
 }  // namespace

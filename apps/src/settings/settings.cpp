@@ -25,7 +25,7 @@ void add_filter(CLI::App& command, Settings& settings) {
       .add_option_function<std::string>(
           "--filter.method,--filter",
           [&settings](const std::string& word) { settings.fastslam.chosen = word == "fastslam"; },
-          "What navigates; fastslam: a cloud of particles (replay and simulate; docs/fastslam.md)")
+          "Filter that navigates; fastslam: particles, each with its own map (replay and simulate; docs/fastslam.md)")
       ->check(one_of({"compressed-ekf", "fastslam"}))
       ->default_str("compressed-ekf")
       ->group(settings_group);
@@ -45,15 +45,16 @@ void add_filter(CLI::App& command, Settings& settings) {
   add_number(command, "--filter.max_active_landmarks", filter.max_active_landmarks, 1, 100000,
              "A region switch is due beyond this number of active landmarks (three times it where all are active)");
   supervisor::MapOptions& map = settings.navigator.map;
-  add_number(
-      command, "--map.whole", map.whole, 0, 1'000'000,
-      "Landmarks up to which the filter holds the whole map; without names, 20 times what a scan sees if that is more");
+  add_number(command, "--map.whole", map.whole, 0, 1'000'000,
+             "The filter holds the whole map up to this many landmarks; without names, up to 20 times what a scan sees "
+             "if that is more");
   add_number(command, "--map.window", map.window, 50, 1'000'000,
              "How many landmarks around the vehicle the filter of a larger map holds");
   add_number(command, "--map.most_in_filter", map.most, 50, 1'000'000,
-             "Most that it holds where the vehicle may have drifted farther than that");
+             "Most landmarks that it holds if the vehicle may have drifted farther than that");
   add_number(command, "--map.memory_mb", settings.memory_mb, 0.0, 1e9,
-             "Memory of the process at which replay and simulate end the drive, map and report written; 0: no limit");
+             "When the process has used this much memory, replay and simulate end the drive and write map and report; "
+             "0: no limit");
 }
 
 void add_association(CLI::App& command, Settings& settings) {
@@ -63,24 +64,23 @@ void add_association(CLI::App& command, Settings& settings) {
   command
       .add_option_function<std::string>(
           "--association.method,--association", [&settings](const std::string& word) { choose_method(word, settings); },
-          "Which observation belongs to which landmark; known: by the log's labels. Of a log of several robots "
-          "known or unknown")
+          "Which observation belongs to which landmark; known: by the log's labels. For a log of several robots: known "
+          "or unknown")
       ->check(one_of(names))
       ->default_str(std::string(association::name(settings.navigator.method)))
       ->group(settings_group);
   supervisor::NavigatorOptions& navigator = settings.navigator;
   add_number(command, "--association.detection_probability", navigator.association.detection_probability, 0.01, 0.999,
              "P_D that a landmark in view is seen in one scan");
-  add_automatic(
-      command, "--names.wrong", settings.names_wrong, 0.0, 0.5,
-      "With --association known: share of sightings that are of another landmark than their name says; 0: none can "
-      "be; auto: 0.001, 0 where names are part of the problem (graphs, DLR)");
+  add_automatic(command, "--names.wrong", settings.names_wrong, 0.0, 0.5,
+                "With --association known: share of sightings that carry the name of another landmark; 0: none; auto: "
+                "0.001, or 0 if names are part of the problem (graphs, DLR)");
   add_number(command, "--association.extraneous_per_scan", navigator.extraneous_per_scan, 0.01, 100.0,
-             "Expected observations of no mapped landmark in a scan: clutter and new ones");
+             "Expected number of observations in a scan that are of no mapped landmark: clutter and new landmarks");
   add_number(command, "--association.match_probability", navigator.gates.match_probability, 0.5, 0.999999,
-             "Gate within which an observation may be matched, as the probability that a right pair is inside");
+             "Gate within which an observation may be matched, as the probability that a correct pair is inside");
   add_number(command, "--association.new_probability", navigator.gates.new_probability, 0.5, 0.99999999,
-             "Gate beyond which, from every landmark, an observation begins a new one");
+             "An observation outside this gate of every landmark starts a new one");
   add_number(command, "--association.joint_probability", navigator.association.joint_probability, 0.5, 0.999999,
              "Gate of the joint NIS of all pairs of a scan");
   add_number(command, "--association.min_margin_nats", navigator.association.min_margin_nats, 0.0, 100.0,
@@ -94,7 +94,7 @@ void add_landmarks(CLI::App& command, Settings& settings) {
   add_length(command, settings, "landmarks.tentative_patience_m", 1e-3, 1e6,
              "A tentative landmark that stays unseen over this distance is deleted; auto: the sensor's reach");
   add_number(command, "--landmarks.detection_probability", life.detection_probability, 0.01, 0.999,
-             "That an expected landmark is seen in one look, occlusion included");
+             "Probability that an expected landmark is seen in one look, occlusion included");
 }
 
 }  // namespace

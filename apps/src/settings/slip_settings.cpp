@@ -8,17 +8,17 @@ void add_slip_settings(CLI::App& command, Settings& settings) {
   command
       .add_option_function<std::string>(
           "--slip.enabled", [&slip](const std::string& word) { slip.enabled = word == "true"; },
-          "Landmarks beside where they are expected may say that the vehicle slipped; false: odometry is believed")
+          "Detect wheel slip from landmarks that appear beside their expected positions; false: trust the odometry")
       ->check(one_of({"true", "false"}))
       ->default_str("true")
       ->group(settings_group);
   add_number(command, "--slip.nats", slip.nats, 0.0, 1e6,
-             "By so much a slip must explain a scan better than no slip does");
+             "A slip must explain a scan better than no slip by this much");
   supervisor::MovingOptions& moving = settings.navigator.moving;
   command
       .add_option_function<std::string>(
           "--moving.enabled", [&moving](const std::string& word) { moving.enabled = word == "true"; },
-          "Drop landmarks whose sightings say that they move; false: nothing moves")
+          "Drop landmarks whose sightings show that they move; false: assume that nothing moves")
       ->check(one_of({"true", "false"}))
       ->default_str("true")
       ->group(settings_group);
@@ -26,8 +26,8 @@ void add_slip_settings(CLI::App& command, Settings& settings) {
   command
       .add_option_function<std::string>(
           "--noise.adapt", [&noise](const std::string& word) { noise.adapt = word == "true"; },
-          "Learn factors on the covariances of odometry and observations while driving, false: use them as "
-          "assumed")
+          "Learn factors on the covariances of odometry and observations while driving; false: use the assumed "
+          "covariances")
       ->check(one_of({"true", "false"}))
       ->default_str("true")
       ->group(settings_group);

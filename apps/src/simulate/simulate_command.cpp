@@ -154,7 +154,7 @@ void add_simulate_command(CLI::App& app, ExitCode& code) {
       ->check(number_between(std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max()));
   add_sessions(*command, *job);
   command->add_option("--robots", job->robots, "Of team: how many")->check(number_between(2, 9))->type_name("N");
-  command->add_flag("--unknown-starts", job->unknown_starts, "Of team: where the robots start is not told");
+  command->add_flag("--unknown-starts", job->unknown_starts, "Of team: the robots are not given their starts");
   add_run_options(*command, job->run);
   add_scenario_settings(*command, job->scenario_settings);
   add_settings(*command, job->settings);

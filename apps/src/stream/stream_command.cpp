@@ -51,7 +51,7 @@ ExitCode run_stream(CLI::App& command, StreamOptions& options) {
 }  // namespace
 
 void add_stream_command(CLI::App& app, ExitCode& code) {
-  CLI::App* command = app.add_subcommand("stream", "Navigate live: JSON Lines in, one answer line a scan out");
+  CLI::App* command = app.add_subcommand("stream", "Navigate live: JSON Lines in, one answer line per scan out");
   const auto options = std::make_shared<StreamOptions>();
   add_vehicle_option(
       *command, options->vehicle,

@@ -82,14 +82,14 @@ void warn_of_refused(const TeamTask& task, const TeamDrive& drive, Sentences& wa
     const Refused count = refused_of(drive, r);
     if (count.seen < enough || one_in * count.refused <= count.seen) continue;
     warnings.push_back(
-        sentence("robot %d: %zu of its %zu sightings of landmarks and robots were refused: its odometry, its clock or "
-                 "barcodes are wrong, or what it knows of where it is",
+        sentence("robot %d: %zu of its %zu sightings of landmarks and robots were refused: its odometry, clock, "
+                 "barcodes or pose are wrong",
                  number_of(task, static_cast<int>(r)), count.refused, count.seen));
   }
   for (const auto& [pair, count] : refused_by_pair(drive)) {
     if (count.seen < enough_of_robots || one_in * count.refused <= count.seen) continue;
     warnings.push_back(
-        sentence("robots %d and %d: %zu of their %zu sightings of one another were refused: the clock or the odometry "
+        sentence("robots %d and %d: %zu of their %zu sightings of each other were refused: the clock or the odometry "
                  "of one of them is wrong, robots were taken for others, or a start given is wrong",
                  number_of(task, pair.first), number_of(task, pair.second), count.refused, count.seen));
   }
@@ -100,12 +100,12 @@ void warn_of_mapped_anew(const TeamTask& task, const TeamDrive& drive, Sentences
     const std::optional<MappedAnew> anew = mapped_anew(drive, r);
     if (!anew) continue;
     constexpr double percent = 100.0;
-    warnings.push_back(
-        sentence("robot %d: from %.1f to %.1f s it missed %.0f %% of the landmarks that it knew there, and %.0f %% of "
-                 "what it saw was of new ones: it slipped unnoticed or matched wrongly; its path since is wrong, and "
-                 "landmarks stand a second time",
-                 number_of(task, static_cast<int>(r)), core::seconds(anew->from_ns), core::seconds(anew->to_ns),
-                 percent * anew->missed, percent * anew->begun));
+    warnings.push_back(sentence(
+        "robot %d: from %.1f to %.1f s it missed %.0f %% of the landmarks it knew there, and %.0f %% of its "
+        "sightings started new ones: it slipped unnoticed or matched wrongly. Its path since then is wrong, and "
+        "landmarks are on the map twice",
+        number_of(task, static_cast<int>(r)), core::seconds(anew->from_ns), core::seconds(anew->to_ns),
+        percent * anew->missed, percent * anew->begun));
   }
 }
 
@@ -118,8 +118,8 @@ void warn_of_names_in_two_frames(const TeamTask& task, const TeamDrive& drive, S
       const std::size_t common = common_names(drive, *one, *other);
       if (common < enough) continue;
       warnings.push_back(
-          sentence("robots %d and %d stay in two frames, although %zu names of landmarks are common to both: where the "
-                   "landmarks stand contradicts that they are the same, or is known too badly",
+          sentence("robots %d and %d stay in two frames although they share %zu landmark names: the positions of the "
+                   "landmarks contradict that they are the same, or are known too poorly",
                    number_of(task, *one), number_of(task, *other), common));
     }
   }

@@ -62,7 +62,7 @@ std::string closings_sentence(const runs::Run& run) {
       new_ground += verdict == "new-ground";
     }
   }
-  if (accepted + refused + undecided + new_ground == 0) return "No search for an old place was made.";
+  if (accepted + refused + undecided + new_ground == 0) return "No search for an old place began.";
   std::string text = accepted > 0 ? "The map was closed " + times(accepted) : "The map was never closed";
   text += refused > 0 ? "; a closing was refused " + times(refused) : "; no closing was refused";
   text += new_ground > 0 ? "; a search ended on new ground " + times(new_ground) : "";
@@ -92,7 +92,7 @@ std::string movers_sentence(const runs::Run& run) {
     }
   }
   if (movers == 0) return {};
-  return "Something that moves had been mapped " + times(movers) + ": " + counted(landmarks, "landmark") +
+  return "A moving object had been mapped " + times(movers) + ": " + counted(landmarks, "landmark") +
          (landmarks == 1 ? " was" : " were") + " dropped.";
 }
 
@@ -111,7 +111,7 @@ std::string places_sentence(const runs::Run& run) {
   }
   if (carried == 0) return found;
   return found + (found.empty() ? "" : " ") + "The vehicle was carried " + times(carried) +
-         "; afterwards its place on what was mapped before was " +
+         "; afterwards its place on the map from before was " +
          (found_again == 0         ? "never found."
           : carried == 1           ? "found."
           : found_again >= carried ? "found each time."
@@ -125,7 +125,7 @@ std::string figures_of(const evaluation::ErrorStatistics& error) {
 
 std::string error_sentence(const evaluation::Evaluation& evaluation) {
   if (!evaluation.position || evaluation.position->error_m.count == 0) {
-    return "No truth is known: nothing here says how far from it the estimate is.";
+    return "No truth is known, so the error of the estimate cannot be stated.";
   }
   std::string text = "Position error as estimated on the way: " + figures_of(evaluation.position->error_m);
   if (evaluation.final_position && evaluation.final_position->error_m.count > 0) {

@@ -164,10 +164,10 @@ TEST(CalibrateStraightDrive, SaysWhatCannotBeObserved) {
   const Outcome outcome = run({"calibrate", log, "--out", out});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   for (const char* key : {"x_m", "y_m", "turn_scale", "delay_s"}) {
-    const std::regex row(std::string(key) + R"( +told .* not observable from this log: left as told)");
+    const std::regex row(std::string(key) + R"( +given .* not observable from this log: left as given)");
     EXPECT_TRUE(std::regex_search(outcome.out, row)) << key << '\n' << outcome.out;
   }
-  EXPECT_TRUE(std::regex_search(outcome.out, std::regex("heading_deg +told .* observable"))) << outcome.out;
+  EXPECT_TRUE(std::regex_search(outcome.out, std::regex("heading_deg +given .* observable"))) << outcome.out;
   EXPECT_EQ(logs::read_vehicle(out).sensors.at(0).T_vehicle_sensor.x_m, 0.0);
 }
 

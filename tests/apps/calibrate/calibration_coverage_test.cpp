@@ -19,10 +19,10 @@ struct Interval {
   double middle = 0.0, low = 0.0, high = 0.0;
 };
 
-/// What calibrate prints of what it could observe: constants as "KEY told A found B +- C", noise as "KIND noise x B (95 %: LOW to HIGH".
+/// What calibrate prints of what it could observe: constants as "KEY given A found B +- C", noise as "KIND noise x B (95 %: LOW to HIGH".
 std::map<std::string, Interval> table_of(const std::string& text) {
   std::map<std::string, Interval> table;
-  const std::regex constant(R"((\w+) +told +\S+ +found +(\S+) \+- (\S+) +observable)");
+  const std::regex constant(R"((\w+) +given +\S+ +found +(\S+) \+- (\S+) +observable)");
   for (std::sregex_iterator row(text.begin(), text.end(), constant), end; row != end; ++row) {
     const double value = std::stod((*row)[2]), half = std::stod((*row)[3]);
     table[(*row)[1]] = {value, value - half, value + half};
@@ -94,6 +94,7 @@ TEST(CalibrationCoverage, HoldsTheTruthOfSpoiltLogs) {
     EXPECT_GE(held, 0.90 * drives);
     EXPECT_LE(held, 0.99 * drives);
   }
+  EXPECT_GE(coverage.size(), 6u) << "constants are observable in such a log, beside both noises";
   EXPECT_GE(held, 0.85 * drives);  // 95 % of 30: fewer than 26 have a probability of 2 %
   EXPECT_LE(worst_noise["detections"], 0.15);
   EXPECT_LE(worst_noise["odometry"], 0.25);  // 0.207 in 100 drives

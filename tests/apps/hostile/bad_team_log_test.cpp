@@ -163,7 +163,7 @@ TEST_F(TeamLog, OfRobotsThatContradictOneAnotherIsWarnedOf) {
   write("measurements.csv", text);
   const Outcome outcome = replay();
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("warning: robots 1 and 2: 16 of their 52 sightings of one another"), std::string::npos)
+  EXPECT_NE(outcome.err.find("warning: robots 1 and 2: 16 of their 52 sightings of each other"), std::string::npos)
       << outcome.err;
   EXPECT_EQ(outcome.err.find("warning: robot 1:"), std::string::npos) << outcome.err;
 }

@@ -79,7 +79,7 @@ TEST_F(Warnings, TellOfAMapWithoutALandmark) {
 TEST_F(Warnings, TellOfTruthOfAnotherClock) {
   folder_.write("log/truth_poses.csv", "t,x,y\n5000,0,0\n5001,1,0\n");
   const Outcome outcome = replay();
-  expect(outcome, 0, "none of the 2 positions of truth lies within the time of the run");
+  expect(outcome, 0, "none of the 2 true positions is within the time span of the run");
   EXPECT_NE(outcome.out.find("position error       unknown"), std::string::npos) << outcome.out;
 }
 
