@@ -40,7 +40,7 @@ struct Set {
   std::vector<InnovationProblem> problems;
 };
 
-/// Problems with the same numbers of observations and landmarks; `sigma` and `patch_m` set how many stand in a gate.
+/// Problems with the same numbers of observations and landmarks; `sigma` and `patch_m` set how many are in a gate.
 Set draw(const std::string& title, int count, int observations, int landmarks, double sigma, double patch_m) {
   core::RandomStream random(2024, title);
   Set set;

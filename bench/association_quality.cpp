@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Share of right and wrong matches of each method on single ambiguous scans whose truth is known. The defaults of
-// association::Options were chosen by this table.
+// association::Options were chosen from this table.
 #include <algorithm>
 #include <cstdio>
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Processor time of the association methods on problems drawn from runs: each scan of a drive is timed once, as in a run,
-// while the likelihood-ratio assignment maps on.
+// while the likelihood-ratio assignment continues mapping.
 //   helixnav_association_times            15 observations of 30 landmarks, more than 10 000 scans: median, p99, worst
 //   helixnav_association_times --figure3  time against the number of features, all seen at once (ihgr_zhang2005 Fig. 3),
 //                                         as CSV
@@ -42,7 +42,7 @@ struct Times {
   }
 };
 
-/// The methods alone, without the test of all pairs together, which is the same for all.
+/// The methods alone, without the joint test of all pairs, which is the same for all.
 std::vector<Times> methods() {
   std::vector<Times> list;
   for (const Method method :
@@ -61,7 +61,7 @@ std::vector<Times> methods() {
   return list;
 }
 
-/// Drives layouts of the world and times every `every`-th scan in which `wanted` holds.
+/// Drives layouts of the world and times every `every`-th scan for which `wanted` holds.
 void time_runs(const sim::IhgrCircle& world, int layouts, int every,
                const std::function<bool(const InnovationProblem&)>& wanted, std::vector<Times>& list) {
   int scan = 0;

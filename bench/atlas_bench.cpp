@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Prints the tables of docs/atlas.md. Times are processor time of one thread.
-//   helixnav_bench_atlas park GRAPH [LENGTH_M [BEND_M [REDERIVE_M]]]   the iSAM graph of Victoria Park, live, beside its optimum
+//   helixnav_bench_atlas park GRAPH [LENGTH_M [BEND_M [REDERIVE_M]]]   the iSAM graph of Victoria Park, live, against its optimum
 //   helixnav_bench_atlas grid LANDMARKS                                 a street grid: the whole, joints, phases on old ground
 //   helixnav_bench_atlas road LANDMARKS                                 one road: the same on new ground
-//   helixnav_bench_atlas laps COUNT LAPS_KEPT                           a road of 4 km in a circle, driven again and again
-//   helixnav_bench_atlas loop LANDMARKS                                 one long road in a circle with a fix each 5 km, driven twice
+//   helixnav_bench_atlas laps COUNT LAPS_KEPT                           a circular road of 4 km, driven again and again
+//   helixnav_bench_atlas loop LANDMARKS                                 one long circular road with a fix every 5 km, driven twice
 //   helixnav_bench_atlas close BEND_M KILOMETRES…                       a loop of 4 km closed at the end of such drives
 #include <algorithm>
 #include <cmath>
@@ -132,7 +132,7 @@ std::vector<core::LandmarkId> closest(const atlas::Atlas& map, const Eigen::Vect
   return ids;
 }
 
-/// A drive goes on, phase by phase.
+/// Continues a drive, phase by phase.
 void go_on(atlas::Atlas& map, bench::RoadWorld& world) {
   std::vector<atlas::PhaseShape> shapes;
   const auto logs = world.phases(shapes);
@@ -240,7 +240,7 @@ void close_loop(double kilometres, double bend_m) {
       2 * closed.phase_count() - 1, gap_m);
 }
 
-/// Ten phases at a time are added, condensed unless laps_kept is negative, and settled.
+/// Adds ten phases at a time, condenses unless laps_kept is negative, and settles.
 void laps(int count, int laps_kept) {
   bench::RoadWorld world = bench::circle(4007.0);
   atlas::Options options;
@@ -276,7 +276,7 @@ core::AbsoluteFix fix_at(const Eigen::Vector2d& place_m, core::RandomStream& ran
   return fix;
 }
 
-/// Each lap: phases added and settled, 25 at a time, and what is asked for where it ends.
+/// Each lap: phases are added and settled 25 at a time; then the queries at its end.
 void loop(int landmarks) {
   const double length_m = 4.0 * landmarks + 7.0;
   bench::RoadWorld world = bench::circle(length_m);

@@ -13,7 +13,7 @@
 
 namespace helixnav::bench {
 
-/// Landmarks beside roads, seen within 25 m by a vehicle that drives steps of 10 m; four steps are a phase.
+/// Landmarks beside roads, seen within 25 m by a vehicle that drives in steps of 10 m; four steps make a phase.
 class RoadWorld {
  public:
   double sigma_seen_m = 0.2;
@@ -40,8 +40,8 @@ class RoadWorld {
   double driven_m() const { return 10.0 * static_cast<double>(route_m_.size() - 1); }
   const Eigen::Vector2d& at_m() const { return route_m_.back(); }
 
-  /// The phases of the route from where the last call ended, so many at most; about the truth, with noise in their residuals. `ends_m`:
-  /// where they end.
+  /// The phases of the route from where the last call ended, at most `most`; about the truth, with noise in their residuals.
+  /// `ends_m`: where they end.
   std::vector<std::shared_ptr<atlas::PhaseLog>> phases(std::vector<atlas::PhaseShape>& shapes,
                                                        std::size_t most = static_cast<std::size_t>(-1),
                                                        std::vector<Eigen::Vector2d>* ends_m = nullptr) {
@@ -114,7 +114,7 @@ class RoadWorld {
   std::size_t done_ = 0;
 };
 
-/// Streets 100 m apart with a landmark each 8 m on both sides, all of them driven once.
+/// Streets 100 m apart with a landmark every 8 m on both sides, each driven once.
 inline RoadWorld street_grid(int landmarks, int& streets) {
   RoadWorld world(1);
   streets = static_cast<int>(std::lround(std::sqrt(landmarks / 50.0) + 0.5));
@@ -141,7 +141,7 @@ inline RoadWorld street_grid(int landmarks, int& streets) {
   return world;
 }
 
-/// A straight road, then a loop of 4 km that ends `beyond_m` after its beginning; a landmark each 8 m on both sides.
+/// A straight road, then a loop of 4 km that ends `beyond_m` after its beginning; a landmark every 8 m on both sides.
 inline RoadWorld road_and_loop(double road_m, double beyond_m) {
   RoadWorld world(2);
   world.sigma_seen_m = 0.1;
@@ -159,14 +159,14 @@ inline RoadWorld road_and_loop(double road_m, double beyond_m) {
   return world;
 }
 
-/// Where a road of this length in a circle is, and `off_m` beside it.
+/// The point at `s` on a circular road of this length, or `off_m` beside it.
 inline Eigen::Vector2d on_circle(double length_m, double s, double off_m) {
   const double radius_m = length_m / (2.0 * core::pi);
   const double angle = s / radius_m;
   return {(radius_m - off_m) * std::sin(angle), radius_m - (radius_m - off_m) * std::cos(angle)};
 }
 
-/// A road in a circle, a landmark each 8 m on both sides.
+/// A circular road, a landmark every 8 m on both sides.
 inline RoadWorld circle(double length_m) {
   RoadWorld world(3);
   world.sigma_seen_m = 0.1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the verbs of the compressed EKF cost, by retraction (0 standard, 1 right-invariant), map size and active set.
+// Cost of the compressed EKF's operations, by retraction (0 standard, 1 right-invariant), map size and active set.
 #include <benchmark/benchmark.h>
 
 #include "cekf_world.hpp"

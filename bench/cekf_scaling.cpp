@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Prints one table: step time of the compressed EKF (predict + joint update with 8 observations, 40 active landmarks) and
-// its region switch, by the number of landmarks mapped, beside a plain dsyrk of the same size where a BLAS was found.
-// Maps of all sizes take turns, and so do switch and dsyrk, so that a machine that changes its pace changes it for all.
+// its region switch, by the number of landmarks mapped, beside a plain dsyrk of the same size if a BLAS was found.
+// Maps of all sizes take turns, and so do switch and dsyrk, so that a change in the machine's speed affects all alike.
 // Times are processor time of one thread.
 #include <algorithm>
 #include <cstdio>
@@ -24,7 +24,7 @@ using namespace helixnav;
 
 constexpr int active = 40;
 
-/// Of values given; orders them.
+/// Of the given values, which it sorts.
 double quantile(std::vector<double>& values, double share) {
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
@@ -72,7 +72,7 @@ void time_switch(Row& row) {
 }
 
 #ifdef HELIXNAV_BENCH_BLAS
-/// C (n × n) −= A·Aᵀ, A n × q, by the BLAS of the machine, into memory that it has seen before.
+/// C (n × n) −= A·Aᵀ, A n × q, by the machine's BLAS, into memory touched before.
 class PlainUpdate {
  public:
   explicit PlainUpdate(Size size)

@@ -44,7 +44,7 @@ class CekfWorld {
     return result;
   }
 
-  /// What is seen after the increment.
+  /// The matches seen after the increment.
   const std::vector<cekf::Match>& look() {
     const core::Pose2 pose = core::compose(filter.pose().mean, odometry().T_before_after);
     matches_.clear();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Is the filter as sure as it may be? 100 runs each of sim's circuit and circuit-large-noise, association known, assumed noise
+// Is the filter consistent? 100 runs each of sim's circuit and circuit-large-noise, association known, assumed noise
 // = true noise, default region. Prints per retraction:
 //   NEES     mean 3-dof NEES of the pose over the last quarter; 95 % band for 100 runs 2.54 … 3.50
-//   NIS/dof  sum of the NIS of all joint updates of all runs by the sum of their degrees of freedom, and its 95 % band
-//   inside   share of the updates whose NIS lies inside the two-sided 95 % band of its own χ²
+//   NIS/dof  sum of the NIS of all joint updates of all runs over the sum of their degrees of freedom, and its 95 % band
+//   inside   share of the updates whose NIS is inside the two-sided 95 % band of its own χ²
 // usage: helixnav_consistency_study [first seed]
 #include <cmath>
 #include <cstdio>

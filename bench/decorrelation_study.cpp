@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What each decorrelation rule costs the search: the share of starts that meet the gate within 20 scans at the right and
+// What each decorrelation rule costs the search: the share of starts that pass the gate within 20 scans at the right and
 // at a wrong pose. Truth is drawn from the joint estimate itself, so that every rule is given its true errors.
 //   helixnav_decorrelation_study [runs = 60] [spacing factor = 1]
 #include <algorithm>
@@ -25,7 +25,7 @@ using namespace helixnav::pf_relocalize;
 constexpr int landmarks = 24;
 constexpr double degree = core::pi / 180.0;
 
-/// A map along a road, stretched, with the vehicle back in its middle and lost by 6 m and 4 degrees.
+/// A map along a road, stretched, with the vehicle back in its middle, uncertain by 6 m and 4 degrees.
 core::JointGaussian estimate(std::uint64_t seed, double stretch) {
   core::JointGaussian joint = test::drive_map(landmarks, seed, 0.3, 0.01 / stretch);
   for (Eigen::Vector2d& point : joint.points_m) point *= stretch;
@@ -36,7 +36,7 @@ core::JointGaussian estimate(std::uint64_t seed, double stretch) {
   return joint;
 }
 
-/// One draw from a joint estimate, driven on.
+/// One draw from a joint estimate, which then drives on.
 struct Truth {
   Truth(const core::JointGaussian& joint, std::uint64_t seed) : random(seed, "decorrelation study"), drawn(joint) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(joint.covariance);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Scans with far more observations than any sensor makes, several in a row: processor time of each, most memory resident,
-// observations used. A table; ends with status 1 where a scan of 10 000 takes more than 1 s or 200 MB.
+// Scans with far more observations than any sensor produces, several in a row: processor time of each, peak resident
+// memory, observations used. A table; exits with status 1 if a scan of 10 000 takes more than 1 s or 200 MB.
 //   helixnav_full_scan
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ using namespace helixnav;
 
 constexpr double reach_m = 80.0;
 
-/// The same places each time, seen with noise; one place only: all observations of it.
+/// The same places each time, seen with noise; one_place: all observations are of a single one.
 core::Scan scan_of(std::size_t observations, bool one_place, core::Nanoseconds t_ns, core::RandomStream& noise) {
   core::RandomStream places(5);
   core::Scan scan;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The simulation of ihgr_zhang2005 §IV.A for every method, swept over what the paper leaves out, as CSV on stdout: one row
-// a method and world, shares of successful runs with 95 % intervals (Wilson). docs/ihgr.md shows it.
+// The simulation of ihgr_zhang2005 §IV.A for every method, swept over what the paper leaves open, as CSV on stdout: one
+// row per method and world, shares of successful runs with 95 % intervals (Wilson). docs/ihgr.md shows it.
 //   helixnav_ihgr_reproduction [layouts, default 200 [setting, default all]]
 #include <cmath>
 #include <cstdio>
@@ -91,7 +91,7 @@ int main(int argc, char** argv) {
     for (const double sigma_range_m : {0.03, 0.06, 0.1, 0.15, 0.2, 0.3}) {
       Setting noisy = setting;
       noisy.world.sigma_range_m = sigma_range_m;
-      noisy.world.sigma_bearing_rad = 10.0 * sigma_range_m * degrees;  // 0.1 m go with 1°
+      noisy.world.sigma_bearing_rad = 10.0 * sigma_range_m * degrees;  // 0.1 m goes with 1°
       for (const bench::Contestant& contestant : bench::ihgr_contestants()) print_row(noisy, contestant, layouts);
     }
   }

@@ -16,7 +16,7 @@
 
 namespace helixnav::bench {
 
-/// A method as it enters the reproduction. "As published": gate 6.63, no test of the pairs together.
+/// A method as it enters the reproduction. "As published": gate 6.63, no joint test of the pairs.
 struct Contestant {
   std::string name;
   MappingOptions mapping;
@@ -48,7 +48,7 @@ inline std::vector<Contestant> ihgr_contestants() {
 }
 
 /// The verdicts on one layout: "no wrong association", "pose consistent at the end" (NEES within the 99.9 % quantile of
-/// χ²₃), and "12 features make 12 landmarks", the last a looser reading of a map that came out well.
+/// χ²₃), and "12 features make 12 landmarks", the last a looser criterion for a good map.
 struct Verdict {
   evaluation::AssociationScore score;
   bool without_wrong = false;

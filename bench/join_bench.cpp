@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Time of joining two forests that were mapped apart: helixnav_join_bench SMALL LARGE, numbers of landmarks. The larger
-// session covers all that the smaller one does but for 20 m. Maps bend as odometry does: a random walk along rows 20 m apart,
-// which the covariance states exactly.
+// session covers all that the smaller one does except for 20 m. Maps bend as odometry does: a random walk along rows 20 m
+// apart, which the covariance models exactly.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -18,7 +18,7 @@ namespace {
 
 using namespace helixnav;
 
-constexpr double spacing_m = 5.0;  ///< a tree to so much squared
+constexpr double spacing_m = 5.0;  ///< one tree per square of this side
 constexpr double wide_m = 120.0;
 constexpr double row_m = 20.0;
 constexpr double sigma_m = 0.05;
@@ -46,7 +46,7 @@ double driven_m(const Eigen::Vector2d& at_m) {
   return row * (wide_m + row_m) + along_m;
 }
 
-/// A landmark's error is that of a random walk of the position, 1 cm/√m, at the metre where it was passed, and its own.
+/// A landmark's error is the random walk of the position, 1 cm/√m, at the metre where it was passed, plus its own.
 core::JointMap mapped(const std::vector<Tree>& trees, const core::Pose2& T_world_session, std::uint64_t seed) {
   constexpr double walk_m = 0.01;
   core::RandomStream random(seed, "session");

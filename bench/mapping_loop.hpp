@@ -19,8 +19,8 @@
 
 namespace helixnav::bench {
 
-/// EKF-SLAM as the association papers run it: no landmark ever dies, every observation that is far from all landmarks
-/// begins one, nothing else decides. What the methods do is then theirs alone.
+/// EKF-SLAM as the association papers run it: no landmark is ever removed, every observation far from all landmarks
+/// begins one, nothing else decides. The results are then due to the methods alone.
 struct MappingOptions {
   association::Method method = association::Method::likelihood_ratio;
   association::Options association;

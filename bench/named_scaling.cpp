@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Steps of a NamedNavigator on a road in a circle, mapped and then come back to. A table; times are processor time of one thread.
+// Steps of a NamedNavigator on a circular road, mapped and then revisited. A table; times are processor time of one thread.
 //   helixnav_named_scaling LANDMARKS…
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 using namespace helixnav;
 
-/// A landmark each 8 m on both sides of a road in a circle, seen up to 25 m away from scans each 2 m, a fix of 1 m each 5 km.
+/// A landmark every 8 m on both sides of a circular road, seen up to 25 m away in scans every 2 m, a fix of 1 m every 5 km.
 class CircleRoad {
  public:
   static constexpr double step_m = 2.0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a relocalisation costs: start on helices and one step with 8000 particles × 10 observations, likelihoods a second
-// of one core, and the arithmetic of the inner loop alone. "pairs/s" counts particle × landmark likelihoods p(z|x, m)
-// closer than 6 σ, which cannot be left out, per second of processor time of one core; "weighed/s" counts all that are
-// computed, neighbours of a tile that only some of its particles see included.
+// What a relocalisation costs: start on helices and one step with 8000 particles × 10 observations, likelihoods per
+// second on one core, and the arithmetic of the inner loop alone. "pairs/s" counts particle × landmark likelihoods
+// p(z|x, m) closer than 6 σ, which cannot be left out, per second of processor time of one core; "weighed/s" counts all
+// that are computed, including neighbours of a tile that only some of its particles see.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -78,7 +78,7 @@ double pairs_within_reach(const ReferenceMap& map, const core::Scan& scan, const
   return pairs;
 }
 
-/// Pairs that are weighed: tile by tile, all of a landmark within reach of one particle of the tile.
+/// Pairs that are weighed: tile by tile, all those of a landmark within reach of one particle of the tile.
 double pairs_weighed(const ReferenceMap& map, const core::Scan& scan, const Particles& cloud) {
   const LandmarkTable table(map);
   double pairs = 0.0;
@@ -129,7 +129,7 @@ BENCHMARK(likelihoods)
     ->ArgsProduct({{8, 4, 2}, {0, 1}})
     ->Unit(benchmark::kMillisecond);
 
-/// The loop over a tile alone: the limit of the above when neighbours cost nothing to find. 48 flops a pair, the division
+/// The loop over a tile alone: the limit of the above if neighbours cost nothing to find. 48 flops per pair, the division
 /// and the square root counted as one each.
 void tile_arithmetic(benchmark::State& state) {
   PlacedPoints placed;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A Navigator for a day: scans of a circuit whose landmarks change, a tenth of the drive a row. Says at the end which bounds
-// are broken, and then ends with status 1. Times are processor time of one thread; the world is made scan by scan, so that
-// memory is the navigator's.
+// A Navigator for a day: scans of a circuit whose landmarks change, one row per tenth of the drive. Reports at the end which
+// bounds are broken, and exits with status 1 if any is. Times are processor time of one thread; the world is generated scan by
+// scan, so that memory is the navigator's.
 //   helixnav_soak [SCANS [SEED]]      1 000 000 scans are 24 h of driving
 #include <malloc.h>
 
@@ -120,7 +120,7 @@ struct Row {
   double p50_us = 0.0;
   double p99_us = 0.0;
   double most_us = 0.0;
-  double inside_band = 0.0;  ///< share of the scans whose NEES lies in its 95 % band
+  double inside_band = 0.0;  ///< share of the scans whose NEES is in its 95 % band
   double mean_nees = 0.0;
   int landmarks = 0;
 };
@@ -192,8 +192,8 @@ class Soak {
   int closures_ = 0;
 };
 
-/// Says what is broken. A filter that is as sure as it may be has its NEES inside the band 95 times of 100; over one drive, in
-/// which the error of the first lap stays, there is no saying whether it is above.
+/// Reports what is broken. A consistent filter has its NEES inside the band 95 times in 100; over one drive, in which the
+/// error of the first lap persists, there is no telling whether it is above.
 int judge(const Row& first, const Row& last, double least_inside) {
   const double growth = last.resident_mb / first.resident_mb - 1.0;
   const double slower = last.p99_us / first.p99_us;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Pairs of robots of an MRCLAM run from unknown starts: where the second robot stands, seen from the first, when one kind of
+// Pairs of robots of an MRCLAM run from unknown starts: where the second robot is, seen from the first, once one kind of
 // evidence has joined them, against the truth of the run. The table of docs/team.md.
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ using By = team::TeamJoin::By;
 constexpr double wrong_m = 1.5;
 constexpr double wrong_rad = 20.0 * core::pi / 180.0;
 
-/// By which evidence, and whether a robot knows its own landmarks by their barcodes.
+/// By what evidence, and whether a robot knows its own landmarks by their barcodes.
 struct Way {
   By by;
   bool has_names = true;
@@ -33,7 +33,7 @@ struct Joined {
   team::TeamJoin join;
 };
 
-/// An event (i ≥ 0), or a sighting of a robot (−1 − its index), in the order in which Team wants them.
+/// An event (i ≥ 0), or a sighting of a robot (−1 − its index), in the order in which Team expects them.
 struct Fed {
   core::Nanoseconds t_ns;
   int kind;
@@ -74,7 +74,7 @@ void give(const core::TeamRecording& recording, const Fed& fed, const Way& way, 
   team.take(robot, member.recording.events[static_cast<std::size_t>(fed.index)], names);
 }
 
-/// The true pose nearest in time: Vicon's come every 10 ms.
+/// The true pose nearest in time: those of Vicon come every 10 ms.
 core::Pose2 truth_at(const std::vector<core::TruePose>& truth, core::Nanoseconds t_ns) {
   const auto after = std::lower_bound(truth.begin(), truth.end(), t_ns,
                                       [](const core::TruePose& pose, core::Nanoseconds t) { return pose.t_ns < t; });

@@ -4,8 +4,8 @@ include(CMakePackageConfigHelpers)
 set(helixnav_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/helixnav)
 get_property(helixnav_rooms GLOBAL PROPERTY HELIXNAV_ROOMS)
 
-# The libraries are static, so whoever links them must find what they link privately, too. This names, for a target of
-# somebody else's, the lines of the package config that find it again.
+# The libraries are static, so whoever links them must find what they link privately, too. For a third-party target,
+# this gives the lines of the package config that find it again.
 function(helixnav_find_lines target out)
   if(target MATCHES "^PkgConfig::(.+)$")
     # The prefix given to pkg_check_modules names the module; its cache entry remembers which.
@@ -49,7 +49,7 @@ function(helixnav_pc_line target)
   set(HELIXNAV_PC_LIBRARIES ${HELIXNAV_PC_LIBRARIES} ${library} PARENT_SCOPE)
 endfunction()
 
-# Rooms that link MRPT are a component of the package: who does not ask for it needs no MRPT.
+# Rooms that link MRPT are a component of the package: users who do not ask for it do not need MRPT.
 set(helixnav_optional_rooms mrpt_adapter)
 
 set(HELIXNAV_TARGETS "")
@@ -79,7 +79,7 @@ foreach(room IN LISTS helixnav_rooms)
     endif()
   endforeach()
   if(NOT prefix)
-    list(PREPEND pc_rooms -lhelixnav_${room})  # who needs others comes before them
+    list(PREPEND pc_rooms -lhelixnav_${room})  # a room comes before those it needs
   endif()
   install(TARGETS helixnav_${room} EXPORT ${export} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
@@ -114,6 +114,6 @@ string(REGEX REPLACE "/$" "" HELIXNAV_PREFIX_FROM_PC ${HELIXNAV_PREFIX_FROM_PC})
 configure_file(${PROJECT_SOURCE_DIR}/cmake/helixnav.pc.in ${PROJECT_BINARY_DIR}/generated/helixnav.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/generated/helixnav.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
 
-if(NOT HELIXNAV_BUILD_PACKAGES)  # which have their own, with the licences of others
+if(NOT HELIXNAV_BUILD_PACKAGES)  # which have their own, with third-party licences
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/packaging/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 endif()

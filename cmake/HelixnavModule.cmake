@@ -18,8 +18,8 @@ function(helixnav_module room)
   set_property(GLOBAL APPEND PROPERTY HELIXNAV_ROOMS ${room})
 endfunction()
 
-# Warnings of our own code; never exported to whoever links us. In a unity build a source is an included file and sees the
-# constants of the sources before it: shadowing them, and types of unnamed namespaces in fields, are no faults there.
+# Warnings for our own code; never exported to those who link us. In a unity build a source is an included file and sees
+# the constants of the sources before it: shadowing them, and types of unnamed namespaces in fields, are not faults there.
 function(helixnav_warnings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wnon-virtual-dtor -Wold-style-cast
     $<$<CXX_COMPILER_ID:GNU>:-Wduplicated-cond>)

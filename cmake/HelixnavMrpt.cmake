@@ -1,11 +1,11 @@
-# HELIXNAV_HAS_MRPT: whether what needs MRPT is built. What was found is said in either case.
+# HELIXNAV_HAS_MRPT: whether what needs MRPT is built. What was found is reported in either case.
 set(HELIXNAV_WITH_MRPT AUTO CACHE STRING "Build what runs inside MRPT programs: AUTO (when MRPT is there), ON, OFF")
 set_property(CACHE HELIXNAV_WITH_MRPT PROPERTY STRINGS AUTO ON OFF)
 
 set(HELIXNAV_HAS_MRPT FALSE)
 if(HELIXNAV_WITH_MRPT STREQUAL "AUTO" OR HELIXNAV_WITH_MRPT)
   set(HELIXNAV_HAS_MRPT TRUE)
-  # mrpt-apps asks CMake for mrpt-hwdrivers, which Debian's package of the one does not bring.
+  # mrpt-apps asks CMake for mrpt-hwdrivers, which Debian's package of the former does not pull in.
   foreach(part slam topography gui apps)
     find_package(mrpt-${part} 2.5 CONFIG QUIET)
     if(NOT mrpt-${part}_FOUND)

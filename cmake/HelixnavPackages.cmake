@@ -1,9 +1,9 @@
-# What `./dev package` puts into .deb files, a component each: program, library with headers, Python module. Man pages are
+# What `./dev package` puts into .deb files, one per component: program, library with headers, Python module. Man pages are
 # written by help2man from the program's help.
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_PACKAGE_NAME helixnav)
 set(CPACK_PACKAGE_CONTACT "HelixNav developers <helixnav@packages.invalid>" CACHE STRING "Maintainer in the .deb files")
-# Of the commit, so that apt-get takes a package built later for a newer one, which it is.
+# From the commit, so that apt-get treats a package built later as newer, which it is.
 execute_process(COMMAND ${CMAKE_COMMAND} -E env TZ=UTC git -C ${PROJECT_SOURCE_DIR} log -1
   --date=format-local:%Y%m%d%H%M%S --format=+git%cd.%h OUTPUT_VARIABLE helixnav_of_commit ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION}${helixnav_of_commit})
@@ -81,7 +81,7 @@ add_custom_target(helixnav_man ALL DEPENDS ${man}/helixnav.1.gz)
 install(DIRECTORY ${man}/ DESTINATION share/man/man1 COMPONENT tools)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/helixnav.bash-completion
   DESTINATION share/bash-completion/completions RENAME helixnav COMPONENT tools)
-# The changelog is installed as Debian wants it.
+# The changelog is installed as Debian requires.
 file(READ README.md readme)
 string(REPLACE "(CHANGELOG.md)" "(changelog.gz)" readme "${readme}")
 file(CONFIGURE OUTPUT ${pages}/README.md CONTENT "${readme}" @ONLY)

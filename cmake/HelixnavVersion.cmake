@@ -1,5 +1,5 @@
-# helixnav::core::version() and commit(): a source file that every build brings up to date and that only changes, and is
-# only compiled again, when the commit did.
+# helixnav::core::version() and commit(): a source file that every build brings up to date but that only changes, and is
+# only recompiled, when the commit did.
 set(helixnav_version_source ${PROJECT_BINARY_DIR}/generated/version.cpp)
 add_custom_target(helixnav_version
   COMMAND ${CMAKE_COMMAND} -DSOURCE_DIR=${PROJECT_SOURCE_DIR} -DHELIXNAV_VERSION=${PROJECT_VERSION}
@@ -8,7 +8,7 @@ add_custom_target(helixnav_version
   BYPRODUCTS ${helixnav_version_source}
   COMMENT "Reading the git commit"
   VERBATIM)
-# Else every commit would compile its neighbours in a unity build again.
+# Otherwise every commit would recompile its neighbours in a unity build.
 set_source_files_properties(${helixnav_version_source} TARGET_DIRECTORY helixnav_core
   PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 target_sources(helixnav_core PRIVATE ${helixnav_version_source})

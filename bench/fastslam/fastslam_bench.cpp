@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What FastSLAM costs by particles M and landmarks N: a robot drives lanes over a field that every particle was given, sees
-// eight landmarks a scan within 15 m in front and decides by likelihood ratio: neighbour search, weights, drawing,
-// landmark updates, births and resampling are all in it.
+// eight landmarks per scan within 15 m in front and decides by likelihood ratio: neighbour search, weights, drawing,
+// landmark updates, births and resampling are all included.
 //   helixnav_bench_fastslam                       a table over M and N
 //   helixnav_bench_fastslam M N [SCANS] [THREADS]  one line of it
 #include <cstdlib>
@@ -16,7 +16,7 @@ using namespace helixnav;
 
 constexpr double density_per_m2 = 8.0 / (0.5 * core::pi * 15.0 * 15.0), lane_m = 20.0;
 
-/// The field, and how the lanes lead over it.
+/// The field, and how the lanes cross it.
 struct Field {
   double side_m;
   std::vector<Eigen::Vector2d> landmarks_m;  ///< along the lanes

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Consistency over three laps of a circle of 94 m, associations known: NEES of the pose (3 when consistent), share of
+// Consistency over three laps of a circle of 94 m, associations known: NEES of the pose (3 if consistent), share of
 // steps inside the 95 % ellipsoid, RMSE by lap, distinct ancestors a lap ago. The EKF beside it is dense.
 #include <array>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Figure 13 of fastslam_nieto2003: four beacons 1 … 1.5 m apart. The paper's log is not published, so: the drive of the car
+// Figure 13 of fastslam_nieto2003: four beacons 1 … 1.5 m apart. The paper's log is not published, so: the drive in the car
 // park as recorded (its dead reckoning taken as the truth, its noise added anew), its fifteen poles and the four where
-// there is room, observations simulated: detection 0.6 within 8 m and 0.2 within 15 m, 0.15 m and 0.01 rad. The filter is
-// assumed 0.5 and 8 m, wrong on purpose.
+// there is room, observations simulated: detection 0.6 within 8 m and 0.2 within 15 m, 0.15 m and 0.01 rad. The filter
+// assumes 0.5 and 8 m, wrong on purpose.
 #include <array>
 
 #include "fastslam_study.hpp"
@@ -30,7 +30,7 @@ struct FourWorld {
 constexpr double sigma_range_m = 0.15, sigma_bearing_rad = 0.01;
 
 void place_landmarks(const core::Recording& recording, FourWorld& world, core::RandomStream& random) {
-  // Where the drive begins in the frame of the survey: the laser stands over the first fix.
+  // Where the drive begins in the frame of the survey: the laser is over the first fix.
   const double heading_rad = -126.0 * core::pi / 180.0;
   const Eigen::Vector2d at = Eigen::Vector2d(5.1048, 4.2044) - core::rotation(heading_rad) * Eigen::Vector2d(3.78, 0.5);
   const core::Pose2 T_start_survey = core::inverse(core::Pose2(at.x(), at.y(), heading_rad));

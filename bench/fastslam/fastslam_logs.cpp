@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Figures 5 … 12 of fastslam_nieto2003: the car park and Victoria Park, known association as a tuned EKF had it, and
+// Figures 5 … 12 of fastslam_nieto2003: the car park and Victoria Park, known association from a tuned EKF, and
 // unknown.
 #include <fstream>
 #include <memory>
@@ -18,7 +18,7 @@ using fastslam::Proposal;
 
 struct LogScore {
   PathScore path;
-  int found = 0, mapped = 0;  ///< beacons with a landmark of their own within 1 m; mature landmarks
+  int found = 0, mapped = 0;  ///< beacons with their own landmark within 1 m; mature landmarks
   double beacon_rmse_m = 0.0;
   double scan_us = 0.0, worst_percent_us = 0.0;
   double ancestors = 0.0, effective_share = 0.0;
@@ -48,7 +48,7 @@ void score_beacons(const std::vector<core::MapLandmark>& map, const core::Record
   score.beacon_rmse_m = std::sqrt(squares / std::max(1, score.found));
 }
 
-/// Association as the compressed EKF has it, of landmarks that are mature in the end; the rest has no name.
+/// The compressed EKF's association, of landmarks that are mature in the end; the rest has no name.
 using Names = std::vector<std::vector<fastslam::KnownName>>;
 
 LogScore run_navigator(const core::Recording& recording, core::Nanoseconds until_ns, Names* names) {

@@ -2,7 +2,7 @@
 //
 // Figures 2 and 3 of fastslam_nieto2003: two beacons at (4, 6.8) less than 20 cm apart, range noise 15 cm. Ours, because
 // the paper is silent: separation 0.18 m in a random direction, bearing noise 1°, six other beacons far apart, a circle of
-// 3 m radius at 1 m/s with a scan every 0.2 s, detection 0.9 within 9 m in front, 0.1 false observations a scan. Judged
+// 3 m radius at 1 m/s with a scan every 0.2 s, detection 0.9 within 9 m in front, 0.1 false alarms per scan. Judged
 // by the heaviest particle: exactly two mature landmarks within 0.8 m of the pair, and whether the vector between them is
 // right within 9 cm.
 #include <array>
@@ -25,7 +25,7 @@ const core::Pose2 T_world_start(7.0, 3.4, core::pi / 2.0);
 const Eigen::Vector2d pair_m(4.0, 6.8);
 
 struct PairWorld {
-  std::vector<Eigen::Vector2d> landmarks_m;  ///< the two first
+  std::vector<Eigen::Vector2d> landmarks_m;  ///< the pair comes first
   std::vector<DrivenScan> drive;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The experiments of fastslam_nieto2003, figure by figure; docs/fastslam.md has what they gave.
+// The experiments of fastslam_nieto2003, figure by figure; docs/fastslam.md has the results.
 //   helixnav_fastslam_paper FIGURE [--runs N] [--particles M] [--threads T] [--data FOLDER] [--only METHOD]
 #include <cstdlib>
 #include <cstring>

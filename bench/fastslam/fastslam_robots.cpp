@@ -112,7 +112,7 @@ Errors kalman(const RobotsWorld& world, bool as_team) {
   return roots(squares);
 }
 
-/// team::Team, alone: of two names for each landmark. The estimate is that of the time.
+/// team::Team; alone: with two names for each landmark. The estimate is the one at the time.
 Errors graph(const RobotsWorld& world, bool as_team) {
   Errors squares{};
   std::vector<std::optional<core::PoseGaussian>> starts;

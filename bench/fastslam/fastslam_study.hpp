@@ -16,12 +16,12 @@
 #include "helixnav/evaluation/alignment.hpp"
 #include "helixnav/fastslam/fast_slam.hpp"
 
-/// What the experiments on FastSLAM share: drives with names, scores, intervals.
+/// Shared by the experiments on FastSLAM: drives with names, scores, intervals.
 namespace helixnav::bench {
 
 struct StudySettings {
   std::string data = "../shared/data";
-  int runs = 0;               ///< 0: as many as the figure is documented with
+  int runs = 0;               ///< 0: as many as documented for the figure
   std::size_t particles = 0;  ///< likewise
   unsigned threads = 1;
 };

@@ -56,7 +56,7 @@ class TeamEkf {
     const Eigen::MatrixXd K = PHt * S.inverse();
     x_ += K * core::innovation(z.kind, z.z, h.z_hat);
     P_ -= K * PHt.transpose();
-    P_ = 0.5 * (P_ + P_.transpose()).eval();  // rounding that is not symmetric grows from scan to scan
+    P_ = 0.5 * (P_ + P_.transpose()).eval();  // asymmetric rounding grows from scan to scan
   }
 
   Eigen::Index augment(const core::Scan& scan, std::size_t j, std::size_t robot) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // MRPT's demo of kf-slam through CRangeBearingKFSLAM2D (both methods), as Debian ships it, and through MapBuilder (both
-// retractions), on the same frames: as recorded, from the first and from the second frame on (kf-slam passes over the
+// retractions), on the same frames: as recorded, from the first and from the second frame on (kf-slam skips the
 // first), and drawn anew from the demo's truth with the noise that its files state, once for each seed.
 //   as it is   mean distance of the landmarks to the truth, in the frame where the map began
-//   aligned    the same after the best rigid motion, which takes away where the first frames put the map
+//   aligned    the same after the best rigid motion, which removes where the first frames put the map
 //   less kf    difference to CRangeBearingKFSLAM2D's default method on the same draw, with its standard error
 // usage: helixnav_mrpt_demo [runs [folder of MRPT's datasets]]
 #include <algorithm>
@@ -40,7 +40,7 @@ namespace {
 using namespace helixnav;
 using mrpt::obs::CObservationBearingRange;
 
-constexpr double sigma_range_m = 0.03;  // as the demo's configuration file says
+constexpr double sigma_range_m = 0.03;  // as in the demo's configuration file
 constexpr double sigma_bearing_rad = 0.1 * core::pi / 180.0;
 
 struct Frame {
@@ -54,7 +54,7 @@ struct Demo {
   std::map<std::int64_t, Eigen::Vector2d> truth_m;  ///< by landmarkID
 };
 
-/// The numbers of a line, of a file with comments in %.
+/// The numbers in a line of a file with % comments.
 std::vector<std::vector<double>> rows_of(const std::string& path) {
   std::ifstream file(path);
   std::vector<std::vector<double>> rows;

@@ -3,12 +3,12 @@
 // The compressed EKF (both retractions) beside MRPT's CRangeBearingKFSLAM2D (kfEKFNaive, kfEKFAlaDavison), which is
 // measured as Debian ships it. One world for all: a circle with a landmark every 2 m, seen up to 8 m away, association
 // known (landmarkID), assumed noise = true noise. One lap in steps of 7 m maps all N landmarks; then steps of 1 m over old
-// ground are the updates that are timed, by the processor time of the thread. The filters take turns, so that noise hits
-// all alike: in blocks of 5 timed steps, and beside it ("cold") step by step, where each finds caches that the others have
+// ground are the timed updates, by the processor time of the thread. The filters take turns, so that noise hits
+// all alike: in blocks of 5 timed steps, and also ("cold") step by step, where each finds caches that the others have
 // filled: at N = 800 MRPT walks through 20 to 60 MB in every step.
 //   ms       median of predict + update of the timed steps
 //   cold     the same step by step
-//   mean     mean with what else the timed steps took, cold ones too: region switches
+//   mean     mean with all else that the timed steps took, cold ones too: region switches
 //   whole s  all steps of a run, mapping included, mean over the seeds
 //   RMS      of all N landmarks to the truth at the end, over the seeds, in the frame of the start, not aligned
 //   less D   mean over the seeds of a world's RMS less kfEKFAlaDavison's in the same world, and twice its standard error
@@ -69,7 +69,7 @@ struct Sighting {
   double bearing_rad;
 };
 
-/// What all filters are given in one step.
+/// The input of all filters in one step.
 struct Step {
   Noise noise;
   core::Odometry odometry;
@@ -306,7 +306,7 @@ std::array<double, 4> figures(const Times& times, int seeds) {
           1e3 * times.timed_s / static_cast<double>(times.warm_s.size() + times.cold_s.size()), times.whole_s / seeds};
 }
 
-/// Mean of a − b and twice its standard error, of more than one.
+/// Mean of a − b and twice its standard error, for more than one.
 std::array<double, 2> paired(const std::vector<double>& a, const std::vector<double>& b) {
   const double n = static_cast<double>(a.size());
   double mean = 0.0;

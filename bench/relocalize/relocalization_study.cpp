@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The experiment of hybrid_masson2003 §4 on a recorded log: the particle filter is started at a return to old ground with
-// the pose and the uncertainty of the compressed EKF, and run many times. Figures 2, 4, 5 and 6 as JSON on stdout, a table
-// of all returns on stderr; relocalization_figures.py runs this and draws.
+// The experiment of hybrid_masson2003 §4 on a recorded log: the particle filter is started at a return to known ground
+// with the pose and the uncertainty of the compressed EKF, and run many times. Figures 2, 4, 5 and 6 as JSON on stdout, a
+// table of all returns on stderr; relocalization_figures.py runs this and plots.
 //   helixnav_relocalization_study LOG [blind seconds = 0] [runs = 50] [unseen metres = 100] [landmarks = 3]
 //
-// Return: a scan that matches so many landmarks unseen for `unseen` metres of driving, when no scan of as many metres
-// before did. The filter whose estimate starts the particles has not seen that scan, nor, to lose itself as the paper's
+// Return: a scan that matches `landmarks` landmarks unseen for `unseen` metres of driving, if no scan in as many metres
+// before it did. The filter whose estimate starts the particles has not seen that scan, nor, to get lost as the paper's
 // does where there are no trees, those of the `blind` seconds before it. The particles' map is what it has not seen for
 // 60 % of `unseen`.
-// Converged: one mode with 99 % of the mass and σ below 0.5 m and 2°, be it after one scan; beside it the paper's rule,
-// σ below twice the noise of the odometry since the scan before. Right: less than 2 m and 8° off
+// Converged: one mode with 99 % of the mass and σ below 0.5 m and 2°, even after one scan; beside it the paper's rule,
+// σ below twice the noise of the odometry since the previous scan. Right: less than 2 m and 8° off
 // the pose that the navigator, which is never lost on these logs, has at the same scan.
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ class Driver {
   Driver(const Driver&) = delete;
   Driver& operator=(const Driver&) = delete;
 
-  /// Up to and with the next scan; false at the end.
+  /// Up to and including the next scan; false at the end.
   bool next() {
     ear_.motion.reset();
     const Eigen::Vector2d before_m = navigator_.pose().mean.position_m();
@@ -58,7 +58,7 @@ class Driver {
   }
 
   const core::Scan* scan() const { return ear_.scan; }
-  /// Since the scan before.
+  /// Since the previous scan.
   const std::optional<core::Odometry>& motion() const { return ear_.motion; }
 
   std::vector<core::LandmarkId> old_landmarks() const {
@@ -251,7 +251,7 @@ Json proposed(const pf_relocalize::ReferenceMap& map, const core::Scan& scan, do
   return cloud_of(particles, map.T_world_base, count);
 }
 
-/// Figure 2: one observation and the landmark that it is of, heading unknown.
+/// Figure 2: one observation and its landmark, heading unknown.
 Json one_helix(const Start& start, const std::vector<Step>& steps) {
   pf_relocalize::ReferenceMap map = pf_relocalize::build_reference_map(start.joint);
   core::Scan scan = *steps[start.at].scan;

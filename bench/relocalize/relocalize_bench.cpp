@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What the index of a map and a question cost, in maps of 10⁴, 10⁵ and 10⁶ landmarks spread evenly, one in 64 m².
-// "bytes" is memory a landmark.
+// "bytes" is memory per landmark.
 #include <benchmark/benchmark.h>
 
 #include <map>
@@ -40,7 +40,7 @@ void build(benchmark::State& state) {
 }
 BENCHMARK(build)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond);
 
-/// Landmark by landmark from nothing, in the order of a drive up and down the map; time a landmark.
+/// Landmark by landmark from nothing, in the order of a drive up and down the map; time per landmark.
 void grow(benchmark::State& state) {
   auto landmarks = test::landmarks(world_of(static_cast<std::size_t>(state.range(0))), options.pair_noise_m);
   std::sort(landmarks.begin(), landmarks.end(), [](const Landmark& a, const Landmark& b) {

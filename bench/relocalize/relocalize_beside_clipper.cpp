@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The same questions to this library and to CLIPPER (Lusk, Fathian and How 2021), whose sources the build is given by
+// The same questions to this library and to CLIPPER (Lusk, Fathian and How 2021), whose sources the build gets from
 // -DHELIXNAV_CLIPPER_DIR=…: https://github.com/mit-acl/clipper.
 //   helixnav_relocalize_beside_clipper SEED [questions a cell = 100]
-// CLIPPER is given every pair of a landmark and a map's landmark, and finds pairs; the pose is their least squares fit. It
-// decides nothing, so what a decision by the number of its pairs would be worth is shown by questions that have no place.
-// Times are processor time of the one thread that asks.
+// CLIPPER is given every pair of a landmark and a map's landmark, and finds pairs; the pose is their least-squares fit. It
+// decides nothing, so questions that have no place show what a decision by the number of its pairs would be worth.
+// Times are processor time of the one calling thread.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

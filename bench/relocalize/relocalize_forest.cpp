@@ -5,7 +5,7 @@
 // FOLDER has poses.csv and stems.csv.gz. Every `stride`-th frame is a scan. The map is drawn by the compressed EKF from odometry
 // with seeded noise (2 % along, 1 % across, 0.5 deg per sqrt(m), times `noise`), stems known by their place in the reference
 // trajectory; it is the state of the filter 100 m before the end of the question. The question is what a filter of its own makes
-// of the last 20 m with nearest-neighbour association; neither sees the reference. One line a scan on stdout, the sum on stderr.
+// of the last 20 m with nearest-neighbour association; neither sees the reference. One line per scan on stdout, sum on stderr.
 #include <archive.h>
 #include <archive_entry.h>
 #include <time.h>
@@ -90,7 +90,7 @@ std::vector<Scan> read_scans(const std::string& folder, int stride) {
   return scans;
 }
 
-/// Trees by the reference: running means of stems within half a metre. Returns where they stand.
+/// Trees by the reference: running means of stems within half a metre. Returns where they are.
 std::vector<Eigen::Vector2d> label_trees(std::vector<Scan>& scans) {
   struct Tree {
     Eigen::Vector2d mean_m;
@@ -147,7 +147,7 @@ void add_odometry(std::vector<Scan>& scans, double noise, std::uint64_t seed) {
   }
 }
 
-/// A map at some moment: where trees stand in the filter, by their number.
+/// A map at some moment: where trees are in the filter, by their number.
 struct MapState {
   double driven_m = 0.0;
   std::map<int, Eigen::Vector2d> trees_m;
@@ -279,7 +279,7 @@ relocalize::MapIndex index_of(const MapState& state, double pair_noise_m) {
   return index;
 }
 
-/// Rigid motion from the reference to the map as it is about a place: fit of the trees within reach, the nearest ten at least.
+/// Rigid motion from the reference to the map around a place: fit to the trees within reach, at least the nearest ten.
 core::Pose2 T_map_reference(const MapState& state, const std::vector<Eigen::Vector2d>& trees_m,
                             const core::Pose2& about) {
   using Complex = std::complex<double>;

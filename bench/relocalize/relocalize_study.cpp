@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // How often a constellation finds itself in a map without a prior, how often wrongly, and at what cost.
-//   helixnav_relocalize_study absent SEED [questions a cell = 2000]    places that the map does not have
+//   helixnav_relocalize_study absent SEED [questions a cell = 2000]    places that are not on the map
 //   helixnav_relocalize_study orchards SEED [questions = 2000]         the same in orchards of several pitches and jitters
-//   helixnav_relocalize_study present SEED [questions a cell = 600]    places that it has, some of them changed
+//   helixnav_relocalize_study present SEED [questions a cell = 600]    places that are on the map, some of them changed
 //   helixnav_relocalize_study size SEED [questions a cell = 50]        maps of 10⁴, 10⁵ and 10⁶ landmarks
 //   helixnav_relocalize_study priors SEED [questions a cell = 300]       no prior, a true one, a wrong one; two kinds, four; absent
 //   helixnav_relocalize_study one SEED WORLD N n CHANGE NOISE CLUTTER JITTER GAPS QUESTIONS present|absent
-// Times are processor time of the one thread that asks.
+// Times are processor time of the one calling thread.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -41,7 +41,7 @@ struct Tally {
   double build_s = 0.0;
 };
 
-/// The prior speaks of the middle of what was asked: the branch's frame is moved there.
+/// The prior is about the middle of the question: the branch's frame is moved there.
 void believe(test::Asked& asked, double off_m) {
   const core::Pose2 T_branch_middle(asked.question.looked.front().centre_m.x(),
                                     asked.question.looked.front().centre_m.y(), 0.0);

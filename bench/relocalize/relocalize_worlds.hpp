@@ -28,7 +28,7 @@ Points streets(std::size_t count, core::RandomStream& random, Place&& place) {
   return points;
 }
 
-/// Posts and trees anywhere along streets, 5 to 12 m from their middle, 3 m apart at least.
+/// Posts and trees anywhere along streets, 5 to 12 m from their middle, at least 3 m apart.
 inline Points town(std::size_t count, core::RandomStream& random) {
   return streets(count, random, [&](double block_m) {
     Points street;

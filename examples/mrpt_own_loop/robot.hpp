@@ -10,7 +10,7 @@
 #include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/obs/CSensoryFrame.h>
 
-/// Stands for your robot: two laps of a circle of 10 m radius, with a landmark every 30° beside it.
+/// Stands in for your robot: two laps of a circle of 10 m radius, with a landmark every 30° beside it.
 class Robot {
  public:
   bool drives() { return ++step_ <= 120; }

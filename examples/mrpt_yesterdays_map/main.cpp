@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Going on in the map of an earlier run, inside MRPT: the first drive saves its map, the second begins somewhere on it
-// without a word of where, and hears once that it was carried.
+// Continuing in the map of an earlier run, inside MRPT: the first drive saves its map, the second begins somewhere on
+// it without being told where, and is told once that it was carried.
 #include <iostream>
 
 #include <helixnav/mrpt_adapter/map_builder.hpp>
@@ -36,9 +36,9 @@ int main() {
   Robot monday(0.0);
   MapBuilder first(options);
   drive(first, monday, 110);
-  first.saveMapToFolder("monday");  // map.bin and map.csv; a run folder of helixnav or helixnav-slam serves as well
+  first.saveMapToFolder("monday");  // map.bin and map.csv; a run folder of helixnav or helixnav-slam works as well
 
-  Robot tuesday(35.0);  // begins 35 m along the way, which nobody tells
+  Robot tuesday(35.0);  // begins 35 m along the way, without being told
   MapBuilder second(options);
   second.loadCurrentMapFromFile("monday");
   drive(second, tuesday, 1);

@@ -12,7 +12,7 @@
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 
-/// Stands for your robot: it drives along a circle of 16 m radius, 1 m a frame, among 60 trees that it sees 15 m around.
+/// Stands in for your robot: it drives a circle of 16 m radius, 1 m per frame, among 60 trees, seen up to 15 m away.
 class Robot {
  public:
   explicit Robot(double begin_m) : along_m_(begin_m) {

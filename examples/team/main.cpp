@@ -11,7 +11,7 @@ namespace {
 
 using namespace helixnav;
 
-/// What the truth would show: range and bearing of a point.
+/// Exact range and bearing of a point.
 core::Observation seen_from(const core::Pose2& robot, const Eigen::Vector2d& point_m) {
   const core::PredictedObservation exact =
       core::predict_observation(core::ObservationKind::range_bearing, robot, core::Pose2(), point_m);

@@ -16,7 +16,7 @@ import sysconfig
 import zipfile
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-LICENSES = {"LICENSE": "LICENSE", "copyright": "packaging/copyright"}  # in dist-info; the second: of what the module links
+LICENSES = {"LICENSE": "LICENSE", "copyright": "packaging/copyright"}  # in dist-info; the second for what the module links
 
 
 def version():
@@ -83,7 +83,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     with zipfile.ZipFile(pathlib.Path(wheel_directory) / name, "w", zipfile.ZIP_DEFLATED) as wheel:
 
         def add(path, data):
-            entry = zipfile.ZipInfo(path)  # of the same time always: the same files make the same wheel
+            entry = zipfile.ZipInfo(path)  # always the same time: the same files make the same wheel
             entry.external_attr = (0o755 if path.endswith(".so") else 0o644) << 16
             entry.compress_type = zipfile.ZIP_DEFLATED
             wheel.writestr(entry, data)

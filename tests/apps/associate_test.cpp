@@ -86,7 +86,7 @@ TEST_F(Associate, RefusesWhatItCannotUse) {
   expect_refused({}, 2, {"INPUT is required"});
 }
 
-// The first third of DLR run e, before the building's loops close: the limits are those that the project promises.
+// The first third of DLR run e, before the building's loops close; the limits are the ones the project promises.
 TEST_F(Associate, KeepsToTheLabelsOfTheDlrRunInsideALap) {
   find_real_data("dlr/raw/map.circles");
   if (IsSkipped()) return;
@@ -107,8 +107,8 @@ TEST_F(Associate, KeepsToTheLabelsOfTheDlrRunInsideALap) {
   EXPECT_LE(std::stod(row[last - 2]), 1.1) << "map landmarks for each true one";
 }
 
-// The limits are those that the project promises; with loops left open the recall is 81 %. Under the sanitizers the lap
-// above has to do.
+// The limits are the ones the project promises; with loops left open the recall is 81 %. Under the sanitizers the lap
+// above has to suffice.
 TEST_F(Associate, ClosesTheLoopsOfTheDlrRun) {
   if (support::sanitized) return;
   find_real_data("dlr/raw/map.circles");

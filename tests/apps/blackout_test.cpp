@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using Table = std::vector<std::vector<double>>;
 
-/// Cells of a file of the run folder without its header; words are 0.
+/// Cells of a file in the run folder, without its header; words become 0.
 Table table_of(const fs::path& file) {
   Table table;
   std::istringstream stream(text_of(file));
@@ -33,7 +33,7 @@ Table table_of(const fs::path& file) {
   return table;
 }
 
-/// A circle of 40 steps; its clock is the number of the pose.
+/// A circle of 40 steps; its clock is the index of the pose.
 class BlackoutTest : public ::testing::Test {
  protected:
   void SetUp() override { log_ = folder_.write("circle.txt", circle_graph(steps_)); }
@@ -47,7 +47,7 @@ class BlackoutTest : public ::testing::Test {
     const Outcome outcome = replay(name, options);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
-  /// Instant of scan k, as printed.
+  /// Time of scan k, as printed.
   std::string time(std::size_t k) const {
     std::ostringstream text;
     text.precision(15);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a session that went on in an earlier map and was carried then leaves in its folder.
+// What a session that continued in an earlier map and was then carried leaves in its folder.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double bend_m = 20.0;  ///< radius of each circle that is driven
+constexpr double bend_m = 20.0;  ///< radius of each circle driven
 
 std::vector<Eigen::Vector2d> trees_of(std::uint64_t world) {
   core::RandomStream random(world, "wood");
@@ -60,7 +60,7 @@ class CarriedOnMap : public ::testing::Test {
  protected:
   fs::path in(const std::string& name) const { return folder_.path() / name; }
 
-  /// A log of drives through these woods, one after the other, between which the vehicle is carried.
+  /// A log of drives through these woods, one after another; the vehicle is carried between them.
   void write_log(const std::string& name, const std::vector<std::uint64_t>& worlds, int first_step) const {
     std::string odometry = "t_s,dx_m,dy_m,dheading_rad\n", detections = "t_s,range_m,bearing_rad\n", lost = "t_s\n";
     constexpr int steps = 250;

@@ -70,8 +70,8 @@ TEST_F(Convert, GoesAroundAllFormatsAndBack) {
   }
 }
 
-/// By `get`, which appends the numbers of one event, from both logs: their differences against the 99 % interval of a
-/// standard deviation.
+/// Checks the differences between both logs, in the numbers that `get` appends for each event, against the 99 %
+/// interval of a standard deviation.
 template <class Get>
 void expect_noise(const core::Recording& before, const core::Recording& after, double sigma, const Get& get) {
   std::vector<double> a;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// --start end without identities: the drive before is driven again, and goes on.
+// --start end without identities: the previous drive is driven again and continued.
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -37,7 +37,7 @@ class DriveAgain : public ::testing::Test {
   testing::TemporaryFolder folder_;
 };
 
-/// Driven 254 s; the search is open from 178.5 to 193.5 s.
+/// A drive of 254 s; the search is open from 178.5 to 193.5 s.
 TEST_F(DriveAgain, AtTwentyInstantsItIsAsIfThereHadBeenNoInterruption) {
   ASSERT_EQ(simulated({}, "whole").exit_code, 0);
   core::RandomStream random(20, "interruptions");
@@ -52,7 +52,7 @@ TEST_F(DriveAgain, AtTwentyInstantsItIsAsIfThereHadBeenNoInterruption) {
   }
 }
 
-/// What a killed process leaves: no map, and a drive that ends anywhere.
+/// What a killed process leaves: no map, and a drive that ends at an arbitrary point.
 TEST_F(DriveAgain, SoItIsOfARunThatWasKilled) {
   ASSERT_EQ(simulated({}, "whole").exit_code, 0);
   const std::string drive = text_of(folder("whole") / "drive.bin");

@@ -15,7 +15,7 @@ namespace {
 
 using core::Decision;
 
-/// A run folder whose numbers are known: the trigger in step 1, then a test that fails, two closings.
+/// A run folder with known numbers: the trigger in step 1, then a failed test and two closings.
 class Explain : public ::testing::Test {
  protected:
   Explain() {

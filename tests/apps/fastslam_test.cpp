@@ -38,7 +38,7 @@ class FastSlamFilter : public testing::RealDataTest {
     }
     must(begin, name, options);
   }
-  /// Exit 2 with these words, and no folder.
+  /// Expects exit code 2 with these words, and no folder.
   void refuse(const Words& begin, const Words& options, const Words& said) const {
     const Outcome outcome = filter(begin, "refused", options);
     EXPECT_EQ(outcome.exit_code, 2) << options.front() << ": " << outcome.err;
@@ -50,7 +50,7 @@ class FastSlamFilter : public testing::RealDataTest {
   testing::TemporaryFolder folder_;
 };
 
-/// What must not depend on the number of threads: all but the wall clock and the settings themselves.
+/// What must not depend on the number of threads: everything except the wall clock and the settings themselves.
 std::string bytes_of(const fs::path& file) {
   std::string text = text_of(file);
   if (file.filename() == "health.csv") return std::regex_replace(text, std::regex(",[^,\n]*\n"), "\n");
@@ -71,8 +71,8 @@ TEST_F(FastSlamFilter, GivesTheSameBytesForAnyNumberOfThreadsAndOthersForAnother
   EXPECT_NE(text_of(out("one") / "trajectory.tum"), text_of(out("seed") / "trajectory.tum"));
 }
 
-/// Noise of a micrometre against data of 0.1 m leaves no particle a weight, and of covariances nothing but rounding. That is
-/// the world's failure: it is told by NIS, and the drive goes on.
+/// Noise of a micrometre for data good to 0.1 m leaves no particle with any weight, and covariances that are pure rounding.
+/// The input is at fault: NIS reports this, and the drive goes on.
 TEST_F(FastSlamFilter, GoesOnWhereNoParticleExplainsTheScan) {
   ASSERT_EQ(run({"new-vehicle", out("robot")}).exit_code, 0);
   const std::string vehicle = folder_.write("tight.toml",

@@ -43,7 +43,7 @@ TEST_F(Fusing, OfPlazaRangesEstimatesTheirScaleAndNavigatesWithinItsLimit) {
   EXPECT_GE(error.at("fixes_used"), 9600);
   const std::string words = "range scale estimated from the log: ";
   ASSERT_NE(said_.find(words), std::string::npos) << said_;
-  // Against the true beacons and positions the ranges are long by 1.070.
+  // Compared with the true beacons and positions the ranges are too long by a factor of 1.070.
   EXPECT_NEAR(std::stod(said_.substr(said_.find(words) + words.size())), 1.070, 0.005);
 }
 
@@ -57,7 +57,7 @@ TEST_F(Fusing, OfVictoriaParksGpsBringsTheDriveNearerToTheFixes) {
   EXPECT_LT(fused_m, 1.3);
 }
 
-// Ten metres a second, a scan every half second, a fix 0.3 s after it: three metres behind is where the vehicle was.
+// Ten metres a second, a scan every half second, a fix 0.3 s after it: by then the vehicle was three metres further on.
 TEST(FuseGps, UsesAFixWhereTheVehicleWasThen) {
   core::Recording recording;
   recording.events.emplace_back(core::Scan{});
@@ -74,13 +74,13 @@ TEST(FuseGps, UsesAFixWhereTheVehicleWasThen) {
   supervisor::Navigator navigator(recording.start);
   for (const core::Event& event : recording.events) {
     navigator.take(event);
-    if (std::holds_alternative<core::Odometry>(event)) continue;  // used with what comes next
+    if (std::holds_alternative<core::Odometry>(event)) continue;  // used with the next event
     const double x_m = 10.0 * core::seconds(core::time_of(event));
     EXPECT_NEAR(navigator.pose().mean.x_m, x_m, 1e-6);
   }
 }
 
-/// The same drive with true poses, which begin at the origin of the map, as such a log gives them; fixes in the frame of a grid.
+/// The same drive with true poses that begin at the origin of the map, as such a log gives them; fixes in a grid frame.
 core::Recording drive_with_truth(const core::Pose2& T_grid_map, const core::Pose2& T_truth_map) {
   core::Recording recording;
   recording.antenna_robot_m = {1.0, 0.5};

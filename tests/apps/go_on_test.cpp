@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// replay --map: a session goes on in the map of an earlier one.
+// replay --map: a session continues in the map of an earlier one.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -36,7 +36,7 @@ std::vector<Eigen::Vector2d> grove(std::uint64_t world, int trees) {
   return points_m;
 }
 
-/// A drive round a circle through the grove, from `begin_rad` on, as a labelled DLR text.
+/// A drive round a circle through the grove, starting at `begin_rad`, as a labelled DLR text.
 std::string drive_text(const std::vector<Eigen::Vector2d>& trees_m, double begin_rad, int steps, std::uint64_t day) {
   core::RandomStream random(day, "drive");
   std::string text;
@@ -103,7 +103,7 @@ TEST_F(GoOn, ASessionBegunAnywhereIsPlacedAndBecomesOneMap) {
   const std::string told = run({"explain", folder("tuesday")}).out;
   EXPECT_NE(told.find("Found its place on the earlier map"), std::string::npos) << told;
   EXPECT_NE(text_of(folder("tuesday") / "manifest.json").find("map.bin"), std::string::npos);
-  // In Monday's frame from the first step on: 2 rad further round the circle that began at its origin.
+  // In Monday's frame from the first step on: 2 rad further round the circle that started at its origin.
   std::ifstream final_poses(folder("tuesday") / "trajectory_final.tum");
   std::string header;
   std::getline(final_poses, header);
@@ -112,7 +112,7 @@ TEST_F(GoOn, ASessionBegunAnywhereIsPlacedAndBecomesOneMap) {
   // DLR's x axis points to the left of ours.
   EXPECT_NEAR(y_m, radius_m * std::sin(2.0), 0.5);
   EXPECT_NEAR(-x_m, radius_m * (1.0 - std::cos(2.0)), 0.5);
-  // And a third session goes on in what came of both.
+  // And a third session continues in the result of both.
   const Outcome again = replay("monday.circles", {"--map", folder("tuesday")}, "wednesday");
   ASSERT_EQ(again.exit_code, 0) << again.err;
   EXPECT_NE(again.err.find("holds this drive already"), std::string::npos) << again.err;
@@ -160,7 +160,7 @@ TEST_F(GoOn, AtTheEndByNameItIsAsIfThereHadBeenNoInterruption) {
   EXPECT_EQ(summary("whole").at("landmarks"), summary("second").at("landmarks"));
 }
 
-// It has no drive.bin: its estimate is restored, and what it drove of the log is not driven again.
+// It has no drive.bin: its estimate is restored, and the part of the log it has driven is not driven again.
 TEST_F(GoOn, WhatASessionBegunByPlaceDroveOfALogIsPassedOver) {
   write_yesterday();
   const std::string whole = drive_text(grove(1, 50), 2.0, 240, 2);
@@ -218,7 +218,7 @@ TEST_F(GoOn, ALocalizerThatIsWrongFindsOutAndFindsItsPlace) {
   write_yesterday();
   write("tuesday.circles", drive_text(grove(1, 50), 2.0, 240, 2));
   must("tuesday.circles", {"--localize", "--map", folder("monday")},
-       "wrong");  // believes that it begins where Monday did
+       "wrong");  // believes that it starts where Monday did
   EXPECT_EQ(summary("wrong").at("placed").at("found"), true);
 }
 

@@ -6,7 +6,7 @@
 namespace helixnav::apps {
 namespace {
 
-/// Landmarks 0 to 3 of a map, all of which both runs hold by the same numbers.
+/// Landmarks 0 to 3 of a map; both runs have all of them under the same numbers.
 supervisor::JoinedSessions two_runs_of_four() {
   supervisor::JoinedSessions joined;
   core::JointMap& map = joined.components.emplace_back();

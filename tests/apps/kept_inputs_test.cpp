@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// No command writes over what it reads, also with --overwrite.
+// No command overwrites its own input, even with --overwrite.
 #include <filesystem>
 #include <map>
 #include <string>
@@ -22,7 +22,7 @@ class KeptInputs : public ::testing::Test {
     const Outcome outcome = run(words);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
-  /// Refused with the reason, all files of the folder as they were.
+  /// Expects a refusal with this reason, and all files of the folder unchanged.
   void expect_refused(const std::vector<std::string>& words, const fs::path& kept) const {
     const std::map<std::string, std::string> before = texts_in(kept);
     const Outcome outcome = run(words);
@@ -108,7 +108,7 @@ TEST_F(KeptInputs, AJoinDoesNotReplaceItsComponents) {
 TEST_F(KeptInputs, AConversionReplacesNeitherItsLogNorATableOfIt) {
   must({"new-vehicle", in("robot")});
   expect_refused({"convert", in("robot"), in("robot") / "odometry.csv", "--to", "jsonl", "--overwrite"}, in("robot"));
-  for (int time = 0; time < 2; ++time) {  // what it wrote itself may be written again
+  for (int time = 0; time < 2; ++time) {  // its own output may be overwritten
     must({"convert", in("robot"), in("robot") / "drive.jsonl", "--overwrite"});
   }
   folder_.write("graphs/circle.isam", circle_graph(30));

@@ -14,7 +14,7 @@
 namespace helixnav::apps {
 namespace {
 
-/// Four poles beside a straight road, called by words or by numbers.
+/// Four poles beside a straight road, named by words or by numbers.
 void write_named_log(const testing::TemporaryFolder& folder, const std::vector<std::string>& names) {
   std::string odometry = "t,v,omega\n", detections = "t,x_m,y_m,id\n";
   for (int t = 0; t <= 10; ++t) {

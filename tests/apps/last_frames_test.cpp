@@ -53,7 +53,7 @@ TEST(LastFrames, BringWhatWasToldUnderAJoinTakenBackIntoTheRobotsOwn) {
   EXPECT_EQ(frames.since_ns(1), std::numeric_limits<core::Nanoseconds>::min());
 }
 
-/// The right join may come out at a time when the wrong one held, when everything is gone through again.
+/// When everything is reprocessed, the right join may be found at a time at which the wrong one was in force.
 TEST(LastFrames, PutTheRightJoinInThePlaceOfTheWrongOne) {
   LastFrames frames({0, 1, 2});
   const std::size_t held = frames.note({join_of(1, 2, 5, T_12), join_of(0, 1, 10, wrong)});

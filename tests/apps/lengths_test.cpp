@@ -13,7 +13,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// A drive of the simulator in the text of the DLR logs, which says nothing of its sensor.
+/// A simulated drive in the text format of the DLR logs, which says nothing about its sensor.
 class Lengths : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -40,9 +40,9 @@ class Localize : public testing::RealDataTest {
   testing::TemporaryFolder folder_;
 };
 
-// With the labels given, the innovations are the residuals of a map that fits: as given the covariances promise too much
-// by the paper's factor of 2.07, scaled by it they are nearly right (mean NIS 0.96; the log has heavy tails and no band
-// of independent Gaussians holds: 0.98 to 1.02). Unknown association cuts the tails off by its gates.
+// With the labels given, the innovations are the residuals of a map that fits: the given covariances are too optimistic
+// by the paper's factor of 2.07; scaled by it they are nearly right (mean NIS 0.96; the log has heavy tails, so a band
+// for independent Gaussians, 0.98 to 1.02, does not hold). With unknown association the gates cut the tails off.
 TEST_F(Localize, InTheSmoothedMapOfDlrRunE) {
   find_real_data("dlr/raw/map.circles");
   if (IsSkipped()) return;

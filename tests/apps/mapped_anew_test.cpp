@@ -26,7 +26,7 @@ std::vector<Eigen::Vector2d> trees() {
   return points_m;
 }
 
-/// Three times round a circle of 10 m radius, what stands before it within 9 m in view; odometry says nothing of the slip.
+/// Three times round a circle of 10 m radius; what is ahead within 9 m is in view; odometry does not show the slip.
 core::TeamMember drive_round(const core::Pose2& slip) {
   const std::vector<Eigen::Vector2d> points_m = trees();
   core::RandomStream random(4, "drive");

@@ -12,10 +12,10 @@
 namespace helixnav::apps {
 namespace {
 
-constexpr double wood_m = 40.0;  ///< half of the side of the square that is on the map
+constexpr double wood_m = 40.0;  ///< half the side of the square that is on the map
 constexpr double view_m = 20.0;
 
-/// A wood that is on the map, and bare ground about it with clutter alone.
+/// A wood that is on the map, surrounded by bare ground with nothing but clutter.
 class WoodAndBareGround {
  public:
   explicit WoodAndBareGround(std::uint64_t seed) : random_(seed, "navigator on map") {
@@ -33,13 +33,13 @@ class WoodAndBareGround {
   void go(double length_m, double turn_rad = 0.0) {
     for (double left_m = length_m; left_m > 0.0; left_m -= 1.0) step(turn_rad / length_m);
   }
-  /// Which no odometry knows of.
+  /// A slip that the odometry does not see.
   void slip(const core::Pose2& moved) { T_map_robot_ = core::compose(T_map_robot_, moved); }
   void begin_at(const core::Pose2& T_map_robot) {
     drive_.given_map->start = SessionStart{SessionStart::Kind::pose, T_map_robot};
   }
 
-  /// [scan] where it was.
+  /// [scan] true pose.
   const std::vector<core::Pose2>& truth() const { return truth_; }
   const Drive& drive() const { return drive_; }
 
@@ -87,9 +87,9 @@ class WoodAndBareGround {
 };
 
 struct Judged {
-  int sure_and_wrong = 0;  ///< scans with an error beyond four deviations and a metre
+  int sure_and_wrong = 0;  ///< scans with an error beyond four standard deviations and a metre
   double last_error_m = 0.0;
-  int sought = 0;  ///< scans without a place
+  int sought = 0;  ///< scans without a known place
 };
 
 Judged judged(const WoodAndBareGround& world) {
@@ -112,8 +112,8 @@ Judged judged(const WoodAndBareGround& world) {
   return judged;
 }
 
-// 600 m without a landmark, the heading's deviation 14° by then: whatever is seen first, mostly clutter, is in some gate. An EKF of the
-// pose alone takes it, and is sure of a wrong place in all ten, for some 370 scans and to the end.
+// 600 m without a landmark, by then a heading standard deviation of 14°: whatever is seen first, mostly clutter, falls in some gate. A
+// pose-only EKF accepts it and is confident of a wrong place in all ten drives, for some 370 scans and to the end.
 TEST(NavigatorOnMap, BelievesNoClutterAfterBareGround) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -142,7 +142,7 @@ TEST(NavigatorOnMap, ForgetsAStartThatWhatIsSeenContradicts) {
   }
 }
 
-// The EKF alone is sure of the wrong place until nothing has confirmed it over a reach: for 9 to 18 scans each.
+// The EKF alone is confident of the wrong place until nothing has confirmed it over a reach: for 9 to 18 scans each.
 TEST(NavigatorOnMap, GoesOnFromTheNavigatorsPoseAfterASlip) {
   for (std::uint64_t seed = 41; seed <= 50; ++seed) {
     WoodAndBareGround world(seed);

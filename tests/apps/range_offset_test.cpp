@@ -19,8 +19,8 @@ struct Passage {
   runs::Run run;
 };
 
-/// A drive straight on past 12 poles with ranges short by `offset_m` and noise of so many standard deviations; the run knows
-/// poses and poles, moved by `off_m` alternately.
+/// A drive straight past 12 poles with ranges short by `offset_m` and noise of so many standard deviations; the run knows
+/// the poses, and the poles moved by `off_m` alternately.
 Passage passage(double offset_m, double noise, double off_m = 0.0) {
   core::RandomStream random(1, "range offset test");
   Passage made;
@@ -83,7 +83,7 @@ TEST(RangeOffset, IsWithinItsStandardDeviations) {
 
 TEST(RangeOffset, IsNotAskedOfARunWithoutMatches) { EXPECT_FALSE(range_offset_of(core::Recording(), runs::Run())); }
 
-/// Gives the told offset to the vehicle of a spoilt log, beside everything else that is right of it.
+/// Adds the stated offset to the vehicle file of a spoilt log, beside whatever else in it is right.
 void tell_offset(const SpoiltLog& log, const std::filesystem::path& file) {
   std::stringstream text;
   text << std::ifstream(file).rdbuf();

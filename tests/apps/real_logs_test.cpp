@@ -15,8 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// One drive through each real log with the default settings, association unknown, as a user would do it. The limits are
-// those that the project promises.
+// One drive through each real log with the default settings, association unknown, as a user would run it. The limits
+// are the ones the project promises.
 class RealLog : public testing::RealDataTest {
  protected:
   void replay(const fs::path& log) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What replay reads besides files and folders, and what it says of settings and logs that are read otherwise now.
+// What replay reads besides files and folders, and what it says about settings and logs that are now read differently.
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -77,7 +77,7 @@ TEST_F(ReplayInputs, ConvertedToJsonLinesALogLeadsToTheSamePose) {
   const std::vector<double> one = navigate(log_, "one"), other = navigate(apart / "drive.jsonl", "other");
   ASSERT_EQ(one.size(), 3u);
   ASSERT_EQ(other.size(), 3u);
-  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(one[k], other[k], 1e-6);  // deviations are written, not variances
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(one[k], other[k], 1e-6);  // sigmas are written, not variances
 }
 
 TEST_F(ReplayInputs, ARawlogIsRefusedWithTheProgramThatReadsIt) {
@@ -96,7 +96,7 @@ TEST_F(ReplayInputs, DeprecatedSettingsAreNamedOnceWithTheKeysThatReplaceThem) {
   EXPECT_EQ(run({"check", log_}).err.find("deprecated"), std::string::npos);
 }
 
-/// The example log with further columns of detections.csv.
+/// The example log with additional columns in detections.csv.
 void write_with_columns(const fs::path& from, const fs::path& to, const std::string& names, const std::string& cells) {
   fs::create_directories(to);
   for (const char* file : {"odometry.csv", "vehicle.toml"}) fs::copy_file(from / file, to / file);

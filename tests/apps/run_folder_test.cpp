@@ -98,7 +98,7 @@ TEST_F(RunFolder, IsRefusedBeforeTheLogIsRead) {
   EXPECT_NE(outcome.err.find("not empty"), std::string::npos) << outcome.err;
 }
 
-/// A run of some tenths of a second that the tests below end when its first steps are on disk.
+/// A run of some tenths of a second that the tests below terminate once its first steps are on disk.
 class CutRun : public RunFolder {
  protected:
   Outcome cut_by(int signal) {

@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-/// Settings of the search on the drive of ./dev demo, which returns after a bare stretch and is closed.
+/// Settings of the search on the drive of ./dev demo, which returns after a bare stretch and closes the loop.
 class SearchSettings : public ::testing::Test {
  protected:
   /// decisions.csv of that drive.

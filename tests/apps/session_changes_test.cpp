@@ -11,7 +11,7 @@
 namespace helixnav::apps {
 namespace {
 
-/// A joined map of two sessions: trees of a grid of 5 m, disturbed, which both have but for what a test takes out or adds.
+/// A joined map of two sessions: trees on a perturbed 5 m grid, present in both except for what a test takes out or adds.
 class TwoSessions {
  public:
   TwoSessions() {
@@ -68,13 +68,13 @@ TEST(SessionChanges, GoneAndNewFarFromEachOtherAreThat) {
 TEST(SessionChanges, BeyondTheRimOfWhatASessionMappedNothingIsGone) {
   TwoSessions world;
   for (core::LandmarkId id = 0; id < 100; ++id) {
-    if (id % 10 >= 6) world.take_out(id, 1);  // the second came up to x = 25 m only
+    if (id % 10 >= 6) world.take_out(id, 1);  // the second reached x = 25 m only
   }
   const std::vector<ChangedLandmark> changes = world.changes();
   EXPECT_TRUE(std::none_of(changes.begin(), changes.end(), [](const ChangedLandmark& one) { return one.is_gone(); }));
 }
 
-/// Each has copies of its own there: the second did not fail to see what stands 1.7 m beside.
+/// Each session has its own copies there: the second did not miss a landmark that it has 1.7 m away.
 TEST(SessionChanges, WhereTheSessionsAreBentApartNothingIsGoneNewOrMoved) {
   TwoSessions world;
   for (core::LandmarkId id = 0; id < 60; ++id) {

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Runs of a published log as it is, by name of its vehicle and by that vehicle's file.
+/// Runs of an unmodified published log, by name of its vehicle and by that vehicle's file.
 class ShippedVehicleProgram : public testing::RealDataTest {
  protected:
   void expect_same_runs(const fs::path& log, const std::string& name, const std::vector<std::string>& more = {}) {

@@ -84,7 +84,7 @@ TEST_F(Smooth, TakesDlrRunEToThePublishedChi2) {
   EXPECT_EQ(complete_lines(folder("optimum") / "trajectory_final.tum"), 3297u + 1u) << "steps and a header";
 }
 
-// The filter linearises once, a batch as often as it takes: its map is near enough for ten steps to the same optimum.
+// The filter linearises once, a batch as often as needed: its map is near enough to the same optimum for ten steps.
 TEST_F(Smooth, TakesTheFiltersDlrRunEToTheSameOptimumInTenIterations) {
   find_real_data("dlr/raw/map.circles");
   if (IsSkipped()) return;

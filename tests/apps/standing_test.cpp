@@ -12,8 +12,8 @@
 namespace helixnav::apps {
 namespace {
 
-/// Straight on past four poles, with a stop of 3 s; noise of the odometry is told by the way alone, so
-/// that an increment of the stop has none.
+/// Straight past four poles, with a stop of 3 s; odometry noise is given per distance only, so that an
+/// increment during the stop has none.
 void write_drive_with_stop(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   std::ofstream vehicle(folder / "vehicle.toml"), odometry(folder / "odometry.csv"), seen(folder / "detections.csv");

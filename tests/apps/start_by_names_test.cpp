@@ -31,7 +31,7 @@ void drive_on(const core::Pose2& T_before_after, core::Recording& recording) {
   recording.events.emplace_back(motion);
 }
 
-/// A scan from that pose; `moved_m`: the first one stands elsewhere than on the map.
+/// A scan from that pose; `moved_m`: the first landmark is this far from its place on the map.
 void look_from(const core::Pose2& T_map_robot, const std::vector<core::Label>& labels, core::Recording& recording,
                double moved_m = 0.0) {
   core::Scan scan;
@@ -58,7 +58,7 @@ TEST(StartByNames, IsThatOfTheFirstScanThatTellsThePose) {
   look_from(T_map_begin, {10, 99}, recording);  // one name of the map
   drive_on(step, recording);
   core::Pose2 here = core::compose(T_map_begin, step);
-  look_from(here, {10, 11, 12}, recording, 5.0);  // another tree has got a name of the map
+  look_from(here, {10, 11, 12}, recording, 5.0);  // another tree has been given a name of the map
   drive_on(step, recording);
   here = core::compose(here, step);
   look_from(here, {10, 11, 12}, recording);
@@ -68,7 +68,7 @@ TEST(StartByNames, IsThatOfTheFirstScanThatTellsThePose) {
   EXPECT_GT(start->covariance(0, 0), given_m * given_m) << "what odometry adds";
 }
 
-// The session begins as from a pose that is given, whose covariance says nothing of a long way in the dark.
+// The session starts as from a given pose; its covariance does not cover a long blind stretch.
 TEST(StartByNames, IsNoBeginAfterALongWayUntilTheFirstName) {
   for (const bool is_long : {false, true}) {
     Drive job;
@@ -80,7 +80,7 @@ TEST(StartByNames, IsNoBeginAfterALongWayUntilTheFirstName) {
       job.earlier->map.joint.points_m.push_back(point_m);
     }
     core::Pose2 here = T_map_begin;
-    for (int k = 0; k < (is_long ? 400 : 4); ++k) {  // 100 times as much variance
+    for (int k = 0; k < (is_long ? 400 : 4); ++k) {  // 100 times the variance
       drive_on(core::Pose2(0.01, 0.0, 0.0), job.recording);
       std::get<core::Odometry>(job.recording.events.back()).covariance *= 100.0;
       here = core::compose(here, core::Pose2(0.01, 0.0, 0.0));

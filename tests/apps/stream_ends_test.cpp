@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How `helixnav stream` begins and ends where something outside of it is amiss.
+// How `helixnav stream` starts and ends if something outside of it is wrong.
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
@@ -24,7 +24,7 @@ class StreamEnds : public ::testing::Test {
  protected:
   void SetUp() override { ASSERT_EQ(run({"new-vehicle", log_}).exit_code, 0); }
 
-  /// Of three lines, of which one is a scan.
+  /// A stream of three lines, one of them a scan.
   Outcome streamed(Words words, const char* output = nullptr) {
     const fs::path file = folder_.write("lines.jsonl",
                                         "{\"odometry\": {\"t\": 0, \"dx\": 0.1, \"dheading\": 0}}\n"

@@ -10,7 +10,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// Rows of a table as JSON objects by their time; those of one time together.
+/// Rows of a table as JSON objects by their time; rows with equal times together.
 void add_table(const std::filesystem::path& path, std::map<double, Words>& rows) {
   std::ifstream table(path);
   std::string line;

@@ -7,7 +7,7 @@
 
 namespace helixnav::apps {
 
-/// The first `seconds` of the log that new-vehicle writes, as lines in order of time; a scan on one line.
+/// The first `seconds` of the log that new-vehicle writes, as lines in time order; one scan per line.
 std::vector<std::string> lines_of(const std::filesystem::path& log, double seconds);
 
 /// The cells of a row of a table without quotes.

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using Words = std::vector<std::string>;
 
-/// One end of something that answers.
+/// One end of a connection that answers.
 class Talk {
  public:
   Talk(int in, int out) : in_(in), out_(out) {}
@@ -43,7 +43,7 @@ class Talk {
       sent += static_cast<std::size_t>(n);
     }
   }
-  /// The next line; a null where none comes in time.
+  /// The next line; null if none comes in time.
   Json hear() {
     constexpr int patience_ms = 30'000;
     for (;;) {
@@ -187,7 +187,7 @@ TEST_F(StreamProgram, RefusesALineWithItsNumberAndKeyAndGoesOn) {
                                     scan(0.5), scan(0.25), "{\"odometry\": {\"t\": 2}} trailing"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   const Words refused = answers_of(outcome.out, "refused");
-  // A line of the test ends itself, so that an empty one follows.
+  // The test's line ends with a newline, so that an empty line follows.
   const std::vector<std::pair<int, Json>> expected{{3, nullptr}, {6, "dx"}, {7, "t"}, {11, "t"}, {13, nullptr}};
   ASSERT_EQ(refused.size(), expected.size()) << outcome.out;
   for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -209,7 +209,7 @@ TEST_F(StreamProgram, AnswersEachScanAtOnceAndWaitsForTheRestOfALine) {
   ::usleep(20'000);
   live.talk->say(line.substr(10));
   EXPECT_EQ(live.talk->hear()["scan"]["t"], 0.75);
-  live.talk->say("{\"detections\": [{\"t\": 1.0}]}");  // without an end
+  live.talk->say("{\"detections\": [{\"t\": 1.0}]}");  // without a newline
   live.talk->stop_saying();
   EXPECT_EQ(live.talk->hear()["scan"]["t"], 1.0);
   EXPECT_EQ(live.talk->hear()["end"]["why"], "end of input");
@@ -252,7 +252,7 @@ std::string lengths_in_force(const fs::path& folder) {
   return config.substr(config.find("# Field of view"));
 }
 
-/// Its client sends again what it has of the last seconds, the row before the last scan at least.
+/// Its client resends what it has of the last seconds, at least the row before the last scan.
 TEST_F(StreamProgram, GoesOnWhereItWasKilledAsIfNothingHadHappened) {
   const Words lines = lines_of(log_, 60.0);
   const Outcome whole = streamed(lines, {"--out", out_});
@@ -292,7 +292,7 @@ TEST_F(StreamProgram, GoesOnWhereItWasKilledAsIfNothingHadHappened) {
   EXPECT_EQ(text_of(killed / "drive.bin"), kept);
 }
 
-/// The last scan was answered by odometry that ended before it, which goes on in what the client sends again.
+/// The last scan was answered with odometry that ended before it; that odometry continues in what the client resends.
 TEST_F(StreamProgram, GoesOnFromAnInputThatEndedAsIfItHadNot) {
   const Words lines = lines_of(log_, 30.0);
   ASSERT_EQ(streamed(lines, {"--out", out_}).exit_code, 0);
@@ -324,7 +324,7 @@ TEST_F(StreamProgram, WaitsForWhoeverReadsSlowly) {
   Talking live = begin();
   std::string lines = odometry(0.0) + odometry(1e3);
   for (int i = 1; i <= 500; ++i) lines += scan(i);
-  live.talk->say(lines);  // a pipe holds 64 KiB, of answers fewer than these
+  live.talk->say(lines);  // a pipe holds 64 KiB, fewer answers than these
   ::usleep(50'000);
   for (int i = 1; i <= 500; ++i) ASSERT_EQ(live.talk->hear()["scan"]["t"], i);
 }

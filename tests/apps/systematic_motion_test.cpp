@@ -16,7 +16,7 @@ namespace {
 
 struct Wrong {
   double scale = 0.0, aside_rad = 0.0;
-  int jumps = 0;  ///< corrections of 3 m, as of a closing
+  int jumps = 0;  ///< corrections of 3 m, as from a closing
 };
 
 struct Drive400 {
@@ -24,8 +24,8 @@ struct Drive400 {
   runs::Run run;
 };
 
-/// 400 scans with a match, a metre apart and every fourth one backwards; the odometry errs as told, with noise besides that the
-/// filter takes half of back in each scan.
+/// 400 scans with a match, a metre apart and every fourth one backwards; the odometry errs as given, plus noise of which
+/// the filter takes back half in each scan.
 Drive400 drive400(const Wrong& wrong, std::uint64_t seed) {
   core::RandomStream random(seed, "systematic motion test");
   Drive400 made;

@@ -33,7 +33,7 @@ class TeamReplay : public testing::RealDataTest {
   testing::TemporaryFolder folder_;
 };
 
-/// A suite of its own, which the sanitizers leave out: a minute and more with them.
+/// A suite of its own, which the sanitizers skip: it takes over a minute with them.
 class TeamWholeReplay : public TeamReplay {};
 
 TEST_F(TeamWholeReplay, KeepsFiveRobotsWithin15CentimetresOfTheirTruth) {
@@ -138,7 +138,7 @@ TEST(TeamSimulation, BringsFourRobotsOfUnknownStartIntoOneFrame) {
   EXPECT_EQ(team.exit_code, 3);
   EXPECT_NE(team.err.find("each has a run folder of its own: " + (out / "robot_1").string()), std::string::npos);
   EXPECT_EQ(run({"evaluate", (out / "robot_1").string()}).err, "");
-  // Before it came into the frame of robot 1 its covariances are of another.
+  // Before it joined the frame of robot 1 its covariances refer to another frame.
   const Outcome robot = run({"evaluate", (out / "robot_2").string(), "--json"});
   EXPECT_NE(robot.err.find("when the robot came into the frame of its team"), std::string::npos) << robot.err;
   EXPECT_LT(json::parse(robot.out)["nees"]["mean"], 2.0 * figures["robots"][1]["nees_mean"].get<double>());

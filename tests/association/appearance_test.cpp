@@ -31,7 +31,7 @@ core::Observation point_at(double x_m, double y_m, const core::Appearance& seen)
   return observation;
 }
 
-/// Landmarks 0.3 m apart at 10 m, and what they look like.
+/// Landmarks 0.3 m apart at 10 m, and their appearance.
 struct Twins {
   Twins() {
     map.ids = {0, 1};
@@ -56,7 +56,7 @@ TEST(AppearanceInAssociation, TwinsAreToldApartByTheirClasses) {
   Twins twins;
   twins.appearance.see(0, looks("red", 0.01));
   twins.appearance.see(1, looks("blue", 0.01));
-  // Each seen where the other is: without classes that is what they are taken for.
+  // Each is seen where the other is: without classes they are confused.
   twins.scan.observations = {point_at(10.0, 0.28, looks("red", 0.01)), point_at(10.0, 0.02, looks("blue", 0.01))};
   const Assignment by_class = twins.assignment();
   EXPECT_EQ(by_class.observations[0].landmark, 0);
@@ -104,7 +104,7 @@ TEST(AppearanceInAssociation, AClassThatMayBeWrongIsChargedAndNarrowsTheGate) {
   EXPECT_LT(evidence.nats, std::log(0.08));
   const AssignmentProblem costs = likelihood_ratio_costs(wrong, 0.9, {});
   EXPECT_NEAR(costs.cost[0], -wrong.pairs[0].log_likelihood - std::log(9.0) - evidence.nats, 1e-12);
-  // At a distance where a pair of the same class is inside, by less than what the class takes off.
+  // At a distance at which a pair of the same class is inside the gate, by less than the class narrows it.
   const double variance_m2 = 0.04 + 0.01 + 0.01;
   const double nis = core::chi2_quantile(0.999, 2) - 0.5 * evidence.gate;
   twins.scan.observations = {point_at(10.0 + std::sqrt(nis * variance_m2), 0.0, looks("blue", 0.05))};

@@ -9,7 +9,7 @@
 
 namespace helixnav::association {
 
-/// Brute force: calls `visit(entries)` for every assignment that there is, −1 standing for none.
+/// Brute force: calls `visit(entries)` for every possible assignment; −1 means none.
 inline void for_each_assignment(const AssignmentProblem& problem,
                                 const std::function<void(const std::vector<int>&)>& visit) {
   std::vector<int> entry(problem.rows(), -1);
@@ -38,7 +38,7 @@ inline double cost_of(const AssignmentProblem& problem, const std::vector<int>& 
   return cost;
 }
 
-/// Up to 6×6, any share of the pairs gated, costs of both signs; one problem in four has whole-numbered costs and so
+/// Up to 6×6, any share of the pairs gated, costs of both signs; one problem in four has integer costs and therefore
 /// many ties.
 inline AssignmentProblem random_assignment_problem(core::RandomStream& random) {
   AssignmentProblem problem;

@@ -26,8 +26,8 @@ TEST(LandmarkLife, MaturesWhenSeenFromSeveralPlaces) {
   EXPECT_EQ(life.record(4).hits, 3);
 }
 
-// Rain, glare, a truck beside the vehicle: for a second nothing is seen of what should be. A clearing that was felled looks the same, and is
-// refuted by one miss a drive past.
+// Rain, glare, a truck alongside: for a second none of the expected landmarks is seen. A felled clearing looks the same, and is refuted
+// by one miss per drive past.
 TEST(LandmarkLife, ScansThatSeeNothingAtAllInARowAreOneMiss) {
   LandmarkLife life;
   const std::vector<core::LandmarkId> trees{1, 2, 3};
@@ -49,7 +49,7 @@ TEST(LandmarkLife, AScanThatMissesFewIsNotBlinded) {
   for (int k = 0; k < 3; ++k) EXPECT_FALSE(life.note_if_blinded(0, 2));
 }
 
-// A map keeps what several looks have placed: sightings that no estimate used make a landmark likely, but not placed.
+// A map keeps landmarks that several looks have placed: sightings no estimate used make one likely, but do not place it.
 TEST(LandmarkLife, DoesNotMatureBySightingsThatAreLeftUnused) {
   LandmarkLife life;
   life.observe(at(0.0), {}, {4}, {});
@@ -80,7 +80,7 @@ TEST(LandmarkLife, LearnsNothingWhileStandingStill) {
   EXPECT_EQ(life.record(4).misses, 0);
 }
 
-// A detector with false alarms on a vehicle that stands: none of it is ever driven past.
+// A detector with false alarms on a vehicle that stands still: it never drives past any of them.
 TEST(LandmarkLife, ClutterOfAPauseIsNotGathered) {
   LandmarkLife life;
   life.observe(at(0.0), {}, {0, 1}, {});
@@ -94,7 +94,7 @@ TEST(LandmarkLife, ClutterOfAPauseIsNotGathered) {
   EXPECT_FALSE(life.contains(1));
 }
 
-// What was seen from two places, or is not seen where the vehicle has driven on, is for looks to judge.
+// Landmarks seen from two places, or not seen after the vehicle has driven on, are for looks to judge.
 TEST(LandmarkLife, APauseElsewhereRefutesNothing) {
   LandmarkLife life;
   life.observe(at(0.0), {}, {4, 5}, {});
@@ -108,7 +108,7 @@ TEST(LandmarkLife, OddsFollowWhatBecameOfThoseBegun) {
   LandmarkLife life;
   life.observe(at(0.0), {}, {0}, {});
   EXPECT_NEAR(life.odds(0), 1.0, 1e-12);
-  for (int k = 1; k <= 9; ++k) {  // nine that nobody sees again
+  for (int k = 1; k <= 9; ++k) {  // nine that are never seen again
     life.observe(at(0.0), {}, {k}, {});
     life.drive(31.0);
     life.observe(at(0.0), {0}, {}, {});
@@ -164,7 +164,7 @@ TEST(LandmarkLife, OneThatIsSeenFromAfarOnlyDiesWhenDrivenPastOftenUnseen) {
   LandmarkLife life = with_a_mature_landmark({});
   int passes = 0;
   for (; life.contains(4) && passes < 100; ++passes) {
-    for (int k = 0; k < 40; ++k) {  // many scans on the way past are one look
+    for (int k = 0; k < 40; ++k) {  // many scans in one drive past are one look
       life.drive(1.0);
       life.pass({4});
       life.observe(at(k), {}, {}, {});
@@ -196,7 +196,7 @@ TEST(LandmarkLife, MatureOnesLiveForEverWhenToldSo) {
 }
 
 TEST(LandmarkLife, KeepsATreeThatIsOftenHiddenAndDropsClutter) {
-  // A tree seen in half of its looks against a place where clutter falls in every tenth look: 200 lives each of 60 looks.
+  // A tree seen in half of its looks against a place with clutter in every tenth look: 200 lives each of 60 looks.
   core::RandomStream random(20, "life");
   int trees_kept = 0;
   int phantoms_matured = 0;

@@ -13,7 +13,7 @@
 namespace helixnav::association {
 namespace {
 
-/// The same problem with its observations written in other units: `row_units` of the old in the new.
+/// The same problem with its observations written in other units: `row_units` is the old unit in the new one.
 InnovationProblem in_units(InnovationProblem problem, const Eigen::Vector2d& row_units) {
   const Eigen::Matrix2d U = row_units.asDiagonal();
   for (Prediction& p : problem.predictions) {
@@ -39,7 +39,7 @@ struct Decisions {
   int changed_by_published = 0;
 };
 
-/// Decides 400 scans twice, in metres and radians and in other units.
+/// Decides 400 scans twice: in metres and radians, and in other units.
 Decisions decide_in_units(const Eigen::Vector2d& row_units) {
   core::RandomStream random(9, "units");
   Options plain;
@@ -83,7 +83,7 @@ TEST(LikelihoodRatio, TakesThePosteriorsModeAmongAllAssignmentsOfTenThousandScan
         crowded_scene(random, static_cast<int>(random.below(7)), static_cast<int>(random.below(7)), 0.2);
     const InnovationProblem problem = make_innovation_problem(scene.map, scene.scan);
     const Assignment assignment = associate(Method::likelihood_ratio, problem, options);
-    // ln of the posterior, written down from P_D, λ and the Gaussians, landmarks not seen counting 1 − P_D.
+    // ln of the posterior, written out from P_D, λ and the Gaussians; landmarks not seen contribute 1 − P_D.
     const AssignmentProblem structure = likelihood_ratio_costs(problem, 0.5, {});
     const auto log_posterior = [&](const std::vector<int>& entry) {
       double sum = 0.0;

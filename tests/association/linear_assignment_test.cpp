@@ -25,7 +25,7 @@ void expect_valid(const AssignmentProblem& problem, const std::vector<int>& entr
   }
 }
 
-/// Prices under every cost, tight where assigned, columns' prices not above 0 and 0 where free: optimal by duality.
+/// Prices never above any cost, tight where assigned, columns' prices at most 0 and 0 where free: optimal by duality.
 void expect_certificate(const AssignmentProblem& problem, const AssignmentSolution& s) {
   std::vector<char> held(problem.columns + problem.rows(), 0);
   for (int row = 0; row < problem.rows(); ++row) {

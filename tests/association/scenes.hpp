@@ -33,8 +33,8 @@ inline Eigen::MatrixXd random_covariance(core::RandomStream& random, int n, doub
   return P;
 }
 
-/// `landmarks` spread over a small patch ahead of a robot at a random pose, so that several stand in each gate;
-/// `observed` of them are seen, one observation in ten is clutter instead.
+/// `landmarks` spread over a small patch ahead of a robot at a random pose, so that several are in each gate;
+/// `observed` of them are seen; one observation in ten is clutter instead.
 inline Scene crowded_scene(core::RandomStream& random, int observed, int landmarks, double sigma, double patch_m = 4.0,
                            bool mixed_kinds = false) {
   Scene scene;

@@ -11,12 +11,12 @@
 
 namespace helixnav::atlas {
 
-/// What tests of the room see of an atlas.
+/// What tests need to see of an atlas.
 struct AtlasAccess {
   static State& working(Atlas& atlas) { return *atlas.working_; }
   static const State& settled(const Atlas& atlas) { return *atlas.settled_; }
 
-  /// Marks every node, at values that belong together.
+  /// Marks every node, at mutually consistent values.
   static void dirty_all(State& state) {
     Estimates estimates(state);
     estimates.update_all(state.root);
@@ -24,7 +24,7 @@ struct AtlasAccess {
     for (std::size_t i = 0; i < state.nodes.size(); ++i) state.nodes.write(i).dirty = true;
   }
 
-  /// Everything linearised at the values as they are, which stay.
+  /// Linearises everything at the present values, which do not change.
   static void linearise_in_place(State& state) {
     dirty_all(state);
     int redone = 0;
@@ -36,7 +36,7 @@ struct AtlasAccess {
     }
   }
 
-  /// Everything linearised again, under other options.
+  /// Linearises everything again, under other options.
   static void settle_with(Atlas& atlas, const Options& options) {
     State& state = *atlas.working_;
     state.options = options;

@@ -13,7 +13,7 @@
 namespace helixnav::atlas {
 namespace {
 
-/// Rounds on one circle, of 6⅛ phases each, so that no phase begins where one of the round before did.
+/// Rounds on one circle, of 6⅛ phases each, so that no phase begins where one of the previous round did.
 testing::SmallDrive rounds(std::uint64_t seed, int count, double noise) {
   testing::SmallDriveOptions options;
   options.rounds = count;
@@ -52,7 +52,7 @@ TEST(Condense, TakesInformationAwayAndNeverAddsAny) {
 }
 
 TEST(Condense, EqualsTheBatchOfTheProblemThatIsCutInTheSamePlaces) {
-  const testing::SmallDrive drive = rounds(32, 5, 1e-4);  // so little noise that nothing is bent
+  const testing::SmallDrive drive = rounds(32, 5, 1e-4);  // so little noise that nothing is distorted
   const Atlas atlas = condensed_drive(drive, 1);
   smoothing::Problem cut = testing::cut_problem(drive, AtlasAccess::settled(atlas));
   EXPECT_GT(cut.graph.poses.size(), drive.problem.graph.poses.size() + 10);
@@ -112,7 +112,7 @@ TEST(Condense, KeepsThePathOfTheDriveAndAllLandmarks) {
   }
 }
 
-/// Between two condensed phases a street without landmarks hung on nothing, and nothing could be solved any more.
+/// A street without landmarks between two condensed phases was tied to nothing, and the problem became unsolvable.
 TEST(Condense, LeavesNoPhaseThatNothingHolds) {
   testing::SmallDriveOptions options;
   options.rounds = 8;
@@ -134,8 +134,8 @@ TEST(Condense, LeavesNoPhaseThatNothingHolds) {
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(lost).eigenvalues()[0], -1e-8 * lost.trace());
 }
 
-/// NEES of three landmarks and the last pose, in the map frame. Bands leave with probability 1e-4; conservative covariances may bring
-/// the sum below, but not to half.
+/// NEES of three landmarks and the last pose, in the map frame. Bands are exceeded with probability 1e-4; conservative covariances
+/// may bring the sum below, but not to half.
 TEST(CondenseCampaign, LeavesErrorsWithinTheirCovariances) {
   double nees = 0.0;
   const int runs = support::campaign_runs(30);

@@ -24,9 +24,9 @@ inline std::set<core::LandmarkId> seen_by(const PhaseLog& log) {
   return {ids.begin(), ids.end()};
 }
 
-/// The least-squares problem of a drive as an atlas of it has been condensed: a condensed phase has an entry, an exit and landmarks
-/// of its own, but for the landmarks of its host. Names of landmarks of its own are negative; poses of its own come after
-/// those of the drive. Poses that nothing holds any more are fixed.
+/// The least-squares problem of a drive, cut as its atlas has been condensed: a condensed phase has an entry, an exit and landmarks
+/// of its own, except for the landmarks of its host. Landmarks of its own have negative names; its own poses come after
+/// those of the drive. Poses that nothing constrains any more are fixed.
 inline smoothing::Problem cut_problem(const SmallDrive& drive, const State& state) {
   smoothing::Problem cut = drive.problem;
   core::LandmarkGraph& graph = cut.graph;

@@ -19,8 +19,8 @@ double last_heading_rad(Atlas& atlas) {
   return state.value(state.variable_of_clone.back()).z();
 }
 
-/// The ordinary way finds it: a phase that sees the end of the drive and its begin, a hundred metres beside it, stays where the drive has it,
-/// and is not turned by what fits both best.
+/// The ordinary way finds it: a phase that sees the end of the drive and its start, a hundred metres beside it, stays where the
+/// drive puts it and is not turned by the best fit to both.
 TEST(TornClosing, APhaseThatSeesBothEndsIsNotTurned) {
   for (const std::uint64_t seed : {2u, 4u}) {
     LongRoad road(seed);
@@ -51,7 +51,7 @@ TEST(DampedCampaign, ManyPhasesOnOldGroundAtOnceAreSolvedAfterAnyDrift) {
     ASSERT_NO_THROW(atlas.settle()) << seed;
     EXPECT_TRUE(atlas.is_settled());
     EXPECT_LT(road.error_m(atlas), 2.0) << seed;
-    EXPECT_NEAR(atlas.chi2(), road.dof(), 4.5 * std::sqrt(2.0 * road.dof())) << seed;  // leaves with probability 1e-5
+    EXPECT_NEAR(atlas.chi2(), road.dof(), 4.5 * std::sqrt(2.0 * road.dof())) << seed;  // exceeded with probability 1e-5
   }
 }
 
@@ -63,7 +63,7 @@ TEST(Damped, SeesWhatAFixThatCameWhereTheMapIsFarOffPulls) {
   int clone = 0;
   while (road.steps() < 500) clone = road.add_phase(atlas);
   atlas.settle();
-  const core::Pose2 T_true_turned(0.0, 0.0, 0.1);  // the drive of a kilometre began with a heading wrong by so much
+  const core::Pose2 T_true_turned(0.0, 0.0, 0.1);  // the drive of a kilometre began with this heading error
   road.fix(atlas, clone, T_true_turned);
   State state = AtlasAccess::working(atlas);
   int redone = 0;

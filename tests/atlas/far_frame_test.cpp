@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map frame a hundred kilometres from the drive: what messages say of it where a part has turned.
+// A map frame a hundred kilometres from the drive: what messages say about it when a part has turned.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-/// A kilometre with a fix each 90 m, in a map frame whose origin is 224 km away; fixes pull at it, so that it is not met exactly.
+/// A kilometre with a fix every 90 m, in a map frame with its origin 224 km away; the fixes pull at it, so it is not met exactly.
 Atlas far_away(testing::LongRoad& road) {
   core::PoseGaussian start;
   start.mean = core::Pose2(1e5, 2e5, 0.0);
@@ -30,7 +30,7 @@ Atlas far_away(testing::LongRoad& road) {
   return atlas;
 }
 
-/// A node of a quarter of the drive or more that passes on the map frame and poses.
+/// A node covering a quarter of the drive or more that passes on the map frame and poses.
 int part_of(const State& state) {
   for (std::size_t i = 0; i < state.nodes.size(); ++i) {
     const TreeNode& node = state.nodes[i];
@@ -47,7 +47,7 @@ struct Carried {
   Eigen::VectorXd pull;
 };
 
-/// The message of a node where the present values have it.
+/// The message of a node at the present values.
 Carried carried(const State& state, int id) {
   const FrontShape& shape = *state.node(id).shape;
   std::vector<int> offsets;
@@ -60,7 +60,7 @@ Carried carried(const State& state, int id) {
   return {F(shape.nb, shape.nb), F.row(shape.nb).head(shape.nb).transpose()};
 }
 
-/// Turns all variables of a node but the map frame about one of them.
+/// Turns all variables of a node except the map frame about one of them.
 void turn_part(State& state, int id, double turn_rad) {
   const FrontShape& shape = *state.node(id).shape;
   const Eigen::Matrix2d R = core::rotation(turn_rad);
@@ -108,7 +108,7 @@ TEST(FarFrame, APartThatTurnedPullsAsIfItWereLinearisedThere) {
     ++with_fixes;
     State turned = state;
     Workspace workspace;
-    eliminate(turned, leaf, workspace);  // so that the turn is all that it has moved by
+    eliminate(turned, leaf, workspace);  // so that nothing but the turn has moved it
     turn_part(turned, leaf, 1e-3);
     const Eigen::VectorXd pull = carried(turned, leaf).pull;
     eliminate(turned, leaf, workspace);

@@ -28,7 +28,7 @@ void expect_joint(const Atlas& atlas, const smoothing::Problem& problem, const s
   const int last = static_cast<int>(problem.graph.poses.size()) - 1;
   const Eigen::MatrixXd exact = smoothing::joint_covariance(problem, {last}, indices);
   const core::JointGaussian joint = atlas.joint(ids);
-  // Both have been linearised where they ended, some 1e-8 m apart.
+  // Each was linearised at its own final estimate; these are some 1e-8 m apart.
   EXPECT_LT((joint.covariance - exact).cwiseAbs().maxCoeff(), 1e-7 * exact.cwiseAbs().maxCoeff());
   const auto& pose = problem.graph.poses.back().T_world_robot;
   EXPECT_LT((joint.pose.vector() - pose.vector()).norm(), 1e-6);

@@ -12,23 +12,23 @@
 
 namespace helixnav::atlas::testing {
 
-/// A road in a circle of 16 km, a landmark each 8 m on both sides, driven with noise. Without fixes it comes back with an
+/// A circular road of 16 km, a landmark every 8 m on both sides, driven with noise. Without fixes it comes back with an
 /// error of a hundred metres.
 class LongRoad {
  public:
   explicit LongRoad(std::uint64_t seed) : random_(seed) {}
 
   long steps() const { return k_; }
-  /// 2·(observations − landmarks): degrees of freedom that measurements have beyond what they determine.
+  /// 2·(observations − landmarks): degrees of freedom of the measurements beyond the unknowns they determine.
   int dof() const { return 2 * (observations_ - static_cast<int>(landmarks_.size())); }
 
-  /// The clone where it ends.
+  /// Returns the clone at its end.
   int add_phase(Atlas& atlas) {
     auto log = std::make_shared<PhaseLog>();
     for (int i = 0; i < 9; ++i) log->steps.push_back(step());
     return atlas.add(derive_factor(*log, dead_reckon(*log)), log) + 1;
   }
-  /// Of 1 m, where the vehicle is now, in a map frame that has the world at `T_map_world`.
+  /// A fix of 1 m at the vehicle's present position, in a map frame in which the world is at `T_map_world`.
   void fix(Atlas& atlas, int clone, const core::Pose2& T_map_world = {}) {
     core::AbsoluteFix fix;
     fix.covariance_m2.setIdentity();

@@ -8,7 +8,7 @@
 namespace helixnav::atlas {
 namespace {
 
-/// The same drive, whose second half gives other names to what it sees.
+/// The same drive, with its second half giving other names to what it sees.
 struct Doubled {
   testing::SmallDrive drive;
   std::vector<MergePair> pairs;
@@ -28,7 +28,7 @@ Doubled doubled_drive(std::uint64_t seed) {
   return doubled;
 }
 
-/// The problem of the drive with the second half's landmarks as others, but for the pairs.
+/// The problem of the drive with the second half's landmarks separate, except for the pairs.
 smoothing::Problem problem_of(const Doubled& doubled, bool merged) {
   smoothing::Problem problem = doubled.drive.problem;
   const int half = static_cast<int>(problem.graph.poses.size()) / 2;
@@ -70,7 +70,7 @@ TEST(Merge, CostsTheDifferenceOfTheBatchOptima) {
     if (!atlas.knows(id)) continue;
     EXPECT_LT((atlas.landmark(id) - landmark.point_m).norm(), 1e-6) << id;
   }
-  EXPECT_EQ(atlas.landmark(105), atlas.landmark(5));  // both names mean it
+  EXPECT_EQ(atlas.landmark(105), atlas.landmark(5));  // both names refer to it
   for (const Place& place : atlas.landmarks()) EXPECT_NE(place.id, 105);
 }
 

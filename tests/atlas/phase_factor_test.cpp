@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Index;
 
-/// χ² of a log at a shape, and its normal equations by all poses and points, from central differences of nothing: the
+/// χ² of a log at a shape, and its normal equations over all poses and points, without central differences: the
 /// residuals' Jacobians are written out again here, dense.
 struct Dense {
   Eigen::MatrixXd H;
@@ -81,7 +81,7 @@ TEST(PhaseFactor, IsTheSchurComplementOfTheInteriorPoses) {
     const Eigen::MatrixXd Lambda = dense.H.bottomRightCorner(kept, kept) - dense.H.bottomLeftCorner(kept, inner) * W;
     const Eigen::VectorXd eta = dense.b.tail(kept) - W.transpose() * dense.b.head(inner);
     EXPECT_LT((factor.gaussian.information - Lambda).cwiseAbs().maxCoeff(), 1e-9 * Lambda.cwiseAbs().maxCoeff());
-    // Gauss–Newton has ended: what is left of η is rounding of terms of the size of Λ times metres.
+    // Gauss–Newton has converged: what is left of η is rounding of terms of the order of Λ times metres.
     EXPECT_LT((factor.gaussian.vector - eta).cwiseAbs().maxCoeff(), 1e-9 * Lambda.cwiseAbs().maxCoeff());
     EXPECT_NEAR(
         factor.gaussian.chi2,

@@ -32,7 +32,7 @@ TEST_F(RealDrive, ThroughVictoriaParkIsTheOptimumLiveToCentimetresAndExactlyOnce
   for (const auto& log : testing::phases_of_graph(problem.graph, 20.0)) testing::add_phase(atlas, log);
   smoothing::grow_start(problem);
   testing::solve(problem);
-  // The twin takes a step only where that promises something: landmarks pushed to and fro make it take some more.
+  // The twin steps only if a step promises a gain: landmarks pushed to and fro make it take some more.
   double chi2 = 0.0;
   for (int more = 0; more < 6; ++more) {
     double push_m = 1e-5;

@@ -26,7 +26,7 @@ TEST(Settle, StoppedAfterEveryNodeLeavesAConsistentMapAndEndsInTheSameBits) {
     const core::JointGaussian still = stopped.joint({0, 1, 2});
     ASSERT_TRUE(testing::same_bytes(still.covariance, before.covariance));
     ASSERT_EQ(stopped.phase_count(), atlas.phase_count());
-    if (stops % 7 == 3) stopped = Atlas(stopped);  // a snapshot in mid-settling goes on, too
+    if (stops % 7 == 3) stopped = Atlas(stopped);  // a snapshot taken while settling continues, too
   }
   EXPECT_GT(stops, 20);
   EXPECT_TRUE(testing::same_bytes(AtlasAccess::settled(once), AtlasAccess::settled(stopped)));

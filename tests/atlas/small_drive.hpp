@@ -14,7 +14,7 @@
 
 namespace helixnav::atlas::testing {
 
-/// A drive in rounds on a circle among landmarks, cut into phases, and the same measurements as one least-squares problem.
+/// A drive in rounds on a circle among landmarks, cut into phases; the same measurements as one least-squares problem.
 struct SmallDrive {
   std::vector<std::shared_ptr<PhaseLog>> logs;
   smoothing::Problem problem;      ///< pose 0 fixed at the origin; landmark i has name i
@@ -29,8 +29,8 @@ struct SmallDriveOptions {
   double rounds = 2.0;
   double radius_m = 25.0;
   double reach_m = 12.0;
-  double noise = 1.0;     ///< times the assumed sigmas
-  double bare_rad = 0.0;  ///< of the circle, from its beginning, on which no landmark stands
+  double noise = 1.0;     ///< multiple of the assumed sigmas
+  double bare_rad = 0.0;  ///< arc of the circle, from its beginning, without landmarks
 };
 
 inline core::Observation noisy_view(const core::Pose2& T_world_robot, const Eigen::Vector2d& point_m, double noise,
@@ -57,7 +57,7 @@ inline SmallDrive make_small_drive(std::uint64_t seed, const SmallDriveOptions& 
   const double turn_rad = 2.0 * core::pi * o.rounds / o.steps;
   const core::Pose2 step(o.radius_m * std::sin(turn_rad), o.radius_m * (1.0 - std::cos(turn_rad)), turn_rad);
   const Eigen::Vector3d sigma(0.05, 0.03, 0.01);
-  std::map<int, int> index_of;  // landmark → in the graph
+  std::map<int, int> index_of;  // landmark → index in the graph
   core::Pose2 T_world_robot;
   drive.pose_of_clone.push_back(0);
   for (int k = 0; k <= o.steps; ++k) {
@@ -96,7 +96,7 @@ inline SmallDrive make_small_drive(std::uint64_t seed, const SmallDriveOptions& 
   return drive;
 }
 
-/// Adds the phases of a drive as a navigator would: each is derived with what the atlas knows of its landmarks as a prior.
+/// Adds the phases of a drive as a navigator would: each derived with the atlas's knowledge of its landmarks as a prior.
 inline void add_phase(Atlas& atlas, const std::shared_ptr<PhaseLog>& log) {
   std::vector<core::LandmarkId> known;
   for (const core::LandmarkId id : landmarks_of(*log)) {
@@ -111,7 +111,7 @@ inline void add_phase(Atlas& atlas, const std::shared_ptr<PhaseLog>& log) {
   atlas.settle();
 }
 
-/// Everything linearised until nothing moves: the optimum.
+/// Relinearises everything until nothing moves: the optimum.
 inline Options exact() {
   Options options;
   options.bend_m = 0.0;
@@ -126,10 +126,10 @@ inline Atlas driven(const SmallDrive& drive, const Options& options = exact()) {
   return atlas;
 }
 
-/// χ² of the optimum; the problem's values move there.
+/// χ² of the optimum; moves the problem's values there.
 inline double solve(smoothing::Problem& problem) {
   smoothing::Options options;
-  options.first_damping = 1e-12;  // as good as Gauss-Newton, whose last step goes far beyond its tolerance
+  options.first_damping = 1e-12;  // equivalent to Gauss-Newton, whose last step goes far beyond its tolerance
   options.tolerance_chi2 = 1e-12;
   smoothing::optimize(problem, options);
   return smoothing::optimize(problem, options).chi2.total();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Counts what predict and update take from the heap. malloc itself is counted, because Eigen does not go through
+// Counts the heap allocations of predict and update. malloc itself is counted, because Eigen does not go through
 // operator new. Left out under sanitizers, which replace malloc themselves.
 #include <gtest/gtest.h>
 

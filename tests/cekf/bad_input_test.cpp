@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever is refused leaves the filter byte for byte as it was, and says which landmark.
+// Every refusal leaves the filter byte for byte as it was, and names the landmark.
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -146,7 +146,7 @@ TEST_P(BadInput, TheLastOfAllNamesIsNotGiven) {
   expect_refused<core::PreconditionError>([&] { filter_.augment(z, {}, last); });
 }
 
-// The steps of 1e6 m that a broken encoder reports: the filter refuses or stays a covariance, but goes on either way.
+// Steps of 1e6 m from a broken encoder: the filter refuses them or keeps a valid covariance, but goes on either way.
 TEST_P(BadInput, AbsurdStepsNeverLeaveANegativeVariance) {
   core::Odometry odometry;
   odometry.covariance = Eigen::Vector3d(1.0, 1.0, 1e-2).asDiagonal();

@@ -58,7 +58,7 @@ inline Consistency drive_circuit(Retraction retraction, const CircuitNoise& nois
   start.mean = truth;
   FilterOptions options;
   options.retraction = retraction;
-  options.cell_side_m = 6.0;  // small on purpose: the study goes through switches and lazy activations
+  options.cell_side_m = 6.0;  // small on purpose: the study includes switches and lazy activations
   options.hysteresis_m = 1.0;
   CompressedEkf filter(start, options);
   Consistency result;

@@ -31,7 +31,7 @@ void expect_equal(const RandomProgram& program, double tolerance) {
   EXPECT_LE(d.mean, tolerance);
 }
 
-/// Turns the vehicle away from where it is by dead reckoning with a large error.
+/// Turns the vehicle away from its true pose by dead reckoning with a large error.
 void lose_the_pose(RandomProgram& program) {
   core::Odometry lost;
   lost.T_before_after = core::Pose2(0.5, 0.2, 0.2);
@@ -69,7 +69,7 @@ TEST_P(Closing, MergingSeveralPairsAtOnceEqualsTheFullFilter) {
   EXPECT_EQ(result.dof, 12);
   EXPECT_EQ(before.parts.size(), 6u);
   expect_equal(program, 1e-8);
-  for (int k = 0; k < 20; ++k) program.step();  // and life goes on
+  for (int k = 0; k < 20; ++k) program.step();  // and the drive goes on
   program.filter.global_update();
   expect_equal(program, 1e-8);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What all landmarks share, the drift, grows without bound; what they have of their own does not. The covariance of the
-// map must keep the latter, or a search that asks where the vehicle is among them has nothing to go by.
+// The error that all landmarks share, the drift, grows without bound; their individual errors do not. The covariance
+// of the map must keep the latter, or a search for the vehicle's place among them has nothing to go by.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -23,7 +23,7 @@ double least_eigenvalue(const CompressedEkf& filter) {
 }
 
 /// 1 km of a winding road with trees on either side, and a detector. Every 125 m phases begin
-/// to be kept, as in a search, and are let go 60 m later.
+/// to be kept, as in a search, and are released 60 m later.
 class Road {
  public:
   Road(Retraction retraction, double start_sigma_m) : filter_(start(start_sigma_m), with(retraction)) {}
@@ -90,7 +90,7 @@ class Road {
 
 class Drift : public testing::TestWithParam<Retraction> {};
 
-// Measured with each coordinate of a landmark an anchor of its own: -0.13 (300 m) and -5800 (3 km) in the standard filter,
+// Measured with each coordinate of a landmark as its own anchor: -0.13 (300 m) and -5800 (3 km) in the standard filter,
 // -0.21 and -12300 in the right-invariant one, instead of 4.4e-6.
 TEST_P(Drift, LeavesWhatTheLandmarksHaveOfTheirOwn) {
   const double known = Road(GetParam(), 0.0).least_eigenvalue_of_drive();

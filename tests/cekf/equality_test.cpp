@@ -22,10 +22,10 @@ TEST_P(Equality, HoldsTo1em10InOnePhase) {
     program.start_oracle_from_filter();
     const int lazy_before = program.lazy_activations;
     const int removed_before = program.removed;
-    // Not 200 steps: the difference grows along a phase to 1e-10 (right-invariant; 125 steps 2e-11). It is the filter's
-    // round-off; an oracle in long double differs from it by the same. The weights refer to the anchors themselves, M
-    // grows to 5e3 like the inverse of their covariance, E·M·Eᵀ cancels, and an activation takes the rest into the active
-    // part. Weights of anchors made independent (Cholesky factor of their covariance) would stay near 1.
+    // Not 200 steps: along a phase the difference grows to 1e-10 (right-invariant; 125 steps 2e-11). It is the filter's
+    // round-off; an oracle in long double differs from it by as much. The weights refer to the anchors themselves, M
+    // grows to 5e3 like the inverse of their covariance, E·M·Eᵀ cancels, and an activation carries the rest into the
+    // active part. Weights of anchors made independent (Cholesky factor of their covariance) would stay near 1.
     for (int k = 0; k < 125; ++k) {
       program.step();
       if (k % 25 == 12) program.activate_some();
@@ -92,7 +92,7 @@ TEST_P(Equality, HoldsWhenClosedPhasesAreKept) {
   EXPECT_LE(d.mean, 1e-8);
 }
 
-/// Of up to four passive landmarks the weights are read in place, of more they are packed.
+/// For up to four passive landmarks the weights are read in place; for more they are packed.
 TEST_P(Equality, JointOfAFewIsTheBlockOfTheJointOfMany) {
   RandomProgram program(8, {GetParam(), 220, 25, false});
   for (int k = 0; k < 200; ++k) {
@@ -114,7 +114,7 @@ TEST_P(Equality, JointOfAFewIsTheBlockOfTheJointOfMany) {
   }
 }
 
-/// A point between an active and a passive landmark, shifted with the vehicle; then an ordinary life.
+/// A point between an active and a passive landmark, moved with the vehicle; ordinary operation follows.
 TEST_P(Equality, HoldsForALandmarkDerivedFromPoseAndLandmarks) {
   RandomProgram program(6, {GetParam(), 220, 25, false});
   for (int k = 0; k < 160; ++k) program.step();

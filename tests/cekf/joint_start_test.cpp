@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A filter that begins with a joint estimate goes on as the one that made it.
+// A filter that starts with a joint estimate continues like the one that made it.
 #include <algorithm>
 #include <limits>
 #include <vector>
@@ -14,7 +14,7 @@ namespace {
 
 class JointStart : public testing::TestWithParam<Retraction> {};
 
-/// The program's filter by its estimate alone. `backwards` names the landmarks in the other order.
+/// The program's filter from its estimate alone. `backwards` names the landmarks in reverse order.
 CompressedEkf begun_again(const RandomProgram& program, bool backwards) {
   std::vector<core::LandmarkId> ids = program.filter.landmarks();
   if (backwards) std::reverse(ids.begin(), ids.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far off the default filter is when the large loop brings it back, every tree known by name.
+// How large the default filter's error is when the large loop returns, every tree known by name.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -12,12 +12,12 @@
 namespace helixnav::cekf {
 namespace {
 
-/// Maps a recording by its labels up to the scan that first shows a tree of the beginning again.
+/// Maps a recording by its labels up to the scan that first shows a tree from the start again.
 class UntilTheReturn {
  public:
   explicit UntilTheReturn(const core::Recording& recording) : recording_(recording), filter_(recording.start) {}
 
-  /// Error of the predicted position there [m]; nothing when the drive never comes back.
+  /// Error of the predicted position there [m]; empty if the drive never comes back.
   std::optional<double> error_m() {
     std::size_t scan = 0;
     for (const core::Event& event : recording_.events) {

@@ -75,7 +75,7 @@ TEST_P(Law, TheCrossCovarianceIsThatOfTheJoint) {
   int most_phases = 0;
   for (int k = 0; k < 250; ++k) {
     program.step();
-    if (k == 120) program.filter.keep_since(program.filter.phase());  // phases that are closed and not absorbed
+    if (k == 120) program.filter.keep_since(program.filter.phase());  // closed phases that are not absorbed
     const CompressedEkf& filter = program.filter;
     const std::vector<core::LandmarkId> ids = filter.landmarks();
     if (k % 5 != 0 || ids.size() < 2) continue;
@@ -184,7 +184,7 @@ TEST_P(Law, AllAreActiveWherePhasesThatSeeLittleCostMore) {
     for (int i = 0; i < 60; ++i) filter.augment(core::make_cartesian({1.0 + i / 8, 1.0 + i % 8}, observation.R), {});
     filter.switch_region({0, 1, 2});
     for (int k = 0; k < updates; ++k) filter.update({{0, observation, {}}});
-    filter.switch_region();  // what it cost is known once it has ended
+    filter.switch_region();  // its cost is known once it has ended
     EXPECT_EQ(filter.active_count(), 8);
     filter.switch_region();
     return filter;

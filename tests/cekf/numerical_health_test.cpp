@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an update says of its own arithmetic, on covariances whose pivots are known.
+// What an update reports on its own arithmetic, for covariances with known pivots.
 #include "helixnav/core/numerical_health.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ core::Observation point(double variance_m2) {
   return core::make_cartesian({5.0, 1.0}, variance_m2 * Eigen::Matrix2d::Identity());
 }
 
-/// A vehicle that knows where it is, and a landmark known by a variance of 1 m².
+/// A vehicle that knows its pose, and a landmark known with a variance of 1 m².
 class NumericalHealth : public ::testing::Test {
  protected:
   CompressedEkf filter_{core::PoseGaussian{}};
@@ -36,7 +36,7 @@ TEST_F(NumericalHealth, IsThatOfRowsThatTellNothingOfEachOther) {
   EXPECT_FALSE(core::is_near_limit(health));
 }
 
-/// Of the second sighting the first leaves 1 − 1/(1 + r)² of the variance.
+/// For the second sighting the first leaves 1 − 1/(1 + r)² of the variance.
 TEST_F(NumericalHealth, FindsTheLeastPivotOfAnUpdateThatSaysAlmostTheSameTwice) {
   constexpr double r = 1e-9;
   filter_.update({{id_, point(r), {}}, {id_, point(r), {}}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pieces the filter is made of.
+// The components of the filter.
 #include <algorithm>
 #include <vector>
 

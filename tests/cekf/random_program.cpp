@@ -47,7 +47,7 @@ RandomProgram::RandomProgram(std::uint64_t seed, const Settings& settings)
       random_(seed, "random program"),
       settings_(settings),
       truth_(start(true).mean) {
-  // One draw a statement, here and below: compilers evaluate arguments in orders of their own.
+  // One draw per statement, here and below: compilers evaluate arguments in different orders.
   for (int i = 0; i < settings.landmarks; ++i) {
     const double y_m = random_.uniform(-60, 60);
     points_m_.emplace_back(random_.uniform(-60, 60), y_m);

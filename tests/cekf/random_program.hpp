@@ -25,7 +25,7 @@ class RandomProgram {
   struct Settings {
     Retraction retraction = Retraction::right_invariant;
     int landmarks = 220;
-    int steps_per_switch = 0;  ///< 0: only where the program asks for it
+    int steps_per_switch = 0;  ///< 0: only when the program asks for it
     bool start_known = false;  ///< start covariance zero
   };
 
@@ -36,9 +36,9 @@ class RandomProgram {
   void remove_some();
   void switch_region_randomly();
   void activate_some();
-  /// Sees a mapped landmark and takes it for a new one: a duplicate, whose id is returned.
+  /// Observes a mapped landmark as if it were new: a duplicate, whose id is returned.
   core::LandmarkId map_again(core::LandmarkId id);
-  /// Forgets the round-off between the two so far.
+  /// Discards the round-off between the two so far.
   void start_oracle_from_filter();
 
   CompressedEkf filter;

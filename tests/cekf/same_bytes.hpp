@@ -10,7 +10,7 @@ namespace helixnav::cekf {
 
 enum class Passive { with_covariances, means_only };
 
-/// Everything a caller can learn of the filter, and its weights, as bytes.
+/// Everything a caller can learn about the filter, and its weights, as bytes.
 inline std::string bytes_of(const CompressedEkf& filter, Passive passive = Passive::with_covariances) {
   std::string bytes;
   const auto add = [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); };

@@ -10,7 +10,7 @@ namespace helixnav::cekf {
 namespace {
 
 const int runs = support::campaign_runs(30);
-constexpr std::uint64_t first_seed = 740001;  // looked at by nobody when the filter was made
+constexpr std::uint64_t first_seed = 740001;  // not used by anybody while the filter was developed
 
 // The errors of one run are strongly correlated over the last quarter, so that each run counts as one draw of χ²₃; the
 // NIS of all updates are independent. Both bands: false alarm 1 % (2.58 σ).

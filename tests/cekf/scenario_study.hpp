@@ -39,7 +39,7 @@ struct StudySums {
   }
 };
 
-/// The filter on a recording whose labels are the association: a label seen first becomes a landmark.
+/// The filter on a recording whose labels are the association: the first sight of a label becomes a landmark.
 class KnownAssociation {
  public:
   KnownAssociation(const core::Recording& recording, const FilterOptions& options)

@@ -11,7 +11,7 @@ namespace {
 
 class Rewind : public testing::TestWithParam<Retraction> {};
 
-/// Goes on with the program; the oracle is left out of it.
+/// Continues the program without the oracle.
 void go_on(RandomProgram& program, int steps) {
   for (int k = 0; k < steps; ++k) program.step();
 }
@@ -28,7 +28,7 @@ TEST_P(Rewind, RestoresBitForBitInsideAPhase) {
   ASSERT_FALSE(bytes_of(program.filter) == before);
   program.filter.restore(snapshot);
   EXPECT_TRUE(bytes_of(program.filter) == before);
-  // And the same future follows.
+  // And the future is the same.
   twin.filter = program.filter;
   RandomProgram again = twin;
   go_on(twin, 40);
@@ -128,7 +128,7 @@ TEST_P(Rewind, NamesNoLandmarkTwiceWhenAskedTo) {
   EXPECT_EQ(filter.next_name(), fresh + 1);
 }
 
-// A name below those that were skipped is to be had; one in the map, active or passive, is not.
+// A name below the skipped ones is available; one in the map, active or passive, is not.
 TEST(Naming, TakesTheCallersName) {
   CompressedEkf filter(core::PoseGaussian{});
   const core::Observation ahead = core::make_range_bearing(5.0, 0.1, 0.1, 0.01);

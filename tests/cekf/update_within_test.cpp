@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An update that is taken back where its innovation is too large, and the innovation on its own.
+// An update that is rolled back if its innovation is too large, and the innovation by itself.
 #include <optional>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Merging as many pairs as maps of two sessions have in common, where H is taken for sparse: equal to the full filter.
+// Merging as many pairs as the maps of two sessions share, with H treated as sparse: equal to the full filter.
 #include <gtest/gtest.h>
 
 #include "full_ekf.hpp"
@@ -12,7 +12,7 @@ namespace {
 constexpr int wide_pairs = 130;  // 3 + 4·130 columns of H
 constexpr double wide_sigma_m = 0.02;
 
-/// Landmarks 2·k and 2·k + 1 are one; all errors are correlated.
+/// Landmarks 2·k and 2·k + 1 are the same one; all errors are correlated.
 core::JointGaussian doubled_landmarks() {
   core::RandomStream random(3, "doubled");
   core::JointGaussian joint;

@@ -14,7 +14,7 @@ namespace {
 
 using testing::states;
 
-/// Speeds and steerings of a truck; each third sample is straight or nearly so, where the arc's series takes over.
+/// Speeds and steering angles of a truck; every third sample is straight or nearly so: the arc's series takes over.
 AckermannSample random_sample(RandomStream& random) {
   const double steering_rad = random.below(3) == 0
                                   ? random.uniform(-1.0, 1.0) * std::pow(10.0, -random.uniform(1.0, 9.0))
@@ -22,7 +22,7 @@ AckermannSample random_sample(RandomStream& random) {
   return {random.uniform(-8.0, 8.0), steering_rad, random.uniform(0.01, 1.0)};
 }
 
-/// The same motion by many small steps (midpoint rule) of the differential equations at the rear axle.
+/// The same motion integrated in many small steps (midpoint rule) from the differential equations at the rear axle.
 Eigen::Vector3d integrate(const AckermannGeometry& g, const AckermannSample& sample, int steps) {
   const double speed_mps =
       sample.wheel_speed_mps / (1.0 - g.encoder_offset_m / g.wheelbase_m * std::tan(sample.steering_rad));
@@ -64,7 +64,7 @@ TEST(Ackermann, CovarianceIsThatOfTheCentralDifferenceJacobian) {
   }
 }
 
-/// One source of noise at a time, in a column that the other cannot hide: checks the signs of J as well.
+/// One noise source at a time, in a column that the other cannot mask: checks the signs of J as well.
 TEST(Ackermann, EachColumnOfTheJacobianEqualsCentralDifferences) {
   RandomStream random(3, "ackermann");
   const AckermannGeometry geometry;
@@ -83,7 +83,7 @@ TEST(Ackermann, EachColumnOfTheJacobianEqualsCentralDifferences) {
 }
 
 TEST(Ackermann, SeriesAndClosedFormOfTheArcMeet) {
-  // The turn of one sample passes 1e-3 rad, where the two forms change over, between these two steerings.
+  // The turn per sample passes 1e-3 rad, at which the two forms change over, between these two steering angles.
   const AckermannGeometry geometry{1.0, 0.0};
   const AckermannNoise noise{0.0, 1.0};
   const Odometry below = ackermann_increment(geometry, noise, {1.0, std::atan(0.999999e-3), 1.0});
@@ -105,7 +105,7 @@ TEST(Ackermann, LeftSteeringTurnsLeftAndTheOuterEncoderOverestimates) {
   const Odometry right = ackermann_increment(geometry, {}, {2.0, -0.2, 1.0});
   EXPECT_GT(left.T_before_after.heading_rad, 0.0);
   EXPECT_LT(right.T_before_after.heading_rad, 0.0);
-  // In a left turn the left wheel runs slower than the axle's middle, which thus has gone further.
+  // In a left turn the left wheel runs slower than the middle of the axle, which has thus gone further.
   EXPECT_GT(left.T_before_after.x_m, 2.0 * std::cos(0.1));
   EXPECT_LT(right.T_before_after.position_m().norm(), 2.0);
 }

@@ -9,7 +9,7 @@
 namespace helixnav::core {
 namespace {
 
-/// Writes down what it takes; answers scans, with a number of its own.
+/// Records what it takes; answers scans with a number of its own.
 struct Scribe {
   std::string taken;
 
@@ -71,7 +71,7 @@ TEST(EventLoop, OfNoEventsMakesNoStep) {
   EXPECT_FALSE(EventLoop(events, scribe).next());
 }
 
-/// Breaks down at the third scan.
+/// Throws at the third scan.
 struct Fragile {
   int scans = 0;
   std::optional<StepReport> take(const Event& event) {

@@ -40,7 +40,7 @@ AppearancePopulation large_population() {
   return population;
 }
 
-/// p(all that was given | each class), times its share, by definition.
+/// p(all that was reported | each class), times its share, by definition.
 std::vector<double> enumerated(const AppearancePopulation& population, const std::vector<Appearance>& seen) {
   std::vector<double> weights;
   for (const char* name : class_names) {
@@ -64,7 +64,7 @@ double sum_of(const std::vector<double>& values) {
 std::vector<Appearance> drawn(RandomStream& random, int count) {
   std::vector<Appearance> seen;
   for (int i = 0; i < count; ++i) {
-    seen.push_back(given(class_names[random.below(3)], random.uniform(0.02, 0.4)));  // three of the four: all are held
+    seen.push_back(given(class_names[random.below(3)], random.uniform(0.02, 0.4)));  // three of the four: all are kept
   }
   return seen;
 }
@@ -75,7 +75,7 @@ LandmarkAppearance known_from(const AppearancePopulation& population, const std:
   return known;
 }
 
-/// Classes that were never given keep a share, of 1 in 10 000 here.
+/// Classes that were never reported keep a share, of 1 in 10 000 here.
 constexpr double never_told = 3e-4;
 
 TEST(MapAppearance, TheEvidenceOfAClassIsThatOfEnumeratingAllClasses) {
@@ -105,7 +105,7 @@ TEST(MapAppearance, TheGateIsTheProbabilityOfBeingToldAClassAsUnlikely) {
     const std::vector<double> weights = enumerated(population, before);
     const double total = sum_of(weights);
     double own = 0.0;
-    double likelier = 0.0;  // classes that it is likelier to be of, given rightly
+    double likelier = 0.0;  // classes it is more likely to be, given correctly
     for (int k = 0; k < class_count; ++k) {
       if (ClassName(class_names[k]) == next.name) own = weights[static_cast<std::size_t>(k)];
     }
@@ -154,7 +154,7 @@ TEST(MapAppearance, ASizeIsTheWeightedMeanOfItsMeasurements) {
   const double off_m = 0.6 - weighted / information;
   EXPECT_NEAR(evidence.size_nis, off_m * off_m / (0.0025 + 1.0 / information), 1e-9);
   EXPECT_EQ(evidence.size_dof, 1);
-  EXPECT_EQ(evidence.nats, 0.0);  // nobody knows yet how sizes differ
+  EXPECT_EQ(evidence.nats, 0.0);  // the spread of sizes is not known yet
 }
 
 /// Two-sided band on the share of right pairs beyond the 99 % quantile; false-alarm probability 1e-4 (binomial, 20 000).

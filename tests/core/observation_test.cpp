@@ -30,7 +30,7 @@ struct Situation {
   Eigen::Vector2d landmark_world_m;
 };
 
-/// A landmark 0.5 to 60 m from the sensor; each third bearing is behind the sensor, at the cut.
+/// A landmark 0.5 to 60 m from the sensor; every third bearing is behind the sensor, at the cut.
 Situation random_situation(RandomStream& random) {
   Situation s;
   s.T_world_robot = random_pose(random);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Products with the vectors that the processor has.
+// Products with the vector instructions that the processor has.
 #include "helixnav/core/packed_product.hpp"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ TEST_P(AddOuter, EqualsThePlainProductForAnyShape) {
   }
 }
 
-/// A processor is tested on what it has; on what it lacks there is nothing to run.
+/// A processor is tested on the instructions it has; those it lacks cannot be run.
 std::vector<Instructions> instructions_here() {
   std::vector<Instructions> all{Instructions::baseline, Instructions::avx2, Instructions::avx512};
   all.erase(std::remove_if(all.begin(), all.end(), [](Instructions i) { return !is_supported(i); }), all.end());
@@ -69,7 +69,7 @@ TEST(Panels, MultiplyBitForBitLikeTheMatricesTheyWereCopiedFrom) {
   }
 }
 
-/// As phases that were kept are packed, one after the other, smaller and larger ones.
+/// As kept phases are packed, one after another, larger and smaller.
 TEST(Panels, PackedAgainInTheSamePlaceAreAsIfNew) {
   RandomStream random(5);
   Panels again(left_width);

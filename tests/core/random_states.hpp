@@ -6,10 +6,10 @@
 
 namespace helixnav::core::testing {
 
-/// How many random states a law is tried on.
+/// Number of random states on which a law is tested.
 inline constexpr int states = 300;
 
-/// Each third heading lies within 1 µrad of ±π, where a step of central differences crosses the cut.
+/// Every third heading is within 1 µrad of ±π, where a step of central differences crosses the cut.
 inline double random_heading(RandomStream& random) {
   if (random.below(3) != 0) return random.uniform(-pi, pi);
   const double near_pi = pi - random.uniform(0.0, 1e-6);

@@ -13,7 +13,7 @@
 namespace helixnav::core {
 namespace {
 
-// Seeds are fixed, so that a test that passes always passes. Bounds are such that a right generator with a fresh seed
+// Seeds are fixed, so that a test that passes always passes. Bounds are such that a correct generator with a new seed
 // would fail one of them with the probability given.
 constexpr int draws = 100000;
 constexpr double five_sigma = 5.0;             // two-sided false alarm 6e-7
@@ -56,7 +56,7 @@ TEST(RandomStream, RepeatsItselfForTheSameSeedAndName) {
   for (int i = 0; i < 1000; ++i) EXPECT_EQ(a.bits(), b.bits());
 }
 
-// Recorded once. Another value on another platform or after a change of library breaks "same seed, same bytes".
+// Recorded once. A different value on another platform or after a library change breaks "same seed, same bytes".
 TEST(RandomStream, GivesTheGoldenValues) {
   RandomStream random(2003, "golden");
   EXPECT_EQ(random.bits(), 15670032540107168516ULL);
@@ -100,7 +100,7 @@ TEST(RandomStream, PoissonHasItsMeanAndVarianceOnBothOfItsAlgorithms) {
     EXPECT_NEAR(mean_of(sample), mean, five_sigma * std::sqrt(mean / draws)) << mean;
     std::vector<double> squares;
     for (const double x : sample) squares.push_back((x - mean) * (x - mean));
-    // Var (x−µ)² = µ + 2µ² for a Poisson number.
+    // Var (x−µ)² = µ + 2µ² for a Poisson variable.
     EXPECT_NEAR(mean_of(squares), mean, five_sigma * std::sqrt((mean + 2.0 * mean * mean) / draws)) << mean;
   }
   EXPECT_EQ(random.poisson(0.0), 0);

@@ -48,7 +48,7 @@ TEST(WorkerPool, ThrowsWhatTheFunctionThrowsAndGoesOnWorking) {
   }
 }
 
-/// While one of these lives no thread starts: it would want more stack than there are addresses.
+/// No thread starts while one of these is alive: it would need more stack than address space.
 class NoNewThreads {
  public:
   NoNewThreads() {

@@ -31,7 +31,7 @@ TEST(MapEvaluation, PairsByDistanceOneToOne) {
   EXPECT_EQ(map.spurious, 1u);
 }
 
-/// A radar far from where it began: the map says that it is metres off, and its landmarks stand farther apart than that.
+/// A radar far from its start: the map says that it is metres off, and its landmarks are farther apart than that.
 TEST(MapEvaluation, PairsAsFarAsTheMapIsUncertainButNotWithANeighbour) {
   runs::Run run;
   run.map = {landmark(0, 4.0, 0.0), landmark(1, 24.0, 0.0), landmark(2, 46.0, 0.0)};
@@ -83,7 +83,7 @@ TEST(MapEvaluation, PairsByLabelWhateverTheDistance) {
                          {1, core::Outcome::matched, 1, 1.0, 2, 1.0},
                          {2, core::Outcome::matched, 2, 1.0, 2, 1.0},
                          {3, core::Outcome::rejected, core::no_landmark, 1.0, 2, 1.0}};
-    // Landmarks 0 and 1 are both tree 7 (once mislabelled), 2 is clutter; tree 8 is seen and not mapped, 9 never seen.
+    // Landmarks 0 and 1 are both tree 7 (once mislabelled), 2 is clutter; tree 8 is seen but not mapped, 9 never seen.
     run.truth.labels.push_back({k == 0 ? 8 : 7, 7, core::no_label, 8});
   }
   const MapEvaluation map = evaluate_map(run, run.truth, {}, 2.0);
@@ -95,7 +95,7 @@ TEST(MapEvaluation, PairsByLabelWhateverTheDistance) {
   EXPECT_EQ(map.spurious, 1u);
 }
 
-/// Of a map begun by others: another robot of the team, an earlier run.
+/// A map started by others: another robot of the team, or an earlier run.
 TEST(MapEvaluation, JudgesLandmarksThatTheRunNeverSawByWhereTheyStand) {
   runs::Run run;
   run.map = {landmark(0, 0.1, 0.0, 20), landmark(1, 30.2, 0.0, 12), landmark(2, 45.0, 0.0, 12)};

@@ -22,7 +22,7 @@ core::StepReport step_at(std::int64_t index, double t_s, const core::Pose2& pose
   return step;
 }
 
-// Straight along x with 1 m/s for 10 s.
+// Straight along x at 1 m/s for 10 s.
 runs::Run straight_run() {
   runs::Run run;
   for (int k = 0; k <= 10; ++k) run.steps.push_back(step_at(k, k, core::Pose2(k, 0.0, 0.0)));
@@ -89,7 +89,7 @@ TEST(Evaluation, AgainstTruePosesEqualsHandComputedValues) {
   EXPECT_EQ(evaluation.pose->nees_inside_95, 1.0);
 }
 
-/// For 20 s nothing is seen while the vehicle drives round a corner: where between the two scans it was nobody knows.
+/// For 20 s nothing is seen while the vehicle drives round a corner: its position between the two scans is unknown.
 TEST(Evaluation, LeavesOutWhatLiesInAGapBetweenScans) {
   runs::Run run = straight_run();
   for (int k = 0; k <= 10; ++k)
@@ -98,7 +98,7 @@ TEST(Evaluation, LeavesOutWhatLiesInAGapBetweenScans) {
     run.truth.poses.push_back({core::nanoseconds_from_seconds(t_s), pose});
   };
   for (int k = 0; k <= 10; ++k) known(k, core::Pose2(k, 0.0, 0.0));
-  known(12.5, core::Pose2(10.0, 0.0, 0.0));  // just behind the last scan
+  known(12.5, core::Pose2(10.0, 0.0, 0.0));  // just after the last scan
   for (int k = 14; k <= 26; ++k) known(k, core::Pose2(40.0, 0.0, 0.0));
   for (int k = 30; k <= 40; ++k) known(k, core::Pose2(10.0, k - 10.0, core::pi / 2.0));
   const Evaluation evaluation = evaluate(run);
@@ -152,7 +152,7 @@ core::PlacedDecision placing(core::PlacedDecision::Verdict verdict) {
   return decision;
 }
 
-/// The place is found in step 5 on a map that is wrong there by 30 m, as its covariance says; before, the session's own says 0.2 m.
+/// The place is found in step 5 on a map that is wrong there by 30 m, as its covariance says; before, the session's own is 0.2 m.
 TEST(Evaluation, ComparesWhatWasToldBeforeThePlaceWasFoundWithTheTruthSinceTheBegin) {
   runs::Run run = straight_run();
   const core::Pose2 T_true_map(30.0, 0.0, 0.1);
@@ -194,7 +194,7 @@ TEST(Evaluation, ComparesAPartThatWasNeverFoundWithTheTruthSinceItBegan) {
   EXPECT_NEAR(evaluation.pose->nees_mean, 0.0, 1e-9);
 }
 
-/// The drive was parted two scans back: what those said then was wrong, and their covariance was of the map frame.
+/// The drive was split two scans back: what those scans reported was wrong, and their covariance was in the map frame.
 TEST(Evaluation, LeavesNeesOutOfWhatWasMovedAfterwards) {
   runs::Run run = straight_run();
   core::CarriedDecision carried;

@@ -30,7 +30,7 @@ core::Pose2 on_circle(double along_m) {
   return {radius_m * std::sin(angle_rad), radius_m * (1.0 - std::cos(angle_rad)), core::wrap_to_pi(angle_rad)};
 }
 
-/// Trees stand on the first 90 m of a circular road of 400 m; each scan sees those within 10 m, in order.
+/// Trees along the first 90 m of a circular road of 400 m; each scan sees those within 10 m, in order.
 core::Recording circle_drive(double length_m) {
   core::Recording recording;
   for (int i = 0; i < trees; ++i) {
@@ -51,8 +51,8 @@ core::Recording circle_drive(double length_m) {
   return recording;
 }
 
-/// A navigator that errs only where it is told to. On the first lap landmark = tree; then new landmarks 100 + tree,
-/// until it closes, and the old ones again afterwards.
+/// A navigator that errs only as scripted. On the first lap landmark = tree; then it creates new landmarks 100 + tree
+/// until it closes, and uses the old ones again afterwards.
 struct Script {
   std::vector<double> returns_at_m{lap_m};
   double length_m = 490.0;          ///< trees are in view to the end
@@ -61,14 +61,14 @@ struct Script {
   double close_at_m = 430.0;        ///< beyond the end: never
   bool new_after_return = true;     ///< false: old landmarks are matched at once
   int swapped_pairs = 0;            ///< of the closing
-  int match_shift = 0;              ///< old landmarks are matched with the tree so many farther
+  int match_shift = 0;              ///< old landmarks are matched with the tree this many further on
   core::Pose2 drift;                ///< of the pose, until the closing or drift_to_m: T_true_estimate
   double drift_to_m = 1e9;
   core::Pose2 error;                    ///< of the pose, from the closing on
-  core::Pose2 end_error;                ///< of the last pose, in its stead when it is not the identity
-  core::Pose2 T_map_true;               ///< the whole map lies wrong by this
+  core::Pose2 end_error;                ///< of the last pose, instead of the above, unless it is the identity
+  core::Pose2 T_map_true;               ///< the whole map is displaced by this
   std::vector<core::MapLandmark> more;  ///< in the map
-  double carried_at_m = 1e9;            ///< from there on the map is another one, with nothing in it
+  double carried_at_m = 1e9;            ///< from there on the map is a different, empty one
 };
 
 class Run {
@@ -185,7 +185,7 @@ TEST(Referee, MeasuresTheDistanceFromTheThirdOldTreeInViewToTheClosing) {
   const RunScore score = judged({});
   ASSERT_EQ(score.returns.size(), 1u);
   const double reentry_m = step_m * static_cast<double>(score.returns[0].reentry_step);
-  EXPECT_GE(reentry_m, lap_m - range_m + 2 * tree_spacing_m - 0.1);  // the third tree stands 4 m in
+  EXPECT_GE(reentry_m, lap_m - range_m + 2 * tree_spacing_m - 0.1);  // the third tree is 4 m inside
   EXPECT_LE(reentry_m, lap_m - range_m + 2 * tree_spacing_m + step_m);
   EXPECT_NEAR(score.closures[0].after_reentry_m, 430.0 - reentry_m, 0.1);
 }
@@ -269,7 +269,7 @@ TEST(Referee, CallsLateWhatIsLostOnOldGroundAfterTheClosing) {
   EXPECT_TRUE(judged(script).diverged_after_closure);
 }
 
-/// The map of then, which lies wrong by 5 m as a whole, is gone when the drive ends.
+/// The map of that time, which is displaced by 5 m as a whole, is gone when the drive ends.
 TEST(Referee, JudgesAVehicleThatIsCarriedAwayOnTheMapOfThen) {
   Script script;
   script.T_map_true = {4.0, -3.0, 0.0};
@@ -319,7 +319,7 @@ TEST(Referee, JudgesWhatAssociationClosedWhereThatGroundIsLeft) {
   script.returns_at_m = {lap_m, 2.0 * lap_m};
   script.length_m = 960.0;
   script.drift = {1.9, 0.0, 0.0};
-  script.drift_to_m = 600.0;  // behind the first return
+  script.drift_to_m = 600.0;  // beyond the first return
   EXPECT_EQ(judged(script).verdict, RunVerdict::closed);
   script.drift = {2.1, 0.0, 0.0};
   const RunScore score = judged(script);

@@ -10,7 +10,7 @@
 namespace helixnav::fastslam {
 namespace {
 
-/// Everything that a run lets out, number by number.
+/// Everything that a run outputs, number by number.
 std::vector<double> transcript(const Options& options, int scans, std::uint64_t seed) {
   FastSlam slam(core::PoseGaussian{}, options, seed);
   std::vector<double> numbers;

@@ -13,7 +13,7 @@
 namespace helixnav::fastslam {
 namespace {
 
-/// Back from the end of a path, its steps and places, the latest first.
+/// Back from the end of a path: its steps and places, latest first.
 std::vector<Eigen::Vector3d> path_to(const std::vector<core::PathPoint>& points, std::size_t end) {
   std::vector<Eigen::Vector3d> path;
   for (auto at = static_cast<std::ptrdiff_t>(end); at >= 0; at = points[static_cast<std::size_t>(at)].before) {
@@ -27,7 +27,7 @@ TEST(PathTree, HoldsThePathsThatEachParticleWouldKeepWhole) {
   constexpr std::size_t particles = 40;
   core::RandomStream random(5, "path tree");
   PathTree tree;
-  std::vector<std::vector<Eigen::Vector3d>> kept(particles);  // [particle] as path_to has it
+  std::vector<std::vector<Eigen::Vector3d>> kept(particles);  // [particle] in the form of path_to
   for (int step = 0; step < 900; ++step) {
     if (random.bernoulli(0.2)) {
       std::vector<std::uint32_t> parents;

@@ -20,7 +20,7 @@ void write(PersistentMap& map, LineageId id, float value, NodePool& pool) {
   map.write(id, pool) = {value, -value, 1.0F, 0.0F, 2.0F, value, 0, 0, 1, 0};
 }
 
-/// Both hold the same landmarks with the same contents, found one by one and in order.
+/// Both hold the same landmarks with the same contents, both by lookup and in order.
 void expect_equal(const PersistentMap& map, const Twin& twin, LineageId ids) {
   EXPECT_EQ(map.size(), twin.size());
   auto next = twin.begin();
@@ -35,7 +35,7 @@ void expect_equal(const PersistentMap& map, const Twin& twin, LineageId ids) {
   for (LineageId id = 0; id < ids; ++id) ASSERT_EQ(map.find(id) != nullptr, twin.count(id) == 1) << id;
 }
 
-/// Bytes of the nodes that can be reached, each counted once.
+/// Bytes of the reachable nodes, each counted once.
 std::ptrdiff_t reachable_bytes(const std::vector<PersistentMap>& maps) {
   std::unordered_set<const void*> seen;
   std::size_t leaves = 0;

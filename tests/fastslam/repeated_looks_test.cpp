@@ -10,7 +10,7 @@
 namespace helixnav::fastslam {
 namespace {
 
-/// Innovations of three landmarks whose noise remembers a share `rho` of that of the scan before.
+/// Innovations of three landmarks whose noise keeps a share `rho` of that of the previous scan.
 double own_share_where_noise_remembers(double rho) {
   core::RandomStream random(7, "repeated looks");
   RepeatedLooks repeated;

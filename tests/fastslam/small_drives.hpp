@@ -17,7 +17,7 @@ struct Stage {
   core::Pose2 truth;
 };
 
-/// A drive on a circle among landmarks, with clutter; all of it from the seed.
+/// A drive on a circle among landmarks, with clutter; everything follows from the seed.
 inline std::vector<Stage> drive(int scans, std::uint64_t seed, double clutter = 0.2) {
   core::RandomStream random(seed, "small drive");
   std::vector<Eigen::Vector2d> landmarks;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// FastSLAM against what it is in special cases.
+// FastSLAM compared with what it reduces to in special cases.
 #include <cmath>
 #include <map>
 
@@ -22,7 +22,7 @@ Options one_particle() {
   return options;
 }
 
-/// Landmarks one by one, each with a Kalman filter of its own, at poses that are known.
+/// Landmarks one by one, each with its own Kalman filter, at known poses.
 struct LandmarkFilters {
   std::map<KnownName, core::PointGaussian> landmarks;
 
@@ -82,7 +82,7 @@ TEST(Twins, NormaliserAndInnovationsOfFastSlam2AreThoseOfTheLinearCase) {
   second.observations = {core::make_cartesian({2.7, 0.9}, R1), core::make_cartesian({-1.6, 3.9}, R1)};
   const core::StepReport report = slam.update_known(second, {7, 8});
 
-  // The innovations of both, as of before the scan, with their joint covariance.
+  // The innovations of both, from before the scan, with their joint covariance.
   const Eigen::Matrix2d Q = odometry.covariance.topLeftCorner<2, 2>();
   const Eigen::Vector4d nu(0.2, 0.1, -0.1, 0.1);
   Eigen::Matrix4d S = Q.replicate<2, 2>();
@@ -112,7 +112,7 @@ TEST(Twins, NormaliserAndInnovationsOfFastSlam2AreThoseOfTheLinearCase) {
   EXPECT_NEAR(slam.cloud().log_evidence, std::log(integral * h * h), 1e-5);
 }
 
-/// Same case: mean and covariance reported are those of the Kalman filter for pose given landmarks known to N(m, R0).
+/// Same case: the reported mean and covariance are the Kalman filter's for the pose, landmarks known to N(m, R0).
 TEST(Twins, ManyParticlesOfEitherProposalHaveTheMeanOfTheLinearPosterior) {
   for (const Proposal proposal : {Proposal::motion, Proposal::motion_and_scan}) {
     Options options = one_particle();
@@ -132,7 +132,7 @@ TEST(Twins, ManyParticlesOfEitherProposalHaveTheMeanOfTheLinearPosterior) {
     second.observations = {core::make_cartesian({2.9, 0.9}, R1)};
     const core::StepReport report = slam.update_known(second, {7});
     // Gain 0.09 / (0.09 + 0.06) on what the observation says of the pose, (0.1, 0.1) against (0.5, 0.2). Four standard
-    // errors of the mean of 20 000 particles: 0.0054 m for 2.0, whose particles all weigh nearly the same, less than
+    // errors of the mean of 20 000 particles: 0.0054 m for 2.0, whose particles have nearly equal weights, less than
     // twice that for 1.0.
     EXPECT_NEAR(report.pose.mean.x_m, 0.5 - 0.6 * 0.4, 0.011);
     EXPECT_NEAR(report.pose.mean.y_m, 0.2 - 0.6 * 0.1, 0.011);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every verb, once for each of its allocations with that one failing: the object is then byte for byte what it was, and
-// the verb, called again, ends where it ends without a failure.
+// the verb, called again, gives the same result as without a failure.
 #include <functional>
 #include <new>
 #include <string>
@@ -53,10 +53,10 @@ class FailedAllocation : public ::testing::TestWithParam<cekf::Retraction> {
     ASSERT_GE(passive_.size(), 6u);
   }
 
-  /// At least `least` allocations, so that the test knows that it tests.
+  /// Requires at least `least` allocations, so that the test is known to test something.
   void expect_unharmed(const std::function<void(CompressedEkf&)>& verb, int least) {
     CompressedEkf undisturbed = filter_;
-    verb(undisturbed);  // has its own passive covariance where the verb writes it
+    verb(undisturbed);  // now owns its passive covariance, if the verb writes it
     const int failed = fail_each_allocation(filter_, verb, all_bytes);
     EXPECT_GE(failed, least);
     EXPECT_TRUE(all_bytes(filter_) == all_bytes(undisturbed));

@@ -11,7 +11,7 @@
 
 namespace helixnav::testing {
 
-/// From now on the `count`-th call of malloc or realloc gives no memory; all others do. Zero: none fails.
+/// From now on the `count`-th call of malloc or realloc fails; all others succeed. Zero: none fails.
 void fail_allocation(int count);
 
 }  // namespace helixnav::testing

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every write and rename of a run folder, once each failing with ENOSPC, with EIO, after half of its bytes, and once each
-// the last thing that the process did: what is there afterwards is refused by name, or is the run up to a whole step.
+// Every write and rename of a run folder, failing once each with ENOSPC, with EIO, after half of its bytes, and once each
+// as the last act of the process: what is there afterwards is refused by name, or is the run up to a whole step.
 #include <fcntl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -26,7 +26,7 @@ enum class Fault { none, no_space, input_output, half, killed, killed_at_half };
 constexpr Fault faults[] = {Fault::no_space, Fault::input_output, Fault::half, Fault::killed, Fault::killed_at_half};
 const char* const names[] = {"none", "ENOSPC", "EIO", "half, then ENOSPC", "SIGKILL", "SIGKILL at half"};
 
-int calls = 0;    ///< of write and rename since they are watched
+int calls = 0;    ///< calls of write and rename since watching began
 int failing = 0;  ///< number of the call that fails, 1 is the next; 0: none
 bool after_half = false;
 Fault fault = Fault::none;
@@ -41,7 +41,7 @@ int failure_number() { return fault == Fault::input_output ? EIO : ENOSPC; }
 
 }  // namespace
 
-// The program's own stand in front of those of the C library.
+// The program's own versions take precedence over those of the C library.
 extern "C" ssize_t write(int file, const void* bytes, std::size_t count) {
   const bool now = fails_now();
   if (now && fault == Fault::killed) ::raise(SIGKILL);
@@ -74,7 +74,7 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t steps = 12;
 
-/// Writes the example with the call of that number failing. True when all was written, false when it was refused with a
+/// Writes the example with the call of that number failing. True if all was written, false if it was refused with a
 /// message that names the folder.
 bool write_run(const std::string& folder, int call, Fault how) {
   core::Recording recording;
@@ -99,7 +99,7 @@ bool write_run(const std::string& folder, int call, Fault how) {
   return whole;
 }
 
-/// How many calls a run makes.
+/// Number of calls that a run makes.
 int calls_of_a_run(const std::string& folder) {
   constexpr int never = 1 << 30;
   EXPECT_TRUE(write_run(folder, never, Fault::none));

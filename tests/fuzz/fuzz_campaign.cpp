@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The folder of a campaign that is taken up again: runs.jsonl, or what follows "=== name" for the others.
+// The folder of a resumed campaign: runs.jsonl, or what follows "=== name" for the other files.
 #include "fuzz_input.hpp"
 #include "montecarlo/campaign.hpp"
 #include "montecarlo/campaign_folder.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A configuration file: what is accepted, written out and read again, is the same.
+// A configuration file: what is accepted is the same when written and read again.
 #include <CLI/CLI.hpp>
 
 #include "fuzz_input.hpp"

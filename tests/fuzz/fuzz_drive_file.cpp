@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A block of a drive.bin, to which the size and the checksum that fit are added: what another program may have written. What is
-// read is what an estimator takes, and is written and read again as the same.
+// A block of a drive.bin, with a matching size and checksum added: something another program may have written. What is read
+// must be acceptable to an estimator, and must be the same after being written and read again.
 #include <fstream>
 #include <iterator>
 

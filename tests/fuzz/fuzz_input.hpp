@@ -19,7 +19,7 @@
 
 namespace helixnav::fuzz {
 
-/// Ends the process as libFuzzer's findings do, with words.
+/// Aborts the process with a message, like a libFuzzer finding.
 [[noreturn]] inline void fail(const std::string& what) {
   std::fprintf(stderr, "invariant broken: %s\n", what.c_str());
   std::abort();
@@ -29,7 +29,7 @@ inline void require(bool condition, const char* what) {
   if (!condition) fail(what);
 }
 
-/// The input as a file that is in memory only.
+/// The input as a file that exists in memory only.
 class MemoryFile {
  public:
   MemoryFile(const std::uint8_t* data, std::size_t size) : descriptor_(::memfd_create("input", MFD_CLOEXEC)) {
@@ -49,7 +49,7 @@ class MemoryFile {
   int descriptor_;
 };
 
-/// What a reader may do: read, or refuse by InputError. Any other exception is a finding.
+/// What a reader may do: read, or refuse with InputError. Any other exception is a finding.
 template <class Read>
 void read_or_refuse(Read&& read) {
   try {
@@ -59,7 +59,7 @@ void read_or_refuse(Read&& read) {
   }
 }
 
-/// What a reader lets pass an estimator takes: events that are checked, in order of time, with a label an observation.
+/// What a reader accepts, an estimator accepts: valid events in time order, with one label per observation.
 inline void check_recording(const core::Recording& recording) {
   std::size_t scans = 0;
   core::Nanoseconds last_ns = std::numeric_limits<core::Nanoseconds>::min();
@@ -100,7 +100,7 @@ inline std::map<std::string, std::string> files_of(const std::uint8_t* data, std
   return files;
 }
 
-/// Writes such files into a folder, those left out whose names no log has: with paths, hidden, or without end.
+/// Writes such files into a folder, except names that no log has: with paths, hidden, or overlong.
 template <class Content>
 void write_files(const std::uint8_t* data, std::size_t size, const testing::TemporaryFolder& folder,
                  Content&& content) {
@@ -111,7 +111,7 @@ void write_files(const std::uint8_t* data, std::size_t size, const testing::Temp
   }
 }
 
-/// A folder of this process, in memory where the system has one there; so are all temporary folders made after the call.
+/// A folder of this process, in memory if the system offers that; so are all temporary folders made after the call.
 inline const std::filesystem::path& folder() {
   static const bool in_memory = std::filesystem::exists("/dev/shm") && ::setenv("TMPDIR", "/dev/shm", 1) == 0;
   static const testing::TemporaryFolder own;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map.bin, to which the digest that fits is added: what another program may have written. What is read has the same bytes
-// when it is written, and a session can go on in it.
+// A map.bin with a matching digest added: something another program may have written. What is read has the same bytes
+// when it is written, and a session can continue in it.
 #include <openssl/evp.h>
 
 #include <array>

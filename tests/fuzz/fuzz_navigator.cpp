@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The Navigator driven by the input: stretches of simulated circuits on which it loses its way and searches, with events
-// between them that no sensor makes. After every call: a finite pose, a covariance that is symmetric and positive, as many
+// The Navigator driven by the input: stretches of simulated circuits on which it gets lost and searches, interspersed
+// with events that no sensor makes. After every call: a finite pose, a symmetric positive covariance, and as many
 // landmarks in the filter as on the map; after a call that threw: everything as before it.
 #include <fuzzer/FuzzedDataProvider.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 using namespace helixnav;
 
-/// Two laps of 70 m among 14 landmarks, with odometry so bad that the second lap begins in doubt.
+/// Two laps of 70 m among 14 landmarks, with odometry so poor that the second lap begins in doubt.
 core::Recording circuit(std::uint64_t seed) {
   sim::Scenario s = sim::named_scenario("circuit");
   s.world.loop_length_m = {70.0, 70.0};
@@ -55,7 +55,7 @@ class Driver {
     remember();
   }
 
-  /// True when a search is open after it.
+  /// True if a search is open afterwards.
   bool take(const core::Event& event) {
     bool searching = false;
     try {
@@ -150,7 +150,7 @@ core::Observation any_observation(FuzzedDataProvider& input) {
   return observation;
 }
 
-/// Something that may come in between two events of a drive.
+/// Something that may occur between two events of a drive.
 core::Event any_event(FuzzedDataProvider& input, const core::Event& near) {
   const core::Nanoseconds t_ns = core::time_of(near) + input.ConsumeIntegralInRange(-3, 3) * 100'000'000;
   switch (input.ConsumeIntegralInRange(0, 3)) {
@@ -168,7 +168,7 @@ core::Event any_event(FuzzedDataProvider& input, const core::Event& near) {
       fix.covariance_m2 *= any_number(input);
       return fix;
     }
-    case 2: {  // of a good scan, with much of it again
+    case 2: {  // a good scan, with much of it repeated
       if (!std::holds_alternative<core::Scan>(near)) return near;
       core::Scan scan = std::get<core::Scan>(near);
       const std::vector<core::Observation> once = scan.observations;
@@ -187,7 +187,7 @@ core::Event any_event(FuzzedDataProvider& input, const core::Event& near) {
   }
 }
 
-/// Says at the end in how many sequences a search was open: a fuzzer that never gets there tests little.
+/// Reports at the end in how many sequences a search was open: a fuzzer that never gets there tests little.
 struct Tally {
   std::size_t sequences = 0;
   std::size_t searched = 0;

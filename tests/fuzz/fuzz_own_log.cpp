@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A log of the user's own: a text with a line "=== name" before each of its files, read with its vehicle; what is not there
-// is from a good log. With a file log.jsonl that is the log.
+// A log of the user's own: a text with a line "=== name" before each of its files, read with its vehicle; missing files
+// come from a good log. If there is a file log.jsonl, that is the log.
 #include "fuzz_input.hpp"
 #include "helixnav/logs/own_log.hpp"
 #include "own/own_log_folder.hpp"

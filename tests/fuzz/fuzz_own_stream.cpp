@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// JSON Lines as they come, by the vehicle of the stream's tests: a line that cannot be used is refused, and nothing ends it.
+// JSON Lines as they arrive, with the vehicle of the stream's tests: an unusable line is refused, and nothing ends it.
 #include "fuzz_input.hpp"
 #include "helixnav/logs/own_stream.hpp"
 
@@ -14,7 +14,7 @@ constexpr const char* vehicle_text =
     "[[sensor]]\nname = \"far\"\nx_m = 0.3\nreach_m = 40\nview_deg = [-90, 90]\nsigma_range_m = 0.1\n"
     "sigma_bearing_deg = 0.3\ndelay_s = 0.125\nclass_error = 0.1\nsigma_size_m = 0.02\n";
 
-/// Events of all lines, which are in order of time over the calls.
+/// Events of all lines, in time order across the calls.
 class Received {
  public:
   void take(logs::StreamedEvents next) {

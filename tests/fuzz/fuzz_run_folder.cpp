@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A good run folder of which the input replaces some files, read, judged, explained and rendered.
+// A good run folder with some files replaced by the input: read, judged, explained and rendered.
 #include "fuzz_input.hpp"
 #include "helixnav/evaluation/evaluation.hpp"
 #include "helixnav/files/file.hpp"

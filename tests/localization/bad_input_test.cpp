@@ -100,7 +100,7 @@ TEST_F(BadInput, AnEventBeforeTheLastOneIsRefused) {
   EXPECT_THROW(localizer_->observe(scan_), core::PreconditionError);
 }
 
-// Graph files leave the view at a greatest range of zero: what was not seen from there, nobody knows.
+// Graph files leave the maximum range of the view at zero: what was not seen from there is unknown.
 TEST(UnknownView, IsLocalisedInAllTheSame) {
   const core::Recording run = sim::simulate(sim::named_scenario("circuit"), 8);
   std::vector<core::MapLandmark> map;

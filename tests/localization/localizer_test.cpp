@@ -28,7 +28,7 @@ sim::Scenario circuit() {
   return scenario;
 }
 
-/// The true map; a landmark is called as its label.
+/// The true map; each landmark is named by its label.
 std::vector<core::MapLandmark> map_of(const core::Recording& run) {
   std::vector<core::MapLandmark> map;
   for (const core::TrueLandmark& landmark : run.true_landmarks) {
@@ -66,8 +66,8 @@ Driven drive(const core::Recording& run, bool known_association) {
   return driven;
 }
 
-// 30 worlds, each with its own band: NEES of the last pose (3 rows each) and NIS of all updates. Each sum leaves its band
-// with probability 0.002. With exact linear models both are exact; the seeds are those not used while writing.
+// 30 worlds, each with its own band: NEES of the last pose (3 rows each) and NIS of all updates. Each sum leaves its
+// band with probability 0.002. With exact linear models both are exact; the seeds were not used in development.
 TEST(LocalizerCampaign, IsConsistentOnTheTrueMap) {
   double nees = 0.0;
   double nis = 0.0;

@@ -28,7 +28,7 @@ struct Drive {
   LostMonitor monitor{avenue(), reach_m};
   double x_m = 0.0;
 
-  /// A metre ahead; so many observations, the first of them matched.
+  /// One metre ahead; `seen` observations, the first `matched` of them matched.
   void step(int seen, int matched) {
     core::Scan scan;
     scan.field_of_view.max_range_m = reach_m;

@@ -45,7 +45,7 @@ std::string scan_text(const std::string& time) {
   return text;
 }
 
-/// A small release that is right; tests spoil one file of it.
+/// A small valid release; tests corrupt one file of it.
 class SmallRelease : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -78,7 +78,7 @@ void add(mat_t* file, const std::string& name, std::size_t rows, std::size_t col
   Mat_VarFree(variable);
 }
 
-/// A car park log of one reading of each sensor.
+/// A car park log with one reading of each sensor.
 struct SmallCarPark {
   std::vector<double> dead_reckoning_times{1.0, 1.5};
   std::vector<double> speeds{2.0, 2.0};

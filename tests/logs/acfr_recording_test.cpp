@@ -74,7 +74,7 @@ TEST(MakeRecording, MovesAndDoubtsAsMuchInPartsAsInTheWhole) {
   const core::Odometry both = core::chain(parts[0], parts[1]);
   const core::Odometry whole = core::ackermann_increment(settings.geometry, settings.noise, {2.0, 0.22, 0.1});
   EXPECT_LT((both.T_before_after.vector() - whole.T_before_after.vector()).norm(), 1e-12);
-  // Speed moves along x and both variances are in proportion to the parts, so the largest terms agree to first order.
+  // Speed moves along x and both variances scale with the parts, so the largest terms agree to first order.
   EXPECT_NEAR(both.covariance(0, 0), whole.covariance(0, 0), 1e-3 * whole.covariance(0, 0));
   EXPECT_NEAR(both.covariance(2, 2), whole.covariance(2, 2), 1e-9 * whole.covariance(2, 2));
 }

@@ -37,7 +37,7 @@ std::map<std::size_t, std::vector<PublishedTree>> published_trees(const std::fil
   return trees;
 }
 
-/// Equal to half a unit of the last digit that the file has (5 of range and diameter, 6 of bearing), and 1e-6 more.
+/// Equal to half a unit of the last digit in the file (5 of range and diameter, 6 of bearing), plus 1e-6.
 bool equal(const SickDetection& ours, const PublishedTree& theirs) {
   return std::abs(ours.range_m - theirs.range_m) < 6e-6 && std::abs(ours.bearing_rad - theirs.bearing_rad) < 1.5e-6 &&
          std::abs(ours.diameter_m - theirs.diameter_m) < 6e-6;

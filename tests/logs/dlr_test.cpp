@@ -177,7 +177,7 @@ TEST(ReadDlr, CountsLinesOnBehindAContinuedOne) {
 
 TEST(ReadDlr, JoinsAnyNumberOfLines) {
   std::string text = "STEP s 0 -0.2 0 1e-4 0 1e-4 0 0 1e-4\n";
-  constexpr int lines_joined = 200'000;  // hours, where each costs as much as the text behind it
+  constexpr int lines_joined = 200'000;  // hours if each costs as much as the text after it
   text += "LANDMARK_C";
   for (int i = 0; i < lines_joined; ++i) text += " \\ \t\r\n";
   text += " 1 1 1 1 0 1 5\nSTOP\n";

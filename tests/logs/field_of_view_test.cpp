@@ -11,7 +11,7 @@
 namespace helixnav::logs {
 namespace {
 
-/// Detections all over a view, one in fifty of them false and somewhere else.
+/// Detections across a whole view, one in two hundred of them false and somewhere else.
 core::Recording detections(const core::FieldOfView& view, bool polar) {
   core::RandomStream random(3, "field_of_view_test");
   core::Recording recording;

@@ -24,7 +24,7 @@ Eigen::Matrix3d full_covariance() {
   return C;
 }
 
-/// Three poses, two landmarks; a landmark called like a pose.
+/// Three poses, two landmarks; one landmark is named like a pose.
 Graph small_graph() {
   Graph graph;
   graph.poses = {{0, {}}, {4, {1.0, 0.1, 0.2}}, {9, {2.0, 0.3, 3.0}}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files that are small and mean to be large.
+// Small files that claim to be large.
 #include <archive.h>
 #include <archive_entry.h>
 #include <zlib.h>
@@ -32,7 +32,7 @@ std::string element(std::size_t type, const std::string& content) {
   return word32(type) + word32(content.size()) + padded;
 }
 
-/// A matrix element of MATLAB's version 5: flags, dimensions, name, what is in it.
+/// A matrix element of MATLAB's version 5: flags, dimensions, name, contents.
 std::string matrix(std::size_t array_class, std::size_t rows, std::size_t columns, const std::string& name,
                    const std::string& content) {
   return element(14, element(6, word32(array_class) + word32(0)) + element(5, word32(rows) + word32(columns)) +
@@ -113,7 +113,7 @@ TEST(HostileMatlabFile, MoreDimensionsThanAnyMatrixHasAreRefused) {
   }
 }
 
-/// matio takes eight bytes of flags whatever their length says, and would find other dimensions after them.
+/// matio takes eight bytes of flags whatever length they state, and would find different dimensions after them.
 TEST(HostileMatlabFile, FlagsOfAnotherLengthAreRefused) {
   for (const std::uint32_t length : {0u, 16u, 0x80000u}) {
     std::string other_flags = matrix(6, 1, 1, "VicPark_clean_data", element(9, std::string(8, '\0')));
@@ -135,7 +135,7 @@ TEST(HostileMatlabFile, ANameAsLongAsTheFileIsNotIsRefused) {
   }
 }
 
-/// 600 MiB of line ends in 0.6 MiB of zip.
+/// 600 MiB of line ends in a 0.6 MiB zip.
 TEST(HostileZip, ThatHoldsMoreThanAnyLogIsRefused) {
   const testing::TemporaryFolder folder;
   const fs::path path = folder.path() / "bomb.zip";

@@ -51,7 +51,7 @@ TEST(ShippedVehicle, WrongNameIsToldTheNearestAndAllThatShip) {
   EXPECT_NE(of_file.find("no.toml: expected a file that can be read"), std::string::npos) << of_file;
 }
 
-// The library's defaults and the files say the same, so that a program without files navigates alike.
+// The library's defaults equal those in the files, so that a program without files navigates in the same way.
 TEST(ShippedVehicle, SaysOfTheTrucksWhatTheLibraryAssumes) {
   const RecordingSettings settings;
   for (const auto& [name, truck] :

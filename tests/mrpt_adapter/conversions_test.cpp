@@ -46,7 +46,7 @@ TEST(BearingRange, CovarianceOfEachMeasurementAndPoseOfTheSensorAreHonoured) {
   observation.sensedData[0].covariance(1, 1) = 0.01;
   observation.sensedData[0].covariance(0, 1) = observation.sensedData[0].covariance(1, 0) = -0.005;
   MapBuilderOptions options;
-  options.std_sensor_range = 3.0;  // not looked at
+  options.std_sensor_range = 3.0;  // ignored
   const NamedScan seen = scan_of(observation, options);
   EXPECT_EQ(seen.scan.t_ns, 1'500'000'000'123'456'700);
   EXPECT_DOUBLE_EQ(seen.scan.T_robot_sensor.y_m, -0.5);

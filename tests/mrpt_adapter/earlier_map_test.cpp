@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Going on in the map of an earlier run does what the navigator does, bit for bit.
+// Continuing in the map of an earlier run does what the navigator does, bit for bit.
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
@@ -56,7 +56,7 @@ Poses built_from(MapBuilder& builder, const core::Recording& run, Scans from,
 
 enum class FirstMotion { left_out, used };
 
-/// The navigator on what MRPT's types keep.
+/// The navigator, fed what MRPT's types keep.
 Poses navigated_from(supervisor::Navigator& navigator, const core::Recording& run, Scans from,
                      const std::function<void(Scans)>& before = {}, FirstMotion first = FirstMotion::left_out) {
   Poses poses;
@@ -90,7 +90,7 @@ mrpt::poses::CPosePDFGaussian pdf_of(const core::PoseGaussian& pose) {
   return {mrpt::poses::CPose2D(pose.mean.x_m, pose.mean.y_m, pose.mean.heading_rad), testing::matrix(pose.covariance)};
 }
 
-/// MRPT wraps headings and rounds them with that.
+/// MRPT wraps headings and thereby rounds them.
 core::Pose2 as_mrpt_keeps_pose(const core::Pose2& T) {
   return {T.x_m, T.y_m, mrpt::poses::CPose2D(T.x_m, T.y_m, T.heading_rad).phi()};
 }

@@ -25,7 +25,7 @@ bool same_bytes(const core::PoseGaussian& a, const core::PoseGaussian& b) {
          std::memcmp(a.covariance.data(), b.covariance.data(), sizeof(double) * 9) == 0;
 }
 
-/// Poses of the navigator on what MRPT's types keep of a recording.
+/// Poses of the navigator, fed what MRPT's types keep of a recording.
 std::vector<core::PoseGaussian> navigated(const core::Recording& recording, bool by_name, std::size_t scans) {
   supervisor::Navigator navigator(core::PoseGaussian{});
   supervisor::NamedNavigator named(core::PoseGaussian{});

@@ -75,7 +75,7 @@ TEST(Feed, ReadingsOfOdometryInAStreamAreTheIncrementsBetweenThem) {
     process(by_actions, action_of(increment), frame);
     by_readings.processObservation(reading(k * 1000, 7.0 + k));
     by_readings.processObservation(frame.getObservationByIndex(0));
-    frame.insert(reading(k * 1000 - 100, 7.0 + k));  // stands behind the scan, was read before it
+    frame.insert(reading(k * 1000 - 100, 7.0 + k));  // comes after the scan, was read before it
     process(by_frames, {}, frame);
   }
   EXPECT_NEAR(RunAccess::pose(by_actions).mean.x_m, 5.0, 1e-3);

@@ -13,7 +13,7 @@
 namespace helixnav::mrpt_adapter {
 namespace {
 
-/// The search that keys of [HelixNav] lead to.
+/// The search that results from keys of [HelixNav].
 supervisor::SearchOptions search_of(const std::string& lines) {
   MapBuilderOptions options;
   options.loadFromConfigFile(mrpt::config::CConfigFileMemory("[HelixNav]\n" + lines), "HelixNav");

@@ -31,7 +31,7 @@ MapBuilderOptions with_particles() {
   return options;
 }
 
-/// As the builder's, fed what MRPT's types keep.
+/// The same cloud as the builder's, fed what MRPT's types keep.
 fastslam::FastSlam driven_cloud(const core::Recording& run, bool by_name) {
   fastslam::Options options;
   options.particles = 30;

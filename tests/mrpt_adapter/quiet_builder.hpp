@@ -14,7 +14,7 @@
 
 namespace helixnav::mrpt_adapter::testing {
 
-/// A builder that keeps what it says to itself.
+/// A builder that records its log without printing it.
 class QuietBuilder : public MapBuilder {
  public:
   explicit QuietBuilder(const MapBuilderOptions& its_options = {}) : MapBuilder(its_options) {
@@ -24,7 +24,7 @@ class QuietBuilder : public MapBuilder {
   std::string said() const { return getLogAsString(); }
 };
 
-/// Feeds a recording as pairs of action and frame and calls look(scan, index) after each scan, until it says false.
+/// Feeds a recording as pairs of action and frame; calls look(scan, index) after each scan, until it returns false.
 template <class Look>
 void drive(MapBuilder& builder, const core::Recording& recording, bool by_name, const Look& look) {
   std::optional<core::Odometry> motion;

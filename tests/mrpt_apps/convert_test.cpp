@@ -43,7 +43,7 @@ std::vector<Kind> all(const core::Recording& recording) {
   return found;
 }
 
-/// The increments before each scan, chained; a scan without any has none in a rawlog either, but one of no motion.
+/// The increments before each scan, chained; a scan without any has a single one of no motion in a rawlog.
 std::vector<core::Odometry> motions_of(const core::Recording& recording) {
   std::vector<core::Odometry> motions;
   core::Odometry motion = core::no_motion(0);
@@ -269,7 +269,7 @@ TEST_F(Rawlogs, FeedAStreamThatAnswersEachScan) {
   EXPECT_NE(fed.out.find("\"scans\":21"), std::string::npos) << fed.out;
 }
 
-/// As in MRPT's own kf-slam_demo.rawlog, whose 250 frames have three stamps.
+/// As in MRPT's own kf-slam_demo.rawlog, whose 250 frames have three time stamps.
 TEST_F(Rawlogs, WhoseFramesShareStampsFeedAStreamFrameByFrame) {
   core::Recording recording = testing::past_posts();
   for (core::Event& event : recording.events) {

@@ -71,7 +71,7 @@ TEST_F(RawlogFile, HandsOutWhatStandsBeforeTheEndOfATruncatedFile) {
   EXPECT_LT(cut.entries, 42U);
   EXPECT_NE(cut.damage.find("cut.rawlog: entry " + std::to_string(cut.entries)), std::string::npos) << cut.damage;
 
-  // All entries are there, and still the file says that it was longer.
+  // All entries are there, and still the file reports that it was longer.
   const Read tail = read_all(with("tail.rawlog", packed.substr(0, packed.size() - 6)));
   EXPECT_EQ(tail.entries, 42U);
   EXPECT_NE(tail.damage.find("cut off"), std::string::npos) << tail.damage;

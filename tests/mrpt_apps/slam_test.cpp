@@ -100,7 +100,7 @@ TEST_F(Slam, WritesTheRunFolderAndTheFilesOfKfSlam) {
   EXPECT_TRUE(scene.loadFromFile(file("out/kf_state.3Dscene")));
   mrpt::img::CImage picture;
   ASSERT_TRUE(picture.loadFromFile(file("out/map.png")));
-  EXPECT_GT(blue_pixels(picture), 12 * 5);  // of each post a few
+  EXPECT_GT(blue_pixels(picture), 12 * 5);  // a few per post
 }
 
 TEST_F(Slam, FastSlamByTheConfigurationAlone) {
@@ -316,7 +316,7 @@ TEST_F(Demo, IsKfSlamsMapWithTheFileShippedForItAndWithinItsLinearisationWithOur
   EXPECT_LT(apart_m, 1e-3);
 }
 
-/// Says on stderr why there is no window.
+/// Reports on stderr why there is no window.
 bool shows_landmarks(const std::string& rawlog, const VirtualScreen& screen) {
   std::string why_not;
   const std::unique_ptr<LiveWindow> window = open_live_window(why_not);
@@ -346,8 +346,8 @@ TEST_F(Slam, ShowsTheLandmarksInALiveWindow) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
 
-  // The same window again, for as long as the picture takes to appear. In a process that ends without MRPT's and the renderer's own
-  // endings: on a busy machine they now and then read what is gone by then.
+  // The same window again, for as long as the picture takes to appear, in a process that ends without MRPT's and the
+  // renderer's own shutdown: on a busy machine they now and then read what is gone by then.
   const std::string rawlog = posts();
   const pid_t looks = fork();
   if (looks == 0) {

@@ -11,8 +11,8 @@
 
 namespace helixnav::testing {
 
-/// A vehicle that drives straight past two rows of posts, a step a second: range and bearing with a full covariance, odometry
-/// whose covariance is full, too. Labels are the numbers of the posts; the first scan stands before any motion.
+/// A vehicle that drives straight past two rows of posts, a step a second: range and bearing with a full covariance,
+/// odometry also with a full covariance. Labels are the numbers of the posts; the first scan comes before any motion.
 inline core::Recording past_posts(int steps = 20) {
   core::RandomStream random(7, "past posts");
   core::Recording recording;

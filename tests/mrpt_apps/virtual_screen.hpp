@@ -15,8 +15,8 @@
 
 namespace helixnav::apps {
 
-/// An X server without a screen, whose picture lies in a file. It ends with this process and not before: wxWidgets keeps
-/// its connection to the end, and exits when that is cut.
+/// An X server without a screen, whose picture is kept in a file. It ends with this process and not before: wxWidgets
+/// keeps its connection to the end, and exits if that is cut.
 class VirtualScreen {
  public:
   explicit VirtualScreen(const std::filesystem::path& folder) : image_(folder / "Xvfb_screen0") {

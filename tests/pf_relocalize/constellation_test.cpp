@@ -15,7 +15,7 @@ namespace {
 
 using test::Lattice;
 
-/// Size of a largest matching by trying everything.
+/// Size of a maximum matching by exhaustive search.
 int largest_matching(const std::vector<std::vector<int>>& partners, std::size_t from, std::set<int>& used) {
   if (from == partners.size()) return 0;
   int best = largest_matching(partners, from + 1, used);
@@ -109,7 +109,7 @@ TEST(Constellation, GroundThatOnlyOneDriveCoveredIsNeutral) {
   Constellation c = lattice.constellation();
   const ConstellationScore before = score_constellation(c, lattice.truth());
   EXPECT_DOUBLE_EQ(before.ratio, 1.0);
-  c.branch.push_back({5000, {0.0, 60.0}, 9});  // far off what the old drive saw
+  c.branch.push_back({5000, {0.0, 60.0}, 9});  // far from anything the old drive saw
   c.old_landmarks.push_back({5001, {{lattice.now_m, -60.0}, Eigen::Matrix2d::Identity()}});
   const ConstellationScore after = score_constellation(c, lattice.truth());
   EXPECT_EQ(after.matched, before.matched);
@@ -132,7 +132,7 @@ TEST(Constellation, RefusesALatticeWhoseShiftFitsAsWell) {
   EXPECT_GE(verdict.rival_share, 0.95);
 }
 
-/// Trees beyond the end of a lattice that stand anywhere, seen by both drives.
+/// Randomly placed trees beyond the end of a lattice, seen by both drives.
 void add_scattered_end(const Lattice& lattice, int count, Constellation& c) {
   core::RandomStream random(9, "end");
   for (int i = 0; i < count; ++i) {
@@ -175,13 +175,13 @@ TEST(Constellation, SaysWhichLimitRefused) {
 TEST(Constellation, LeavesRivalsWithFewMatchesOut) {
   Lattice lattice;
   const Constellation c = lattice.constellation();
-  // Far ahead only the last trees of the row overlap: a perfect ratio on a handful is no rival to many matches.
+  // Far ahead, only the last trees of the row overlap: a perfect ratio on a handful is not a rival to many matches.
   const ConstellationVerdict verdict = judge_constellation(c, lattice.truth(), {{lattice.length_m + 35.0, 0.0, 0.0}});
   EXPECT_TRUE(verdict.accepted);
   EXPECT_EQ(verdict.rival.matched, 0);
 }
 
-/// A row of landmarks of two classes in turn, seen often enough on both drives.
+/// A row of landmarks of two alternating classes, seen often enough on both drives.
 Constellation row_of_two_classes(bool given) {
   Constellation row;
   for (int i = 0; i < 200; ++i) {

@@ -57,8 +57,8 @@ std::pair<double, double> mean_weight(const Particles& cloud) {
 }
 
 TEST(HelixProposal, WeightsThePriorToOneWithinFourStandardErrors) {
-  // E_q[prior/q] = 1 holds only when q is the exact density of the whole mixture, tubes that cross included. Six runs,
-  // 4 σ: false alarm 4e-4. Without the sum over tubes (q of the own tube only) the mean is several times too large.
+  // E_q[prior/q] = 1 holds only if q is the exact density of the whole mixture, crossing tubes included. Six runs, 4 σ:
+  // false alarm 4e-4. Without the sum over tubes (q of the own tube only) the mean is several times too large.
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     test::ScatterWorld world(small_prior(), seed);
     const Draw drawn = draw(world.map, world.scan(), {}, 20000, seed);
@@ -104,8 +104,8 @@ TEST(HelixProposal, PutsEveryHelixParticleWhereItsObservationMeetsALandmark) {
 }
 
 TEST(HelixProposal, DrawsFromTheDensityThatItReports) {
-  // E_q[f/q] = ∫f for any f inside the support: f = 1 on a box about the truth. Says that q is right locally, where the
-  // test of the whole prior could hide errors that cancel.
+  // E_q[f/q] = ∫f for any f inside the support: f = 1 on a box about the truth. Shows that q is right locally; the test
+  // of the whole prior could hide errors that cancel.
   test::ScatterWorld world(small_prior(), 6);
   const core::Scan scan = world.scan();
   ScanLikelihood likelihood(world.map, proposing_sensor);

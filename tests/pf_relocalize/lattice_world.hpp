@@ -9,8 +9,8 @@
 
 namespace helixnav::pf_relocalize::test {
 
-/// Two rows of trees along x at y = ±4 from x = 0 to `length`, every `pitch` metres, driven along y = 0 twice. The second
-/// drive enters at `entered` and stands at `now`; what it mapped is exact.
+/// Two rows of trees along x at y = ±4 from x = 0 to `length`, every `pitch` metres, driven twice along y = 0. The
+/// second drive enters at `entered` and is at `now`; what it mapped is exact.
 struct Lattice {
   double pitch_m = 5.0;
   double length_m = 150.0;

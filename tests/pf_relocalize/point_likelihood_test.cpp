@@ -39,7 +39,7 @@ struct Sample {
   core::PointGaussian landmark;
 };
 
-/// Two draws, y first as when the figures of the table were drawn: the order of arguments is up to the compiler.
+/// Two draws, y first, as when the figures of the table were drawn: the compiler may evaluate arguments in any order.
 template <class Draw>
 Eigen::Vector2d two(const Draw& draw) {
   const double y = draw();

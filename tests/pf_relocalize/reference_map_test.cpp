@@ -119,8 +119,8 @@ TEST(ChooseBases, ComesWithinFivePercentOfTheBestOfAllPairs) {
   }
 }
 
-/// Rules of thumb: the landmark nearest the vehicle with the nearest beyond 12 m (prototype, without hit counts), and the
-/// two furthest apart.
+/// Rules of thumb: the landmark nearest the vehicle with the nearest one beyond 12 m (prototype, without hit counts),
+/// and the two furthest apart.
 Bases nearest_pair(const core::JointGaussian& joint) {
   const auto nearest_to = [&](const Eigen::Vector2d& p, double least) {
     int best = -1;
@@ -233,7 +233,7 @@ TEST(TryReferenceMap, SaysWhyThereIsNone) {
 }
 
 // All landmarks shifted together with a sigma of 3 km, their differences known to a centimetre: the joint covariance is
-// right to eight digits only, and yet what the search needs of it is sound.
+// accurate to only eight digits, yet what the search needs from it is sound.
 TEST(TryReferenceMap, SurvivesTheRoundingOfAMapThatDriftedFar) {
   int raised = 0;
   for (std::uint64_t seed = 70; seed < 80; ++seed) {

@@ -17,7 +17,7 @@ namespace {
 std::atomic<std::size_t> allocations{0};
 }
 
-// Counts what the whole program allocates, so that a test can say "nothing".
+// Counts what the whole program allocates, so that a test can require "nothing".
 void* operator new(std::size_t size) {
   ++allocations;
   if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
@@ -28,7 +28,7 @@ void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   return std::malloc(size == 0 ? 1 : size);
 }
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // GCC sees through one half of the pair only
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // GCC sees only one half of the pair
 void operator delete(void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 #pragma GCC diagnostic pop
@@ -117,7 +117,7 @@ TEST(Relocalizer, AgreesWithBayesRuleOnAGridOfPosesAfterTheFirstScan) {
   }
 }
 
-/// Share of seeds at which the cloud is right when the paper's rule first holds.
+/// Fraction of seeds for which the cloud is right when the paper's rule first holds.
 double share_right(int runs, std::uint64_t first_seed, const RelocalizerOptions& options) {
   int right = 0;
   for (int run = 0; run < runs; ++run) {
@@ -197,7 +197,7 @@ TEST(Relocalizer, AdaptsTheNumberOfParticlesBetweenFloorAndCeiling) {
   EXPECT_GE(search.state().particles, 1000U);
 }
 
-/// Starts on a map and drives; returns what the search came to within 20 scans.
+/// Starts on a map and drives; returns the outcome of the search within 20 scans.
 SearchOutcome search_outcome(ScatterWorld& world, const ReferenceMap& map, bool clutter_only, std::uint64_t seed) {
   const auto scan = [&] {
     if (clutter_only) world.landmarks.clear();
@@ -222,7 +222,7 @@ TEST(Relocalizer, SaysNothingHereOnGroundWithoutAnyLandmarkOfTheMap) {
 }
 
 TEST(Relocalizer, MeetsItsGateOnTheMapOfAnotherCrowdedPlaceSoThatTheGateIsNoEvidence) {
-  // Every scan counts the same chance matches anew (PROTOTYPE §0, point 3): this is why the constellation test decides.
+  // Every scan counts the same chance matches again (PROTOTYPE §0, point 3): hence the constellation test decides.
   int met = 0;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     ScatterWorld here({}, seed);

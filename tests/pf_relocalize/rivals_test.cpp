@@ -72,7 +72,7 @@ TEST(Rivals, WithConstellationTestRefuseLatticesAndAcceptScatteredTrees) {
     ReferenceMap map = lattice.map(4.0, 2.0, 0.06);
     const RivalPoses shifted = find_rivals(map, c.branch, lattice.truth(), {}, 5);
     EXPECT_FALSE(judge_constellation(c, shifted.winner, shifted.rivals).accepted);
-    for (std::size_t i = 0; i < c.old_landmarks.size(); ++i) {  // the same drive between trees that stand anywhere
+    for (std::size_t i = 0; i < c.old_landmarks.size(); ++i) {  // the same drive among randomly placed trees
       const Eigen::Vector2d move(random.uniform(-2.5, 2.5), random.uniform(-3.0, 3.0));
       c.old_landmarks[i].point.mean_m += move;
       map.landmarks[i].mean_m += move;

@@ -120,7 +120,7 @@ TEST(Ask, DoubtsWhatASearchCutShortHasFound) {
 }
 
 TEST(Ask, UsesALongAndThinCovarianceWhereARoundOneMisleads) {
-  // The branch knows its landmarks to 0.5 m along its way and 3 cm across: true pairs lie within the one, not the other.
+  // The branch knows its landmarks to 0.5 m along its way and 3 cm across: true pairs are within the one, not the other.
   const test::Points world = world_of(6);
   core::RandomStream random(6);
   test::Asked asked = test::ask_somewhere(world, {20, 0.0, 0.0, 0.03}, random);

@@ -44,7 +44,7 @@ TEST(Campaign, AcceptsNoneOfFourHundredAbsentPlaces) {
 TEST(Campaign, ClosesTwentyLandmarksAtThirtyPercentChangeAndTenAtNone) {
   core::RandomStream random(12);
   const test::Points map = test::uniform_world(2000, random);
-  // 0.99 of 100 are asked for: fewer than 94 have a probability below 1e-4.
+  // 0.99 of 100 are required: fewer than 94 have a probability below 1e-4.
   const Tally changed = campaign(map, map, {20, 0.3}, 100, 12);
   EXPECT_GE(changed.right, 94);
   EXPECT_EQ(changed.wrong, 0);
@@ -59,8 +59,8 @@ double best_evidence(const MapIndex& index, const test::Points& world, const tes
   return answer.places.empty() ? -1e9 : answer.places.front().evidence;
 }
 
-/// Evidence is the ratio of two likelihoods, so what is present says how rare it is where nothing is: the threshold that
-/// evidence_needed() takes from its density leaves no more than α, and the tail that can be counted is what it should be.
+/// Evidence is a ratio of two likelihoods, so what is present tells how rare it is where nothing is: the threshold that
+/// evidence_needed() takes from its density leaves no more than α, and the tail that can be counted is as it should be.
 TEST(Campaign, EvidenceOfWhatIsAbsentIsAsRareAsWhatIsPresentSays) {
   core::RandomStream random(16);
   const test::Points map = test::uniform_world(2000, random);
@@ -77,7 +77,7 @@ TEST(Campaign, EvidenceOfWhatIsAbsentIsAsRareAsWhatIsPresentSays) {
       counted += best_evidence(index, elsewhere, asking, questions + q) >= 0.0 ? 1 : 0;
     }
     EXPECT_LT(accepted, AskOptions{}.alpha) << asking.landmarks << ", " << asking.change;
-    // Fewer are counted, since candidates that begin badly are not followed; more have a probability below 1e-4.
+    // Fewer are counted, since candidates with a poor start are not followed; more have a probability below 1e-4.
     EXPECT_LT(counted, expected + 4.0 * std::sqrt(expected) + 4.0) << asking.landmarks << ", " << asking.change;
   }
 }
@@ -94,7 +94,7 @@ TEST(Campaign, ClosesNothingInALattice) {
   }
 }
 
-/// Rows of trees of which the map holds one, asked about with landmarks that agree to 0.03 m where 0.3 m are assumed.
+/// Rows of trees, one of which the map holds, queried with landmarks that agree to 0.03 m where 0.3 m is assumed.
 Tally ask_among_rows(const test::Points& map, const test::Points& world, std::uint64_t seed) {
   constexpr double assumed_m = 0.3;
   const MapIndex index = test::index_of(map, {30.0, assumed_m});
@@ -113,7 +113,7 @@ Tally ask_among_rows(const test::Points& map, const test::Points& world, std::ui
   return tally;
 }
 
-/// Hundreds of places fit to the jitter of the trees, and only one to what two sessions differ by.
+/// Hundreds of places fit to within the jitter of the trees, but only one to within the difference of two sessions.
 TEST(Campaign, TellsAPlaceFromRivalsThatFitTenTimesWorse) {
   core::RandomStream random(18);
   const test::Points map = test::orchard(400, false, 0.3, random);

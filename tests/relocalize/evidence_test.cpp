@@ -16,7 +16,7 @@ namespace {
 
 constexpr IndexOptions evidence_index = {30.0, 0.1};
 
-/// Seven landmarks of a map and a branch that sees five of them and a spurious one, with noise that is not round.
+/// Seven landmarks of a map and a branch that sees five of them and a spurious one, with non-circular noise.
 struct SmallCase {
   SmallCase() {
     const test::Points points = {{52.0, 41.0}, {60.5, 44.0}, {57.0, 52.5}, {48.0, 50.0},
@@ -208,7 +208,7 @@ TEST(Evidence, WeighsAPriorWithAHeavyTail) {
   const double ln_peak = -1.5 * std::log(2.0 * core::pi) - 0.5 * std::log(4.0 * 4.0 * 0.01);
   EXPECT_NEAR(ask(index, world.question).places.front().evidence - without.evidence,
               std::log(0.95 * std::exp(ln_peak) + 0.05 * std::exp(-ln_ground)) + ln_ground, 1e-9);
-  world.question.prior->T_map_branch.mean.x_m += 1000.0;  // a lie costs ln(1/ε) and no more
+  world.question.prior->T_map_branch.mean.x_m += 1000.0;  // a wrong prior costs ln(1/ε) and no more
   const Place outweighed = ask(index, world.question).places.front();
   EXPECT_NEAR(outweighed.evidence - without.evidence, std::log(0.05), 1e-9);
   EXPECT_EQ(outweighed.pairs.size(), without.pairs.size());

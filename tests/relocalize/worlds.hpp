@@ -16,7 +16,7 @@ namespace helixnav::relocalize::test {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// Landmarks anywhere, one in 64 m² on average.
+/// Randomly placed landmarks, one per 64 m² on average.
 inline Points uniform_world(std::size_t count, core::RandomStream& random) {
   const double side_m = 8.0 * std::sqrt(static_cast<double>(count));
   Points points;
@@ -46,7 +46,7 @@ inline Landmark landmark(core::LandmarkId id, const Eigen::Vector2d& point_m, do
   return result;
 }
 
-/// Kinds 0 … kinds − 1 as if drawn; none for kinds = 0.
+/// Pseudo-random kinds 0 … kinds − 1; none for kinds = 0.
 inline std::optional<int> kind_of(std::size_t index, int kinds) {
   if (kinds == 0) return std::nullopt;
   return static_cast<int>((index * 2654435761U >> 7U) % static_cast<std::size_t>(kinds));
@@ -126,7 +126,7 @@ inline Asked ask_somewhere(const Points& world, const Asking& asking, core::Rand
   return asked;
 }
 
-/// Farther from the truth than 1 m at the centre of what was asked, or turned by more than 0.1 rad.
+/// More than 1 m from the truth at the centre of what was asked, or rotated by more than 0.1 rad.
 inline bool wrong(const Asked& asked, const core::Pose2& T_map_branch) {
   const Eigen::Vector2d centre_m = asked.question.looked.front().centre_m;
   const double turned_rad = core::wrap_to_pi(T_map_branch.heading_rad - asked.T_map_branch.heading_rad);

@@ -73,7 +73,7 @@ TEST(Numerics, WorkThatWasLeftOutIsCountedAndSaid) {
   EXPECT_TRUE(has(explain_step(run, 20), "after 30000 hypotheses")) << explain_step(run, 20);
 }
 
-// Outliers of a receiver are a few in a hundred; where the gate refuses more, what the fixes claim is wrong.
+// A receiver's outliers are a few in a hundred; if the gate refuses more, the fixes' stated accuracy is wrong.
 TEST(Fixes, ThatAreMostlyRefusedAreAWarning) {
   const auto said = [](int used, int refused) {
     std::vector<core::Decision> decisions;

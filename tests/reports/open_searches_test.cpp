@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::size_t turn = 20, steps = 40;
 
-/// A drive of 1 m a step and a landmark a step; from the 20th step on it searches, and what it maps stands `aside_m` beside what it
-/// mapped before.
+/// A drive of 1 m a step and a landmark a step; from the 20th step on it searches, and what it maps is `aside_m` beside what
+/// it mapped before.
 runs::Run searching_run(double aside_m) {
   runs::Run run;
   for (std::size_t k = 0; k < steps; ++k) {

@@ -11,7 +11,7 @@
 namespace helixnav::reports {
 namespace {
 
-/// Along x with 1 m a second and an error of `drift_m` in y that a closing in scan 60 takes away.
+/// Along x at 1 m a second, with an error of `drift_m` in y that a closing in scan 60 removes.
 runs::Run drifting_run(double drift_m) {
   runs::Run run;
   for (int k = 0; k < 120; ++k) {

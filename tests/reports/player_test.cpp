@@ -142,7 +142,7 @@ runs::Run long_drive() {
   return run;
 }
 
-/// A new landmark a scan, each told of three times: where it began, as mature, and where it stood in the end.
+/// A new landmark every scan, each reported three times: when it began, as mature, and in its final position.
 void put_wide_map(runs::Run& run) {
   core::RandomStream random(1, "wide");
   constexpr std::int64_t between = 250;

@@ -88,7 +88,7 @@ TEST(Report, HoldsHealthPathsAndMixtureOfACloudOfParticles) {
   runs::Run run = example_run(3);
   EXPECT_TRUE(element(render(run), "run-data")["particles"].is_null());
   for (core::StepReport& step : run.steps) step.particles = core::CloudReport{100, 40.0, false, 0.0, 9};
-  // A stem of two points that parts into two ends.
+  // A stem of two points that splits into two ends.
   run.particle_end = runs::ParticleEnd{{{0, -1, {0.0, 0.0, 0.0}, 1.0},
                                         {1, 0, {1.0, 0.0, 0.0}, 1.0},
                                         {2, 1, {2.0, 0.0, 0.0}, 0.5},

@@ -10,7 +10,7 @@
 namespace helixnav::reports {
 namespace {
 
-/// Scans so far apart that show trees up to 30 m ahead, none of which is ever matched.
+/// Scans `between_m` apart that show trees up to 30 m ahead, none of which is ever matched.
 runs::Run unmatched_run(double between_m) {
   runs::Run run;
   for (int k = 0; k < 20; ++k) {

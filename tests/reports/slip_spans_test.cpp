@@ -9,7 +9,7 @@
 namespace helixnav::reports {
 namespace {
 
-/// A scan every 0.2 s; the vehicle slips by 0.16 m in each of these.
+/// A scan every 0.2 s; the vehicle slips by 0.16 m in each of the given ones.
 runs::Run run_with_slips(const std::vector<std::size_t>& scans) {
   runs::Run run;
   for (int k = 0; k < 100; ++k) {

@@ -24,9 +24,9 @@ sim::IhgrCircle world_with_noise(double sigma_range_m) {
   return world;
 }
 
-// The study needs 200 layouts a point; here is the sign of its largest difference, on seeds that the study does not use.
-// Were neither method better, each layout that only one of them gets right would go either way: 7 against 0, 10 against 1
-// or clearer has probability 0.01 at most.
+// The study needs 200 layouts a point; this is the sign of its largest difference, on seeds that the study does not use.
+// If neither method were better, each layout that only one of them gets right could go either way: 7 against 0, 10
+// against 1 or clearer has probability 0.01 at most.
 TEST(IhgrCircleRuns, LikelihoodRatiosGetLayoutsRightThatNearestNeighbourDoesNot) {
   int only_nearest = 0;
   int only_ratio = 0;
@@ -49,7 +49,7 @@ TEST(IhgrCircleRuns, FiveFeaturesWithinTheNoiseDefeatEveryMethodYetLeaveThePoseC
   }
 }
 
-// On the problems of a run, as on random ones (association/ihgr_test.cpp): the relaxation's vertex is whole-numbered, so
+// On the problems of a run, as on random ones (association/ihgr_test.cpp): the relaxation's vertex is integer, so
 // that there is nothing to round, and costs what the optimal assignment costs.
 TEST(IhgrCircleRuns, RelaxationIsWholeNumberedAndOptimalOnEveryScan) {
   int scans = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files of a run that came to its end, and were cut since.
+// Files of a completed run that were truncated afterwards.
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -45,7 +45,7 @@ TEST(CutRunFolder, ThatCameToItsEndTellsWhichTableWasCutSince) {
   }
   keep_lines(path + "/map.csv", 2);
   EXPECT_EQ(read_run(path).missing, std::vector<std::string>{path + "/map.csv: 1 of 3" + end});
-  fs::remove(path + "/summary.json");  // as a run that was killed
+  fs::remove(path + "/summary.json");  // like a run that was killed
   EXPECT_EQ(read_run(path).missing, std::vector<std::string>{});
 }
 
@@ -89,7 +89,7 @@ TEST(CutRunFolder, ThatCameToItsEndTellsWhetherItsDriveWasCutSince) {
     ASSERT_EQ(missing.size(), 1U) << bytes;
     EXPECT_NE(missing[0].find("of 3 scans: the run came to its end, and the file was cut since"), std::string::npos);
   }
-  fs::remove(path + "/summary.json");  // as a run that was killed
+  fs::remove(path + "/summary.json");  // like a run that was killed
   EXPECT_EQ(read_run(path).missing, std::vector<std::string>{});
 }
 

@@ -166,7 +166,7 @@ std::uint32_t crc_of(const std::string& bytes) {
   return crc.checksum();
 }
 
-/// A name may hold no zero, and comes from another program if it does. Found by fuzzing.
+/// A name may not contain a zero byte; if it does, it comes from another program. Found by fuzzing.
 TEST_F(DriveFileTest, AClassThatIsNoneIsRefusedThoughItsChecksumFits) {
   std::string bytes = written(drive_of_every_kind());
   const std::size_t name = bytes.find("a class of");
@@ -181,7 +181,7 @@ TEST_F(DriveFileTest, AClassThatIsNoneIsRefusedThoughItsChecksumFits) {
   expect_refused(bytes, "class name");
 }
 
-/// As a process leaves it that is killed: whole scans are read, with what came before them.
+/// As a killed process leaves it: complete scans are read, with what came before them.
 TEST_F(DriveFileTest, OfAFileThatWasCutWhatIsWholeIsRead) {
   const std::string whole = written(drive_of_every_kind());
   const std::string begun = written({drive_of_every_kind().start, {}, 0});

@@ -23,7 +23,7 @@ Run along_x(int steps) {
 
 TEST(FinalPath, TakesThePosesSolvedAndTheMotionWhereThereIsNone) {
   runs::Run run = along_x(5);
-  // Turned to the left; nothing is known of step 1, and nothing of what came after 3.
+  // Turned to the left; nothing is known about step 1, nor about anything after 3.
   correct_path(run, {{0, {0.0, 0.0, 1.5}}, {2'000'000'000, {0.0, 2.0, 1.5}}, {3'000'000'000, {0.0, 3.0, 1.5}}});
   ASSERT_EQ(run.final_path.size(), 5u);
   EXPECT_NEAR(run.final_path[1].x_m, std::cos(1.5), 1e-12);

@@ -125,7 +125,7 @@ TEST_F(JointMapFile, WhatIsNoMapIsRefusedThoughItsChecksumFits) {
   map.joint.covariance(2, 0) = map.joint.covariance(0, 2) = 0.0;
   map.joint.covariance(2, 1) = map.joint.covariance(1, 2) =
       0.9 * std::sqrt(map.joint.covariance(1, 1) * map.joint.covariance(2, 2));
-  expect_refused(joint_map_bytes(map), "covariance");  // of the pose: no correlation above one, and yet none
+  expect_refused(joint_map_bytes(map), "covariance");  // of the pose: no correlation above one, yet invalid
   map = three_landmarks();
   map.joint.points_m[1].x() = 1e9;
   expect_refused(joint_map_bytes(map), "coordinates");

@@ -47,7 +47,7 @@ TEST(MapChanges, LookSomeHundredTimesADriveAndWhereTheMapMoved) {
   EXPECT_TRUE(changes.wants(report));
 }
 
-// A hundred refusals and closings that turn the map by metres each time must not fill the report with its history.
+// A hundred refusals and closings that each turn the map by metres must not fill the report with its history.
 TEST(MapChanges, TellLessOfAMapThatMovesAllTheTime) {
   MapChanges changes(100'000);
   core::RandomStream random(1, "moving map");

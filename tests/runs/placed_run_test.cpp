@@ -105,7 +105,7 @@ TEST(PlacedRun, OfSeveralPartsHasOneFrameOnceTheyAreFound) {
   EXPECT_NEAR(run.final_path[1].y_m, 0.25, 1e-12) << "what was solved of the first part";
 }
 
-/// Found out two scans later, when the place was found at once.
+/// Discovered two scans later, when the place was found immediately.
 TEST(PlacedRun, APartMayHaveBegunBeforeAnybodyKnew) {
   const auto truth = [](int k) { return core::Pose2(0.5 * k, 0.1 * k, 0.02 * k); };
   RunRecorder recorder("run", {}, {});

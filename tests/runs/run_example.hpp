@@ -27,7 +27,7 @@ inline RunManifest example_manifest() {
   return manifest;
 }
 
-/// A step on a circle of 50 m whose numbers are awkward to print.
+/// A step on a circle of 50 m with numbers that are awkward to print.
 inline core::StepReport example_step(std::int64_t k) {
   core::RandomStream random(static_cast<std::uint64_t>(k), "example");
   core::StepReport step;
@@ -89,7 +89,7 @@ inline core::Recording example_recording(std::int64_t steps) {
   return recording;
 }
 
-/// The example as a value; with its numbers and times.
+/// The example as a value, with its numbers and timings.
 inline Run example_run(std::int64_t steps, double microseconds = 12.3) {
   RunRecorder recorder("run", example_manifest(), example_recording(steps));
   for (std::int64_t k = 0; k < steps; ++k) recorder.add(example_step(k), microseconds);

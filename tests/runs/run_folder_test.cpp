@@ -334,7 +334,7 @@ TEST(RunFolder, OfAnEarlierVersionHasNoNumericsAndIsRead) {
   EXPECT_EQ(read.microseconds.size(), 3u);
 }
 
-/// An Eigen comma initialiser that an exception leaves half full aborts in builds with assertions.
+/// An Eigen comma initialiser left half full by an exception aborts in builds with assertions.
 TEST(HostileRunFolder, NumbersThatAreNoneInACovarianceAreNamedByLine) {
   const TemporaryFolder folder;
   const std::string run = (folder.path() / "run").string();
@@ -357,7 +357,7 @@ TEST(PutAssociation, KeepsTheObservationsOfAStepInOrder) {
     put_association(0, report, steps);
   }
   ASSERT_EQ(steps[0].associations.size(), 4u);
-  const int last_row_of[] = {3, 3, 2, 4};  // how many there were when the last row of each came
+  const int last_row_of[] = {3, 3, 2, 4};  // how many there were when the last row of each arrived
   for (int i = 0; i < 4; ++i) {
     EXPECT_EQ(steps[0].associations[static_cast<std::size_t>(i)].observation, i);
     EXPECT_EQ(steps[0].associations[static_cast<std::size_t>(i)].dof, last_row_of[i]) << i;

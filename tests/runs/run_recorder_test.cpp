@@ -23,7 +23,7 @@ void expect_equal(const core::AssociationReport& a, const core::AssociationRepor
   EXPECT_EQ(a.margin_nats, b.margin_nats);
 }
 
-/// Bit for bit: what is judged at the end of a run and what is judged later from its folder must not differ.
+/// Bit for bit: judging at the end of a run and judging later from its folder must not differ.
 void expect_equal(const core::StepReport& a, const core::StepReport& b) {
   EXPECT_EQ(a.step, b.step);
   EXPECT_EQ(a.t_ns, b.t_ns);
@@ -50,7 +50,7 @@ void expect_equal(const core::StepReport& a, const core::StepReport& b) {
   EXPECT_TRUE(a.drawn.empty() && b.drawn.empty());
 }
 
-/// Steps of any heading, whose covariances are symmetric up to rounding only, and of which some revise earlier ones.
+/// Steps with arbitrary headings and covariances symmetric only up to rounding, some of which revise earlier ones.
 core::StepReport awkward_step(std::int64_t k) {
   core::RandomStream random(static_cast<std::uint64_t>(k), "awkward");
   core::StepReport step = example_step(k);
@@ -67,7 +67,7 @@ core::StepReport awkward_step(std::int64_t k) {
 core::Recording awkward_recording(std::int64_t steps) {
   core::Recording recording = example_recording(steps);
   recording.labels.resize(static_cast<std::size_t>(steps) + 3);  // of scans that saw nothing
-  recording.antenna_robot_m = {3.0, 0.5};                        // of no fix
+  recording.antenna_robot_m = {3.0, 0.5};                        // without any fix
   return recording;
 }
 

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using helixnav::testing::input_error_of;
 using helixnav::testing::TemporaryFolder;
 
-// The file without what docs/run-folder.md names as wall clock.
+// The file without what docs/run-folder.md describes as wall clock.
 std::string without_wall_clock(const fs::path& file) {
   std::string text = files::read_whole_file(file.string());
   if (file.filename() == "health.csv") text = std::regex_replace(text, std::regex(",[^,\n]*\n"), "\n");

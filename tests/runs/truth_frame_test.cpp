@@ -20,7 +20,7 @@ namespace {
 
 constexpr core::Nanoseconds second_ns = 1'000'000'000;
 
-/// Along x, sought at the first step and, unless nobody knows, found at the third at (10, 0) of the earlier map.
+/// Along x, sought at the first step and, if it `finds`, found at the third at (10, 0) of the earlier map.
 std::vector<core::StepReport> steps_of_session(bool finds) {
   std::vector<core::StepReport> steps(4);
   for (int k = 0; k < 4; ++k) {
@@ -40,7 +40,7 @@ std::vector<core::StepReport> steps_of_session(bool finds) {
   return steps;
 }
 
-/// The session begins at (110, 5) of the room that the truth is given in.
+/// The session begins at (110, 5) in the room frame in which the truth is given.
 core::Recording truth_of_session(const std::optional<core::Pose2>& T_truth_map) {
   core::Recording recording;
   for (int k = 0; k < 4; ++k) recording.true_poses.push_back({k * second_ns, {1.0 * k, 0.0, 0.0}});
@@ -50,7 +50,7 @@ core::Recording truth_of_session(const std::optional<core::Pose2>& T_truth_map) 
   return recording;
 }
 
-/// As recorded, and as read again from its folder.
+/// As recorded, and as read back from its folder.
 std::pair<runs::Run, runs::Run> run_of(const core::Recording& recording, bool finds) {
   const testing::TemporaryFolder folder;
   const std::string path = (folder.path() / "run").string();
@@ -97,7 +97,7 @@ TEST(TruthFrame, IsOneOfItsOwnWhereNobodyKnowsWhereTheEarlierMapLiesInIt) {
   }
 }
 
-/// A drive whose vehicle is carried before step 2 and stays where it does not know its place, and its truth.
+/// A drive and its truth; the vehicle is carried before step 2 and from then on does not know its place.
 std::pair<runs::Run, runs::Run> run_of_carried(core::Nanoseconds truth_late_ns, std::string& frames) {
   core::Recording recording;
   for (int k = 0; k < 4; ++k) {

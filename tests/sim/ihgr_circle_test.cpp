@@ -16,7 +16,7 @@ namespace {
 TEST(IhgrCircle, GoesRoundTheCircleOneDegreeASampleAndCloses) {
   const core::Recording recording = simulate_ihgr_circle({}, 1);
   ASSERT_EQ(recording.true_poses.size(), 361u);
-  const Eigen::Vector2d centre_map_m(0.0, 5.0);  // the circle is left of the start
+  const Eigen::Vector2d centre_map_m(0.0, 5.0);  // the circle is to the left of the start
   for (std::size_t i = 0; i < recording.true_poses.size(); ++i) {
     const core::Pose2& pose = recording.true_poses[i].T_world_robot;
     EXPECT_NEAR((pose.position_m() - centre_map_m).norm(), 5.0, 1e-9);
@@ -38,7 +38,7 @@ TEST(IhgrCircle, HasTwelveFeaturesInTheSquareAndFiveWhereThePaperHasThem) {
   for (std::size_t i = 0; i < 12; ++i) {
     const Eigen::Vector2d point_m = core::transform(T_world_map, recording.true_landmarks[i].point_m);
     EXPECT_TRUE(point_m.minCoeff() >= 0.0 && point_m.maxCoeff() <= 20.0) << point_m.transpose();
-    if (i >= 5) {  // the others stand where they stand without the five
+    if (i >= 5) {  // the others are where they are without the five
       EXPECT_EQ(recording.true_landmarks[i].point_m, free.true_landmarks[i].point_m);
     }
   }

@@ -29,7 +29,7 @@ double unlabelled_a_scan(const core::Recording& run) {
   return count / static_cast<double>(run.labels.size());
 }
 
-/// The last one drawn may exceed the mean by its own time in view, up to a minute of five; detected like trees.
+/// The last one drawn may exceed the mean by its own time in view, up to a minute out of five; detected like trees.
 TEST(Movers, SoManyAreInViewOnTheMeanAndNoneIsATree) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const double detected = named_scenario("movers").scanner.detection_probability;

@@ -19,7 +19,7 @@ std::vector<T> events_of(const core::Recording& run) {
   return found;
 }
 
-/// Every number of a part of a recording, as bytes: equal strings are equal bits.
+/// Every number of a part of a recording, as bytes: equal strings, equal bits.
 class Bytes {
  public:
   template <class T, std::enable_if_t<std::is_arithmetic_v<T>, int> = 0>

@@ -43,7 +43,7 @@ TEST(Route, NearestPointIsSoughtOnTheStretchOnly) {
   EXPECT_NEAR(route.distance_m({-3.0, -4.0}), 5.0, 1e-12);
 }
 
-/// Segments are passed over 64 at a time where they are farther than the nearest so far.
+/// Segments are skipped 64 at a time if they are farther away than the nearest so far.
 TEST(Route, NearestPointOfALongRouteIsThatOfAllItsSegments) {
   core::RandomStream random(5, "route_test");
   std::vector<Eigen::Vector2d> points_m{{0.0, 0.0}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the sensors of the simulator do on average. Seeds are fixed; bands are five sigma, which a right simulator with
+// What the simulator's sensors do on average. Seeds are fixed; bands are five sigma, which a correct simulator with
 // a fresh seed would leave with probability 6e-7 each.
 #include <gtest/gtest.h>
 
@@ -94,7 +94,7 @@ TEST(Statistics, ClutterIsPoissonAndUniformOverTheAreaOfTheFieldOfView) {
   }
 }
 
-/// χ² of ranges and of bearings apart, at the landmarks' labels.
+/// χ² of ranges and of bearings separately, at the landmarks' labels.
 TEST(Statistics, RangeAndBearingNoiseHaveTheirSigmas) {
   for (const std::string name : {"large-loop", "circuit-large-noise"}) {
     double n = 0.0, chi2_range = 0.0, chi2_bearing = 0.0, cross = 0.0, sum_range = 0.0, sum_bearing = 0.0;
@@ -132,7 +132,7 @@ TEST(Statistics, RangeAndBearingNoiseHaveTheirSigmas) {
 }
 
 /// Sums over scans of eᵀΣ⁻¹e, e = true increment minus chained odometry: χ² with 3 degrees of freedom a scan, and 2 for
-/// (x, heading) alone, which also exist where one sample a scan leaves Σ with rank two.
+/// (x, heading) alone, which also exists if one sample a scan leaves Σ with rank two.
 struct OdometryNees {
   double pose = 0.0;
   double x_heading = 0.0;
@@ -184,7 +184,7 @@ TEST(Statistics, OdometryErrorsHaveTheCovarianceThatIsTold) {
   expect_chi2(nees.pose, 3 * nees.scans, "large-loop");
 }
 
-/// Where the speed noise is a large share of the speed, the model's first order shows in the (tiny) lateral error given
+/// If the speed noise is a large share of the speed, the model's first order shows in the (tiny) lateral error given
 /// the other two: 3-dof NEES is 1 % (large-loop), 3 % (big-drift), 9 % (orchard) too high over 20 seeds.
 TEST(Statistics, OdometryErrorsInXAndHeadingHaveTheCovarianceThatIsToldAlsoWhenTheyAreLarge) {
   for (const std::string name : {"big-drift", "orchard", "circuit", "circuit-large-noise"}) {

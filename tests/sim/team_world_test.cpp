@@ -57,7 +57,7 @@ TEST(TeamWorld, RobotsApartSeeNothingOfEachOther) {
 TEST(TeamWorld, NobodySeesTheEdgeOfTheOrchard) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const core::TeamRecording team = simulate_team(world_of(TeamWorldKind::orchard), seed);
-    // A disc of three pitches about the middle of four trees holds 32 of a lattice without end.
+    // A disc with a radius of three pitches, centred between four trees, holds 32 points of an infinite lattice.
     for (const core::TeamMember& member : team.robots) EXPECT_EQ(labels_of(member).size(), 32u) << seed;
   }
 }

@@ -99,7 +99,7 @@ TEST(World, ChangingTreesLeavesTheRoadAndTheFirstLapAlone) {
   }
 }
 
-/// Shares of trees felled, and of new ones among those that stand at the return, where the vehicle comes again. The
+/// Shares of trees felled, and of new ones among those present at the return, where the vehicle comes again. The
 /// first is binomial; the band is five sigma, false alarm 6e-7.
 TEST(World, TheStatedShareOfTreesChanges) {
   int stood = 0, felled = 0, planted = 0;
@@ -159,7 +159,7 @@ TEST(World, FigureOfEightComesBackToTwoRegionsThatAreFarApartAndToTheFirstOnceMo
   }
 }
 
-/// The end of a drive must not lie where old ground comes into view again that no return stands for.
+/// The end of a drive must not be where old ground comes into view again for which no return is defined.
 TEST(World, FigureOfEightEndsOutOfSightOfTheNextReturn) {
   const double sight_m = sim::named_scenario("figure-of-eight").scanner.field_of_view.max_range_m;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {

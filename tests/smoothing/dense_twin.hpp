@@ -8,7 +8,7 @@
 
 namespace helixnav::smoothing::testing {
 
-/// The exact twin: whitened residuals written down plainly, with dense Jacobians by central differences.
+/// The exact twin: whitened residuals written out plainly, with dense Jacobians by central differences.
 class DenseTwin {
  public:
   explicit DenseTwin(const Problem& problem) : problem_(problem), layout_(make_layout(problem)) {}

@@ -40,7 +40,7 @@ TEST_F(DlrRunE, GivesEveryLandmarkAnEllipse) {
   const std::vector<Eigen::Matrix2d> covariances = landmark_covariances(problem);
   ASSERT_EQ(covariances.size(), 576u);
   for (const Eigen::Matrix2d& P : covariances) EXPECT_GT(P.determinant(), 0.0);
-  // Against two triangular solves a column for some of them.
+  // Compared with two triangular solves a column for some of them.
   for (const int i : {0, 100, 300, 575}) {
     const Eigen::MatrixXd exact = joint_covariance(problem, {}, {i});
     EXPECT_LE((covariances[static_cast<std::size_t>(i)] - exact).norm(), 1e-9 * exact.norm());

@@ -64,7 +64,7 @@ TEST(Lines, SeenAsBearingsOnlyGiveAConsistentMap) {
     options.poses_per_stage = 20;
     const Report report = smooth(problem, options);
     EXPECT_EQ(report.reason, Reason::converged);
-    // Both quantiles 1e-6.
+    // Both tails have probability 1e-6.
     EXPECT_GT(report.chi2.total(), core::chi2_quantile(1e-6, report.dof)) << "dof " << report.dof;
     EXPECT_LT(report.chi2.total(), core::chi2_quantile(1.0 - 1e-6, report.dof)) << "dof " << report.dof;
     for (const auto& landmark : problem.graph.landmarks) {

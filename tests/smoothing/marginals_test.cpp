@@ -79,8 +79,8 @@ TEST_P(MarginalsOf, JointCovarianceEqualsTheDenseInverse) {
   EXPECT_LE((joint.block<2, 2>(8, 8) - P.block<2, 2>(landmark, landmark)).norm(), 1e-9 * scale);
 }
 
-// All variables, so that the factor has wide blocks as well as narrow ones; and a choice in which order and repetition are
-// the caller's.
+// All variables, so that the factor has wide blocks as well as narrow ones; and a selection in an order and with
+// repetitions chosen by the caller.
 TEST_P(MarginalsOf, JointCovarianceOfAllEqualsTheDenseInverse) {
   const Problem problem = random_problem(GetParam(), {60, 50, 1.0}).problem;
   const Layout layout = make_layout(problem);

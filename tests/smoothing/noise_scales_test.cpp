@@ -26,7 +26,7 @@ Problem solved(std::uint64_t seed) {
   return made.problem;
 }
 
-/// S_ij = tr(P_i P_j) by the dense projector on what the solution leaves of the measurements.
+/// S_ij = tr(P_i P_j) by the dense projector onto what the solution leaves of the measurements.
 Eigen::Matrix2d dense_twin_of_s(const Problem& problem) {
   const Eigen::MatrixXd J = DenseTwin(problem).jacobian();
   const Eigen::MatrixXd P =
@@ -68,7 +68,7 @@ TEST(NoiseScales, HoldTheTruthInTheirIntervals) {
     odometry += scales.odometry.low_95 < 1.0 && 1.0 < scales.odometry.high_95 ? 1 : 0;
     landmarks += scales.landmarks.low_95 < 1.0 && 1.0 < scales.landmarks.high_95 ? 1 : 0;
   }
-  // Of 60 at 95 %, fewer than 50 have a probability of 2e-4 at most.
+  // Of 60 at 95 %, fewer than 50 has a probability of 2e-4 at most.
   EXPECT_GE(odometry, 50);
   EXPECT_GE(landmarks, 50);
 }

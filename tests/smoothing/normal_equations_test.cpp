@@ -88,7 +88,7 @@ TEST(Factors, OdometryHasThePapersJacobians) {
 }
 
 TEST(Factors, BearingOfALineFollowsThePapersChainOfJacobians) {
-  // dlr_kurlbaum2009 eq (13)-(19), written out: the robot's place m of the line's foot, then the bearing from the camera.
+  // dlr_kurlbaum2009 eq (13)-(19), written out: the line's foot m in the robot frame, then the bearing from the camera.
   core::RandomStream random(2, "line");
   for (int i = 0; i < 100; ++i) {
     const core::Pose2 p(random.uniform(-5.0, 5.0), random.uniform(-5.0, 5.0), random.uniform(-3.0, 3.0));

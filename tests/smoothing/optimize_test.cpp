@@ -53,7 +53,7 @@ TEST(Optimize, EndsWhereTheDenseGradientVanishes) {
 }
 
 TEST(Optimize, LeavesChi2InItsBand) {
-  // Both quantiles 1e-6: a run outside is no accident.
+  // Both tails have probability 1e-6: a run outside is no accident.
   for (std::uint64_t seed = 11; seed <= 20; ++seed) {
     RandomProblem made = random_problem(seed);
     const Report report = optimize(made.problem);
@@ -62,7 +62,7 @@ TEST(Optimize, LeavesChi2InItsBand) {
   }
 }
 
-/// A landmark that one pose says to be 1 m ahead, where another pose is, which says with next to no weight that it is not.
+/// One pose says the landmark is 1 m ahead, exactly at another pose, which says with next to no weight that it is not.
 Problem landmark_at_a_sensor() {
   Problem problem;
   core::LandmarkGraph& graph = problem.graph;
@@ -79,7 +79,7 @@ Problem landmark_at_a_sensor() {
   return problem;
 }
 
-// Of such a step half of the sum is known when the sum breaks off, and half of a cost is less than the cost.
+// If the sum is cut short at such a step, half of it is known, and half of a cost is less than the cost.
 TEST(Optimize, TakesNoStepThatPutsALandmarkIntoASensor) {
   Problem problem = landmark_at_a_sensor();
   Options options;

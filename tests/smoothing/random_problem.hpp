@@ -28,8 +28,8 @@ inline Eigen::Matrix3d random_covariance(core::RandomStream& random, double sigm
          scale.asDiagonal();
 }
 
-/// A circle of poses around which landmarks stand; odometry with full covariances and observations of all four kinds, from
-/// a sensor off the robot's centre. Every landmark is seen from several poses, with one Cartesian observation at least.
+/// A circle of poses with landmarks around it; odometry with full covariances and observations of all four kinds, from
+/// a sensor off the robot's centre. Every landmark is seen from several poses, with at least one Cartesian observation.
 inline RandomProblem random_problem(std::uint64_t seed, const RandomProblemSettings& settings = {}) {
   core::RandomStream random(seed, "random_problem");
   RandomProblem made;

@@ -62,7 +62,7 @@ TEST(AbsoluteFix, KeepsTheErrorBoundedWhereDeadReckoningDrifts) {
   EXPECT_GT(without, 5.0);
 }
 
-// 100 independent runs: the sum of their NEES lies in the two-sided band with probability 0.998.
+// 100 independent runs: the sum of their NEES is within the two-sided band with probability 0.998.
 TEST(AbsoluteFixCampaign, LeavesThePoseConsistent) {
   double sum = 0.0;
   for (const std::uint64_t seed : support::campaign_seeds(1, 100)) sum += fixed_run(seed, true, false).last_nees;
@@ -80,7 +80,7 @@ TEST(AbsoluteFix, IsRefusedWithItsNumbersWhenItIsAnOutlier) {
     refused += run.refused;
     EXPECT_LT(run.worst_error_m, 3.0);
   }
-  // One of five is an outlier, all of them are refused; of the others one in a thousand.
+  // One in five is an outlier, and all of these are refused; of the others, one in a thousand.
   EXPECT_GE(refused * 5, (accepted + refused) * 99 / 100);
   EXPECT_LE(refused * 5, (accepted + refused) * 103 / 100);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A thread may still navigate while the process ends (a daemon thread of Python does): objects of static duration that are gone by
-// then must not be needed.
+// A thread may still navigate while the process ends (a daemon thread of Python does): it must not need objects of
+// static duration that are gone by then.
 #include <malloc.h>
 #include <unistd.h>
 
@@ -14,12 +14,12 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// One that closes.
+/// A drive that closes its loop.
 evaluation::RunScore large_loop() { return navigate_and_judge(sim::named_scenario("large-loop"), 1); }
 
 evaluation::RunScore before_exit;
 
-/// Registered before the first drive, so that it runs after the destructors of what that drive made in passing.
+/// Registered before the first drive, so that it runs after the destructors of what that drive created on the way.
 void drive_again() {
   evaluation::RunScore after;
   std::thread([&after] { after = large_loop(); }).join();  // this thread's own objects are gone, too
@@ -32,7 +32,7 @@ TEST(AfterExit, NavigatesAsBefore) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
       {
-        mallopt(M_PERTURB, 0xa5);  // what is freed holds nonsense
+        mallopt(M_PERTURB, 0xa5);  // freed memory holds nonsense
         std::atexit(drive_again);
         before_exit = large_loop();
         std::exit(2);

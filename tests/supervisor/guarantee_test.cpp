@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A call that throws leaves everything as before it: broken by failing allocations at many places of scans of every kind.
+// A call that throws leaves everything as it was: tested by failing allocations at many points in scans of every kind.
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
@@ -47,7 +47,7 @@ void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); 
 namespace helixnav::supervisor {
 namespace {
 
-/// Calls with the allocation of that number failing; true when the call threw.
+/// Makes the call with allocation number `allocation` failing; true if the call threw.
 template <class Call>
 bool fails_at(long allocation, const Call& call) {
   allocations_left = allocation;
@@ -127,8 +127,8 @@ Kind kind_of(const core::StepReport& report) {
   return was_searching ? Kind::searching : Kind::mapping;
 }
 
-/// Drives twice; the second time scans of each kind are broken at `places` allocations each, spread over all of the scan's,
-/// and then go on as in the first drive. Returns the kinds that were broken.
+/// Drives twice; the second time, scans of each kind are broken at `places` allocations each, spread over all those of
+/// the scan, and then go on as in the first drive. Returns the kinds that were broken.
 std::set<Kind> break_drive(const core::Recording& run, const NavigatorOptions& options, int places,
                            double rounding_m = same_m) {
   std::vector<core::StepReport> reports;
@@ -205,7 +205,7 @@ TEST(Guarantee, HoldsWhereThePlaceOfACarriedVehicleIsFoundWithoutASearch) {
   sim::Scenario scenario = sim::named_scenario("kidnapped");
   scenario.world.tour_m = 2600.0;
   const core::Recording run = without_waiting(sim::simulate(scenario, 3004));
-  // Hundreds of metres from the start, and a phase may be absorbed at another occasion than undisturbed.
+  // Hundreds of metres from the start, and a phase may be absorbed at another point than when undisturbed.
   constexpr double rounding_m = 1e-9;
   EXPECT_EQ(break_drive(run, single_threaded(1), 6, rounding_m).count(Kind::place_without_search), 1u);
 }

@@ -17,7 +17,7 @@ using Ids = std::vector<core::LandmarkId>;
 
 constexpr double old_after_m = 60.0;
 
-/// Mature landmarks 0 to n−1, last seen at the begin of a drive of `driven_m`.
+/// Mature landmarks 0 to n−1, last seen at the beginning of a drive of `driven_m`.
 association::LandmarkLife existence_of(int n, double driven_m) {
   association::LandmarkLife life;
   Ids all;
@@ -28,7 +28,7 @@ association::LandmarkLife existence_of(int n, double driven_m) {
   return life;
 }
 
-/// Looks for them in so many scans, a metre apart.
+/// Looks for them in this many scans, a metre apart.
 void look(IntegrityMonitor& monitor, association::LandmarkLife& life, int scans, const Ids& expected,
           const Ids& matched) {
   for (int i = 0; i < scans; ++i) {
@@ -95,7 +95,7 @@ TEST(IntegrityMonitor, AClosingConfirmsThePoseByTheLandmarksThatItRecognised) {
   association::LandmarkLife life = existence_of(9, 100.0);
   const Ids recognised{0, 1, 2, 3, 4};
   spawn(life, 10, 2);
-  life.observe({110.0, 0.0}, recognised, {}, {});  // as merging enters them
+  life.observe({110.0, 0.0}, recognised, {}, {});  // as a merge records them
   association::LandmarkLife later = life;
   const auto drive_on = [&](IntegrityMonitor monitor) {
     later = life;
@@ -135,7 +135,7 @@ TEST(IntegrityMonitor, WhatWasSeenLatelyTellsNothingOfAReturn) {
   EXPECT_TRUE(monitor.is_clear());
 }
 
-/// Sparse worlds of seeds on which a wrong match, long after a right closing, turned the pose for good.
+/// Seeds of sparse worlds in which a wrong match, long after a correct closing, turned the pose for good.
 class WrongMatch : public testing::TestWithParam<std::uint64_t> {};
 
 struct End {

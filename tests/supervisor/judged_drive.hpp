@@ -8,7 +8,7 @@
 
 namespace helixnav::supervisor {
 
-/// A navigator, as it comes or with options, drives the scenario, and the truth judges it.
+/// A navigator, with default or given options, drives the scenario and is judged by the truth.
 inline evaluation::RunScore navigate_and_judge(const sim::Scenario& scenario, std::uint64_t seed,
                                                NavigatorOptions options = {}) {
   const sim::World world = sim::build_world(scenario.world, seed);

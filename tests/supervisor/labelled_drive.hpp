@@ -14,8 +14,8 @@
 
 namespace helixnav::supervisor {
 
-/// A filter that is told which tree it sees, and its log. Trees of the second half of the drive can be made strangers: they
-/// get second ids, which are merged at the end, as after a search. Observations of nothing are mapped and lost again.
+/// A filter that is told which tree it sees, and its log. Trees of the second half of the drive can be made strangers:
+/// they get second ids, which are merged at the end, as after a search. Clutter is mapped and lost again.
 class LabelledDrive {
  public:
   enum class Kept { first_name, second_name };
@@ -24,7 +24,7 @@ class LabelledDrive {
       : run_(run), strangers_(strangers), kept_(kept), filter(run.start), tape(100000) {
     for (const core::Event& event : run.events) {
       if (const auto* odometry = std::get_if<core::Odometry>(&event)) {
-        motion_.push_back(*odometry);  // what follows the last scan leads nowhere
+        motion_.push_back(*odometry);  // motion after the last scan leads nowhere
         continue;
       }
       predict();
@@ -39,7 +39,7 @@ class LabelledDrive {
 
   const core::PoseGaussian& start() const { return run_.start; }
 
-  /// Solves the drive in phases of 20 m; the filter is the solved one when that was accepted.
+  /// Solves the drive in phases of 20 m; the filter becomes the solved one if that was accepted.
   Smoothing solve(const atlas::Options& options = {}) {
     DriveMap map(run_.start, 20.0, options);
     Smoothing smoothing = smooth_drive(filter, tape, map);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Orchards, where every pitch is a rival: drives that were closed wrongly before.
+// Orchards, where every pitch is a rival: drives that used to be closed wrongly.
 #include <gtest/gtest.h>
 
 #include "judged_drive.hpp"
@@ -16,8 +16,8 @@ evaluation::RunScore navigate_orchard(std::uint64_t seed, double odometry_noise)
 }
 
 TEST(Lattice, IsNotClosedAPitchOffAfterAShortDrift) {
-  // The trees of the same row that the vehicle has just passed were taken for old ground: a frame with one base among
-  // them made the true place a thousand sigma unlikely, and so no rival.
+  // The trees of the same row that the vehicle had just passed were taken for old ground: a frame with one base among
+  // them made the true place a thousand sigma unlikely, and so not a rival.
   const evaluation::RunScore score = navigate_orchard(1008, 0.5);
   EXPECT_NE(score.verdict, evaluation::RunVerdict::false_closure);
   EXPECT_EQ(score.wrong_old_matches, 0);
@@ -36,8 +36,8 @@ TEST(Lattice, BehindADriftOfItsPitchIsNotComparedAsRigid) {
 }
 
 TEST(Lattice, ThatWasLeftBehindIsNoMapOfItsOwn) {
-  // Closed 60 m behind the lattice, when each of its 38 and 50 trees was off by a third of the pitch and more; in the second
-  // the replay with all pairs costs too much, and they are merged.
+  // Closed 60 m past the lattice, when each of its 38 and 50 trees was off by a third of the pitch or more; in the
+  // second drive the replay with all pairs costs too much, and they are merged.
   for (const std::uint64_t seed : {1004u, 1148u}) {
     const evaluation::RunScore score = navigate_orchard(seed, 1.0);
     EXPECT_EQ(score.verdict, evaluation::RunVerdict::closed) << seed;

@@ -21,7 +21,7 @@ core::Pose2 scaled(const core::Pose2& pose, double scale) {
   return {scale * pose.x_m, scale * pose.y_m, pose.heading_rad};
 }
 
-/// The drive through a model of the world: every length times `scale`, noise and sensor too.
+/// The drive through a scale model of the world: every length times `scale`, including noise and sensor.
 core::Recording scaled(core::Recording run, double scale) {
   const Eigen::Vector3d of_pose(scale, scale, 1.0);
   for (core::Event& event : run.events) {
@@ -69,7 +69,7 @@ Navigated navigate(const core::Recording& run) {
   return navigated;
 }
 
-/// Of the first `count` associations.
+/// Number of differences among the first `count` associations.
 std::size_t different(const Navigated& a, const Navigated& b, std::size_t count) {
   std::size_t different = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -79,8 +79,8 @@ std::size_t different(const Navigated& a, const Navigated& b, std::size_t count)
   return different;
 }
 
-/// At a power of two scaling costs no digit: mapping must not make one other choice. (The particles may: their prior is kept
-/// regular by a constant, and what differs in the ninth digit is resampled otherwise.)
+/// Scaling by a power of two loses no digits: mapping must not make a single different choice. (The particles may: a
+/// constant keeps their prior regular, and a difference in the ninth digit changes the resampling.)
 TEST(Lengths, AWorldAtAnEighthOfItsSizeIsMappedAsItIs) {
   const core::Recording run = sim::simulate(sim::named_scenario("large-loop"), 7301);
   const Navigated original = navigate(run);
@@ -150,7 +150,7 @@ TEST(Lengths, ObjectsInNoMapAreCountedWhereNobodyTellsThem) {
   EXPECT_GT(with_extraneous_density(search, 0.0, view).extraneous_per_scan, 0.0);
 }
 
-/// Two metres ahead of a camera that sees three, and gone a few looks later.
+/// A landmark two metres ahead of a camera that sees three, and gone a few looks later.
 TEST(Lengths, OfANearSensorLeaveRoomForLandmarksThatShouldBeSeen) {
   Navigator navigator{core::PoseGaussian{}};
   core::Scan scan;

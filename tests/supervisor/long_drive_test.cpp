@@ -29,7 +29,7 @@ std::vector<Eigen::Vector2d> posts_beside_a_circle() {
   return posts_m;
 }
 
-/// From the middle of the circle to the vehicle after so many scans.
+/// The vehicle relative to the centre of the circle after this many scans.
 core::Pose2 on_circle(int scan) {
   const double angle_rad = 2.0 * core::pi * scan / scans_a_lap;
   return core::Pose2(radius_m * std::cos(angle_rad), radius_m * std::sin(angle_rad), angle_rad + core::pi / 2);
@@ -61,7 +61,7 @@ core::Odometry one_scan_on() {
 
 std::size_t allocated_bytes() { return support::sanitized ? 0 : mallinfo2().uordblks; }
 
-/// What allocated memory grows by from scan `settled` to scan `end` of a vehicle that stops after scan `parked`.
+/// Growth of allocated memory from scan `settled` to scan `end` for a vehicle that stops after scan `parked`.
 std::size_t growth_bytes(int settled, int end, int parked) {
   NavigatorOptions options;
   options.search.smooth_up_to_scans = 400;
@@ -84,15 +84,15 @@ std::size_t growth_bytes(int settled, int end, int parked) {
 
 }  // namespace
 
-/// The atlas takes in what the tape holds, also where one filter holds the map for ever. What a condensed phase leaves behind in the
-/// atlas' tables is a seventh of what a scan takes on the tape.
+/// The atlas takes in what the tape holds, even if one filter holds the map for ever. What a condensed phase leaves
+/// behind in the atlas's tables is a seventh of what a scan takes on the tape.
 TEST(LongDrive, OnTheSameGroundIsTakenOffTheTape) {
   constexpr int settled = 3000, end = 8000;
   constexpr std::size_t bytes_a_scan = 300;  // 900 on the tape
   EXPECT_LE(growth_bytes(settled, end, end), (end - settled) * bytes_a_scan);
 }
 
-/// What a vehicle that stands sees again and again is not kept.
+/// What a stationary vehicle sees again and again is not kept.
 TEST(LongDrive, ThatPausesIsTakenOffTheTape) {
   constexpr int settled = 3000, end = 8000, parked = 1000;
   constexpr std::size_t bytes_a_scan = 100;

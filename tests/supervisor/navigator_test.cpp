@@ -18,7 +18,7 @@ namespace {
 
 using core::Outcome;
 
-/// Matches to a landmark that another label began, over one run.
+/// Matches, over one run, to a landmark that was begun by another label.
 struct Association {
   int matched = 0;
   int wrong = 0;
@@ -90,7 +90,7 @@ TEST(Navigator, BuriesWhatClutterBegan) {
   }
   EXPECT_GT(born_of_clutter, 500);
   EXPECT_EQ(mature_of_clutter, 0);
-  EXPECT_LT(left_of_clutter, 5 * 30);  // those of the last metres, whose time has not come
+  EXPECT_LT(left_of_clutter, 5 * 30);  // those of the last metres, not yet due to be dropped
 }
 
 // Beside a laser that sees where the trees are, a radio measures how far something is.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a step says of its arithmetic and of work that a budget left out.
+// What a step reports about its arithmetic and about work that a budget left out.
 #include <algorithm>
 #include <variant>
 #include <vector>
@@ -56,7 +56,7 @@ TEST(PostponedWork, OfAnAssociationThatItsBudgetEndedIsInTheReport) {
   EXPECT_GT(postponed(steps, core::PostponedDecision::Work::association), 100);
 }
 
-// Only where the pose was never certain until then is the drive not in the atlas yet when the tape ceases to hold it.
+// Only if the pose was never certain until then is the drive not yet in the atlas when the tape no longer holds it.
 TEST(PostponedWork, OfADriveThatIsTooLongToBeSolvedAsAWholeIsInTheReportOfItsClosing) {
   NavigatorOptions options;
   options.search.smooth_up_to_scans = 5;

@@ -16,7 +16,7 @@ struct Pause {
   std::size_t from = 0, to = 0;
 };
 
-/// The drive without what came in the pauses: the vehicle was carried meanwhile. Where `is_announced`, an event says so.
+/// The drive without what came in the pauses, when the vehicle was carried. If `is_announced`, an event reports this.
 inline core::Recording with_pauses(const core::Recording& run, const std::vector<Pause>& pauses, bool is_announced) {
   core::Recording carried = run;
   carried.events.clear();
@@ -36,14 +36,14 @@ inline core::Recording with_pauses(const core::Recording& run, const std::vector
   return carried;
 }
 
-/// Before the event `at` (it and all later ones), nothing is measured for so long.
+/// Nothing is measured for `time_ns` before the event `at`; it and all later ones are delayed.
 inline void wait_before(core::Recording& run, std::size_t at, core::Nanoseconds time_ns) {
   for (std::size_t i = at; i < run.events.size(); ++i) {
     std::visit([&](auto& event) { event.t_ns += time_ns; }, run.events[i]);
   }
 }
 
-/// The same events with no more than a second between two of them, those before `since_ns` as they are: no clock tells of a pause.
+/// The same events, no more than a second apart (those before `since_ns` unchanged): no clock reveals a pause.
 inline core::Recording without_waiting(core::Recording run, core::Nanoseconds since_ns = 0) {
   constexpr core::Nanoseconds longest_ns = 1'000'000'000;
   std::size_t first = 1;

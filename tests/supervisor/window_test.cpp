@@ -110,13 +110,13 @@ TEST(Window, HalvesTheFilterWhenItBegins) {
   narrow.map.whole = narrow.map.window = 60;
   const std::vector<int> held = held_along(scenario, narrow);
   std::size_t first = 1;
-  while (first < held.size() && held[first] > held[first - 1] - 30) ++first;  // not a merge, and none dies so
+  while (first < held.size() && held[first] > held[first - 1] - 30) ++first;  // not a merge, nor landmarks dying
   ASSERT_LT(first, held.size()) << "no hand-over";
   EXPECT_GT(held[first - 1], 120);
   EXPECT_LT(held[first], 0.6 * held[first - 1]);
 }
 
-/// An exact drive past trees, which a sensor sees 19 m far all around.
+/// An exact drive past trees that a sensor sees all round up to 19 m away.
 class LongWay {
  public:
   explicit LongWay(std::vector<Eigen::Vector2d> trees_m, const NavigatorOptions& options)
@@ -156,8 +156,8 @@ class LongWay {
   Navigator navigator_;
 };
 
-// A lone tree is met again, which confirms nothing, and then a bare stretch leads to a road that was mapped at the begin and is not in
-// the window any more.
+// A lone tree is met again, which confirms nothing; then a bare stretch leads to a road that was mapped at the
+// beginning and is no longer in the window.
 TEST(Window, IsHandedOverAtItsEdgeWhereNothingHasConfirmedThePose) {
   std::vector<Eigen::Vector2d> trees_m{{-60.0, 104.0}};
   for (int i = 0; i < 21; ++i) trees_m.emplace_back(10.0 * i, -5.0);

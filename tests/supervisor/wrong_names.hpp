@@ -11,7 +11,7 @@
 
 namespace helixnav::supervisor {
 
-/// Every sighting by another name that the recording has, with this probability; without a name it stays without.
+/// Gives every sighting another name from the recording with this probability; one without a name stays without.
 inline core::Recording with_wrong_names(core::Recording run, double probability, std::uint64_t seed) {
   std::set<core::Label> all;
   for (const auto& scan : run.labels) all.insert(scan.begin(), scan.end());
@@ -28,7 +28,7 @@ inline core::Recording with_wrong_names(core::Recording run, double probability,
   return run;
 }
 
-/// The first sighting of all is by the name of the landmark that is seen last.
+/// The very first sighting is by the name of the landmark that is seen last.
 inline core::Recording with_a_wrong_first_name(core::Recording run) {
   std::vector<core::Label> in_order;
   core::Label* first = nullptr;

@@ -11,11 +11,11 @@
 /// Statistics over many drives. Suites of such tests are named …Campaign, which gives them the CTest label `campaign`.
 namespace helixnav::support {
 
-/// Runs of a campaign: `whole` of them, but one under a sanitizer, which watches the code that one drive goes through; the
-/// figures are judged where the code is fast. Whoever asks takes the band of so many runs from below.
+/// Runs of a campaign: `whole` of them, but one under a sanitizer, which checks the code that a single drive goes
+/// through; the figures are judged in a fast build. The caller takes the band for this number of runs from below.
 inline int campaign_runs(int whole) { return sanitized ? 1 : whole; }
 
-/// Whether the campaign has all its runs, for what one run cannot show, such as that one mean is above another.
+/// Whether the campaign has all its runs, for what one run cannot show, such as one mean being above another.
 inline constexpr bool whole_campaign = !sanitized;
 
 /// Their seeds: first, first + 1, …
@@ -30,14 +30,14 @@ struct Band {
   double high = 0.0;
 };
 
-/// What the sum of `runs` independent χ² values of `dof` degrees of freedom leaves with probability `false_alarm`, half of
-/// it on either side.
+/// The band that the sum of `runs` independent χ² values of `dof` degrees of freedom leaves with probability
+/// `false_alarm`, half of it on either side.
 inline Band chi2_band(int runs, int dof, double false_alarm) {
   return {core::chi2_quantile(0.5 * false_alarm, runs * dof), core::chi2_quantile(1.0 - 0.5 * false_alarm, runs * dof)};
 }
 
-/// The narrowest band of whole numbers that the count of successes among `runs` independent runs, each of probability
-/// `rate`, leaves with probability at most `false_alarm` / 2 on either side.
+/// The narrowest band of integers that the number of successes in `runs` independent runs, each of probability `rate`,
+/// leaves with probability at most `false_alarm` / 2 on either side.
 inline Band count_band(int runs, double rate, double false_alarm) {
   const auto probability = [&](int count) {
     const double ways = std::lgamma(runs + 1.0) - std::lgamma(count + 1.0) - std::lgamma(runs - count + 1.0);

@@ -14,8 +14,8 @@
 
 namespace helixnav::support {
 
-/// Plain EKF-SLAM with one state vector (x, y, heading, x₁, y₁, …) and one covariance, both retractions; every matrix
-/// of the textbook written out in full. The exact twin of cekf::CompressedEkf, slow and clear.
+/// Plain EKF-SLAM with one state vector (x, y, heading, x₁, y₁, …) and one covariance, both retractions; every
+/// textbook matrix is written out in full. The exact counterpart of cekf::CompressedEkf, slow and clear.
 class FullEkf {
  public:
   struct Sighting {
@@ -62,7 +62,7 @@ class FullEkf {
   void augment(core::LandmarkId id, const Eigen::Vector2d& point_m, const std::vector<core::LandmarkId>& from,
                const Eigen::MatrixXd& G, const Eigen::Matrix2d& noise_m2) {
     const Eigen::Index n = x.size();
-    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n + 2, n);  // error of the longer state from that of this one
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n + 2, n);  // maps the error of this state to that of the longer one
     all.topRows(n).setIdentity();
     all.block(n, 0, 2, 3) = G.leftCols(3);
     for (std::size_t k = 0; k < from.size(); ++k) {
@@ -103,8 +103,8 @@ class FullEkf {
     return lin.nu.dot(S.inverse() * lin.nu);
   }
 
-  /// Minimum over δ of δᵀP⁻¹δ + |z − h(x ⊕ δ)|²_R by Gauss-Newton with numerical care left to the reader; then the
-  /// covariance linearised at the minimum. Returns the cost there.
+  /// Minimum over δ of δᵀP⁻¹δ + |z − h(x ⊕ δ)|²_R by Gauss-Newton, without numerical refinements; then the covariance
+  /// linearised at the minimum. Returns the cost there.
   double update_iterated(const std::vector<Sighting>& sightings) {
     return iterate([&](const Eigen::VectorXd& at) { return linearise(sightings, at); });
   }
@@ -182,7 +182,7 @@ class FullEkf {
     return moved;
   }
 
-  /// n of N = I + n·e_θᵀ, which makes errors at x errors at x + Δ: n = J·Δp for every point.
+  /// n of N = I + n·e_θᵀ, which turns errors at x into errors at x + Δ: n = J·Δp for every point.
   Eigen::VectorXd transport(const Eigen::VectorXd& moved) const {
     Eigen::VectorXd n = Eigen::VectorXd::Zero(x.size());
     if (!right_invariant_) return n;

@@ -17,7 +17,7 @@
 
 namespace helixnav::testing {
 
-/// MRPT's own filter, to compare with: its defaults but for these, silent and without its profiler.
+/// MRPT's own filter, for comparison: its defaults except for these, silent and without its profiler.
 class KfSlam {
  public:
   using Landmarks = std::map<std::int64_t, Eigen::Vector2d>;

@@ -3,7 +3,7 @@
 
 namespace helixnav::support {
 
-/// HELIXNAV_SANITIZED is defined where the address or thread sanitizer is on; GCC and clang say so in ways of their own.
+/// HELIXNAV_SANITIZED is defined where the address or thread sanitizer is on; GCC and clang report this differently.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define HELIXNAV_SANITIZED
 #elif defined(__has_feature)

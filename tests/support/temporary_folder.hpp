@@ -10,7 +10,7 @@
 
 namespace helixnav::testing {
 
-/// A folder of its own for one test, removed with all in it at the end.
+/// A folder for one test alone, removed with all its contents at the end.
 class TemporaryFolder {
  public:
   TemporaryFolder() {

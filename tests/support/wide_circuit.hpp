@@ -6,7 +6,7 @@
 
 namespace helixnav::sim {
 
-/// Two laps of a circle of 200 m among 25 landmarks that stand some 15 m apart, seen up to 30 m away; 400 scans.
+/// Two laps of a circle of 200 m among 25 landmarks about 15 m apart, seen up to 30 m away; 400 scans.
 inline Scenario wide_circuit() {
   Scenario s = named_scenario("circuit");
   s.world.loop_length_m = {200.0, 200.0};

@@ -20,8 +20,8 @@ using testing::SmallTeam;
 using testing::SmallTeamOptions;
 using testing::unknown_starts;
 
-/// Normal equations of all poses and landmarks, linearised at the truth, dense: robot 0 starts at its start, and of where the
-/// others do so much is known.
+/// Dense normal equations of all poses and landmarks, linearised at the truth: robot 0 starts at its start, and the
+/// starts of the others are known with information `others`.
 class InformationForm {
  public:
   InformationForm(const SmallTeam& small, double others) : small_(small) {
@@ -34,7 +34,7 @@ class InformationForm {
     H_.diagonal().head(3 * static_cast<Eigen::Index>(small.starts.size())).setConstant(others);
     H_.topLeftCorner<3, 3>().diagonal().setConstant(certain);
     for (const Message& message : small.messages) take(message);
-    // What nobody saw has no variance; a one keeps the matrix regular.
+    // What nobody saw carries no information; a one keeps the matrix regular.
     for (Eigen::Index i = 0; i < H_.rows(); ++i) H_(i, i) += H_(i, i) == 0.0 ? 1.0 : 0.0;
     P_ = H_.ldlt().solve(Eigen::MatrixXd::Identity(H_.rows(), H_.cols()));
   }
@@ -98,7 +98,7 @@ TeamOptions exact() {
   return options;
 }
 
-/// A joint EKF over both robots from the first second on, told little of where the second one starts: 1 m, 1 rad.
+/// A joint EKF over both robots from the first second on, with a weak prior on where the second one starts: 1 m, 1 rad.
 JointFilter joint_ekf(const SmallTeam& small, const Eigen::Vector3d& softening) {
   const Eigen::Matrix3d soft = softening.cwiseAbs2().asDiagonal();
   Eigen::MatrixXd P = Eigen::MatrixXd::Identity(6, 6);
@@ -124,7 +124,7 @@ JointFilter joint_ekf(const SmallTeam& small, const Eigen::Vector3d& softening) 
   return filter;
 }
 
-/// Data without noise that do not say so: every filter stays at the truth, where the problem is linear.
+/// Noise-free data that state noise all the same: every filter stays at the truth, where the problem is linear.
 SmallTeam exact_data() {
   SmallTeamOptions plain;
   plain.noise = 5.0;

@@ -8,7 +8,7 @@
 namespace helixnav::team {
 namespace {
 
-/// Of one robot, in these scans.
+/// Looks of one robot, in these scans.
 Looks looks_in(std::initializer_list<std::int64_t> scans, std::size_t robot = 0) {
   Looks looks;
   for (const std::int64_t scan : scans) looks.scans.emplace_back(robot, scan);
@@ -30,8 +30,8 @@ TEST(Looks, OfWhatOneScanShowsTogetherAreNotInTurn) {
   EXPECT_FALSE(were_seen_in_turn(looks_in({1, 3, 4, 6, 8, 10}), looks_in({2, 4, 5, 6, 7, 9})));
 }
 
-/// Two copies of one landmark, 80 looks each of 0.05 m, each the half of the noise: their means are 1.6 looks apart, ten times what
-/// their covariances allow.
+/// Two copies of one landmark, 80 looks of 0.05 m each, each with one half of the noise: their means are 1.6 σ of a
+/// look apart, ten times what their covariances allow.
 TEST(Looks, SharedOutBetweenTwoCopiesPutThemApart) {
   Places places;
   places.ids = {0, 1};

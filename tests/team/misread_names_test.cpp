@@ -35,7 +35,7 @@ std::pair<std::int64_t, std::int64_t> mistaken_names(const SmallTeam& small) {
   return {hidden, *std::find_if(others.begin(), others.end(), [&](std::int64_t name) { return name != hidden; })};
 }
 
-/// Robot 1 never tells `hidden` by its name, but calls `taken_for` so `times` times, from the first time that it sees it.
+/// Robot 1 never reports `hidden` by its name, but calls `taken_for` so `times` times, from the first time it sees it.
 SmallTeam with_misread(SmallTeam small, std::int64_t hidden, std::int64_t taken_for, int times) {
   for (Message& message : small.messages) {
     if (message.robot != 1) continue;
@@ -74,7 +74,7 @@ TEST(MisreadNames, OneThatIsAlwaysMisreadStaysALandmarkOfItsOwn) {
   EXPECT_NE(team.landmark_of(0, hidden), team.landmark_of(1, hidden));
 }
 
-/// Every third name is another's: no longer a few.
+/// Every third name is another landmark's: no longer only a few.
 TEST(MisreadNames, TooManyJoinNothing) {
   SmallTeam small = blind_team();
   for (Message& message : small.messages) {

@@ -6,7 +6,7 @@
 namespace helixnav::team {
 namespace {
 
-/// Two maps of the same `n` landmarks, 3 m apart, of which the second is off by a common shift and by noise of its own.
+/// Two maps of the same `n` landmarks, 3 m apart; the second is off by a common shift and by noise of its own.
 Places two_maps(int n, double shift_m, double common_sigma_m, double own_sigma_m) {
   Places places;
   const auto all = static_cast<std::size_t>(2 * n);
@@ -24,7 +24,7 @@ Places two_maps(int n, double shift_m, double common_sigma_m, double own_sigma_m
     }
   }
   places.are_two = [n](std::size_t i, std::size_t j) {
-    return (i < static_cast<std::size_t>(n)) == (j < static_cast<std::size_t>(n));  // one map shows its own apart
+    return (i < static_cast<std::size_t>(n)) == (j < static_cast<std::size_t>(n));  // landmarks of one map are distinct
   };
   return places;
 }

@@ -14,7 +14,7 @@
 
 namespace helixnav::team::testing {
 
-/// Something that a robot has to say.
+/// Something that a robot reports.
 struct Message {
   core::Nanoseconds t_ns = 0;
   int robot = 0;
@@ -45,7 +45,7 @@ inline constexpr double sigma_bearing_rad = 0.01;
 inline constexpr double sigma_way_m = 0.02;
 inline constexpr double sigma_turn_rad = 0.01;
 
-/// Robots on circles beside each other among 12 landmarks, all of which they see within their reach at every second.
+/// Robots on circles side by side among 12 landmarks; every second, they see all that are within their reach.
 inline SmallTeam small_team(const SmallTeamOptions& options = {}) {
   core::RandomStream random(options.seed, "small_team");
   const double k = options.noise;

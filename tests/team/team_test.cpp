@@ -68,7 +68,7 @@ TEST(Team, LateMessagesGiveTheSameBytes) {
   const Team in_time = testing::run(small, known_starts(small));
   std::vector<Message> late = small.messages;
   for (std::size_t i = 0; i + 40 < late.size(); i += 17) {
-    // Motion must come in order of one robot; sightings and scans may wait for any time.
+    // The motion of one robot must come in order; sightings and scans may wait for any time.
     if (late[i].what.index() != 0)
       std::rotate(late.begin() + static_cast<std::ptrdiff_t>(i), late.begin() + static_cast<std::ptrdiff_t>(i) + 1,
                   late.begin() + static_cast<std::ptrdiff_t>(i) + 40);
@@ -85,7 +85,7 @@ TEST(Team, LateMessagesGiveTheSameBytes) {
 TEST(Team, ASightingWaitsForTheMotionOfTheRobotSeen) {
   const SmallTeam small = small_team();
   const Team in_time = testing::run(small, known_starts(small));
-  // All of robot 1 comes a second late.
+  // Everything from robot 1 comes a second late.
   std::vector<Message> behind = small.messages;
   const auto heard_ns = [](const Message& m) { return m.t_ns + (m.robot == 1 ? 1'500'000'000LL : 0); };
   std::stable_sort(behind.begin(), behind.end(),
@@ -179,7 +179,7 @@ TEST(Team, AJoinedTeamEqualsTheTeamOfKnownStarts) {
   Team joined = testing::run(small, unknown_starts(small));
   joined.solve();
   ASSERT_EQ(joined.joins().size(), 1u);
-  // Unknown starts leave the joint least squares less by what the second start says, nothing else.
+  // With unknown starts, the joint least squares lacks what the second start tells, and nothing else.
   const core::Pose2 a = core::between(known.pose(0).mean, known.pose(1).mean);
   const core::Pose2 b = core::between(joined.pose(0).mean, joined.pose(1).mean);
   EXPECT_LT(difference(a, b).norm(), 2e-5);
@@ -244,7 +244,7 @@ bool is_sighting_of(const Message& message, int robot) {
   return message.robot == robot && std::holds_alternative<core::RobotSighting>(message.what);
 }
 
-/// Only the sightings of one another for which `keep` holds.
+/// Keeps only those sightings of one another for which `keep` holds.
 template <class Keep>
 SmallTeam with_sightings(SmallTeam small, const Keep& keep) {
   std::vector<Message>& all = small.messages;
@@ -255,7 +255,7 @@ SmallTeam with_sightings(SmallTeam small, const Keep& keep) {
   return small;
 }
 
-/// As of another robot that stands as far away in another direction.
+/// As if another robot were sighted, as far away in another direction.
 void make_false(Message& message) { std::get<core::RobotSighting>(message.what).observation.z[1] += 1.5; }
 
 constexpr core::Nanoseconds second_ns = 1'000'000'000;

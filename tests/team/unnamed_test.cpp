@@ -119,7 +119,7 @@ TEST(UnnamedTeam, WhatIsSeenOnceIsForgotten) {
     auto* scan = std::get_if<core::Scan>(&message.what);
     if (scan == nullptr) continue;
     const double bearing_rad = random.uniform(-3.0, 3.0);
-    const double range_m = random.uniform(9.0, 60.0);  // beyond the reach: nothing stands there
+    const double range_m = random.uniform(9.0, 60.0);  // beyond the reach: nothing is there
     scan->observations.push_back(core::make_range_bearing(range_m, bearing_rad, 0.05, 0.01));
   }
   Team team = testing::run(small, known_starts(small), by_place());

@@ -45,7 +45,7 @@ logs::Vehicle vehicle_of(const CalibrateJob& job) {
                          "example");
 }
 
-/// Noise stated beside the vehicle file would make the factors those of another noise than the file's.
+/// With noise set in addition to the vehicle file, the factors would not refer to the noise in the file.
 void refuse_noise_beside_file(const GivenOptions& given) {
   for (const CLI::Option* option : given) {
     const std::string key = key_of(*option);
@@ -140,9 +140,8 @@ std::string factor_text(const smoothing::NoiseScale& scale) {
   return text;
 }
 
-/// What goes to and fro and leaves out more than a quarter of the log, or takes the drive for noise of four times what was told, is no
-/// calibration; where most is used it is one, of
-/// which the file says that it has not settled.
+/// If it has not settled and either leaves out more than a quarter of the detections or finds more than four times the assumed noise,
+/// it is not a calibration; if most are used it is one, and the file states that it has not settled.
 void write_out(const std::string& out, const logs::Vehicle& vehicle, const Calibration& result) {
   constexpr double most_noise = 4.0;
   const bool is_noise = std::max(result.scales.odometry.factor, result.scales.landmarks.factor) > most_noise;

@@ -37,8 +37,8 @@ void multiply(smoothing::NoiseScale& scale, const smoothing::NoiseScale& more) {
   scale.redundancy = more.redundancy;
 }
 
-/// A first drive with constants that are wrong makes wrong associations, and these ask for any noise: no more than twice as
-/// much in a round.
+/// A first drive with wrong constants makes wrong associations, and these call for any amount of noise: at most twice as much
+/// per round.
 void limit(smoothing::NoiseScale& scale) {
   constexpr double most = 2.0;
   if (scale.factor <= most) return;
@@ -79,7 +79,7 @@ class Calibrator {
   }
 
  private:
-  /// As replay refuses it, and where bearings or turns have the other sign: what fits then are wrong associations.
+  /// Refuses what replay refuses, and bearings or turns of the opposite sign: what then fits is wrong associations.
   void check(const core::Recording& log) const {
     Drive drive;
     drive.recording = log;
@@ -99,8 +99,8 @@ class Calibrator {
     return log;
   }
 
-  /// The log of a drive, whose associations are cut to the scans of which the odometry still says where they were taken: another
-  /// delay puts others behind its end.
+  /// The log of a drive, whose associations are cut to the scans that the odometry still covers: another delay puts others after
+  /// its end.
   core::Recording read_of(SettledDrive& drive) {
     core::Recording log = read(result_.settings);
     loosen_odometry(drive.slipped, log);
@@ -115,7 +115,7 @@ class Calibrator {
     return log;
   }
 
-  /// Steering of a log without steering, turns of a log with it.
+  /// Steering for a log without steering, turns for a log with it.
   void drop_what_does_nothing(const core::Recording& log) {
     const auto reader = [this](const Settings& settings) { return plain(settings); };
     const NudgedLog nudged = nudge(reader, result_.settings, constants_, log);
@@ -129,14 +129,14 @@ class Calibrator {
   SettledDrive navigate(const Settings& settings) const {
     const core::Recording recording = read(settings);
     supervisor::NavigatorOptions options = fit_to_recording(settings, recording);
-    // Gates cut the tails that noise is judged by: that of a pair, and that of all pairs of a scan together.
+    // Gates cut off the tails by which noise is judged: that of a pair, and the joint one of all pairs of a scan.
     options.gates.match_probability = options.association.joint_probability = 0.9999;
     options.gates.new_probability = 0.999999;
     return drive_through(recording, options, settings.known_association);
   }
 
   struct Fit {
-    double step = 0.0;  ///< of the constant that went farthest, in its standard deviations
+    double step = 0.0;  ///< of the constant that moved farthest, in its standard deviations
     smoothing::NoiseScales noise;
 
     double most_noise() const { return std::max(noise.odometry.factor, noise.landmarks.factor); }
@@ -156,10 +156,10 @@ class Calibrator {
     result_.slips = count_slips(drive.slipped);
     result_.undetermined = drive.task.undetermined_landmarks;
     ++result_.rounds;
-    constexpr double settled = 0.02, settled_sigmas = 0.4, far_sigmas = 3.0;  // a match or two go to and fro
+    constexpr double settled = 0.02, settled_sigmas = 0.4, far_sigmas = 3.0;  // a match or two alternate
     const bool final_associations = !far_off_;
     far_off_ = fit.step > far_sigmas;
-    // Away again from where the fit without returns is, and back: the returns contradict the rest, and would for ever.
+    // Away again from the fit without returns, and back: the returns contradict the rest, and always would.
     if (final_associations && far_off_ && ++times_thrown_back_ > 1) result_.without_returns = true;
     result_.settled = final_associations && std::abs(std::log(fit.noise.odometry.factor)) < settled &&
                       std::abs(std::log(fit.noise.landmarks.factor)) < settled && fit.step < settled_sigmas;
@@ -188,15 +188,15 @@ class Calibrator {
     return sigmas;
   }
 
-  /// Left as told from here on.
+  /// Left at its file value from here on.
   bool is_left(std::size_t c) const { return result_.constants[c].verdict == Verdict::unsettled; }
   bool leaves_any() const {
     return std::any_of(result_.constants.begin(), result_.constants.end(),
                        [](const ConstantFound& found) { return found.verdict == Verdict::unsettled; });
   }
 
-  /// Rounds that repeat never settle: of the constants that go to and fro the one goes back to what was told that is nearest to
-  /// it, and the rounds begin to count anew.
+  /// Rounds that repeat never settle: of the constants that oscillate, the one nearest to its file value goes back to it, and
+  /// the rounds are counted anew.
   void leave_least_significant() {
     const Eigen::VectorXd swing = swings(values_, sigmas());
     constexpr double settled_sigmas = 0.4;
@@ -216,7 +216,7 @@ class Calibrator {
     values_.clear();
   }
 
-  /// What still goes farther than its interval.
+  /// The constants that still swing by more than their intervals.
   void leave_unsettled() {
     if (values_.size() < 2) return;
     const Eigen::VectorXd swing = swings(values_, sigmas());
@@ -225,8 +225,8 @@ class Calibrator {
     }
   }
 
-  /// Without returns where they cannot be believed: the constants may be far off, or the returns fit the rest so badly that they
-  /// ask for half as much noise again or cannot be solved.
+  /// Without returns if they cannot be trusted: the constants may be far off, or the returns fit the rest so badly that they
+  /// call for half as much noise again or cannot be solved.
   Fit fit_to(SettledDrive& drive) {
     if (constants_.empty()) return fit_all(drive);
     if (!far_off_ && !result_.without_returns) {
@@ -272,8 +272,8 @@ class Calibrator {
     return nudge([this](const Settings& settings) { return plain(settings); }, result_.settings, constants_, recording);
   }
 
-  /// Gauss–Newton with the associations of the drive, which is left solved with what was found. How far it went, in standard
-  /// deviations of the constant that went farthest.
+  /// Gauss–Newton with the associations of the drive, which is left solved with the result. Returns how far the constant
+  /// that moved farthest went, in its standard deviations.
   double fit_constants(SettledDrive& drive) {
     const Settings before = result_.settings;
     Eigen::VectorXd sigmas;
@@ -335,7 +335,7 @@ class Calibrator {
     result_.nis_found = nis_held_out(by_rest);
   }
 
-  /// Not a number where a run breaks off, as one may with the noise found and constants that are wrong.
+  /// NaN if a run breaks off, as one may with the noise found and wrong constants.
   double nis_held_out(const Settings& settings) const {
     try {
       return navigate(settings).nis_per_dof_held_out;
@@ -349,9 +349,9 @@ class Calibrator {
 
   std::string path_;
   Settings known_;
-  std::size_t scans_ = every_scan;  ///< of the log that are used: the same ones in all of a round
+  std::size_t scans_ = every_scan;  ///< of the log that are used: the same ones throughout a round
   std::vector<VehicleConstant> constants_;
-  bool far_off_;                      ///< the constants may be, so that returns cannot be believed
+  bool far_off_;                      ///< the constants may be, so that returns cannot be trusted
   int times_thrown_back_ = 0;         ///< far off after they were not
   Ids ids_;                           ///< of the last round
   std::vector<std::size_t> slipped_;  ///< likewise

@@ -66,8 +66,8 @@ Converted to_dlr(core::Recording recording, const std::string& out) {
   return counts_of(recording);
 }
 
-/// The vehicle.toml by which a log in the user's own format is read stays, also for lines beside it: they are of the
-/// same sensor.
+/// The vehicle.toml by which a log in the user's own format is read stays, also for lines beside it: they are from
+/// the same sensor.
 void write_vehicle(const core::Recording& recording, const std::string& in, const std::string& out, bool overwrite) {
   namespace fs = std::filesystem;
   const fs::path vehicle = fs::path(out).parent_path() / "vehicle.toml";

@@ -29,7 +29,7 @@ bool is_driven_again(const std::string& folder, const std::optional<SessionStart
 std::size_t pass_over(core::Nanoseconds end_ns, core::Recording& recording);
 
 /// For a session that begins at the end of a run that has no drive.bin, with the log of that run (or a longer one of it):
-/// leaves out what that run drove, and says so in a remark. InputError if nothing is left. Test: apps/go_on_test.cpp.
+/// leaves out what that run drove, and reports this in a remark. InputError if nothing is left. Test: apps/go_on_test.cpp.
 void pass_over_driven(const EarlierSession& earlier, core::Recording& recording, std::vector<bool>& withheld);
 
 /// Puts the drive of an earlier run before a recording that continues from its end (docs/yesterdays_map.md): its start,

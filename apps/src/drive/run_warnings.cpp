@@ -37,7 +37,7 @@ std::string names_text(const runs::Run& run) {
          ": some identities are wrong, or landmarks were moved. 'helixnav explain --step N' shows a scan";
 }
 
-/// Of detections: those of landmarks of the map given (a landmark that began in this run is none), and all in the scans that have one.
+/// Counts of detections: those of landmarks of the given map (not begun in this run), and all in the scans that have one.
 struct OnGivenMap {
   std::size_t seen = 0, of_map = 0, seen_beside = 0;
 };
@@ -58,13 +58,13 @@ OnGivenMap count_on_given_map(const runs::Run& run) {
   return counts;
 }
 
-/// Empty unless hardly anything that was seen is of the map on which the start was given, or only one here and there among many that
-/// are not, as a wrong place has it by chance: on the map most of what a scan shows is of it.
+/// Empty unless hardly anything seen belongs to the map on which the start was given, or only the odd detection among many that do
+/// not, as happens by chance at a wrong place: on the map most of what a scan shows belongs to it.
 std::string given_start_text(const runs::Run& run) {
   const OnGivenMap counts = count_on_given_map(run);
   constexpr std::size_t enough = 200;
   constexpr std::size_t most_times = 50;
-  // Of all, and of those in scans with one of the map: wrong starts 0.08 and 0.24 at most, right ones 0.63 and 0.66 at least.
+  // Of all, and of those in scans with one of the map: wrong starts at most 0.08 and 0.24, right ones at least 0.63 and 0.66.
   constexpr double little = 0.2, chance = 0.4;
   const auto of_map = static_cast<double>(counts.of_map);
   const bool by_chance =

@@ -36,7 +36,7 @@ std::vector<LandmarkNames> read_names(const std::vector<std::string>& runs) {
   return names;
 }
 
-/// Nobody can tell then that a run is of the same drive as another, which would count it twice.
+/// It then cannot be detected that a run is of the same drive as another, which would be counted twice.
 void note_unknown_drives(const std::vector<std::string>& runs, const std::vector<core::JointMap>& maps) {
   for (std::size_t k = 0; k < runs.size(); ++k) {
     if (!maps[k].drives.empty()) continue;

@@ -35,7 +35,7 @@ bool is_mature_on(const core::JointMap& map, core::LandmarkId id) {
   return map.states[static_cast<std::size_t>(at - map.joint.ids.begin())] == core::LandmarkState::mature;
 }
 
-/// The only one, or the only one that is still there; no_landmark where that leaves several.
+/// The only one, or the only one that is still there; no_landmark if that leaves several.
 core::LandmarkId owner_of_name(const std::vector<core::LandmarkId>& ids, const core::JointMap& map) {
   if (ids.size() == 1) return ids.front();
   std::vector<core::LandmarkId> there;

@@ -57,7 +57,7 @@ void take_drive_before(const std::string& folder, Drive& task) {
   put_truth_behind(folder, driven, task.recording);
 }
 
-/// What a user may not have meant: driving again on the map of the same drive, or on the end of a run of which only the map is left.
+/// What a user may not have meant: driving again on the map of the same drive, or from the end of a run that has only its map left.
 void note_what_map_holds(const ReplayJob& job, const Drive& task) {
   if (job.start && job.start->kind == SessionStart::Kind::end) {
     if (!job.settings.known_association && lacks_its_drive(job.map))

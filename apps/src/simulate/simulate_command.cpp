@@ -73,7 +73,7 @@ std::optional<runs::FedDrive> driven_before(const SimulateJob& job) {
   return runs::read_drive(drive_file_in(job.map));
 }
 
-/// Another day is another drive through the same world: other noise, other detections. Where a drive is gone on with, what comes
+/// Another day is another drive through the same world: other noise, other detections. If a drive is continued, what comes
 /// after it.
 core::Recording recording_of(const SimulateJob& job, const std::optional<runs::FedDrive>& before) {
   const sim::Scenario scenario = scenario_of(job.scenario, job.scenario_settings);

@@ -15,7 +15,7 @@ namespace helixnav::apps {
 
 using Ids = std::vector<std::vector<std::int64_t>>;
 
-/// For the indices of the graph, which are int because −1 is none of them.
+/// For the indices of the graph, which are int because −1 means none.
 inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// A recording whose associations are fixed, as a least-squares problem.

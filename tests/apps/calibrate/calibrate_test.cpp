@@ -91,7 +91,7 @@ TEST_F(CalibrateProgram, SaysWhatIsMissingOrWrong) {
   EXPECT_NE(noise_beside.err.find("calibrate judges the vehicle file"), std::string::npos) << noise_beside.err;
 }
 
-/// The first 200 s of a log, with all bearings half as large again.
+/// The first 200 s of a log, with all bearings scaled by 1.5.
 void stretch_bearings_and_cut(const fs::path& log) {
   const std::string odometry = text_of(log / "odometry.csv"), seen = text_of(log / "detections.csv");
   constexpr double last_s = 200.0, stretch = 1.5;
@@ -156,7 +156,7 @@ void write_straight_drive(const fs::path& folder) {
   }
 }
 
-// Where a sensor stands, and a scale of turns, show in turns alone.
+// The position of a sensor and a scale of turns are visible only in turns.
 TEST(CalibrateStraightDrive, SaysWhatCannotBeObserved) {
   const testing::TemporaryFolder folder;
   const fs::path log = folder.path() / "log", out = folder.path() / "out.toml";
@@ -176,7 +176,7 @@ class CalibrateRealLog : public testing::RealDataTest {
   testing::TemporaryFolder folder_;
 };
 
-// What is written can be calibrated again, and stays. The scale of the ranges is given: estimated, it moves with the noise.
+// The file written can be calibrated again and stays. The range scale is given: estimated, it moves with the noise.
 TEST_F(CalibrateRealLog, BeginsWithTheVehicleThatShipsAndWritesOneThatHolds) {
   find_real_data("plaza");
   if (IsSkipped()) return;

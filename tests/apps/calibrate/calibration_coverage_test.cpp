@@ -19,7 +19,7 @@ struct Interval {
   double middle = 0.0, low = 0.0, high = 0.0;
 };
 
-/// What calibrate prints of what it could observe: constants as "KEY given A found B +- C", noise as "KIND noise x B (95 %: LOW to HIGH".
+/// What calibrate prints about what it could observe: constants "KEY given A found B +- C", noise "KIND noise x B (95 %: LOW to HIGH".
 std::map<std::string, Interval> table_of(const std::string& text) {
   std::map<std::string, Interval> table;
   const std::regex constant(R"((\w+) +given +\S+ +found +(\S+) \+- (\S+) +observable)");
@@ -46,7 +46,7 @@ struct Coverage {
   }
 };
 
-/// HELIXNAV_CALIBRATION_SEEDS="FIRST LAST" for a study; few without.
+/// HELIXNAV_CALIBRATION_SEEDS="FIRST LAST" for a study; a few seeds without it.
 std::pair<int, int> seeds() {
   int first = 1001, last = 1003;
   if (const char* given = std::getenv("HELIXNAV_CALIBRATION_SEEDS")) std::sscanf(given, "%d %d", &first, &last);
@@ -95,7 +95,7 @@ TEST(CalibrationCoverage, HoldsTheTruthOfSpoiltLogs) {
     EXPECT_LE(held, 0.99 * drives);
   }
   EXPECT_GE(coverage.size(), 6u) << "constants are observable in such a log, beside both noises";
-  EXPECT_GE(held, 0.85 * drives);  // 95 % of 30: fewer than 26 have a probability of 2 %
+  EXPECT_GE(held, 0.85 * drives);  // 95 % of 30: fewer than 26 has a probability of 2 %
   EXPECT_LE(worst_noise["detections"], 0.15);
   EXPECT_LE(worst_noise["odometry"], 0.25);  // 0.207 in 100 drives
 }

@@ -13,13 +13,13 @@ smoothing::ConstantsEvidence evidence(const Eigen::MatrixXd& information, const 
 }
 
 TEST(ConstantsFit, LeavesOutTheWorseOfTwoThatCannotBeToldApart) {
-  Eigen::Matrix3d S;  // only the sum of the first two is seen, and the third by itself
+  Eigen::Matrix3d S;  // only the sum of the first two is observed; the third is observed by itself
   S << 100.0, 100.0, 0.0, 100.0, 100.0, 0.0, 0.0, 0.0, 1e4;
   const Eigen::Vector3d usual(1.0, 3.0, 0.5);
   const std::vector<bool> free = observable(S, usual);
   EXPECT_EQ(free[0] ? 1 : 0, free[1] ? 0 : 1) << "one of both is told";
   EXPECT_TRUE(free[2]);
-  // What is told of one is as uncertain as usual, and so is the other.
+  // The one that is held is as uncertain as usual, and so is the other.
   const Eigen::VectorXd sigmas = sigmas_of(S, free, usual);
   const double told = free[0] ? 3.0 : 1.0;
   EXPECT_NEAR(sigmas[free[0] ? 0 : 1], std::hypot(told, 0.1), 1e-6);
@@ -44,7 +44,7 @@ TEST(ConstantsFit, GoesToTheMinimumWithThePinnedOnesInTheirPlace) {
 
 TEST(ConstantsFit, KeepsWhatTheHeldOutPartsConfirm) {
   const Eigen::Matrix2d S = Eigen::Vector2d(100.0, 100.0).asDiagonal();
-  // The first constant is the same in both parts, the second one contradicts itself.
+  // The first constant is the same in both parts; the second contradicts itself.
   const std::vector<Fold> folds{{evidence(S, Eigen::Vector2d(1.0, 0.5)), evidence(S, Eigen::Vector2d(1.1, -0.5))},
                                 {evidence(S, Eigen::Vector2d(1.1, -0.5)), evidence(S, Eigen::Vector2d(1.0, 0.5))}};
   const std::vector<bool> kept = confirmed(folds, {true, true}, Eigen::Vector2d::Zero());

@@ -20,7 +20,7 @@ Eigen::VectorXd white(Eigen::Index n, core::RandomStream& random) {
 
 bool is_constant(const Eigen::VectorXd& level) { return level.maxCoeff() - level.minCoeff() < 1e-9; }
 
-// Of 400 series of noise 5 % drift by the asymptotic law, fewer of short ones; more than 34 (8.5 %) have 0.2 %.
+// Of 400 series of noise 5 % drift asymptotically, fewer if short; more than 34 (8.5 %) has probability 0.2 %.
 TEST(DriftingLevel, IsTheMeanOfWhiteNoise) {
   core::RandomStream random(1, "drifting level");
   int drifting = 0;
@@ -46,7 +46,7 @@ TEST(DriftingLevel, FollowsWhatGoesBeyondTheNoise) {
   EXPECT_GT(level.dot(truth) / truth.squaredNorm(), 0.9);
 }
 
-/// The same by dense matrices.
+/// The same with dense matrices.
 Eigen::VectorXd dense_level(const Eigen::VectorXd& seen, const Eigen::VectorXd& apart_s) {
   const Eigen::Index n = apart_s.size();
   Eigen::MatrixXd D = Eigen::MatrixXd::Zero(n, n + 1);

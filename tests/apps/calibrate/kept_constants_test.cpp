@@ -12,7 +12,7 @@ smoothing::ConstantsEvidence evidence_at(const Eigen::MatrixXd& information, con
 
 const Eigen::Vector2d usual(1.0, 1.0), told(0.0, 0.0);
 
-// The first is 5 standard deviations from told, the second 1: its interval holds what was told.
+// The first is 5 standard deviations from its given value, the second 1: its interval contains the given value.
 TEST(KeptConstants, GoBackToToldWhereTheIntervalHoldsIt) {
   const Eigen::Matrix2d S = Eigen::Vector2d(100.0, 100.0).asDiagonal();
   const auto all = evidence_at(S, Eigen::Vector2d(0.5, 0.1));
@@ -21,7 +21,7 @@ TEST(KeptConstants, GoBackToToldWhereTheIntervalHoldsIt) {
   EXPECT_EQ(verdicts, (std::vector<Verdict>{Verdict::kept, Verdict::indistinguishable}));
 }
 
-// Of two that are hardly told apart neither interval excludes what was told; with one of them as told the other one's does.
+// If two are hardly distinguishable, neither interval excludes the given value; with one held there, the other's does.
 TEST(KeptConstants, AreJudgedWithTheOthersThatWentBackAsTold) {
   Eigen::Matrix2d S;
   S << 100.0, 99.0, 99.0, 100.0;

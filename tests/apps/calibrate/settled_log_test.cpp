@@ -13,7 +13,7 @@ core::Scan scan_of(core::Nanoseconds t_ns, const core::Observation& observation)
   return scan;
 }
 
-/// A landmark is 0.5 m ahead, and from 1 m on, by a wrong match, ahead as well: the best it can do is to stand just before
+/// A landmark is 0.5 m ahead and, by a wrong match, also ahead as seen from 1 m on: its best fit is just in front of
 /// that sensor.
 core::Recording contradiction() {
   core::Recording recording;

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double steady_degree = core::pi / 180.0;
 
-/// On a circle of 35 m to the left, or straight on, at 3 m/s; scans five times a second, odometry four times as often. All is as told,
-/// unless a delay is told: there is none.
+/// On a circle of radius 35 m to the left, or straight on, at 3 m/s; scans five times a second, odometry four times as often. All
+/// is as stated, unless a delay is stated: there is none.
 struct SteadyDrive {
   double turn_radps = 0.0;
   double share_of_speed_varied = 0.0;
@@ -93,8 +93,8 @@ std::string delay_found(const SteadyDrive& drive) {
   return row.str();
 }
 
-// The noise of the speeds is no change of speed. When it was taken for one, a delay was called observable in all of 35 such
-// drives, and the interval of 6 held the truth.
+// Noise in the speeds is not a change of speed. When it was taken for one, a delay was called observable in all 35 such
+// drives, and 6 of the intervals contained the truth.
 TEST(CalibrateSteadyDrive, SeesNoDelayAtASteadySpeed) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     EXPECT_NE(delay_found({0.0, 0.0, seed}).find("not observable"), std::string::npos) << "straight " << seed;
@@ -112,7 +112,7 @@ TEST(CalibrateSteadyDrive, SeesTheDelayWhereTheSpeedChanges) {
   EXPECT_LT(half_s, 0.1);
 }
 
-// The delay found puts the last two scans behind the end of the odometry, where those of the round before still were before it.
+// The delay found puts the last two scans after the end of the odometry; in the previous round they were still before it.
 TEST(CalibrateSteadyDrive, LosesTheLastScansToAnotherDelay) {
   const std::string row = delay_found({0.0, 0.3, 4, 0.3, 149.45});
   std::smatch found;

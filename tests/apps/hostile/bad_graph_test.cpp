@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file that smooth must refuse, with what must be said of it.
+/// A file that smooth must refuse, with the message it must give.
 struct Bad {
   const char* claim;
   const char* file;

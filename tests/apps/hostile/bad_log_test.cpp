@@ -20,7 +20,7 @@ class BadLog : public ::testing::Test {
     return logs_.path();
   }
 
-  /// Replays `log` and expects the user to be told, with these words, and nothing to be left behind.
+  /// Replays `log` and expects an error message with these words and no output left behind.
   void expect_refused(const fs::path& log, const std::vector<std::string>& words) const {
     const fs::path out = results_.path() / "run";
     const Outcome outcome = run({"replay", log, "--out", out});

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-/// Two robots that stand 4 m apart, see each other three times each, and landmarks 6 and 7.
+/// Two robots 4 m apart that see each other three times each, and landmarks 6 and 7.
 std::string odometry_table() { return "# robot,t,v,w\n1,0.0,0.0,0.0\n1,4.0,0.0,0.0\n2,0.0,0.0,0.0\n2,4.0,0.0,0.0\n"; }
 
 std::string measurements_table(bool see_each_other = true) {
@@ -137,7 +137,7 @@ TEST_F(TeamLog, WhoseCommandsStopIsRemarkedOn) {
   EXPECT_EQ(outcome.err.find("robot 1 has no command"), std::string::npos) << outcome.err;
 }
 
-/// Landmark 6 is seen at two places in turn by one name.
+/// Landmark 6 is seen at two places alternately under one name.
 TEST_F(TeamLog, OfWhichMuchIsRefusedIsWarnedOf) {
   std::string text;
   for (int k = 1; k < 80; ++k) {
@@ -151,7 +151,7 @@ TEST_F(TeamLog, OfWhichMuchIsRefusedIsWarnedOf) {
   EXPECT_EQ(outcome.err.find("warning: robot 2"), std::string::npos) << outcome.err;
 }
 
-/// Every third of the sightings of robots is wrong, and those of landmarks, which are many more, are right.
+/// One in three robot sightings is wrong; the landmark sightings, which are far more numerous, are right.
 TEST_F(TeamLog, OfRobotsThatContradictOneAnotherIsWarnedOf) {
   std::string text;
   for (int k = 1; k < 80; ++k) {
@@ -169,7 +169,7 @@ TEST_F(TeamLog, OfRobotsThatContradictOneAnotherIsWarnedOf) {
 }
 
 TEST_F(TeamLog, OfWhichATableWasCutIsRefusedAsCut) {
-  // gzip of "1,1.0,63,6,2.0,0.1\n", without its last eight bytes.
+  // gzip of "1,1.0,63,6,2.0,0.1\n" without its last eight bytes.
   const std::string packed("\x1f\x8b\x08\x00\x00\x00\x00\x00\x02\x03", 10);
   fs::remove(folder_.path() / "log" / "measurements.csv");
   write("measurements.csv.gz", packed);

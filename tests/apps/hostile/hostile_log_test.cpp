@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Logs that no vehicle wrote: numbers beyond all measure, scans without a view, crowds in one place.
+// Logs that no vehicle would write: extreme numbers, scans without a field of view, many objects in one place.
 #include <sstream>
 #include <string>
 #include <vector>
@@ -99,7 +99,7 @@ TEST_F(HostileLog, GraphsWhoseScansHaveNoViewAreDrivenWithDefaultOptions) {
 
 TEST_F(HostileLog, ObservationsAllInOnePlaceAreDriven) { expect_replayed("one.circles", circles(5, 50, 0.0)); }
 
-/// 10 000 observations a scan; the figures for time and memory stand in docs/fuzzing.md.
+/// 10 000 observations a scan; the figures for time and memory are in docs/fuzzing.md.
 class CrowdedScan : public HostileLog, public ::testing::WithParamInterface<double> {};
 
 TEST_P(CrowdedScan, IsThinnedAndTheReportSaysSo) {

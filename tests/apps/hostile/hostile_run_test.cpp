@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Run folders, maps and settings that are not what they were, or without end.
+// Run folders, maps and settings that have been altered, or are endless.
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -118,7 +118,7 @@ TEST(HostileMapOfAJoin, ThatWasCutIsUsedWithAWarning) {
       << outcome.err;
 }
 
-/// A gigabyte and a half.
+/// 1.5 gigabytes.
 void allow_little_memory() {
   const rlimit little{3u << 29, 3u << 29};
   if (::setrlimit(RLIMIT_AS, &little) != 0) ::_exit(125);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Output that cannot be written, signals in the middle of things, threads that cannot start.
+// Output that cannot be written, signals in mid-operation, threads that cannot start.
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -52,7 +52,7 @@ TEST_F(LostOutput, EndsInAnErrorWhoeverPrints) {
   }
 }
 
-/// No file grows beyond: as a disk that is full. The error of a signal would end the program.
+/// No file can grow beyond this, as on a full disk. The signal is ignored, as it would end the program.
 void allow_small_files() {
   const rlimit small{3000, 3000};
   ::signal(SIGXFSZ, SIG_IGN);
@@ -119,7 +119,7 @@ TEST(Interrupt, EndsACampaignWithinItsRunAndTheRunIsDrivenAgain) {
   EXPECT_EQ(complete_lines(out / "runs.jsonl"), 0u);
 }
 
-/// A stack that no machine has: a thread that asks for it does not start.
+/// A stack larger than any machine has: a thread that asks for it does not start.
 void allow_no_threads() {
   const rlimit huge{rlim_t{1} << 47, RLIM_INFINITY};
   if (::setrlimit(RLIMIT_STACK, &huge) != 0) ::_exit(125);
@@ -136,7 +136,7 @@ TEST(NoThreads, CampaignIsDrivenByThoseThatThereAre) {
   EXPECT_EQ(complete_lines(out / "runs.jsonl"), 2u);
 }
 
-/// The rows of a campaign that is taken up again.
+/// The rows of a resumed campaign.
 TEST(HostileCampaign, RowsOfWrongTypesAreNamedByLine) {
   const testing::TemporaryFolder folder;
   const fs::path out = folder.path() / "campaign";

@@ -21,7 +21,7 @@ const char* const vehicle =
 
 class Warnings : public ::testing::Test {
  protected:
-  /// A drive straight on past 200 poles on either side, odometry and detections without error.
+  /// A drive straight past 200 poles on either side, with error-free odometry and detections.
   void SetUp() override {
     std::string odometry = "t,v,omega\n", detections = "t,x_m,y_m,sigma_x,sigma_y\n";
     for (int t = 0; t <= 100; ++t) {
@@ -55,7 +55,7 @@ TEST_F(Warnings, TellThatTheLogIsBetterThanAssumed) {
   expect(replay(), 0, "times smaller than the assumed noise");  // it has no error at all
 }
 
-/// A column of identities that is empty says no more than none.
+/// An empty column of identities says no more than no column.
 TEST_F(Warnings, AreNotNeededWhereNoDetectionHasAnIdentity) {
   std::string detections = "t,range_m,bearing_deg,id\n";
   for (int t = 0; t < 100; ++t) detections += std::to_string(t) + ",5,3,\n";

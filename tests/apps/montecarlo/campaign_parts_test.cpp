@@ -42,7 +42,7 @@ class CampaignParts : public ::testing::Test {
     EXPECT_FALSE(std::filesystem::exists(out("merged")));
   }
 
-  /// But for the clock on the wall.
+  /// Everything except the wall clock.
   std::string lines(const std::string& name) const {
     std::ifstream file(out(name) + "/runs.jsonl");
     std::string text;
@@ -67,7 +67,7 @@ TEST_F(CampaignParts, MergedInAnyOrderAreTheCampaignOfOneMachine) {
   ASSERT_EQ(drive("whole", "3:8").exit_code, 0);
   ASSERT_EQ(drive("a", "3:4").exit_code, 0);
   ASSERT_EQ(drive("b", "5:5").exit_code, 0);
-  ASSERT_EQ(drive("b", "6:6").exit_code, 0);  // goes on with a folder
+  ASSERT_EQ(drive("b", "6:6").exit_code, 0);  // resumes a folder
   ASSERT_EQ(drive("c", "7:8").exit_code, 0);
   ASSERT_EQ(merge({"c", "a", "b"}).exit_code, 0);
   EXPECT_EQ(text_of(out("merged") + "/manifest.json"), text_of(out("whole") + "/manifest.json"));

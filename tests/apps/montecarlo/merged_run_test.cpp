@@ -44,7 +44,7 @@ void rewrite(const fs::path& file, const Change& change) {
 }
 
 /// Gives most observations of every landmark to a second one, 1000 + id, that a closing in the last step merges with the
-/// first: what a loop that was closed late leaves behind.
+/// first: what a late loop closure leaves behind.
 void split_landmarks(const fs::path& run, bool record_merges) {
   std::vector<std::string> ids;
   rewrite(run / "map.csv", [&](const std::vector<std::string>& cells) { ids.push_back(cells[0]); });

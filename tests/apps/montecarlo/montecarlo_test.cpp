@@ -62,7 +62,7 @@ TEST_F(MonteCarlo, GivesTheSameRowsForAnyNumberOfJobs) {
 TEST_F(MonteCarlo, GoesOnAfterAKillAsIfThereHadBeenNone) {
   ASSERT_EQ(campaign("whole", {"--runs", "3", "--first-seed", "7"}).exit_code, 0);
   ASSERT_EQ(campaign("cut", {"--runs", "2", "--first-seed", "8"}).exit_code, 0);
-  append("cut", "{\"seed\":10,\"verdi");  // the process died while it wrote
+  append("cut", "{\"seed\":10,\"verdi");  // the process died while writing
   const Outcome outcome = campaign("cut", {"--runs", "3", "--first-seed", "7"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(rows("cut"), rows("whole"));
@@ -85,7 +85,7 @@ TEST_F(MonteCarlo, KeepsTheRunsThatCameToTheirEndWhenInterrupted) {
   EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
   EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
   EXPECT_GE(rows("run").size(), 1u);
-  // In the middle of a step that takes long the program has no time to sum up.
+  // In the middle of a long step the program has no time to write a summary.
   if (!fs::exists(out("run") / "summary.json")) return;
   EXPECT_EQ(summary("run").at("runs"), rows("run").size());
 }
@@ -127,7 +127,7 @@ TEST_F(MonteCarlo, RefusesOptionsOutOfTheirRange) {
   EXPECT_NE(scenario.err.find("did you mean 'large-loop'"), std::string::npos) << scenario.err;
 }
 
-/// A closing as a line of runs.jsonl has it.
+/// A closing as written in a line of runs.jsonl.
 std::string row(int seed, const std::string& verdict, double nees, double metres) {
   const Json pose = {{"nees", nees}, {"position_error_m", 0.1}, {"absolute_position_error_m", 0.2}};
   Json closure = pose;
@@ -157,7 +157,7 @@ TEST_F(MonteCarlo, SumsUpWithIntervalsAndBands) {
   EXPECT_NEAR(s.at("undecided").at("interval_95_percent").at(0), 0.0, 1e-12);
   EXPECT_NEAR(s.at("undecided").at("interval_95_percent").at(1), 16.84, 0.01);  // 0 of 20
   EXPECT_EQ(s.at("error_at_return_exceeds_spacing").at("count"), 12);           // 9 m to 20 m
-  EXPECT_NEAR(s.at("metres_to_closure").at("median"), 20.0, 1e-12);             // of 11 … 29, the false one left out
+  EXPECT_NEAR(s.at("metres_to_closure").at("median"), 20.0, 1e-12);             // of 11 … 29, without the false one
   EXPECT_NEAR(s.at("metres_to_closure").at("p90"), 27.2, 1e-12);
   EXPECT_NEAR(s.at("nees_at_closing").at("mean"), 3.0, 1e-12);
   EXPECT_NEAR(s.at("nees_at_closing").at("band_95").at(0), 40.482 / 20.0, 1e-3);  // χ² with 60 degrees of freedom

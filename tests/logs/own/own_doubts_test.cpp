@@ -8,7 +8,7 @@
 namespace helixnav::logs {
 namespace {
 
-/// The remarks on the log with this file, one a line.
+/// The remarks on the log with this file, one per line.
 std::string remarks(const std::string& file, const std::string& text) {
   const OwnLogFolder log;
   log.write(file, text);
@@ -43,7 +43,7 @@ TEST(OwnDoubts, TellGapsWithTheirLengthAndPlace) {
       << all;
 }
 
-/// A drive at 3 m/s, a row every 0.1 s, of which row 20 goes as far as given.
+/// A drive at 3 m/s, a row every 0.1 s; row 20 covers the given distance.
 std::string drive_with_jump(double jump_m) {
   std::string rows = "t_s,dx_m,dy_m,dheading_rad\n";
   for (int i = 0; i < 40; ++i) {

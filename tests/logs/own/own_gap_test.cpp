@@ -14,7 +14,7 @@ namespace {
 
 constexpr double turn_radps = 0.4;
 
-/// 50 s at 1 m/s with turns, of five seconds each; then no rows for so long. Scans at its begin and its end, and between them so many.
+/// 50 s at 1 m/s with turns of five seconds each; then no rows for `gap_s`. Scans at its start and end, and the given number between.
 core::Odometry way_through(double gap_s, int scans_between) {
   const OwnLogFolder log;
   log.write("vehicle.toml",
@@ -38,7 +38,7 @@ core::Odometry way_through(double gap_s, int scans_between) {
   return way.value_or(core::no_motion(0));
 }
 
-// Held for certain, a vehicle that turned meanwhile is put wrong: 8 m in one of eight simulated logs.
+// If it is held as certain, a vehicle that turned meanwhile is misplaced: by 8 m in one of eight simulated logs.
 TEST(OwnGap, LeavesOpenThatTheVehicleTurnsAsItDidBefore) {
   const double q = turn_radps * turn_radps / 5.0;
   for (const double gap_s : {3.0, 6.0}) {

@@ -18,7 +18,7 @@ struct Signs {
   double turns = 1.0;
 };
 
-/// Two rounds of 20 m across at 2 m/s among 40 posts, a scan a second up to 15 m; all noise is within that of the vehicle file.
+/// Two rounds of 20 m diameter at 2 m/s among 40 posts, a scan a second up to 15 m; all noise is within the vehicle file's.
 std::string remarks_on_rounds(const Signs& signs, double turn_rad_per_s = 0.2) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> place_m(-20.0, 20.0);

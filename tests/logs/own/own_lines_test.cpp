@@ -82,7 +82,7 @@ TEST(OwnLines, ReadBackAreTheSameScans) {
   EXPECT_TRUE(scans[1].observations.empty());
 }
 
-/// Motion between two scans of one stamp, a scan at once with another, one whose clock went back.
+/// Motion between two scans with one time stamp, a scan at the same time as another, and one whose clock went back.
 TEST(OwnLines, AreReadInTheirOrderWhereTimesAreTheSame) {
   core::Recording recording;
   core::Scan scan;

@@ -10,7 +10,7 @@
 
 namespace helixnav::logs {
 
-/// A folder with a log of the user's own that is right, until a test writes over one of its files.
+/// A folder with a valid log of the user's own, until a test overwrites one of its files.
 struct OwnLogFolder {
   OwnLogFolder() {
     write("vehicle.toml",

@@ -10,7 +10,7 @@ namespace {
 
 class OwnLogRefusal : public ::testing::Test {
  protected:
-  /// The error holds this when the file has that text.
+  /// The error contains this if the file has that text.
   void expect(const std::string& file, const std::string& text, const std::string& said) const {
     const OwnLogFolder log;
     log.write(file, text);
@@ -56,7 +56,7 @@ TEST_F(OwnLogRefusal, OfNumbersThatAreNoneNamesThePlace) {
          "odometry.csv:2:3: expected a number with a decimal point for v, found '1,5'");
 }
 
-/// Found by fuzzing: it passed for a mistake of the program and ended it.
+/// Found by fuzzing: it was taken for a bug in the program and ended it.
 TEST_F(OwnLogRefusal, OfAZeroByteInAClassNamesThePlace) {
   const std::string zero(1, '\0');
   expect("detections.csv", "t,range_m,bearing_deg,class\n0,1,2,o" + zero + "k\n",

@@ -84,7 +84,7 @@ TEST(OwnLog, LeavesOutDetectionsThatRepeatAnotherAndCountsThem) {
   EXPECT_EQ(read.remarks.at(0), "detections: 1 row that repeat another, left out");
 }
 
-// Row against row, 160 000 of them in eight scans took 24 s.
+// Comparing row with row, 160 000 of them in eight scans took 24 s.
 TEST(OwnLog, FindsWhatIsRepeatedInScansOfThousands) {
   const OwnLogFolder log;
   std::string rows = "t_s,range_m,bearing_deg\n";

@@ -13,7 +13,7 @@
 namespace helixnav::logs {
 namespace {
 
-/// What is said of a log with these rows and scans at these times, and how many scans are left.
+/// The remarks on a log with these rows and scans at these times, and the number of scans left.
 struct Overlap {
   std::string said;
   std::ptrdiff_t scans = 0;
@@ -55,7 +55,7 @@ TEST(OwnOverlap, HoldsSpeedsAfterTheirEnd) {
   EXPECT_EQ(overlap.scans, 3);
 }
 
-// Taken as from a vehicle that stands, they put a moving one wrong for certain.
+// Treated as from a vehicle at rest, they misplaced a moving one with certainty.
 TEST(OwnOverlap, LeavesOutScansThatIncrementsAndPosesDoNotReach) {
   for (const std::string& odometry : {increment_rows, pose_rows}) {
     const Overlap overlap = overlap_of(odometry, {"11", "12.5", "14", "15"});
@@ -65,7 +65,7 @@ TEST(OwnOverlap, LeavesOutScansThatIncrementsAndPosesDoNotReach) {
   }
 }
 
-/// Only the first of them lies within the time of the odometry.
+/// Only the first of them is within the time of the odometry.
 TEST(OwnOverlap, RefusesScansInMillisecondsBesideOdometryInSeconds) {
   std::vector<std::string> times{"12"};
   for (int i = 1; i <= 30; ++i) times.push_back(std::to_string(12000 + 250 * i));

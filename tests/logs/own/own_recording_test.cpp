@@ -14,7 +14,7 @@
 namespace helixnav::logs {
 namespace {
 
-/// The whole way of a recording.
+/// The whole motion of a recording.
 core::Odometry way_of(const core::Recording& recording) {
   core::Odometry way = core::no_motion(0);
   for (const core::Event& event : recording.events) {
@@ -40,7 +40,7 @@ TEST(Motion, OfATwistIsTheArcOfFineIntegration) {
   EXPECT_TRUE(logarithm(exponential(tiny).vector()).isApprox(tiny, 1e-12));
 }
 
-/// Ten seconds at 2 m/s and 0.1 rad/s, given in each way.
+/// Ten seconds at 2 m/s and 0.1 rad/s, given in each form.
 TEST(OwnRecording, OfEveryKindOfOdometryIsTheSameWay) {
   constexpr double v_mps = 2.0, omega_radps = 0.1, wheelbase_m = 1.5, track_m = 0.8;
   const core::Pose2 whole = exponential({v_mps * 10.0, 0.0, omega_radps * 10.0});
@@ -77,7 +77,7 @@ TEST(OwnRecording, OfEveryKindOfOdometryIsTheSameWay) {
   }
 }
 
-/// Straight on for a second at 2 m/s, by two wheels.
+/// Straight ahead for a second at 2 m/s, by two wheels.
 core::Odometry way_by_wheels(const std::string& noise) {
   const OwnLogFolder log;
   log.write("vehicle.toml",
@@ -114,7 +114,7 @@ TEST(OwnRecording, CorrectsOdometryByScaleBiasAndPlace) {
             "[odometry]\nscale = 2\nturn_scale = 4\nturn_bias_rad_per_s = 0.5\nsigma_along_m_per_sqrt_m = 0.02\n"
             "[[sensor]]\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n");
   expect_near(way_of(log.recording()).T_before_after, exponential({2.0, 0.0, 1.5}), 1e-12);
-  // Odometry 1 m ahead of the vehicle's origin that turns on the spot: the origin moves to the side.
+  // Odometry 1 m ahead of the vehicle's origin, turning on the spot: the origin moves sideways.
   log.write("odometry.csv", "t,v,omega\n0,0,0.5\n1,0,0\n");
   log.write("vehicle.toml",
             "[odometry]\nx_m = 1\nsigma_heading_deg_per_sqrt_s = 1\n"
@@ -124,7 +124,7 @@ TEST(OwnRecording, CorrectsOdometryByScaleBiasAndPlace) {
   EXPECT_GT(way.covariance(1, 1), 0.5 * way.covariance(2, 2));
 }
 
-/// Rows every 0.1 s until 1 s; then nothing until 121 s. The last row before says `last`.
+/// Rows every 0.1 s until 1 s; then nothing until 121 s. The last row before the gap is `last`.
 core::Odometry way_through_gap(const std::string& columns, const std::string& driving, const std::string& last) {
   const OwnLogFolder log;
   log.write("vehicle.toml",
@@ -142,7 +142,7 @@ core::Odometry way_through_gap(const std::string& columns, const std::string& dr
   return at == recording.events.rend() ? core::no_motion(0) : std::get<core::Odometry>(*at);
 }
 
-// What errs at speed does not add up while nothing moves: a vehicle that was parked for two minutes is not turned by ±180°.
+// Errors that occur at speed do not add up at rest: a vehicle parked for two minutes is not turned by ±180°.
 TEST(OwnRecording, AVehicleThatStandsThroughAGapStaysWhereItIs) {
   for (const auto& [columns, driving, stands] : {std::array<std::string, 3>{"t,v,omega", "2,0.1", "0,0"},
                                                  {"t,v,steering_rad", "2,0.1", "0,0.1"},

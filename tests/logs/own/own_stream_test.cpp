@@ -24,7 +24,7 @@ constexpr const char* vehicle_text =
     "[[sensor]]\nname = \"far\"\nx_m = 0.3\nreach_m = 40\nview_deg = [-90, 90]\nsigma_range_m = 0.1\n"
     "sigma_bearing_deg = 0.3\ndelay_s = 0.125\n";
 
-/// A drive of random steps as lines in order of time, odometry given in one of its ways.
+/// A drive of random steps as lines in time order, with odometry given in one of its forms.
 Lines lines_of_drive(const std::string& kind, unsigned seed, int rows = 120) {
   std::mt19937 random(seed);
   const auto uniform = [&](double low, double high) {
@@ -51,7 +51,7 @@ Lines lines_of_drive(const std::string& kind, unsigned seed, int rows = 120) {
            << uniform(1.0, 12.0) << R"(, "bearing": 0.5}]})";
       lines.push_back(near.str());
     }
-    if (uniform(0.0, 1.0) < 0.3) {  // on the odometry's own time, row by row
+    if (uniform(0.0, 1.0) < 0.3) {  // at the odometry's own times, row by row
       for (int row = 0; row < 3; ++row) {
         far.str("");
         far << R"({"detections": {"sensor": "far", "t": )" << t + 0.125 + 0.06 << R"(, "range": )"
@@ -64,7 +64,7 @@ Lines lines_of_drive(const std::string& kind, unsigned seed, int rows = 120) {
   return lines;
 }
 
-/// Everything that comes of lines.
+/// Everything that results from lines.
 StreamedEvents streamed(OwnStream& stream, const Lines& lines) {
   StreamedEvents all;
   const auto append = [&](StreamedEvents next) {
@@ -131,7 +131,7 @@ TEST_P(OwnStreamOf, EachKindOfOdometryGivesTheEventsOfTheLogToTheLastBit) {
   }
 }
 
-/// Without the odometry of three times of some seconds, which scans divide.
+/// Without the odometry of three periods of some seconds, which contain scans.
 Lines with_gaps(const Lines& lines) {
   Lines kept;
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -141,7 +141,7 @@ Lines with_gaps(const Lines& lines) {
   return kept;
 }
 
-// What a gap leaves open is told by the rows before it alone; some of them the stream has dropped.
+// The uncertainty of a gap is determined by the rows before it alone; the stream has dropped some of them.
 TEST_P(OwnStreamOf, GapsInTheOdometryGiveTheEventsOfTheLogToTheLastBit) {
   const testing::TemporaryFolder folder;
   const Vehicle vehicle = read_vehicle(folder.write("vehicle.toml", vehicle_text));

@@ -10,7 +10,7 @@ core::Nanoseconds tenths(int count) { return count * core::Nanoseconds{100'000'0
 
 TEST(RateChanges, AreTheMeanSquareOfWhatTheRowsBeforeDid) {
   RateChanges changes;
-  // A turn rate of 0 and of 0.5 rad/s, five seconds each: one change of 0.25 (rad/s)² in five seconds.
+  // Turn rates of 0 and 0.5 rad/s, five seconds each: one change of 0.25 (rad/s)² in five seconds.
   for (int i = 0; i <= 1000; ++i) changes.take(tenths(i), {1.0, 0.0, (i / 50) % 2 == 0 ? 0.0 : 0.5});
   EXPECT_NEAR(changes.variance_per_s().z(), 0.25 / 5.0, 0.005);
   EXPECT_NEAR(changes.variance_per_s().x(), 1.0 / 101.0, 1e-3) << "it began from rest";

@@ -21,8 +21,8 @@ bool contains(const std::vector<core::LandmarkId>& ids, core::LandmarkId id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
-/// Calls `check(filter, scan)` with the filter as it stands when each tenth scan comes: active and passive landmarks,
-/// fresh and old ones, before the first closing of the loop and after it.
+/// Calls `check(filter, scan)` with the filter as it is when every tenth scan comes: active and passive landmarks,
+/// fresh and old ones, before and after the first loop closing.
 template <class Check>
 void on_a_drive(double scale_of_odometry_noise, const Check& check) {
   sim::Scenario scenario = wide_circuit();

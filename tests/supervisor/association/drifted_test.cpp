@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a vehicle does not know any more where to look for is a return, however short the way was.
+// Meeting what the vehicle no longer knows where to look for is a return, however short the way was.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -38,7 +38,7 @@ core::Odometry ahead(double way_m) {
   return odometry;
 }
 
-/// Two landmarks are mapped 5 m ahead; then the vehicle turns once around itself, seeing nothing.
+/// Two landmarks are mapped 5 m ahead; then the vehicle turns once on the spot, seeing nothing.
 Navigator that_turned_around(double sigma_rad) {
   Navigator navigator{core::PoseGaussian{}};
   for (int i = 0; i < 12; ++i) {
@@ -60,7 +60,7 @@ TEST(Drifted, ALoneMatchDoesNotTurnAVehicleThatNoLongerKnowsWhereItLooks) {
   const double before_rad2 = navigator.pose().covariance(2, 2);
   ASSERT_GT(before_rad2, 0.1);
   for (int again = 0; again < 3; ++again) {
-    const core::StepReport report = navigator.observe(scan_of({glimpse(4.8, -0.5)}));  // of nothing that is mapped
+    const core::StepReport report = navigator.observe(scan_of({glimpse(4.8, -0.5)}));  // not a mapped landmark
     EXPECT_NE(report.associations.front().outcome, core::Outcome::matched) << again;
     navigator.move(ahead(0.02));
   }

@@ -29,7 +29,7 @@ class AmongOldLandmarks : public testing::Test {
     for (int look = 0; look < 5; ++look) see(born);
   }
 
-  /// Seen a metre on.
+  /// These are seen one metre further on.
   void see(const Ids& ids) {
     life.drive(1.0);
     life.observe(at_m(), ids, {}, {});
@@ -37,7 +37,7 @@ class AmongOldLandmarks : public testing::Test {
 
   Eigen::Vector2d at_m() const { return {life.path_m(), 0.0}; }
 
-  /// Landmark 3 was not seen, where these were: whether that counts.
+  /// Whether landmark 3 counts as missed if these were seen and it was not.
   bool is_missed(const Ids& seen) const {
     Ids expected{3};
     drop_what_may_be_elsewhere(filter, life, nullptr, ground, seen, expected);
@@ -54,7 +54,7 @@ TEST_F(AmongOldLandmarks, OneIsMissedWhereTwoAreSeen) {
   EXPECT_TRUE(is_missed({0, 1}));
 }
 
-// Where landmarks stand far apart, a scan sees one of them at a time, and what was felled among them is missed all the same.
+// If landmarks are far apart, a scan sees only one of them at a time; a felled one among them is missed all the same.
 TEST_F(AmongOldLandmarks, OneIsMissedWhereAnotherIsSeenAndASecondWasLately) {
   see({0});
   life.drive(20.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Of many candidates only those that may be seen are gated together, and the scan is associated as with all of them.
+// Of many candidates, only those that may be seen are gated together; the scan is associated as with all.
 #include "association/gated_scan.hpp"
 
 #include <algorithm>

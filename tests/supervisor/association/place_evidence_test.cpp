@@ -169,8 +169,8 @@ TEST(PlaceEvidence, FindsTheFourNeighboursOfALatticeAsRivals) {
   EXPECT_EQ(shifted_by_one, 4);
 }
 
-/// Σ exp(evidence) of all matchings with old landmarks, that of the empty one being 1: all, and those that share more than
-/// half of their pairs with the assignment.
+/// Σ exp(evidence) over matchings with old landmarks, 1 for the empty one: over all, and over those that share more
+/// than half of their pairs with the assignment.
 struct Enumerated {
   double all = 0.0;
   double same = 0.0;
@@ -207,7 +207,7 @@ TEST(PlaceEvidence, WhereItFixesThePoseAllMatchingsTogetherAgree) {
     const double y_m = 0.4 * random.normal();
     ground.see({x_m, y_m, 0.0}, {0, 1, 2, 3, 4}, random);
     SearchOptions options;
-    options.confirmation_widening = 0.0;  // the other rule aside
+    options.confirmation_widening = 0.0;  // without the other rule
     if (!fixes_pose(ground.weigh(options), options)) continue;
     ++fixed;
     const Gating gating(ground.filter, ground.ids, ground.scan, {});
@@ -291,7 +291,7 @@ TEST(PlaceEvidence, WhatIsAmbiguousWithinOnePlaceIsLeftUnused) {
   EXPECT_EQ(gated.place.loose, std::vector<core::LandmarkId>{3});
 }
 
-/// Six landmarks seen again right after they were mapped, and others mapped before a drive of which odometry knows little.
+/// Six landmarks seen again right after they were mapped; others mapped before a drive of very uncertain odometry.
 struct TornGround {
   Ground ground{{}, 0.0, 0.0};
   core::RandomStream random = place_stream(7);
@@ -326,7 +326,7 @@ GatedScan gated_with_place(const Ground& ground) {
 
 TEST(PlaceEvidence, WhatIsKnownBesideOthersSaysNothingOfALandmarkFarFromThemAll) {
   TornGround torn({{2.0, -3.0}});
-  torn.ground.see({1.0, 0.0, 0.0}, {0}, torn.random);  // of nothing: it happens to be in a gate of tens of metres
+  torn.ground.see({1.0, 0.0, 0.0}, {0}, torn.random);  // spurious: it happens to be in a gate of tens of metres
   const GatedScan gated = gated_with_place(torn.ground);
   ASSERT_EQ(gated.place.pairs, 7);
   EXPECT_LT(gated.place.widening, 2.0);

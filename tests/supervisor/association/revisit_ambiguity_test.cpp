@@ -96,7 +96,7 @@ TEST(RevisitAmbiguity, CountsForeignObjectsByTheirDefinition) {
   EXPECT_GT(checked, 150);
 }
 
-/// 1.8 gates apart, an observation halfway: neither stands in the gate of the other, and either may be what was seen.
+/// 1.8 gates apart, an observation halfway: neither is in the gate of the other, and either may have been seen.
 TEST(RevisitAmbiguity, CountsTheLandmarkOnTheOtherSideOfTheObservation) {
   cekf::CompressedEkf filter{core::PoseGaussian{}};
   const Eigen::Matrix2d R = 1e-4 * Eigen::Matrix2d::Identity();

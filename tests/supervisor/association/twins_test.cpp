@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A drive past pairs of objects that stand nearer to each other than the sensor can tell by their places.
+// A drive past pairs of objects that are too close together for the sensor to tell them apart by position.
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -21,7 +21,7 @@ struct TwinWorld {
   std::vector<double> sizes_m;
 };
 
-/// Pairs every 8 m on both sides of a straight road; of each pair one is red and thin and one blue and thick.
+/// Pairs every 8 m on both sides of a straight road; in each pair, one is red and thin and the other blue and thick.
 TwinWorld pairs_along_a_road() {
   TwinWorld world;
   for (int i = 0; i < 10; ++i) {

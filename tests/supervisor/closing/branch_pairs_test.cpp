@@ -8,7 +8,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// Old landmarks, and their copies seen from a pose that is off by `offset_m` along x and knows no better than `sigma_m`.
+/// Old landmarks, and their copies seen from a pose that is off by `offset_m` along x and known only to `sigma_m`.
 struct TwoMaps {
   cekf::CompressedEkf filter{core::PoseGaussian{}};
   std::vector<core::LandmarkId> old, copies;

@@ -25,7 +25,7 @@ NavigatorOptions one_thread() {
   return options;
 }
 
-/// Whom each landmark stands for, by the most of its observations.
+/// What each landmark stands for, by the majority of its observations.
 class Names {
  public:
   void note(const core::StepReport& report, const std::vector<core::Label>& labels) {
@@ -81,7 +81,7 @@ Drive drive_scenario(const std::string& name, std::uint64_t seed, const Navigato
     result.searching_scans += report.mode == core::Mode::searching ? 1 : 0;
     result.clouds += report.cloud.empty() ? 0 : 1;
     EXPECT_EQ(report.drawn.empty(), count(report, "search", "started") == 0);
-    EXPECT_EQ(distinct(report.drawn), report.drawn.size());  // as resampling would not leave them
+    EXPECT_EQ(distinct(report.drawn), report.drawn.size());  // resampling would leave duplicates
     if (count(report, "closure", "accepted") > 0) {
       ++result.closures;
       const Eigen::Vector2d truth_m = run.true_poses[i].T_world_robot.position_m();
@@ -100,7 +100,7 @@ Drive drive_scenario(const std::string& name, std::uint64_t seed, const Navigato
   return result;
 }
 
-/// Seeds that nothing was developed on. A false closing in twelve would show at a rate of 20 % with probability 0.93;
+/// Seeds not used in development. At a rate of 20 %, a false closing would show in twelve drives with probability 0.93;
 /// campaigns of a thousand are `helixnav montecarlo`.
 TEST(ClosingCampaign, ClosesLoopsWithTheRightLandmarksAndAPoseThatIsRight) {
   for (const std::uint64_t seed : support::campaign_seeds(7001, 6)) {
@@ -117,7 +117,7 @@ TEST(ClosingCampaign, ClosesLoopsWithTheRightLandmarksAndAPoseThatIsRight) {
   }
 }
 
-/// drive_scenario holds the drawn cloud against the step that starts an attempt, here with scans that are no look between.
+/// drive_scenario checks the drawn cloud against the step that starts an attempt, here with scans in between that are not looks.
 TEST(Closing, ShowsWhatWasDrawnInOneStepOnly) {
   NavigatorOptions options = one_thread();
   options.search.look_distance_m = 4.0;
@@ -147,7 +147,7 @@ TEST(Closing, CanBeSwitchedOff) {
   EXPECT_EQ(drive.triggers + drive.closures + drive.searching_scans, 0);
 }
 
-// Drives of development whose pose was lost by an observation that stood between two old landmarks and was given to the wrong
+// Development drives whose pose was lost because an observation between two old landmarks was assigned to the wrong
 // one, each outside the other's gate: 0.3 to 1.5 nats told them apart.
 TEST(Closing, SearchesWhereAnObservationMayBeEitherOfTwoOldLandmarks) {
   for (const std::uint64_t seed : {730u, 2073u, 2655u}) {
@@ -158,8 +158,8 @@ TEST(Closing, SearchesWhereAnObservationMayBeEitherOfTwoOldLandmarks) {
   }
 }
 
-// Three closings, the second on ground that was drawn with 10° of drift: two-sided, 0.1 %. What solving the drive is worth there
-// shows SmoothDriveCampaign.MakesTheFigureOfEightConsistent.
+// Three closings, the second on ground mapped with 10° of drift: two-sided, 0.1 %. What solving the drive is worth
+// there is shown by SmoothDriveCampaign.MakesTheFigureOfEightConsistent.
 TEST(ClosingCampaign, SolvesTheDriveAndIsConsistentAfterwards) {
   const int runs = support::campaign_runs(12);
   double sum = 0.0;
@@ -174,7 +174,7 @@ TEST(ClosingCampaign, SolvesTheDriveAndIsConsistentAfterwards) {
   EXPECT_LT(sum, band.high) << "mean " << sum / runs;
 }
 
-// A closing, scans gone through again in a search from before, another closing: the log holds what the filter holds.
+// A closing, scans processed again in a search from before it, another closing: the log holds what the filter holds.
 TEST(Closing, SolvesADriveOfWhichPartWasGoneThroughTwice) {
   const Drive drive = drive_scenario("sparse", 1867, one_thread());
   EXPECT_EQ(drive.rolled_back, 1);
@@ -182,7 +182,7 @@ TEST(Closing, SolvesADriveOfWhichPartWasGoneThroughTwice) {
   EXPECT_EQ(drive.smoothed, 2);
 }
 
-// A drive whose right closing was doubted, and searched for again from before, for the felled trees beside it.
+// A drive whose correct closing was doubted because of the felled trees beside it, and searched for again from before.
 TEST(Closing, IsNotDoubtedForWhatItDidNotFind) {
   const Drive drive = drive_scenario("sparse", 7119, one_thread());
   EXPECT_EQ(drive.closures, 1);
@@ -191,7 +191,7 @@ TEST(Closing, IsNotDoubtedForWhatItDidNotFind) {
   EXPECT_EQ(drive.rolled_back, 0);
 }
 
-// Of one that is longer than the tape keeps it, the atlas has been begun before.
+// For a drive longer than the tape holds, the atlas has been begun before.
 TEST(Closing, SolvesDrivesHoweverLongUnlessNoneIsToBe) {
   NavigatorOptions options = one_thread();
   for (const int scans : {0, 100, 20000}) {
@@ -203,7 +203,7 @@ TEST(Closing, SolvesDrivesHoweverLongUnlessNoneIsToBe) {
   }
 }
 
-// What it throws away of the map is not on the tape.
+// What a restart discards from the map is not on the tape.
 TEST(Closing, LeavesDrivesUnsolvedThatWereRestarted) {
   NavigatorOptions options = one_thread();
   options.search.closing = ClosingMethod::restart;
@@ -211,7 +211,7 @@ TEST(Closing, LeavesDrivesUnsolvedThatWereRestarted) {
   EXPECT_EQ(drive.smoothed + drive.not_smoothed, 0);
 }
 
-/// Trace of the covariance of the landmark that is known best, 90 m from the start, where a fix told the position to 1 cm.
+/// Covariance trace of the best-known landmark 90 m from the start, where a fix gave the position to 1 cm.
 double best_variance_where_fixed_m2(bool solved) {
   const core::Recording run = sim::simulate(sim::named_scenario("large-loop-changed"), 7001);
   NavigatorOptions options = one_thread();

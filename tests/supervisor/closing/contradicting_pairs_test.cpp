@@ -11,7 +11,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// Landmarks 2·k and 2·k + 1 are one, all errors correlated; every `wrong`-th pair is 1 m apart.
+/// Landmarks 2·k and 2·k + 1 are the same one, all errors correlated; every `wrong`-th pair is 1 m apart.
 cekf::CompressedEkf doubled_map(int pairs, int wrong, KeptRemoved& same) {
   core::RandomStream random(5, "doubled map");
   const Eigen::Index n = 3 + 4 * pairs;

@@ -103,7 +103,7 @@ TEST(DuplicateSegment, StaysWhereNothingTellsOnePitchFromAnother) {
   EXPECT_TRUE(Orchard(30, 10, 12, 2.0, 3.0).placed().empty());
 }
 
-/// Its cost is bounded: one step took more than ten minutes where a jump had left a stretch that uncertain.
+/// Its cost is bounded: one step took more than ten minutes after a jump had left a stretch that uncertain.
 TEST(DuplicateSegment, StaysWhereItMayBeNearlyAnywhere) { EXPECT_TRUE(Orchard(80, 0, 8, 2.0, 100.0).placed().empty()); }
 
 TEST(DuplicateSegment, IsNothingWithoutCopies) {

@@ -20,8 +20,8 @@ using cekf::CompressedEkf;
 using cekf::Retraction;
 using core::LandmarkId;
 
-/// A drive of two laps among trees beside a circle: on the second the trees of the first are taken for new ones, with a
-/// tape, and beside it a full EKF that knows better. Between them a stretch without scans, so that the error is large.
+/// Two laps of a circle among trees: on the second, the trees of the first are taken for new ones, with a tape, while a
+/// full EKF that knows better runs alongside. Between the laps is a stretch without scans, so that the error is large.
 class TwoLaps {
  public:
   explicit TwoLaps(Retraction retraction, std::uint64_t seed = 5)
@@ -36,7 +36,7 @@ class TwoLaps {
     for (int k = 0; k < scans_a_lap; ++k) step(first_lap_, nullptr);
   }
 
-  /// Once round again after a slip of about this size.
+  /// Goes round once more after a slip of about this size.
   void come_back(int scans, double slip_m = 1.0, double slip_rad = 0.1) {
     core::Odometry blind;
     blind.covariance = Eigen::Vector3d(slip_m * slip_m, slip_m * slip_m, slip_rad * slip_rad).asDiagonal();
@@ -259,7 +259,7 @@ TEST_P(Replay, RefusesWhatTheMapCannotBelieveAndLeavesItAsItWas) {
   EXPECT_EQ(drive.filter.pose().mean.vector(), before.mean.vector());
   EXPECT_EQ(drive.filter.pose().covariance, before.covariance);
   SearchOptions credulous;
-  credulous.closing_probability = 1.0 - 1e-12;  // the choice of pairs lets pass what the replay then refuses
+  credulous.closing_probability = 1.0 - 1e-12;  // the choice of pairs accepts what the replay then refuses
   EXPECT_TRUE(
       close_by_replay(drive.filter, drive.record(), drive.pairs(), drive.branch(), drive.old(), credulous).accepted)
       << "and can be asked again";
@@ -292,7 +292,7 @@ NavigatorOptions closing_by(ClosingMethod method) {
   return options;
 }
 
-/// Seeds that nothing was developed on.
+/// Seeds not used in development.
 TEST(ClosingMethods, AllCloseALoopWhereTheTruthIs) {
   for (const ClosingMethod method : {ClosingMethod::merge, ClosingMethod::replay, ClosingMethod::restart}) {
     const core::Recording run = sim::simulate(sim::named_scenario("large-loop-changed"), 7001);

@@ -10,7 +10,7 @@ namespace {
 
 using Ids = std::vector<core::LandmarkId>;
 
-/// A scan a metre on, that saw these; the first time that one is seen it begins it.
+/// A scan one metre further on that saw these landmarks; the first sighting of a landmark begins it.
 void drive_and_see(Tape& tape, const Ids& ids) {
   tape.append(Tape::Motion{core::no_motion(0), 1.0});
   Tape::Scan scan;
@@ -25,7 +25,7 @@ void drive_and_see(Tape& tape, const Ids& ids) {
   tape.append(scan);
 }
 
-/// Ten scans of landmarks 1 to 3, some that see `between`, ten of landmarks 4 to 6, at 100 m in the end.
+/// Ten scans of landmarks 1 to 3, some that see `between`, ten of landmarks 4 to 6, ending at 100 m.
 double tied_m(const std::vector<Ids>& between, double gap_m = 5.0) {
   Tape tape(1000);
   for (int k = 0; k < 10; ++k) drive_and_see(tape, {1, 2, 3});

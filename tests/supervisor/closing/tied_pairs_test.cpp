@@ -8,8 +8,8 @@ namespace {
 
 using Pairs = std::vector<pf_relocalize::ConstellationPair>;
 
-/// Rows of trees 4 m apart: an older layer of `first`, a later one of `second`, and a branch that pairs with both. Between the layers the
-/// position is lost by sigma_m each way.
+/// Rows of trees 4 m apart: an older layer of `first`, a later one of `second`, and a branch that pairs with both.
+/// Between the layers, the position becomes uncertain by sigma_m in each direction.
 struct TwoLayers {
   cekf::CompressedEkf filter{core::PoseGaussian{}};
   Pairs pairs;

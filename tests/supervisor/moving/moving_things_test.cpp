@@ -32,7 +32,7 @@ class Watch {
     rates_.sure_view = {0.0, 28.0, -core::pi / 2.0, core::pi / 2.0};
   }
 
-  /// A scan of points, each matched to a landmark or, for no_landmark, begins one. The landmarks dropped.
+  /// A scan of points, each matched to a landmark or, for no_landmark, beginning one. Returns the landmarks dropped.
   std::vector<LandmarkId> scan(const std::vector<Eigen::Vector2d>& points_m, std::vector<LandmarkId>& landmarks) {
     std::vector<SeenPoint> seen;
     std::vector<AssociationReport> fate;
@@ -95,7 +95,7 @@ TEST(MovingThings, FindACarByItsFifthSightingAndBeginNoLandmarkForIt) {
   }
 }
 
-/// It is matched with its first landmark until it is too far off, and would else leave one behind wherever that happens.
+/// It is matched with its first landmark until it is too far off, and would otherwise leave one behind each time.
 TEST(MovingThings, FindAWalkerWhoWasMatchedAtFirst) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     core::RandomStream random(seed, "test.walker");
@@ -126,8 +126,8 @@ TEST(MovingThings, NeverDropWhatStandsAndAreNotAskedAboutItForLong) {
   }
 }
 
-/// The limit is 11.5 nats, 1e-5 of the tracks where the model is right; a thousand scans of clutter at the density assumed,
-/// each a landmark of its own. More than two drops have a probability below 1e-5 at a rate of 0.03.
+/// The limit is 11.5 nats, reached by 1e-5 of the tracks if the model is right; a thousand scans of clutter at the
+/// assumed density, each a landmark of its own. At a rate of 0.03, more than two drops have a probability below 1e-5.
 TEST(MovingThings, MakeNoMoverOfClutter) {
   Watch watch;
   core::RandomStream random(2, "test.clutter");

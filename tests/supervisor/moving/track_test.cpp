@@ -20,7 +20,7 @@ SeenPoint sighting_at(double x_m, double y_m) {
 
 core::Nanoseconds at_s(double t_s) { return core::nanoseconds_from_seconds(t_s); }
 
-/// Two sightings a second apart: the velocity is their difference but for its prior, so that the next is expected as far on.
+/// Two sightings a second apart: except for its prior, the velocity is their difference, so the next is expected as far on.
 TEST(Track, ExpectsWhatMovesAsFarOnAndWhatStandsWhereItWas) {
   Track track(7, sighting_at(10.0, 2.0), at_s(0.0), 5.0);
   track.predict(at_s(1.0));
@@ -38,7 +38,7 @@ TEST(Track, ExpectsWhatMovesAsFarOnAndWhatStandsWhereItWas) {
   EXPECT_EQ(track.density_if_standing(sighting_at(13.0, 2.0)), 0.0);
 }
 
-/// Quadrature: densities are of one thing somewhere, as long as no gate cuts.
+/// Quadrature: each density is that of one object somewhere, as long as no gate truncates it.
 TEST(Track, DensitiesIntegrateToOne) {
   Track track(7, sighting_at(10.0, 2.0), at_s(0.0), 1.0);
   track.predict(at_s(0.5));
@@ -55,7 +55,7 @@ TEST(Track, DensitiesIntegrateToOne) {
   EXPECT_NEAR(standing, 1.0, 2e-3);
 }
 
-/// In the frame of a vehicle that drives and turns exactly as it says, densities are what they are for one at rest.
+/// In the frame of a vehicle that drives and turns exactly as it reports, densities are the same as for one at rest.
 TEST(Track, DoesNotDependOnHowTheVehicleMoves) {
   core::Odometry motion = core::no_motion(at_s(1.0));
   motion.T_before_after = core::Pose2(1.5, -0.4, 0.7);
@@ -78,7 +78,7 @@ TEST(Track, DoesNotDependOnHowTheVehicleMoves) {
               1e-9);
 }
 
-/// J of a point by the vehicle's motion, against central differences through a motion that is known to a covariance.
+/// J of a point with respect to the vehicle's motion, against central differences through a motion with a covariance.
 TEST(Track, IsAsUncertainByAMotionAsThatIs) {
   core::Odometry motion = core::no_motion(at_s(0.0));
   motion.T_before_after = core::Pose2(1.5, -0.4, 0.7);

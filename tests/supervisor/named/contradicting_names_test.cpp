@@ -69,7 +69,7 @@ TEST_F(ContradictingNames, AreThoseOfOtherLandmarks) {
   EXPECT_EQ(contradicting(matches), std::vector<std::size_t>{4});
 }
 
-/// What is said of one sighting is what a filter says that has been updated with the others.
+/// A sighting is judged as by a filter that has been updated with the others.
 TEST_F(ContradictingNames, AreJudgedGivenAllOthers) {
   std::vector<cekf::Match> matches = from({});
   matches[2].observation.z[0] += 2.0;
@@ -85,7 +85,7 @@ TEST_F(ContradictingNames, AreJudgedGivenAllOthers) {
   EXPECT_EQ(found[0].dof, 2);
 }
 
-/// Six deviations are the bound for a sensor that sees 30 m all around, with 1 in 1000.
+/// Six standard deviations are the bound for a sensor that sees 30 m all round, with 1 in 1000.
 TEST_F(ContradictingNames, BeginWhereAnythingInViewIsAsLikely) {
   std::vector<cekf::Match> matches = from({});
   matches[0].observation.z[0] += 0.5;

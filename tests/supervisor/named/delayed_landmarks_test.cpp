@@ -20,7 +20,7 @@ namespace {
 
 using core::ObservationKind;
 
-/// What remains of a scan when the sensor gives one number, and sees `landmarks` landmarks only.
+/// What remains of a scan if the sensor measures one quantity and sees only `landmarks` landmarks.
 struct Reduced {
   core::Scan scan;
   std::vector<std::int64_t> identities;
@@ -74,7 +74,7 @@ Entrances entrances(ObservationKind kind) {
   return seen;
 }
 
-/// The mean of n values of χ²₂ lies inside with probability 0.998.
+/// The mean of n values of χ²₂ is inside with probability 0.998.
 void expect_consistent(const std::vector<double>& nees) {
   ASSERT_FALSE(nees.empty());
   const int runs = static_cast<int>(nees.size());
@@ -126,7 +126,7 @@ TEST(DelayedLandmarks, WaitOnAStraightPathUntilATurnTellsTheMirrorImageFromTheLa
   EXPECT_LT((navigator.map()[0].point.mean_m - landmark_m).norm(), 0.5);
 }
 
-/// The first sighting is of something 60° aside: what all others agree about is the landmark.
+/// The first sighting is of something 60° off: the landmark is what all the others agree on.
 TEST(DelayedLandmarks, EnterWithoutTheOneSightingThatBoreAnothersName) {
   const Eigen::Vector2d landmark_m(12.0, 9.0);
   for (const bool is_first_wrong : {false, true}) {

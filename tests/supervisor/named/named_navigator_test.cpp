@@ -19,7 +19,7 @@ namespace {
 
 using core::Outcome;
 
-/// The compressed EKF driven by whoever knows all names: nothing of the supervisor.
+/// The compressed EKF driven with all names known: nothing from the supervisor.
 cekf::CompressedEkf driven_by_hand(const core::Recording& run) {
   cekf::CompressedEkf filter(run.start);
   std::map<core::Label, core::LandmarkId> landmarks;
@@ -96,7 +96,7 @@ DrivenByName drive_by(const core::Recording& run, const NavigatorOptions& option
   return driven;
 }
 
-/// One name in fifty. A drive may be as far off as with right names, and a metre; of ten, one may be farther.
+/// One name in fifty is wrong. A drive may be a metre further off than with right names; one in ten may be worse.
 TEST(NamedNavigator, LeavesWrongNamesOut) {
   int right = 0;
   constexpr int drives = 10;
@@ -115,7 +115,7 @@ TEST(NamedNavigator, LeavesWrongNamesOut) {
   EXPECT_GE(right, drives - 1);
 }
 
-/// The landmark stands where it was seen by its own name, and once.
+/// The landmark is where it was seen under its own name, and is there once.
 TEST(NamedNavigator, BeginsALandmarkAnewThatWasFirstSeenByAnothersName) {
   const core::Recording run = sim::simulate(wide_circuit(), 3);
   const DrivenByName right = drive_by(run);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A NamedNavigator whose filter holds a part of the map, against one whose filter holds it all, and against least squares.
+// A NamedNavigator whose filter holds part of the map, against one whose filter holds all of it, and against least squares.
 #include <cmath>
 #include <vector>
 
@@ -15,8 +15,8 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// Two laps of a circle of 630 m between two rows of landmarks, seen up to 30 m away. Measurements are off by `noise` times what
-/// their covariances say: with little noise all filters are linear.
+/// Two laps of a circle of 630 m between two rows of landmarks, seen up to 30 m away. Measurement errors are `noise`
+/// times what their covariances state: with little noise all filters are linear.
 class Ring {
  public:
   static constexpr double radius_m = 100.0;
@@ -102,7 +102,7 @@ void expect_almost_same_map(const std::vector<core::MapLandmark>& a, const std::
   }
 }
 
-// The covariances that the atlas softens, and points of linearisation some 0.1 mm apart, make 1e-5 of the covariances.
+// The covariances softened by the atlas, and linearisation points about 0.1 mm apart, make up 1e-5 of the covariances.
 TEST(NamedWindow, IsTheFilterOfTheWholeMapWhereAllIsLinear) {
   Ring ring(1e-4);
   NamedNavigator window(core::PoseGaussian{}, narrow());
@@ -165,7 +165,7 @@ TEST(NamedWindow, SketchesWhatTheFilterLeftOutAsItWasLeft) {
   }
 }
 
-// With noise as large as modelled the filter of the whole map is off by its linearisations; the atlas is at the optimum.
+// With noise as large as modelled, the filter of the whole map is off by its linearisations; the atlas is at the optimum.
 TEST(NamedWindow, MapIsThatOfLeastSquaresOverAllPoses) {
   const core::Recording run = sim::simulate(wide_circuit(), 3);
   NavigatorOptions options = narrow();
@@ -190,8 +190,8 @@ TEST(NamedWindow, MapIsThatOfLeastSquaresOverAllPoses) {
   EXPECT_EQ(map.size(), problem.graph.landmarks.size());
 }
 
-// A landmark that the window has left out comes into view by a range alone: it is known, so the filter begins anew with it.
-// One that nobody knows yet has no phase that determines it, and is left out.
+// A landmark that the window has left out comes into view by range alone: it is known, so the filter begins anew with
+// it. A landmark not yet known has no phase that determines it, and is left out.
 TEST(NamedWindow, TakesRangesOfKnownLandmarksAndLeavesOutThoseOfNewOnes) {
   Ring ring(0.1);
   NamedNavigator window(core::PoseGaussian{}, narrow());

@@ -10,7 +10,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// Squared normalised errors of a noise `scale` times (variance) as assumed, `wrong` of them of wrong pairs.
+/// Squared normalised errors of noise `scale` times the assumed variance, `wrong` of them from wrong pairs.
 FadingErrors errors_of(double scale, double wrong, int count) {
   core::RandomStream random(7, "fading errors test");
   FadingErrors errors(1.0 - 1e-6);

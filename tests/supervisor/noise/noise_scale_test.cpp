@@ -20,7 +20,7 @@ struct NoisyDrive {
     geometry_.ids = {0, 1, 2, 3, 4, 5};
   }
 
-  /// Scans with the noise that is assumed by then; odometry and detector are so many times (variance) worse.
+  /// Scans with the noise assumed at that time; odometry and detector are this many times (variance) worse.
   NoiseScale learn(int scans) {
     NoiseScale scale;
     for (int k = 0; k < scans; ++k) {
@@ -69,8 +69,8 @@ struct NoisyDrive {
   RelativeGeometry geometry_{core::JointGaussian{{}, {}, {}, Eigen::MatrixXd::Identity(3, 3)}};
 };
 
-/// Six landmarks are seen exactly where they are expected but for a rest as large as the detector's errors, as if nothing had displaced the
-/// vehicle.
+/// Six landmarks are seen exactly where they are expected, except for residuals as large as the detector's errors, as
+/// if nothing had displaced the vehicle.
 void observe_too_little(double share, NoiseScale& scale) {
   RelativeGeometry geometry(core::JointGaussian{{}, {}, {}, Eigen::MatrixXd::Identity(3, 3)});
   geometry.points_m = {{8, 0}, {4, 7}, {-4, 7}, {-8, 0}, {-4, -7}, {4, -7}};
@@ -129,12 +129,12 @@ TEST(NoiseScale, TakesDisplacementsThatOdometryDoesNotExplainForErrorsOfTheDetec
 }
 
 TEST(NoiseScale, DoesNotBelieveInTurnsInLessNoiseAndInNone) {
-  NoisyDrive drive(1.45, 0.25);  // where displacements are about as large as just contradicts it
+  NoisyDrive drive(1.45, 0.25);  // displacements about as large as just contradicts it
   drive.learn(6000);
   EXPECT_LE(drive.withdrawn, 2);
 }
 
-/// Displacements that are smaller than the detector's errors alone explain say nothing of odometry that has hardly moved it.
+/// Displacements smaller than the detector's errors alone explain say nothing about odometry that hardly contributes to them.
 TEST(NoiseScale, BelievesNoLessThanItIsSureOf) {
   constexpr double share = 0.25;  // of odometry in a displacement
   NoiseScale scale;

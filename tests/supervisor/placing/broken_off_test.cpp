@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A part of the drive that cannot be computed any further ends, and the drive goes on beside its map until it finds its place there.
+// A part of the drive that cannot be computed any further ends; the drive goes on beside its map until it finds its place there.
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -12,14 +12,14 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// Positive semidefinite to the rounding of its largest element, and no further: what is left of the heading's variance is negative.
+/// Positive semidefinite only to the rounding of its largest element: what is left of the heading variance is negative.
 core::Odometry rounded_away(core::Nanoseconds t_ns) {
   core::Odometry odometry = core::no_motion(t_ns);
   odometry.covariance = Eigen::Vector3d(1e6, 1e6, -9e-4).asDiagonal();
   return odometry;
 }
 
-/// As from speeds held through a gap.
+/// As if speeds were held through a gap.
 core::Odometry through_gap(core::Nanoseconds t_ns) {
   core::Odometry odometry = core::no_motion(t_ns);
   odometry.T_before_after = {0.0, 0.0, 0.4};
@@ -33,7 +33,7 @@ struct Parted {
   double error_at_end_m = 0.0;
 };
 
-/// Round the circuit, with a motion that was not made before some of its scans.
+/// Round the circuit, with a motion that never took place inserted before some of its scans.
 Parted drive_parted(core::Odometry (*motion)(core::Nanoseconds),
                     const std::function<bool(std::size_t scan)>& is_before) {
   const core::Recording run = sim::simulate(wide_circuit(), 1);
@@ -78,7 +78,7 @@ TEST(NoOdometry, BeginsAPartThatFindsItsPlace) {
   EXPECT_LT(drive.error_at_end_m, 0.8);
 }
 
-// A gap is no measure of what is usual: the next one is found as well.
+// A single gap does not define what is usual: the next one is found as well.
 TEST(NoOdometry, BeginsAPartAtEachGap) {
   const Parted drive = drive_parted(through_gap, [](std::size_t scan) { return scan == 200 || scan == 300; });
   ASSERT_EQ(drive.parts.size(), 2U);
@@ -87,7 +87,7 @@ TEST(NoOdometry, BeginsAPartAtEachGap) {
   EXPECT_LT(drive.error_at_end_m, 0.8);
 }
 
-// Odometry that is always so is what this drive has: it is told by what is usual.
+// Odometry that is always like this is normal for this drive: a gap is judged against what is usual.
 TEST(NoOdometry, IsNoneThatIsUsual) {
   EXPECT_TRUE(drive_parted(through_gap, [](std::size_t) { return true; }).parts.empty());
 }

@@ -23,7 +23,7 @@ core::JointMap map_of(const core::Recording& run) {
   return joint_map(navigator.filter(), navigator.map());
 }
 
-/// From the scan on.
+/// The recording from this scan on.
 core::Recording cut(const core::Recording& run, std::size_t scan) {
   core::Recording rest = run;
   std::size_t scans = 0;
@@ -62,7 +62,7 @@ Session begin_anywhere(const core::Recording& run, const core::JointMap& earlier
   return session;
 }
 
-/// Another drive through the same world, begun at that scan of it.
+/// Another drive through the same world, begun at that scan.
 core::Recording another_day(std::uint64_t world_seed, std::uint64_t day, std::size_t scan) {
   const sim::Scenario scenario = wide_circuit();
   return cut(sim::simulate_in(sim::build_world(scenario.world, world_seed), scenario, day), scan);
@@ -102,7 +102,7 @@ TEST(FindPlace, AnotherWorldIsNotHereAndTheSessionGoesItsOwnWay) {
   });
 }
 
-// So that whoever asks afterwards why there was no answer can be told.
+// So that it can be explained afterwards why there was no answer.
 TEST(FindPlace, EveryAnswerIsKeptAndHowFewLandmarksThereWereBefore) {
   const Session session = begin_anywhere(another_day(3, 72, 0), map_of(sim::simulate(wide_circuit(), 1)));
   int questions = 0, most_before = 0;
@@ -134,7 +134,7 @@ TEST(FindPlace, OnlyASessionThatHasNotBegunMayLook) {
   EXPECT_THROW(other.look_for_place_in(torn), core::PreconditionError);
 }
 
-/// Interrupted at a scan, saved, and gone on: with the same names the same to 1e-7, at twenty scans drawn at random.
+/// Interrupted at a scan, saved and resumed: with the same names, the same to 1e-7, at twenty scans drawn at random.
 TEST(GoOn, ByNameIsAsIfThereHadBeenNoInterruption) {
   const core::Recording run = sim::simulate(wide_circuit(), 5);
   core::RandomStream random(5, "interruptions");

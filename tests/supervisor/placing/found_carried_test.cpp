@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A vehicle that was carried while nothing was measured and nobody said so.
+// A vehicle that was carried while nothing was measured, and nobody reported this.
 #include <algorithm>
 #include <vector>
 
@@ -38,7 +38,7 @@ Found drive_through(const core::Recording& run, const NavigatorOptions& options 
   return driven;
 }
 
-/// A minute passes before every so many scans from the hundredth on, the vehicle standing still.
+/// From the hundredth scan on, a minute passes before every `every`-th scan, the vehicle standing still.
 core::Recording with_waits(const core::Recording& run, std::size_t every) {
   constexpr core::Nanoseconds long_ns = 60'000'000'000;
   core::Recording waiting = run;
@@ -85,7 +85,7 @@ TEST(FoundCarried, IsSilentWhereAnEventSaysItToo) {
   EXPECT_EQ(carried, 1);
 }
 
-/// 600 pauses: at one false alarm in 200 of them, none is seen by a chance of 5 %.
+/// 600 pauses: at one false alarm in 200 of them, seeing none has a probability of 5 %.
 TEST(FoundCarried, NotWhereItStopped) {
   int carried = 0;
   for (std::uint64_t seed = 101; seed <= 120; ++seed) {
@@ -94,7 +94,7 @@ TEST(FoundCarried, NotWhereItStopped) {
   EXPECT_EQ(carried, 0);
 }
 
-/// As where a log has no clock, or its sensor never stops: nothing is asked of a scan that came in time.
+/// As in a log without a clock, or with a sensor that never stops: a scan that came in time is not questioned.
 TEST(FoundCarried, NotWithoutAPause) {
   const core::Recording run = without_waiting(with_pauses(sim::simulate(wide_circuit(), 1), {{220, 290}}, false));
   EXPECT_TRUE(drive_through(run).carried.empty());

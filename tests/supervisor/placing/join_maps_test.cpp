@@ -26,7 +26,7 @@ Eigen::MatrixXd some_covariance(Eigen::Index n, double sigma, core::RandomStream
   return root * root.transpose() + 0.1 * sigma * sigma * Eigen::MatrixXd::Identity(n, n);
 }
 
-/// The covariance of points and the pose before them, that a rigid motion of all has.
+/// The covariance that a common rigid motion gives to the pose and, after it, the points.
 Eigen::MatrixXd moved_together(const std::vector<Eigen::Vector2d>& points_m, double sigma_m, double sigma_rad) {
   Eigen::MatrixXd B(3 + 2 * static_cast<Eigen::Index>(points_m.size()), 3);
   B.topRows<3>().setIdentity();
@@ -136,9 +136,9 @@ TEST(JoinMaps, IsLeastSquaresOverBothMapsWithAFreePlace) {
   }
 }
 
-/// A session that knows nothing of where the map lies in its frame changes nothing of what is known of that. What all of the map
-/// has in common is independent of the rest and no pair sees it, so that it is added to what least squares say without it: a covariance
-/// of both would lose the digits of the rest.
+/// A session that does not know where the map is in its frame changes nothing in what is known about that. What is
+/// common to all of the map is independent of the rest and no pair sees it, so it is added to the least-squares result
+/// without it: one covariance of both would lose the digits of the rest.
 TEST(JoinMaps, CovarianceIsThatOfAFreePlaceHoweverUncertainTheMap) {
   for (const double sigma_m : {0.01, 0.1, 20.0, 300.0, 1000.0}) {
     PlacedMaps maps(9);
@@ -253,7 +253,7 @@ TEST(JoinMaps, WhatWasMappedLongBeforeThePlaceIsMergedFromThereOn) {
   EXPECT_EQ(joined.closing.merged.size(), 20u);
 }
 
-// Where drift from one landmark to the next is as large as their distance, none is merged rather than a wrong one.
+// If the drift from one landmark to the next is as large as their spacing, none is merged rather than a wrong one.
 TEST(JoinMaps, WhatMayBeANeighboursStaysTwice) {
   const JoinedMaps joined = join(placed_late(20, 5.0, 12));
   ASSERT_TRUE(joined.closing.accepted);

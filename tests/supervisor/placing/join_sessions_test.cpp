@@ -32,8 +32,8 @@ std::vector<Eigen::Vector2d> grove(std::uint64_t seed, int trees) {
   return points_m;
 }
 
-/// What a session that began at T_world_session knows of the trees between two x, a tenth of which it missed. Tree i of the
-/// world is its landmark 2·i.
+/// What a session that began at T_world_session knows of the trees between two values of x, a tenth of which it missed.
+/// Tree i of the world is its landmark 2·i.
 struct MappedSession {
   core::JointMap map;
   core::Pose2 T_world_session;
@@ -81,7 +81,7 @@ std::vector<Eigen::Vector2d> points_by_x(const core::JointMap& map) {
   return points_m;
 }
 
-/// Landmarks of two sessions that have one name although they are two trees.
+/// Landmarks of two sessions that share a name although they are different trees.
 int wrong_pairs(const JoinedSession& a, const JoinedSession& b) {
   int wrong = 0;
   for (const auto& [own, name] : a.name_of) {

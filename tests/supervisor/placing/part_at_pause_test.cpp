@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A vehicle that was carried during a pause after which no scan told: what it maps since tells.
+// A vehicle that was carried during a pause, which no scan right after it reveals: what it maps from then on does.
 #include <optional>
 #include <string>
 #include <vector>
@@ -63,7 +63,7 @@ void expect_part_since_the_last_carry(const core::Recording& run, const FoundLat
   EXPECT_LT(driven.error_at_end_m, 5.0);
 }
 
-/// Two trees stand where two of those stood that it left. The map is of two parts by then, and no drive is kept that could be cut.
+/// Two trees are where two of those that it left would be. The map has two parts by then, and no drive is kept that could be cut.
 TEST(PartAtPause, WhereTreesHappenToStandAsThoseItLeft) {
   const core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3400054);
   const FoundLater driven = drive_on(run);
@@ -72,8 +72,8 @@ TEST(PartAtPause, WhereTreesHappenToStandAsThoseItLeft) {
   EXPECT_LT(driven.by_place[0].decision.scans, 40);
 }
 
-/// Set down on a bare street. The search that begins then goes from one attempt to the next where its prior has it, and asked the
-/// whole map after 541 m.
+/// Set down on a bare street. The search that then begins goes from one attempt to the next where its prior places the
+/// vehicle, and asked the whole map after 541 m.
 TEST(PartAtPause, WhereASearchGoesOnInAWrongPrior) {
   const core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3400030);
   const FoundLater driven = drive_on(run);
@@ -82,8 +82,8 @@ TEST(PartAtPause, WhereASearchGoesOnInAWrongPrior) {
   EXPECT_LT(driven.by_place[0].decision.scans, 120);
 }
 
-/// Set down on a bare street; what it mapped behind that was cut off, and what it had mapped before stayed where it never was: from then
-/// on the vehicle was found on either street in turn.
+/// Set down on a bare street; what it mapped after that was cut off, and what it had mapped before stayed where it
+/// never was: from then on the vehicle was found on either street in turn.
 TEST(PartAtPause, LeavesNothingWhereItNeverWas) {
   const core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3900028);
   const FoundLater driven = drive_on(run);
@@ -92,7 +92,7 @@ TEST(PartAtPause, LeavesNothingWhereItNeverWas) {
   EXPECT_LT(driven.error_at_end_m, 5.0);
 }
 
-/// A log that does not show when it was carried leaves the vehicle undecided rather than cut anywhere.
+/// A log that does not show when the vehicle was carried leaves it undecided rather than cut at an arbitrary point.
 TEST(PartAtPause, NotWithoutAPause) {
   const core::Recording run = without_waiting(sim::simulate(sim::named_scenario("kidnapped"), 3400054));
   EXPECT_TRUE(drive_on(run).by_place.empty());

@@ -45,7 +45,7 @@ Asking drive_asking(const core::Recording& run, const NavigatorOptions& options)
   return result;
 }
 
-/// A loop whose odometry has slow errors of steering and speed that its noise, assumed at a tenth, does not hold.
+/// A loop whose odometry has slow steering and speed errors that its noise, assumed at a tenth, does not cover.
 core::Recording biased(std::uint64_t seed) {
   sim::Scenario scenario = sim::named_scenario("large-loop-changed");
   scenario.bias = {0.002, 0.01, 1e4};
@@ -60,7 +60,7 @@ NavigatorOptions without_learning() {
   return options;
 }
 
-/// 18 rows, of which three are the pose's.
+/// 18 rows, three of which are the pose's.
 Closing refused_with(double cost) {
   Closing closing;
   closing.cost = cost;
@@ -103,8 +103,8 @@ core::Recording drive_past(const std::vector<Eigen::Vector2d>& trees_m, double l
   return run;
 }
 
-// A sensor that looks all around loses what it passes after two reaches; what was mapped since a branch may have begun reaches
-// farther back. A landmark is on one side of the question only.
+// An all-round sensor loses what it passes after two reaches; what was mapped since a branch may have begun goes back
+// further. A landmark is on only one side of the question.
 TEST(WholeMap, ComparesNoLandmarkWithItself) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     core::RandomStream random(seed, "trees");
@@ -117,7 +117,7 @@ TEST(WholeMap, ComparesNoLandmarkWithItself) {
   }
 }
 
-// An index of old ground reaches 2000 reaches far, 30 km here; a road may be longer.
+// An index of old ground extends over 2000 reaches, 30 km here; a road may be longer.
 TEST(WholeMap, AsksOnARoadLongerThanItsIndex) {
   core::RandomStream random(1, "trees");
   const auto stretch = [&] {
@@ -138,8 +138,8 @@ TEST(WholeMap, AsksOnARoadLongerThanItsIndex) {
   EXPECT_GE(drive.mature, 115U);
 }
 
-/// On most seeds the search does it alone; these are the ones of 1 to 16 that it leaves open or closes only in part. In the first of
-/// them no noise on the loop fits the pairs that are there once they are believed, and it is cut.
+/// On most seeds the search does it alone; these are those of 1 to 16 that it leaves open or closes only in part. In
+/// the first of them, no noise on the loop fits the pairs that are there once they are believed, and it is cut.
 TEST(WholeMap, ClosesWhatOdometryForbidsByLargerNoiseOnTheLoop) {
   int by_noise = 0;
   for (const std::uint64_t seed : {3u, 5u, 16u}) {
@@ -163,7 +163,7 @@ TEST(WholeMap, ClosesWhatOdometryForbidsByLargerNoiseOnTheLoop) {
   EXPECT_GE(by_noise, 2);
 }
 
-/// Where no pause tells that it was (found_carried_test.cpp).
+/// If no pause reveals that it was (found_carried_test.cpp).
 TEST(WholeMap, FindsAVehicleThatWasCarriedAway) {
   sim::Scenario scenario = sim::named_scenario("kidnapped");
   scenario.world.tour_m = 2600.0;
@@ -176,7 +176,7 @@ TEST(WholeMap, FindsAVehicleThatWasCarriedAway) {
   EXPECT_LT(drive.error_at_end_m, 5.0);
 }
 
-/// A slip by about a pitch of the orchard, found out 60 m later: the trees that it stood among were seen up to then, and are not old.
+/// A slip by about one pitch of the orchard, discovered 60 m later: the trees it was among were seen up to then, and are not old.
 TEST(WholeMap, MergesCopiesOfTreesThatWereNotOldWhenTheSearchBegan) {
   sim::Scenario scenario = sim::named_scenario("orchard");
   scenario.slip.every_m = 200.0;
@@ -193,7 +193,7 @@ TEST(WholeMap, MergesCopiesOfTreesThatWereNotOldWhenTheSearchBegan) {
   EXPECT_LE(drive.mature, standing.size()) << "49 trees twice";
 }
 
-/// A slip on bare ground between two stretches, found out on the second: the first fits the next row of the orchard here and there.
+/// A slip on bare ground between two stretches, discovered on the second: the first fits the next row of the orchard in places.
 TEST(WholeMap, MergesNoFewCopiesThatOnlyOdometryTies) {
   sim::Scenario scenario = sim::named_scenario("orchard");
   scenario.slip.every_m = 500.0;
@@ -204,7 +204,7 @@ TEST(WholeMap, MergesNoFewCopiesThatOnlyOdometryTies) {
   for (const evaluation::ClosureScore& closure : score.closures) EXPECT_EQ(closure.wrong_pairs, 0) << "6 of 14";
 }
 
-/// Where it was put down it matched trees that stand like those that it expected.
+/// Where it was set down, it matched trees arranged like those it expected.
 TEST(WholeMap, LeavesOutMatchesThatContradictThePlace) {
   const core::Recording run = without_waiting(sim::simulate(sim::named_scenario("kidnapped"), 3019));
   std::set<core::Label> standing;
@@ -215,15 +215,15 @@ TEST(WholeMap, LeavesOutMatchesThatContradictThePlace) {
   EXPECT_LT(drive.error_at_end_m, 5.0);
 }
 
-/// Set down on a bare street, of a drive that is not kept as a whole: the search began 70 m before.
+/// Set down on a bare street, in a drive that is not kept as a whole: the search began 70 m before.
 TEST(WholeMap, CutsWhereNothingMappedBeforeWasSeenAnyMore) {
   core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3400022);
-  run = without_waiting(run, run.true_carries_ns.back());  // else the pause tells where (part_at_pause_test.cpp)
+  run = without_waiting(run, run.true_carries_ns.back());  // else the pause reveals where (part_at_pause_test.cpp)
   const Asking drive = drive_asking(run, {});
   EXPECT_LT(drive.error_at_end_m, 5.0) << "300 with the jump where the search began: every place was refused";
 }
 
-/// After half a turn and 250 m that odometry knows nothing of, in a part that was joined to the map before; no pause tells when.
+/// After half a turn and 250 m that odometry knows nothing of, in a part that was joined to the map before; no pause reveals when.
 TEST(WholeMap, KeepsTheCovariancePositiveDefinite) {
   core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3100023);
   run = without_waiting(run, run.true_carries_ns.back());
@@ -246,7 +246,7 @@ TEST(WholeMap, KeepsTheCovariancePositiveDefinite) {
   EXPECT_GE(placed, 1);
 }
 
-/// Trees of labels seen from the begin of the search on, that had been seen before and out of sight for a while.
+/// Trees, by label, seen from the beginning of the search on that had been seen before and out of sight for a while.
 int old_trees_seen(const core::Recording& run, std::size_t trigger, std::size_t end) {
   constexpr std::size_t lately = 130;  // scans: 65 m
   const std::size_t left = trigger > lately ? trigger - lately : 0;

@@ -12,7 +12,7 @@ core::Pose2 pose_within(core::RandomStream& random, double side_m) {
   return {side_m * random.uniform(), side_m * random.uniform(), 6.0 * random.uniform()};
 }
 
-/// The views that are kept cover of the branch, wherever it may be, what all views do.
+/// Wherever the branch may be, the views that are kept cover as much of it as all views do.
 TEST(MayBeSeen, LeavesOutOnlyViewsThatShowNothingOfTheBranch) {
   core::RandomStream random(11);
   int left_out = 0;

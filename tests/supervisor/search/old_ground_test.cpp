@@ -32,7 +32,7 @@ Ids map_row(cekf::CompressedEkf& filter, int n) {
   return ids;
 }
 
-/// Old ground of some trees, a long drive round to 80 m before it, other trees, and 60 m on among them.
+/// Some trees of old ground, a long drive round to 80 m before it, other trees, and 60 m further among them.
 struct ReturnAmongTrees {
   cekf::CompressedEkf filter{core::PoseGaussian{}};
   Ids old, passed;

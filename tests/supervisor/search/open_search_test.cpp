@@ -8,8 +8,8 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// A search begins at scan 639 and stays open. At scan 880 a tree is in the gate of a landmark last seen at scan 619: with
-/// a pose uncertain by 36 m it was taken for it, by 0.14 nats, and the pose moved by 33 m and 15 degrees.
+/// A search begins at scan 639 and stays open. At scan 880 a tree is in the gate of a landmark last seen at scan 619:
+/// with the pose uncertain by 36 m, it was matched to it, by 0.14 nats, and the pose moved by 33 m and 15 degrees.
 TEST(OpenSearch, NoReturnToWhatHasBecomeOldSinceItBeganMovesThePose) {
   sim::Scenario town = sim::named_scenario("town");
   town.world.tour_m = 8000.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How densely a map falls on itself when it is displaced.
+// How densely a map coincides with itself when it is displaced.
 #include "slip/density_by_pattern.hpp"
 
 #include <gtest/gtest.h>

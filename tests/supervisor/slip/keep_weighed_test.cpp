@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What of a rich scan is weighed against which landmarks: the same slips are found as with all of them.
+// Which part of a rich scan is weighed against which landmarks: the same slips are found as with all of them.
 #include "slip/keep_weighed.hpp"
 
 #include <cmath>

@@ -148,7 +148,7 @@ TEST(SlipDecision, NeedsMoreEvidenceFromFewOrTentativeLandmarks) {
   EXPECT_FALSE(decide_slip(question, SlipOptions{}));
 }
 
-// Whoever turns into the next row of an avenue sees new trees, as densely as the known ones stand.
+// A vehicle that turns into the next row of an avenue sees new trees, as densely spaced as the known ones.
 TEST(SlipDecision, WeighsFewPairsLessWhereNobodyHasLookedYet) {
   const SlipScene scene(scattered(6, 4), {2.5, 1.0, 8.0 * degree}, 6);
   const std::optional<Slip> on_known_ground = decide(scene);

@@ -35,8 +35,8 @@ TEST(SlipDrive, OfAnOrchardWithoutSlipsDecidesForNone) {
   }
 }
 
-/// Carried, slipped, and carried again: old landmarks stand 100 m from where the region that they are passive in was left, and are not
-/// among those that lie around them.
+/// Carried, slipped and carried again: old landmarks are 100 m from where the region in which they are passive was
+/// left, and are not among those around them.
 TEST(SlipDrive, OfAVehicleThatIsCarriedTooIsIndexed) {
   EXPECT_NO_THROW(navigate_and_judge(sim::named_scenario("kidnapped-slip"), 4300009));
 }
@@ -58,7 +58,7 @@ core::Scan scan_of_posts(double vehicle_x_m, int scan) {
   return seen;
 }
 
-/// Wheels that spin for two seconds: all that stands comes along with the vehicle by its own speed, as odometry has it.
+/// Wheels that spin for two seconds: according to odometry, everything stationary moves with the vehicle at its own speed.
 TEST(SlipDrive, OfWheelsThatSpinMakesNothingMove) {
   constexpr double step_m = 0.75;
   Navigator navigator({}, {});

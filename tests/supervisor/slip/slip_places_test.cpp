@@ -41,7 +41,7 @@ std::vector<PointPair> nearest_pairs(const SlipScene& scene, const Eigen::Vector
   return pairs;
 }
 
-/// The best explanation begun from a grid of displacements as far as slips are looked for.
+/// The best explanation from a grid of starting displacements that reaches as far as slips are looked for.
 double best_nats_of_a_grid(const SlipScene& scene) {
   double best = -1e9;
   for (int i = -4; i <= 4; ++i) {
@@ -73,7 +73,7 @@ TEST(SlipPlaces, NoneOfAGridOfDisplacementsExplainsMore) {
 }
 
 TEST(SlipPlaces, ArePairedOneToOneAndTheBestComesFirst) {
-  std::vector<Eigen::Vector2d> lattice_m;  // of half a pitch nobody can say which way
+  std::vector<Eigen::Vector2d> lattice_m;  // half a pitch is ambiguous in direction
   for (int i = 0; i < 4; ++i) {
     for (int k = 0; k < 4; ++k) lattice_m.emplace_back(3.0 + 2.0 * i, -3.0 + 2.0 * k);
   }
@@ -102,7 +102,7 @@ TEST(SlipPlaces, ThereAreNoneOfTwoObservationsNorBeyondTheReachOfTheWidestSlip) 
   EXPECT_TRUE(places_of(SlipScene(scattered(2), {3.5, 0.0, 0.0}, 2)).empty());
 }
 
-/// Stems 0.4 m beside each other, two and two.
+/// Stems in pairs, 0.4 m apart.
 std::vector<Eigen::Vector2d> twins(std::uint64_t seed) {
   core::RandomStream random(seed, "twins");
   std::vector<Eigen::Vector2d> points_m;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A slip on the tape: replayed, gone through again and solved with the drive.
+// A slip on the tape: replayed, processed again and solved with the drive.
 #include <map>
 #include <optional>
 #include <variant>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The drive on the atlas, taken in whole and by pieces; against least squares over all poses it is judged in smooth_drive_test.cpp.
+// The drive on the atlas, taken in whole and by pieces; smooth_drive_test.cpp judges it against least squares over all poses.
 #include "smoothing/drive_map.hpp"
 
 #include <vector>

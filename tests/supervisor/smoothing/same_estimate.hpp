@@ -14,8 +14,8 @@ inline double relative_variance(const Eigen::MatrixXd& P, Eigen::Index i, Eigen:
   return (P.block<2, 2>(i, i) + P.block<2, 2>(j, j) - P.block<2, 2>(i, j) - P.block<2, 2>(j, i)).trace();
 }
 
-/// Pose and landmarks to 3 cm and 2 mrad, deviations to 2 %, those of neighbours on the list from each other, too: phases are
-/// linearised again where they moved by 0.1 m, no sooner (tests/atlas has the twin with that at 0).
+/// Pose and landmarks to 3 cm and 2 mrad, standard deviations to 2 %, also those between neighbours in the list: phases
+/// are relinearised only once they have moved by 0.1 m (tests/atlas has the counterpart with that at 0).
 inline void expect_same(const core::JointGaussian& one, const core::JointGaussian& other) {
   EXPECT_LT((one.pose.position_m() - other.pose.position_m()).norm(), 0.03);
   EXPECT_LT(std::abs(core::wrap_to_pi(one.pose.heading_rad - other.pose.heading_rad)), 2e-3);

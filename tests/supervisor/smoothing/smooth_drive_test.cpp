@@ -49,7 +49,7 @@ core::Recording circuit(std::uint64_t seed, double odometry_noise = 1.0) {
   return sim::simulate(scenario, seed);
 }
 
-/// Until nothing moves, where a navigator stops at a millimetre and derives phases again at a decimetre.
+/// Until nothing moves, whereas a navigator stops at a millimetre and derives phases again at a decimetre.
 atlas::Options all_the_way() {
   atlas::Options options;
   options.bend_m = options.rederive_m = options.rederive_rad = 0.0;
@@ -77,7 +77,7 @@ double largest_correlation_apart(const Eigen::MatrixXd& one, const Eigen::Matrix
   return (one - other).cwiseQuotient(sigma * sigma.transpose()).cwiseAbs().maxCoeff();
 }
 
-/// Of a drive solved all the way.
+/// For a drive solved all the way.
 void expect_solved(const LabelledDrive& drive, const Solved& solved) {
   const core::JointGaussian expected = joint_of(drive, solved);
   const core::JointGaussian joint = drive.filter.joint(expected.ids);
@@ -113,7 +113,7 @@ TEST(SmoothDrive, IsLeastSquaresOverTheDrive) {
   }
 }
 
-// As a navigator solves it, with trees of two names, too: phases are linearised again where they moved by 0.1 m, no sooner.
+// As a navigator solves it, also with trees of two names: phases are relinearised only once they have moved by 0.1 m.
 TEST(SmoothDrive, AsItIsSolvedIsNearLeastSquares) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     for (const bool strangers : {false, true}) {
@@ -137,7 +137,7 @@ TEST(SmoothDrive, CountsObservationsOfBothNamesForTheOneLandmark) {
   expect_solved(drive, Solved(run));
 }
 
-// A branch landmark may be older than the old one that it is.
+// A branch landmark may be older than the old landmark it is identical with.
 TEST(SmoothDrive, KeepsTheYoungerNameWhereTheClosingDid) {
   const core::Recording run = circuit(4);
   LabelledDrive drive(run, true, LabelledDrive::Kept::second_name);
@@ -160,7 +160,7 @@ TEST(SmoothDrive, KeepsNamesAndDoesNotBringBackWhatIsLost) {
   EXPECT_EQ(drive.filter.next_name(), next);
 }
 
-// What a lost landmark said of the drive while it stood stays said.
+// What a lost landmark told about the drive while it existed is kept.
 TEST(SmoothDrive, LosesNothingWithALandmarkThatIsLost) {
   const core::Recording run = circuit(6);
   LabelledDrive drive(run, false);
@@ -199,7 +199,7 @@ TEST(SmoothDrive, UsesFixes) {
   expect_solved(drive, Solved(run));
 }
 
-// Every scan has its place on the path, also where nothing was seen; the last one is where the filter is.
+// Every scan has its place on the path, even if nothing was seen; the last one is where the filter is.
 TEST(SmoothDrive, HasAPoseForEveryScan) {
   const core::Recording run = circuit(8);
   LabelledDrive drive(run, false);
@@ -214,7 +214,7 @@ TEST(SmoothDrive, HasAPoseForEveryScan) {
   EXPECT_LT((last.vector() - drive.filter.pose().mean.vector()).norm(), 1e-9);
 }
 
-// A minimum that costs more than what the filter has found is another one: the filter stays as it is.
+// A minimum that costs more than what the filter has found is a different one: the filter stays as it is.
 TEST(SmoothDrive, RefusesWhatCostsMoreThanTheFilter) {
   const core::Recording run = circuit(8);
   LabelledDrive drive(run, false);
@@ -238,7 +238,7 @@ TEST(SmoothDrive, IsJudgedByItsClosingWhereItCostsMoreThanTheFilter) {
   EXPECT_LT(smoothing.limit, smoothing.chi2 + 40.0) << "four times the limit of the merge, and the slack";
 }
 
-// For a linear filter the two costs are the same; here they differ by the little that is not linear.
+// For a linear filter the two costs are the same; here they differ slightly, by what is not linear.
 TEST(SmoothDrive, CostsWhatTheInnovationsOfTheFilterCost) {
   for (const std::uint64_t seed : {11u, 12u, 13u}) {
     const core::Recording run = circuit(seed, 0.2);
@@ -277,8 +277,8 @@ double nees_at_end_of_figure_of_eight(std::uint64_t seed, bool smoothed) {
   return nees(drive.filter.pose(), run.true_poses.back().T_world_robot);
 }
 
-// Two-sided, 0.1 %. Over seeds 1 to 200 the filter alone has a mean of 6.6, least squares 3.0. Seeds 31 to 50 because there 20
-// drives are enough to show the filter alone outside the band; on 1 to 20 it has 4.6, which they are not.
+// Two-sided, 0.1 %. Over seeds 1 to 200 the filter alone has a mean of 6.6, least squares 3.0. Seeds 31 to 50 because
+// 20 drives suffice there to show the filter alone outside the band; on 1 to 20, where it has 4.6, they do not.
 TEST(SmoothDriveCampaign, MakesTheFigureOfEightConsistent) {
   const int runs = support::campaign_runs(20);
   double sum = 0.0;

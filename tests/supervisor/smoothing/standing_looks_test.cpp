@@ -37,7 +37,7 @@ TEST(StandingLooks, AreKeptOfEachPlace64TimesAndAtTheEnd) {
   EXPECT_FALSE(stops[99].repeats);
 
   std::vector<Stop> next(100, stop_after(0.0, {3, 4}));  // of the same place
-  next[10].seen.push_back({5, {}, {}});                  // what came in view meanwhile
+  next[10].seen.push_back({5, {}, {}});                  // what came into view meanwhile
   looks.thin(next);
   EXPECT_EQ(looks_in(next), 2 + 1);
   EXPECT_FALSE(next[10].repeats);
@@ -55,7 +55,7 @@ TEST(StandingLooks, OfAVehicleThatCreepsAreKept) {
   EXPECT_EQ(looks_in(stops), 1000);
 }
 
-// A scan without anything used is a stop like any other: it has a place on the path.
+// A scan of which nothing is used is a stop like any other: it has a place on the path.
 TEST(StandingLooks, LeaveScansThatSawNothingAlone) {
   StandingLooks looks(phase_m);
   std::vector<Stop> stops(100, stop_after(0.0, {}));
@@ -84,7 +84,7 @@ Tape tape_of_a_pause(int scans) {
   return tape;
 }
 
-// What is left out can only make the map less sure of itself; each scan keeps its place on the path.
+// What is left out can only make the map less certain; each scan keeps its place on the path.
 TEST(StandingLooks, AreLeftOutOfTheDriveConservatively) {
   const auto solved = [](int scans) {
     DriveMap map({}, phase_m);
