@@ -234,7 +234,7 @@ TEST(Opening, WarnsWhereOdometryAndWhatIsSeenContradictEachOtherAllAlong) {
   EXPECT_NE(all_warnings(rejecting).find("rejected because they fit nothing"), std::string::npos)
       << all_warnings(rejecting);
   rejecting.manifest.command = "helixnav replay log --map monday --localize";
-  EXPECT_EQ(all_warnings(rejecting).find("rejected as"), std::string::npos)
+  EXPECT_EQ(all_warnings(rejecting).find("rejected because"), std::string::npos)
       << "what is not on the map given is rejected";
 }
 
