@@ -107,7 +107,7 @@ TEST_F(FastSlamFilter, WritesTheRunFolderOfANavigatorAndWhatParticlesAddToIt) {
   const Outcome evaluation = run({"evaluate", out("run"), "--json"});
   EXPECT_EQ(json::parse(evaluation.out).at("particles"), found.at("particles"));
   const std::string config = json::parse(text_of(out("run") / "manifest.json")).at("config");
-  EXPECT_NE(config.find("[filter]\n# What navigates"), std::string::npos);
+  EXPECT_NE(config.find("[filter]\n# Filter that navigates"), std::string::npos);
   EXPECT_NE(config.find("\nparticles = 30\n"), std::string::npos);
   EXPECT_EQ(config.find("Lengths in force"), std::string::npos);
   const Outcome explained = run({"explain", out("run")});

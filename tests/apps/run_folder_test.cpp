@@ -98,7 +98,7 @@ TEST_F(RunFolder, IsRefusedBeforeTheLogIsRead) {
   EXPECT_NE(outcome.err.find("not empty"), std::string::npos) << outcome.err;
 }
 
-/// A run of some tenths of a second that the tests below terminate once its first steps are on disk.
+/// A run of a second or more that the tests below terminate once its first steps are on disk.
 class CutRun : public RunFolder {
  protected:
   Outcome cut_by(int signal) {
@@ -119,7 +119,7 @@ class CutRun : public RunFolder {
     EXPECT_LT(written_, static_cast<std::size_t>(steps_)) << "the run came to its end before the signal";
   }
 
-  int steps_ = 20'000;
+  int steps_ = 100'000;
   std::size_t written_ = 0;
 };
 
