@@ -15,7 +15,8 @@ namespace helixnav::supervisor {
 /// of pose and landmark are large and nearly the same error, so that their sum takes in hundreds of landmarks, whose
 /// joint covariance would cost more than everything else. Nothing inside the exact gate is lost. For observations that
 /// do not fix a point (one row), every landmark within the range of the field of view is taken. None of `excluded`
-/// (ascending), which cost nothing. O(nearby landmarks · q), and O(q²) for each chosen./// Test: supervisor/association/candidates_test.cpp.
+/// (ascending), which cost nothing. O(nearby landmarks · q), and O(q²) for each chosen.
+/// Test: supervisor/association/candidates_test.cpp.
 std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, const core::Scan& scan, double sigmas,
                                          const std::vector<core::LandmarkId>& excluded = {});
 

@@ -62,7 +62,8 @@ bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& opt
 /// Confirmed branch landmarks that are compatible with exactly one landmark of `old` (ascending) by the joint
 /// covariance of the closed map, a thousand times likelier to be that one than an unmapped one on another side, as near
 /// to it as its nearest old neighbour, and no farther from it than a third of that distance, but at least
-/// leftover_least_m and at most leftover_most_m; of several at the same one, the nearest./// Test: supervisor/closing/branch_pairs_test.cpp.
+/// leftover_least_m and at most leftover_most_m; of several at the same one, the nearest.
+/// Test: supervisor/closing/branch_pairs_test.cpp.
 KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
                       const std::vector<core::LandmarkId>& old, const SearchOptions& options,
                       const core::MapAppearance& appearance = {});
