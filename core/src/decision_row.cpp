@@ -50,6 +50,18 @@ void numbers(MovingDecision& d, Visit&& visit) {
 }
 
 template <class Visit>
+void numbers(SystematicDecision& d, Visit&& visit) {
+  visit("too_long", d.too_long);
+  visit("turn_rad_per_s", d.turn_rad_per_s);
+  visit("turn_rad_per_m", d.turn_rad_per_m);
+  visit("heading_rad", d.heading_rad);
+  visit("short_m", d.short_m);
+  visit("nats", d.nats);
+  visit("stretches", d.stretches);
+  visit("solved", d.solved);
+}
+
+template <class Visit>
 void numbers(AttemptStarted& d, Visit&& visit) {
   visit("attempt", d.attempt);
   visit("reference_landmarks", d.reference_landmarks);
@@ -221,6 +233,7 @@ KindAndVerdict words_of(const TriggerDecision&) { return {"trigger", "started"};
 KindAndVerdict words_of(const RollbackDecision&) { return {"trigger", "rolled-back"}; }
 KindAndVerdict words_of(const SlipDecision&) { return {"slip", "accepted"}; }
 KindAndVerdict words_of(const MovingDecision&) { return {"moving", "dropped"}; }
+KindAndVerdict words_of(const SystematicDecision&) { return {"systematic", "taken-out"}; }
 KindAndVerdict words_of(const AttemptStarted&) { return {"search", "started"}; }
 KindAndVerdict words_of(const AttemptEnded& d) { return {"search", reason_words[static_cast<int>(d.reason)]}; }
 KindAndVerdict words_of(const ReferenceUnusable&) { return {"search", "reference-unusable"}; }
@@ -330,6 +343,7 @@ Decision decision_of(const DecisionRow& row) {
   if (row.kind == "trigger" && rolled_back) return fill(RollbackDecision{}, row);
   if (row.kind == "slip" && accepted) return fill(SlipDecision{}, row);
   if (row.kind == "moving" && row.verdict == "dropped") return fill(MovingDecision{}, row);
+  if (row.kind == "systematic" && row.verdict == "taken-out") return fill(SystematicDecision{}, row);
   if (row.kind == "search") return search_decision(row);
   if (row.kind == "carried") return carried_decision(row);
   if (row.kind == "placed") return decision_with<PlacedDecision>(placed_words, row);

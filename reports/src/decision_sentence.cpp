@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "helixnav/core/angle.hpp"
+#include "systematic_errors_text.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -40,6 +41,13 @@ std::string sentence(const core::MovingDecision& d) {
   return "A moving object, at " + short_number(d.speed_mps) +
          " m/s, had been mapped: " + counted(d.landmarks, "landmark") + " dropped. Motion explains its sightings " +
          short_number(d.nats) + " nats better than a static landmark.";
+}
+
+std::string sentence(const core::SystematicDecision& d) {
+  const std::string since = d.solved != 0 ? "the whole drive" : "what comes from here on";
+  return "Odometry and detections contradict each other in the same way throughout: " + systematic_errors_text(d) +
+         ". This explains " + short_number(d.stretches) + " stretches of the drive " + short_number(d.nats) +
+         " nats better than before. It was taken out of " + since + ".";
 }
 
 std::string attempt_number(int attempt) { return "Attempt " + std::to_string(attempt); }

@@ -3,7 +3,10 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
+#include <utility>
+#include <variant>
 
 #include "helixnav/core/angle.hpp"
 
@@ -25,10 +28,57 @@ std::string text_of(const char* format, Values... values) {
   return text.data();
 }
 
+double degrees(double angle_rad) { return angle_rad * 180.0 / core::pi; }
+
+const char* side(double angle) { return angle > 0.0 ? "left" : "right"; }
+
+std::string turning_text(double turn_rad, const char* per) {
+  return text_of("odometry turns %.2g deg per %s too far to the %s", std::abs(degrees(turn_rad)), per, side(turn_rad));
+}
+
+/// Empty if nothing was taken out while driving.
+std::string taken_out_text(const runs::Run& run) {
+  const core::SystematicDecision* last = nullptr;
+  std::size_t first_step = 0;
+  for (std::size_t step = 0; step < run.steps.size(); ++step) {
+    for (const core::Decision& decision : run.steps[step].decisions) {
+      const auto* taken_out = std::get_if<core::SystematicDecision>(&decision);
+      if (taken_out == nullptr) continue;
+      if (last == nullptr) first_step = step;
+      last = taken_out;
+    }
+  }
+  if (last == nullptr) return {};
+  return "odometry and detections contradict each other throughout: " + systematic_errors_text(*last) +
+         "; taken out while driving, which was possible from step " + std::to_string(first_step) +
+         " on. 'helixnav calibrate LOG' estimates what to write into vehicle.toml";
+}
+
 }  // namespace
+
+std::string systematic_errors_text(const core::SystematicDecision& d) {
+  std::vector<std::string> parts;
+  if (d.too_long != 0.0) {
+    parts.push_back(text_of("odometry distances are %.2g %% too %s (or ranges too %s)", 100.0 * std::abs(d.too_long),
+                            d.too_long > 0.0 ? "long" : "short", d.too_long > 0.0 ? "short" : "long"));
+  }
+  if (d.turn_rad_per_s != 0.0) parts.push_back(turning_text(d.turn_rad_per_s, "second"));
+  if (d.turn_rad_per_m != 0.0) parts.push_back(turning_text(d.turn_rad_per_m, "metre"));
+  if (d.heading_rad != 0.0) {
+    parts.push_back(text_of("sensors point %.2g deg farther to the %s than heading_deg says",
+                            std::abs(degrees(d.heading_rad)), side(d.heading_rad)));
+  }
+  if (d.short_m != 0.0) {
+    parts.push_back(text_of("ranges are %.3f m too %s", std::abs(d.short_m), d.short_m > 0.0 ? "short" : "long"));
+  }
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
+  return text;
+}
 
 std::vector<std::string> systematic_errors_texts(const runs::Run& run) {
   std::vector<std::string> texts;
+  if (std::string text = taken_out_text(run); !text.empty()) texts.push_back(std::move(text));
   const double missing_m = number_of(run, "range_offset.missing_m");
   if (missing_m != 0.0) {
     texts.push_back(text_of(

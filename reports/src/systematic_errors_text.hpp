@@ -4,13 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "helixnav/core/decision.hpp"
 #include "helixnav/runs/run.hpp"
 
 namespace helixnav::reports {
 
-/// A warning for each constant that, by the run's numbers, is missing for ranges, odometry or
-/// mounting.
-/// Test: apps/systematic_motion_test.cpp, apps/range_offset_test.cpp
+/// The errors that are not zero, as parts of a sentence.
+std::string systematic_errors_text(const core::SystematicDecision& decision);
+
+/// Warnings: what was taken out of the run while driving, and each constant that, by the run's numbers, is still missing for
+/// ranges, odometry or mounting.
+/// Test: reports/systematic_errors_text_test.cpp, apps/systematic_motion_test.cpp, apps/range_offset_test.cpp
 std::vector<std::string> systematic_errors_texts(const runs::Run& run);
 
 }  // namespace helixnav::reports

@@ -11,8 +11,8 @@ std::vector<DecisionRow> all_rows() {
   std::vector<DecisionRow> rows;
   for (const Decision& decision :
        {Decision(TriggerDecision{}), Decision(RollbackDecision{}), Decision(SlipDecision{}), Decision(MovingDecision{}),
-        Decision(AttemptStarted{}), Decision(ReferenceUnusable{}), Decision(UndecidedDecision{}),
-        Decision(NewGroundDecision{}), Decision(CarriedDecision{})}) {
+        Decision(SystematicDecision{}), Decision(AttemptStarted{}), Decision(ReferenceUnusable{}),
+        Decision(UndecidedDecision{}), Decision(NewGroundDecision{}), Decision(CarriedDecision{})}) {
     rows.push_back(row_of(decision));
   }
   for (const char* cause : {"found-out", "broken-off", "by-place", "no-odometry", "wrong-start"})

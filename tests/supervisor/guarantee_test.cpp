@@ -13,6 +13,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
 #include "pauses.hpp"
+#include "systematic/spoilt.hpp"
 #include "wrong_names.hpp"
 
 namespace {
@@ -108,11 +109,12 @@ NavigatorOptions single_threaded(std::uint64_t seed) {
 }
 
 /// What a scan did that is worth breaking.
-enum class Kind { mapping, trigger, searching, closing, rollback, place_without_search, carried, parted };
+enum class Kind { mapping, trigger, searching, closing, rollback, place_without_search, carried, parted, systematic };
 
 Kind kind_of(const core::StepReport& report) {
   const bool was_searching = report.mode == core::Mode::searching;
   for (const core::Decision& decision : report.decisions) {
+    if (std::holds_alternative<core::SystematicDecision>(decision)) return Kind::systematic;
     const auto* asked = std::get_if<core::WholeMapDecision>(&decision);
     const bool found = asked != nullptr && asked->verdict == core::WholeMapDecision::Verdict::accepted;
     if (found && !was_searching) return Kind::place_without_search;
@@ -194,6 +196,14 @@ TEST(Guarantee, HoldsWhereTheFilterHoldsAPartOfTheMap) {
   for (const Kind kind : {Kind::mapping, Kind::trigger, Kind::searching, Kind::closing}) {
     EXPECT_EQ(broken.count(kind), 1u) << static_cast<int>(kind);
   }
+}
+
+TEST(Guarantee, HoldsWhereSystematicErrorsAreTakenOutOfTheDrive) {
+  SystematicErrors errors;
+  errors.too_long = 0.04;
+  errors.short_m = 0.3;
+  const core::Recording run = spoilt(sim::simulate(sim::named_scenario("large-loop"), 3), errors);
+  EXPECT_EQ(break_drive(run, single_threaded(3), 12).count(Kind::systematic), 1u);
 }
 
 TEST(Guarantee, HoldsInARollBack) {

@@ -9,6 +9,7 @@
 #include "has_match.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "range_offset.hpp"
+#include "taken_out.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -95,7 +96,8 @@ std::optional<SystematicMotion> systematic_motion_of(const core::Recording& reco
   return SystematicMotion{-along.mean, along.sigma, across.mean, across.sigma};
 }
 
-void note_systematic_errors(const core::Recording& recording, runs::Run& run) {
+void note_systematic_errors(const core::Recording& measured, runs::Run& run) {
+  const core::Recording recording = without_taken_out(run, measured);
   const RangeOffset offset = range_offset_of(recording, run).value_or(RangeOffset());
   const SystematicMotion motion = systematic_motion_of(recording, run).value_or(SystematicMotion());
   const double offset_z = sigmas(offset.offset_m, offset.sigma_m);

@@ -31,6 +31,14 @@ void add_slip_settings(CLI::App& command, Settings& settings) {
       ->check(one_of({"true", "false"}))
       ->default_str("true")
       ->group(settings_group);
+  command
+      .add_option_function<std::string>(
+          "--noise.systematic", [&noise](const std::string& word) { noise.systematic = word == "true"; },
+          "Learn constant errors of odometry and sensors (scale, turning, heading, range) while driving and take them "
+          "out; false: there are none")
+      ->check(one_of({"true", "false"}))
+      ->default_str("true")
+      ->group(settings_group);
 }
 
 }  // namespace helixnav::apps

@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "drive/taken_out.hpp"
 #include "helixnav/core/errors.hpp"
 #include "smoothing_run.hpp"
 
@@ -18,6 +19,7 @@ SmoothingResult solved(const Drive& job, const runs::Run& run, std::string& text
   for (const core::Event& event : job.recording.events) {
     if (!std::holds_alternative<core::AbsoluteFix>(event)) recording.events.push_back(event);
   }
+  recording = without_taken_out(run, std::move(recording));
   SmoothingTask task = task_from_recording(recording, ids_of_run(run.steps, recording));
   std::vector<core::Pose2> poses;
   for (const core::StepReport& step : run.steps) poses.push_back(step.pose.mean);

@@ -41,7 +41,9 @@ NavigationLoop::NavigationLoop(const core::PoseGaussian& start, const NavigatorO
       mode_(Mapping{{}, take_checkpoint(belief_, tape_), {}}) {}
 
 void NavigationLoop::move(const core::Odometry& measured) {
-  core::Odometry odometry = measured;
+  const SystematicErrors& errors = noise_.systematic.learner.taken_out();
+  core::Odometry odometry = without(errors, measured, moved_ns_ ? core::seconds(measured.t_ns - *moved_ns_) : 0.0);
+  moved_ns_ = measured.t_ns;
   odometry.covariance *= noise_.scale.odometry();
   pending_.motion = pending_.motion ? core::chain(*pending_.motion, odometry) : odometry;
   pending_.driven_m += odometry.T_before_after.position_m().norm();
@@ -58,8 +60,13 @@ void NavigationLoop::fit_to(const core::FieldOfView& view) {
   view_ = view;
 }
 
-StepReport NavigationLoop::observe(const Scan& scan) {
-  fit_to(scan.field_of_view);
+StepReport NavigationLoop::observe(const Scan& measured) {
+  fit_to(measured.field_of_view);
+  const SystematicErrors& errors = noise_.systematic.learner.taken_out();
+  return errors.are_zero() ? observe_anywhere(measured) : observe_anywhere(without(errors, measured));
+}
+
+StepReport NavigationLoop::observe_anywhere(const Scan& scan) {
   const IntegrityLimits& limits = options_.search.integrity;
   const std::optional<double> paused_m = pause_to_weigh(scan);
   const StillThere there = paused_m ? weigh_pause(scan, *paused_m) : StillThere{};
@@ -104,6 +111,7 @@ StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* not
     if (has_lost_its_place()) return roll_back_and_relocalise(scan, std::move(report));
     ask_whether_new(scan, report);
     solve_with_learnt_noise(report);
+    learn_systematic(report);
     report.pose = belief_.filter.pose();
     if (apart_.any()) find_place(scan.field_of_view, report);
     if (!pending_.forbidden.empty()) part_at_pause(scan, report);

@@ -93,6 +93,7 @@ class NavigationLoop {
   };
 
   // loop/navigation_loop.cpp
+  core::StepReport observe_anywhere(const core::Scan& scan);
   core::StepReport observe_here(const core::Scan& scan);
   void fit_to(const core::FieldOfView& view);
   core::StepReport take_step(const core::Scan& scan, const core::Decision* note);
@@ -133,6 +134,11 @@ class NavigationLoop {
   // noise/learn_noise.cpp
   void learn_noise(const core::Scan& scan);
   void solve_with_learnt_noise(core::StepReport& report);
+  bool solve_again(Tape again, core::StepReport& report);
+
+  // systematic/learn_systematic.cpp
+  void learn_systematic(core::StepReport& report);
+  void take_out_systematic(core::StepReport& report);
 
   // search/search_mode.cpp
   void begin_search(const core::Scan& scan);
@@ -246,6 +252,7 @@ class NavigationLoop {
   NoiseLearner noise_before_;  ///< this call, for recover(); kept so that its memory is reused
   Mode mode_;
   Pending pending_;
+  std::optional<core::Nanoseconds> moved_ns_;  ///< end of the last increment of odometry
   Undo undo_;
   ScanRhythm rhythm_;
   std::optional<double> pause_m_;  ///< where on the drive there was a pause that no scan has decided yet

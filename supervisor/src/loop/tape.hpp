@@ -11,6 +11,7 @@
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/merged_ids.hpp"
 #include "helixnav/core/step_report.hpp"
+#include "helixnav/supervisor/systematic_errors.hpp"
 
 namespace helixnav::supervisor {
 
@@ -70,6 +71,10 @@ class Tape {
   /// The tape, had the covariance of the motion measured over the last `length_m` been this many times as large; costs stay
   /// as they were, which is an upper bound.
   Tape with_larger_noise(double odometry, double length_m) const;
+
+  /// The tape with these errors taken out of what was measured; costs stay as they were, which is an upper bound if the
+  /// measurements have them.
+  Tape without(const SystematicErrors& errors) const;
 
   /// The tape with an unmeasured motion inserted at `position`.
   Tape with_jump(Position position, const core::Odometry& jump) const;

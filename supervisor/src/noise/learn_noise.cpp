@@ -52,19 +52,22 @@ void NavigationLoop::solve_with_learnt_noise(core::StepReport& report) {
   if (searching() != nullptr || !(is_worth_it(observations) || is_worth_it(odometry))) return;
   noise_.scale.applied_observations = noise_.scale.observations();
   noise_.scale.applied_odometry = noise_.scale.odometry();
-  if (!tape_.holds_drive()) return;
-  Tape again = tape_.rescaled(observations, odometry);
+  if (tape_.holds_drive()) solve_again(tape_.rescaled(observations, odometry), report);
+}
+
+/// The drive that the tape holds, had it been `again`. False if it cannot be solved: everything is as it was.
+bool NavigationLoop::solve_again(Tape again, core::StepReport& report) {
   auto drive = begun_drive();
   if (belief_.drive) drive->remember(*belief_.drive);
   Smoothing smoothing;
   std::optional<cekf::CompressedEkf> solved;
   try {
     smoothing = smooth_drive(belief_.filter, again, *drive);
-    if (!smoothing.accepted) return;
+    if (!smoothing.accepted) return false;
     solved = filter_at_solution(*drive, belief_.filter);
   } catch (const core::NumericalError&) {
     ++report.numerics.refused;
-    return;
+    return false;
   }
   if (belief_.drive) become(std::move(drive), belief_.window);
   again.append(Tape::Solved{smoothing.chi2});
@@ -76,6 +79,7 @@ void NavigationLoop::solve_with_learnt_noise(core::StepReport& report) {
   if (!undo_.tape) undo_.tape = std::move(again);
   report.solved = std::move(smoothing.path);
   trust(std::move(trusted));
+  return true;
 }
 
 }  // namespace helixnav::supervisor

@@ -5,6 +5,7 @@
 
 #include "noise/noise_pairs.hpp"
 #include "noise/noise_scale.hpp"
+#include "systematic/systematic_state.hpp"
 
 namespace helixnav::supervisor {
 
@@ -12,6 +13,7 @@ namespace helixnav::supervisor {
 struct NoiseLearner {
   NoiseScale scale;
   SidesSeen sides;
+  SystematicState systematic;
   Eigen::Matrix3d moved = Eigen::Matrix3d::Zero();  ///< covariance of the motion since the last scan, as assumed
 };
 

@@ -53,6 +53,19 @@ struct MovingDecision {
   double speed_mps = 0.0;  ///< over the ground, when it was detected
 };
 
+/// Odometry or detections err throughout the drive, and that was taken out of them (supervisor/systematic_errors.hpp has the
+/// same quantities). Totals since the beginning of the drive, in force from this step on.
+struct SystematicDecision {
+  double too_long = 0.0;        ///< odometry's distances, as a share of the true ones
+  double turn_rad_per_s = 0.0;  ///< odometry turns too far to the left
+  double turn_rad_per_m = 0.0;  ///< likewise, per metre forwards
+  double heading_rad = 0.0;     ///< sensors point farther to the left than stated
+  double short_m = 0.0;         ///< missing from every range
+  double nats = 0.0;  ///< by which what was added now explains the drive better than what was taken out before
+  int stretches = 0;  ///< of the drive that it was found in, one reach of the sensor long
+  int solved = 0;     ///< 1: what was driven before was solved again without it; 0: from here on only
+};
+
 /// An attempt of a search began: particles drawn on helices around old landmarks.
 struct AttemptStarted {
   int attempt = 0;
@@ -249,10 +262,10 @@ struct OtherDecision {
 };
 
 /// A decision of the navigator that is worth a sentence, with the numbers that decided it.
-using Decision = std::variant<TriggerDecision, RollbackDecision, SlipDecision, MovingDecision, AttemptStarted,
-                              AttemptEnded, ReferenceUnusable, VerificationDecision, ClosureDecision, UndecidedDecision,
-                              NewGroundDecision, SmoothingDecision, FixDecision, CarriedDecision, PlacedDecision,
-                              WholeMapDecision, PostponedDecision, OtherDecision>;
+using Decision = std::variant<TriggerDecision, RollbackDecision, SlipDecision, MovingDecision, SystematicDecision,
+                              AttemptStarted, AttemptEnded, ReferenceUnusable, VerificationDecision, ClosureDecision,
+                              UndecidedDecision, NewGroundDecision, SmoothingDecision, FixDecision, CarriedDecision,
+                              PlacedDecision, WholeMapDecision, PostponedDecision, OtherDecision>;
 
 /// True for what ends a search: a closing accepted or refused, new ground, or a search given up.
 inline bool is_closure(const Decision& decision) {

@@ -3,10 +3,10 @@
 
 namespace helixnav::supervisor {
 
-/// Whether the covariances reported by odometry and detector are used as given or multiplied by factors learnt while
-/// driving. Figures: docs/slips.md.
+/// What is learnt of odometry and detector while driving.
 struct NoiseOptions {
-  bool adapt = true;
+  bool adapt = true;       ///< factors on the covariances that they report (docs/slips.md); false: as reported
+  bool systematic = true;  ///< errors that they make throughout (docs/systematic.md); false: there are none
 };
 
 }  // namespace helixnav::supervisor

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "systematic/systematic_learner.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include <Eigen/Eigenvalues>
+
+namespace helixnav::supervisor {
+namespace {
+
+constexpr std::size_t count = SystematicErrors::count;
+using Chosen = std::array<bool, count>;
+
+constexpr double new_one = 36.0;   // of χ²: six standard deviations
+constexpr double known_one = 9.0;  // an error that was found before is only made more precise
+
+/// The errors that minimise χ², and by how much they lower it.
+struct Fit {
+  SystematicErrors::Vector errors = SystematicErrors::Vector::Zero();
+  double lowers = 0.0;
+  int rank = 0;
+};
+
+/// Of errors that only a combination is known of (turning per second and per metre at constant speed), the shortest.
+Fit fit(const SystematicErrors::Matrix& information, const SystematicErrors::Vector& gradient) {
+  SystematicErrors::Vector unit;  // so that metres and radians compare
+  for (Eigen::Index i = 0; i < unit.size(); ++i)
+    unit(i) = information(i, i) > 0.0 ? 1.0 / std::sqrt(information(i, i)) : 0.0;
+  const Eigen::SelfAdjointEigenSolver<SystematicErrors::Matrix> parts(
+      SystematicErrors::Matrix(unit.asDiagonal() * information * unit.asDiagonal()));
+  constexpr double undetermined = 1e-6;
+  Fit found;
+  for (Eigen::Index i = 0; i < unit.size(); ++i) {
+    const double value = parts.eigenvalues()(i);
+    if (!(value > undetermined)) continue;
+    const SystematicErrors::Vector direction = unit.cwiseProduct(parts.eigenvectors().col(i));
+    const double along = direction.dot(gradient);
+    found.errors += direction * (along / value);
+    found.lowers += along * along / value;
+    ++found.rank;
+  }
+  return found;
+}
+
+/// The others held at zero.
+Fit fit(SystematicErrors::Matrix information, SystematicErrors::Vector gradient, const Chosen& chosen) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (chosen[i]) continue;
+    const auto row = static_cast<Eigen::Index>(i);
+    information.row(row).setZero();
+    information.col(row).setZero();
+    gradient(row) = 0.0;
+  }
+  return fit(information, gradient);
+}
+
+}  // namespace
+
+void SystematicLearner::add(const StretchEvidence& stretch) {
+  const Fit own = fit(stretch.information, stretch.gradient);
+  const double worse =
+      std::max(1.0, (stretch.chi2 - own.lowers) / std::max(1, stretch.dof));  // than its covariances say
+  information_ += stretch.information / worse;
+  gradient_ += stretch.gradient / worse;
+  in_rows_ += stretch.in_rows;
+  motions_ += stretch.motions;
+  sightings_ += stretch.sightings;
+  of_stretches_ += own.lowers / worse;
+  rank_ += own.rank;
+  ++stretches_;
+}
+
+/// Of the stretches about what they say together, per degree of freedom.
+double SystematicLearner::scatter() const {
+  const Fit together = fit(information_, gradient_);
+  return std::max(1.0, (of_stretches_ - together.lowers) / std::max(1, rank_ - together.rank));
+}
+
+/// Whether it displaces a measurement by a quarter of its standard deviation.
+bool SystematicLearner::matters(std::size_t error, const SystematicErrors::Vector& errors) const {
+  constexpr double quarter = 0.25;
+  constexpr std::size_t errors_of_odometry = 3;
+  const double rows = error < errors_of_odometry ? motions_ : sightings_;
+  const auto i = static_cast<Eigen::Index>(error);
+  return errors(i) * errors(i) * in_rows_(i) >= quarter * quarter * rows;
+}
+
+std::optional<CertainErrors> SystematicLearner::certain() {
+  if (stretches_ < ask_at_) return std::nullopt;
+  const double unit = scatter();
+  const SystematicErrors::Vector known = taken_out_.vector();
+  Chosen chosen{};
+  Fit best;
+  for (std::size_t found = 0; found < count; ++found) {
+    std::size_t next = count;
+    double most = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (chosen[i]) continue;
+      Chosen more = chosen;
+      more[i] = true;
+      const Fit with = fit(information_, gradient_, more);
+      if (!matters(i, with.errors)) continue;
+      const double lowers = with.lowers - best.lowers;
+      const double least = known(static_cast<Eigen::Index>(i)) == 0.0 ? new_one : known_one;
+      if (lowers > unit * least && lowers > most) {
+        next = i;
+        most = lowers;
+      }
+    }
+    if (next == count) break;
+    chosen[next] = true;
+    best = fit(information_, gradient_, chosen);
+  }
+  if (!(best.lowers > 0.0)) return std::nullopt;
+  ask_at_ = 2 * stretches_;
+  return CertainErrors{SystematicErrors(best.errors), 0.5 * best.lowers / unit};
+}
+
+void SystematicLearner::take_out(const SystematicErrors& errors) {
+  const SystematicErrors::Vector e = errors.vector();
+  of_stretches_ += e.dot(information_ * e) - 2.0 * e.dot(gradient_);
+  gradient_ -= information_ * e;
+  taken_out_ = both(taken_out_, errors);
+}
+
+}  // namespace helixnav::supervisor

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "helixnav/supervisor/systematic_errors.hpp"
+#include "systematic/stretch_evidence.hpp"
+
+namespace helixnav::supervisor {
+
+/// Errors that are certain, the others at zero.
+struct CertainErrors {
+  SystematicErrors errors;
+  double nats = 0.0;  ///< by which they explain the stretches better than none
+};
+
+/// Sums up what the stretches of a drive say of its systematic errors, and decides which are certain: the one that lowers χ²
+/// most, then the one that lowers it most beside it, as long as each lowers it by 36 (six standard deviations). χ² is divided
+/// by what the stretches scatter more than their covariances say. Errors that displace a single measurement by less than a quarter of its standard
+/// deviation are left to the noise. O(1) memory and time.
+/// Test: supervisor/systematic/systematic_learner_test.cpp.
+class SystematicLearner {
+ public:
+  void add(const StretchEvidence& stretch);
+
+  /// Errors that what is measured still has. Asked anew only after twice as many stretches: what is found has to be taken out of
+  /// the whole drive.
+  std::optional<CertainErrors> certain();
+
+  /// From here on these are taken out of what is measured, and have been taken out of what was.
+  void take_out(const SystematicErrors& errors);
+  const SystematicErrors& taken_out() const { return taken_out_; }
+
+  int stretches() const { return stretches_; }
+
+ private:
+  double scatter() const;
+  bool matters(std::size_t error, const SystematicErrors::Vector& errors) const;
+
+  SystematicErrors::Matrix information_ = SystematicErrors::Matrix::Zero();
+  SystematicErrors::Vector gradient_ = SystematicErrors::Vector::Zero();
+  SystematicErrors::Vector in_rows_ = SystematicErrors::Vector::Zero();
+  double motions_ = 0.0, sightings_ = 0.0;
+  double of_stretches_ = 0.0;  ///< sum of what each stretch's own errors take from its χ²
+  int rank_ = 0;               ///< degrees of freedom of that
+  int stretches_ = 0;
+  int ask_at_ = 4;
+  SystematicErrors taken_out_;
+};
+
+}  // namespace helixnav::supervisor

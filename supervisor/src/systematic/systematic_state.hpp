@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "loop/tape.hpp"
+#include "systematic/systematic_learner.hpp"
+
+namespace helixnav::supervisor {
+
+/// What is known of systematic errors, and where on the tape and on the road the present stretch began.
+struct SystematicState {
+  SystematicLearner learner;
+  std::optional<Tape::Position> begun;
+  double begun_m = 0.0;
+
+  void begin(Tape::Position position, double path_m) {
+    begun = position;
+    begun_m = path_m;
+  }
+};
+
+}  // namespace helixnav::supervisor

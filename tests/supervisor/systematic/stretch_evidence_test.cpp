@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "systematic/stretch_evidence.hpp"
+
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+#include <Eigen/Cholesky>
+
+#include "helixnav/core/odometry.hpp"
+#include "helixnav/sim/simulate.hpp"
+#include "helixnav/smoothing/constants.hpp"
+#include "helixnav/smoothing/optimize.hpp"
+#include "labelled_drive.hpp"
+#include "smoothing/drive_phases.hpp"
+#include "systematic/spoilt.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+constexpr std::size_t stops_a_stretch = 20;
+
+/// Every third scan of a drive whose associations are known.
+std::vector<Stop> stops_of_drive(const core::Recording& recording) {
+  const LabelledDrive drive(recording, false);
+  std::vector<Stop> chosen;
+  std::optional<core::Odometry> motion;
+  std::size_t k = 0;
+  for (const Stop& stop : stops_of(drive.tape)) {
+    if (stop.motion) motion = motion ? core::chain(*motion, *stop.motion) : *stop.motion;
+    if (k++ % 3 != 0) continue;
+    chosen.push_back(stop);
+    chosen.back().motion = motion;
+    motion.reset();
+  }
+  return chosen;
+}
+
+std::vector<Stop> stretch(const std::vector<Stop>& stops, std::size_t first) {
+  std::vector<Stop> some(stops.begin() + static_cast<std::ptrdiff_t>(first),
+                         stops.begin() + static_cast<std::ptrdiff_t>(first + stops_a_stretch));
+  some.front().motion.reset();
+  return some;
+}
+
+core::Recording simulated(std::uint64_t seed) {
+  const sim::Scenario scenario;
+  return sim::simulate(scenario, seed);
+}
+
+/// The stretch as a problem of least squares, without the landmarks that were seen once.
+smoothing::Problem problem_of(const std::vector<Stop>& stops) {
+  std::map<core::LandmarkId, std::vector<std::pair<int, const cekf::Match*>>> seen;
+  core::LandmarkGraph graph;
+  for (std::size_t k = 0; k < stops.size(); ++k) {
+    const auto pose = static_cast<int>(k);
+    core::Pose2 T_world_robot;
+    if (k > 0) {
+      core::LandmarkGraph::PoseEdge edge{pose - 1, pose, stops[k].motion->T_before_after, stops[k].motion->covariance};
+      edge.covariance.diagonal() += softening().cwiseAbs2();
+      T_world_robot = core::compose(graph.poses.back().T_world_robot, edge.T_from_to);
+      graph.pose_edges.push_back(edge);
+    }
+    graph.poses.push_back({pose, T_world_robot});
+    for (const cekf::Match& match : stops[k].seen) seen[match.landmark].emplace_back(pose, &match);
+  }
+  for (const auto& [id, sightings] : seen) {
+    if (sightings.size() < 2) continue;
+    const auto& [first, match] = sightings.front();
+    const auto at = core::locate_landmark(
+        match->observation, graph.poses[static_cast<std::size_t>(first)].T_world_robot, match->T_robot_sensor);
+    const auto landmark = static_cast<int>(graph.landmarks.size());
+    graph.landmarks.push_back({id, at.point_world_m});
+    for (const auto& [pose, sighting] : sightings) {
+      graph.landmark_edges.push_back({pose, landmark, sighting->T_robot_sensor, sighting->observation});
+    }
+  }
+  return smoothing::problem_from_graph(std::move(graph));
+}
+
+/// The errors as constants of that problem. A missing range acts like a sensor that is nearer to what it sees.
+std::vector<smoothing::ConstantDerivative> constants_of(const smoothing::Problem& problem,
+                                                        const std::vector<Stop>& stops) {
+  std::vector<smoothing::ConstantDerivative> constants(SystematicErrors::count);
+  for (const auto& edge : problem.graph.pose_edges) {
+    const auto to = static_cast<std::size_t>(edge.to);
+    const auto J = derivative_without_errors(edge.T_from_to, core::seconds(stops[to].t_ns - stops[to - 1].t_ns));
+    for (std::size_t c = 0; c < constants.size(); ++c) {
+      constants[c].increments.push_back(J.col(static_cast<Eigen::Index>(c)));
+    }
+  }
+  for (const auto& edge : problem.graph.landmark_edges) {
+    const core::Pose2 T_world_sensor =
+        core::compose(problem.graph.poses[static_cast<std::size_t>(edge.pose)].T_world_robot, edge.T_robot_sensor);
+    const Eigen::Vector2d seen_m = core::transform(
+        core::inverse(T_world_sensor), problem.graph.landmarks[static_cast<std::size_t>(edge.landmark)].point_m);
+    const Eigen::Vector2d towards = core::rotation(edge.T_robot_sensor.heading_rad) * seen_m.normalized();
+    for (auto& constant : constants) constant.mountings.emplace_back(Eigen::Vector3d::Zero());
+    constants[3].mountings.back().z() = 1.0;
+    constants[4].mountings.back() << towards, 0.0;
+  }
+  return constants;
+}
+
+TEST(StretchEvidence, IsThatOfLeastSquaresOverAllPosesAndLandmarks) {
+  SystematicErrors errors;
+  errors.too_long = 0.02;
+  errors.short_m = 0.1;
+  const std::vector<Stop> stops = stops_of_drive(spoilt(simulated(1), errors));
+  for (const std::size_t first : {0u, 40u, 80u}) {
+    const std::vector<Stop> some = stretch(stops, first);
+    const auto evidence = evidence_of_stretch(some);
+    ASSERT_TRUE(evidence);
+    smoothing::Problem problem = problem_of(some);
+    const double chi2 = smoothing::optimize(problem).chi2.total();
+    const auto twin = smoothing::evidence_of_constants(problem, constants_of(problem, some));
+    EXPECT_NEAR(evidence->chi2, chi2, 1e-3 * chi2);
+    EXPECT_EQ(evidence->dof, smoothing::degrees_of_freedom(problem));
+    const Eigen::VectorXd unit = twin.information.diagonal().cwiseSqrt().cwiseInverse();
+    EXPECT_LT((unit.asDiagonal() * (evidence->information - twin.information) * unit.asDiagonal()).norm(), 0.01);
+    EXPECT_LT((unit.cwiseProduct(evidence->gradient + twin.gradient)).norm(), 0.02);  // in standard deviations
+  }
+}
+
+/// gᵀ Λ⁻¹ g of errors that are not there has the χ² distribution; at constant speed, turning per second and per metre are one.
+TEST(StretchEvidence, OfNoErrorsIsAsChanceHasIt) {
+  double sum = 0.0, dof = 0.0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const std::vector<Stop> stops = stops_of_drive(simulated(seed));
+    for (std::size_t first = 0; first + stops_a_stretch <= stops.size(); first += stops_a_stretch) {
+      const auto evidence = evidence_of_stretch(stretch(stops, first));
+      if (!evidence) continue;
+      const std::array<Eigen::Index, 4> chosen = {0, 1, 3, 4};
+      const Eigen::Matrix4d information = evidence->information(chosen, chosen);
+      const Eigen::Vector4d gradient = evidence->gradient(chosen);
+      const Eigen::LLT<Eigen::Matrix4d> factor(information);
+      if (factor.info() != Eigen::Success) continue;
+      sum += gradient.dot(factor.solve(gradient));
+      dof += 4.0;
+    }
+  }
+  ASSERT_GT(dof, 250.0);
+  EXPECT_NEAR(sum, dof, 3.3 * std::sqrt(2.0 * dof));  // outside in 1 of 1000
+}
+
+TEST(StretchEvidence, NeedsLandmarksSeenTwice) {
+  std::vector<Stop> stops = stretch(stops_of_drive(simulated(1)), 0);
+  for (Stop& stop : stops) stop.seen.clear();
+  EXPECT_FALSE(evidence_of_stretch(stops));
+  EXPECT_FALSE(evidence_of_stretch({}));
+}
+
+}  // namespace
+}  // namespace helixnav::supervisor

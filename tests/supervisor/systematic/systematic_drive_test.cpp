@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Drives whose odometry and sensor err throughout.
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include "circuits.hpp"
+#include "systematic/spoilt.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+struct Driven {
+  std::optional<core::SystematicDecision> taken_out;
+  int times = 0;
+  double nees = 0.0;  ///< mean over the second half
+  std::vector<core::MapLandmark> map;
+};
+
+Driven drive_through(const core::Recording& run, NavigatorOptions options) {
+  options.search.relocalizer.threads = 1;
+  Navigator navigator(run.start, options);
+  Driven driven;
+  int judged = 0;
+  drive(run, navigator, [&](const core::Scan& scan, std::size_t k) {
+    const core::StepReport report = navigator.observe(scan);
+    for (const core::Decision& decision : report.decisions) {
+      const auto* taken_out = std::get_if<core::SystematicDecision>(&decision);
+      if (taken_out == nullptr) continue;
+      driven.taken_out = *taken_out;
+      ++driven.times;
+    }
+    if (2 * k < run.labels.size()) return;
+    driven.nees += nees(report.pose, run.true_poses[k].T_world_robot);
+    ++judged;
+  });
+  driven.nees /= judged;
+  driven.map = navigator.map();
+  return driven;
+}
+
+NavigatorOptions without_learning() {
+  NavigatorOptions options;
+  options.noise.systematic = false;
+  return options;
+}
+
+core::Recording loop(std::uint64_t seed) { return sim::simulate(sim::named_scenario("large-loop"), seed); }
+
+SystematicErrors errors_of(std::uint64_t seed) {
+  const double sign = seed % 2 == 0 ? -1.0 : 1.0;
+  SystematicErrors errors;
+  errors.too_long = sign * 0.08;
+  errors.heading_rad = 0.035;
+  errors.short_m = -sign * 0.25;
+  return errors;
+}
+
+TEST(SystematicDrive, FindsTheErrorsAndTakesThemOut) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SCOPED_TRACE(seed);
+    const SystematicErrors errors = errors_of(seed);
+    const core::Recording run = spoilt(loop(seed), errors);
+    const Driven learnt = drive_through(run, {});
+    ASSERT_TRUE(learnt.taken_out);
+    EXPECT_NEAR(learnt.taken_out->too_long, errors.too_long, 0.025);
+    EXPECT_NEAR(learnt.taken_out->heading_rad, errors.heading_rad, 0.006);
+    EXPECT_NEAR(learnt.taken_out->short_m, errors.short_m, 0.08);
+    EXPECT_EQ(learnt.taken_out->solved, 1);
+    const Driven as_given = drive_through(run, without_learning());
+    EXPECT_FALSE(as_given.taken_out);
+    EXPECT_LT(learnt.nees, 0.3 * as_given.nees);
+  }
+}
+
+/// What is not there is not found, and then the drive is the same to the last bit.
+TEST(SystematicDrive, ChangesNothingWhereNothingIsWrong) {
+  for (std::uint64_t seed = 11; seed <= 16; ++seed) {
+    SCOPED_TRACE(seed);
+    const core::Recording run = loop(seed);
+    const Driven learnt = drive_through(run, {});
+    EXPECT_FALSE(learnt.taken_out);
+    const Driven as_given = drive_through(run, without_learning());
+    EXPECT_EQ(learnt.nees, as_given.nees);
+    ASSERT_EQ(learnt.map.size(), as_given.map.size());
+    for (std::size_t i = 0; i < learnt.map.size(); ++i) {
+      EXPECT_EQ(learnt.map[i].point.mean_m, as_given.map[i].point.mean_m);
+    }
+  }
+}
+
+/// Noise of twice the assumed size is no error that is always the same.
+TEST(SystematicDrive, IsNotFooledByNoise) {
+  sim::Scenario scenario = sim::named_scenario("assumed-noise-half");
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    EXPECT_FALSE(drive_through(sim::simulate(scenario, seed), {}).taken_out) << seed;
+  }
+}
+
+}  // namespace
+}  // namespace helixnav::supervisor

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "systematic/systematic_learner.hpp"
+
+#include <gtest/gtest.h>
+
+namespace helixnav::supervisor {
+namespace {
+
+using Vector = SystematicErrors::Vector;
+using Matrix = SystematicErrors::Matrix;
+
+/// A stretch that knows each error to `sigmas`, whose measurements are displaced by as many of their own standard deviations
+/// as there are sigmas in an error.
+StretchEvidence stretch(const Vector& errors, const Vector& sigmas) {
+  StretchEvidence evidence;
+  evidence.information = sigmas.cwiseAbs2().cwiseInverse().asDiagonal();
+  evidence.gradient = evidence.information * errors;
+  evidence.in_rows = evidence.information.diagonal() * 10.0;
+  evidence.motions = evidence.sightings = 10;
+  evidence.dof = 100;
+  evidence.chi2 = 100.0 + errors.dot(evidence.gradient);
+  return evidence;
+}
+
+Vector sigmas() { return (Vector() << 0.01, 0.01, 0.01, 0.01, 0.1).finished(); }
+
+SystematicLearner after(int stretches, const StretchEvidence& each) {
+  SystematicLearner learner;
+  for (int i = 0; i < stretches; ++i) learner.add(each);
+  return learner;
+}
+
+TEST(SystematicLearner, TakesOnlyWhatIsCertain) {
+  const Vector errors = (Vector() << 0.04, 0.0, 0.001, 0.0, -0.5).finished();
+  SystematicLearner learner = after(4, stretch(errors, sigmas()));
+  const auto certain = learner.certain();
+  ASSERT_TRUE(certain);
+  EXPECT_NEAR(certain->errors.too_long, 0.04, 1e-9);
+  EXPECT_NEAR(certain->errors.short_m, -0.5, 1e-9);
+  EXPECT_EQ(certain->errors.turn_rad_per_m, 0.0) << "0.2 standard deviations";
+  EXPECT_NEAR(certain->nats, 0.5 * 4.0 * (16.0 + 25.0), 1e-6);
+}
+
+TEST(SystematicLearner, IsNotAskedOfThreeStretchesNorOfSmallErrors) {
+  const Vector errors = (Vector() << 0.0, 0.0, 0.0, 0.08, 0.0).finished();
+  EXPECT_FALSE(after(3, stretch(errors, sigmas())).certain());
+  EXPECT_TRUE(after(4, stretch(errors, sigmas())).certain());
+  const Vector small = 0.025 * errors;  // a fifth of a standard deviation of a measurement
+  EXPECT_FALSE(after(2000, stretch(small, sigmas())).certain());
+  EXPECT_TRUE(after(2000, stretch(2.0 * small, sigmas())).certain());
+}
+
+TEST(SystematicLearner, ErrorsTakenOutAreNoLongerThere) {
+  const Vector errors = (Vector() << 0.04, 0.0, 0.0, 0.0, 0.0).finished();
+  SystematicLearner learner = after(8, stretch(errors, sigmas()));
+  learner.take_out(learner.certain()->errors);
+  EXPECT_NEAR(learner.taken_out().too_long, 0.04, 1e-9);
+  for (int i = 0; i < 8; ++i) learner.add(stretch(Vector::Zero(), sigmas()));
+  EXPECT_FALSE(learner.certain());
+  const Vector more = (Vector() << 0.02, 0.0, 0.0, 0.0, 0.0).finished();
+  for (int i = 0; i < 16; ++i) learner.add(stretch(more, sigmas()));
+  const auto again = learner.certain();
+  ASSERT_TRUE(again);
+  learner.take_out(again->errors);
+  EXPECT_NEAR(learner.taken_out().too_long, 1.04 * 1.01 - 1.0, 1e-9);
+}
+
+TEST(SystematicLearner, AsksAgainWhenTwiceAsMuchIsKnown) {
+  const Vector errors = (Vector() << 0.04, 0.0, 0.0, 0.0, 0.0).finished();
+  SystematicLearner learner = after(4, stretch(errors, sigmas()));
+  ASSERT_TRUE(learner.certain());
+  for (int stretches = 5; stretches <= 8; ++stretches) {
+    learner.add(stretch(errors, sigmas()));
+    EXPECT_EQ(learner.certain().has_value(), stretches == 8) << stretches;
+  }
+}
+
+/// Of two errors that have the same effect, it takes one or a part of each, not two that cancel.
+TEST(SystematicLearner, DoesNotTellApartWhatCannotBe) {
+  StretchEvidence evidence = stretch((Vector() << 0.0, 0.04, 0.0, 0.0, 0.0).finished(), sigmas());
+  evidence.information.row(2) = evidence.information.row(1);
+  evidence.information.col(2) = evidence.information.col(1);
+  evidence.information(2, 2) = evidence.information(1, 1);
+  evidence.gradient(2) = evidence.gradient(1);
+  const auto certain = after(4, evidence).certain();
+  ASSERT_TRUE(certain);
+  EXPECT_NEAR(certain->errors.turn_rad_per_s + certain->errors.turn_rad_per_m, 0.04, 1e-9);
+  EXPECT_GE(certain->errors.turn_rad_per_s, 0.0);
+  EXPECT_GE(certain->errors.turn_rad_per_m, 0.0);
+}
+
+/// Stretches that contradict each other more than their covariances say are believed less.
+TEST(SystematicLearner, ScatterCounts) {
+  const Vector errors = (Vector() << 0.04, 0.0, 0.0, 0.0, 0.0).finished();
+  const Vector scattered = (Vector() << 0.08, 0.1, -0.1, 0.1, 1.0).finished();
+  EXPECT_TRUE(after(8, stretch(errors, sigmas())).certain());
+  SystematicLearner learner;
+  for (int i = 0; i < 8; ++i) learner.add(stretch(errors + (i % 2 == 0 ? scattered : Vector(-scattered)), sigmas()));
+  EXPECT_FALSE(learner.certain());
+}
+
+}  // namespace
+}  // namespace helixnav::supervisor
