@@ -58,7 +58,6 @@ void numbers(SystematicDecision& d, Visit&& visit) {
   visit("short_m", d.short_m);
   visit("nats", d.nats);
   visit("stretches", d.stretches);
-  visit("solved", d.solved);
 }
 
 template <class Visit>

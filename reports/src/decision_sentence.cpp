@@ -44,10 +44,9 @@ std::string sentence(const core::MovingDecision& d) {
 }
 
 std::string sentence(const core::SystematicDecision& d) {
-  const std::string since = d.solved != 0 ? "the whole drive" : "what comes from here on";
   return "Odometry and detections contradict each other in the same way throughout: " + systematic_errors_text(d) +
          ". This explains " + short_number(d.stretches) + " stretches of the drive " + short_number(d.nats) +
-         " nats better than before. It was taken out of " + since + ".";
+         " nats better than before. It was taken out of the whole drive.";
 }
 
 std::string attempt_number(int attempt) { return "Attempt " + std::to_string(attempt); }

@@ -95,7 +95,8 @@ TEST(SystematicMotion, IsNotAskedOfAShortRun) { EXPECT_FALSE(systematic_motion_o
 TEST(SystematicMotion, IsSaidOfASpoiltLogAndNotOfTheExample) {
   const testing::TemporaryFolder folder;
   const SpoiltLog log = write_spoilt_log(207, folder.path() / "log");
-  const Outcome spoilt = run({"replay", folder.path() / "log", "--out", folder.path() / "spoilt", "--quiet"});
+  const Outcome spoilt = run(
+      {"replay", folder.path() / "log", "--out", folder.path() / "spoilt", "--quiet", "--noise.systematic", "false"});
   const std::string side =
       log.right.at("heading_deg") > 0.0 ? "to the right of its odometry" : "to the left of its odometry";
   EXPECT_NE(spoilt.err.find(side), std::string::npos) << spoilt.err;

@@ -25,7 +25,7 @@ struct SystematicMotion {
 std::optional<SystematicMotion> systematic_motion_of(const core::Recording& recording, const runs::Run& run);
 
 /// Adds to the run's numbers, from which reports and programs warn, the persistent errors that its detections show in the odometry,
-/// and an offset of ranges (range_offset_of), if they are surely non-zero, beside what was taken out while driving. For a drive that mapped by itself with one filter.
+/// and an offset of ranges (range_offset_of), if they are surely non-zero, besides what was taken out while driving. For a drive that mapped by itself with one filter.
 void note_systematic_errors(const core::Recording& measured, runs::Run& run);
 
 }  // namespace helixnav::apps

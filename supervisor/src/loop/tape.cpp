@@ -197,9 +197,13 @@ core::MergedIds merged_ids(const Tape& tape, Tape::Position position) {
 }
 
 std::vector<Stop> stops_of(const Tape& tape, Tape::Position position) {
+  return stops_between(tape, position, tape.end());
+}
+
+std::vector<Stop> stops_between(const Tape& tape, Tape::Position position, Tape::Position until) {
   std::vector<Stop> stops;
   std::optional<core::Odometry> motion;
-  tape.read_from(position, [&](const Tape::Entry& entry) {
+  tape.read_between(position, until, [&](const Tape::Entry& entry) {
     if (const core::Odometry* moved = motion_of(entry)) motion = motion ? core::chain(*motion, *moved) : *moved;
     if (!is_stop(entry)) return;
     Stop& stop = stops.emplace_back();

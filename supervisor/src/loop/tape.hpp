@@ -108,8 +108,13 @@ class Tape {
   /// Calls read(entry) for every entry from `position` on.
   template <class Read>
   void read_from(Position position, Read&& read) const {
+    read_between(position, end(), read);
+  }
+  /// Likewise, up to but not including the entry at `until`.
+  template <class Read>
+  void read_between(Position position, Position until, Read&& read) const {
     const Position first = position > forgotten_ ? position - forgotten_ : 0;
-    for (Position i = first; i < entries_.size(); ++i) read(entries_[i]);
+    for (Position i = first; i + forgotten_ < until; ++i) read(entries_[i]);
   }
 
  private:
@@ -145,8 +150,9 @@ struct Stop {
   bool repeats = false;  ///< nothing new from where the vehicle stands (StandingLooks)
 };
 
-/// The scans and accepted fixes of the drive since `position`, motion chained in between.
+/// The scans and accepted fixes of the drive since `position`, or between two positions, motion chained in between.
 std::vector<Stop> stops_of(const Tape& tape, Tape::Position position = 0);
+std::vector<Stop> stops_between(const Tape& tape, Tape::Position position, Tape::Position until);
 /// Motion since the last stop, or since `position`.
 std::optional<core::Odometry> motion_after_stops(const Tape& tape, Tape::Position position = 0);
 

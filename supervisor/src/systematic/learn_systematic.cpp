@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Learning by how much odometry and detections err throughout, and solving the drive again without it.
+#include <cstddef>
 #include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -36,13 +38,24 @@ bool interrupts(const Tape::Entry& entry) {
          std::holds_alternative<Tape::Solved>(entry) || (scan != nullptr && scan->slipped);
 }
 
-/// What the tape holds from a position on, if it is one piece and determines anything.
-std::optional<StretchEvidence> evidence_since(const Tape& tape, Tape::Position begun, double stretch_m) {
-  bool is_one_piece = true;
-  tape.read_from(begun, [&](const Tape::Entry& entry) { is_one_piece = is_one_piece && !interrupts(entry); });
-  if (!is_one_piece) return std::nullopt;
+/// The first such entry between two positions, or the second position.
+Tape::Position first_interruption(const Tape& tape, Tape::Position from, Tape::Position until) {
+  Tape::Position position = from, found = until;
+  tape.read_between(from, until, [&](const Tape::Entry& entry) {
+    if (found == until && interrupts(entry)) found = position;
+    ++position;
+  });
+  return found;
+}
+
+/// Of what the tape holds between two positions, if that determines anything.
+std::optional<StretchEvidence> evidence_between(const Tape& tape, Tape::Position begun, Tape::Position until,
+                                                double reach_m) {
+  constexpr std::size_t least_stops = 5;
+  const std::vector<Stop> stops = thinned(stops_between(tape, begun, until), reach_m / stops_a_stretch);
+  if (stops.size() < least_stops) return std::nullopt;
   try {
-    return evidence_of_stretch(thinned(stops_of(tape, begun), stretch_m / stops_a_stretch));
+    return evidence_of_stretch(stops);
   } catch (const core::NumericalError&) {
     return std::nullopt;
   }
@@ -50,38 +63,36 @@ std::optional<StretchEvidence> evidence_since(const Tape& tape, Tape::Position b
 
 }  // namespace
 
-/// A stretch is one reach of the sensor long: while mapping, with nothing in question.
+/// While mapping, with nothing in question, as long as the whole map can be drawn again: not on an earlier map, nor once the
+/// atlas holds a part of the drive. A stretch is one reach of the sensor long, or ends where it is interrupted.
 void NavigationLoop::learn_systematic(core::StepReport& report) {
   SystematicState& systematic = noise_.systematic;
   const std::optional<double> reach_m = view_.reach();
-  if (!options_.noise.systematic || !reach_m || searching() != nullptr) {
+  const bool is_learning = options_.noise.systematic && reach_m && searching() == nullptr && tape_.holds_drive();
+  if (!is_learning || apart_.any()) {
     systematic.begun.reset();
     return;
   }
   const double path_m = belief_.existence.path_m();
-  const bool goes_on = systematic.begun && *systematic.begun <= tape_.end() && tape_.holds_since(*systematic.begun);
-  if (goes_on && path_m - systematic.begun_m < *reach_m) return;
-  if (goes_on) {
-    const auto evidence = evidence_since(tape_, *systematic.begun, *reach_m);
-    if (evidence) systematic.learner.add(*evidence);
-    if (evidence) take_out_systematic(report);
-  }
+  const Tape::Position end = tape_.end();
+  if (!systematic.begun || *systematic.begun > systematic.read || systematic.read > end) systematic.begin(end, path_m);
+  const Tape::Position until = first_interruption(tape_, std::exchange(systematic.read, end), end);
+  if (until == end && path_m - systematic.begun_m < *reach_m) return;
+  const auto evidence = evidence_between(tape_, *systematic.begun, until, *reach_m);
+  if (evidence) systematic.learner.add(*evidence);
+  if (evidence) take_out_systematic(report);
   systematic.begin(tape_.end(), path_m);
 }
 
-/// Of the whole drive. Where an earlier map cannot be drawn again, only from here on. A drive of which the atlas holds a part stays
-/// as it is.
 void NavigationLoop::take_out_systematic(core::StepReport& report) {
-  if (belief_.drive && !tape_.holds_drive()) return;
   SystematicLearner& learner = noise_.systematic.learner;
   const std::optional<CertainErrors> found = learner.certain();
-  if (!found) return;
-  if (tape_.holds_drive() && !solve_again(tape_.without(found->errors), report)) return;
+  if (!found || !solve_again(tape_.without(found->errors), report)) return;
   learner.take_out(found->errors);
   const SystematicErrors& all = learner.taken_out();
   report.decisions.emplace_back(core::SystematicDecision{all.too_long, all.turn_rad_per_s, all.turn_rad_per_m,
-                                                         all.heading_rad, all.short_m, found->nats, learner.stretches(),
-                                                         tape_.holds_drive()});
+                                                         all.heading_rad, all.short_m, found->nats,
+                                                         learner.stretches()});
 }
 
 }  // namespace helixnav::supervisor

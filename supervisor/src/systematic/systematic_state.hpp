@@ -13,9 +13,10 @@ struct SystematicState {
   SystematicLearner learner;
   std::optional<Tape::Position> begun;
   double begun_m = 0.0;
+  Tape::Position read = 0;  ///< up to here nothing interrupts the stretch
 
   void begin(Tape::Position position, double path_m) {
-    begun = position;
+    begun = read = position;
     begun_m = path_m;
   }
 };

@@ -54,7 +54,7 @@ struct MovingDecision {
 };
 
 /// Odometry or detections err throughout the drive, and that was taken out of them (supervisor/systematic_errors.hpp has the
-/// same quantities). Totals since the beginning of the drive, in force from this step on.
+/// same quantities). Totals since the beginning of the drive; what was driven before was solved again without them.
 struct SystematicDecision {
   double too_long = 0.0;        ///< odometry's distances, as a share of the true ones
   double turn_rad_per_s = 0.0;  ///< odometry turns too far to the left
@@ -63,7 +63,6 @@ struct SystematicDecision {
   double short_m = 0.0;         ///< missing from every range
   double nats = 0.0;  ///< by which what was added now explains the drive better than what was taken out before
   int stretches = 0;  ///< of the drive that it was found in, one reach of the sensor long
-  int solved = 0;     ///< 1: what was driven before was solved again without it; 0: from here on only
 };
 
 /// An attempt of a search began: particles drawn on helices around old landmarks.
