@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "degrees.hpp"
 #include "helixnav/core/angle.hpp"
 
 namespace helixnav::reports {
@@ -28,12 +29,11 @@ std::string text_of(const char* format, Values... values) {
   return text.data();
 }
 
-double degrees(double angle_rad) { return angle_rad * 180.0 / core::pi; }
-
 const char* side(double angle) { return angle > 0.0 ? "left" : "right"; }
 
 std::string turning_text(double turn_rad, const char* per) {
-  return text_of("odometry turns %.2g deg per %s too far to the %s", std::abs(degrees(turn_rad)), per, side(turn_rad));
+  return text_of("odometry turns %.2g deg per %s too far to the %s", std::abs(in_degrees(turn_rad)), per,
+                 side(turn_rad));
 }
 
 /// Empty if nothing was taken out while driving.
@@ -66,7 +66,7 @@ std::string systematic_errors_text(const core::SystematicDecision& d) {
   if (d.turn_rad_per_m != 0.0) parts.push_back(turning_text(d.turn_rad_per_m, "metre"));
   if (d.heading_rad != 0.0) {
     parts.push_back(text_of("sensors point %.2g deg farther to the %s than heading_deg says",
-                            std::abs(degrees(d.heading_rad)), side(d.heading_rad)));
+                            std::abs(in_degrees(d.heading_rad)), side(d.heading_rad)));
   }
   if (d.short_m != 0.0) {
     parts.push_back(text_of("ranges are %.3f m too %s", std::abs(d.short_m), d.short_m > 0.0 ? "short" : "long"));

@@ -17,7 +17,7 @@ namespace {
 constexpr int stops_a_stretch = 20;  // of one reach: more of them tell little more
 
 /// Scans closer than that to the one before are passed over.
-std::vector<Stop> thinned(const std::vector<Stop>& stops, double least_m) {
+std::vector<Stop> spaced_out(const std::vector<Stop>& stops, double least_m) {
   std::vector<Stop> chosen;
   std::optional<core::Odometry> motion;
   for (const Stop& stop : stops) {
@@ -52,7 +52,7 @@ Tape::Position first_interruption(const Tape& tape, Tape::Position from, Tape::P
 std::optional<StretchEvidence> evidence_between(const Tape& tape, Tape::Position begun, Tape::Position until,
                                                 double reach_m) {
   constexpr std::size_t least_stops = 5;
-  const std::vector<Stop> stops = thinned(stops_between(tape, begun, until), reach_m / stops_a_stretch);
+  const std::vector<Stop> stops = spaced_out(stops_between(tape, begun, until), reach_m / stops_a_stretch);
   if (stops.size() < least_stops) return std::nullopt;
   try {
     return evidence_of_stretch(stops);

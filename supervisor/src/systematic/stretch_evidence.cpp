@@ -18,28 +18,28 @@ using Eigen::Index;
 
 constexpr Index errors = SystematicErrors::count;
 
-struct Sighting {
+struct SeenFrom {
   Index stop;
   const cekf::Match* match;
 };
 
-struct Landmark {
+struct SeenLandmark {
   Eigen::Vector2d point_m;
-  std::vector<Sighting> seen;
+  std::vector<SeenFrom> seen;
 };
 
 /// Whitened residuals and their derivatives by what they depend on.
 template <int rows>
-struct Rows {
+struct WhitenedRows {
   Eigen::Matrix<double, rows, 1> residual;
   Eigen::Matrix<double, rows, errors> by_errors;  ///< of the residual: it is residual + by_errors c
 };
 
-struct MotionRows : Rows<3> {
+struct MotionRows : WhitenedRows<3> {
   Eigen::Matrix3d by_before, by_after;
 };
 
-struct SightingRows : Rows<2> {
+struct SightingRows : WhitenedRows<2> {
   Eigen::Matrix<double, 2, 3> by_pose;
   Eigen::Matrix2d by_landmark;
 };
@@ -51,9 +51,9 @@ struct OfLandmark {
   Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
 };
 
-class Stretch {
+class StretchProblem {
  public:
-  explicit Stretch(const std::vector<Stop>& stops) : stops_(stops) {
+  explicit StretchProblem(const std::vector<Stop>& stops) : stops_(stops) {
     chain_poses();
     collect_landmarks();
     of_landmark_.resize(landmarks_.size());
@@ -97,7 +97,7 @@ class Stretch {
   }
 
   void collect_landmarks() {
-    std::map<core::LandmarkId, std::vector<Sighting>> seen;
+    std::map<core::LandmarkId, std::vector<SeenFrom>> seen;
     for (std::size_t k = 0; k < stops_.size(); ++k) {
       for (const cekf::Match& match : stops_[k].seen) {
         if (core::dimension(match.observation.kind) == 2) {
@@ -140,7 +140,7 @@ class Stretch {
     return rows;
   }
 
-  SightingRows rows_of_sighting(const Landmark& landmark, const Sighting& sighting) const {
+  SightingRows rows_of_sighting(const SeenLandmark& landmark, const SeenFrom& sighting) const {
     const core::Observation& seen = sighting.match->observation;
     const core::Pose2& T_world_robot = at_[static_cast<std::size_t>(sighting.stop)];
     const core::PredictedObservation predicted =
@@ -199,12 +199,12 @@ class Stretch {
     rows_ += 3;
   }
 
-  bool add_landmark(const Landmark& landmark, OfLandmark& part) {
+  bool add_landmark(const SeenLandmark& landmark, OfLandmark& part) {
     part.own.setZero();
     part.gradient.setZero();
     part.with_rest.setZero(2, H_.cols());
     const Index e = error_column();
-    for (const Sighting& sighting : landmark.seen) {
+    for (const SeenFrom& sighting : landmark.seen) {
       const SightingRows rows = rows_of_sighting(landmark, sighting);
       part.own += rows.by_landmark.transpose() * rows.by_landmark;
       part.gradient += rows.by_landmark.transpose() * rows.residual;
@@ -243,7 +243,7 @@ class Stretch {
 
   const std::vector<Stop>& stops_;
   std::vector<core::Pose2> at_;
-  std::vector<Landmark> landmarks_;
+  std::vector<SeenLandmark> landmarks_;
   std::vector<OfLandmark> of_landmark_;
   Eigen::MatrixXd H_;
   Eigen::VectorXd g_;
@@ -254,6 +254,8 @@ class Stretch {
 
 }  // namespace
 
-std::optional<StretchEvidence> evidence_of_stretch(const std::vector<Stop>& stops) { return Stretch(stops).evidence(); }
+std::optional<StretchEvidence> evidence_of_stretch(const std::vector<Stop>& stops) {
+  return StretchProblem(stops).evidence();
+}
 
 }  // namespace helixnav::supervisor

@@ -11,8 +11,8 @@
 namespace helixnav::supervisor {
 namespace {
 
-constexpr std::size_t count = SystematicErrors::count;
-using Chosen = std::array<bool, count>;
+constexpr std::size_t errors_count = SystematicErrors::count;
+using Chosen = std::array<bool, errors_count>;
 
 constexpr double new_one = 36.0;   // of χ²: six standard deviations
 constexpr double known_one = 9.0;  // an error that was found before is only made more precise
@@ -47,7 +47,7 @@ Fit fit(const SystematicErrors::Matrix& information, const SystematicErrors::Vec
 
 /// The others held at zero.
 Fit fit(SystematicErrors::Matrix information, SystematicErrors::Vector gradient, const Chosen& chosen) {
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < errors_count; ++i) {
     if (chosen[i]) continue;
     const auto row = static_cast<Eigen::Index>(i);
     information.row(row).setZero();
@@ -94,10 +94,10 @@ std::optional<CertainErrors> SystematicLearner::certain() {
   const SystematicErrors::Vector known = taken_out_.vector();
   Chosen chosen{};
   Fit best;
-  for (std::size_t found = 0; found < count; ++found) {
-    std::size_t next = count;
+  for (std::size_t found = 0; found < errors_count; ++found) {
+    std::size_t next = errors_count;
     double most = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < errors_count; ++i) {
       if (chosen[i]) continue;
       Chosen more = chosen;
       more[i] = true;
@@ -110,7 +110,7 @@ std::optional<CertainErrors> SystematicLearner::certain() {
         most = lowers;
       }
     }
-    if (next == count) break;
+    if (next == errors_count) break;
     chosen[next] = true;
     best = fit(information_, gradient_, chosen);
   }
