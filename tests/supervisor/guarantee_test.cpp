@@ -13,7 +13,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
 #include "pauses.hpp"
-#include "systematic/spoilt.hpp"
+#include "systematic/with_errors.hpp"
 #include "wrong_names.hpp"
 
 namespace {
@@ -202,7 +202,7 @@ TEST(Guarantee, HoldsWhereSystematicErrorsAreTakenOutOfTheDrive) {
   SystematicErrors errors;
   errors.too_long = 0.04;
   errors.short_m = 0.3;
-  const core::Recording run = spoilt(sim::simulate(sim::named_scenario("large-loop"), 3), errors);
+  const core::Recording run = with_errors(sim::simulate(sim::named_scenario("large-loop"), 3), errors);
   EXPECT_EQ(break_drive(run, single_threaded(3), 12).count(Kind::systematic), 1u);
 }
 

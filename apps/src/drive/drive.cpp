@@ -111,6 +111,21 @@ Driven navigate(const Drive& job, Estimator& estimator, runs::RunWriter& writer,
   return driven;
 }
 
+/// The run, with all that the estimator knows at its end. The estimator is gone before reports are made of it: it takes as much memory
+/// as they do.
+runs::Run navigated(const Drive& job, runs::RunWriter& writer, runs::RunRecorder& recorder, LabelAgreement& agreement,
+                    Driven& driven) {
+  Estimator estimator = estimator_of(job, agreement);
+  driven = navigate(job, estimator, writer, recorder);
+  runs::Run run = recorder.finish(estimator.map());
+  run.names = landmark_names(job, run);
+  run.joint_map = estimator.joint_map();
+  if (run.joint_map) run.joint_map->drives = drives_in_map(job, run);
+  if (estimator.parts_apart) run.parts_apart = estimator.parts_apart();
+  if (estimator.particle_end) run.particle_end = estimator.particle_end();
+  return run;
+}
+
 /// Reports problems on stderr.
 ExitCode verdict(const Drive& job, const Driven& driven, const runs::Run& run, const evaluation::Evaluation& evaluation,
                  ExitCode smoothed) {
@@ -149,22 +164,15 @@ ExitCode drive(const Drive& job) {
                          job.overwrite ? IfNotEmpty::overwrite : IfNotEmpty::refuse);
   runs::RunRecorder recorder(job.out, job.manifest, job.recording);
   LabelAgreement agreement;
-  Estimator estimator = estimator_of(job, agreement);
-  Driven driven = navigate(job, estimator, writer, recorder);
+  Driven driven;
+  runs::Run run = navigated(job, writer, recorder, agreement, driven);
   const std::vector<double>& step_us = driven.step_us;
-
-  runs::Run run = recorder.finish(estimator.map());
-  run.names = landmark_names(job, run);
-  run.joint_map = estimator.joint_map();
-  if (run.joint_map) run.joint_map->drives = drives_in_map(job, run);
-  if (estimator.parts_apart) run.parts_apart = estimator.parts_apart();
   run.timing = {{"median_us", quantile(step_us, 0.5)},
                 {"p99_us", quantile(step_us, 0.99)},
                 {"max_us", quantile(step_us, 1.0)},
                 {"reading_s", job.reading_s},
                 {"navigating_s", seconds_since(begin)}};
   run.numbers = numbers_of(agreement);
-  if (estimator.particle_end) run.particle_end = estimator.particle_end();
   if (!job.withheld.empty()) {
     const auto withheld = std::count(job.withheld.begin(), job.withheld.end(), true);
     run.numbers.emplace_back("blackout.scans", static_cast<double>(withheld));

@@ -14,7 +14,7 @@
 #include "helixnav/smoothing/optimize.hpp"
 #include "labelled_drive.hpp"
 #include "smoothing/drive_phases.hpp"
-#include "systematic/spoilt.hpp"
+#include "systematic/with_errors.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -107,7 +107,7 @@ TEST(StretchEvidence, IsThatOfLeastSquaresOverAllPosesAndLandmarks) {
   SystematicErrors errors;
   errors.too_long = 0.02;
   errors.short_m = 0.1;
-  const std::vector<Stop> stops = stops_of_drive(spoilt(simulated(1), errors));
+  const std::vector<Stop> stops = stops_of_drive(with_errors(simulated(1), errors));
   for (const std::size_t first : {0u, 40u, 80u}) {
     const std::vector<Stop> some = stretch(stops, first);
     const auto evidence = evidence_of_stretch(some);

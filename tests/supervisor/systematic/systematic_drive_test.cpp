@@ -5,22 +5,22 @@
 #include <gtest/gtest.h>
 
 #include "circuits.hpp"
-#include "systematic/spoilt.hpp"
+#include "systematic/with_errors.hpp"
 
 namespace helixnav::supervisor {
 namespace {
 
-struct Driven {
+struct LearningDrive {
   std::optional<core::SystematicDecision> taken_out;
   int times = 0;
   double nees = 0.0;  ///< mean over the second half
   std::vector<core::MapLandmark> map;
 };
 
-Driven drive_through(const core::Recording& run, NavigatorOptions options) {
+LearningDrive drive_learning(const core::Recording& run, NavigatorOptions options) {
   options.search.relocalizer.threads = 1;
   Navigator navigator(run.start, options);
-  Driven driven;
+  LearningDrive driven;
   int judged = 0;
   drive(run, navigator, [&](const core::Scan& scan, std::size_t k) {
     const core::StepReport report = navigator.observe(scan);
@@ -39,7 +39,7 @@ Driven drive_through(const core::Recording& run, NavigatorOptions options) {
   return driven;
 }
 
-NavigatorOptions without_learning() {
+NavigatorOptions not_learning() {
   NavigatorOptions options;
   options.noise.systematic = false;
   return options;
@@ -47,7 +47,7 @@ NavigatorOptions without_learning() {
 
 core::Recording loop(std::uint64_t seed) { return sim::simulate(sim::named_scenario("large-loop"), seed); }
 
-SystematicErrors errors_of(std::uint64_t seed) {
+SystematicErrors constant_errors(std::uint64_t seed) {
   const double sign = seed % 2 == 0 ? -1.0 : 1.0;
   SystematicErrors errors;
   errors.too_long = sign * 0.08;
@@ -59,14 +59,14 @@ SystematicErrors errors_of(std::uint64_t seed) {
 TEST(SystematicDrive, FindsTheErrorsAndTakesThemOut) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     SCOPED_TRACE(seed);
-    const SystematicErrors errors = errors_of(seed);
-    const core::Recording run = spoilt(loop(seed), errors);
-    const Driven learnt = drive_through(run, {});
+    const SystematicErrors errors = constant_errors(seed);
+    const core::Recording run = with_errors(loop(seed), errors);
+    const LearningDrive learnt = drive_learning(run, {});
     ASSERT_TRUE(learnt.taken_out);
     EXPECT_NEAR(learnt.taken_out->too_long, errors.too_long, 0.025);
     EXPECT_NEAR(learnt.taken_out->heading_rad, errors.heading_rad, 0.006);
     EXPECT_NEAR(learnt.taken_out->short_m, errors.short_m, 0.08);
-    const Driven as_given = drive_through(run, without_learning());
+    const LearningDrive as_given = drive_learning(run, not_learning());
     EXPECT_FALSE(as_given.taken_out);
     EXPECT_LT(learnt.nees, 0.3 * as_given.nees);
   }
@@ -77,9 +77,9 @@ TEST(SystematicDrive, ChangesNothingWhereNothingIsWrong) {
   for (std::uint64_t seed = 11; seed <= 16; ++seed) {
     SCOPED_TRACE(seed);
     const core::Recording run = loop(seed);
-    const Driven learnt = drive_through(run, {});
+    const LearningDrive learnt = drive_learning(run, {});
     EXPECT_FALSE(learnt.taken_out);
-    const Driven as_given = drive_through(run, without_learning());
+    const LearningDrive as_given = drive_learning(run, not_learning());
     EXPECT_EQ(learnt.nees, as_given.nees);
     ASSERT_EQ(learnt.map.size(), as_given.map.size());
     for (std::size_t i = 0; i < learnt.map.size(); ++i) {
@@ -92,7 +92,7 @@ TEST(SystematicDrive, ChangesNothingWhereNothingIsWrong) {
 TEST(SystematicDrive, IsNotFooledByNoise) {
   sim::Scenario scenario = sim::named_scenario("assumed-noise-half");
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    EXPECT_FALSE(drive_through(sim::simulate(scenario, seed), {}).taken_out) << seed;
+    EXPECT_FALSE(drive_learning(sim::simulate(scenario, seed), {}).taken_out) << seed;
   }
 }
 

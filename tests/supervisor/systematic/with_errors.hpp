@@ -11,7 +11,7 @@
 namespace helixnav::supervisor {
 
 /// The recording, had its odometry and its sensor these errors.
-inline core::Recording spoilt(core::Recording recording, const SystematicErrors& errors) {
+inline core::Recording with_errors(core::Recording recording, const SystematicErrors& errors) {
   SystematicErrors opposite(SystematicErrors::Vector(-errors.vector()));
   opposite.too_long = 1.0 / (1.0 + errors.too_long) - 1.0;
   std::optional<core::Nanoseconds> moved_ns;
