@@ -23,7 +23,7 @@ class Robot {
     along_m_ += 1.0;
     mrpt::obs::CActionRobotMovement2D::TMotionModelOptions model;
     mrpt::obs::CActionRobotMovement2D movement;
-    movement.computeFromOdometry(mrpt::poses::CPose2D(1.0, 0.0, 1.0 / radius_m), model);
+    movement.computeFromOdometry(pose_at(1.0), model);
     mrpt::obs::CActionCollection actions;
     actions.insert(movement);
     return actions;
@@ -51,10 +51,7 @@ class Robot {
   /// Somebody carries it along the way.
   void carry(double distance_m) { along_m_ += distance_m; }
 
-  mrpt::poses::CPose2D pose() const {
-    const double angle_rad = along_m_ / radius_m;
-    return {radius_m * std::sin(angle_rad), radius_m * (1.0 - std::cos(angle_rad)), angle_rad};
-  }
+  mrpt::poses::CPose2D pose() const { return pose_at(along_m_); }
 
   static mrpt::math::CMatrixDouble33 start_covariance() {
     mrpt::math::CMatrixDouble33 covariance;
@@ -65,6 +62,12 @@ class Robot {
 
  private:
   static constexpr double radius_m = 16.0;
+
+  /// This far along the circle, from where it begins.
+  static mrpt::poses::CPose2D pose_at(double along_m) {
+    const double angle_rad = along_m / radius_m;
+    return {radius_m * std::sin(angle_rad), radius_m * (1.0 - std::cos(angle_rad)), angle_rad};
+  }
 
   double uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(random_()) / static_cast<double>(std::mt19937::max());

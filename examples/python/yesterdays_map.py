@@ -21,7 +21,7 @@ def pose_at(along):
 def drive(navigator, begin, end, noise):
     """Feeds the navigator the path from one distance [m] to another; yields the decisions as sentences."""
     for along in np.arange(begin, end):
-        step = np.array([1.0, 0.0, 1.0 / RADIUS]) + noise.normal(0.0, [0.02, 0.005, 0.005])
+        step = pose_at(1.0) + noise.normal(0.0, [0.02, 0.005, 0.005])
         navigator.move(helixnav.Odometry(along, step, np.diag([4e-4, 25e-6, 25e-6])))
         x, y, heading = pose_at(along + 1.0)
         c, s = np.cos(heading), np.sin(heading)
