@@ -15,11 +15,17 @@ namespace helixnav::python {
   for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
+/// Once the interpreter has ended, its state is gone, and asking for the GIL would read freed memory. May be asked without the GIL.
+inline void wait_if_python_has_ended() {
+  if (Py_IsInitialized() == 0) wait_for_the_end();
+}
+
 /// Without the GIL in a scope, or in a call as py::call_guard.
 class WithoutGil {
  public:
   WithoutGil() : thread_(PyEval_SaveThread()) {}
   ~WithoutGil() {
+    wait_if_python_has_ended();
     try {
       PyEval_RestoreThread(thread_);
     } catch (...) {  // the unwinding itself
@@ -43,6 +49,7 @@ class WithGil {
 
  private:
   static PyGILState_STATE acquired() {
+    wait_if_python_has_ended();
     try {
       return PyGILState_Ensure();
     } catch (...) {
