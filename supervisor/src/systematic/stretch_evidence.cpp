@@ -149,7 +149,9 @@ class StretchProblem {
     rows.residual = core::innovation(seen.kind, seen.z, predicted.z_hat);
     rows.by_pose = predicted.H_pose;
     rows.by_landmark = predicted.H_landmark;
-    rows.by_errors = derivative_without_errors(seen);
+    core::Observation expected = seen;  // along a measured line of sight, a derivative has the sign of the residual
+    expected.z = predicted.z_hat;
+    rows.by_errors = derivative_without_errors(expected);
     const Eigen::LLT<Eigen::Matrix2d> root{Eigen::Matrix2d(seen.R)};
     const auto L = root.matrixL();
     L.solveInPlace(rows.residual);

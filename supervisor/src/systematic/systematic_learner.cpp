@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 
@@ -57,25 +58,43 @@ Fit fit(SystematicErrors::Matrix information, SystematicErrors::Vector gradient,
   return fit(information, gradient);
 }
 
+/// A distance m becomes m (1 − e) in the linear model, and m/(1 + too_long) when the error is taken out.
+SystematicErrors of_linear(const SystematicErrors::Vector& e) {
+  SystematicErrors errors(e);
+  constexpr double most = 0.5;
+  const double share = std::clamp(e(0), -most, most);
+  errors.too_long = share / (1.0 - share);
+  return errors;
+}
+
+SystematicErrors::Vector linear(const SystematicErrors& errors) {
+  SystematicErrors::Vector e = errors.vector();
+  e(0) /= 1.0 + errors.too_long;
+  return e;
+}
+
 }  // namespace
 
 void SystematicLearner::add(const StretchEvidence& stretch) {
   const Fit own = fit(stretch.information, stretch.gradient);
   const double worse =
       std::max(1.0, (stretch.chi2 - own.lowers) / std::max(1, stretch.dof));  // than its covariances say
-  information_ += stretch.information / worse;
-  gradient_ += stretch.gradient / worse;
+  all_.information += stretch.information / worse;
+  all_.gradient += stretch.gradient / worse;
   in_rows_ += stretch.in_rows;
   motions_ += stretch.motions;
   sightings_ += stretch.sightings;
   of_stretches_ += own.lowers / worse;
   rank_ += own.rank;
   ++stretches_;
+  ++since_;
+  const bool is_power_of_two = (since_ & (since_ - 1)) == 0;
+  if (is_power_of_two) early_ = std::exchange(pending_, all_);
 }
 
 /// Of the stretches about what they say together, per degree of freedom.
 double SystematicLearner::scatter() const {
-  const Fit together = fit(information_, gradient_);
+  const Fit together = fit(all_.information, all_.gradient);
   return std::max(1.0, (of_stretches_ - together.lowers) / std::max(1, rank_ - together.rank));
 }
 
@@ -86,6 +105,16 @@ bool SystematicLearner::matters(std::size_t error, const SystematicErrors::Vecto
   const double rows = error < errors_of_odometry ? motions_ : sightings_;
   const auto i = static_cast<Eigen::Index>(error);
   return errors(i) * errors(i) * in_rows_(i) >= quarter * quarter * rows;
+}
+
+/// Whether the first stretches and the others, since errors were last taken out, have the same errors: by how much χ² would be lower
+/// if each had their own.
+bool SystematicLearner::is_constant(const Chosen& chosen) const {
+  constexpr double most = 16.0;  // four standard deviations
+  const auto lowers = [&](const StretchSums& until, const StretchSums& since) {
+    return fit(until.information - since.information, until.gradient - since.gradient, chosen).lowers;
+  };
+  return lowers(early_, base_) + lowers(all_, early_) - lowers(all_, base_) < most * scatter();
 }
 
 std::optional<CertainErrors> SystematicLearner::certain() {
@@ -101,7 +130,7 @@ std::optional<CertainErrors> SystematicLearner::certain() {
       if (chosen[i]) continue;
       Chosen more = chosen;
       more[i] = true;
-      const Fit with = fit(information_, gradient_, more);
+      const Fit with = fit(all_.information, all_.gradient, more);
       if (!matters(i, with.errors)) continue;
       const double lowers = with.lowers - best.lowers;
       const double least = known(static_cast<Eigen::Index>(i)) == 0.0 ? new_one : known_one;
@@ -112,17 +141,19 @@ std::optional<CertainErrors> SystematicLearner::certain() {
     }
     if (next == errors_count) break;
     chosen[next] = true;
-    best = fit(information_, gradient_, chosen);
+    best = fit(all_.information, all_.gradient, chosen);
   }
-  if (!(best.lowers > 0.0)) return std::nullopt;
+  if (!(best.lowers > 0.0) || !is_constant(chosen)) return std::nullopt;
   ask_at_ = 2 * stretches_;
-  return CertainErrors{SystematicErrors(best.errors), 0.5 * best.lowers / unit};
+  return CertainErrors{of_linear(best.errors), 0.5 * best.lowers / unit};
 }
 
 void SystematicLearner::take_out(const SystematicErrors& errors) {
-  const SystematicErrors::Vector e = errors.vector();
-  of_stretches_ += e.dot(information_ * e) - 2.0 * e.dot(gradient_);
-  gradient_ -= information_ * e;
+  const SystematicErrors::Vector e = linear(errors);
+  of_stretches_ += e.dot(all_.information * e) - 2.0 * e.dot(all_.gradient);
+  all_.gradient -= all_.information * e;
+  base_ = early_ = pending_ = all_;
+  since_ = 0;
   taken_out_ = both(taken_out_, errors);
 }
 

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "helixnav/supervisor/systematic_errors.hpp"
 #include "systematic/stretch_evidence.hpp"
 
 namespace helixnav::supervisor {
+
+/// What stretches say together.
+struct StretchSums {
+  SystematicErrors::Matrix information = SystematicErrors::Matrix::Zero();
+  SystematicErrors::Vector gradient = SystematicErrors::Vector::Zero();
+};
 
 /// Errors that are certain, the others at zero.
 struct CertainErrors {
@@ -17,7 +24,7 @@ struct CertainErrors {
 /// Sums up what the stretches of a drive say of its systematic errors, and decides which are certain: the one that lowers χ²
 /// most, then the one that lowers it most beside it, as long as each lowers it by 36 (six standard deviations). χ² is divided
 /// by what the stretches scatter more than their covariances say. Errors that displace a single measurement by less than a quarter of its standard
-/// deviation are left to the noise. O(1) memory and time.
+/// deviation are left to the noise, and so is what the first stretches contradict: it began on the way. O(1) memory and time.
 /// Test: supervisor/systematic/systematic_learner_test.cpp.
 class SystematicLearner {
  public:
@@ -35,10 +42,14 @@ class SystematicLearner {
 
  private:
   double scatter() const;
+  bool is_constant(const std::array<bool, SystematicErrors::count>& chosen) const;
   bool matters(std::size_t error, const SystematicErrors::Vector& errors) const;
 
-  SystematicErrors::Matrix information_ = SystematicErrors::Matrix::Zero();
-  SystematicErrors::Vector gradient_ = SystematicErrors::Vector::Zero();
+  StretchSums all_;
+  StretchSums base_;     ///< of `all_`, when errors were last taken out
+  StretchSums early_;    ///< of the first quarter or half of the stretches since
+  StretchSums pending_;  ///< will be that when they have doubled
+  int since_ = 0;        ///< stretches since
   SystematicErrors::Vector in_rows_ = SystematicErrors::Vector::Zero();
   double motions_ = 0.0, sightings_ = 0.0;
   double of_stretches_ = 0.0;  ///< sum of what each stretch's own errors take from its χ²

@@ -144,6 +144,34 @@ TEST(StretchEvidence, OfNoErrorsIsAsChanceHasIt) {
   EXPECT_NEAR(sum, dof, 3.3 * std::sqrt(2.0 * dof));  // outside in 1 of 1000
 }
 
+/// Points seen in a narrow view, uncertain across the line of sight: a derivative along the measured line would have the sign of its
+/// residual, and every stretch would find ranges too long.
+TEST(StretchEvidence, PointsInANarrowViewShowNoRangeOffset) {
+  sim::Scenario scenario;
+  scenario.scanner.field_of_view = {1.0, 30.0, -0.5, 0.5};
+  scenario.true_noise.sigma_bearing_rad = scenario.assumed_noise.sigma_bearing_rad = 0.03;
+  double gradient = 0.0, information = 0.0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    core::Recording run = sim::simulate(scenario, seed);
+    for (core::Event& event : run.events) {
+      auto* scan = std::get_if<core::Scan>(&event);
+      if (scan == nullptr) continue;
+      for (core::Observation& seen : scan->observations) {
+        const auto point = core::locate_landmark(seen, {}, {});
+        seen = core::make_cartesian(point.point_world_m, point.G_z * Eigen::Matrix2d(seen.R) * point.G_z.transpose());
+      }
+    }
+    const std::vector<Stop> stops = stops_of_drive(run);
+    for (std::size_t first = 0; first + stops_a_stretch <= stops.size(); first += stops_a_stretch) {
+      const auto evidence = evidence_of_stretch(stretch(stops, first));
+      if (!evidence) continue;
+      gradient += evidence->gradient(4);
+      information += evidence->information(4, 4);
+    }
+  }
+  EXPECT_LT(std::abs(gradient), 3.3 * std::sqrt(information));  // outside in 1 of 1000
+}
+
 TEST(StretchEvidence, NeedsLandmarksSeenTwice) {
   std::vector<Stop> stops = stretch(stops_of_drive(simulated(1)), 0);
   for (Stop& stop : stops) stop.seen.clear();

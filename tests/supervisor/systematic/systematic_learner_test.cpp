@@ -35,7 +35,7 @@ TEST(SystematicLearner, TakesOnlyWhatIsCertain) {
   SystematicLearner learner = after(4, stretch(errors, sigmas()));
   const auto certain = learner.certain();
   ASSERT_TRUE(certain);
-  EXPECT_NEAR(certain->errors.too_long, 0.04, 1e-9);
+  EXPECT_NEAR(certain->errors.too_long, 0.04 / 0.96, 1e-9) << "4 % of the measured distances";
   EXPECT_NEAR(certain->errors.short_m, -0.5, 1e-9);
   EXPECT_EQ(certain->errors.turn_rad_per_m, 0.0) << "0.2 standard deviations";
   EXPECT_NEAR(certain->nats, 0.5 * 4.0 * (16.0 + 25.0), 1e-6);
@@ -54,15 +54,21 @@ TEST(SystematicLearner, ErrorsTakenOutAreNoLongerThere) {
   const Vector errors = (Vector() << 0.04, 0.0, 0.0, 0.0, 0.0).finished();
   SystematicLearner learner = after(8, stretch(errors, sigmas()));
   learner.take_out(learner.certain()->errors);
-  EXPECT_NEAR(learner.taken_out().too_long, 0.04, 1e-9);
+  EXPECT_NEAR(learner.taken_out().too_long, 0.04 / 0.96, 1e-9);
   for (int i = 0; i < 8; ++i) learner.add(stretch(Vector::Zero(), sigmas()));
   EXPECT_FALSE(learner.certain());
-  const Vector more = (Vector() << 0.02, 0.0, 0.0, 0.0, 0.0).finished();
-  for (int i = 0; i < 16; ++i) learner.add(stretch(more, sigmas()));
+}
+
+TEST(SystematicLearner, IsMadeMorePreciseByWhatIsLeft) {
+  const Vector errors = (Vector() << 0.04, 0.0, 0.0, 0.0, 0.0).finished();
+  SystematicLearner learner = after(8, stretch(errors, sigmas()));
+  learner.take_out(learner.certain()->errors);
+  const Vector left = (Vector() << 0.02, 0.0, 0.0, 0.0, 0.0).finished();
+  for (int i = 0; i < 24; ++i) learner.add(stretch(left, sigmas()));
   const auto again = learner.certain();
   ASSERT_TRUE(again);
   learner.take_out(again->errors);
-  EXPECT_NEAR(learner.taken_out().too_long, 1.04 * 1.01 - 1.0, 1e-9);
+  EXPECT_NEAR(learner.taken_out().too_long, 1.0 / 0.96 / 0.985 - 1.0, 1e-9) << "24 of 32 stretches say 2 % more";
 }
 
 TEST(SystematicLearner, AsksAgainWhenTwiceAsMuchIsKnown) {
@@ -87,6 +93,18 @@ TEST(SystematicLearner, DoesNotTellApartWhatCannotBe) {
   EXPECT_NEAR(certain->errors.turn_rad_per_s + certain->errors.turn_rad_per_m, 0.04, 1e-9);
   EXPECT_GE(certain->errors.turn_rad_per_s, 0.0);
   EXPECT_GE(certain->errors.turn_rad_per_m, 0.0);
+}
+
+/// An error that begins on the way is not one that is always the same.
+TEST(SystematicLearner, LeavesWhatBeginsOnTheWay) {
+  const Vector errors = (Vector() << 0.0, 0.0, 0.0, 0.06, 0.0).finished();
+  for (const int before : {3, 8, 20}) {
+    SystematicLearner learner = after(before, stretch(Vector::Zero(), sigmas()));
+    for (int i = 0; i < before; ++i) {
+      learner.add(stretch(errors, sigmas()));
+      EXPECT_FALSE(learner.certain()) << before << ", " << i;
+    }
+  }
 }
 
 /// Stretches that contradict each other more than their covariances say are believed less.
