@@ -61,6 +61,9 @@ std::optional<std::vector<ConstellationPair>> Search::look(const SearchView& vie
                                                            std::vector<core::Decision>& decisions) {
   has_just_started_ = false;
   const double path_m = view.life.path_m();
+  const bool has_frame =
+      !attempt_ || (view.filter.contains(attempt_->base_a) && view.filter.contains(attempt_->base_b));
+  if (!has_frame) end_attempt(Reason::abandoned, path_m, decisions);  // a landmark that carries it has died
   if (path_m - last_look_path_m_ < options_.look_distance_m) return std::nullopt;
   if (!sees_enough(view.scan)) blind_m_ += path_m - last_look_path_m_;
   last_look_path_m_ = path_m;
