@@ -170,6 +170,7 @@ void NavigationLoop::lose(const core::Lost&) {
   Part elsewhere = part_elsewhere({});
   exchange(elsewhere);
   rhythm_.lose_last();
+  moved_ns_.reset();  // nobody measured how long the next increment took
   pause_m_.reset();
   pauses_.clear();
 }
