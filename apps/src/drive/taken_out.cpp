@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "taken_out.hpp"
 
-#include <optional>
 #include <utility>
 #include <variant>
 
@@ -26,12 +25,10 @@ supervisor::SystematicErrors taken_out_of(const runs::Run& run) {
 core::Recording without_taken_out(const runs::Run& run, core::Recording recording) {
   const supervisor::SystematicErrors errors = taken_out_of(run);
   if (errors.are_zero()) return recording;
-  std::optional<core::Nanoseconds> moved_ns;
+  supervisor::OdometryRhythm rhythm;
   for (core::Event& event : recording.events) {
     if (auto* odometry = std::get_if<core::Odometry>(&event)) {
-      const double seconds = core::seconds(odometry->t_ns - moved_ns.value_or(odometry->t_ns));
-      *odometry = supervisor::without(errors, *odometry, seconds);
-      moved_ns = odometry->t_ns;
+      *odometry = supervisor::without(errors, *odometry, rhythm.until(odometry->t_ns));
     }
     if (auto* scan = std::get_if<core::Scan>(&event)) *scan = supervisor::without(errors, std::move(*scan));
   }

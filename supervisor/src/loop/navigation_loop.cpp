@@ -42,11 +42,12 @@ NavigationLoop::NavigationLoop(const core::PoseGaussian& start, const NavigatorO
 
 void NavigationLoop::move(const core::Odometry& measured) {
   const SystematicErrors& errors = noise_.systematic.learner.taken_out();
-  core::Odometry odometry = without(errors, measured, moved_ns_ ? core::seconds(measured.t_ns - *moved_ns_) : 0.0);
-  moved_ns_ = measured.t_ns;
+  const TimeMoved time = odometry_rhythm_.until(measured.t_ns);
+  core::Odometry odometry = without(errors, measured, time);
   odometry.covariance *= noise_.scale.odometry();
   pending_.motion = pending_.motion ? core::chain(*pending_.motion, odometry) : odometry;
   pending_.driven_m += odometry.T_before_after.position_m().norm();
+  pending_.time += time;
 }
 
 /// To the first sensor that reports how far it sees.
@@ -173,10 +174,11 @@ void NavigationLoop::predict() {
   noise_.moved += pending_.motion->covariance;
   if (Searching* open = searching()) open->search.move(*pending_.motion);
   belief_.existence.drive(pending_.driven_m);
-  tape_.append(Tape::Motion{*pending_.motion, pending_.driven_m});
+  tape_.append(Tape::Motion{*pending_.motion, pending_.driven_m, pending_.time});
   const Eigen::Matrix3d unseen_slips = belief_.slips.drive(pending_.driven_m, options_.search.old_after_m);
   if (!unseen_slips.isZero(0.0)) move_unmeasured(unseen_slips, pending_.motion->t_ns);
   pending_.driven_m = 0.0;
+  pending_.time = {};
   pending_.motion.reset();
 }
 

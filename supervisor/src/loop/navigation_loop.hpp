@@ -61,6 +61,7 @@ class NavigationLoop {
   struct Pending {
     std::optional<core::Odometry> motion;
     double driven_m = 0.0;  ///< length along the road
+    TimeMoved time;         ///< that it covers
     std::vector<core::Decision> decisions;
     core::NumericalHealth numerics = {};                     ///< not yet in any report
     std::vector<association::UnusedSighting> doubtful = {};  ///< matches of this scan that are left unused
@@ -252,7 +253,7 @@ class NavigationLoop {
   NoiseLearner noise_before_;  ///< this call, for recover(); kept so that its memory is reused
   Mode mode_;
   Pending pending_;
-  std::optional<core::Nanoseconds> moved_ns_;  ///< end of the last increment of odometry
+  OdometryRhythm odometry_rhythm_;
   Undo undo_;
   ScanRhythm rhythm_;
   std::optional<double> pause_m_;  ///< where on the drive there was a pause that no scan has decided yet

@@ -17,6 +17,7 @@ void NavigationLoop::process_again(const std::vector<Tape::Entry>& since, const 
     if (const auto* motion = std::get_if<Tape::Motion>(&entry)) {
       pending_.motion = motion->odometry;
       pending_.driven_m = motion->driven_m;
+      pending_.time = motion->time;
     } else if (const auto* fix = std::get_if<Tape::Fix>(&entry)) {
       after_fix(*fix, use_fix(fix->fix));
     } else if (const auto* scan = std::get_if<Tape::Scan>(&entry)) {

@@ -66,12 +66,9 @@ Tape Tape::rescaled(double observations, double odometry) const {
 
 Tape Tape::without(const SystematicErrors& errors) const {
   Tape tape = *this;
-  std::optional<core::Nanoseconds> last_ns;
   for (Entry& entry : tape.entries_) {
     if (auto* motion = std::get_if<Motion>(&entry)) {
-      const core::Nanoseconds t_ns = motion->odometry.t_ns;
-      motion->odometry = supervisor::without(errors, motion->odometry, core::seconds(t_ns - last_ns.value_or(t_ns)));
-      last_ns = t_ns;
+      motion->odometry = supervisor::without(errors, motion->odometry, motion->time);
     }
     if (auto* scan = std::get_if<Scan>(&entry)) scan->scan = supervisor::without(errors, std::move(scan->scan));
   }

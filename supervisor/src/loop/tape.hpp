@@ -21,10 +21,11 @@ namespace helixnav::supervisor {
 /// checkpoint keep all their observations, earlier ones only those that were used. Test: supervisor/tape_test.cpp.
 class Tape {
  public:
-  /// Motion as one prediction of the filter, with the length of road it covers.
+  /// Motion as one prediction of the filter, with the length of road and the time it covers.
   struct Motion {
     core::Odometry odometry;
     double driven_m = 0.0;
+    TimeMoved time = {};
   };
   /// Motion that odometry did not measure. It is decided again when the scans are processed again.
   struct Slip {

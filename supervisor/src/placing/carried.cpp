@@ -159,6 +159,7 @@ void NavigationLoop::exchange(Part& other) noexcept {
   std::swap(mode_, other.mode);
   pending_.motion.swap(other.pending.motion);
   std::swap(pending_.driven_m, other.pending.driven_m);
+  std::swap(pending_.time, other.pending.time);
   pending_.decisions.swap(other.pending.decisions);
   std::swap(pending_.numerics, other.pending.numerics);
   std::swap(questions_, other.questions);
@@ -170,7 +171,7 @@ void NavigationLoop::lose(const core::Lost&) {
   Part elsewhere = part_elsewhere({});
   exchange(elsewhere);
   rhythm_.lose_last();
-  moved_ns_.reset();  // nobody measured how long the next increment took
+  odometry_rhythm_.lose_last();
   pause_m_.reset();
   pauses_.clear();
 }

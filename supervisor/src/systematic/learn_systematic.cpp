@@ -48,10 +48,21 @@ Tape::Position first_interruption(const Tape& tape, Tape::Position from, Tape::P
   return found;
 }
 
+/// Whether odometry was silent for a part of that time that matters.
+bool is_silent(const Tape& tape, Tape::Position begun, Tape::Position until) {
+  constexpr double little = 0.1;
+  TimeMoved time;
+  tape.read_between(begun, until, [&](const Tape::Entry& entry) {
+    if (const auto* motion = std::get_if<Tape::Motion>(&entry)) time += motion->time;
+  });
+  return time.silent_s > little * time.seconds;
+}
+
 /// Of what the tape holds between two positions, if that determines anything.
 std::optional<StretchEvidence> evidence_between(const Tape& tape, Tape::Position begun, Tape::Position until,
                                                 double reach_m) {
   constexpr std::size_t least_stops = 5;
+  if (is_silent(tape, begun, until)) return std::nullopt;
   const std::vector<Stop> stops = spaced_out(stops_between(tape, begun, until), reach_m / stops_a_stretch);
   if (stops.size() < least_stops) return std::nullopt;
   try {

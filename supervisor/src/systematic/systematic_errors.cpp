@@ -36,12 +36,14 @@ SystematicErrors both(const SystematicErrors& first, const SystematicErrors& the
 }
 
 /// An increment is short: its turn counts half for its direction.
-core::Odometry without(const SystematicErrors& errors, const core::Odometry& measured, double seconds) {
+core::Odometry without(const SystematicErrors& errors, const core::Odometry& measured, const TimeMoved& time) {
   const core::Pose2& moved = measured.T_before_after;
-  const double turn_rad = errors.turn_rad_per_s * seconds + errors.turn_rad_per_m * moved.x_m;
+  const double unsure_rad = 0.5 * errors.turn_rad_per_s * time.silent_s;
+  const double turn_rad = errors.turn_rad_per_s * time.seconds - unsure_rad + errors.turn_rad_per_m * moved.x_m;
   const Eigen::Vector2d way_m = core::rotation(-0.5 * turn_rad) * moved.position_m() / (1.0 + errors.too_long);
   core::Odometry odometry = measured;
   odometry.T_before_after = {way_m.x(), way_m.y(), moved.heading_rad - turn_rad};
+  odometry.covariance(2, 2) += unsure_rad * unsure_rad;
   return odometry;
 }
 

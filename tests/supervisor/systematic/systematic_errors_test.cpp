@@ -19,7 +19,7 @@ core::Odometry curved_increment() {
 TEST(SystematicErrors, DerivativeOfAMotionIsThatOfCentralDifferences) {
   constexpr double seconds = 0.7;
   const auto taken_out = [&](const Eigen::VectorXd& e) -> Eigen::VectorXd {
-    return without(SystematicErrors(Vector(e)), curved_increment(), seconds).T_before_after.vector();
+    return without(SystematicErrors(Vector(e)), curved_increment(), {seconds, 0.0}).T_before_after.vector();
   };
   const Eigen::MatrixXd J = testing::central_differences(taken_out, Vector::Zero());
   EXPECT_LT((J - derivative_without_errors(curved_increment().T_before_after, seconds)).norm(), 1e-8);
@@ -63,9 +63,9 @@ TEST(SystematicErrors, TakenOutOneAfterTheOtherIsTakenOutTogether) {
   const Vector first = (Vector() << 0.03, 0.01, 0.002, 0.02, 0.1).finished();
   const Vector then = (Vector() << -0.01, 0.003, -0.001, 0.01, -0.02).finished();
   const SystematicErrors sum = both(SystematicErrors(first), SystematicErrors(then));
-  const core::Odometry once = without(sum, curved_increment(), 0.5);
+  const core::Odometry once = without(sum, curved_increment(), {0.5, 0.0});
   const core::Odometry twice =
-      without(SystematicErrors(then), without(SystematicErrors(first), curved_increment(), 0.5), 0.5);
+      without(SystematicErrors(then), without(SystematicErrors(first), curved_increment(), {0.5, 0.0}), {0.5, 0.0});
   // A turn per metre is of metres as they were measured: of second order.
   EXPECT_LT((once.T_before_after.vector() - twice.T_before_after.vector()).norm(), 1e-4);
   core::Scan scan;

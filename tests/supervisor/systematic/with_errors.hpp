@@ -17,7 +17,8 @@ inline core::Recording with_errors(core::Recording recording, const SystematicEr
   std::optional<core::Nanoseconds> moved_ns;
   for (core::Event& event : recording.events) {
     if (auto* odometry = std::get_if<core::Odometry>(&event)) {
-      *odometry = without(opposite, *odometry, core::seconds(odometry->t_ns - moved_ns.value_or(odometry->t_ns)));
+      *odometry =
+          without(opposite, *odometry, {core::seconds(odometry->t_ns - moved_ns.value_or(odometry->t_ns)), 0.0});
       moved_ns = odometry->t_ns;
     }
     if (auto* scan = std::get_if<core::Scan>(&event)) *scan = without(opposite, std::move(*scan));

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "helixnav/core/events.hpp"
+#include "helixnav/supervisor/odometry_rhythm.hpp"
 
 namespace helixnav::supervisor {
 
@@ -32,9 +33,10 @@ struct SystematicErrors {
 /// The errors of what has `first`, and after that was taken out, `then`.
 SystematicErrors both(const SystematicErrors& first, const SystematicErrors& then);
 
-/// A motion measured over this time, and a scan, with the errors taken out.
+/// A motion measured over this time, and a scan, with the errors taken out. A turn bias per second is taken out of half of the
+/// time in which odometry was silent, and the other half is a standard deviation: right whether the gyro ran on or not.
 /// Test: supervisor/systematic/systematic_errors_test.cpp.
-core::Odometry without(const SystematicErrors& errors, const core::Odometry& measured, double seconds);
+core::Odometry without(const SystematicErrors& errors, const core::Odometry& measured, const TimeMoved& time);
 core::Scan without(const SystematicErrors& errors, core::Scan measured);
 
 /// Derivatives at no errors of a motion (x, y, heading) and of an observation of two rows with the errors taken out; those of an
