@@ -148,7 +148,8 @@ std::pair<PositionEvaluation, PoseEvaluation> evaluate_poses(const Steps& steps,
   position.against_poses = true;
   position.aligned = !truth.frame.is_map;
   PoseEvaluation pose;
-  const std::vector<PosePair> pairs = pose_pairs(steps, truth.poses, frames);
+  const std::vector<core::TruePose> poses = poses_to_judge(steps, truth.poses);
+  const std::vector<PosePair> pairs = pose_pairs(steps, poses, frames);
   const auto [T_truth_map, rmse_m] = align_poses(pairs);
   position.rmse_aligned_m = rmse_m;
   if (position.aligned) position.T_truth_map = T_truth_map;
@@ -168,9 +169,8 @@ std::pair<PositionEvaluation, PoseEvaluation> evaluate_poses(const Steps& steps,
   position.fixes_used = position.errors.size();
   const core::Nanoseconds most_ns = most_apart_ns(steps);
   position.gap_s = core::seconds(most_ns);
-  for (const core::TruePose& known : truth.poses)
-    position.fixes_in_gaps += is_in_gap(steps, known.t_ns, most_ns) ? 1 : 0;
-  position.fixes_outside = truth.poses.size() - position.fixes_used - position.fixes_in_gaps;
+  for (const core::TruePose& known : poses) position.fixes_in_gaps += is_in_gap(steps, known.t_ns, most_ns) ? 1 : 0;
+  position.fixes_outside = poses.size() - position.fixes_used - position.fixes_in_gaps;
   position.error_m = statistics_of_used(position.errors);
   summarize_poses(pose);
   return {std::move(position), std::move(pose)};

@@ -2,8 +2,10 @@
 #include "pose_pairs.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
+#include "helixnav/core/interpolate.hpp"
 #include "run_interpolation.hpp"
 
 namespace helixnav::evaluation {
@@ -25,7 +27,47 @@ bool is_torn(const std::vector<core::StepReport>& steps, const std::vector<runs:
   return !frames[step].is_placed || !frames[step + 1].is_placed;
 }
 
+/// Of successive times; NaN of fewer than two.
+template <class Stamped>
+double median_interval_s(const std::vector<Stamped>& stamped) {
+  std::vector<double> intervals_s;
+  for (std::size_t k = 1; k < stamped.size(); ++k) {
+    intervals_s.push_back(core::seconds(stamped[k].t_ns - stamped[k - 1].t_ns));
+  }
+  if (intervals_s.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto middle = intervals_s.begin() + static_cast<std::ptrdiff_t>(intervals_s.size() / 2);
+  std::nth_element(intervals_s.begin(), middle, intervals_s.end());
+  return *middle;
+}
+
+/// The true pose then, between two that are no farther apart than usual.
+std::optional<core::TruePose> truth_at(const std::vector<core::TruePose>& poses, core::Nanoseconds t_ns,
+                                       core::Nanoseconds most_ns) {
+  const auto after = std::lower_bound(poses.begin(), poses.end(), t_ns,
+                                      [](const core::TruePose& pose, core::Nanoseconds t) { return pose.t_ns < t; });
+  if (after == poses.end()) return std::nullopt;
+  if (after->t_ns == t_ns) return *after;
+  if (after == poses.begin()) return std::nullopt;
+  const core::TruePose& before = *(after - 1);
+  const core::Nanoseconds apart_ns = after->t_ns - before.t_ns;
+  if (apart_ns > most_ns) return std::nullopt;
+  const double fraction = static_cast<double>(t_ns - before.t_ns) / static_cast<double>(apart_ns);
+  return core::TruePose{t_ns, core::interpolate(before.T_world_robot, after->T_world_robot, fraction)};
+}
+
 }  // namespace
+
+std::vector<core::TruePose> poses_to_judge(const std::vector<core::StepReport>& steps,
+                                           const std::vector<core::TruePose>& poses) {
+  constexpr double denser = 0.75;
+  if (!(median_interval_s(poses) < denser * median_interval_s(steps))) return poses;
+  std::vector<core::TruePose> at_scans;
+  const core::Nanoseconds most_ns = most_apart_ns(steps);
+  for (const core::StepReport& step : steps) {
+    if (const auto known = truth_at(poses, step.t_ns, most_ns)) at_scans.push_back(*known);
+  }
+  return at_scans;
+}
 
 std::vector<PosePair> pose_pairs(const std::vector<core::StepReport>& steps, const std::vector<core::TruePose>& poses,
                                  const std::vector<runs::ReportFrame>& frames) {

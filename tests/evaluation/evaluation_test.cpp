@@ -89,6 +89,24 @@ TEST(Evaluation, AgainstTruePosesEqualsHandComputedValues) {
   EXPECT_EQ(evaluation.pose->nees_inside_95, 1.0);
 }
 
+/// The vehicle turns in the second half of each second only; the estimates are right at the scans, and between them nobody knows.
+TEST(Evaluation, JudgesAtTheScansWhereTheTruthIsDenser) {
+  runs::Run run;
+  for (int k = 0; k <= 10; ++k) run.steps.push_back(step_at(k, k, core::Pose2(k, 0.0, 0.4 * k)));
+  const auto known_at = [](double t_s) {
+    const double since_scan_s = t_s - std::floor(t_s);
+    return core::Pose2(t_s, 0.0, 0.4 * (std::floor(t_s) + 2.0 * std::max(0.0, since_scan_s - 0.5)));
+  };
+  for (int i = -5; i <= 120; ++i) {
+    run.truth.poses.push_back({core::nanoseconds_from_seconds(0.1 * i), known_at(0.1 * i)});
+  }
+  const Evaluation evaluation = evaluate(run);
+  EXPECT_EQ(evaluation.position->fixes_used, 11u);
+  EXPECT_EQ(evaluation.position->fixes_outside, 0u);
+  EXPECT_LT(evaluation.pose->heading_error_rad.max, 1e-9);
+  EXPECT_LT(evaluation.pose->nees_mean, 1e-9);
+}
+
 /// For 20 s nothing is seen while the vehicle drives round a corner: its position between the two scans is unknown.
 TEST(Evaluation, LeavesOutWhatLiesInAGapBetweenScans) {
   runs::Run run = straight_run();
