@@ -156,7 +156,8 @@ void numbers(CarriedDecision& d, Visit&& visit) {
     visit("pose_sigma_m", d.pose_sigma_m);
     visit("heading_sigma_deg", d.heading_sigma_deg);
   }
-  if (d.cause == CarriedDecision::Cause::by_place) visit("scans", d.scans);
+  const bool has_scans = d.cause == CarriedDecision::Cause::by_place || d.cause == CarriedDecision::Cause::wrong_place;
+  if (has_scans) visit("scans", d.scans);
   if (d.cause != CarriedDecision::Cause::found_out) return;
   visit("missing", d.missing);
   visit("seen", d.seen);
@@ -207,7 +208,8 @@ void numbers(PostponedDecision& d, Visit&& visit) {
   visit("limit", d.limit);
 }
 
-constexpr const char* carried_words[] = {"told", "found-out", "broken-off", "by-place", "no-odometry", "wrong-start"};
+constexpr const char* carried_words[] = {"told",        "found-out",   "broken-off", "by-place",
+                                         "no-odometry", "wrong-start", "wrong-place"};
 constexpr const char* postponed_words[] = {"association", "window", "drive"};
 constexpr const char* whole_map_words[] = {"accepted", "ambiguous", "refused", "not-here"};
 constexpr const char* placed_words[] = {"sought", "accepted", "ambiguous", "refused", "not-here"};

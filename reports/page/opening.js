@@ -1,6 +1,6 @@
 // The sentences that the page opens with. A closing is a row with a mark, and so is where the vehicle was carried or found its place;
 // a click on it shows it in the player.
-const marks = { accepted: "✓", refused: "✗", undecided: "○", "new-ground": "◇", told: "↷", "found-out": "↷", "broken-off": "↷", "by-place": "↷", "no-odometry": "↷", "wrong-start": "↷" };
+const marks = { accepted: "✓", refused: "✗", undecided: "○", "new-ground": "◇", told: "↷", "found-out": "↷", "broken-off": "↷", "by-place": "↷", "no-odometry": "↷", "wrong-start": "↷", "wrong-place": "↷" };
 
 const errorText = (closure) => {
   if (!known(closure.error_before_m) || !known(closure.error_after_m)) return "";

@@ -191,6 +191,12 @@ std::string sentence(const core::CarriedDecision& d) {
     return "The start differs from the one given, or from where the run of the map ended: the landmarks of the first "
            "scans are not around it on the map. The vehicle searches for its place there.";
   }
+  if (d.cause == core::CarriedDecision::Cause::wrong_place) {
+    return "The place that was found on another map is wrong: what was mapped since is elsewhere on it. The drive "
+           "since then "
+           "was processed again, as part " +
+           std::to_string(d.part) + '.';
+  }
   const std::string ended = why_carried(d) + " Part " + std::to_string(d.from_part) + " of the drive ends after " +
                             short_number(d.driven_m) + " m";
   const std::string kept = d.landmarks > 0 ? ": " + counted(d.landmarks, "landmark") + " of it " +

@@ -54,11 +54,13 @@ std::ptrdiff_t count_of(const std::vector<Decided>& closures, const char* verdic
 }
 
 std::string merges_of(const core::StepReport& step) {
-  if (step.merged.empty()) return {};
-  std::string text = "  Merged:";
+  std::string text;
   for (const core::MergedLandmarks& merge : step.merged) {
+    if (merge.kept == merge.removed) continue;
+    if (text.empty()) text = "  Merged:";
     text += ' ' + std::to_string(merge.removed) + " into " + std::to_string(merge.kept) + ',';
   }
+  if (text.empty()) return text;
   text.back() = '.';
   return text + '\n';
 }

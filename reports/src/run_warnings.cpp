@@ -25,9 +25,23 @@ struct ObservationCounts {
   std::size_t seen = 0, matched = 0, began = 0;
 };
 
+/// Whether the place on the map is known after the step, if it was before.
+bool knows_place_after(const core::StepReport& step, bool knows) {
+  for (const core::Decision& decision : step.decisions) {
+    const auto* placed = std::get_if<core::PlacedDecision>(&decision);
+    if (placed != nullptr) knows = placed->verdict == core::PlacedDecision::Verdict::accepted;
+    if (std::holds_alternative<core::CarriedDecision>(decision)) knows = false;
+  }
+  return knows;
+}
+
+/// Who only localises matches nothing before the place is found, which says nothing against odometry and detections.
 ObservationCounts count_observations(const runs::Run& run) {
   ObservationCounts counts;
+  bool counts_step = true;
   for (const core::StepReport& step : run.steps) {
+    if (only_localized(run)) counts_step = knows_place_after(step, counts_step);
+    if (!counts_step) continue;
     counts.seen += step.associations.size();
     for (const core::AssociationReport& a : step.associations) {
       counts.matched += a.outcome == core::Outcome::matched ? 1 : 0;
@@ -163,6 +177,11 @@ bool was_carried(const runs::Run& run) {
   });
 }
 
+bool was_placed(const runs::Run& run) {
+  return std::any_of(run.steps.begin(), run.steps.end(),
+                     [](const core::StepReport& step) { return knows_place_after(step, false); });
+}
+
 /// A place on an earlier map was sought and never found, or not after the vehicle was carried last.
 bool sought_in_vain(const runs::Run& run) {
   bool sought = false;
@@ -177,9 +196,6 @@ bool sought_in_vain(const runs::Run& run) {
   }
   return sought && !found;
 }
-
-/// Who only localises matches nothing before the place is found, which says nothing against odometry and detections.
-bool has_nothing_to_match(const runs::Run& run) { return only_localized(run) && sought_in_vain(run); }
 
 /// [begin, end) of the longest stretch of steps without a match.
 std::pair<std::size_t, std::size_t> longest_without_match(const std::vector<core::StepReport>& steps) {
@@ -201,6 +217,15 @@ std::string contradicted_place_text(const runs::Run& run) {
   constexpr int least = 3;  // once or twice the pairs of a right place are refused for a bent map
   if (times < least) return {};
   const bool on_earlier_map = run.manifest.command.find(" --map") != std::string::npos;
+  if (on_earlier_map && was_placed(run)) {
+    return warning(
+        "the landmarks seen fit another place on the map, %.3g m from the estimated pose: the search of the whole map "
+        "found it %d times, but it was not adopted. The place found before is wrong, or was lost since, and the map "
+        "may "
+        "hold landmarks twice: do not continue in it. 'helixnav join' brings a run without --map together with the "
+        "earlier one, by all that both have mapped",
+        away_m, times);
+  }
   return warning(
       "the landmarks seen fit another place on the map, %.3g m from the estimated pose: the search of the whole map "
       "found it %d times, but it was not adopted. %s",
@@ -234,8 +259,7 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
   constexpr double least_matched = 0.15;
   if (!mature) {
     warnings.push_back(no_landmark_text(counts));
-  } else if (counts.seen >= enough && share(counts.matched, counts.seen) < least_matched &&
-             !has_nothing_to_match(run)) {
+  } else if (counts.seen >= enough && share(counts.matched, counts.seen) < least_matched) {
     warnings.push_back(collapse_text(counts, run));
   }
   constexpr double least_nis = 0.25, most_nis = 2.0;

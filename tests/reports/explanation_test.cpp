@@ -44,6 +44,17 @@ TEST(Explanation, SaysOfALocalisedRunThatTheMapStays) {
   EXPECT_FALSE(says(run, "event lost")) << explain_run(run);
 }
 
+TEST(Explanation, SaysThatAPlaceWasWrong) {
+  runs::Run run = run_of(10);
+  core::CarriedDecision carried;
+  carried.cause = core::CarriedDecision::Cause::wrong_place;
+  carried.part = 2;
+  run.steps[3].decisions = {carried};
+  run.steps[3].merged = {{5, 5}};  // exists again
+  EXPECT_TRUE(says(run, "The place that was found on another map is wrong")) << explain_run(run);
+  EXPECT_FALSE(says(run, "5 into 5")) << explain_run(run);
+}
+
 TEST(Explanation, SaysOfEachPartThatItWasFound) {
   runs::Run run = run_of(40);
   core::PlacedDecision placed;

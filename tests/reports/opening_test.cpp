@@ -204,6 +204,11 @@ TEST(Opening, WarnsWhereTheWholeMapHasAnotherPlaceAgainAndAgain) {
   const std::string all = warnings.empty() ? "" : warnings.back();
   EXPECT_NE(all.find("--start unknown"), std::string::npos) << all;
   EXPECT_NE(explain_run(run).find("--start unknown"), std::string::npos);
+  core::PlacedDecision placed;
+  placed.verdict = core::PlacedDecision::Verdict::accepted;
+  run.steps[5].decisions.emplace_back(placed);
+  EXPECT_NE(contradicted_place_text(run).find("helixnav join"), std::string::npos) << "the start was not given";
+  EXPECT_EQ(contradicted_place_text(run).find("--start"), std::string::npos) << contradicted_place_text(run);
   asked.lead = 20.0;
   for (const std::size_t k : {10u, 20u}) run.steps[k].decisions.back() = asked;
   EXPECT_TRUE(contradicted_place_text(run).empty()) << "not sure of the place";

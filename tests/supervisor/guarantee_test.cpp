@@ -13,6 +13,7 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
 #include "pauses.hpp"
+#include "placing/displaced_map.hpp"
 #include "systematic/with_errors.hpp"
 #include "wrong_names.hpp"
 
@@ -109,7 +110,18 @@ NavigatorOptions single_threaded(std::uint64_t seed) {
 }
 
 /// What a scan did that is worth breaking.
-enum class Kind { mapping, trigger, searching, closing, rollback, place_without_search, carried, parted, systematic };
+enum class Kind {
+  mapping,
+  trigger,
+  searching,
+  closing,
+  rollback,
+  place_without_search,
+  carried,
+  parted,
+  placed_again,
+  systematic
+};
 
 Kind kind_of(const core::StepReport& report) {
   const bool was_searching = report.mode == core::Mode::searching;
@@ -120,6 +132,8 @@ Kind kind_of(const core::StepReport& report) {
     if (found && !was_searching) return Kind::place_without_search;
     const auto* carried = std::get_if<core::CarriedDecision>(&decision);
     const bool is_parted = carried != nullptr && carried->cause == core::CarriedDecision::Cause::by_place;
+    const bool is_wrong = carried != nullptr && carried->cause == core::CarriedDecision::Cause::wrong_place;
+    if (is_wrong) return Kind::placed_again;
     if (carried != nullptr) return is_parted ? Kind::parted : Kind::carried;
     const auto* closure = std::get_if<core::ClosureDecision>(&decision);
     if (closure != nullptr && closure->accepted) return Kind::closing;
@@ -132,10 +146,11 @@ Kind kind_of(const core::StepReport& report) {
 /// Drives twice; the second time, scans of each kind are broken at `places` allocations each, spread over all those of
 /// the scan, and then go on as in the first drive. Returns the kinds that were broken.
 std::set<Kind> break_drive(const core::Recording& run, const NavigatorOptions& options, int places,
-                           double rounding_m = same_m) {
+                           double rounding_m = same_m, const core::JointMap* earlier = nullptr) {
   std::vector<core::StepReport> reports;
   std::vector<long> allocations;
   Navigator first(run.start, options);
+  if (earlier != nullptr) first.look_for_place_in(*earlier);
   drive(run, first, [&](const core::Scan& scan, std::size_t) {
     core::StepReport report;
     allocations.push_back(allocations_of([&] { report = first.observe(scan); }));
@@ -143,9 +158,11 @@ std::set<Kind> break_drive(const core::Recording& run, const NavigatorOptions& o
   });
   std::set<Kind> broken;
   Navigator second(run.start, options);
+  if (earlier != nullptr) second.look_for_place_in(*earlier);
   drive(run, second, [&](const core::Scan& scan, std::size_t i) {
     const Kind kind = kind_of(reports[i]);
-    const bool worth_breaking = i > 120 && (kind != Kind::mapping || i % 60 == 0) && broken.count(kind) == 0;
+    const bool is_early = i <= 120 && kind != Kind::placed_again;
+    const bool worth_breaking = !is_early && (kind != Kind::mapping || i % 60 == 0) && broken.count(kind) == 0;
     if (!worth_breaking) {
       expect_same_report(second.observe(scan), reports[i], rounding_m);
       return;
@@ -229,6 +246,12 @@ TEST(Guarantee, HoldsWhereTheDriveIsPartedAtAPause) {
   const core::Recording run = sim::simulate(sim::named_scenario("kidnapped"), 3400054);
   constexpr double rounding_m = 1e-9;  // as above
   EXPECT_EQ(break_drive(run, single_threaded(1), 12, rounding_m).count(Kind::parted), 1u);
+}
+
+TEST(Guarantee, HoldsWhereAWrongPlaceIsUndone) {
+  const DisplacedMap given = displaced_map(7);
+  constexpr double rounding_m = 1e-9;  // as above
+  EXPECT_EQ(break_drive(given.today, single_threaded(1), 12, rounding_m, &given.earlier).count(Kind::placed_again), 1u);
 }
 
 TEST(Guarantee, HoldsForFixes) {

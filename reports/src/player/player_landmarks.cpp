@@ -97,7 +97,7 @@ void put_merges(const runs::Run& run, Histories& histories) {
   for (const core::StepReport& step : run.steps) {
     for (const core::MergedLandmarks& merge : step.merged) {
       const auto found = histories.find(merge.removed);
-      if (found != histories.end()) found->second.until = step.step;
+      if (found != histories.end()) found->second.until = merge.kept == merge.removed ? -1 : step.step;
     }
   }
 }

@@ -115,7 +115,7 @@ StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* not
     learn_systematic(report);
     report.pose = belief_.filter.pose();
     if (apart_.any()) find_place(scan.field_of_view, report);
-    if (!pending_.forbidden.empty()) part_at_pause(scan, report);
+    if (!pending_.forbidden.empty()) look_elsewhere(scan, report);
     report_late(report);
     return report;
   });

@@ -224,7 +224,17 @@ class NavigationLoop {
   void forget_pauses(const core::StepReport& report);
   std::optional<UnsurePause> pause_before(const std::vector<pf_relocalize::ConstellationPair>& pairs) const;
   Belief belief_since(const UnsurePause& pause) const;
-  void part_at_pause(const core::Scan& scan, core::StepReport& report);
+  bool part_at_pause(const std::vector<pf_relocalize::ConstellationPair>& pairs, const core::Scan& scan,
+                     core::StepReport& report);
+
+  // placing/place_again.cpp
+  void look_elsewhere(const core::Scan& scan, core::StepReport& report);
+  void forget_old_placing() noexcept;
+  bool may_be_placed_wrongly(const std::vector<pf_relocalize::ConstellationPair>& pairs) const;
+  Part part_before_placing() const;
+  std::vector<core::LandmarkId> gone_since_placing() const;
+  void drive_again(const std::vector<Tape::Entry>& since, core::StepReport& report);
+  void place_again(const core::Scan& scan, core::StepReport& report);
 
   // loop/process_again.hpp
   template <class AfterFix, class AfterScan>

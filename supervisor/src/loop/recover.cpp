@@ -27,6 +27,7 @@ void NavigationLoop::commit() {
   }
   const bool is_long = tape_.stops() > options_.search.smooth_up_to_scans || !tape_.holds_since(0);
   if (belief_.drive && is_long) tape_.hand_on(belief_.drive->end());
+  forget_old_placing();
   tape_.settle(checkpoint().position);
   thin_coverage();
 }

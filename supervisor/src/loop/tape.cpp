@@ -133,6 +133,7 @@ std::vector<Tape::Entry> Tape::cut(Position position) {
 }
 
 void Tape::settle(Position position) {
+  if (kept_since_) position = std::min(position, *kept_since_);
   for (; settled_ < position; ++settled_) {
     if (auto* scan = std::get_if<Scan>(&entries_[settled_ - forgotten_])) drop_unused(*scan);
   }

@@ -102,6 +102,9 @@ class Tape {
   /// Scans and fixes used since the drive was handed on.
   int stops() const { return stops_; }
 
+  /// Whatever settles, entries from `position` on stay as they came in; nothing: no longer.
+  void keep_since(std::optional<Position> position) { kept_since_ = position; }
+
   /// Keeps only what is needed since the last checkpoint from now on; the drive can no longer be solved as a whole.
   void drop_drive() { most_stops_ = 0; }
   bool holds_drive() const { return handed_on_ == 0 && stops_ <= most_stops_ && stops_ > 0; }
@@ -125,6 +128,7 @@ class Tape {
   Position forgotten_ = 0;
   Position settled_ = 0;
   Position handed_on_ = 0;
+  std::optional<Position> kept_since_;
   int most_stops_;
   int stops_ = 0;  ///< scans and fixes used since the beginning of the drive, or since it was handed on
 };

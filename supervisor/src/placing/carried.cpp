@@ -121,6 +121,8 @@ NavigationLoop::Part NavigationLoop::part_apart(core::CarriedDecision decision, 
   MapsApart apart = apart_;
   decision.from_part = apart.part;
   decision.part = apart.part = apart.next_part++;
+  apart.begun_step = belief_.step - decision.scans;
+  apart.placing.reset();
   if (!map.joint.ids.empty()) {
     apart.maps.push_back({decision.from_part, std::make_shared<const core::JointMap>(std::move(map))});
   }

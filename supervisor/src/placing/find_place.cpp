@@ -8,6 +8,7 @@
 #include "helixnav/supervisor/lengths.hpp"
 #include "loop/navigation_loop.hpp"
 #include "placing/join_maps.hpp"
+#include "placing/placing_record.hpp"
 #include "placing/session_question.hpp"
 
 namespace helixnav::supervisor {
@@ -172,13 +173,18 @@ bool NavigationLoop::join(const MapApart& apart, const relocalize::Place& place,
   report.decisions.emplace_back(decision);
   MapsApart left = apart_;
   left.part = apart.part;
+  left.placing = std::make_shared<const PlacingRecord>(
+      PlacingRecord{start_, belief_, tape_, apart_, tape_.end(), belief_.existence.path_m(),
+                    std::min(decision.evidence, decision.lead), decision.T_map_session});
   const auto is_joined = [&](const MapApart& one) { return one.part == apart.part; };
   left.maps.erase(std::remove_if(left.maps.begin(), left.maps.end(), is_joined), left.maps.end());
 
   // Nothing below throws.
   belief_ = std::move(both);
   mode_ = std::move(mapping);
+  questions_.place_again_at = 0;
   tape_.drop_drive();
+  tape_.keep_since(tape_.end());
   apart_ = std::move(left);
   return true;
 }

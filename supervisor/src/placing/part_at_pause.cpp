@@ -84,14 +84,15 @@ Belief NavigationLoop::belief_since(const UnsurePause& pause) const {
 /// Only if the part is then found on the map from before: otherwise everything stays as it is. If there were several
 /// pauses since the place was certain, nobody knows which one it was: what was mapped between them is dropped, and so
 /// is what was matched since.
-void NavigationLoop::part_at_pause(const core::Scan& scan, StepReport& report) {
-  const std::optional<UnsurePause> pause = pause_before(std::exchange(pending_.forbidden, {}));
-  if (!pause || apart_.any()) return;
+bool NavigationLoop::part_at_pause(const std::vector<pf_relocalize::ConstellationPair>& pairs, const core::Scan& scan,
+                                   StepReport& report) {
+  const std::optional<UnsurePause> pause = pause_before(pairs);
+  if (!pause || apart_.any()) return false;
   core::CarriedDecision decision;
   decision.cause = core::CarriedDecision::Cause::by_place;
   decision.scans = static_cast<int>(report.step - pause->step);
   core::JointMap map = map_to_keep(decision, pauses_.front().path_m);
-  if (map.joint.ids.empty()) return;
+  if (map.joint.ids.empty()) return false;
   Part other = part_apart(decision, std::move(map), belief_since(*pause));
   StepReport placed = report;
   exchange(other);
@@ -101,16 +102,17 @@ void NavigationLoop::part_at_pause(const core::Scan& scan, StepReport& report) {
   } catch (const core::NumericalError&) {
     exchange(other);
     ++pending_.numerics.refused;
-    return;
+    return false;
   } catch (...) {
     exchange(other);
     throw;
   }
   if (apart_.any()) {
     exchange(other);
-    return;
+    return false;
   }
   report = std::move(placed);
+  return true;
 }
 
 }  // namespace helixnav::supervisor

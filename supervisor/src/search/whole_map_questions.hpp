@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct WholeMapQuestions {
   std::vector<core::LandmarkId> asked_meanwhile = {};  ///< with which a continuing search asked last, ascending
   double next_path_m = 0.0;  ///< length of the drive when it is asked next whether ground is new
   std::shared_ptr<const OldGroundIndex> old_ground;  ///< null before the first question
+  std::int64_t place_again_at = 0;                   ///< from this step on, a place found on another map may be undone
 };
 
 /// An answer of the whole map.

@@ -169,6 +169,7 @@ struct CarriedDecision {
     by_place,     ///< landmarks mapped since a pause are elsewhere on the map: it was carried then
     no_odometry,  ///< it may not have been carried: odometry leaves open which way it turned since the scan before
     wrong_start,  ///< it was not carried: on the map, what is seen does not fit the start that was given
+    wrong_place,  ///< it was not carried: the place found on another map is wrong, and the part is placed again
   };
   int part = 0;           ///< that begins with this scan
   int from_part = 0;      ///< that ends
@@ -183,7 +184,7 @@ struct CarriedDecision {
   double elsewhere_nats = 0.0;     ///< ln of how much likelier all these are anywhere than where it stopped
   double pose_sigma_m = 0.0;       ///< where it is broken off, or of the motion since the scan before
   double heading_sigma_deg = 0.0;  ///< likewise
-  int scans = 0;                   ///< before this one, with which the part begins already: those since the pause
+  int scans = 0;                   ///< before this one, that are of the part that begins
 };
 
 /// The session and the map of an earlier one: whether, where and by which evidence the one was found in the other. A
