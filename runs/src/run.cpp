@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "as_kept.hpp"
 #include "bring_into_map.hpp"
 
 namespace helixnav::runs {
@@ -21,11 +22,10 @@ RunTruth truth_of(const core::Recording& recording) {
   return truth;
 }
 
-void correct_path(Run& run, const std::vector<core::StampedPose>& solved) {
-  if (solved.empty()) {
-    if (has_found_place(run)) run.final_path = poses_of(run);
-    return;
-  }
+namespace {
+
+/// Steps between two solved poses, and after the last one, follow by the motion between their estimates.
+void follow(Run& run, const std::vector<core::StampedPose>& solved) {
   const std::vector<FrameOfStep> frames = frames_of(run);
   const auto frame_at = [&](core::Nanoseconds t_ns) {
     const auto later = [](const core::StepReport& step, core::Nanoseconds at_ns) { return step.t_ns < at_ns; };
@@ -50,6 +50,17 @@ void correct_path(Run& run, const std::vector<core::StampedPose>& solved) {
       run.final_path.push_back(core::compose(run.final_path.back(), motion));
     }
   }
+}
+
+}  // namespace
+
+void correct_path(Run& run, const std::vector<core::StampedPose>& solved) {
+  if (!solved.empty()) {
+    follow(run, solved);
+  } else if (has_found_place(run)) {
+    run.final_path = poses_of(run);
+  }
+  for (core::Pose2& pose : run.final_path) pose = as_kept(pose);
 }
 
 void add_smoothed(Run& run, SmoothedRun smoothed) {

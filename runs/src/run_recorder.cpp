@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "as_kept.hpp"
 #include "bring_into_map.hpp"
 #include "cloud_choice.hpp"
 #include "map_changes.hpp"
@@ -15,11 +16,6 @@
 namespace helixnav::runs {
 namespace {
 
-/// As stored in a quaternion about z.
-double heading_by_quaternion(double heading_rad) {
-  return 2.0 * std::atan2(std::sin(0.5 * heading_rad), std::cos(0.5 * heading_rad));
-}
-
 template <typename Matrix>
 void mirror_upper_triangle(Matrix& matrix) {
   for (Eigen::Index row = 1; row < matrix.rows(); ++row) {
@@ -27,11 +23,7 @@ void mirror_upper_triangle(Matrix& matrix) {
   }
 }
 
-core::Pose2 as_kept(const core::Pose2& pose) {
-  return core::Pose2(pose.x_m, pose.y_m, heading_by_quaternion(pose.heading_rad));
-}
-
-core::PoseGaussian as_kept(core::PoseGaussian pose) {
+core::PoseGaussian gaussian_as_kept(core::PoseGaussian pose) {
   pose.mean = as_kept(pose.mean);
   mirror_upper_triangle(pose.covariance);
   return pose;
@@ -65,7 +57,7 @@ void RunRecorder::add(const core::StepReport& report, double microseconds) {
   Run& run = book_->run;
   core::StepReport& step = run.steps.emplace_back(report);
   run.microseconds.push_back(std::round(microseconds * 10.0) / 10.0);
-  step.pose = as_kept(report.pose);
+  step.pose = gaussian_as_kept(report.pose);
   if (!book_->cloud_choice.keeps(report)) {
     step.cloud.clear();
   } else if (!report.drawn.empty()) {
@@ -104,7 +96,6 @@ Run RunRecorder::finish(const std::vector<core::MapLandmark>& map) {
   std::vector<core::StampedPose>& solved = book_->solved_before;
   solved.insert(solved.end(), book_->solved.begin(), book_->solved.end());
   correct_path(run, solved);
-  for (core::Pose2& pose : run.final_path) pose = as_kept(pose);
   return run;
 }
 
