@@ -88,12 +88,12 @@ MayLeaveOut may_still_leave_out(const SearchOptions& options, const Closing& clo
 }  // namespace
 
 bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& options, KeptRemoved& pairs,
-                     Closing& closing) {
+                     Closing& closing, int free_dof) {
   while (true) {
     const std::optional<cekf::CostByPart> cost = cost_of(filter, pairs, options.merge_sigma_m);
     closing.cost = cost ? cost->cost : 0.0;
-    closing.dof = cost ? cost->dof : 0;
-    closing.limit = cost ? core::chi2_quantile(options.closing_probability, cost->dof) : 0.0;
+    closing.dof = cost ? cost->dof - free_dof : 0;
+    closing.limit = cost ? core::chi2_quantile(options.closing_probability, closing.dof) : 0.0;
     if (!cost) {
       ++closing.numerics.refused;
       return false;

@@ -55,9 +55,10 @@ std::optional<cekf::CostByPart> cost_of(const cekf::CompressedEkf& filter, const
 void note(const KeptRemoved& pairs, Closing& closing);
 
 /// Drops the worst pair until the cost of merging the rest passes; false if too many would have to go. Sets the
-/// figures of `closing`; false and no degrees of freedom if the cost cannot be computed.
+/// figures of `closing`; false and no degrees of freedom if the cost cannot be computed. `free_dof`: what the pairs fit beforehand,
+/// 3 for a pose of which nothing else is known.
 bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& options, KeptRemoved& pairs,
-                     Closing& closing);
+                     Closing& closing, int free_dof = 0);
 
 /// Confirmed branch landmarks that are compatible with exactly one landmark of `old` (ascending) by the joint
 /// covariance of the closed map, a thousand times likelier to be that one than an unmapped one on another side, as near

@@ -162,7 +162,8 @@ JoinedMaps join_maps(const cekf::CompressedEkf& session, const core::JointGaussi
   JoinedMaps joined{cekf::CompressedEkf(both, session.next_name(), session.options()), {}, place.T_map_branch};
   const SearchOptions across = across_sessions(options, pair_noise_m, pairs.size());
   Closing& closing = joined.closing;
-  if (!make_compatible(joined.filter, across, pairs, closing)) return joined;
+  constexpr int of_place = 3;  // loosened
+  if (!make_compatible(joined.filter, across, pairs, closing, of_place)) return joined;
   joined.filter.merge(pairs, across.merge_sigma_m);
   note(pairs, closing);
   closing.accepted = true;

@@ -186,6 +186,34 @@ TEST(JoinMaps, IsConsistentOnAMapThatLiesElsewhereThanItSays) {
   EXPECT_LT(nees, core::chi2_quantile(0.999, 16 * runs));
 }
 
+/// Three coordinates of the pairs go into the place, about which nothing else is known. Two-sided, false alarm 1 in 1000; with as
+/// many degrees of freedom as coordinates the mean would be 16 of 13.
+TEST(JoinMaps, TheCostOfPairsHasTheDegreesOfFreedomThatAFreePlaceLeaves) {
+  constexpr int runs = 300;
+  double cost = 0.0;
+  int dof = 0;
+  for (int run = 0; run < runs; ++run) {
+    PlacedMaps maps(static_cast<std::uint64_t>(1000 + run));
+    core::RandomStream random(static_cast<std::uint64_t>(run), "errors of pairs");
+    const Eigen::VectorXd of_map = drawn(maps.earlier.covariance, random);
+    const Eigen::VectorXd of_session = drawn(maps.session.covariance, random);
+    for (std::size_t i = 0; i < 8; ++i) {
+      const auto row = 3 + 2 * static_cast<Eigen::Index>(i);
+      const double dx_m = random.normal(0.0, pair_noise_m);
+      const Eigen::Vector2d of_pair_m(dx_m, random.normal(0.0, pair_noise_m));
+      maps.earlier.points_m[i] = core::transform(T_true, maps.session.points_m[i]) + of_map.segment<2>(row) + of_pair_m;
+      maps.session.points_m[i] += of_session.segment<2>(row);
+    }
+    maps.place.T_map_branch = core::fit_rigidly(maps.earlier.points_m, maps.session.points_m);
+    const JoinedMaps joined = join(maps);
+    cost += joined.closing.cost;
+    dof += joined.closing.dof;
+    if (joined.closing.dropped == 0) EXPECT_EQ(joined.closing.dof, 2 * 8 - 3);
+  }
+  EXPECT_GT(cost, core::chi2_quantile(0.0005, dof));
+  EXPECT_LT(cost, core::chi2_quantile(0.9995, dof));
+}
+
 TEST(JoinMaps, KeepsTheNamesOfTheEarlierMapAndGivesNoneTwice) {
   const JoinedMaps joined = join(PlacedMaps(4));
   EXPECT_EQ(joined.filter.landmarks(), (std::vector<core::LandmarkId>{0, 1, 2, 3, 4, 5, 6, 7}));
