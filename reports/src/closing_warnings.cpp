@@ -11,6 +11,7 @@ namespace {
 
 struct Closings {
   int accepted = 0, refused = 0, undecided = 0;
+  int refused_since = 0;       ///< the last that was accepted
   bool is_path_solved = true;  ///< after the last that was accepted
 };
 
@@ -20,6 +21,7 @@ Closings closings_of(const runs::Run& run) {
     for (const core::Decision& decision : step.decisions) {
       if (const auto* closure = std::get_if<core::ClosureDecision>(&decision)) {
         ++(closure->accepted ? closings.accepted : closings.refused);
+        closings.refused_since = closure->accepted ? 0 : closings.refused_since + 1;
       }
       closings.undecided += std::holds_alternative<core::UndecidedDecision>(decision);
       if (const auto* solved = std::get_if<core::SmoothingDecision>(&decision)) {
@@ -36,7 +38,7 @@ std::vector<std::string> closing_warnings(const runs::Run& run) {
   const Closings closings = closings_of(run);
   std::vector<std::string> warnings;
   constexpr int several = 3;
-  const bool is_mostly_refused = closings.refused >= several && closings.refused > 2 * closings.accepted;
+  const bool is_mostly_refused = closings.refused_since >= several && closings.refused > 2 * closings.accepted;
   const bool is_mostly_undecided = closings.undecided >= 2 && closings.undecided > closings.accepted;
   if (is_mostly_refused || is_mostly_undecided) {
     warnings.push_back(

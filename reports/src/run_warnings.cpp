@@ -115,6 +115,12 @@ std::string fixes_text(const runs::Run& run) {
       refused, used + refused);
 }
 
+/// By more than the pose is uncertain: pairs of the right place may contradict each other, too.
+bool is_elsewhere(const core::WholeMapDecision& asked, const core::PoseGaussian& pose) {
+  constexpr double sigmas = 3.0;
+  return asked.displaced_m > sigmas * std::sqrt(std::max(0.0, pose.covariance.topLeftCorner<2, 2>().trace()));
+}
+
 /// How often in a row the whole map surely had another place for what was mapped than the vehicle was believed to be at, and nothing
 /// came of it; and how far away the last one was.
 std::pair<int, double> contradicted_places(const runs::Run& run) {
@@ -124,11 +130,14 @@ std::pair<int, double> contradicted_places(const runs::Run& run) {
     for (const core::Decision& decision : step.decisions) {
       const auto* placed = std::get_if<core::PlacedDecision>(&decision);
       const auto* asked = std::get_if<core::WholeMapDecision>(&decision);
-      const bool accepted = (placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted) ||
+      const auto* closure = std::get_if<core::ClosureDecision>(&decision);
+      const bool accepted = (closure != nullptr && closure->accepted) ||
+                            (placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted) ||
                             (asked != nullptr && asked->verdict == core::WholeMapDecision::Verdict::accepted);
       if (accepted || std::holds_alternative<core::CarriedDecision>(decision)) times = 0;
       if (asked == nullptr || asked->verdict != core::WholeMapDecision::Verdict::refused) continue;
       if (asked->lead < asked->needed) continue;  // another place may fit as well
+      if (!is_elsewhere(*asked, step.pose)) continue;
       ++times;
       away_m = asked->displaced_m;
     }
@@ -221,8 +230,7 @@ std::string contradicted_place_text(const runs::Run& run) {
     return warning(
         "the landmarks seen fit another place on the map, %.3g m from the estimated pose: the search of the whole map "
         "found it %d times, but it was not adopted. The place found before is wrong, or was lost since, and the map "
-        "may "
-        "hold landmarks twice: do not continue in it. 'helixnav join' brings a run without --map together with the "
+        "may hold landmarks twice: do not continue in it. 'helixnav join' brings a run without --map together with the "
         "earlier one, by all that both have mapped",
         away_m, times);
   }

@@ -31,6 +31,11 @@ TEST(ClosingWarnings, SayThatReturnsStayedOpenWhereMostClosingsWereRefused) {
   EXPECT_NE(texts[0].find("1 closing accepted, 3 refused"), std::string::npos) << texts[0];
 }
 
+TEST(ClosingWarnings, SayNothingOfReturnsThatWereClosedAtLast) {
+  const core::ClosureDecision refused = closure(false);
+  EXPECT_TRUE(closing_warnings(run_of({refused, refused, refused, refused, closure(true), solved(true)})).empty());
+}
+
 TEST(ClosingWarnings, SayThatSearchesEndedUndecided) {
   EXPECT_EQ(closing_warnings(run_of({core::UndecidedDecision{}, core::UndecidedDecision{}})).size(), 1u);
 }

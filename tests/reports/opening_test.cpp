@@ -188,6 +188,7 @@ TEST(Opening, DoesNotBlameTheOdometryOfWhoOnlyLocalisesAndWasNotPlaced) {
 
 TEST(Opening, WarnsWhereTheWholeMapHasAnotherPlaceAgainAndAgain) {
   runs::Run run = drifting_run(0.0);
+  run.steps[60].decisions.clear();  // nothing is closed
   core::WholeMapDecision asked;
   asked.verdict = core::WholeMapDecision::Verdict::refused;
   asked.lead = 60.0;
@@ -209,6 +210,11 @@ TEST(Opening, WarnsWhereTheWholeMapHasAnotherPlaceAgainAndAgain) {
   run.steps[5].decisions.emplace_back(placed);
   EXPECT_NE(contradicted_place_text(run).find("helixnav join"), std::string::npos) << "the start was not given";
   EXPECT_EQ(contradicted_place_text(run).find("--start"), std::string::npos) << contradicted_place_text(run);
+  for (core::StepReport& step : run.steps) step.pose.covariance = 0.0009 * Eigen::Matrix3d::Identity();
+  asked.displaced_m = 0.04;
+  for (const std::size_t k : {10u, 20u}) run.steps[k].decisions.back() = asked;
+  EXPECT_TRUE(contradicted_place_text(run).empty()) << "where it is believed to be";
+  asked.displaced_m = 317.0;
   asked.lead = 20.0;
   for (const std::size_t k : {10u, 20u}) run.steps[k].decisions.back() = asked;
   EXPECT_TRUE(contradicted_place_text(run).empty()) << "not sure of the place";
@@ -217,6 +223,10 @@ TEST(Opening, WarnsWhereTheWholeMapHasAnotherPlaceAgainAndAgain) {
   asked.verdict = core::WholeMapDecision::Verdict::accepted;
   run.steps[40].decisions.emplace_back(asked);
   EXPECT_TRUE(contradicted_place_text(run).empty()) << "found at last";
+  core::ClosureDecision closed;
+  closed.accepted = true;
+  run.steps[40].decisions = {closed};
+  EXPECT_TRUE(contradicted_place_text(run).empty()) << "closed at last";
 }
 
 std::string all_warnings(const runs::Run& run) {

@@ -74,13 +74,14 @@ std::vector<std::size_t> worst_pairs(const cekf::CompressedEkf& filter, const Se
   return {static_cast<std::size_t>(std::max_element(parts.begin(), parts.end()) - parts.begin())};
 }
 
-/// If trees grow as twins, some pairs of a correct closing match one twin with the other: few, and each far beyond its
-/// deviation.
+/// Some pairs of a correct closing are wrong, each far beyond its deviation: where trees grow as twins, or clutter gathers in the same
+/// bush on both passes. Without as many as that the place still explains more than any rival of it does.
 MayLeaveOut may_still_leave_out(const SearchOptions& options, const Closing& closing, std::size_t pairs) {
-  constexpr std::size_t pairs_an_outlier = 20;
   const auto any = static_cast<std::size_t>(options.most_dropped);
   const auto dropped = static_cast<std::size_t>(closing.dropped);
-  const std::size_t all = std::max(any, (pairs + dropped) / pairs_an_outlier);
+  const auto outliers =
+      static_cast<std::size_t>((1.0 - options.constellation.rival_ratio) * static_cast<double>(pairs + dropped));
+  const std::size_t all = std::max(any, outliers);
   const std::size_t left_any = any - std::min(any, dropped);
   return {left_any, all - std::min(all, dropped + left_any)};
 }

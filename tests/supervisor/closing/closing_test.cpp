@@ -288,6 +288,41 @@ TEST(CloseByMerge, DropsOneWrongPair) {
   for (const core::MergedLandmarks& one : closing.merged) EXPECT_NE(one.kept, back.old.front());
 }
 
+/// Twelve landmarks seen again, of which the first `wrong` are of other things beside them, each on another side.
+Closing close_with_wrong_pairs(int wrong) {
+  const Eigen::Matrix2d R = 0.0025 * Eigen::Matrix2d::Identity();
+  cekf::CompressedEkf filter{core::PoseGaussian{}};
+  std::vector<core::LandmarkId> old;
+  std::vector<Eigen::Vector2d> points_m;
+  for (int i = 0; i < 12; ++i) points_m.emplace_back(3.0 + 2.0 * i, i % 2 == 0 ? 6.0 : -5.0);
+  for (const Eigen::Vector2d& p : points_m) old.push_back(filter.augment(core::make_cartesian(p, R), {}));
+  core::Odometry odometry;
+  odometry.covariance.diagonal() << 4.0, 4.0, 0.01;
+  filter.predict(odometry);
+  Branch branch;
+  std::vector<pf_relocalize::ConstellationPair> pairs;
+  for (int i = 0; i < 12; ++i) {
+    const double side_rad = 1.3 * i;
+    const Eigen::Vector2d beside_m = 0.8 * Eigen::Vector2d(std::cos(side_rad), std::sin(side_rad));
+    const Eigen::Vector2d seen_m = points_m[static_cast<std::size_t>(i)] + Eigen::Vector2d(1.0, -0.5);
+    const core::LandmarkId id = filter.augment(core::make_cartesian(i < wrong ? seen_m + beside_m : seen_m, R), {});
+    branch.confirmed.push_back(id);
+    pairs.push_back({id, old[static_cast<std::size_t>(i)], 0.0});
+  }
+  return close_by_merge(filter, pairs, branch, old, {});
+}
+
+/// As clutter that gathers in the same bush on both passes leaves them; beyond a quarter, a rival may explain as much.
+TEST(CloseByMerge, DropsUpToAQuarterOfThePairsIfTheRestContradictsThem) {
+  for (int wrong = 0; wrong <= 3; ++wrong) {
+    const Closing closing = close_with_wrong_pairs(wrong);
+    EXPECT_TRUE(closing.accepted) << wrong;
+    EXPECT_EQ(closing.dropped, wrong);
+    EXPECT_EQ(closing.merged.size(), static_cast<std::size_t>(12 - wrong));
+  }
+  EXPECT_FALSE(close_with_wrong_pairs(4).accepted);
+}
+
 TEST(CloseByMerge, RefusesWhatTheMapCannotBelieveAndLeavesItAsItWas) {
   Return back(30.0);  // fifteen σ of the odometry
   const core::PoseGaussian before = back.filter.pose();
