@@ -2,6 +2,7 @@
 // A place that was found on another map is contradicted by what was mapped since: the part is driven again from before it was
 // placed, and is placed elsewhere, or everything stays as it is.
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -127,9 +128,11 @@ void NavigationLoop::place_again(const core::Scan& scan, StepReport& report) {
   Part part = part_before_placing();
   exchange(part);
   Undo before = std::exchange(undo_, Undo{{}, tape_.end(), searches_, {}, {}, {}, {}, {}});
+  const std::uint64_t searches = searches_;
   const auto give_up = [&] {
     exchange(part);
     undo_ = std::move(before);
+    searches_ = searches;
   };
   try {
     report_late(placed);
