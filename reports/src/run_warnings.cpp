@@ -16,6 +16,7 @@
 #include "place_questions.hpp"
 #include "scans_apart.hpp"
 #include "systematic_errors_text.hpp"
+#include "wrong_place_text.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -279,9 +280,9 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
                 "'helixnav evaluate' takes --truth-offset-s",
                 evaluation.position->fixes_outside));
   }
-  for (const std::string& text :
-       {only_localized(run) ? std::string() : calibration_text(run), fixes_text(run), contradicted_place_text(run),
-        numerics_text(numerics_of(run)), postponed_text(postponed_in(run)), open_search_text(run)}) {
+  for (const std::string& text : {only_localized(run) ? std::string() : calibration_text(run), fixes_text(run),
+                                  contradicted_place_text(run), wrong_place_text(run), numerics_text(numerics_of(run)),
+                                  postponed_text(postponed_in(run)), open_search_text(run)}) {
     if (!text.empty()) warnings.push_back(text);
   }
   for (const std::string& text : systematic_errors_texts(run)) warnings.push_back(text);

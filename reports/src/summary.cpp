@@ -13,6 +13,7 @@
 #include "json.hpp"
 #include "numerics_text.hpp"
 #include "place_questions.hpp"
+#include "wrong_place_text.hpp"
 
 namespace helixnav::reports {
 
@@ -77,7 +78,7 @@ std::optional<Json> carried_to_json(const runs::Run& run) {
   bool is_placed = true;
   for (const core::StepReport& step : run.steps) {
     for (const core::Decision& decision : step.decisions) {
-      if (std::holds_alternative<core::CarriedDecision>(decision)) {
+      if (std::holds_alternative<core::CarriedDecision>(decision) && !is_wrong_place(decision)) {
         ++times;
         is_placed = false;
       }

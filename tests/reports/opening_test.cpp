@@ -90,6 +90,23 @@ TEST(Opening, SaysHowOftenTheVehicleWasCarriedAndFoundItsPlaceAgain) {
       << said();
 }
 
+TEST(Opening, SaysThatAPlaceWasWrongAndNotThatTheVehicleWasCarried) {
+  runs::Run run = drifting_run(0.0);
+  core::PlacedDecision placed;
+  placed.verdict = core::PlacedDecision::Verdict::accepted;
+  placed.driven_m = 12.0;
+  core::CarriedDecision again;
+  again.cause = core::CarriedDecision::Cause::wrong_place;
+  run.steps[10].decisions = {placed};
+  placed.driven_m = 50.0;
+  run.steps[50].decisions = {again, placed};
+  const std::string said = all_of(opening_data(run, evaluation::evaluate(run))["sentences"]);
+  EXPECT_NE(said.find("It found its place on the earlier map after 50 m. A place found before was wrong."),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(said.find("carried"), std::string::npos) << said;
+}
+
 TEST(Opening, WritesNoPowersOfTen) {
   EXPECT_EQ(short_number(1617.25), "1617");
   EXPECT_EQ(short_number(314.6), "315");

@@ -12,6 +12,7 @@
 #include "helixnav/reports/decision_sentence.hpp"
 #include "helixnav/reports/run_warnings.hpp"
 #include "slip_spans.hpp"
+#include "wrong_place_text.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -98,17 +99,19 @@ std::string movers_sentence(const runs::Run& run) {
 
 /// How often the vehicle was carried, and whether its place was found again, or that of the session on an earlier map; else empty.
 std::string places_sentence(const runs::Run& run) {
-  int carried = 0, found_again = 0;
+  int carried = 0, found_again = 0, wrong = 0;
   std::string found;
   for (const core::StepReport& step : run.steps) {
     for (const core::Decision& decision : step.decisions) {
-      carried += std::holds_alternative<core::CarriedDecision>(decision);
+      wrong += is_wrong_place(decision);
+      carried += std::holds_alternative<core::CarriedDecision>(decision) && !is_wrong_place(decision);
       const auto* placed = std::get_if<core::PlacedDecision>(&decision);
       if (placed == nullptr || placed->verdict != core::PlacedDecision::Verdict::accepted) continue;
       found_again += carried > 0;
       if (carried == 0) found = "It found its place on the earlier map after " + length(placed->driven_m) + '.';
     }
   }
+  if (wrong > 0) found += " A place found before was wrong.";
   if (carried == 0) return found;
   return found + (found.empty() ? "" : " ") + "The vehicle was carried " + times(carried) +
          "; afterwards its place on the map from before was " +
