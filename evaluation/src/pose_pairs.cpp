@@ -40,7 +40,7 @@ double median_interval_s(const std::vector<Stamped>& stamped) {
   return *middle;
 }
 
-/// The true pose then, between two that are no farther apart than usual.
+/// The true pose then, interpolated between two that are no farther apart than that.
 std::optional<core::TruePose> truth_at(const std::vector<core::TruePose>& poses, core::Nanoseconds t_ns,
                                        core::Nanoseconds most_ns) {
   const auto after = std::lower_bound(poses.begin(), poses.end(), t_ns,

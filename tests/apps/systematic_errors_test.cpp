@@ -54,6 +54,29 @@ int slips_in(const std::filesystem::path& run) {
 }
 
 /// A log all of whose constants are wrong: what is learnt makes it right, is said, and can be turned off.
+/// Nobody measured how long the increment after the event took.
+TEST(TakenOut, NoTurnIsTakenOutOfTheTimeInWhichAVehicleWasCarried) {
+  core::Recording recording;
+  core::Odometry odometry;
+  for (int k = 0; k < 30; ++k) {
+    odometry.t_ns = core::nanoseconds_from_seconds(k);
+    recording.events.emplace_back(odometry);
+  }
+  recording.events.emplace_back(core::Lost{odometry.t_ns});
+  odometry.t_ns = core::nanoseconds_from_seconds(600.0);
+  recording.events.emplace_back(odometry);
+  runs::Run run;
+  run.steps.resize(1);
+  core::SystematicDecision turns;
+  turns.turn_rad_per_s = 0.01;
+  run.steps[0].decisions = {turns};
+  const core::Recording without = without_taken_out(run, recording);
+  EXPECT_NEAR(std::get<core::Odometry>(without.events[29]).T_before_after.heading_rad, -0.01, 1e-12);
+  const auto& after = std::get<core::Odometry>(without.events.back());
+  EXPECT_EQ(after.T_before_after.heading_rad, 0.0);
+  EXPECT_EQ(after.covariance(2, 2), 0.0);
+}
+
 TEST(TakenOut, ASpoiltLogIsNavigatedRight) {
   const testing::TemporaryFolder folder;
   write_spoilt_log(219, folder.path() / "log");

@@ -30,6 +30,7 @@ core::Recording without_taken_out(const runs::Run& run, core::Recording recordin
     if (auto* odometry = std::get_if<core::Odometry>(&event)) {
       *odometry = supervisor::without(errors, *odometry, rhythm.until(odometry->t_ns));
     }
+    if (std::holds_alternative<core::Lost>(event)) rhythm.lose_last();  // as the navigator does
     if (auto* scan = std::get_if<core::Scan>(&event)) *scan = supervisor::without(errors, std::move(*scan));
   }
   return recording;

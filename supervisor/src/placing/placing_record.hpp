@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <vector>
-
 #include "loop/belief.hpp"
 #include "loop/tape.hpp"
 #include "placing/maps_apart.hpp"
