@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "helixnav/relocalize/ask.hpp"
+#include "helixnav/relocalize/elsewhere.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 #include "placing/asked.hpp"
 #include "placing/earlier_map.hpp"
@@ -42,7 +42,7 @@ std::vector<AnsweredQuestion> ask_for(const EarlierMap& session, const relocaliz
   std::vector<AnsweredQuestion> answers;
   for (const relocalize::Question& question : questions) {
     now_and_then();
-    answers.push_back({relocalize::ask(index, question, options), question.landmarks.size()});
+    answers.push_back({relocalize::ask_where_places_repeat(index, question, options), question.landmarks.size()});
   }
   std::stable_sort(answers.begin(), answers.end(), [](const AnsweredQuestion& a, const AnsweredQuestion& b) {
     const auto rank = [](const AnsweredQuestion& asked) {

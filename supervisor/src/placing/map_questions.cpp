@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::size_t least_in_question = 8;
 constexpr std::size_t most_in_question = 40;
-constexpr double share_of_eighth = 0.6;  ///< as MapIndex::look_around_landmarks
 
 using Near = std::vector<std::pair<double, std::size_t>>;
 
@@ -26,20 +25,6 @@ Near nearest(const core::JointGaussian& landmarks, std::size_t centre) {
   std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(kept), near.end());
   near.resize(kept);
   return near;
-}
-
-/// Ground about the landmarks, none farther from the centre than the farthest of them.
-std::vector<relocalize::Disc> ground_about(const core::JointGaussian& landmarks, const Near& near, double reach_m) {
-  std::vector<relocalize::Disc> discs;
-  for (const auto& [distance_m, i] : near) {
-    std::vector<double> others_m;
-    for (const auto& [unused_m, j] : near) others_m.push_back((landmarks.points_m[j] - landmarks.points_m[i]).norm());
-    const auto eighth = others_m.begin() + std::min<std::ptrdiff_t>(8, static_cast<std::ptrdiff_t>(near.size()) - 1);
-    std::nth_element(others_m.begin(), eighth, others_m.end());
-    const double radius_m = std::min(share_of_eighth * std::min(*eighth, reach_m), near.back().first - distance_m);
-    if (radius_m > 0.0) discs.push_back({landmarks.points_m[i], radius_m});
-  }
-  return discs;
 }
 
 }  // namespace
@@ -59,7 +44,9 @@ std::vector<relocalize::Question> map_questions(const EarlierMap& map, const rel
     }
     relocalize::Question question;
     question.landmarks = question_landmarks(landmarks, chosen, lengths.pair_noise_m, map.appearance());
-    question.looked = ground_about(landmarks, near, lengths.reach_m);
+    std::vector<Eigen::Vector2d> points_m;
+    for (const std::size_t i : chosen) points_m.push_back(landmarks.points_m[i]);
+    question.looked = relocalize::ground_around(points_m, lengths.reach_m);
     if (!question.looked.empty()) questions.push_back(std::move(question));
   }
   return questions;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "placing/place_search.hpp"
 
+#include "helixnav/relocalize/elsewhere.hpp"
+
 namespace helixnav::supervisor {
 namespace {
 
@@ -18,7 +20,7 @@ PlaceSearch::PlaceSearch(const core::JointMap& earlier, const relocalize::IndexO
 relocalize::Answer PlaceSearch::ask(const relocalize::Question& question, const Asked& before,
                                     core::PlacedDecision& decision) const {
   const relocalize::AskOptions options = session_options(before.next_alpha());
-  relocalize::Answer answer = relocalize::ask(index_, question, options);
+  relocalize::Answer answer = relocalize::ask_where_places_repeat(index_, question, options);
   decision.verdict = verdict_of(answer.verdict);
   decision.earlier_landmarks = static_cast<int>(earlier_.landmarks().ids.size());
   decision.questions = before.questions + 1;

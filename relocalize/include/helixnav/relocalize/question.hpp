@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/relocalize/landmark.hpp"
 
@@ -23,5 +25,9 @@ struct Question {
   std::vector<Disc> looked;  ///< ground the branch looked at: there it would have found the landmarks of the map
   std::optional<Prior> prior;
 };
+
+/// Ground that was surely looked at about points of a constellation, nearest to its centre first: discs about them, 0.6 of the way to
+/// the eighth of the others, none beyond the farthest. For constellations of a map whose covered ground was not recorded.
+std::vector<Disc> ground_around(const std::vector<Eigen::Vector2d>& nearest_first_m, double reach_m);
 
 }  // namespace helixnav::relocalize
