@@ -142,6 +142,7 @@ void numbers(FixDecision& d, Visit&& visit) {
   visit("x_m", d.position_world_m.x());
   visit("y_m", d.position_world_m.y());
   visit("pose_sigma_m", d.pose_sigma_m);
+  visit("widened", d.widened);
 }
 
 template <class Visit>

@@ -116,6 +116,24 @@ std::string fixes_text(const runs::Run& run) {
       refused, used + refused);
 }
 
+/// Empty unless fixes were found to err alike, or to be far noisier than stated, when the run ended.
+std::string widened_fixes_text(const runs::Run& run) {
+  double widened = 1.0;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::Decision& decision : step.decisions) {
+      const auto* fix = std::get_if<core::FixDecision>(&decision);
+      if (fix != nullptr) widened = fix->widened;
+    }
+  }
+  constexpr double worth_saying = 4.0;
+  if (widened < worth_saying) return {};
+  return warning(
+      "position fixes err alike over many of them, or by more than stated (sigma, gps.sigma_m): each of the last ones "
+      "was "
+      "used with %.1f times its standard deviation, and the path may be off by as much as they are",
+      std::sqrt(widened));
+}
+
 /// By more than the pose is uncertain: pairs of the right place may contradict each other, too.
 bool is_elsewhere(const core::WholeMapDecision& asked, const core::PoseGaussian& pose) {
   constexpr double sigmas = 3.0;
@@ -280,9 +298,10 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
                 "'helixnav evaluate' takes --truth-offset-s",
                 evaluation.position->fixes_outside));
   }
-  for (const std::string& text : {only_localized(run) ? std::string() : calibration_text(run), fixes_text(run),
-                                  contradicted_place_text(run), wrong_place_text(run), numerics_text(numerics_of(run)),
-                                  postponed_text(postponed_in(run)), open_search_text(run)}) {
+  for (const std::string& text :
+       {only_localized(run) ? std::string() : calibration_text(run), fixes_text(run), widened_fixes_text(run),
+        contradicted_place_text(run), wrong_place_text(run), numerics_text(numerics_of(run)),
+        postponed_text(postponed_in(run)), open_search_text(run)}) {
     if (!text.empty()) warnings.push_back(text);
   }
   for (const std::string& text : systematic_errors_texts(run)) warnings.push_back(text);

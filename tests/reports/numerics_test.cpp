@@ -91,5 +91,18 @@ TEST(Fixes, ThatAreMostlyRefusedAreAWarning) {
   EXPECT_EQ(said(0, 10), 0) << "too few to say";
 }
 
+TEST(Fixes, ThatWereFoundToErrAlikeAreAWarning) {
+  const auto said = [](double widened) {
+    core::FixDecision fix;
+    fix.accepted = true;
+    fix.widened = widened;
+    const std::vector<std::string> warnings = warnings_about(run_of({}, {core::FixDecision{}, fix}));
+    return std::count_if(warnings.begin(), warnings.end(),
+                         [](const std::string& text) { return has(text, "used with 12.0 times"); });
+  };
+  EXPECT_EQ(said(144.0), 1);
+  EXPECT_EQ(said(2.0), 0);
+}
+
 }  // namespace
 }  // namespace helixnav::reports

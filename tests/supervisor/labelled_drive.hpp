@@ -29,7 +29,7 @@ class LabelledDrive {
       }
       predict();
       if (const auto* fix = std::get_if<core::AbsoluteFix>(&event)) {
-        tape.append(Tape::Fix{*fix, filter.update_position(*fix).nis, true});
+        tape.append(Tape::Fix{WidenedFix{*fix}, filter.update_position(*fix).nis, true});
       } else {
         see(std::get<core::Scan>(event), run.labels[scans_++]);
       }

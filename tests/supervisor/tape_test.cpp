@@ -29,7 +29,7 @@ Tape::Scan scan_that_cost(double nis) {
   return scan;
 }
 
-Tape::Fix fix_that_cost(double nis, bool accepted = true) { return {core::AbsoluteFix{}, nis, accepted}; }
+Tape::Fix fix_that_cost(double nis, bool accepted = true) { return {WidenedFix{}, nis, accepted}; }
 
 /// A belief on the wide circuit with known association, and its tape.
 struct Driver {

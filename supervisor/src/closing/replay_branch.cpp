@@ -67,7 +67,7 @@ cekf::UpdateResult replay_branch(cekf::CompressedEkf& filter, const BranchRecord
     } else if (const auto* slip = std::get_if<Tape::Slip>(&entry)) {
       filter.predict(slip->motion);
     } else if (const auto* fix = std::get_if<Tape::Fix>(&entry)) {
-      if (fix->accepted) filter.update_position(fix->fix);
+      if (fix->accepted) filter.update_position(fix->used.fix);
     } else if (const auto* scan = std::get_if<Tape::Scan>(&entry)) {
       const cekf::UpdateResult one = update_again(filter, *scan, old_of);
       total.nis += one.nis;

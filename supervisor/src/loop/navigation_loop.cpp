@@ -112,6 +112,7 @@ StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* not
     if (has_lost_its_place()) return roll_back_and_relocalise(scan, std::move(report));
     ask_whether_new(scan, report);
     solve_with_learnt_noise(report);
+    if (!report.merged.empty() || !report.solved.empty()) noise_.fixes.forget_offset();
     learn_systematic(report);
     report.pose = belief_.filter.pose();
     if (apart_.any()) find_place(scan.field_of_view, report);
@@ -131,7 +132,14 @@ StepReport NavigationLoop::take_as_assumed(const Scan& scan) {
 
 bool NavigationLoop::fix(const core::AbsoluteFix& fix) {
   if (apart_.part != 0) return false;  // the place of its frame is unknown
-  return all_or_nothing([&] { return use_fix(fix); });
+  return all_or_nothing([&] {
+    predict();
+    const FixInnovation before = innovation_of(belief_.filter.pose(), fix);
+    learn_noise(fix, before);
+    const bool accepted = use_fix(widened(fix, noise_.fixes));
+    noise_.fixes.note_correction(before, innovation_of(belief_.filter.pose(), fix));
+    return accepted;
+  });
 }
 
 StepReport NavigationLoop::step(const Scan& scan) {
@@ -182,7 +190,7 @@ void NavigationLoop::predict() {
   pending_.motion.reset();
 }
 
-bool NavigationLoop::use_fix(const core::AbsoluteFix& fix) {
+bool NavigationLoop::use_fix(const WidenedFix& fix) {
   predict();
   const core::FixDecision decision = judge_fix(belief_.filter, fix, options_.fix_probability);
   tape_.append(Tape::Fix{fix, decision.nis, decision.accepted});

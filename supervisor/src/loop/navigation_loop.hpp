@@ -16,6 +16,7 @@
 #include "helixnav/pf_relocalize/constellation.hpp"
 #include "helixnav/supervisor/navigator_options.hpp"
 #include "loop/belief.hpp"
+#include "loop/judge_fix.hpp"
 #include "loop/mode.hpp"
 #include "loop/tape.hpp"
 #include "noise/noise_learner.hpp"
@@ -101,7 +102,7 @@ class NavigationLoop {
   core::StepReport take_as_assumed(const core::Scan& scan);
   core::StepReport step(const core::Scan& scan);
   void predict();
-  bool use_fix(const core::AbsoluteFix& fix);
+  bool use_fix(const WidenedFix& fix);
   GatedScan gate(const core::Scan& scan) const;
   std::vector<core::AssociationReport> associate_gated(const GatedScan& gated, const core::Scan& scan);
   void report_unfinished(const GatedScan& gated, core::StepReport& report) const;
@@ -134,6 +135,7 @@ class NavigationLoop {
 
   // noise/learn_noise.cpp
   void learn_noise(const core::Scan& scan);
+  void learn_noise(const core::AbsoluteFix& fix, const FixInnovation& innovation);
   void solve_with_learnt_noise(core::StepReport& report);
   bool solve_again(Tape again, core::StepReport& report);
 

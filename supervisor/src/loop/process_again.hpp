@@ -19,7 +19,7 @@ void NavigationLoop::process_again(const std::vector<Tape::Entry>& since, const 
       pending_.driven_m = motion->driven_m;
       pending_.time = motion->time;
     } else if (const auto* fix = std::get_if<Tape::Fix>(&entry)) {
-      after_fix(*fix, use_fix(fix->fix));
+      after_fix(*fix, use_fix(fix->used));
     } else if (const auto* scan = std::get_if<Tape::Scan>(&entry)) {
       after_scan(step(scan->scan));
     }

@@ -64,6 +64,17 @@ Tape Tape::rescaled(double observations, double odometry) const {
   return tape;
 }
 
+Tape Tape::with_wider_fixes(double widened) const {
+  Tape tape = *this;
+  for (Entry& entry : tape.entries_) {
+    auto* fix = std::get_if<Fix>(&entry);
+    if (fix == nullptr || fix->used.widened >= widened) continue;
+    fix->used.fix.covariance_m2 *= widened / fix->used.widened;
+    fix->used.widened = widened;
+  }
+  return tape;
+}
+
 Tape Tape::without(const SystematicErrors& errors) const {
   Tape tape = *this;
   for (Entry& entry : tape.entries_) {
@@ -207,8 +218,8 @@ std::vector<Stop> stops_between(const Tape& tape, Tape::Position position, Tape:
     Stop& stop = stops.emplace_back();
     stop.motion = std::exchange(motion, std::nullopt);
     if (const auto* fix = std::get_if<Tape::Fix>(&entry)) {
-      stop.t_ns = fix->fix.t_ns;
-      stop.fix = fix->fix;
+      stop.t_ns = fix->used.fix.t_ns;
+      stop.fix = fix->used.fix;
     }
     if (const auto* scan = std::get_if<Tape::Scan>(&entry)) {
       stop.t_ns = scan->scan.t_ns;

@@ -12,6 +12,7 @@
 #include "helixnav/core/merged_ids.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/supervisor/systematic_errors.hpp"
+#include "loop/judge_fix.hpp"
 
 namespace helixnav::supervisor {
 
@@ -32,7 +33,7 @@ class Tape {
     core::Odometry motion;
   };
   struct Fix {
-    core::AbsoluteFix fix;
+    WidenedFix used;
     double nis = 0.0;
     bool accepted = false;
   };
@@ -68,6 +69,9 @@ class Tape {
   /// The tape of the same drive, had the covariances of all observations and of all measured motion been this many
   /// times as large. Costs are divided by the smaller factor: an upper bound, since nothing is solved again.
   Tape rescaled(double observations, double odometry) const;
+
+  /// The tape, had all fixes been widened as much as this; those that are wider stay so, and so do costs, as upper bounds.
+  Tape with_wider_fixes(double widened) const;
 
   /// The tape, had the covariance of the motion measured over the last `length_m` been this many times as large; costs stay
   /// as they were, which is an upper bound.

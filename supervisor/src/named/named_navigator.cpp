@@ -178,7 +178,7 @@ void NamedNavigator::report_late(StepReport& report) {
 bool NamedNavigator::use_fix(const core::AbsoluteFix& fix) {
   predict();
   taken_.emplace_back(fix);
-  pending_.decisions.emplace_back(judge_fix(filter_, fix, options_.fix_probability));
+  pending_.decisions.emplace_back(judge_fix(filter_, WidenedFix{fix}, options_.fix_probability));
   const bool accepted = std::get<core::FixDecision>(pending_.decisions.back()).accepted;
   if (accepted) record(fix);
   return accepted;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
 #include "loop/navigation_loop.hpp"
 #include "smoothing/smooth_drive.hpp"
@@ -41,18 +42,29 @@ void NavigationLoop::learn_noise(const core::Scan& scan) {
   noise_.scale.observe(PairEquations(geometry, seen, pairs, Eigen::Vector3d::Zero()), new_sides, Q);
 }
 
+/// While a search is open nothing is learnt: where the vehicle is is in question.
+void NavigationLoop::learn_noise(const core::AbsoluteFix& fix, const FixInnovation& innovation) {
+  if (!options_.noise.adapt || searching() != nullptr) return;
+  noise_.fixes.observe(innovation, core::chi2_quantile(options_.fix_probability, 2), fix.t_ns);
+}
+
 /// What was processed with other noise before it was known is solved again with the noise as it is known now; if it
 /// cannot be solved, everything stays as it was.
 void NavigationLoop::solve_with_learnt_noise(core::StepReport& report) {
   constexpr double too_little = 1.25;   // overconfident: corrected at once
   constexpr double too_much = 1.0 / 3;  // merely cautious: rarely worth its cost
+  constexpr double wider = 2.0;         // fixes: found out step by step, and each time the drive is solved
   const double observations = noise_.scale.observations() / noise_.scale.applied_observations;
   const double odometry = noise_.scale.odometry() / noise_.scale.applied_odometry;
   const auto is_worth_it = [&](double change) { return change > too_little || change < too_much; };
-  if (searching() != nullptr || !(is_worth_it(observations) || is_worth_it(odometry))) return;
+  const bool fixes_err_alike = noise_.fixes.in_update() > wider * noise_.fixes.applied;
+  if (searching() != nullptr || !(is_worth_it(observations) || is_worth_it(odometry) || fixes_err_alike)) return;
   noise_.scale.applied_observations = noise_.scale.observations();
   noise_.scale.applied_odometry = noise_.scale.odometry();
-  if (tape_.holds_drive()) solve_again(tape_.rescaled(observations, odometry), report);
+  noise_.fixes.applied = std::max(noise_.fixes.applied, noise_.fixes.in_update());
+  if (!tape_.holds_drive()) return;
+  Tape again = tape_.rescaled(observations, odometry);
+  solve_again(fixes_err_alike ? again.with_wider_fixes(noise_.fixes.applied) : std::move(again), report);
 }
 
 /// The drive that the tape holds, had it been `again`. False if it cannot be solved: everything is as it was.

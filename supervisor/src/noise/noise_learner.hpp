@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "noise/fix_noise.hpp"
 #include "noise/noise_pairs.hpp"
 #include "noise/noise_scale.hpp"
 #include "systematic/systematic_state.hpp"
@@ -14,6 +15,7 @@ struct NoiseLearner {
   NoiseScale scale;
   SidesSeen sides;
   SystematicState systematic;
+  FixNoise fixes;
   Eigen::Matrix3d moved = Eigen::Matrix3d::Zero();  ///< covariance of the motion since the last scan, as assumed
 };
 

@@ -155,6 +155,7 @@ struct FixDecision {
   double gate = 0.0;
   Eigen::Vector2d position_world_m = Eigen::Vector2d::Zero();
   double pose_sigma_m = 0.0;  ///< after it
+  double widened = 1.0;       ///< covariance it was used with, in units of the one it stated: fixes err alike
 };
 
 /// The vehicle was carried: an event reported it (core::Lost), or after a pause what had been in view was gone. The
