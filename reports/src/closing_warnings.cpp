@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "helixnav/core/decision.hpp"
+#include "helixnav/core/time.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
 
 namespace helixnav::reports {
@@ -11,9 +12,16 @@ namespace {
 
 struct Closings {
   int accepted = 0, refused = 0, undecided = 0;
-  int refused_since = 0;       ///< the last that was accepted
-  bool is_path_solved = true;  ///< after the last that was accepted
+  int cuts = 0;
+  double cut_s = 0.0, cut_by_m = 0.0;  ///< the farthest of them
+  int refused_since = 0;               ///< the last that was accepted
+  bool is_path_solved = true;          ///< after the last that was accepted
 };
+
+/// Odometry and map were so far apart that no noise of the odometry reconciled them.
+bool is_cut(const core::WholeMapDecision& asked) {
+  return asked.verdict == core::WholeMapDecision::Verdict::accepted && asked.odometry_factor == 0.0;
+}
 
 Closings closings_of(const runs::Run& run) {
   Closings closings;
@@ -22,6 +30,14 @@ Closings closings_of(const runs::Run& run) {
       if (const auto* closure = std::get_if<core::ClosureDecision>(&decision)) {
         ++(closure->accepted ? closings.accepted : closings.refused);
         closings.refused_since = closure->accepted ? 0 : closings.refused_since + 1;
+      }
+      const auto* asked = std::get_if<core::WholeMapDecision>(&decision);
+      if (asked != nullptr && is_cut(*asked)) {
+        ++closings.cuts;
+        if (asked->displaced_m > closings.cut_by_m) {
+          closings.cut_by_m = asked->displaced_m;
+          closings.cut_s = core::seconds(step.t_ns);
+        }
       }
       closings.undecided += std::holds_alternative<core::UndecidedDecision>(decision);
       if (const auto* solved = std::get_if<core::SmoothingDecision>(&decision)) {
@@ -48,6 +64,17 @@ std::vector<std::string> closing_warnings(const runs::Run& run) {
         "): landmarks there may be in the map twice, and the path keeps the drift until then. Typical causes are wheel "
         "slip, assumed noise that is too small, and lasting errors of the detector (a trunk's near side taken "
         "for its centre); 'helixnav calibrate' estimates the noise from the log");
+  }
+  if (closings.cuts > 0) {
+    warnings.push_back("odometry and the map were up to " + short_number(closings.cut_by_m) + " m apart at a return (" +
+                       short_number(closings.cut_s) + " s; " + counted(closings.cuts, "time") +
+                       "), more than any noise of odometry explains: the drive was cut there, as if the vehicle had "
+                       "been carried. If it neither "
+                       "slipped nor was carried, what was mapped before is bent by as much, whatever its covariance "
+                       "says: sensors that "
+                       "disagree in mounting or delay, a steering or gyro offset that changes, or landmarks that moved "
+                       "together; 'helixnav "
+                       "calibrate' estimates the first two");
   }
   if (!closings.is_path_solved) {
     warnings.emplace_back(

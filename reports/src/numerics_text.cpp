@@ -48,9 +48,11 @@ PostponedWork postponed_in(const runs::Run& run) {
 
 std::string numerics_text(const core::NumericalHealth& numerics) {
   std::vector<std::string> parts;
-  add(numerics.repaired, "times what failed was done in another way", parts);
-  add(numerics.refused, "times what failed was left undone", parts);
-  std::string text = parts.empty() ? "" : "the mathematics failed: " + list_of(parts);
+  add(numerics.repaired, "were done in another way (nothing is lost by it)", parts);
+  add(numerics.refused, "were left undone", parts);
+  std::string text = parts.empty() ? ""
+                                   : "computations that failed as they were tried first: " + list_of(parts) +
+                                         "; 'helixnav explain RUN' says when";
   if (!core::is_near_limit(numerics)) return text;
   return text + (text.empty() ? "" : "; ") +
          "the arithmetic came near its limit (least pivot of an innovation covariance " +

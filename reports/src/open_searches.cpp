@@ -105,6 +105,11 @@ double driven_in(const OpenSearch& search, const runs::Run& run) {
   return driven_m;
 }
 
+std::string driven_text(const OpenSearch& search, const runs::Run& run) {
+  return short_number(driven_in(search, run)) + " m, from " + short_number(core::seconds(run.steps[search.from].t_ns)) +
+         " s on";
+}
+
 /// "12 landmarks mapped since may be on the map twice, 8 of them stand where old ones do".
 std::string twice_text(const Begun& begun, const std::string& when) {
   const std::string twice =
@@ -113,8 +118,7 @@ std::string twice_text(const Begun& begun, const std::string& when) {
 }
 
 std::string text_of(const OpenSearch& search, const Begun& begun, const runs::Run& run) {
-  const std::string since = short_number(driven_in(search, run)) + " m, from " +
-                            short_number(core::seconds(run.steps[search.from].t_ns)) + " s on";
+  const std::string since = driven_text(search, run);
   const std::string advice =
       ". Driving over more of the old ground would decide it; 'helixnav explain RUN' has the numbers, and 'helixnav "
       "calibrate' estimates the noise and constants that make returns ambiguous where they are wrong";
@@ -132,11 +136,22 @@ std::string text_of(const OpenSearch& search, const Begun& begun, const runs::Ru
   return {};
 }
 
+/// Empty unless the last one is open at the end, and has been for longer than it takes to begin one.
+std::string still_open_text(const std::vector<OpenSearch>& searches, const runs::Run& run) {
+  constexpr std::size_t long_open = 20;  // scans
+  if (searches.empty() || searches.back().end != OpenSearch::End::none) return {};
+  const OpenSearch& last = searches.back();
+  if (last.to - last.from < long_open) return {};
+  return "a search was still open at the end (" + driven_text(last, run) +
+         "): where the vehicle is on what was mapped before is undecided, and its pose since may be wrong by more than "
+         "its covariance says; 'helixnav explain RUN' has the numbers";
+}
+
 }  // namespace
 
 std::string open_search_text(const runs::Run& run) {
-  if (only_localized(run)) return {};
   const std::vector<OpenSearch> searches = open_searches(run);
+  if (only_localized(run)) return still_open_text(searches, run);
   constexpr std::size_t several = 3;
   for (auto search = searches.rbegin(); search != searches.rend(); ++search) {
     const Begun begun = begun_in(*search, run);
@@ -144,7 +159,7 @@ std::string open_search_text(const runs::Run& run) {
     const std::size_t doubtful = search->end == OpenSearch::End::new_ground ? begun.on_old : begun.all;
     if (doubtful >= several) return text_of(*search, begun, run);
   }
-  return {};
+  return still_open_text(searches, run);
 }
 
 }  // namespace helixnav::reports

@@ -54,5 +54,20 @@ TEST(ClosingWarnings, SayThatThePathIsNotSolvedOnlyOfTheLastClosing) {
   EXPECT_NE(texts[0].find("trajectory_final.tum"), std::string::npos) << texts[0];
 }
 
+TEST(ClosingWarnings, SayThatTheDriveWasCutAndByHowMuch) {
+  core::WholeMapDecision cut;
+  cut.verdict = core::WholeMapDecision::Verdict::accepted;
+  cut.odometry_factor = 0.0;
+  cut.displaced_m = 3.5;
+  core::WholeMapDecision reconciled = cut;
+  reconciled.odometry_factor = 16.0;
+  core::WholeMapDecision refused = cut;
+  refused.verdict = core::WholeMapDecision::Verdict::refused;
+  EXPECT_TRUE(closing_warnings(run_of({reconciled, closure(true), solved(true), refused})).empty());
+  const auto texts = closing_warnings(run_of({cut, closure(true), solved(true)}));
+  ASSERT_EQ(texts.size(), 1u);
+  EXPECT_NE(texts[0].find("up to 3.5 m apart"), std::string::npos) << texts[0];
+}
+
 }  // namespace
 }  // namespace helixnav::reports

@@ -52,8 +52,7 @@ TEST(Numerics, ThatWereRepairedRefusedOrNearTheirLimitAreAWarning) {
   const runs::Run run = run_of({1e-13, 1e-16, 1, 2});
   const std::vector<std::string> warnings = warnings_about(run);
   ASSERT_FALSE(warnings.empty());
-  EXPECT_TRUE(
-      has(warnings.back(), "1 times what failed was done in another way and 2 times what failed was left undone"))
+  EXPECT_TRUE(has(warnings.back(), "1 were done in another way (nothing is lost by it) and 2 were left undone"))
       << warnings.back();
   EXPECT_TRUE(has(warnings.back(), "near its limit")) << warnings.back();
   EXPECT_TRUE(has(explain_run(run), warnings.back().c_str()));

@@ -44,9 +44,13 @@ TEST(OpenSearches, AreSaidWhereOneIsOpenAtTheEnd) {
   EXPECT_NE(open_search_text(searching_run(0.1)).find("20 of them stand where old ones do"), std::string::npos);
 }
 
-TEST(OpenSearches, AreNotSaidWhereNothingWasMappedSince) {
+TEST(OpenSearches, AreSaidBrieflyWhereNothingWasMappedSince) {
   runs::Run run = searching_run(50.0);
   run.map.resize(turn);
+  const std::string text = open_search_text(run);
+  EXPECT_NE(text.find("still open at the end (19 m, from 20 s on): where"), std::string::npos) << text;
+  EXPECT_EQ(text.find("twice"), std::string::npos) << text;
+  run.steps[turn].mode = core::Mode::mapping;  // open for 19 scans only
   EXPECT_TRUE(open_search_text(run).empty());
 }
 
@@ -65,10 +69,12 @@ TEST(OpenSearches, DoubtNewGroundOnlyWhereOldLandmarksStand) {
   EXPECT_TRUE(open_search_text(ended(searching_run(50.0), core::NewGroundDecision{})).empty());
 }
 
-TEST(OpenSearches, AreNotSaidOfWhoOnlyLocalises) {
+TEST(OpenSearches, AreSaidBrieflyOfWhoOnlyLocalises) {
   runs::Run run = searching_run(0.1);
   run.manifest.command = "helixnav replay log --map monday --localize";
-  EXPECT_TRUE(open_search_text(run).empty());
+  EXPECT_NE(open_search_text(run).find("still open"), std::string::npos);
+  EXPECT_EQ(open_search_text(run).find("twice"), std::string::npos) << open_search_text(run);
+  EXPECT_TRUE(open_search_text(ended(run, core::UndecidedDecision{})).empty());
 }
 
 }  // namespace
