@@ -54,6 +54,29 @@ std::string taken_out_text(const runs::Run& run) {
          " on. 'helixnav calibrate LOG' estimates what to write into vehicle.toml";
 }
 
+std::string sensor_text(const runs::Run& run, const std::string& sensor) {
+  const auto number = [&](const char* key) { return number_of(run, ("sensors_apart." + sensor + key).c_str()); };
+  return text_of("the sensor at x %.2f, y %.2f, heading %.4g deg", number(".x_m"), number(".y_m"),
+                 in_degrees(number(".heading_rad")));
+}
+
+/// Empty unless two sensors contradict each other.
+std::string sensors_apart_text(const runs::Run& run) {
+  const double farther_m = number_of(run, "sensors_apart.farther_m");
+  const double left_rad = number_of(run, "sensors_apart.left_rad");
+  if (farther_m == 0.0 && left_rad == 0.0) return {};
+  return "two sensors contradict each other throughout, which is not noise: " + sensor_text(run, "one") +
+         text_of(" sees landmarks %.3f +- %.3f m %s and %.2g +- %.2g deg farther to the %s than ", std::abs(farther_m),
+                 1.96 * number_of(run, "sensors_apart.farther_sigma_m"), farther_m > 0.0 ? "farther away" : "nearer",
+                 std::abs(in_degrees(left_rad)), 1.96 * in_degrees(number_of(run, "sensors_apart.left_sigma_rad")),
+                 side(left_rad)) +
+         sensor_text(run, "other") +
+         ", after the map has met both half-way. Mounting, range_offset_m or delay_s of one of them is not what the "
+         "vehicle file "
+         "says, and the path is less certain than stated. 'helixnav calibrate LOG' estimates mounting and range "
+         "offset of each, but one delay for all";
+}
+
 }  // namespace
 
 std::string systematic_errors_text(const core::SystematicDecision& d) {
@@ -79,6 +102,7 @@ std::string systematic_errors_text(const core::SystematicDecision& d) {
 std::vector<std::string> systematic_errors_texts(const runs::Run& run) {
   std::vector<std::string> texts;
   if (std::string text = taken_out_text(run); !text.empty()) texts.push_back(std::move(text));
+  if (std::string text = sensors_apart_text(run); !text.empty()) texts.push_back(std::move(text));
   const double missing_m = number_of(run, "range_offset.missing_m");
   if (missing_m != 0.0) {
     texts.push_back(text_of(

@@ -4,14 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <variant>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "helixnav/core/merged_ids.hpp"
-#include "helixnav/core/observation.hpp"
+#include "lasting_matches.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -25,61 +22,17 @@ struct Pair {
   Eigen::Matrix2d left;
 };
 
-constexpr double outlier_nis = 30.0;  // one in 3 million
-constexpr double nearest_m = 1e-3;    // nothing is seen at such a short range
-
-std::optional<Pair> pair_of(const core::Observation& seen, const core::Pose2& T_world_robot,
-                            const core::Pose2& T_robot_sensor, const Eigen::Vector2d& point_m) {
-  if (seen.kind != core::ObservationKind::range_bearing) return std::nullopt;
-  const Eigen::Vector2d sensor_m = core::compose(T_world_robot, T_robot_sensor).position_m();
-  if (!((point_m - sensor_m).norm() > nearest_m)) return std::nullopt;
-  const auto predicted = core::predict_observation(seen.kind, T_world_robot, T_robot_sensor, point_m);
-  const Eigen::LLT<Eigen::Matrix2d> R(Eigen::Matrix2d(seen.R));
+Pair pair_of(const LastingMatch& match) {
+  const auto whitened = match.R_lower.triangularView<Eigen::Lower>();
   Pair pair;
-  pair.by_pose = R.matrixL().solve(Eigen::Matrix<double, 2, 3>(predicted.H_pose));
-  pair.by_landmark = R.matrixL().solve(Eigen::Matrix2d(predicted.H_landmark));
-  pair.left.col(0) = core::innovation(seen.kind, seen.z, predicted.z_hat);
+  pair.scan = match.scan;
+  pair.landmark = match.landmark;
+  pair.by_pose = whitened.solve(Eigen::Matrix<double, 2, 3>(match.predicted.H_pose));
+  pair.by_landmark = whitened.solve(Eigen::Matrix2d(match.predicted.H_landmark));
+  pair.left.col(0) = match.residual;
   pair.left.col(1) = -Eigen::Vector2d::UnitX();  // measured ranges are short by it
-  pair.left = R.matrixL().solve(pair.left).eval();
-  if (!(pair.left.col(0).squaredNorm() < outlier_nis)) return std::nullopt;
+  pair.left = whitened.solve(pair.left).eval();
   return pair;
-}
-
-/// Where the landmarks that lasted are, by id.
-std::map<core::LandmarkId, std::pair<std::size_t, Eigen::Vector2d>> mature_points(const runs::Run& run) {
-  std::map<core::LandmarkId, std::pair<std::size_t, Eigen::Vector2d>> points;
-  for (const core::MapLandmark& landmark : run.map) {
-    if (landmark.state != core::LandmarkState::mature) continue;
-    points.emplace(landmark.id, std::pair(points.size(), landmark.point.mean_m));
-  }
-  return points;
-}
-
-std::vector<Pair> pairs_of(const core::Recording& recording, const runs::Run& run) {
-  const auto points = mature_points(run);
-  const core::MergedIds merged(run.steps);
-  std::vector<Pair> pairs;
-  std::size_t k = 0;
-  for (const core::Event& event : recording.events) {
-    const auto* scan = std::get_if<core::Scan>(&event);
-    if (scan == nullptr) continue;
-    if (k >= run.steps.size()) break;
-    const core::Pose2& T_world_robot = k < run.final_path.size() ? run.final_path[k] : run.steps[k].pose.mean;
-    for (const core::AssociationReport& a : run.steps[k].associations) {
-      const bool used = a.outcome == core::Outcome::matched || a.outcome == core::Outcome::augmented;
-      const auto i = static_cast<std::size_t>(a.observation);
-      if (!used || i >= scan->observations.size()) continue;
-      const auto landmark = points.find(merged.now(a.landmark));
-      if (landmark == points.end()) continue;
-      auto pair = pair_of(scan->observations[i], T_world_robot, scan->T_robot_sensor, landmark->second.second);
-      if (!pair) continue;
-      pair->scan = k;
-      pair->landmark = landmark->second.first;
-      pairs.push_back(*pair);
-    }
-    ++k;
-  }
-  return pairs;
 }
 
 /// Takes out of the residuals what variables of N coordinates explain with the others held fixed.
@@ -127,7 +80,8 @@ double degrees_of_freedom(const std::vector<Pair>& pairs) {
 }  // namespace
 
 std::optional<RangeOffset> range_offset_of(const core::Recording& recording, const runs::Run& run) {
-  std::vector<Pair> pairs = pairs_of(recording, run);
+  std::vector<Pair> pairs;
+  for (const LastingMatch& match : lasting_matches(recording, run)) pairs.push_back(pair_of(match));
   const double dof = degrees_of_freedom(pairs);
   if (!(dof > 0.0)) return std::nullopt;
   const Elimination<2> landmarks(pairs, &Pair::landmark, &Pair::by_landmark);

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <variant>
 #include <vector>
 
 #include "has_match.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "range_offset.hpp"
+#include "sensors_apart.hpp"
 #include "taken_out.hpp"
 
 namespace helixnav::apps {
@@ -82,6 +84,33 @@ Share share_of_way(const std::vector<StepMotion>& motions, int axis) {
   return {mean, std::sqrt(variance_m2) / way_m};
 }
 
+/// What the log says of a sensor whose heading may have been corrected while driving.
+core::Pose2 mounting_as_stated(const core::Pose2& corrected, const core::Recording& recording,
+                               const core::Recording& measured) {
+  for (std::size_t i = 0; i < recording.events.size() && i < measured.events.size(); ++i) {
+    const auto* scan = std::get_if<core::Scan>(&recording.events[i]);
+    const auto* stated = std::get_if<core::Scan>(&measured.events[i]);
+    if (scan == nullptr || stated == nullptr) continue;
+    if (scan->T_robot_sensor.vector() == corrected.vector()) return stated->T_robot_sensor;
+  }
+  return corrected;
+}
+
+void note(const core::Pose2& mounting, const std::string& sensor, runs::Run& run) {
+  run.numbers.emplace_back("sensors_apart." + sensor + ".x_m", mounting.x_m);
+  run.numbers.emplace_back("sensors_apart." + sensor + ".y_m", mounting.y_m);
+  run.numbers.emplace_back("sensors_apart." + sensor + ".heading_rad", mounting.heading_rad);
+}
+
+void note(const SensorsApart& apart, runs::Run& run) {
+  note(apart.T_robot_one, "one", run);
+  note(apart.T_robot_other, "other", run);
+  run.numbers.emplace_back("sensors_apart.farther_m", apart.farther_m);
+  run.numbers.emplace_back("sensors_apart.farther_sigma_m", apart.farther_sigma_m);
+  run.numbers.emplace_back("sensors_apart.left_rad", apart.left_rad);
+  run.numbers.emplace_back("sensors_apart.left_sigma_rad", apart.left_sigma_rad);
+}
+
 /// In standard deviations; 0 if there is none.
 double sigmas(double value, double sigma) { return sigma > 0.0 ? std::abs(value) / sigma : 0.0; }
 
@@ -119,6 +148,11 @@ void note_systematic_errors(const core::Recording& measured, runs::Run& run) {
       std::abs(motion.sideways_rad) > least_rad) {
     run.numbers.emplace_back("odometry.sideways_rad", motion.sideways_rad);
     run.numbers.emplace_back("odometry.sideways_sigma_rad", motion.sideways_sigma_rad);
+  }
+  if (auto apart = sensors_apart_of(recording, run); apart && surely_apart(*apart)) {
+    apart->T_robot_one = mounting_as_stated(apart->T_robot_one, recording, measured);
+    apart->T_robot_other = mounting_as_stated(apart->T_robot_other, recording, measured);
+    note(*apart, run);
   }
 }
 
