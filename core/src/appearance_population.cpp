@@ -42,6 +42,24 @@ void AppearancePopulation::count(const Appearance& seen) {
   size_squares_m2_ += off_m * (seen.size_m - size_mean_m_);
 }
 
+void AppearancePopulation::learn_size_noise(const LandmarkAppearance& known, const Appearance& seen) {
+  if (!(known.size_m > 0.0) || !(seen.size_m > 0.0)) return;
+  constexpr double most_looks = 300.0;
+  constexpr double most = 100.0;
+  const double variance = known.size_variance_m2 + size_noise_ * seen.sigma_size_m * seen.sigma_size_m;
+  const double off_m = seen.size_m - known.size_m;
+  size_looks_ = std::min(most_looks, size_looks_ + 1.0);
+  size_noise_ *= 1.0 + (off_m * off_m / variance - 1.0) / size_looks_;
+  size_noise_ = std::clamp(size_noise_, 1.0 / most, most);
+}
+
+double AppearancePopulation::size_noise() const {
+  constexpr double dead_band = 1.35;
+  constexpr double sure = 3.0;
+  const double least = std::max(std::log(dead_band), sure * std::sqrt(2.0 / size_looks_));
+  return std::log(size_noise_) > least ? size_noise_ : 1.0;
+}
+
 double AppearancePopulation::share(const ClassName& name) const {
   const auto at = std::lower_bound(classes_.begin(), classes_.end(), name, is_before);
   const double seen = at != classes_.end() && at->first == name ? static_cast<double>(at->second) : 0.0;
@@ -60,7 +78,7 @@ LandmarkAppearance AppearancePopulation::updated(const LandmarkAppearance& known
     const double odds = (1.0 - seen.class_error) / (seen.class_error * share(seen.name));
     now.add_vote(seen.name, std::log1p(odds));
   }
-  if (seen.size_m > 0.0) now.add_size(seen.size_m, seen.sigma_size_m * seen.sigma_size_m);
+  if (seen.size_m > 0.0) now.add_size(seen.size_m, size_noise() * seen.sigma_size_m * seen.sigma_size_m);
   return now;
 }
 
@@ -126,7 +144,7 @@ AppearanceEvidence AppearancePopulation::compare_sizes(const LandmarkAppearance&
 }
 
 AppearanceEvidence AppearancePopulation::compare(const LandmarkAppearance& known, const Appearance& seen) const {
-  AppearanceEvidence evidence = compare_sizes(known, seen.size_m, seen.sigma_size_m * seen.sigma_size_m);
+  AppearanceEvidence evidence = compare_sizes(known, seen.size_m, size_noise() * seen.sigma_size_m * seen.sigma_size_m);
   if (seen.name.empty() || known.votes.front().name.empty()) return evidence;
   const double sure = 1.0 - seen.class_error;
   evidence.nats += std::log(sure * probability(known, seen.name) / share(seen.name) + seen.class_error);

@@ -21,6 +21,7 @@ LandmarkAppearance& MapAppearance::entry(LandmarkId id) {
 void MapAppearance::see(LandmarkId id, const Appearance& seen) {
   if (!seen.is_given()) return;
   LandmarkAppearance& known = entry(id);
+  population_.learn_size_noise(known, seen);
   known = population_.updated(known, seen);
 }
 

@@ -174,6 +174,38 @@ TEST(MapAppearance, RightSizesAreOutsideTheirGateAsOftenAsTheyShould) {
   EXPECT_NEAR(outside, draws * 0.01, 3.9 * sigma);
 }
 
+/// Sizes of 40 objects that scatter `noise` times as much as stated; as in association, one beyond the gate of the size is not used.
+double learnt_size_noise(double noise, std::uint64_t seed, int looks) {
+  RandomStream random(seed, "size noise");
+  MapAppearance map;
+  std::vector<double> true_m;
+  for (int i = 0; i < 40; ++i) true_m.push_back(random.uniform(0.2, 0.8));
+  const double gate = chi2_quantile(0.999, 1);
+  for (int k = 0; k < looks; ++k) {
+    const auto id = static_cast<LandmarkId>(random.below(true_m.size()));
+    const Appearance seen = sized(random.normal(true_m[static_cast<std::size_t>(id)], 0.02 * noise), 0.02);
+    if (map.compare(id, seen).size_nis < gate) map.see(id, seen);
+  }
+  return map.population().size_noise();
+}
+
+/// Its estimate from 300 looks has a standard deviation of 8 %; what is cut off by the gate makes it too small by 2 %.
+TEST(MapAppearance, SizesThatScatterMoreThanStatedAreFoundOut) {
+  for (std::uint64_t seed = 101; seed <= 120; ++seed) {
+    EXPECT_NEAR(std::log(learnt_size_noise(3.0, seed, 3000) / 9.0), 0.0, 0.4) << seed;
+    EXPECT_NEAR(std::log(learnt_size_noise(2.0, seed, 3000) / 4.0), 0.0, 0.4) << seed;
+  }
+}
+
+TEST(MapAppearance, SizesThatScatterAsStatedOrLessAreTakenAsStated) {
+  for (std::uint64_t seed = 101; seed <= 120; ++seed) {
+    for (int looks = 10; looks <= 1000; looks *= 10) {
+      EXPECT_EQ(learnt_size_noise(1.0, seed, looks), 1.0) << seed;
+      EXPECT_EQ(learnt_size_noise(0.5, seed, looks), 1.0) << seed;
+    }
+  }
+}
+
 TEST(MapAppearance, WhatIsNotToldSaysNothing) {
   AppearancePopulation population = large_population();
   LandmarkAppearance oak = population.updated({}, given("oak"));

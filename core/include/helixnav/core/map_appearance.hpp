@@ -25,6 +25,11 @@ struct AppearanceEvidence {
 class AppearancePopulation {
  public:
   void count(const Appearance& seen);
+  /// A size of a known landmark, measured once more: teaches by how much sizes scatter more than they state. Rises at once, in force
+  /// once it is sure (three standard deviations) and a factor of 1.35 on the variance; never below 1.
+  void learn_size_noise(const LandmarkAppearance& known, const Appearance& seen);
+  double size_noise() const;  ///< factor on the stated variance of a size
+
   /// Share of a class among those given, in (0, 1); above 0 for one that was never given.
   double share(const ClassName& name) const;
 
@@ -53,6 +58,8 @@ class AppearancePopulation {
   std::size_t sizes_ = 0;
   double size_mean_m_ = 0.0;
   double size_squares_m2_ = 0.0;  ///< Σ of squared distances from the mean
+  double size_noise_ = 1.0;       ///< estimated; in force if sure
+  double size_looks_ = 20.0;      ///< that it was estimated from; at first the belief that sizes are as stated
 };
 
 /// Class and size of the landmarks of a map, and the population that they come from. Nothing is stored for landmarks
