@@ -162,6 +162,26 @@ void doubt_bearings(const OwnLog& log, Doubts& doubts) {
   }
 }
 
+/// Noise that a driver computes from what it measured: of many looks at one landmark the short ones get more weight, and their
+/// weighted mean is too short by twice the square of the share.
+void doubt_relative_noise(const OwnLog& log, Doubts& doubts) {
+  constexpr double alike = 0.02, least_share = 0.03;
+  constexpr std::size_t many = 100;
+  std::vector<double> shares;
+  for (const OwnDetection& row : log.detections) {
+    const bool given = row.kind == OwnDetection::Kind::range_bearing && row.R[0] > 0.0 && row.z[0] > 0.0;
+    if (given) shares.push_back(std::sqrt(row.R[0]) / row.z[0]);
+  }
+  if (shares.size() < many) return;
+  const double share = value_at(shares, 0.5);
+  if (share < least_share) return;
+  if (value_at(shares, 0.05) < (1.0 - alike) * share || value_at(shares, 0.95) > (1.0 + alike) * share) return;
+  doubts.push_back(sentence(
+      "detections: sigma_range is %.2g %% of the measured range: short measurements count more than long ones, and "
+      "ranges come out some %.2g %% too short; compute it from an expected range, or state one sigma_range_m",
+      100.0 * share, 200.0 * share * share));
+}
+
 void doubt_few_detections(const OwnLog& log, Doubts& doubts) {
   const auto count = std::count_if(log.detections.begin(), log.detections.end(),
                                    [](const OwnDetection& row) { return row.kind != OwnDetection::Kind::nothing; });
@@ -249,6 +269,7 @@ Doubts doubts_of(const OwnLog& log, const Vehicle& vehicle, const core::Recordin
   doubt_jumps(log, doubts);
   doubt_turns(log, doubts);
   doubt_bearings(log, doubts);
+  doubt_relative_noise(log, doubts);
   doubt_few_detections(log, doubts);
   doubt_overlap(log, recording, doubts);
   if (std::optional<std::string> doubt = doubt_handedness(recording)) doubts.push_back(std::move(*doubt));

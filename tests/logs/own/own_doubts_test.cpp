@@ -97,6 +97,22 @@ TEST(OwnDoubts, TellAReachThreeTimesTheFarthestOfManyDetections) {
   EXPECT_EQ(with_reach("70"), "");
 }
 
+TEST(OwnDoubts, TellNoiseComputedFromTheMeasuredRange) {
+  const auto rows = [](double share, double constant_m) {
+    std::string detections = "t,range_m,bearing_rad,sigma_range_m,sigma_bearing_rad\n";
+    for (int i = 0; i < 200; ++i) {
+      const double range_m = 5.0 + 0.05 * i;
+      detections += std::to_string(0.05 * i) + ',' + std::to_string(range_m) + ',' + std::to_string(0.01 * i - 1.0) +
+                    ',' + std::to_string(constant_m + share * range_m) + ",0.02\n";
+    }
+    return remarks("detections.csv", detections);
+  };
+  EXPECT_TRUE(says(rows(0.1, 0.0), "sigma_range is 10 % of the measured range")) << rows(0.1, 0.0);
+  EXPECT_TRUE(says(rows(0.1, 0.0), "some 2 % too short"));
+  EXPECT_FALSE(says(rows(0.02, 0.0), "of the measured range"));
+  EXPECT_FALSE(says(rows(0.05, 0.5), "of the measured range"));
+}
+
 TEST(OwnDoubts, TellThatHardlyAnythingWasDetected) {
   EXPECT_TRUE(says(remarks("detections.csv", "t,range_m,bearing_deg\n0.5,10,90\n"), "detections: 1 in all of the log"));
   EXPECT_TRUE(says(remarks("detections.csv", "t,range_m,bearing_deg\n0.5,,\n1.5,,\n"), "detections: 0 in all"));
