@@ -13,16 +13,16 @@
 namespace helixnav::apps {
 namespace {
 
-struct Drive {
+struct TwoSensorDrive {
   core::Recording recording;
   runs::Run run;
 };
 
 /// A circle among 40 poles, driven with scans of a sensor ahead and one behind in turn. The one ahead sees everything `farther_m`
 /// farther away and `left_rad` farther to the left. The run's poses are off, by the same for scans that follow each other.
-Drive drive(double farther_m, double left_rad, std::uint64_t seed, int scans = 2000) {
+TwoSensorDrive two_sensor_drive(double farther_m, double left_rad, std::uint64_t seed, int scans = 2000) {
   core::RandomStream random(seed, "sensors apart test");
-  Drive made;
+  TwoSensorDrive made;
   for (int i = 0; i < 40; ++i) {
     core::MapLandmark pole;
     pole.id = i;
@@ -60,7 +60,7 @@ Drive drive(double farther_m, double left_rad, std::uint64_t seed, int scans = 2
 }
 
 TEST(SensorsApart, AreFoundWithTheirDifference) {
-  const Drive made = drive(0.05, -0.02, 1);
+  const TwoSensorDrive made = two_sensor_drive(0.05, -0.02, 1);
   const auto apart = sensors_apart_of(made.recording, made.run);
   ASSERT_TRUE(apart);
   EXPECT_TRUE(surely_apart(*apart));
@@ -72,7 +72,7 @@ TEST(SensorsApart, AreFoundWithTheirDifference) {
 // 40 stretches: one of 100 drives exceeds six standard deviations of either mean with a probability of 1 in 10 000.
 TEST(SensorsApart, AreNotWhereTheyAgree) {
   for (std::uint64_t seed = 101; seed <= 200; ++seed) {
-    const Drive made = drive(0.0, 0.0, seed);
+    const TwoSensorDrive made = two_sensor_drive(0.0, 0.0, seed);
     const auto apart = sensors_apart_of(made.recording, made.run);
     ASSERT_TRUE(apart);
     EXPECT_FALSE(surely_apart(*apart)) << seed;
@@ -80,9 +80,9 @@ TEST(SensorsApart, AreNotWhereTheyAgree) {
 }
 
 TEST(SensorsApart, AreNoneWithOneSensorOrAShortDrive) {
-  const Drive made = drive(0.05, 0.0, 1, 200);
+  const TwoSensorDrive made = two_sensor_drive(0.05, 0.0, 1, 200);
   EXPECT_FALSE(sensors_apart_of(made.recording, made.run));
-  Drive alone = drive(0.05, 0.0, 1);
+  TwoSensorDrive alone = two_sensor_drive(0.05, 0.0, 1);
   for (core::Event& event : alone.recording.events) std::get<core::Scan>(event).T_robot_sensor = core::Pose2();
   EXPECT_FALSE(sensors_apart_of(alone.recording, alone.run));
 }

@@ -14,6 +14,7 @@ struct FixInnovation {
   Eigen::Vector2d innovation = Eigen::Vector2d::Zero();
   double predicted_variance = 0.0;
 };
+
 /// How the errors of absolute fixes behave, learnt from their innovations. The error of one fix is a white part and a part
 /// that fades with a time constant τ (multipath, the ionosphere); both may be of another size than stated. 83 hypotheses about τ
 /// and the two sizes are weighed by how well each predicts the next innovation. In each, a Kalman filter per
@@ -37,10 +38,10 @@ class FixNoise {
   /// The pose was corrected by something else: by how much is not known.
   void forget_offset();
 
-  double of_one() const { return of_one_; }  ///< factor on the covariance that a fix states: of its error
-  double in_update() const {
-    return in_update_;
-  }  ///< the same: for an update that takes it for independent of the others
+  /// Factors on the covariance that a fix states, at least 1: of its own error, and for an update that takes it for independent
+  /// of the others.
+  double of_one() const { return of_one_; }
+  double in_update() const { return in_update_; }
 
   double applied = 1.0;  ///< in_update() that the whole drive was processed with
 
