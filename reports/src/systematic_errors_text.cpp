@@ -36,21 +36,49 @@ std::string turning_text(double turn_rad, const char* per) {
                  side(turn_rad));
 }
 
-/// Empty if nothing was taken out while driving.
-std::string taken_out_text(const runs::Run& run) {
-  const core::SystematicDecision* last = nullptr;
-  std::size_t first_step = 0;
+struct TakenOut {
+  core::SystematicDecision last, all;  ///< `all`: of each error the last that was not 0
+  std::size_t first_step = 0, last_step = 0;
+  bool any = false, put_back = false;
+};
+
+TakenOut taken_out_in(const runs::Run& run) {
+  TakenOut taken;
+  const auto keep = [&](double now, double& all) {
+    taken.put_back = taken.put_back || (now == 0.0 && all != 0.0);
+    if (now != 0.0) all = now;
+  };
   for (std::size_t step = 0; step < run.steps.size(); ++step) {
     for (const core::Decision& decision : run.steps[step].decisions) {
-      const auto* taken_out = std::get_if<core::SystematicDecision>(&decision);
-      if (taken_out == nullptr) continue;
-      if (last == nullptr) first_step = step;
-      last = taken_out;
+      const auto* d = std::get_if<core::SystematicDecision>(&decision);
+      if (d == nullptr) continue;
+      if (!taken.any) taken.first_step = step;
+      taken.any = true;
+      taken.last = *d;
+      taken.last_step = step;
+      keep(d->too_long, taken.all.too_long);
+      keep(d->turn_rad_per_s, taken.all.turn_rad_per_s);
+      keep(d->turn_rad_per_m, taken.all.turn_rad_per_m);
+      keep(d->heading_rad, taken.all.heading_rad);
+      keep(d->short_m, taken.all.short_m);
     }
   }
-  if (last == nullptr) return {};
-  return "odometry and detections contradict each other throughout: " + systematic_errors_text(*last) +
-         "; taken out while driving, which was possible from step " + std::to_string(first_step) +
+  return taken;
+}
+
+/// Empty if nothing was taken out while driving.
+std::string taken_out_text(const runs::Run& run) {
+  const TakenOut taken = taken_out_in(run);
+  if (!taken.any) return {};
+  if (taken.put_back) {
+    return "odometry and detections contradict each other for long stretches, but not in the same way throughout: " +
+           systematic_errors_text(taken.all) + " were taken out from step " + std::to_string(taken.first_step) +
+           " on, and what had changed was put back until step " + std::to_string(taken.last_step) +
+           ". An offset of steering or gyro that changes slowly is not corrected, and the path is less certain than "
+           "stated";
+  }
+  return "odometry and detections contradict each other throughout: " + systematic_errors_text(taken.last) +
+         "; taken out while driving, which was possible from step " + std::to_string(taken.first_step) +
          " on. 'helixnav calibrate LOG' estimates what to write into vehicle.toml";
 }
 

@@ -43,5 +43,23 @@ TEST(SystematicErrorsText, AWarningGivesTheLastTotalsAndTheFirstStep) {
       << sentence_of(d);
 }
 
+TEST(SystematicErrorsText, AWarningSaysWhatWasPutBack) {
+  runs::Run run;
+  run.steps.resize(9);
+  core::SystematicDecision d;
+  d.turn_rad_per_m = 0.1 * core::pi / 180.0;
+  run.steps[3].decisions = {d};
+  d.turn_rad_per_m = 0.0;
+  run.steps[7].decisions = {d};
+  const std::vector<std::string> texts = systematic_errors_texts(run);
+  ASSERT_EQ(texts.size(), 1u);
+  EXPECT_NE(
+      texts[0].find("odometry turns 0.1 deg per metre too far to the left were taken out from step 3 on, and what "
+                    "had changed was put back until step 7"),
+      std::string::npos)
+      << texts[0];
+  EXPECT_NE(sentence_of(d).find("was put back"), std::string::npos) << sentence_of(d);
+}
+
 }  // namespace
 }  // namespace helixnav::reports

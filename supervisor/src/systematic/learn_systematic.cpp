@@ -97,9 +97,10 @@ void NavigationLoop::learn_systematic(core::StepReport& report) {
 
 void NavigationLoop::take_out_systematic(core::StepReport& report) {
   SystematicLearner& learner = noise_.systematic.learner;
-  const std::optional<CertainErrors> found = learner.certain();
+  const std::optional<CertainErrors> back = learner.contradicted();
+  const std::optional<CertainErrors> found = back ? back : learner.certain();
   if (!found || !solve_again(tape_.without(found->errors), report)) return;
-  learner.take_out(found->errors);
+  back ? learner.give_up(found->errors) : learner.take_out(found->errors);
   const SystematicErrors& all = learner.taken_out();
   report.decisions.emplace_back(core::SystematicDecision{all.too_long, all.turn_rad_per_s, all.turn_rad_per_m,
                                                          all.heading_rad, all.short_m, found->nats,

@@ -127,7 +127,7 @@ std::optional<CertainErrors> SystematicLearner::certain() {
     std::size_t next = errors_count;
     double most = 0.0;
     for (std::size_t i = 0; i < errors_count; ++i) {
-      if (chosen[i]) continue;
+      if (chosen[i] || given_up_[i]) continue;
       Chosen more = chosen;
       more[i] = true;
       const Fit with = fit(all_.information, all_.gradient, more);
@@ -146,6 +146,37 @@ std::optional<CertainErrors> SystematicLearner::certain() {
   if (!(best.lowers > 0.0) || !is_constant(chosen)) return std::nullopt;
   ask_at_ = 2 * stretches_;
   return CertainErrors{of_linear(best.errors), 0.5 * best.lowers / unit};
+}
+
+std::optional<CertainErrors> SystematicLearner::contradicted() const {
+  constexpr int least_stretches = 4;
+  if (since_ < least_stretches) return std::nullopt;
+  const SystematicErrors::Matrix information = all_.information - early_.information;
+  const SystematicErrors::Vector gradient = all_.gradient - early_.gradient;
+  const SystematicErrors::Vector known = linear(taken_out_);
+  SystematicErrors::Vector back = SystematicErrors::Vector::Zero();
+  double lowers = 0.0;
+  for (Eigen::Index i = 0; i < known.size(); ++i) {
+    const double without = -2.0 * known(i) * gradient(i) - known(i) * known(i) * information(i, i);
+    if (without < new_one) continue;
+    back(i) = -taken_out_.vector()(i);
+    lowers += without;
+  }
+  if (back.isZero(0.0)) return std::nullopt;
+  SystematicErrors errors(back);
+  errors.too_long = 1.0 / (1.0 - back(0)) - 1.0;
+  return CertainErrors{errors, 0.5 * lowers};
+}
+
+void SystematicLearner::give_up(const SystematicErrors& errors) {
+  take_out(errors);
+  SystematicErrors::Vector left = taken_out_.vector();
+  for (Eigen::Index i = 0; i < left.size(); ++i) {
+    if (errors.vector()(i) == 0.0) continue;
+    left(i) = 0.0;  // to the last bit
+    given_up_[static_cast<std::size_t>(i)] = true;
+  }
+  taken_out_ = SystematicErrors(left);
 }
 
 void SystematicLearner::take_out(const SystematicErrors& errors) {

@@ -59,6 +59,40 @@ TEST(SystematicLearner, ErrorsTakenOutAreNoLongerThere) {
   EXPECT_FALSE(learner.certain());
 }
 
+// A steering offset that changes: four stretches of 0.04, taken out, and then its opposite.
+TEST(SystematicLearner, PutsBackWhatLaterStretchesContradict) {
+  const Vector errors = (Vector() << 0.0, 0.0, 0.04, 0.0, 0.5).finished();
+  SystematicLearner learner = after(4, stretch(errors, sigmas()));
+  learner.take_out(learner.certain()->errors);
+  EXPECT_FALSE(learner.contradicted());
+  const Vector opposite = (Vector() << 0.0, 0.0, -0.08, 0.0, 0.0).finished();  // of what was taken out
+  int stretches = 0;
+  while (!learner.contradicted() && stretches < 20) {
+    learner.add(stretch(opposite, sigmas()));
+    ++stretches;
+  }
+  EXPECT_EQ(stretches, 4);
+  learner.give_up(learner.contradicted()->errors);
+  EXPECT_EQ(learner.taken_out().turn_rad_per_m, 0.0);
+  EXPECT_NEAR(learner.taken_out().short_m, 0.5, 1e-9) << "which nothing contradicts";
+  for (int i = 0; i < 64; ++i) {
+    learner.add(stretch(-1.0 * errors.cwiseProduct(Vector::Unit(2)), sigmas()));
+    EXPECT_FALSE(learner.contradicted());
+  }
+  EXPECT_FALSE(learner.certain()) << "given up";
+}
+
+TEST(SystematicLearner, KeepsWhatIsSmallerOrLargerLater) {
+  const Vector errors = (Vector() << 0.04, 0.0, 0.04, 0.0, 0.0).finished();
+  SystematicLearner learner = after(4, stretch(errors, sigmas()));
+  learner.take_out(learner.certain()->errors);
+  const Vector changed = (Vector() << 0.02, 0.0, -0.015, 0.0, 0.0).finished();
+  for (int i = 0; i < 64; ++i) {
+    learner.add(stretch(changed, sigmas()));
+    EXPECT_FALSE(learner.contradicted()) << i;
+  }
+}
+
 TEST(SystematicLearner, IsMadeMorePreciseByWhatIsLeft) {
   const Vector errors = (Vector() << 0.04, 0.0, 0.0, 0.0, 0.0).finished();
   SystematicLearner learner = after(8, stretch(errors, sigmas()));
