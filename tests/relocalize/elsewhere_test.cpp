@@ -20,7 +20,10 @@ test::Points street_world(int streets, double jitter_m, core::RandomStream& rand
   constexpr double half_width_m = 5.0;
   test::Points points;
   const auto plant = [&](double x_m, double y_m) {
-    points.emplace_back(x_m + jitter_m * random.normal(), y_m + jitter_m * random.normal());
+    const double y_jitter_m =
+        jitter_m * random.normal();  // one after the other: the order of arguments is the compiler's
+    const double x_jitter_m = jitter_m * random.normal();
+    points.emplace_back(x_m + x_jitter_m, y_m + y_jitter_m);
   };
   for (int street = 0; street < streets; ++street)
     for (int block = 0; block + 1 < streets; ++block)

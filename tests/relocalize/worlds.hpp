@@ -87,15 +87,20 @@ struct Asking {
 
 inline Asked ask_somewhere(const Points& world, const Asking& asking, core::RandomStream& random) {
   Asked asked;
-  const Eigen::Vector2d shake(random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0));
+  // Drawn one after the other: the order in which arguments are evaluated is the compiler's.
+  const double shake_y_m = random.uniform(-2.0, 2.0);
+  const double shake_x_m = random.uniform(-2.0, 2.0);
+  const Eigen::Vector2d shake(shake_x_m, shake_y_m);
   const Eigen::Vector2d centre_m = world[random.below(world.size())] + shake;
   std::vector<std::pair<double, int>> order;
   for (std::size_t i = 0; i < world.size(); ++i) order.emplace_back((world[i] - centre_m).norm(), static_cast<int>(i));
   const std::size_t n = asking.landmarks;
   std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n + 1), order.end());
   asked.radius_m = 0.5 * (order[n - 1].first + order[n].first);
-  asked.T_map_branch = core::Pose2(centre_m.x() + random.uniform(-500.0, 500.0),
-                                   centre_m.y() + random.uniform(-500.0, 500.0), random.uniform(-core::pi, core::pi));
+  const double heading_rad = random.uniform(-core::pi, core::pi);
+  const double off_y_m = random.uniform(-500.0, 500.0);
+  const double off_x_m = random.uniform(-500.0, 500.0);
+  asked.T_map_branch = core::Pose2(centre_m.x() + off_x_m, centre_m.y() + off_y_m, heading_rad);
   const core::Pose2 T_branch_map = core::inverse(asked.T_map_branch);
   const auto put = [&](const Eigen::Vector2d& point_m, int index) {
     const auto id = static_cast<core::LandmarkId>(asked.truth.size());
@@ -118,8 +123,9 @@ inline Asked ask_somewhere(const Points& world, const Asking& asking, core::Rand
       add_spurious();
       continue;
     }
-    const Eigen::Vector2d noise(random.normal(0.0, asking.noise_m), random.normal(0.0, asking.noise_m));
-    put(world[static_cast<std::size_t>(order[k].second)] + noise, order[k].second);
+    const double noise_y_m = random.normal(0.0, asking.noise_m);
+    const double noise_x_m = random.normal(0.0, asking.noise_m);
+    put(world[static_cast<std::size_t>(order[k].second)] + Eigen::Vector2d(noise_x_m, noise_y_m), order[k].second);
   }
   for (std::size_t k = 0; k < static_cast<std::size_t>(asking.clutter * static_cast<double>(n)); ++k) add_spurious();
   asked.question.looked.push_back({core::transform(T_branch_map, centre_m), asked.radius_m});
