@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include "helixnav/core/angle.hpp"
 #include "worlds.hpp"
 
 namespace helixnav::relocalize {
@@ -101,6 +103,20 @@ TEST(Elsewhere, DoesNotDependOnTheOrderInWhichTheMapWasMade) {
   const double built = evidence_elsewhere(test::index_of(world, street_index), in_question);
   EXPECT_GT(built, 10.0);
   EXPECT_NEAR(evidence_elsewhere(grown, in_question), built, 1e-4);
+}
+
+// Known to 0.05 m across and 300 m along some direction: in single precision some of them are not positive definite.
+TEST(Elsewhere, TakesLandmarksThatAreHardlyKnownInOneDirection) {
+  core::RandomStream random(1);
+  auto landmarks = test::landmarks(street_world(4, 0.3, random), street_index.pair_noise_m);
+  for (Landmark& landmark : landmarks) {
+    const double angle_rad = random.uniform(0.0, core::pi);
+    const Eigen::Vector2d along_m = 300.0 * Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad));
+    landmark.point.covariance_m2 = along_m * along_m.transpose() + 0.0025 * Eigen::Matrix2d::Identity();
+  }
+  MapIndex map(street_index, landmarks);
+  map.look_around_landmarks();
+  EXPECT_NO_THROW(evidence_elsewhere(map, in_question));
 }
 
 TEST(Elsewhere, IsMinusInfinityForTheSmallestMaps) {

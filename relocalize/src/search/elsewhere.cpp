@@ -34,6 +34,8 @@ Landmark landmark_at(const MapIndex::Parts& parts, Slot slot) {
   landmark.id = detail.id;
   landmark.point.mean_m = parts.origin_m + Eigen::Vector2d(node.x_m, node.y_m);
   landmark.point.covariance_m2 << detail.xx_m2, detail.xy_m2, detail.xy_m2, detail.yy_m2;
+  constexpr double rounding = 1e-6;  // it is kept in single precision, and may not be positive definite any more
+  landmark.point.covariance_m2.diagonal().array() += rounding * landmark.point.covariance_m2.trace();
   const Trait& trait = parts.traits[slot];
   landmark.kind = trait.kind;
   if (trait.size_sigma_m >= 0.0F) landmark.size = Size{trait.size_m, trait.size_sigma_m};
