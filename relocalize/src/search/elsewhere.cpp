@@ -77,11 +77,11 @@ double best_elsewhere(const std::vector<Place>& places) {
 
 }  // namespace
 
-double evidence_elsewhere(const MapIndex& map, std::size_t landmarks) {
+double evidence_elsewhere(const MapIndex& map, std::size_t landmarks, double enough) {
   const std::vector<Slot> slots = slots_of(map.parts());
   const std::size_t constellations = std::min(most_constellations, slots.size());
   double best = -std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < constellations; ++k) {
+  for (std::size_t k = 0; k < constellations && best < enough; ++k) {
     const Slot centre = slots[k * slots.size() / constellations];
     const Question question = constellation_about(map.parts(), slots, centre, landmarks);
     if (!question.looked.empty()) best = std::max(best, best_elsewhere(ask(map, question).places));
@@ -89,12 +89,18 @@ double evidence_elsewhere(const MapIndex& map, std::size_t landmarks) {
   return best;
 }
 
+void judge_where_places_repeat(const MapIndex& map, std::size_t landmarks, const AskOptions& options, Answer& answer) {
+  if (answer.verdict != Verdict::closed) return;
+  const double lead_needed = -std::log(options.alpha);
+  const double evidence = answer.places.front().evidence;
+  const double elsewhere = evidence_elsewhere(map, landmarks, evidence - lead_needed);
+  answer.gap = std::min(answer.gap, evidence - std::max(0.0, elsewhere));
+  if (answer.gap < lead_needed) answer.verdict = Verdict::ambiguous;
+}
+
 Answer ask_where_places_repeat(const MapIndex& map, const Question& question, const AskOptions& options) {
   Answer answer = ask(map, question, options);
-  if (answer.verdict != Verdict::closed) return answer;
-  const double elsewhere = evidence_elsewhere(map, question.landmarks.size());
-  answer.gap = std::min(answer.gap, answer.places.front().evidence - std::max(0.0, elsewhere));
-  if (answer.gap < -std::log(options.alpha)) answer.verdict = Verdict::ambiguous;
+  judge_where_places_repeat(map, question.landmarks.size(), options, answer);
   return answer;
 }
 

@@ -34,7 +34,8 @@ struct AnsweredQuestion {
   std::size_t landmarks = 0;  ///< of the question
 };
 
-/// All answers: closed ones first, the surest first within each group.
+/// All answers: closed ones first, the surest first within each group. What else the map repeats is not asked yet: in a vineyard that
+/// takes seconds for each.
 std::vector<AnsweredQuestion> ask_for(const EarlierMap& session, const relocalize::MapIndex& index,
                                       const std::function<void()>& now_and_then) {
   const std::vector<relocalize::Question> questions = map_questions(session, index.options());
@@ -42,7 +43,7 @@ std::vector<AnsweredQuestion> ask_for(const EarlierMap& session, const relocaliz
   std::vector<AnsweredQuestion> answers;
   for (const relocalize::Question& question : questions) {
     now_and_then();
-    answers.push_back({relocalize::ask_where_places_repeat(index, question, options), question.landmarks.size()});
+    answers.push_back({relocalize::ask(index, question, options), question.landmarks.size()});
   }
   std::stable_sort(answers.begin(), answers.end(), [](const AnsweredQuestion& a, const AnsweredQuestion& b) {
     const auto rank = [](const AnsweredQuestion& asked) {
@@ -68,22 +69,24 @@ cekf::FilterOptions without_regions(cekf::FilterOptions options, std::size_t lan
   return options;
 }
 
-core::PlacedDecision decision_of(const std::vector<AnsweredQuestion>& answers, const core::JointMap& component) {
+core::PlacedDecision nothing_asked(std::size_t questions, const core::JointMap& component) {
   core::PlacedDecision decision;
   decision.verdict = core::PlacedDecision::Verdict::not_here;
   decision.earlier_landmarks = static_cast<int>(component.joint.ids.size());
-  decision.questions = static_cast<int>(answers.size());
-  decision.needed = relocalize::evidence_needed(options_for(answers.size()));
-  if (answers.empty()) return decision;
-  const relocalize::Answer& best = answers.front().answer;
-  decision.landmarks = static_cast<int>(answers.front().landmarks);
-  if (best.verdict == relocalize::Verdict::ambiguous) decision.verdict = core::PlacedDecision::Verdict::ambiguous;
-  decision.lead = best.gap;
-  if (best.places.empty()) return decision;
-  decision.pairs = static_cast<int>(best.places.front().pairs.size());
-  decision.evidence = best.places.front().evidence;
-  decision.T_map_session = best.places.front().T_map_branch;
+  decision.questions = static_cast<int>(questions);
+  decision.needed = relocalize::evidence_needed(options_for(questions));
   return decision;
+}
+
+void note(const AnsweredQuestion& asked, core::PlacedDecision& decision) {
+  const relocalize::Answer& answer = asked.answer;
+  decision.landmarks = static_cast<int>(asked.landmarks);
+  if (answer.verdict == relocalize::Verdict::ambiguous) decision.verdict = core::PlacedDecision::Verdict::ambiguous;
+  decision.lead = answer.gap;
+  if (answer.places.empty()) return;
+  decision.pairs = static_cast<int>(answer.places.front().pairs.size());
+  decision.evidence = answer.places.front().evidence;
+  decision.T_map_session = answer.places.front().T_map_branch;
 }
 
 void note(const Closing& closing, core::PlacedDecision& decision) {
@@ -141,17 +144,25 @@ bool place_in(const core::JointMap& session_map, const std::function<void()>& no
   view.max_range_m = reach_m;
   const NavigatorOptions options = fit_lengths(NavigatorOptions{}, view);
   const relocalize::IndexOptions lengths = lengths_of(options, reach_m);
-  const std::vector<AnsweredQuestion> answers = ask_for(session, earlier.index(lengths), now_and_then);
-  result.decision = decision_of(answers, component);
+  const relocalize::MapIndex index = earlier.index(lengths);
+  std::vector<AnsweredQuestion> answers = ask_for(session, index, now_and_then);
+  result.decision = nothing_asked(answers.size(), component);
+  if (!answers.empty()) note(answers.front(), result.decision);
   if (answers.empty() || answers.front().answer.verdict != relocalize::Verdict::closed) return false;
   const LandmarkId offset = component.next_name;
   const core::JointGaussian joint = renamed(session, offset);
   const std::size_t together = joint.ids.size() + earlier.landmarks().ids.size();
   const cekf::CompressedEkf filter(joint, offset + session.next_name(), without_regions(options.filter, together));
   constexpr std::size_t most_tried = 3;
-  for (std::size_t k = 0; k < std::min(most_tried, answers.size()); ++k) {
-    if (answers[k].answer.verdict != relocalize::Verdict::closed) break;
-    relocalize::Place place = answers[k].answer.places.front();
+  std::size_t tried = 0;
+  for (AnsweredQuestion& asked : answers) {
+    if (asked.answer.verdict != relocalize::Verdict::closed || tried == most_tried) break;
+    now_and_then();
+    relocalize::judge_where_places_repeat(index, asked.landmarks, options_for(answers.size()), asked.answer);
+    if (tried == 0) note(asked, result.decision);
+    if (asked.answer.verdict != relocalize::Verdict::closed) continue;
+    ++tried;
+    relocalize::Place place = asked.answer.places.front();
     for (relocalize::Pair& pair : place.pairs) pair.branch += offset;
     const JoinedMaps joined =
         join_maps(filter, earlier.landmarks(), place, joint.ids, {}, lengths.pair_noise_m, options.search);
