@@ -28,7 +28,7 @@ void NavigationLoop::learn_noise(const core::Scan& scan) {
   std::vector<core::LandmarkId> ids;
   std::vector<SeenPoint> seen;
   std::vector<PointPair> pairs;
-  std::vector<bool> new_sides;
+  std::vector<Look> looks;
   for (const NoisePair& pair : found) {
     pairs.push_back({seen.size(), ids.size()});
     ids.push_back(pair.landmark);
@@ -36,10 +36,11 @@ void NavigationLoop::learn_noise(const core::Scan& scan) {
     seen.back().covariance_m2 *= noise_.scale.observations();
     const Eigen::Vector2d at_m = core::transform(belief_.filter.pose().mean, pair.seen.point_m);
     const Eigen::Vector2d back_m = belief_.filter.pose().mean.position_m() - at_m;
-    new_sides.push_back(noise_.sides.is_new_side(pair.landmark, std::atan2(back_m.y(), back_m.x())));
+    looks.push_back({pair.landmark, noise_.sides.is_new_side(pair.landmark, std::atan2(back_m.y(), back_m.x()))});
   }
   const RelativeGeometry geometry(belief_.filter.joint(ids));
-  noise_.scale.observe(PairEquations(geometry, seen, pairs, Eigen::Vector3d::Zero()), new_sides, Q);
+  noise_.scale.observe(PairEquations(geometry, seen, pairs, Eigen::Vector3d::Zero()), looks,
+                       belief_.filter.pose().mean.heading_rad, Q);
 }
 
 /// While a search is open nothing is learnt: where the vehicle is is in question.

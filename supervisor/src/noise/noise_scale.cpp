@@ -7,6 +7,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "helixnav/core/se2.hpp"
+
 namespace helixnav::supervisor {
 namespace {
 
@@ -37,7 +39,8 @@ void NoiseScale::Displacements::add(double nis, double share, double detector, d
 double NoiseScale::Displacements::scale() const { return weight > least_weight ? sum / weight : 1.0; }
 double NoiseScale::Displacements::sigma() const { return std::sqrt(2.0 / 3.0 / weight); }
 
-void NoiseScale::observe(const PairEquations& pairs, const std::vector<bool>& new_sides, const Eigen::Matrix3d& Q) {
+void NoiseScale::observe(const PairEquations& pairs, const std::vector<Look>& looks, double heading_rad,
+                         const Eigen::Matrix3d& Q) {
   constexpr Index least_rows = 6;
   if (pairs.nu.size() < least_rows) return;
   const Eigen::LLT<Eigen::MatrixXd> S(pairs.S);
@@ -46,7 +49,7 @@ void NoiseScale::observe(const PairEquations& pairs, const std::vector<bool>& ne
   const Eigen::LLT<Eigen::Matrix3d> root(information);
   if (root.info() != Eigen::Success) return;
   const Eigen::Vector3d weighed = pairs.A.transpose() * S.solve(pairs.nu);
-  add_rest(pairs, root.solve(weighed), information, new_sides);
+  add_rest(pairs, root.solve(weighed), information, looks, heading_rad);
   add_displacement(root.matrixL().solve(weighed), std::clamp((Q * information).trace() / 3.0, 0.0, 1.0));
   const double detector = detector_factor();
   odometry_ = odometry_factor();
@@ -55,22 +58,27 @@ void NoiseScale::observe(const PairEquations& pairs, const std::vector<bool>& ne
 
 /// What no displacement explains, from the pairs: e = ν − Aδ with covariance S − A(AᵀS⁻¹A)⁻¹Aᵀ.
 void NoiseScale::add_rest(const PairEquations& pairs, const Eigen::Vector3d& displacement,
-                          const Eigen::Matrix3d& information, const std::vector<bool>& new_sides) {
+                          const Eigen::Matrix3d& information, const std::vector<Look>& looks, double heading_rad) {
   const Index rows = pairs.nu.size();
   const Eigen::Matrix3d of_displacement = information.inverse();
   const Eigen::VectorXd rest = pairs.nu - pairs.A * displacement;
   const double weight = static_cast<double>(rows - 3) / static_cast<double>(rows);  // they are not independent
+  const Eigen::Matrix2d to_world = core::rotation(heading_rad);
   for (FadingErrors* errors : {&slow_, &quick_, &new_sides_}) errors->fade();
+  repeated_.next_scan();
   for (Index i = 0; i < rows / 2; ++i) {
     const auto A = pairs.A.middleRows<2>(2 * i);
     const Eigen::Matrix2d covariance = pairs.S.block<2, 2>(2 * i, 2 * i) - A * of_displacement * A.transpose();
-    const Eigen::LLT<Eigen::Matrix2d> factor(covariance);
+    const Eigen::LLT<Eigen::Matrix2d> factor(to_world * covariance * to_world.transpose());
     if (factor.info() != Eigen::Success) continue;
-    const double squared =
-        observations_ * factor.matrixL().solve(Eigen::Vector2d(rest.segment<2>(2 * i))).squaredNorm();
+    const Eigen::Vector2d error =
+        std::sqrt(observations_) * factor.matrixL().solve(to_world * Eigen::Vector2d(rest.segment<2>(2 * i)));
+    const double squared = error.squaredNorm();
+    const Look& look = looks[static_cast<std::size_t>(i)];
     slow_.add(squared, weight);
     quick_.add(squared, weight);
-    if (new_sides[static_cast<std::size_t>(i)]) new_sides_.add(squared, weight);
+    if (look.is_new_side) new_sides_.add(squared, weight);
+    repeated_.add(look.id, error);
   }
 }
 
@@ -95,8 +103,10 @@ double NoiseScale::detector_factor() const {
   const double independent = std::log(new_sides_.scale());
   const double sigma = new_sides_.log_sigma();
   if (!(independent < -std::max(std::log(dead_band), sigmas * sigma))) return 1.0;
-  if (new_sides_.weight() < least_independent || !motion_is_as_assumed_at_most()) return 1.0;
-  return bounded(std::min(1.0, std::max({std::exp(slow), slow_.mean_scale(), std::exp(independent - sigma)})));
+  if (std::min(new_sides_.weight(), repeated_.weight()) < least_independent || !motion_is_as_assumed_at_most())
+    return 1.0;
+  return bounded(
+      std::min(1.0, std::max({std::exp(slow), slow_.mean_scale(), std::exp(independent - sigma), repeated_.scale()})));
 }
 
 /// If displacements are larger than odometry and such a detector explain, the detector errs for all landmarks alike,

@@ -5,10 +5,18 @@
 
 #include <Eigen/Core>
 
+#include "helixnav/core/landmark_id.hpp"
 #include "noise/fading_errors.hpp"
+#include "noise/repeated_errors.hpp"
 #include "slip/relative_geometry.hpp"
 
 namespace helixnav::supervisor {
+
+/// One look at a landmark.
+struct Look {
+  core::LandmarkId id = core::no_landmark;
+  bool is_new_side = false;  ///< from another side than when it last counted
+};
 
 /// Factors on the covariances that odometry and detector claim, learnt from where landmarks are seen. The innovation of
 /// three or more pairs splits into what a displacement of the vehicle explains (3 degrees of freedom, wᵀw with
@@ -18,13 +26,14 @@ namespace helixnav::supervisor {
 /// Up: every scan counts, and of w only what is not constant. A mean over many scans is a bias (a wheel's radius, a
 /// wrong scale of ranges) and not noise; otherwise DLR's forward motion, 8 % too long against its detector, would pass
 /// for four times the variance. Down: the detector's factor also needs independent errors, of landmarks seen from
-/// another side than when they last counted, and displacements that odometry explains; odometry's needs all of w. Rules
-/// and figures: docs/slips.md. Test: supervisor/noise/noise_scale_test.cpp.
+/// another side than when they last counted, sums of eight looks that are as small, and displacements that odometry explains;
+/// odometry's needs all of w. Rules and figures: docs/slips.md. Test: supervisor/noise/noise_scale_test.cpp.
 class NoiseScale {
  public:
-  /// One scan while nothing is in question; Q: the covariance of the motion before it (x, y, heading; robot frame);
-  /// `new_sides[k]`: pair k looks at its landmark from another side than when it last counted.
-  void observe(const PairEquations& pairs, const std::vector<bool>& new_sides, const Eigen::Matrix3d& Q);
+  /// One scan while nothing is in question; Q: the covariance of the motion before it (x, y, heading; robot frame); the look
+  /// of each pair, by a vehicle of this heading.
+  void observe(const PairEquations& pairs, const std::vector<Look>& looks, double heading_rad,
+               const Eigen::Matrix3d& Q);
 
   double odometry() const { return odometry_; }          ///< factor on covariances
   double observations() const { return observations_; }  ///< factor on covariances
@@ -46,7 +55,7 @@ class NoiseScale {
   };
 
   void add_rest(const PairEquations& pairs, const Eigen::Vector3d& displacement, const Eigen::Matrix3d& information,
-                const std::vector<bool>& new_sides);
+                const std::vector<Look>& looks, double heading_rad);
   void add_displacement(const Eigen::Vector3d& w, double share);
   bool motion_is_as_assumed_at_most() const;
   double detector_factor() const;
@@ -55,6 +64,7 @@ class NoiseScale {
   FadingErrors slow_{1.0 - 1.0 / 300.0};
   FadingErrors quick_{1.0 - 1.0 / 60.0};
   FadingErrors new_sides_{1.0 - 1.0 / 1000.0};
+  RepeatedErrors repeated_;
   Displacements slow_motion_{1.0 - 1.0 / 1000.0};
   Displacements quick_motion_{1.0 - 1.0 / 60.0};
   Displacements biased_motion_{1.0 - 1.0 / 1000.0};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "noise/noise_scale.hpp"
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -14,8 +15,8 @@ namespace {
 /// Six landmarks known exactly, a vehicle whose motion has covariance Q, and a detector of 10 cm.
 struct NoisyDrive {
   explicit NoisyDrive(double odometry_factor, double detector_factor,
-                      const Eigen::Vector3d& bias = Eigen::Vector3d::Zero())
-      : odometry_factor_(odometry_factor), detector_factor_(detector_factor), bias_(bias) {
+                      const Eigen::Vector3d& bias = Eigen::Vector3d::Zero(), int lasting = 1)
+      : odometry_factor_(odometry_factor), detector_factor_(detector_factor), bias_(bias), lasting_(lasting) {
     geometry_.points_m = {{5, 3}, {12, -4}, {20, 6}, {25, -7}, {9, 8}, {16, -9}};
     geometry_.ids = {0, 1, 2, 3, 4, 5};
   }
@@ -33,13 +34,16 @@ struct NoisyDrive {
       std::vector<PointPair> pairs;
       for (std::size_t i = 0; i < geometry_.points_m.size(); ++i) {
         const double sigma_m = 0.1 * std::sqrt(detector_factor_);
-        const Eigen::Vector2d noise(random_.normal(0.0, sigma_m), random_.normal(0.0, sigma_m));
-        seen.push_back({static_cast<int>(i), core::transform(T_displaced_predicted, geometry_.points_m[i]) + noise,
+        if (k % lasting_ == 0) {
+          noise_[i].x() = random_.normal(0.0, sigma_m);
+          noise_[i].y() = random_.normal(0.0, sigma_m);
+        }
+        seen.push_back({static_cast<int>(i), core::transform(T_displaced_predicted, geometry_.points_m[i]) + noise_[i],
                         0.01 * scale.observations() * Eigen::Matrix2d::Identity()});
         pairs.push_back({i, i});
       }
       geometry_.covariance_m2 = by_pose() * Q * by_pose().transpose();
-      scale.observe(PairEquations(geometry_, seen, pairs, Eigen::Vector3d::Zero()), sides(k), Q);
+      scale.observe(PairEquations(geometry_, seen, pairs, Eigen::Vector3d::Zero()), looks(k), 0.0, Q);
       withdrawn += before < 1.0 && scale.observations() == 1.0 ? 1 : 0;
     }
     return scale;
@@ -49,7 +53,11 @@ struct NoisyDrive {
 
  private:
   /// Every tenth scan looks from another side.
-  std::vector<bool> sides(int scan) const { return std::vector<bool>(geometry_.points_m.size(), scan % 10 == 9); }
+  std::vector<Look> looks(int scan) const {
+    std::vector<Look> looks;
+    for (const core::LandmarkId id : geometry_.ids) looks.push_back({id, scan % 10 == 9});
+    return looks;
+  }
 
   static Eigen::Matrix3d claimed_Q() { return Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal(); }
 
@@ -65,6 +73,8 @@ struct NoisyDrive {
   double odometry_factor_;
   double detector_factor_;
   Eigen::Vector3d bias_;
+  int lasting_;  ///< scans for which the detector's errors stay the same
+  std::array<Eigen::Vector2d, 6> noise_;
   core::RandomStream random_{1, "noise scale test"};
   RelativeGeometry geometry_{core::JointGaussian{{}, {}, {}, Eigen::MatrixXd::Identity(3, 3)}};
 };
@@ -90,7 +100,7 @@ void observe_too_little(double share, NoiseScale& scale) {
     by_pose.middleRows<2>(2 * i) << -1.0, 0.0, p.y(), 0.0, -1.0, -p.x();
   }
   geometry.covariance_m2 = by_pose * Q * by_pose.transpose();
-  scale.observe(PairEquations(geometry, seen, pairs, Eigen::Vector3d::Zero()), std::vector<bool>(6, false), Q);
+  scale.observe(PairEquations(geometry, seen, pairs, Eigen::Vector3d::Zero()), std::vector<Look>(6), 0.0, Q);
 }
 
 TEST(NoiseScale, StaysAtOneWhereTheNoiseIsAsClaimed) {
@@ -122,6 +132,11 @@ TEST(NoiseScale, LearnsThatThereIsLessNoise) {
 
 TEST(NoiseScale, TakesErrorsThatAreTheSameFromOnePlaceForNoLessNoise) {
   EXPECT_EQ(NoisyDrive(1.0, 0.25).learn(9).observations(), 1.0) << "no landmark was seen from another side yet";
+}
+
+TEST(NoiseScale, TakesErrorsThatLastForSixScansForNoLessNoise) {
+  const Eigen::Vector3d no_bias = Eigen::Vector3d::Zero();
+  EXPECT_EQ(NoisyDrive(1.0, 0.25, no_bias, 6).learn(1500).observations(), 1.0);
 }
 
 TEST(NoiseScale, TakesDisplacementsThatOdometryDoesNotExplainForErrorsOfTheDetectorThatAreNotWhite) {
