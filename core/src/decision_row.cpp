@@ -43,6 +43,15 @@ void numbers(SlipDecision& d, Visit&& visit) {
 }
 
 template <class Visit>
+void numbers(LostBySlipDecision& d, Visit&& visit) {
+  visit("missing", d.missing);
+  visit("seen", d.seen);
+  visit("unknown", d.unknown);
+  visit("nats", d.nats);
+  visit("sigma_m", d.sigma_m);
+}
+
+template <class Visit>
 void numbers(MovingDecision& d, Visit&& visit) {
   visit("landmarks", d.landmarks);
   visit("nats", d.nats);
@@ -234,6 +243,7 @@ struct KindAndVerdict {
 KindAndVerdict words_of(const TriggerDecision&) { return {"trigger", "started"}; }
 KindAndVerdict words_of(const RollbackDecision&) { return {"trigger", "rolled-back"}; }
 KindAndVerdict words_of(const SlipDecision&) { return {"slip", "accepted"}; }
+KindAndVerdict words_of(const LostBySlipDecision&) { return {"slip", "lost"}; }
 KindAndVerdict words_of(const MovingDecision&) { return {"moving", "dropped"}; }
 KindAndVerdict words_of(const SystematicDecision&) { return {"systematic", "taken-out"}; }
 KindAndVerdict words_of(const AttemptStarted&) { return {"search", "started"}; }
@@ -344,6 +354,7 @@ Decision decision_of(const DecisionRow& row) {
   const bool rolled_back = row.verdict == "rolled-back" || row.verdict == "rewound";  // the latter in earlier versions
   if (row.kind == "trigger" && rolled_back) return fill(RollbackDecision{}, row);
   if (row.kind == "slip" && accepted) return fill(SlipDecision{}, row);
+  if (row.kind == "slip" && row.verdict == "lost") return fill(LostBySlipDecision{}, row);
   if (row.kind == "moving" && row.verdict == "dropped") return fill(MovingDecision{}, row);
   if (row.kind == "systematic" && row.verdict == "taken-out") return fill(SystematicDecision{}, row);
   if (row.kind == "search") return search_decision(row);

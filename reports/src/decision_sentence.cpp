@@ -37,6 +37,13 @@ std::string sentence(const core::SlipDecision& d) {
          " better than a slip to anywhere else. The pose was widened by " + short_number(d.sigma_m) + " m.";
 }
 
+std::string sentence(const core::LostBySlipDecision& d) {
+  return "The vehicle slipped, and one scan does not show where to: " + counted(d.missing, "landmark") +
+         " of the scan before that should still be in view are missing, " + short_number(d.seen) +
+         " were seen again, and " + counted(d.unknown, "unknown one") + " came instead (" + short_number(d.nats) +
+         " nats for a slip). The pose was widened by " + short_number(d.sigma_m) + " m, and a search began.";
+}
+
 std::string sentence(const core::MovingDecision& d) {
   return "A moving object, at " + short_number(d.speed_mps) +
          " m/s, had been mapped: " + counted(d.landmarks, "landmark") + " dropped. Motion explains its sightings " +

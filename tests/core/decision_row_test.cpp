@@ -10,9 +10,10 @@ namespace {
 std::vector<DecisionRow> all_rows() {
   std::vector<DecisionRow> rows;
   for (const Decision& decision :
-       {Decision(TriggerDecision{}), Decision(RollbackDecision{}), Decision(SlipDecision{}), Decision(MovingDecision{}),
-        Decision(SystematicDecision{}), Decision(AttemptStarted{}), Decision(ReferenceUnusable{}),
-        Decision(UndecidedDecision{}), Decision(NewGroundDecision{}), Decision(CarriedDecision{})}) {
+       {Decision(TriggerDecision{}), Decision(RollbackDecision{}), Decision(SlipDecision{}),
+        Decision(LostBySlipDecision{}), Decision(MovingDecision{}), Decision(SystematicDecision{}),
+        Decision(AttemptStarted{}), Decision(ReferenceUnusable{}), Decision(UndecidedDecision{}),
+        Decision(NewGroundDecision{}), Decision(CarriedDecision{})}) {
     rows.push_back(row_of(decision));
   }
   for (const char* cause : {"found-out", "broken-off", "by-place", "no-odometry", "wrong-start"})

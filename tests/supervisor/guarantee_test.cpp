@@ -120,13 +120,15 @@ enum class Kind {
   carried,
   parted,
   placed_again,
-  systematic
+  systematic,
+  lost_by_slip
 };
 
 Kind kind_of(const core::StepReport& report) {
   const bool was_searching = report.mode == core::Mode::searching;
   for (const core::Decision& decision : report.decisions) {
     if (std::holds_alternative<core::SystematicDecision>(decision)) return Kind::systematic;
+    if (std::holds_alternative<core::LostBySlipDecision>(decision)) return Kind::lost_by_slip;
     const auto* asked = std::get_if<core::WholeMapDecision>(&decision);
     const bool found = asked != nullptr && asked->verdict == core::WholeMapDecision::Verdict::accepted;
     if (found && !was_searching) return Kind::place_without_search;
@@ -234,7 +236,17 @@ TEST(Guarantee, HoldsWhereThePlaceOfACarriedVehicleIsFoundWithoutASearch) {
   const core::Recording run = without_waiting(sim::simulate(scenario, 3004));
   // Hundreds of metres from the start, and a phase may be absorbed at another point than when undisturbed.
   constexpr double rounding_m = 1e-9;
-  EXPECT_EQ(break_drive(run, single_threaded(1), 6, rounding_m).count(Kind::place_without_search), 1u);
+  NavigatorOptions without_slips = single_threaded(1);
+  without_slips.slip.enabled = false;  // else a search begins as soon as everything has vanished
+  EXPECT_EQ(break_drive(run, without_slips, 6, rounding_m).count(Kind::place_without_search), 1u);
+}
+
+TEST(Guarantee, HoldsWhereEverythingHasVanishedAndASearchBegins) {
+  sim::Scenario scenario = sim::named_scenario("kidnapped");
+  scenario.world.tour_m = 2600.0;
+  const core::Recording run = without_waiting(sim::simulate(scenario, 3004));
+  constexpr double rounding_m = 1e-9;  // as above
+  EXPECT_EQ(break_drive(run, single_threaded(1), 12, rounding_m).count(Kind::lost_by_slip), 1u);
 }
 
 TEST(Guarantee, HoldsWhereItIsFoundOutThatTheVehicleWasCarried) {

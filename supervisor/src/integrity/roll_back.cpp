@@ -29,6 +29,11 @@ StepReport NavigationLoop::roll_back_and_relocalise(const core::Scan& scan, Step
   pending_.decisions.emplace_back(
       core::RollbackDecision{evidence.missing, evidence.seen, evidence.spawned, evidence.nats, scans});
   begin_search(scan);
+  return process_in_search(since, std::move(report));
+}
+
+/// What came since a search began in the past; the last scan is that of `report`.
+StepReport NavigationLoop::process_in_search(const std::vector<Tape::Entry>& since, StepReport report) {
   StepReport through;
   through.numerics = report.numerics;
   const auto after_fix = [&](const Tape::Fix& fix, bool accepted) {

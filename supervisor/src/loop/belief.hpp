@@ -12,6 +12,7 @@
 #include "loop/tape.hpp"
 #include "moving/moving_things.hpp"
 #include "slip/slip_record.hpp"
+#include "slip/vanished.hpp"
 #include "smoothing/drive_map.hpp"
 #include "window/window.hpp"
 
@@ -24,7 +25,7 @@ struct LeftOpen {
 };
 
 /// Everything that rolls back: pose and map, which landmarks exist, what ground was covered, which old landmark awaits
-/// confirmation, how the vehicle slipped, what may move, and the number of scans so far.
+/// confirmation, how the vehicle slipped, what may move, what the last scan saw, and the number of scans so far.
 struct Belief {
   cekf::CompressedEkf filter;
   association::LandmarkLife existence;
@@ -37,6 +38,7 @@ struct Belief {
   std::shared_ptr<const DriveMap> drive = {};
   Window window = {};  ///< which part of it the filter holds
   MovingThings moving = {};
+  SeenAgain seen_again = {};
 };
 
 /// A belief to return to, and where the tape was then. A snapshot of O(n_a²) bytes and the landmarks' existence; valid as
@@ -51,12 +53,13 @@ struct Checkpoint {
   SlipRecord slips = {};
   std::vector<LeftOpen> left_open = {};
   MovingThings moving = {};
+  SeenAgain seen_again = {};
 };
 
 inline Checkpoint take_checkpoint(Belief& belief, const Tape& tape) {
   belief.filter.keep_open_phase();
   return {belief.filter.snapshot(), belief.existence, belief.confirmation, belief.step, tape.end(), belief.slips,
-          belief.left_open,         belief.moving};
+          belief.left_open,         belief.moving,    belief.seen_again};
 }
 
 /// Test: supervisor/tape_test.cpp.
@@ -69,6 +72,7 @@ inline void roll_back(const Checkpoint& checkpoint, Belief& belief) {
   belief.slips = checkpoint.slips;
   belief.left_open = checkpoint.left_open;
   belief.moving = checkpoint.moving;
+  belief.seen_again = checkpoint.seen_again;
 }
 
 }  // namespace helixnav::supervisor

@@ -38,6 +38,7 @@ struct Searching {
   Search search;
   Checkpoint trigger;
   WholeMapQuestions questions_before = {};
+  bool after_slip = false;  ///< nothing ties the branch to the old ground, not even odometry
 };
 
 using Mode = std::variant<Mapping, Searching>;

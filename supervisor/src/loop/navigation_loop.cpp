@@ -109,6 +109,7 @@ StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* not
     checkpoint_if_settled();
     hand_over_if_due();
     report_late(report);
+    if (has_slipped_away()) return search_since_slip(std::move(report));
     if (has_lost_its_place()) return roll_back_and_relocalise(scan, std::move(report));
     ask_whether_new(scan, report);
     solve_with_learnt_noise(report);
@@ -167,6 +168,7 @@ StepReport NavigationLoop::step(const Scan& scan) {
   update(scan, slipped, report);
   augment(scan, report);
   if (!seen.empty()) belief_.moving.begin(scan.t_ns, seen, options_.moving, report.associations);
+  note_seen_again(scan, slipped, report);
   std::vector<LandmarkId> died = update_existence(scan, report);
   drop_movers(movers, report, died);
   tape_.append(Tape::Scan{scan, report.associations, report.joint_nis, report.joint_dof, std::move(died), slipped});
@@ -342,6 +344,7 @@ void NavigationLoop::checkpoint_if_settled() {
   const std::int64_t scans = belief_.step - mapping->trusted->step;
   if (is_monitored() && scans > options_.search.integrity.reach) mapping->monitor = IntegrityMonitor();
   if (is_monitored() && !mapping->monitor.is_clear()) return;
+  if (belief_.seen_again.is_suspicious()) return;
   const bool first_scan = mapping->trusted->step == 0;
   if (!first_scan && scans < stride && belief_.filter.phase() == mapping->trusted->filter.phase) return;
   trust(take_checkpoint(belief_, tape_));

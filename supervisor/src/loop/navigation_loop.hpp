@@ -129,6 +129,11 @@ class NavigationLoop {
   pf_relocalize::Coverage ground_looked_at(const core::FieldOfView& view) const;
   void move_unmeasured(const Eigen::Matrix3d& covariance, core::Nanoseconds t_ns);
 
+  // slip/search_if_vanished.cpp
+  void note_seen_again(const core::Scan& scan, bool slipped, const core::StepReport& report);
+  bool has_slipped_away() const;
+  core::StepReport search_since_slip(core::StepReport report);
+
   // moving/watch_moving.cpp
   std::vector<SeenPoint> points_to_watch(const core::Scan& scan) const;
   std::vector<Mover> watch_moving(const core::Scan& scan, const std::vector<SeenPoint>& seen, core::StepReport& report);
@@ -199,6 +204,7 @@ class NavigationLoop {
   // integrity/roll_back.cpp
   bool has_lost_its_place() const;
   core::StepReport roll_back_and_relocalise(const core::Scan& scan, core::StepReport report);
+  core::StepReport process_in_search(const std::vector<Tape::Entry>& since, core::StepReport report);
 
   // placing/find_place.cpp
   relocalize::IndexOptions index_lengths() const;

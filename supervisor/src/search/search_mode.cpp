@@ -55,16 +55,18 @@ void NavigationLoop::search(const Scan& scan, StepReport& report) {
   } else {
     report.decisions.emplace_back(core::UndecidedDecision{driven_m});
   }
-  belief_.left_open.push_back({open.begun_path_m(), path_m});
+  if (!searching()->after_slip) belief_.left_open.push_back({open.begun_path_m(), path_m});
   end_search(nullptr);
 }
 
-/// If the landmarks, asked without the prior, decide for another place, that is believed instead of the search.
+/// If the landmarks, asked without the prior, decide for another place, that is believed instead of the search. After a slip there is
+/// hardly a prior, and only what they decide without one is believed.
 void NavigationLoop::close(const Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
                            StepReport& report) {
   const Searching& open = *searching();
   AskedWholeMap asked = ask_about_place(scan);
-  if (!asked.is_closed_elsewhere(pairs) && close_as_measured(scan, pairs, report)) return;
+  const bool is_believed = asked.is_closed() ? !asked.is_closed_elsewhere(pairs) : !open.after_slip;
+  if (is_believed && close_as_measured(scan, pairs, report)) return;
   if (asked.is_closed() && close_at(asked.pairs, open.search, open.trigger, scan, asked.decision, report)) return;
   if (asked.is_asked()) report.decisions.emplace_back(asked.decision);
   searching()->search.refuse(belief_.existence.path_m());

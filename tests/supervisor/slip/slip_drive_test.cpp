@@ -4,6 +4,7 @@
 #include <variant>
 
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/decision.hpp"
@@ -79,6 +80,46 @@ TEST(SlipDrive, OfWheelsThatSpinMakesNothingMove) {
   EXPECT_GE(slips, 3);
   EXPECT_EQ(movers, 0);
   EXPECT_NEAR(navigator.pose().mean.x_m, vehicle_x_m, 0.3);
+}
+
+/// An avenue with a pair of posts every 3 m, seen 12 m ahead and to the sides.
+core::Scan scan_of_avenue(double vehicle_x_m, int scan) {
+  core::Scan seen;
+  seen.t_ns = 500'000'000LL * scan;
+  seen.field_of_view = {0.3, 12.0, -core::pi / 2, core::pi / 2};
+  for (int post = 0; post < 60; ++post) {
+    const Eigen::Vector2d at_m(3.0 * (post / 2) + 1.0 - vehicle_x_m, post % 2 == 0 ? 4.0 : -4.0);
+    if (at_m.norm() > 11.5 || at_m.x() < 0.0) continue;
+    core::Observation observation;
+    observation.z = Eigen::Vector2d(at_m.norm(), std::atan2(at_m.y(), at_m.x()));
+    observation.R = Eigen::Vector2d(0.04, 0.01).cwiseAbs2().asDiagonal();
+    seen.observations.push_back(observation);
+  }
+  return seen;
+}
+
+/// Half a pitch forwards looks like half a pitch back: neither is believed, and the covariance has to hold both.
+TEST(SlipDrive, ThatHasARivalOpensASearchAndTheCovariance) {
+  Navigator navigator({}, {});
+  double vehicle_x_m = 0.0;
+  int slips = 0, lost = 0;
+  for (int scan = 0; scan < 40; ++scan) {
+    core::Odometry motion = core::no_motion(500'000'000LL * scan);
+    motion.T_before_after = core::Pose2(0.5, 0.0, 0.0);
+    motion.covariance = Eigen::Vector3d(0.02, 0.01, 0.005).cwiseAbs2().asDiagonal();
+    if (scan > 0) navigator.move(motion);
+    if (scan > 0) vehicle_x_m += 0.5;
+    if (scan == 25) vehicle_x_m += 1.5;
+    for (const core::Decision& decision : navigator.observe(scan_of_avenue(vehicle_x_m, scan)).decisions) {
+      slips += std::holds_alternative<core::SlipDecision>(decision);
+      lost += std::holds_alternative<core::LostBySlipDecision>(decision);
+    }
+  }
+  EXPECT_EQ(slips, 0);
+  EXPECT_EQ(lost, 1);
+  const core::PoseGaussian pose = navigator.pose();
+  EXPECT_NEAR(pose.mean.x_m, vehicle_x_m - 1.5, 0.3) << "or it shows nothing";
+  EXPECT_GT(std::sqrt(pose.covariance(0, 0)), 0.75);
 }
 
 }  // namespace

@@ -46,6 +46,16 @@ struct SlipDecision {
   double sigma_m = 0.0;  ///< by which the pose was widened
 };
 
+/// Everything that was in view vanished from one scan to the next and stayed away: the vehicle slipped, and where to is not clear
+/// from one scan. A search began (supervisor/vanished).
+struct LostBySlipDecision {
+  int missing = 0;       ///< landmarks that the scan before matched and that should still be in view
+  int seen = 0;          ///< matched again
+  int unknown = 0;       ///< new landmarks instead
+  double nats = 0.0;     ///< log-likelihood ratio of "slipped" against "not slipped"
+  double sigma_m = 0.0;  ///< by which the pose was widened
+};
+
 /// Something that moves had been taken for landmarks: they were dropped (supervisor/moving_things).
 struct MovingDecision {
   int landmarks = 0;       ///< dropped
@@ -263,10 +273,10 @@ struct OtherDecision {
 };
 
 /// A decision of the navigator that is worth a sentence, with the numbers that decided it.
-using Decision = std::variant<TriggerDecision, RollbackDecision, SlipDecision, MovingDecision, SystematicDecision,
-                              AttemptStarted, AttemptEnded, ReferenceUnusable, VerificationDecision, ClosureDecision,
-                              UndecidedDecision, NewGroundDecision, SmoothingDecision, FixDecision, CarriedDecision,
-                              PlacedDecision, WholeMapDecision, PostponedDecision, OtherDecision>;
+using Decision = std::variant<TriggerDecision, RollbackDecision, SlipDecision, LostBySlipDecision, MovingDecision,
+                              SystematicDecision, AttemptStarted, AttemptEnded, ReferenceUnusable, VerificationDecision,
+                              ClosureDecision, UndecidedDecision, NewGroundDecision, SmoothingDecision, FixDecision,
+                              CarriedDecision, PlacedDecision, WholeMapDecision, PostponedDecision, OtherDecision>;
 
 /// True for what ends a search: a closing accepted or refused, new ground, or a search given up.
 inline bool is_closure(const Decision& decision) {

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Everything that was in view has vanished from one scan to the next, and stayed away: the vehicle slipped, to a place that one scan
+// does not show.
+#include <utility>
+#include <vector>
+
+#include "association/expected_landmarks.hpp"
+#include "loop/navigation_loop.hpp"
+#include "loop/process_again.hpp"
+#include "slip/slip_evidence.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+/// Position in `entries`, which begin before scan `first`, of a later scan.
+std::size_t position_of(std::int64_t step, std::int64_t first, const std::vector<Tape::Entry>& entries) {
+  std::size_t at = 0;
+  for (std::int64_t scan = first; at < entries.size(); ++at) {
+    if (std::holds_alternative<Tape::Scan>(entries[at]) && scan++ == step) break;
+  }
+  return at;
+}
+
+}  // namespace
+
+void NavigationLoop::note_seen_again(const core::Scan& scan, bool slipped, const core::StepReport& report) {
+  if (slipped || !options_.slip.enabled || !is_monitored() || searching() != nullptr || has_unplaced(scan)) {
+    belief_.seen_again.start_from(report.associations);
+    return;
+  }
+  belief_.seen_again.see(belief_.step, report.associations,
+                         expected_unseen(belief_.filter, scan, options_.view_margin_m, report.associations),
+                         belief_.existence, options_.extraneous_per_scan, belief_.slips.count);
+}
+
+/// Before anything was trusted that came after the slip.
+bool NavigationLoop::has_slipped_away() const {
+  const Mapping* mapping = std::get_if<Mapping>(&mode_);
+  const Vanished* lost = belief_.seen_again.lost();
+  return mapping != nullptr && lost != nullptr && mapping->trusted->step <= lost->step;
+}
+
+/// Where places repeat, or too few landmarks are in view, a slip has rivals and is not believed. But the vehicle is not where
+/// odometry puts it, either: its pose becomes as uncertain as the largest slips are, before the scan after the slip, and a
+/// search decides where it is.
+core::StepReport NavigationLoop::search_since_slip(core::StepReport report) {
+  const Vanished lost = *belief_.seen_again.lost();
+  const Checkpoint trusted = *std::get<Mapping>(mode_).trusted;
+  const core::LandmarkId next = belief_.filter.next_name();
+  const SlipComponent largest = slip_components(options_.slip).back();
+  const std::vector<Tape::Entry>& since = undo_.rolled_back.emplace(tape_.cut(trusted.position));
+  const auto slip = since.begin() + static_cast<std::ptrdiff_t>(position_of(lost.step, trusted.step, since));
+  roll_back(trusted, belief_);
+  process_again(
+      {since.begin(), slip}, [](const Tape::Fix&, bool) {}, [](const core::StepReport&) {});
+  predict();
+  pending_.decisions = std::move(report.decisions);
+  pending_.decisions.emplace_back(core::LostBySlipDecision{static_cast<int>(lost.missing.size()), lost.seen,
+                                                           static_cast<int>(lost.unknown.size()), lost.nats,
+                                                           largest.sigma_m});
+  const core::Scan& scan = std::get<Tape::Scan>(*slip).scan;
+  move_unmeasured(largest.covariance(), scan.t_ns);
+  belief_.filter.name_from(next);
+  begin_search(scan);
+  searching()->after_slip = true;
+  return process_in_search({slip, since.end()}, std::move(report));
+}
+
+}  // namespace helixnav::supervisor

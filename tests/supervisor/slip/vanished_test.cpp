@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slip/vanished.hpp"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace helixnav::supervisor {
+namespace {
+
+using core::LandmarkId;
+using core::Outcome;
+
+constexpr double extraneous = 0.5;
+
+/// A vehicle that sees the same landmarks in scan after scan.
+struct WatchedDrive {
+  /// One scan: what it matches, what it begins, and what it should have seen.
+  void scan(const std::vector<LandmarkId>& matched, const std::vector<LandmarkId>& begun,
+            const std::vector<LandmarkId>& expected) {
+    std::vector<core::AssociationReport> fate;
+    const auto add = [&](LandmarkId id, Outcome outcome) {
+      core::AssociationReport one;
+      one.observation = static_cast<int>(fate.size());
+      one.landmark = id;
+      one.outcome = outcome;
+      fate.push_back(one);
+    };
+    for (const LandmarkId id : matched) add(id, Outcome::matched);
+    for (const LandmarkId id : begun) add(id, Outcome::augmented);
+    watched.see(step++, fate, expected, life, extraneous, 0);
+    life.observe({static_cast<double>(step), 0.0}, matched, begun, {});
+  }
+
+  void pass_quietly(const std::vector<LandmarkId>& all, int scans) {
+    scan({}, all, all);
+    for (int k = 1; k < scans; ++k) scan(all, {}, all);
+  }
+
+  SeenAgain watched;
+  association::LandmarkLife life;
+  std::int64_t step = 0;
+};
+
+const std::vector<LandmarkId> known = {0, 1, 2, 3, 4, 5};
+const std::vector<LandmarkId> unknown = {10, 11, 12, 13, 14, 15};
+
+TEST(SeenAgain, BelievesASlipOnceWhatVanishedStaysAwayAndWhatCameIsThere) {
+  WatchedDrive drive;
+  drive.pass_quietly(known, 50);
+  EXPECT_FALSE(drive.watched.is_suspicious());
+  drive.scan({}, unknown, known);
+  EXPECT_TRUE(drive.watched.is_suspicious());
+  EXPECT_EQ(drive.watched.lost(), nullptr) << "one scan is not enough";
+  drive.scan(unknown, {}, known);
+  ASSERT_NE(drive.watched.lost(), nullptr);
+  EXPECT_EQ(drive.watched.lost()->step, 50);
+  EXPECT_EQ(drive.watched.lost()->missing, known);
+  EXPECT_EQ(drive.watched.lost()->unknown, unknown);
+}
+
+TEST(SeenAgain, IsNoLongerSuspiciousOnceOneIsBack) {
+  WatchedDrive drive;
+  drive.pass_quietly(known, 50);
+  drive.scan({}, unknown, known);
+  drive.scan({2, 10, 11, 12}, {}, known);
+  EXPECT_FALSE(drive.watched.is_suspicious());
+  EXPECT_EQ(drive.watched.lost(), nullptr);
+}
+
+TEST(SeenAgain, DoesNotSuspectWhereSomeAreSeenAgain) {
+  WatchedDrive drive;
+  drive.pass_quietly(known, 50);
+  drive.scan({0, 1, 2}, unknown, known);
+  EXPECT_FALSE(drive.watched.is_suspicious()) << "a lorry stops in front of the others";
+}
+
+TEST(SeenAgain, DoesNotSuspectWhereNothingCameInstead) {
+  WatchedDrive drive;
+  drive.pass_quietly(known, 50);
+  drive.scan({}, {}, known);
+  EXPECT_FALSE(drive.watched.is_suspicious()) << "a sensor that was blinded";
+}
+
+TEST(SeenAgain, StopsSuspectingWhatNoScanDecides) {
+  WatchedDrive drive;
+  drive.pass_quietly(known, 50);
+  drive.scan({}, unknown, known);
+  for (int k = 0; k < 3; ++k) drive.scan({}, {}, known);
+  EXPECT_FALSE(drive.watched.is_suspicious());
+}
+
+}  // namespace
+}  // namespace helixnav::supervisor
