@@ -136,12 +136,20 @@ std::string text_of(const OpenSearch& search, const Begun& begun, const runs::Ru
   return {};
 }
 
-/// Empty unless the last one is open at the end, and has been for longer than it takes to begin one.
+/// It began because the pose had turned out to be wrong, not because it was about to become ambiguous.
+bool began_lost(const core::StepReport& step) {
+  return std::any_of(step.decisions.begin(), step.decisions.end(), [](const core::Decision& decision) {
+    return std::holds_alternative<core::RollbackDecision>(decision) ||
+           std::holds_alternative<core::LostBySlipDecision>(decision);
+  });
+}
+
+/// Empty unless the last one is open at the end, and began with a wrong pose or has been open for longer than it takes to begin one.
 std::string still_open_text(const std::vector<OpenSearch>& searches, const runs::Run& run) {
   constexpr std::size_t long_open = 20;  // scans
   if (searches.empty() || searches.back().end != OpenSearch::End::none) return {};
   const OpenSearch& last = searches.back();
-  if (last.to - last.from < long_open) return {};
+  if (last.to - last.from < long_open && !began_lost(run.steps[last.from])) return {};
   return "a search was still open at the end (" + driven_text(last, run) +
          "): where the vehicle is on what was mapped before is undecided, and its pose since may be wrong by more than "
          "its covariance says; 'helixnav explain RUN' has the numbers";

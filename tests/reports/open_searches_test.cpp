@@ -52,6 +52,8 @@ TEST(OpenSearches, AreSaidBrieflyWhereNothingWasMappedSince) {
   EXPECT_EQ(text.find("twice"), std::string::npos) << text;
   run.steps[turn].mode = core::Mode::mapping;  // open for 19 scans only
   EXPECT_TRUE(open_search_text(run).empty());
+  run.steps[turn + 1].decisions = {core::RollbackDecision{}};  // but the pose had been wrong for longer
+  EXPECT_NE(open_search_text(run).find("still open"), std::string::npos);
 }
 
 TEST(OpenSearches, AreSaidWhereTheLastEndedUndecided) {
