@@ -26,6 +26,10 @@ class Judge {
     std::vector<Verdict> verdicts = judge_kept(all, folds, free_in(folds), usual_of(result_), told);
     change(best_change(all, kept_of(verdicts), told));
     estimate(verdicts);
+    if (drop_what_gains_nothing(verdicts)) {
+      change(best_change(evidence_here(), kept_of(verdicts), back_to_told(result_, result_.settings)));
+      estimate(verdicts);
+    }
     const std::vector<bool> none(constants_.size(), false), keep = kept_of(verdicts);
     result_.held_out_gain = 0.5 * (held_out_chi2(folds, none, told) - held_out_chi2(folds, keep, told));
     Settings by_rest = found;
@@ -34,11 +38,12 @@ class Judge {
   }
 
  private:
-  core::Recording recording_here() const {
-    core::Recording recording = drive_.with_noise_found(result_.settings);
+  core::Recording recording_of(const Settings& settings) const {
+    core::Recording recording = drive_.with_noise_found(settings);
     loosen_odometry(drive_.slipped, recording);
     return recording;
   }
+  core::Recording recording_here() const { return recording_of(result_.settings); }
 
   NudgedLog nudged(const core::Recording& recording) const {
     return nudge(drive_.as_told, result_.settings, constants_, recording);
@@ -115,6 +120,34 @@ class Judge {
       found.kept_value = constants_[c].value(result_.settings);
       found.kept_sigma = found.kept() ? sigmas[index(c)] : 0.0;
     }
+  }
+
+  /// χ² of the first scans of a log, solved.
+  double solved_chi2(core::Recording recording, std::size_t scans) const {
+    keep_scans(recording, scans);
+    Ids ids = drive_.ids;
+    ids.resize(scans);
+    return smoothing::evaluate_chi2(solve_log(recording, ids, drive_.graph).problem).total();
+  }
+
+  /// What a delay gains when the log is read with it and solved, beside what its derivative promises. The derivative is taken from
+  /// solved speeds, and on long straights their noise is most of what changes: of 76 logs without any delay, 33 had one by the
+  /// derivative alone, and the log read with it had no smaller χ². True delays gain as much as promised, and more.
+  bool drop_what_gains_nothing(std::vector<Verdict>& verdicts) {
+    bool dropped = false;
+    for (std::size_t c = 0; c < constants_.size(); ++c) {
+      const ConstantFound& found = result_.constants[c];
+      if (verdicts[c] != Verdict::kept || constants_[c].nudge > 0.0) continue;
+      Settings without = result_.settings;
+      constants_[c].add(without, found.told - found.kept_value);
+      const core::Recording with_it = recording_here(), without_it = recording_of(without);
+      const std::size_t scans = std::min({scans_of(with_it), scans_of(without_it), drive_.ids.size()});
+      const double sigmas = (found.kept_value - found.told) / found.kept_sigma;
+      if (gains_as_promised(solved_chi2(without_it, scans) - solved_chi2(with_it, scans), sigmas)) continue;
+      verdicts[c] = Verdict::not_confirmed;
+      dropped = true;
+    }
+    return dropped;
   }
 
   void change(const Eigen::VectorXd& by) { change(result_.settings, by); }

@@ -6,6 +6,11 @@
 
 namespace helixnav::apps {
 
+bool gains_as_promised(double gained_chi2, double sigmas) {
+  constexpr double enough = 0.5;
+  return gained_chi2 >= enough * sigmas * sigmas;
+}
+
 std::vector<bool> kept_of(const std::vector<Verdict>& verdicts) {
   std::vector<bool> kept;
   for (const Verdict verdict : verdicts) kept.push_back(verdict == Verdict::kept);

@@ -30,6 +30,10 @@ std::optional<std::size_t> least_significant(const smoothing::ConstantsEvidence&
                                              const std::vector<Verdict>& verdicts, const Eigen::VectorXd& usual,
                                              const Eigen::VectorXd& pinned);
 
+/// Whether the log, read with a constant and solved, gains at least half of the χ² that its derivative promises: the square of its
+/// distance from the file value, in standard deviations.
+bool gains_as_promised(double gained_chi2, double sigmas);
+
 std::vector<bool> kept_of(const std::vector<Verdict>& verdicts);
 bool is_any_kept(const std::vector<Verdict>& verdicts);
 
