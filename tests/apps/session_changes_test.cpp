@@ -39,6 +39,8 @@ class TwoSessions {
     supervisor::JoinedSessions joined;
     joined.sessions = {sessions_[0], sessions_[1]};
     joined.components = {map_};
+    const auto rows = 3 + 2 * static_cast<Eigen::Index>(map_.joint.ids.size());
+    joined.components.front().joint.covariance = 1e-4 * Eigen::MatrixXd::Identity(rows, rows);
     return joined;
   }
   std::vector<ChangedLandmark> changes() const {
@@ -100,6 +102,15 @@ TEST(SessionChanges, GoneAndNewNearerThanChanceMoved) {
   }
 }
 
+/// Stems beside each other, of which either may be either: they were not merged.
+TEST(SessionChanges, GoneAndNewWhereTwoDrivesSeeOneLandmarkIsKept) {
+  TwoSessions world;
+  world.take_out(44, 1);
+  const core::LandmarkId copy = world.add(world.place_m(44) + Eigen::Vector2d(0.1, 0.05), false, true);
+  EXPECT_EQ(world.of(44), Change::kept);
+  EXPECT_EQ(world.of(copy), Change::kept);
+}
+
 TEST(SessionChanges, WhereMuchIsNewTheSameDistanceIsChance) {
   TwoSessions world;
   world.take_out(44, 1);
@@ -137,7 +148,7 @@ TEST(SessionChanges, ThePageHasAMarkForEachAndNamesTheSessions) {
   TwoSessions world;
   world.take_out(44, 1);
   world.take_out(11, 1);
-  world.add(world.place_m(11) + Eigen::Vector2d(0.3, 0.0), false, true);
+  world.add(world.place_m(11) + Eigen::Vector2d(0.6, 0.0), false, true);
   const std::string page = joined_page({"monday", "tues<day"}, world.joined(), world.changes());
   EXPECT_NE(page.find("landmark 44: gone; seen in monday; not in tues&lt;day"), std::string::npos);
   EXPECT_NE(page.find("landmark 11: moved"), std::string::npos);

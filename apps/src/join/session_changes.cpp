@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 #include "helixnav/core/angle.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 
@@ -106,6 +108,45 @@ void add_shared(std::size_t number, const core::JointMap& component, const std::
       if (std::any_of(seen.begin(), seen.end(), agrees)) landmark.missing_in.push_back(sessions[k]);
     }
     if (landmark.seen_in.size() + landmark.missing_in.size() > 1) shared.push_back(std::move(landmark));
+  }
+}
+
+bool is_gone_then_new(const ChangedLandmark& gone, const ChangedLandmark& other) {
+  return other.change() == Change::appeared && other.seen_in.front() > gone.seen_in.back();
+}
+
+/// What two drives see of one landmark differs by a two-hundredth of the reach each, besides what the covariance allows.
+bool stand_alike(const core::JointMap& component, const ChangedLandmark& a, const ChangedLandmark& b, double reach_m) {
+  constexpr double of_reach = 1.0 / 200.0, surely = 9.21;  // χ²₂ of 99 %
+  const auto row = [&](const ChangedLandmark& one) {
+    const auto at = std::lower_bound(component.joint.ids.begin(), component.joint.ids.end(), one.id);
+    return 3 + 2 * (at - component.joint.ids.begin());
+  };
+  const auto block = [&](const ChangedLandmark& one, const ChangedLandmark& other) {
+    return component.joint.covariance.block<2, 2>(row(one), row(other));
+  };
+  const double seen_m = of_reach * reach_m;
+  const Eigen::Matrix2d S =
+      block(a, a) + block(b, b) - block(a, b) - block(b, a) + 2.0 * seen_m * seen_m * Eigen::Matrix2d::Identity();
+  const Eigen::Vector2d apart_m = a.point_m - b.point_m;
+  return apart_m.dot(S.ldlt().solve(apart_m)) < surely;
+}
+
+/// One that is gone where a later session has a new one is still there: as with two stems beside each other, of which either may be
+/// either, so that they were not merged. The map holds two copies, and both are kept.
+void keep_copies(const core::JointMap& component, std::size_t number, double reach_m,
+                 std::vector<ChangedLandmark>& shared) {
+  for (ChangedLandmark& gone : shared) {
+    if (gone.component != number || !gone.is_gone()) continue;
+    ChangedLandmark* nearest = nullptr;
+    for (ChangedLandmark& other : shared) {
+      if (other.component != number || !is_gone_then_new(gone, other)) continue;
+      const double apart_m = (other.point_m - gone.point_m).norm();
+      if (nearest == nullptr || apart_m < (nearest->point_m - gone.point_m).norm()) nearest = &other;
+    }
+    if (nearest == nullptr || !stand_alike(component, gone, *nearest, reach_m)) continue;
+    gone.missing_in.clear();
+    nearest->missing_in.clear();
   }
 }
 
@@ -214,13 +255,16 @@ std::vector<ChangedLandmark> shared_landmarks(const std::vector<core::JointMap>&
   for (std::size_t number = 0; number < joined.components.size(); ++number) {
     std::vector<std::size_t> members;
     std::vector<Ground> grounds;
+    double farthest_m = 0.0;
     for (std::size_t k = 0; k < sessions.size(); ++k) {
       if (joined.sessions[k].component != number) continue;
       const double reach_m = sessions[k].reach_m > 0.0 ? sessions[k].reach_m : supervisor::reference_reach_m;
       members.push_back(k);
+      farthest_m = std::max(farthest_m, reach_m);
       grounds.emplace_back(joined.components[number], joined.sessions[k], reach_m);
     }
     add_shared(number, joined.components[number], grounds, members, shared);
+    keep_copies(joined.components[number], number, farthest_m, shared);
     tell_moved(joined.components[number], number, shared);
   }
   return shared;

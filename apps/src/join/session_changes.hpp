@@ -33,8 +33,9 @@ const char* name_of(Change change);
 /// its eighth neighbour, if its landmarks are there on all sides. A landmark of another session that it lacks there
 /// counts as missing only if that session has half of its eight nearest landmarks there, or it has half of that
 /// session's: otherwise the two were bent apart, and hold copies. Joint landmarks only: those on ground of one session
-/// are left out. O(N²). A move is one landmark that is gone and one that is new in a later session, each the other's
-/// nearest and nearer than chance would put new ones at their density: 5 % of the reported moves are wrong on average.
+/// are left out. O(N²). A landmark that is gone within what two drives see of one (99 %) of a new one is still there:
+/// both are kept. A move is one landmark that is gone and one that is new in a later session, each the other's nearest
+/// and nearer than chance would put new ones at their density: 5 % of the reported moves are wrong on average.
 /// Test: apps/session_changes_test.cpp.
 std::vector<ChangedLandmark> shared_landmarks(const std::vector<core::JointMap>& sessions,
                                               const supervisor::JoinedSessions& joined);
