@@ -34,6 +34,10 @@ TEST(ClosingWarnings, SayThatReturnsStayedOpenWhereMostClosingsWereRefused) {
 TEST(ClosingWarnings, SayNothingOfReturnsThatWereClosedAtLast) {
   const core::ClosureDecision refused = closure(false);
   EXPECT_TRUE(closing_warnings(run_of({refused, refused, refused, refused, closure(true), solved(true)})).empty());
+  const auto texts =
+      closing_warnings(run_of({refused, refused, refused, refused, refused, closure(true), solved(true)}));
+  ASSERT_EQ(texts.size(), 1u) << "again and again";
+  EXPECT_NE(texts[0].find("refused 5 times, 1 were accepted"), std::string::npos) << texts[0];
 }
 
 TEST(ClosingWarnings, SayThatSearchesEndedUndecided) {

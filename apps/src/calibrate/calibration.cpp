@@ -70,7 +70,7 @@ class Calibrator {
   Calibration run() {
     constexpr int most_rounds = 8, most_with_fewer = 12;
     while (result_.rounds < (leaves_any() ? most_with_fewer : most_rounds) && !result_.settled) {
-      round();
+      try_round();
       if (!result_.settled && repeats(values_, sigmas())) leave_least_significant();
     }
     if (!result_.settled) leave_unsettled();
@@ -141,6 +141,18 @@ class Calibrator {
 
     double most_noise() const { return std::max(noise.odometry.factor, noise.landmarks.factor); }
   };
+
+  /// A log with too little in it determines no drive at all.
+  void try_round() {
+    try {
+      round();
+    } catch (const core::NumericalError& error) {
+      throw core::InputError(path_ + ": the log does not determine the drive (" + error.what() + "); after " +
+                             std::to_string(result_.rounds) + " rounds, " + std::to_string(result_.used) + " of " +
+                             std::to_string(result_.observations) +
+                             " detections were used: it takes a longer log, or more landmarks in view");
+    }
+  }
 
   void round() {
     scans_ = every_scan;
