@@ -34,10 +34,18 @@ double bounded(double factor) { return std::clamp(factor, 1.0 / most, most); }
 void NoiseScale::Displacements::add(double nis, double share, double detector, double in_force) {
   sum = keep * sum + in_force * share * (nis / 3.0 - (1.0 - share) * detector);
   weight = keep * weight + share * share;
+  shares = keep * shares + share;
 }
 
 double NoiseScale::Displacements::scale() const { return weight > least_weight ? sum / weight : 1.0; }
 double NoiseScale::Displacements::sigma() const { return std::sqrt(2.0 / 3.0 / weight); }
+
+double NoiseScale::Displacements::sure_rise(double sigmas, double log_sigma) const {
+  constexpr double least = 0.1;  // scans in which odometry's share is all that there is
+  if (!(weight > least)) return 1.0;
+  const double rise = sum / weight;
+  return rise > 1.0 + sigmas * std::hypot(sigma(), log_sigma * shares / weight) ? rise : 1.0;
+}
 
 void NoiseScale::observe(const PairEquations& pairs, const std::vector<Look>& looks, double heading_rad,
                          const Eigen::Matrix3d& Q) {
@@ -124,7 +132,8 @@ double NoiseScale::odometry_factor() const {
   const double sigmas = most_sigmas(odometry_);
   const double rise = quick_motion_.scale() * (1.0 - sure_sigmas * quick_motion_.sigma());
   const double slow = slow_motion_.scale();
-  const double up = std::max(rise, slow > 1.0 + sigmas * slow_motion_.sigma() ? slow : 1.0);
+  const double up = std::max({rise, slow > 1.0 + sigmas * slow_motion_.sigma() ? slow : 1.0,
+                              slow_motion_.sure_rise(sigmas, slow_.log_sigma())});
   if (up > dead_band) return bounded(up);
   const double with_mean = std::max(0.0, biased_motion_.scale()) + biased_motion_.sigma();
   const bool is_less = with_mean < 1.0 / dead_band && with_mean < 1.0 - (sigmas - 1.0) * biased_motion_.sigma();

@@ -48,10 +48,15 @@ class NoiseScale {
     double keep;
     double sum = 0.0;
     double weight = 0.0;
+    double shares = 0.0;
 
     void add(double nis, double share, double detector, double in_force);
     double scale() const;
     double sigma() const;  ///< of scale(), where it is 1
+
+    /// The scale if it is above 1 by so many deviations, else 1, however small odometry's share: what the detector's factor leaves
+    /// open (`log_sigma` of it) counts as often as its part in the displacements is larger.
+    double sure_rise(double sigmas, double log_sigma) const;
   };
 
   void add_rest(const PairEquations& pairs, const Eigen::Vector3d& displacement, const Eigen::Matrix3d& information,
