@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -140,9 +141,24 @@ std::string factor_text(const smoothing::NoiseScale& scale) {
   return text;
 }
 
+/// What is written may be ten times farther off than files usually are; 7.9 m of a lever arm took bearings whose unit was wrong.
+void refuse_what_no_file_has(const std::string& out, const Calibration& result) {
+  constexpr double most_usual = 10.0;
+  for (const ConstantFound& found : result.constants) {
+    const double way = std::abs(found.kept_value - found.told);
+    if (!found.kept() || way <= most_usual * found.constant.usual) continue;
+    std::fflush(stdout);
+    throw core::InputError(out + ": not written, since " + found.constant.key +
+                           " would be farther from the given value than any vehicle file is wrong by: associations or "
+                           "what the vehicle file says are far off; see to mounting, units and signs first ('helixnav "
+                           "check')");
+  }
+}
+
 /// If it has not settled and either leaves out more than a quarter of the detections or finds more than four times the assumed noise,
 /// it is not a calibration; if most are used it is one, and the file states that it has not settled.
 void write_out(const std::string& out, const logs::Vehicle& vehicle, const Calibration& result) {
+  refuse_what_no_file_has(out, result);
   constexpr double most_noise = 4.0;
   const bool is_noise = std::max(result.scales.odometry.factor, result.scales.landmarks.factor) > most_noise;
   if (!result.settled && (is_noise || 4 * result.used < 3 * result.observations)) {
@@ -210,7 +226,7 @@ void add_calibrate_command(CLI::App& app, ExitCode& code) {
       "and the rest is estimated again; so is a constant that the log says too little about or that does not settle.\n"
       "Noise goes into vehicle.toml as noise_scale. For a published log it begins with the vehicle that ships. What\n"
       "does not settle and leaves out more than a quarter of the detections, or asks for four times the noise, is\n"
-      "printed, not written (exit code 3).\n\n"
+      "printed, not written (exit code 3); nor is what is ten times farther off than vehicle files usually are.\n\n"
       "Examples:\n"
       "  helixnav calibrate my_drive --out calibrated.toml\n"
       "  helixnav replay my_drive --vehicle calibrated.toml --out runs/calibrated\n"

@@ -125,6 +125,12 @@ bool NoiseScale::motion_is_as_assumed_at_most() const {
   return biased_motion_.weight > least_weight && biased_motion_.scale() + doubt < dead_band;
 }
 
+/// Unless the displacements have a mean: then what the detector hides may be a bias.
+double NoiseScale::hidden_rise(double sigmas) const {
+  const double rise = slow_motion_.sure_rise(sigmas, slow_.log_sigma());
+  return biased_motion_.sum < dead_band * slow_motion_.sum ? rise : 1.0;
+}
+
 /// Likewise; down by what is left including the mean, and never by more than it is sure of: the little that odometry
 /// has moved in a few scans may seem to be less than nothing, and 25 times less variance was believed and withdrawn in
 /// turn, with the drive solved again each time.
@@ -132,8 +138,7 @@ double NoiseScale::odometry_factor() const {
   const double sigmas = most_sigmas(odometry_);
   const double rise = quick_motion_.scale() * (1.0 - sure_sigmas * quick_motion_.sigma());
   const double slow = slow_motion_.scale();
-  const double up = std::max({rise, slow > 1.0 + sigmas * slow_motion_.sigma() ? slow : 1.0,
-                              slow_motion_.sure_rise(sigmas, slow_.log_sigma())});
+  const double up = std::max({rise, slow > 1.0 + sigmas * slow_motion_.sigma() ? slow : 1.0, hidden_rise(sigmas)});
   if (up > dead_band) return bounded(up);
   const double with_mean = std::max(0.0, biased_motion_.scale()) + biased_motion_.sigma();
   const bool is_less = with_mean < 1.0 / dead_band && with_mean < 1.0 - (sigmas - 1.0) * biased_motion_.sigma();

@@ -65,6 +65,7 @@ class NoiseScale {
   bool motion_is_as_assumed_at_most() const;
   double detector_factor() const;
   double odometry_factor() const;
+  double hidden_rise(double sigmas) const;
 
   FadingErrors slow_{1.0 - 1.0 / 300.0};
   FadingErrors quick_{1.0 - 1.0 / 60.0};
