@@ -4,7 +4,6 @@
 #include <variant>
 
 #include <gtest/gtest.h>
-#include <Eigen/LU>
 
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/decision.hpp"
