@@ -91,10 +91,10 @@ TEST_F(CalibrateProgram, SaysWhatIsMissingOrWrong) {
   EXPECT_NE(noise_beside.err.find("calibrate judges the vehicle file"), std::string::npos) << noise_beside.err;
 }
 
-/// The first 200 s of a log, with all bearings scaled by 1.5.
-void stretch_bearings_and_cut(const fs::path& log) {
+/// The first 200 s of a log, with all bearings scaled.
+void stretch_bearings_and_cut(const fs::path& log, double stretch) {
   const std::string odometry = text_of(log / "odometry.csv"), seen = text_of(log / "detections.csv");
-  constexpr double last_s = 200.0, stretch = 1.5;
+  constexpr double last_s = 200.0;
   const auto write = [&](const char* file, const std::string& text, bool is_seen) {
     std::istringstream lines(text);
     std::ofstream out(log / file);
@@ -113,11 +113,21 @@ void stretch_bearings_and_cut(const fs::path& log) {
   write("detections.csv", seen, true);
 }
 
-TEST_F(CalibrateProgram, WritesNothingThatNoVehicleFileHas) {
-  stretch_bearings_and_cut(log_);
+TEST_F(CalibrateProgram, WritesNothingThatHasNotSettledAndUsesLittle) {
+  stretch_bearings_and_cut(log_, 1.8);
   const Outcome outcome = run({"calibrate", log_, "--out", out_});
   EXPECT_EQ(outcome.exit_code, 3) << outcome.out;
-  EXPECT_NE(outcome.err.find("not written"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.out.find("not settled"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("not written, since nothing settled"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(out_));
+}
+
+/// It settles, at a lever arm of 8 m.
+TEST_F(CalibrateProgram, WritesNothingThatNoVehicleFileHas) {
+  stretch_bearings_and_cut(log_, 1.5);
+  const Outcome outcome = run({"calibrate", log_, "--out", out_});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.out;
+  EXPECT_NE(outcome.err.find("not written, since x_m"), std::string::npos) << outcome.err;
   EXPECT_FALSE(fs::exists(out_));
 }
 
