@@ -3,12 +3,11 @@
 
 #include <vector>
 
+#include "helixnav/relocalize/answer.hpp"
 #include "search/candidates.hpp"
 #include "search/hypothesis.hpp"
 
 namespace helixnav::relocalize {
-
-inline constexpr std::size_t most_places = 20;
 
 /// Refines and weighs candidates, and the best one shifted by all differences of neighbouring landmarks of the map, so that
 /// the pitch of a lattice is never missed. Returns different places by falling evidence.

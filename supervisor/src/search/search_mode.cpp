@@ -65,7 +65,7 @@ void NavigationLoop::close(const Scan& scan, const std::vector<pf_relocalize::Co
                            StepReport& report) {
   const Searching& open = *searching();
   AskedWholeMap asked = ask_about_place(scan);
-  const bool is_believed = asked.is_closed() ? !asked.is_closed_elsewhere(pairs) : !open.after_slip;
+  const bool is_believed = !asked.is_elsewhere(pairs) && (asked.is_closed() || !open.after_slip);
   if (is_believed && close_as_measured(scan, pairs, report)) return;
   if (asked.is_closed() && close_at(asked.pairs, open.search, open.trigger, scan, asked.decision, report)) return;
   if (asked.is_asked()) report.decisions.emplace_back(asked.decision);

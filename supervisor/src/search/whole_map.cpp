@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // If odometry was wrong by more than its noise, no prior contains the vehicle's place: the whole map is asked.
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -40,6 +41,22 @@ std::vector<pf_relocalize::ConstellationPair> constellation_of(const relocalize:
   std::vector<pf_relocalize::ConstellationPair> pairs;
   for (const relocalize::Pair& pair : place.pairs) pairs.push_back({pair.branch, pair.map});
   return pairs;
+}
+
+/// The places that chance explains as the true one's rivals where the vehicle is surely on the map; none if some may not have been found.
+std::vector<std::vector<pf_relocalize::ConstellationPair>> may_be(const relocalize::Answer& answer,
+                                                                  const relocalize::AskOptions& how,
+                                                                  bool may_have_slipped) {
+  if (answer.verdict == relocalize::Verdict::closed) return {constellation_of(answer.places.front())};
+  if (answer.verdict == relocalize::Verdict::not_here || answer.capped || answer.crowded) return {};
+  const double least =
+      answer.places.front().evidence + (may_have_slipped ? 1.0 : answer.rival_scale) * std::log(how.alpha);
+  if (answer.places.back().evidence > least && answer.places.size() == relocalize::most_places) return {};
+  std::vector<std::vector<pf_relocalize::ConstellationPair>> found;
+  for (const relocalize::Place& place : answer.places) {
+    if (place.evidence > least) found.push_back(constellation_of(place));
+  }
+  return found;
 }
 
 /// Where the pairs put the branch, on the map as it is now.
@@ -163,6 +180,7 @@ AskedWholeMap NavigationLoop::ask(LandmarksAbout& about, const Search& search, c
   asked.decision.questions = questions_.asked.questions + 1;
   asked.decision.needed = relocalize::evidence_needed(how);
   if (answer.verdict == relocalize::Verdict::closed) asked.pairs = constellation_of(answer.places.front());
+  asked.may_be = may_be(answer, how, belief_.slips.count > 0);
   questions_.asked.note(about.ids);
   return asked;
 }

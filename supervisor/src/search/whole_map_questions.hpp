@@ -28,6 +28,8 @@ struct WholeMapQuestions {
 struct AskedWholeMap {
   core::WholeMapDecision decision;                      ///< refused where it is closed, until the map is closed there
   std::vector<pf_relocalize::ConstellationPair> pairs;  ///< of the one place that is left; else empty
+  /// Of each place that may be the true one where the vehicle is surely on the map; empty if there may be more than were found.
+  std::vector<std::vector<pf_relocalize::ConstellationPair>> may_be = {};
 
   bool is_asked() const { return decision.questions > 0; }
   bool is_closed() const { return !pairs.empty(); }
@@ -40,14 +42,23 @@ struct AskedWholeMap {
     return is_asked() && decision.verdict == core::WholeMapDecision::Verdict::not_here &&
            decision.landmarks >= enough && decision.evidence < by_chance;
   }
-  /// At another place than that of these pairs: it shares none of them.
-  bool is_closed_elsewhere(const std::vector<pf_relocalize::ConstellationPair>& found) const {
-    const auto is_found = [&](const pf_relocalize::ConstellationPair& pair) {
-      return std::any_of(found.begin(), found.end(), [&](const pf_relocalize::ConstellationPair& other) {
-        return other.branch == pair.branch && other.old_landmark == pair.old_landmark;
-      });
-    };
-    return is_closed() && std::none_of(pairs.begin(), pairs.end(), is_found);
+  /// At another place than that of these pairs, or at one of several others.
+  bool is_elsewhere(const std::vector<pf_relocalize::ConstellationPair>& found) const {
+    return !may_be.empty() &&
+           std::none_of(may_be.begin(), may_be.end(), [&](const auto& place) { return is_place_of(found, place); });
+  }
+
+ private:
+  /// Most of the landmarks that have a pair in both have the same.
+  static bool is_place_of(const std::vector<pf_relocalize::ConstellationPair>& found,
+                          const std::vector<pf_relocalize::ConstellationPair>& place) {
+    int same = 0, other = 0;
+    for (const pf_relocalize::ConstellationPair& a : found) {
+      for (const pf_relocalize::ConstellationPair& b : place) {
+        if (a.branch == b.branch) ++(a.old_landmark == b.old_landmark ? same : other);
+      }
+    }
+    return same > other;
   }
 };
 

@@ -37,9 +37,11 @@ enum class Verdict {
 /// "closed", "ambiguous", "not here".
 const char* name_of(Verdict verdict);
 
+inline constexpr std::size_t most_places = 20;
+
 struct Answer {
   Verdict verdict = Verdict::not_here;
-  std::vector<Place> places;  ///< distinct ones by descending evidence, at most 20; the first is the answer
+  std::vector<Place> places;  ///< distinct ones by descending evidence, at most most_places; the first is the answer
   double rival_scale =
       1.0;  ///< β: how much evidence rivals have by chance here, in nats; 1 where places do not look alike
   /// Lead of the first place over its best rival (over 0 when there is none), in units of β and less where β is known from
