@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "doubtful_matches.hpp"
 #include "helixnav/association/innovation_problem.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/supervisor/navigator_options.hpp"
@@ -42,37 +43,6 @@ std::vector<std::size_t> within_reach(std::size_t slot, const core::Scan& look, 
   return near;
 }
 
-double noise_m2(const core::Observation& observation, const core::Pose2& T_robot_sensor) {
-  const core::LocatedLandmark located = core::locate_landmark(observation, core::Pose2(), T_robot_sensor);
-  return (located.G_z * observation.R * located.G_z.transpose()).trace();
-}
-
-/// Revokes matches that may equally be of another landmark, which the scan has not found elsewhere: odds of 20 are
-/// required. Which of two landmarks it is makes no difference if the noise given is wider than they are apart.
-void leave_doubtful(const core::Scan& scan, const association::InnovationProblem& problem,
-                    const core::JointGaussian& joint, association::Assignment& assignment) {
-  const double needed_nats = std::log(20.0);
-  std::vector<bool> found(problem.ids.size(), false);
-  for (const int pair : assignment.pairs) {
-    found[static_cast<std::size_t>(problem.pairs[static_cast<std::size_t>(pair)].candidate)] = true;
-  }
-  const auto is_rival = [&](const association::GatedPair& own, const association::GatedPair& other) {
-    const auto a = static_cast<std::size_t>(own.candidate);
-    const auto b = static_cast<std::size_t>(other.candidate);
-    if (found[b] || own.log_likelihood - other.log_likelihood >= needed_nats) return false;
-    const double apart_m2 = (joint.points_m[a] - joint.points_m[b]).squaredNorm();
-    return apart_m2 > noise_m2(scan.observations[static_cast<std::size_t>(own.observation)], scan.T_robot_sensor);
-  };
-  for (const int pair : assignment.pairs) {
-    const association::GatedPair& own = problem.pairs[static_cast<std::size_t>(pair)];
-    const association::GatedObservation& of = problem.observations[static_cast<std::size_t>(own.observation)];
-    const bool doubtful = std::any_of(problem.pairs.begin() + of.begin, problem.pairs.begin() + of.end,
-                                      [&](const association::GatedPair& other) { return is_rival(own, other); });
-    association::ObservationOutcome& outcome = assignment.observations[static_cast<std::size_t>(own.observation)];
-    if (doubtful) outcome.outcome = association::Outcome::ambiguous;
-  }
-}
-
 }  // namespace
 
 association::Assignment associate_scan(std::size_t robot, const core::Scan& scan, const TeamOptions& options,
@@ -87,7 +57,7 @@ association::Assignment associate_scan(std::size_t robot, const core::Scan& scan
   association::Options how = as_navigator.association;
   how.extraneous = association::density_in_view(look, as_navigator.extraneous_per_scan, how.extraneous);
   association::Assignment assignment = association::associate(as_navigator.method, problem, how);
-  leave_doubtful(scan, problem, joint, assignment);
+  leave_doubtful(scan, look, joint, as_navigator.gates, how, assignment);
   return assignment;
 }
 

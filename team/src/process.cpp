@@ -62,6 +62,7 @@ LandmarkId new_id(const Birth& birth, State& state) {
   state.merged_into.push_back(id);
   state.observations.push_back(0);
   state.refusals.push_back(0);
+  state.moved.emplace_back();
   state.births.push_back(birth);
   return id;
 }
@@ -124,12 +125,29 @@ void forget(const std::set<LandmarkId>& forgotten, State& state) {
   for (Component& component : state.components) component.filter.remove({forgotten.begin(), forgotten.end()});
 }
 
+core::PointGaussian place_seen(std::size_t robot, const core::Pose2& T_robot_sensor,
+                               const core::Observation& observation, State& state) {
+  const core::PoseGaussian pose = state.of(robot).filter.pose(state.robots[robot].slot);
+  const core::LocatedLandmark at = core::locate_landmark(observation, pose.mean, T_robot_sensor);
+  const Eigen::Matrix2d of_pose = at.G_pose * pose.covariance * at.G_pose.transpose();
+  return {at.point_world_m, of_pose + at.G_z * observation.R * at.G_z.transpose()};
+}
+
 /// A landmark that was first seen under another's name is where nobody sees it again: more than twice as many of its
-/// sightings are refused as it has. It is begun anew with the next one.
-void forget_if_misplaced(LandmarkId id, State& state) {
+/// sightings are refused as it has. So it is after it was moved. It is begun anew with the next one.
+void note_refused(std::size_t robot, LandmarkId id, const core::PointGaussian& place, State& state) {
   constexpr int least = 3;
   const auto at = static_cast<std::size_t>(id);
-  if (++state.refusals[at] > 2 * state.observations[at] + least) forget_named(id, state);
+  SightingCounts& counts = state.robots[robot].named;
+  ++counts.refused;
+  state.moved[at].refuse(robot, place, counts);
+  const bool is_misplaced = ++state.refusals[at] > 2 * state.observations[at] + least;
+  if (is_misplaced || state.moved[at].has_moved(state.observations[at], counts)) forget_named(id, state);
+}
+
+void note_accepted(std::size_t robot, LandmarkId id, State& state) {
+  ++state.robots[robot].named.accepted;
+  state.moved[static_cast<std::size_t>(id)].accept();
 }
 
 Reports observe_by_name(std::size_t robot, const NamedScan& named, const TeamOptions& options, State& state) {
@@ -144,7 +162,10 @@ Reports observe_by_name(std::size_t robot, const NamedScan& named, const TeamOpt
     const LandmarkId known = known_id(robot, name, options, state);
     reports.push_back(observe(robot, named.scan, i, true, known, options, state));
     if (reports.back().outcome == core::Outcome::augmented) state.id_of_name[{robot, name}] = reports.back().landmark;
-    if (reports.back().outcome == core::Outcome::rejected) forget_if_misplaced(known, state);
+    if (reports.back().outcome == core::Outcome::matched) note_accepted(robot, known, state);
+    if (reports.back().outcome != core::Outcome::rejected) continue;
+    const core::Observation& observation = named.scan.observations[static_cast<std::size_t>(i)];
+    note_refused(robot, known, place_seen(robot, named.scan.T_robot_sensor, observation, state), state);
   }
   return reports;
 }

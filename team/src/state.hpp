@@ -14,6 +14,7 @@
 #include "helixnav/team/same_landmarks.hpp"
 #include "helixnav/team/team_join.hpp"
 #include "joint_filter.hpp"
+#include "moved_landmark.hpp"
 
 namespace helixnav::team {
 
@@ -32,6 +33,7 @@ struct Robot {
   std::size_t component = 0;
   std::size_t slot = 0;  ///< in the filter of the component
   std::int64_t scans = 0;
+  SightingCounts named;  ///< of landmarks by name
 };
 
 /// A landmark seen from a clone.
@@ -95,6 +97,7 @@ struct State {
   std::vector<core::LandmarkId> merged_into;                                    ///< [id] itself, or the one it became
   std::vector<int> observations;                                                ///< [id]
   std::vector<int> refusals;                                                    ///< [id] sightings by name
+  std::vector<MovedLandmark> moved;                                             ///< [id] likewise
   std::vector<Birth> births;                                                    ///< [id]
   std::size_t born_before_solution = 0;                                         ///< landmarks, by id
   double reach_m = 0.0;                                                         ///< farthest landmark seen
