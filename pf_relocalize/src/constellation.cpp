@@ -221,7 +221,9 @@ ConstellationVerdict judge_constellation(const Constellation& constellation, con
   verdict.rivals_tried = static_cast<int>(rivals.size());
   for (const core::Pose2& pose : rivals) {
     ConstellationScore rival = score_constellation(constellation, pose, limits);
-    if (counts(rival, verdict.winner, limits) && rival.ratio > verdict.rival.ratio) verdict.rival = std::move(rival);
+    if (!counts(rival, verdict.winner, limits)) continue;
+    if (rival.ratio > verdict.rival.ratio) verdict.rival = rival;
+    if (rival.ratio >= limits.rival_ratio * verdict.winner.ratio) verdict.contesting.push_back(std::move(rival));
   }
   verdict.rival_share = verdict.winner.ratio > 0.0 ? verdict.rival.ratio / verdict.winner.ratio : 0.0;
   if (verdict.winner.matched == 0 && tells_appearance(constellation)) {
@@ -229,6 +231,7 @@ ConstellationVerdict judge_constellation(const Constellation& constellation, con
   }
   verdict.reason = reason_for(verdict, limits);
   verdict.accepted = verdict.reason == ConstellationReason::accepted;
+  if (verdict.reason != ConstellationReason::rival_too_good) verdict.contesting.clear();
   return verdict;
 }
 

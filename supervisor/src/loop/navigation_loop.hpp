@@ -153,6 +153,7 @@ class NavigationLoop {
   void search(const core::Scan& scan, core::StepReport& report);
   void close(const core::Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
              core::StepReport& report);
+  void close_by_shape(const core::Scan& scan, core::StepReport& report);
   bool close_as_measured(const core::Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,
                          core::StepReport& report);
   double tied_if_slipping_m() const;

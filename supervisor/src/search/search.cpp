@@ -33,6 +33,28 @@ bool agree(const std::vector<ConstellationPair>& before, const std::vector<Const
   });
 }
 
+std::ptrdiff_t count_shared(const std::vector<ConstellationPair>& one, const std::vector<ConstellationPair>& other) {
+  return std::count_if(one.begin(), one.end(), [&](const ConstellationPair& a) {
+    return std::any_of(other.begin(), other.end(), [&](const ConstellationPair& b) {
+      return a.branch == b.branch && a.old_landmark == b.old_landmark;
+    });
+  });
+}
+
+/// The winner's pairs and those of the rivals that it is not told apart from; at another place, most are others.
+std::vector<std::vector<ConstellationPair>> contested_by(const pf_relocalize::ConstellationVerdict& verdict) {
+  std::vector<std::vector<ConstellationPair>> places;
+  if (verdict.contesting.empty()) return places;
+  places.push_back(verdict.winner.pairs);
+  for (const pf_relocalize::ConstellationScore& rival : verdict.contesting) {
+    const bool is_known = std::any_of(places.begin(), places.end(), [&](const auto& place) {
+      return 2 * count_shared(place, rival.pairs) > static_cast<std::ptrdiff_t>(rival.pairs.size());
+    });
+    if (!is_known) places.push_back(rival.pairs);
+  }
+  return places;
+}
+
 /// T_world_robot of every n-th particle.
 std::vector<core::Pose2> thinned_out(const pf_relocalize::Particles& particles, const core::Pose2& T_world_base) {
   std::vector<core::Pose2> poses;
@@ -60,6 +82,7 @@ void Search::move(const core::Odometry& odometry) { motion_ = core::chain(motion
 std::optional<std::vector<ConstellationPair>> Search::look(const SearchView& view,
                                                            std::vector<core::Decision>& decisions) {
   has_just_started_ = false;
+  contested_.clear();
   const double path_m = view.life.path_m();
   const bool has_frame =
       !attempt_ || (view.filter.contains(attempt_->base_a) && view.filter.contains(attempt_->base_b));
@@ -168,6 +191,8 @@ std::optional<std::vector<ConstellationPair>> Search::question(const SearchView&
       ask_constellation(view, old_, begun_path_m_, core::compose(T_world_base, T_base_robot), options_,
                         seed_ + static_cast<std::uint64_t>(questions_));
   decisions.emplace_back(verification_decision(answer));
+  contested_ = contested_by(answer.verdict);
+  contested_looks_ += contested_.empty() ? 0 : 1;
   const bool accepted = answer.verdict.accepted;
   attempt.passes = !accepted ? 0 : agree(attempt.passed, answer.verdict.winner.pairs) ? attempt.passes + 1 : 1;
   attempt.passed = accepted ? answer.verdict.winner.pairs : std::vector<ConstellationPair>{};
@@ -179,6 +204,12 @@ std::optional<std::vector<ConstellationPair>> Search::question(const SearchView&
   }
   if (attempt.passes < options_.passes) return std::nullopt;
   return attempt.passed;
+}
+
+bool Search::pass(const std::vector<ConstellationPair>& pairs) {
+  decided_passes_ = agree(decided_, pairs) ? decided_passes_ + 1 : 1;
+  decided_ = pairs;
+  return decided_passes_ >= options_.passes;
 }
 
 void Search::end_attempt(Reason reason, double path_m, std::vector<core::Decision>& decisions) {

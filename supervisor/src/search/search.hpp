@@ -42,6 +42,14 @@ class Search {
   std::optional<std::vector<pf_relocalize::ConstellationPair>> look(const SearchView& view,
                                                                     std::vector<core::Decision>& decisions);
 
+  /// Places that explain the constellation about equally well, that of the search first, where the last look found nothing but that to
+  /// object to.
+  const std::vector<std::vector<pf_relocalize::ConstellationPair>>& contested() const { return contested_; }
+  /// Of the looks that were contested, every fifth: comparing the whole branch costs many times a question.
+  bool asks_shape() const { return !contested_.empty() && contested_looks_ % 5 == 0; }
+  /// One of them was decided for; true if it has been as often as a test is to be passed.
+  bool pass(const std::vector<pf_relocalize::ConstellationPair>& pairs);
+
   /// The closing was refused: this attempt is over.
   void refuse(double path_m);
 
@@ -97,6 +105,10 @@ class Search {
   int starts_ = 0;
   int questions_ = 0;
   std::optional<Attempt> attempt_;
+  std::vector<std::vector<pf_relocalize::ConstellationPair>> contested_;
+  std::vector<pf_relocalize::ConstellationPair> decided_;  ///< of them last
+  int decided_passes_ = 0;
+  int contested_looks_ = 0;
   bool has_just_started_ = false;  ///< the attempt, in the last look
 };
 

@@ -5,6 +5,7 @@
 
 #include "association/revisit_ambiguity.hpp"
 #include "closing/close_map.hpp"
+#include "closing/shape_evidence.hpp"
 #include "closing/tied_by_view.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 #include "loop/navigation_loop.hpp"
@@ -38,6 +39,7 @@ void NavigationLoop::search(const Scan& scan, StepReport& report) {
   report.drawn = open.drawn(belief_.filter);
   report.mode = core::Mode::searching;
   if (pairs) close(scan, *pairs, report);
+  if (searching() != nullptr && open.asks_shape()) close_by_shape(scan, report);
   const double path_m = belief_.existence.path_m();
   if (searching() == nullptr) return;
   if (!open.is_undecided(path_m)) {
@@ -70,6 +72,25 @@ void NavigationLoop::close(const Scan& scan, const std::vector<pf_relocalize::Co
   if (asked.is_closed() && close_at(asked.pairs, open.search, open.trigger, scan, asked.decision, report)) return;
   if (asked.is_asked()) report.decisions.emplace_back(asked.decision);
   searching()->search.refuse(belief_.existence.path_m());
+}
+
+/// Places that look alike from where the vehicle is may be told apart by the shape of all that was mapped since the search
+/// began. A slip bends that, and no shape is believed then.
+void NavigationLoop::close_by_shape(const Scan& scan, StepReport& report) {
+  Search& search = searching()->search;
+  if (belief_.slips.count > 0 || searching()->after_slip) return;
+  const ClosingView view{search, belief_.existence, belief_.coverage, scan, {searching()->trigger, tape_}, 0.0};
+  const Branch branch = branch_of(view, options_.search);
+  std::vector<AlongBranch> places;
+  for (const auto& pairs : search.contested()) {
+    places.push_back(
+        continued_along(belief_.filter, branch, search.old_landmarks(), kept_removed(pairs), options_.search));
+  }
+  const std::optional<std::size_t> decided = decided_by_shape(belief_.filter, places, options_.search);
+  if (!decided) return;
+  std::vector<pf_relocalize::ConstellationPair> pairs;
+  for (const auto& [kept, removed] : places[*decided].pairs) pairs.push_back({removed, kept});
+  if (search.pass(pairs)) close(scan, pairs, report);
 }
 
 bool NavigationLoop::close_as_measured(const Scan& scan, const std::vector<pf_relocalize::ConstellationPair>& pairs,

@@ -95,6 +95,8 @@ struct ConstellationVerdict {
   ConstellationReason reason = ConstellationReason::too_few_matches;
   ConstellationScore winner;
   ConstellationScore rival;  ///< best ratio among those that count; matched = 0 when none does
+  std::vector<ConstellationScore>
+      contesting;  ///< rivals that count and reach rival_ratio, if that is all that the winner failed for
   int rivals_tried = 0;
   /// rival.ratio / winner.ratio, to be kept below limits.rival_ratio. 0 for a winner without a pair; where classes or
   /// sizes are given, as if it had one pair.

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "closing/shape_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "helixnav/core/chi2.hpp"
+#include "helixnav/core/rigid_fit.hpp"
+
+namespace helixnav::supervisor {
+namespace {
+
+using core::LandmarkId;
+using Index = Eigen::Index;
+
+constexpr std::size_t most_pairs = 100;  // the nearest: what lies farther back adds little, and all cost its cube
+
+core::Pose2 fitted(const cekf::CompressedEkf& filter, const KeptRemoved& pairs) {
+  std::vector<Eigen::Vector2d> kept_m, removed_m;
+  for (const auto& [kept, removed] : pairs) {
+    kept_m.push_back(filter.landmark_mean(kept));
+    removed_m.push_back(filter.landmark_mean(removed));
+  }
+  return core::fit_rigidly(kept_m, removed_m);
+}
+
+/// Rows of the differences "removed, moved by T, minus kept" on the joint state, and their values.
+struct Differences {
+  Eigen::VectorXd nu_m;
+  Eigen::MatrixXd S_m2;
+  Eigen::MatrixXd by_pose;  ///< what moving and turning the branch as a whole adds
+};
+
+Differences differences_at(const cekf::CompressedEkf& filter, const KeptRemoved& pairs, const core::Pose2& T,
+                           double sigma_m) {
+  std::vector<LandmarkId> ids;
+  for (const auto& [kept, removed] : pairs) ids.insert(ids.end(), {kept, removed});
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  const core::JointGaussian joint = filter.joint(ids);
+  const auto place_of = [&](LandmarkId id) {
+    return static_cast<Index>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+  };
+  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(T.heading_rad).toRotationMatrix();
+  const auto n = 2 * static_cast<Index>(pairs.size());
+  Differences result{Eigen::VectorXd(n), Eigen::MatrixXd(), Eigen::MatrixXd(n, 3)};
+  const Eigen::Vector2d middle_m = filter.landmark_mean(pairs.front().first);
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, joint.covariance.cols());
+  for (Index k = 0; k < n; k += 2) {
+    const auto& [kept, removed] = pairs[static_cast<std::size_t>(k / 2)];
+    H.block<2, 2>(k, 3 + 2 * place_of(kept)) = -Eigen::Matrix2d::Identity();
+    H.block<2, 2>(k, 3 + 2 * place_of(removed)) = turn;
+    const Eigen::Vector2d moved_m = core::transform(T, joint.points_m[static_cast<std::size_t>(place_of(removed))]);
+    const Eigen::Vector2d lever_m = moved_m - middle_m;
+    result.nu_m.segment<2>(k) = moved_m - joint.points_m[static_cast<std::size_t>(place_of(kept))];
+    result.by_pose.block<2, 3>(k, 0) << 1.0, 0.0, -lever_m.y(), 0.0, 1.0, lever_m.x();
+  }
+  result.S_m2 = H * joint.covariance * H.transpose();
+  result.S_m2.diagonal().array() += sigma_m * sigma_m;
+  return result;
+}
+
+/// Of the branch landmarks that have a pair, those nearest to a point of the branch.
+KeptRemoved nearest_pairs(const cekf::CompressedEkf& filter, KeptRemoved pairs, const Eigen::Vector2d& at_m) {
+  constexpr std::size_t enough = 8;
+  const auto distance_m = [&](const auto& pair) { return (filter.landmark_mean(pair.second) - at_m).norm(); };
+  const std::size_t count = std::min(enough, pairs.size());
+  std::partial_sort(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(count), pairs.end(),
+                    [&](const auto& a, const auto& b) { return distance_m(a) < distance_m(b); });
+  pairs.resize(count);
+  return pairs;
+}
+
+/// Where the pairs around it put a landmark of the branch on the map, and how far from there its partner may be.
+struct PlacedByOthers {
+  Eigen::Vector2d on_map_m;
+  double tolerance_m = 0.0;
+};
+
+PlacedByOthers placed_by_others(const cekf::CompressedEkf& filter, const KeptRemoved& pairs, LandmarkId id,
+                                const pf_relocalize::ConstellationLimits& limits) {
+  const Eigen::Vector2d at_m = filter.landmark_mean(id);
+  const KeptRemoved near = nearest_pairs(filter, pairs, at_m);
+  double lever_m = 0.0;
+  for (const auto& pair : near) {
+    lever_m += (filter.landmark_mean(pair.second) - at_m).norm() / static_cast<double>(near.size());
+  }
+  return {core::transform(fitted(filter, near), at_m),
+          std::min(3.0 * limits.branch_sigma_m + limits.lever_rad * lever_m, limits.most_tolerance_m)};
+}
+
+/// The old landmark nearest to the place that has no partner yet and does not look different.
+std::optional<LandmarkId> nearest_like(const cekf::CompressedEkf& filter, const core::MapAppearance& appearance,
+                                       const std::vector<LandmarkId>& old, const std::set<LandmarkId>& taken,
+                                       const PlacedByOthers& place, LandmarkId id) {
+  std::optional<LandmarkId> nearest;
+  double least_m = place.tolerance_m;
+  for (const LandmarkId other : filter.landmarks_within(place.on_map_m, place.tolerance_m)) {
+    const double distance_m = (filter.landmark_mean(other) - place.on_map_m).norm();
+    const bool may_be = std::binary_search(old.begin(), old.end(), other) && taken.count(other) == 0 &&
+                        appearance.look_alike(other, id);
+    if (!may_be || distance_m >= least_m) continue;
+    nearest = other;
+    least_m = distance_m;
+  }
+  return nearest;
+}
+
+/// ln of the likelihood that so many of the landmarks on ground that both drives saw have no partner.
+double nats_of_partners(const AlongBranch& place) {
+  const auto matched = static_cast<double>(place.pairs.size());
+  const auto alone = static_cast<double>(place.alone);
+  return std::lgamma(matched + 1.0) + std::lgamma(alone + 1.0) - std::lgamma(matched + alone + 2.0);
+}
+
+}  // namespace
+
+std::optional<ShapeCost> shape_cost(const cekf::CompressedEkf& filter, const KeptRemoved& pairs, double sigma_m) {
+  const Differences at = differences_at(filter, pairs, fitted(filter, pairs), sigma_m);
+  const Eigen::LLT<Eigen::MatrixXd> llt(at.S_m2);
+  if (llt.info() != Eigen::Success) return std::nullopt;
+  const Eigen::VectorXd weighted = llt.solve(at.nu_m);
+  const Eigen::MatrixXd of_pose = llt.solve(at.by_pose);
+  const Eigen::Matrix3d information = at.by_pose.transpose() * of_pose;
+  const Eigen::Vector3d pull = of_pose.transpose() * at.nu_m;
+  const double chi2 = at.nu_m.dot(weighted) - pull.dot(information.ldlt().solve(pull));
+  if (!std::isfinite(chi2)) return std::nullopt;
+  return ShapeCost{chi2, static_cast<int>(at.nu_m.size()) - 3};
+}
+
+AlongBranch continued_along(const cekf::CompressedEkf& filter, const Branch& branch, const std::vector<LandmarkId>& old,
+                            const KeptRemoved& pairs, const SearchOptions& options) {
+  AlongBranch along{pairs, 0};
+  std::set<LandmarkId> taken;
+  for (const auto& [kept, removed] : pairs) taken.insert({kept, removed});
+  for (auto id = branch.confirmed.rbegin(); id != branch.confirmed.rend(); ++id) {
+    if (along.pairs.size() >= most_pairs) break;
+    if (taken.count(*id) > 0 || !filter.contains(*id)) continue;
+    const PlacedByOthers place = placed_by_others(filter, along.pairs, *id, options.constellation);
+    const std::optional<LandmarkId> partner = nearest_like(filter, branch.appearance, old, taken, place, *id);
+    if (!partner) {
+      along.alone += branch.old_drive.covers(place.on_map_m) ? 1 : 0;
+      continue;
+    }
+    taken.insert({*partner, *id});
+    along.pairs.emplace_back(*partner, *id);
+  }
+  return along;
+}
+
+std::optional<std::size_t> decided_by_shape(const cekf::CompressedEkf& filter, const std::vector<AlongBranch>& places,
+                                            const SearchOptions& options) {
+  std::vector<ShapeCost> costs;
+  for (const AlongBranch& place : places) {
+    const std::optional<ShapeCost> cost = shape_cost(filter, place.pairs, options.merge_sigma_m);
+    if (!cost || cost->dof <= 0) return std::nullopt;
+    costs.push_back(*cost);
+  }
+  const auto fits = [&](std::size_t i) {
+    return costs[i].chi2 <= core::chi2_quantile(options.closing_probability, costs[i].dof);
+  };
+  const auto is_refuted = [&](std::size_t i, std::size_t by) {
+    constexpr double all_but_never = 1.0 - 1e-6;
+    static const double least_nats = std::log(1000.0);
+    const bool is_bent = costs[i].chi2 > core::chi2_quantile(all_but_never, costs[i].dof);
+    const bool lacks_partners = nats_of_partners(places[i]) + least_nats < nats_of_partners(places[by]);
+    return places[i].pairs.size() <= places[by].pairs.size() && (is_bent || lacks_partners);
+  };
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    bool is_alone = fits(i);
+    for (std::size_t k = 0; is_alone && k < places.size(); ++k) is_alone = k == i || is_refuted(k, i);
+    if (is_alone) return i;
+  }
+  return std::nullopt;
+}
+
+}  // namespace helixnav::supervisor
