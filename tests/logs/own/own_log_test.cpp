@@ -84,6 +84,24 @@ TEST(OwnLog, LeavesOutDetectionsThatRepeatAnotherAndCountsThem) {
   EXPECT_EQ(read.remarks.at(0), "detections: 1 row that repeat another, left out");
 }
 
+// Sent twice by a driver: it would have been driven twice.
+TEST(OwnLog, LeavesOutIncrementsThatRepeatAnotherAndCountsThem) {
+  const OwnLogFolder log;
+  log.write("odometry.csv", "t,dx_m,dheading_rad\n0,0,0\n0.5,2,0.1\n0.5,2,0.1\n1,2,0.1\n");
+  const OwnLog read = log.read();
+  ASSERT_EQ(read.odometry.size(), 3u);
+  EXPECT_EQ(read.odometry.back().t_ns, 1'000'000'000);
+  EXPECT_EQ(read.remarks.at(0), "odometry: 1 row that repeat another, left out");
+}
+
+TEST(OwnLog, KeepsEqualIncrementsWhereSeveralShareOneTime) {
+  const OwnLogFolder log;
+  log.write("odometry.csv", "t,dx_m,dheading_rad\n0,0,0\n1,2,0.1\n1,2,0.1\n1,2,0.2\n2,2,0.1\n");
+  EXPECT_EQ(log.read().odometry.size(), 5u);
+  log.write("odometry.csv", "t,v,omega\n0,1,0\n0.5,2,0\n0.5,2,0\n1,4,0\n");
+  EXPECT_EQ(log.read().odometry.size(), 4u) << "a speed may be said twice";
+}
+
 // Comparing row with row, 160 000 of them in eight scans took 24 s.
 TEST(OwnLog, FindsWhatIsRepeatedInScansOfThousands) {
   const OwnLogFolder log;

@@ -294,6 +294,18 @@ TEST_F(OwnStreamLines, OfOneWrongTimeDoNotMakeTheRestLate) {
   expect_refused(odometry(0.2), "t", "comes after");
 }
 
+TEST_F(OwnStreamLines, OfAnIncrementThatWasSentTwiceAreRefused) {
+  const auto increment = [](double t_s, double dx_m) {
+    return "{\"odometry\": {\"t\": " + std::to_string(t_s) + ", \"dx_m\": " + std::to_string(dx_m) +
+           ", \"dheading_rad\": 0, \"sigma_x_m\": 0.01, \"sigma_heading_rad\": 0.001}}";
+  };
+  take(increment(0.0, 0.0));
+  take(increment(0.5, 2.0));
+  expect_refused(increment(0.5, 2.0), "t", "repeats odometry at 0.5 s");
+  EXPECT_TRUE(take(increment(0.5, 1.0)).refused.empty()) << "times are coarse";
+  EXPECT_TRUE(take(increment(0.5, 1.0)).refused.empty());
+}
+
 TEST_F(OwnStreamLines, OfAnotherClockAreNotKeptForEver) {
   take(odometry(0.0));
   std::size_t refused = 0;

@@ -22,6 +22,17 @@ LiveMotion::LiveMotion(const Vehicle& vehicle, double late_s)
       late_ns_(core::nanoseconds_from_seconds(late_s + longest_delay_s(vehicle))),
       weaver_(vehicle.odometry.T_vehicle_odometry, woven_) {}
 
+namespace {
+
+[[noreturn]] void refuse_at(core::Nanoseconds t_ns, const char* does, core::Nanoseconds last_ns, const char* why) {
+  char text[160];
+  std::snprintf(text, sizeof text, "odometry at %.9g s %s odometry at %.9g s%s", core::seconds(t_ns), does,
+                core::seconds(last_ns), why);
+  throw StreamRefusal("t", text);
+}
+
+}  // namespace
+
 void LiveMotion::check(const OwnLog& log) const {
   if (log.odometry.empty()) return;
   if (!rows_.odometry.empty() && log.odometry_kind != rows_.odometry_kind) {
@@ -30,23 +41,31 @@ void LiveMotion::check(const OwnLog& log) const {
   }
   const Motions motions(log, vehicle_);
   if (rows_.odometry.empty()) return;
-  core::Nanoseconds last_ns = rows_.odometry.back().t_ns;
+  OwnOdometry last = rows_.odometry.back();
   for (const OwnOdometry& row : log.odometry) {
     const bool answered = row.t_ns == woven_ns_ && !motions.holds();
-    if (row.t_ns < last_ns || answered) {
-      char text[160];
-      std::snprintf(text, sizeof text, "odometry at %.9g s comes after odometry at %.9g s%s", core::seconds(row.t_ns),
-                    core::seconds(last_ns), answered ? " by which a scan was answered" : "");
-      throw StreamRefusal("t", text);
+    if (is_repeated(last, row)) refuse_at(row.t_ns, "repeats", last.t_ns, "");
+    if (row.t_ns < last.t_ns || answered) {
+      refuse_at(row.t_ns, "comes after", last.t_ns, answered ? " by which a scan was answered" : "");
     }
-    last_ns = row.t_ns;
+    last = row;
   }
+}
+
+/// An increment that was sent twice would be driven twice. Where several share one time, equal ones may well be two.
+bool LiveMotion::is_repeated(const OwnOdometry& last, const OwnOdometry& row) const {
+  return rows_.odometry_kind == OdometryKind::increments && !share_times_ && row.t_ns == last.t_ns &&
+         row.value == last.value;
 }
 
 void LiveMotion::add(const OwnLog& log) {
   if (log.odometry.empty()) return;
   const bool first = rows_.odometry.empty();
   rows_.odometry_kind = log.odometry_kind;
+  for (std::size_t i = 0; i < log.odometry.size(); ++i) {
+    const OwnOdometry* before = i > 0 ? &log.odometry[i - 1] : first ? nullptr : &rows_.odometry.back();
+    share_times_ = share_times_ || (before != nullptr && before->t_ns == log.odometry[i].t_ns);
+  }
   rows_.odometry.insert(rows_.odometry.end(), log.odometry.begin(), log.odometry.end());
   rows_.odometry_covariances.insert(rows_.odometry_covariances.end(), log.odometry_covariances.begin(),
                                     log.odometry_covariances.end());

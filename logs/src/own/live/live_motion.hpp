@@ -29,7 +29,7 @@ class LiveMotion {
  public:
   LiveMotion(const Vehicle& vehicle, double late_s);
 
-  /// Throws StreamRefusal for rows that go back in time or are of another kind, core::InputError for noise or geometry
+  /// Throws StreamRefusal for rows that go back in time, are of another kind or repeat an increment, core::InputError for noise or geometry
   /// that is not given anywhere. Changes nothing.
   void check(const OwnLog& log) const;
   void add(const OwnLog& log);
@@ -54,6 +54,7 @@ class LiveMotion {
   core::Nanoseconds woven_ns() const { return woven_ns_; }
 
  private:
+  bool is_repeated(const OwnOdometry& last, const OwnOdometry& row) const;
   bool is_known(std::size_t row) const;
   void drop_woven();
 
@@ -62,6 +63,7 @@ class LiveMotion {
   OwnLog rows_;  ///< from the one before next_ on, always with covariances
   std::optional<Motions> motions_;
   std::size_t count_ = 0;           ///< rows that arrived
+  bool share_times_ = false;        ///< two of them had the same time
   core::Nanoseconds first_ns_ = 0;  ///< of the first
   std::size_t next_ = 0;            ///< row whose motion is not all woven
   std::optional<core::Nanoseconds> last_ns_;

@@ -197,6 +197,27 @@ void OwnTables::drop_repeated_detections() {
   rows.resize(kept);
 }
 
+/// An increment that was sent twice would be driven twice. Where times are so coarse that several increments share one, equal ones may
+/// well be two.
+void OwnTables::drop_repeated_increments() {
+  std::vector<OwnOdometry>& rows = log_.odometry;
+  if (log_.odometry_kind != OdometryKind::increments) return;
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool shares_time = i > 0 && rows[i].t_ns == rows[i - 1].t_ns;
+    if (shares_time && rows[i].value != rows[i - 1].value) return;
+    if (!shares_time) kept.push_back(i);
+  }
+  if (kept.size() == rows.size()) return;
+  log_.remarks.push_back("odometry: " + counted(rows.size() - kept.size(), "row") + " that repeat another, left out");
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    rows[k] = rows[kept[k]];
+    if (!log_.odometry_covariances.empty()) log_.odometry_covariances[k] = log_.odometry_covariances[kept[k]];
+  }
+  rows.resize(kept.size());
+  if (!log_.odometry_covariances.empty()) log_.odometry_covariances.resize(kept.size());
+}
+
 void OwnTables::number_identities() {
   std::vector<core::Label> label_of;
   for (const std::string& word : ids_.words()) {
@@ -235,6 +256,7 @@ OwnLog OwnTables::finish(std::string name) {
   sort_all();
   number_identities();
   drop_repeated_detections();
+  drop_repeated_increments();
   log_.name = std::move(name);
   log_.sensor_names = sensors_.words();
   if (log_.sensor_names.empty()) log_.sensor_names.emplace_back();

@@ -77,6 +77,7 @@ class OwnTables {
   void remark(const std::string& text);
   void sort_all();
   void drop_repeated_detections();
+  void drop_repeated_increments();
   void number_identities();
 
   bool rows_alone_;
