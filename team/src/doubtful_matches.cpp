@@ -71,7 +71,8 @@ InnovationProblem without(const InnovationProblem& problem, const std::vector<in
 }
 
 /// ln of the likelihood of a matching against that of new objects only.
-double nats_of(const InnovationProblem& problem, const std::vector<int>& pairs, const association::Options& options) {
+double nats_of_matching(const InnovationProblem& problem, const std::vector<int>& pairs,
+                        const association::Options& options) {
   double nats = pairs.empty() ? 0.0 : association::joint_nis(problem, pairs).log_likelihood;
   const double detection_nats = std::log(options.detection_probability / (1.0 - options.detection_probability));
   for (const int pair : pairs) {
@@ -92,9 +93,9 @@ std::vector<int> decided_jointly(const InnovationProblem& problem, const associa
   const Assignment best = joint_matching(problem);
   const InnovationProblem elsewhere = without(problem, best.pairs);
   const Assignment rival = joint_matching(elsewhere);
-  const double rival_nats = std::max(0.0, nats_of(elsewhere, rival.pairs, options));
+  const double rival_nats = std::max(0.0, nats_of_matching(elsewhere, rival.pairs, options));
   const bool is_cut_short = best.budget_hit || rival.budget_hit;
-  if (is_cut_short || nats_of(problem, best.pairs, options) < rival_nats + needed_nats) return landmarks;
+  if (is_cut_short || nats_of_matching(problem, best.pairs, options) < rival_nats + needed_nats) return landmarks;
   for (const int pair : best.pairs) {
     const GatedPair& one = problem.pairs[static_cast<std::size_t>(pair)];
     landmarks[static_cast<std::size_t>(one.observation)] = one.candidate;

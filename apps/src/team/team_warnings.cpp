@@ -2,6 +2,7 @@
 #include "team/team_warnings.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iterator>
 #include <map>
@@ -17,6 +18,31 @@ namespace {
 struct Refused {
   std::size_t seen = 0, refused = 0;
 };
+
+/// Sightings of landmarks in a row, all refused, by time and landmark.
+struct AllRefused {
+  core::Nanoseconds from_ns = 0, to_ns = 0;
+  std::size_t count = 0;
+  std::set<core::LandmarkId> landmarks;
+};
+
+AllRefused longest_refused(const TeamDrive::Robot& robot) {
+  AllRefused longest, now;
+  for (const core::StepReport& step : robot.steps) {
+    for (const core::AssociationReport& one : step.associations) {
+      if (one.landmark == core::no_landmark) continue;
+      if (one.outcome != core::Outcome::rejected) {
+        now = AllRefused();
+        continue;
+      }
+      if (now.count++ == 0) now.from_ns = step.t_ns;
+      now.to_ns = step.t_ns;
+      now.landmarks.insert(one.landmark);
+      if (now.count > longest.count) longest = now;
+    }
+  }
+  return longest;
+}
 
 /// Landmarks that have a name, and robots: not what is labelled as no landmark.
 Refused refused_of(const TeamDrive& drive, std::size_t robot) {
@@ -95,6 +121,40 @@ void warn_of_refused(const TeamTask& task, const TeamDrive& drive, Sentences& wa
   }
 }
 
+/// A landmark that was moved, or a name that is misread, is one; a robot that is not where it believes itself to be sees several where
+/// they should not be.
+void warn_of_all_refused(const TeamTask& task, const TeamDrive& drive, Sentences& warnings) {
+  constexpr std::size_t enough = 10, enough_landmarks = 3;
+  for (std::size_t r = 0; r < drive.robots.size(); ++r) {
+    const AllRefused refused = longest_refused(drive.robots[r]);
+    if (refused.count < enough || refused.landmarks.size() < enough_landmarks) continue;
+    warnings.push_back(
+        sentence("robot %d: from %.1f to %.1f s all of its %zu sightings of %zu landmarks were refused: it slipped, "
+                 "turned or was "
+                 "moved unnoticed, and its pose is wrong there",
+                 number_of(task, static_cast<int>(r)), core::seconds(refused.from_ns), core::seconds(refused.to_ns),
+                 refused.count, refused.landmarks.size()));
+  }
+}
+
+/// Innovations larger than assumed, by chance for one robot in 10 000.
+void warn_of_innovations(const TeamTask& task, const TeamDrive& drive, Sentences& warnings) {
+  constexpr double sigmas = 3.7, least_ratio = 1.1;
+  for (std::size_t r = 0; r < drive.robots.size(); ++r) {
+    double nis = 0.0, dof = 0.0;
+    for (const core::StepReport& step : drive.robots[r].steps) {
+      nis += step.joint_nis;
+      dof += step.joint_dof;
+    }
+    if (dof <= 0.0 || nis < least_ratio * dof || nis < dof + sigmas * std::sqrt(2.0 * dof)) continue;
+    warnings.push_back(sentence(
+        "robot %d: its sightings are farther from where they are expected than the assumed noise explains (mean "
+        "NIS %.2f per degree of freedom, %.0f of them): its noise is larger, or its speed or its turns are off by "
+        "a constant. Its pose is less certain than stated",
+        number_of(task, static_cast<int>(r)), nis / dof, dof));
+  }
+}
+
 void warn_of_mapped_anew(const TeamTask& task, const TeamDrive& drive, Sentences& warnings) {
   for (std::size_t r = 0; r < drive.robots.size(); ++r) {
     const std::optional<MappedAnew> anew = mapped_anew(drive, r);
@@ -130,6 +190,8 @@ void warn_of_names_in_two_frames(const TeamTask& task, const TeamDrive& drive, S
 std::vector<std::string> team_warnings(const TeamTask& task, const TeamDrive& drive) {
   Sentences warnings;
   warn_of_refused(task, drive, warnings);
+  warn_of_all_refused(task, drive, warnings);
+  warn_of_innovations(task, drive, warnings);
   if (task.known_association) {
     warn_of_names_in_two_frames(task, drive, warnings);
   } else {

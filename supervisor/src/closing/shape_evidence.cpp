@@ -21,7 +21,7 @@ using Index = Eigen::Index;
 
 constexpr std::size_t most_pairs = 100;  // the nearest: what lies farther back adds little, and all cost its cube
 
-core::Pose2 fitted(const cekf::CompressedEkf& filter, const KeptRemoved& pairs) {
+core::Pose2 fitted_to_pairs(const cekf::CompressedEkf& filter, const KeptRemoved& pairs) {
   std::vector<Eigen::Vector2d> kept_m, removed_m;
   for (const auto& [kept, removed] : pairs) {
     kept_m.push_back(filter.landmark_mean(kept));
@@ -31,14 +31,14 @@ core::Pose2 fitted(const cekf::CompressedEkf& filter, const KeptRemoved& pairs) 
 }
 
 /// Rows of the differences "removed, moved by T, minus kept" on the joint state, and their values.
-struct Differences {
+struct MovedDifferences {
   Eigen::VectorXd nu_m;
   Eigen::MatrixXd S_m2;
   Eigen::MatrixXd by_pose;  ///< what moving and turning the branch as a whole adds
 };
 
-Differences differences_at(const cekf::CompressedEkf& filter, const KeptRemoved& pairs, const core::Pose2& T,
-                           double sigma_m) {
+MovedDifferences differences_at(const cekf::CompressedEkf& filter, const KeptRemoved& pairs, const core::Pose2& T,
+                                double sigma_m) {
   std::vector<LandmarkId> ids;
   for (const auto& [kept, removed] : pairs) ids.insert(ids.end(), {kept, removed});
   std::sort(ids.begin(), ids.end());
@@ -49,7 +49,7 @@ Differences differences_at(const cekf::CompressedEkf& filter, const KeptRemoved&
   };
   const Eigen::Matrix2d turn = Eigen::Rotation2Dd(T.heading_rad).toRotationMatrix();
   const auto n = 2 * static_cast<Index>(pairs.size());
-  Differences result{Eigen::VectorXd(n), Eigen::MatrixXd(), Eigen::MatrixXd(n, 3)};
+  MovedDifferences result{Eigen::VectorXd(n), Eigen::MatrixXd(), Eigen::MatrixXd(n, 3)};
   const Eigen::Vector2d middle_m = filter.landmark_mean(pairs.front().first);
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, joint.covariance.cols());
   for (Index k = 0; k < n; k += 2) {
@@ -91,7 +91,7 @@ PlacedByOthers placed_by_others(const cekf::CompressedEkf& filter, const KeptRem
   for (const auto& pair : near) {
     lever_m += (filter.landmark_mean(pair.second) - at_m).norm() / static_cast<double>(near.size());
   }
-  return {core::transform(fitted(filter, near), at_m),
+  return {core::transform(fitted_to_pairs(filter, near), at_m),
           std::min(3.0 * limits.branch_sigma_m + limits.lever_rad * lever_m, limits.most_tolerance_m)};
 }
 
@@ -122,7 +122,7 @@ double nats_of_partners(const AlongBranch& place) {
 }  // namespace
 
 std::optional<ShapeCost> shape_cost(const cekf::CompressedEkf& filter, const KeptRemoved& pairs, double sigma_m) {
-  const Differences at = differences_at(filter, pairs, fitted(filter, pairs), sigma_m);
+  const MovedDifferences at = differences_at(filter, pairs, fitted_to_pairs(filter, pairs), sigma_m);
   const Eigen::LLT<Eigen::MatrixXd> llt(at.S_m2);
   if (llt.info() != Eigen::Success) return std::nullopt;
   const Eigen::VectorXd weighted = llt.solve(at.nu_m);

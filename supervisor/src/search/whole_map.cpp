@@ -44,9 +44,9 @@ std::vector<pf_relocalize::ConstellationPair> constellation_of(const relocalize:
 }
 
 /// The places that chance explains as the true one's rivals where the vehicle is surely on the map; none if some may not have been found.
-std::vector<std::vector<pf_relocalize::ConstellationPair>> may_be(const relocalize::Answer& answer,
-                                                                  const relocalize::AskOptions& how,
-                                                                  bool may_have_slipped) {
+std::vector<std::vector<pf_relocalize::ConstellationPair>> places_left(const relocalize::Answer& answer,
+                                                                       const relocalize::AskOptions& how,
+                                                                       bool may_have_slipped) {
   if (answer.verdict == relocalize::Verdict::closed) return {constellation_of(answer.places.front())};
   if (answer.verdict == relocalize::Verdict::not_here || answer.capped || answer.crowded) return {};
   const double least =
@@ -180,7 +180,7 @@ AskedWholeMap NavigationLoop::ask(LandmarksAbout& about, const Search& search, c
   asked.decision.questions = questions_.asked.questions + 1;
   asked.decision.needed = relocalize::evidence_needed(how);
   if (answer.verdict == relocalize::Verdict::closed) asked.pairs = constellation_of(answer.places.front());
-  asked.may_be = may_be(answer, how, belief_.slips.count > 0);
+  asked.may_be = places_left(answer, how, belief_.slips.count > 0);
   questions_.asked.note(about.ids);
   return asked;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -135,6 +136,51 @@ TEST_F(TeamLog, WhoseCommandsStopIsRemarkedOn) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("robot 2 has no command from 0.300000 to 20.000000 s"), std::string::npos) << outcome.err;
   EXPECT_EQ(outcome.err.find("robot 1 has no command"), std::string::npos) << outcome.err;
+}
+
+/// Robots that stand for 40 s. Of landmarks 6 to 9, the first sees one every 0.4 s.
+class StandingTeam : public TeamLog {
+ protected:
+  /// `bearing_rad`: by how much sighting k of the first robot is off.
+  void see(const std::function<double(int)>& range_m, const std::function<double(int)>& bearing_rad) {
+    write("odometry.csv", "1,0.0,0.0,0.0\n1,40.0,0.0,0.0\n2,0.0,0.0,0.0\n2,40.0,0.0,0.0\n");
+    std::string text = "2,1.0,5,1,4.0,0.0\n";
+    for (int k = 0; k < 96; ++k) {
+      const int subject = 6 + k % 4;
+      text += "1," + std::to_string(0.4 * (k + 1)) + "," + std::to_string(60 + subject) + "," +
+              std::to_string(subject) + "," + std::to_string(2.0 + range_m(k)) + "," +
+              std::to_string(0.4 * (k % 4) + bearing_rad(k)) + "\n";
+    }
+    write("measurements.csv", text);
+    write("landmarks_true.csv", "6,2.0,0.0,1e-4,1e-4\n7,1.8,0.8,1e-4,1e-4\n8,1.4,1.4,1e-4,1e-4\n9,0.7,1.9,1e-4,1e-4\n");
+  }
+  Outcome replay_precise() const {
+    return replay({"--mrclam.sigma_range_m", "0.1", "--mrclam.sigma_bearing_rad", "0.02"});
+  }
+};
+
+TEST_F(StandingTeam, OfTheAssumedNoiseIsNotWarnedOf) {
+  see([](int k) { return k / 4 % 2 == 0 ? 0.1 : -0.1; }, [](int k) { return k / 8 % 2 == 0 ? 0.02 : -0.02; });
+  const Outcome outcome = replay_precise();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err.find("warning"), std::string::npos) << outcome.err;
+}
+
+TEST_F(StandingTeam, WithInnovationsLargerThanAssumedIsWarnedOf) {
+  see([](int k) { return k / 4 % 2 == 0 ? 0.2 : -0.2; }, [](int k) { return k / 8 % 2 == 0 ? 0.04 : -0.04; });
+  const Outcome outcome = replay_precise();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("robot 1: its sightings are farther from where they are expected"), std::string::npos)
+      << outcome.err;
+}
+
+TEST_F(StandingTeam, ThatWasTurnedForAWhileIsWarnedOf) {
+  see([](int) { return 0.0; }, [](int k) { return k >= 60 && k < 72 ? 2.0 : 0.0; });
+  const Outcome outcome = replay_precise();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("robot 1: from 24.4 to 28.8 s all of its 12 sightings of 4 landmarks were refused"),
+            std::string::npos)
+      << outcome.err;
 }
 
 /// Landmark 6 is seen at two places alternately under one name.

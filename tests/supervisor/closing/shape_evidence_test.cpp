@@ -56,7 +56,7 @@ struct TwoPasses {
   }
 };
 
-TwoPasses twice(const Posts& posts_m, std::size_t from) {
+TwoPasses driven_twice(const Posts& posts_m, std::size_t from) {
   core::RandomStream random(7, "two passes");
   core::JointGaussian joint;
   const std::size_t n = posts_m.size(), copies = n - 4 - from;
@@ -98,7 +98,7 @@ std::optional<std::size_t> decided_between(const TwoPasses& passes, const std::v
 }
 
 TEST(ShapeEvidence, IsWhatTheBestRigidFitLeaves) {
-  const TwoPasses passes = twice(road(with_bend(20)), 0);
+  const TwoPasses passes = driven_twice(road(with_bend(20)), 0);
   const KeptRemoved pairs = passes.last_ones(0);
   Posts kept_m, removed_m;
   for (const auto& [kept, removed] : pairs) {
@@ -116,34 +116,34 @@ TEST(ShapeEvidence, IsWhatTheBestRigidFitLeaves) {
 }
 
 TEST(ShapeEvidence, ContinuesThePairsBackToTheFirst) {
-  const TwoPasses passes = twice(road(with_bend(20)), 6);
+  const TwoPasses passes = driven_twice(road(with_bend(20)), 6);
   const AlongBranch along = continued_along(passes.filter, passes.branch, passes.old, passes.last_ones(0), {});
   EXPECT_EQ(along.pairs.size(), passes.branch.confirmed.size());
   for (const auto& [kept, removed] : along.pairs) EXPECT_EQ(passes.copy_of(static_cast<std::size_t>(kept)), removed);
 }
 
 TEST(ShapeEvidence, ASharpBendTellsWhichPostsTheyAre) {
-  const TwoPasses passes = twice(road(with_bend(20)), 4);
+  const TwoPasses passes = driven_twice(road(with_bend(20)), 4);
   EXPECT_EQ(decided_between(passes, {1, 0, -1}), std::optional<std::size_t>(1));
 }
 
 TEST(ShapeEvidence, AGentleBendTellsWhichPostsTheyAre) {
   std::vector<double> turns(20, 0.0);
   for (std::size_t k = 8; k < 13; ++k) turns[k] = 0.06;
-  const TwoPasses passes = twice(road(turns), 4);
+  const TwoPasses passes = driven_twice(road(turns), 4);
   EXPECT_EQ(decided_between(passes, {1, 0, -1}), std::optional<std::size_t>(1));
 }
 
 TEST(ShapeEvidence, AStraightRoadTellsNothing) {
-  EXPECT_FALSE(decided_between(twice(road(straight(20)), 4), {1, 0, -1}));
+  EXPECT_FALSE(decided_between(driven_twice(road(straight(20)), 4), {1, 0, -1}));
 }
 
 TEST(ShapeEvidence, ACircleTellsNothing) {
-  EXPECT_FALSE(decided_between(twice(road(std::vector<double>(20, 0.1)), 4), {1, 0, -1}));
+  EXPECT_FALSE(decided_between(driven_twice(road(std::vector<double>(20, 0.1)), 4), {1, 0, -1}));
 }
 
 TEST(ShapeEvidence, APlaceThatExplainsLessIsNotDecidedFor) {
-  const TwoPasses passes = twice(road(with_bend(20)), 4);
+  const TwoPasses passes = driven_twice(road(with_bend(20)), 4);
   AlongBranch all = continued_along(passes.filter, passes.branch, passes.old, passes.last_ones(0), {});
   all.pairs[3].first = all.pairs[20].first - 4;  // wrong, so that its shape does not fit
   AlongBranch few{passes.last_ones(0), 0};
