@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <limits>
 #include <set>
+#include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -210,12 +212,30 @@ std::string team_summary(const TeamTask& task, const TeamDrive& drive, const Tea
   return json.dump(2) + '\n';
 }
 
+namespace {
+
+/// Robots of a run that is overwritten would seem to be of this one.
+void remove_other_robots(const std::string& folder, const TeamTask& task) {
+  std::set<std::string> robots;
+  for (const auto& robot : task.recording.robots) robots.insert("robot_" + std::to_string(robot.number));
+  std::vector<std::filesystem::path> others;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const bool is_run = name.rfind("robot_", 0) == 0 && std::filesystem::exists(entry.path() / "manifest.json");
+    if (is_run && robots.count(name) == 0) others.push_back(entry.path());
+  }
+  for (const std::filesystem::path& other : others) std::filesystem::remove_all(other);
+}
+
+}  // namespace
+
 void write_team(const std::string& folder, bool overwrite, const runs::RunManifest& manifest, const TeamTask& task,
                 const TeamDrive& drive, const TeamEvaluation& evaluation) {
   for (std::size_t r = 0; r < drive.robots.size(); ++r) {
     const std::string name = "/robot_" + std::to_string(task.recording.robots[r].number);
     write_robot(folder + name, overwrite, manifest, task, drive, r);
   }
+  if (overwrite) remove_other_robots(folder, task);
   files::write_whole_file(folder + "/map.csv", map_table(task, drive));
   files::write_whole_file(folder + "/joins.csv", joins_table(task, drive));
   files::write_whole_file(folder + "/sightings.csv", sightings_table(task, drive));

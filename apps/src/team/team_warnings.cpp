@@ -130,8 +130,7 @@ void warn_of_all_refused(const TeamTask& task, const TeamDrive& drive, Sentences
     if (refused.count < enough || refused.landmarks.size() < enough_landmarks) continue;
     warnings.push_back(
         sentence("robot %d: from %.1f to %.1f s all of its %zu sightings of %zu landmarks were refused: it slipped, "
-                 "turned or was "
-                 "moved unnoticed, and its pose is wrong there",
+                 "turned or was moved unnoticed, or they were",
                  number_of(task, static_cast<int>(r)), core::seconds(refused.from_ns), core::seconds(refused.to_ns),
                  refused.count, refused.landmarks.size()));
   }

@@ -43,7 +43,8 @@ std::vector<pf_relocalize::ConstellationPair> constellation_of(const relocalize:
   return pairs;
 }
 
-/// The places that chance explains as the true one's rivals where the vehicle is surely on the map; none if some may not have been found.
+/// The places that may be the true one, where the vehicle is surely on the map: the best one, and those that it is not ahead of by what
+/// chance leaves. None if some may not have been found.
 std::vector<std::vector<pf_relocalize::ConstellationPair>> places_left(const relocalize::Answer& answer,
                                                                        const relocalize::AskOptions& how,
                                                                        bool may_have_slipped) {

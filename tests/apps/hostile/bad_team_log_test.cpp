@@ -68,6 +68,17 @@ TEST_F(TeamLog, IsNavigatedWhereNothingIsWrong) {
   EXPECT_EQ(outcome.err.find("warning"), std::string::npos) << outcome.err;
 }
 
+TEST_F(TeamLog, OverwritesRobotsOfTheRunBeforeAndNothingElse) {
+  ASSERT_EQ(replay().exit_code, 0);
+  fs::copy(out() / "robot_2", out() / "robot_7");
+  fs::create_directory(out() / "robot_notes");
+  const Outcome outcome = replay({"--overwrite"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_FALSE(fs::exists(out() / "robot_7"));
+  EXPECT_TRUE(fs::exists(out() / "robot_2"));
+  EXPECT_TRUE(fs::exists(out() / "robot_notes"));
+}
+
 TEST_F(TeamLog, WithoutNamesIsToldHowManyLandmarksThereAre) {
   const Outcome outcome = replay({"--association", "unknown"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
