@@ -29,11 +29,12 @@ AlongBranch continued_along(const cekf::CompressedEkf& filter, const Branch& bra
                             const std::vector<core::LandmarkId>& old, const KeptRemoved& pairs,
                             const SearchOptions& options);
 
-/// Which of several places that all explain the constellation around the vehicle the shape of the whole branch belongs to. On a track or
-/// an avenue any few trees fit any others one pitch on; a bend in between does not. The place's χ² is within the limit of a
-/// closing, and every other place is refuted: its χ² exceeds what one right place in a million has, or landmarks without a
-/// partner make it a thousand times less likely; and it explains no more landmarks, since at the rim of an orchard, where most are on
-/// unmapped ground, a few fit by themselves. Where places repeat exactly, the difference of two χ² that are both usual is chance. Nothing if that holds for none.
+/// Which of several places that all explain the constellation around the vehicle the shape of the whole branch belongs to. On a track
+/// or an avenue any few trees fit any others one pitch on; a bend in between does not. The place's χ² is within the limit of a closing,
+/// and every other place is refuted: its χ² exceeds what one right place in a million has, or landmarks without a partner make it a
+/// thousand times less likely; and it explains no more landmarks, since at the rim of an orchard, where most are on unmapped ground, a
+/// few fit by themselves. Where places repeat exactly, the difference of two χ² that are both usual is chance. Nothing if that holds
+/// for none.
 /// Source: docs/closing.md. Test: supervisor/closing/shape_evidence_test.cpp.
 std::optional<std::size_t> decided_by_shape(const cekf::CompressedEkf& filter, const std::vector<AlongBranch>& places,
                                             const SearchOptions& options);

@@ -29,8 +29,8 @@ class LiveMotion {
  public:
   LiveMotion(const Vehicle& vehicle, double late_s);
 
-  /// Throws StreamRefusal for rows that go back in time, are of another kind or repeat an increment, core::InputError for noise or geometry
-  /// that is not given anywhere. Changes nothing.
+  /// Throws StreamRefusal for rows that go back in time, are of another kind or repeat an increment, core::InputError for
+  /// noise or geometry that is not given anywhere. Changes nothing.
   void check(const OwnLog& log) const;
   void add(const OwnLog& log);
 
