@@ -34,7 +34,8 @@ std::vector<MovedLandmark> mature_landmarks(const runs::Run& run, const core::Po
   return landmarks;
 }
 
-// How often each label was seen, in total and by each landmark.
+// How often each label was seen, in all and in the observations used for each landmark: one that only may be a landmark
+// says nothing of which tree that landmark is.
 struct LabelCounts {
   std::map<core::Label, int> in_all;
   std::map<core::LandmarkId, std::map<core::Label, int>> by_landmark;
@@ -49,7 +50,8 @@ LabelCounts count_labels(const runs::Run& run, const runs::RunTruth& truth) {
       const auto k = static_cast<std::size_t>(a.observation);
       const core::Label label = k < truth.labels[index].size() ? truth.labels[index][k] : core::no_label;
       if (label != core::no_label) ++counts.in_all[label];
-      if (a.landmark != core::no_landmark) ++counts.by_landmark[a.landmark][label];
+      const bool is_used = a.outcome == core::Outcome::matched || a.outcome == core::Outcome::augmented;
+      if (is_used) ++counts.by_landmark[a.landmark][label];
     }
   }
   return counts;

@@ -95,6 +95,23 @@ TEST(MapEvaluation, PairsByLabelWhateverTheDistance) {
   EXPECT_EQ(map.spurious, 1u);
 }
 
+/// Far from home an observation may be of trees hundreds of metres apart; none of them is what the landmark is.
+TEST(MapEvaluation, TakesNoLabelFromObservationsThatWereNotUsed) {
+  runs::Run run;
+  run.map = {landmark(0, 0.1, 0.0)};
+  run.truth.landmarks = {{7, {0.0, 0.0}}, {8, {200.0, 0.0}}};
+  for (int k = 0; k < 20; ++k) {
+    core::StepReport& step = run.steps.emplace_back();
+    step.step = k;
+    step.associations = {{0, k < 3 ? core::Outcome::matched : core::Outcome::ambiguous, 0, 1.0, 2, 1.0}};
+    run.truth.labels.push_back({k < 3 ? 7 : 8});
+  }
+  const MapEvaluation map = evaluate_map(run, run.truth, {}, 2.0);
+  EXPECT_TRUE(map.by_label);
+  EXPECT_NEAR(map.error_m.max, 0.1, 1e-12);
+  EXPECT_EQ(map.missing, 1u) << "tree 8, seen 17 times";
+}
+
 /// A map started by others: another robot of the team, or an earlier run.
 TEST(MapEvaluation, JudgesLandmarksThatTheRunNeverSawByWhereTheyStand) {
   runs::Run run;
