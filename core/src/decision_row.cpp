@@ -113,6 +113,20 @@ void numbers(VerificationDecision& d, Visit&& visit) {
 }
 
 template <class Visit>
+void numbers(ShapeDecision& d, Visit&& visit) {
+  visit("place", d.place);
+  visit("places", d.places);
+  visit("pairs", d.pairs);
+  visit("alone", d.alone);
+  visit("chi2", d.chi2);
+  visit("dof", d.dof);
+  visit("rival_pairs", d.rival_pairs);
+  visit("rival_alone", d.rival_alone);
+  visit("rival_chi2", d.rival_chi2);
+  visit("rival_dof", d.rival_dof);
+}
+
+template <class Visit>
 void numbers(ClosureDecision& d, Visit&& visit) {
   visit("pairs", d.pairs);
   visit("dropped", d.dropped);
@@ -252,6 +266,7 @@ KindAndVerdict words_of(const ReferenceUnusable&) { return {"search", "reference
 KindAndVerdict words_of(const VerificationDecision& d) {
   return {"constellation", verification_words[static_cast<int>(d.verdict)]};
 }
+KindAndVerdict words_of(const ShapeDecision&) { return {"shape", "decided"}; }
 KindAndVerdict words_of(const ClosureDecision& d) { return {"closure", word_of(d.accepted)}; }
 KindAndVerdict words_of(const UndecidedDecision&) { return {"closure", "undecided"}; }
 KindAndVerdict words_of(const NewGroundDecision&) { return {"closure", "new-ground"}; }
@@ -363,6 +378,7 @@ Decision decision_of(const DecisionRow& row) {
   if (row.kind == "postponed") return postponed_decision(row);
   if (row.kind == "whole-map") return decision_with<WholeMapDecision>(whole_map_words, row);
   if (row.kind == "constellation") return decision_with<VerificationDecision>(verification_words, row);
+  if (row.kind == "shape" && row.verdict == "decided") return fill(ShapeDecision{}, row);
   if (row.kind == "closure" && row.verdict == "undecided") return fill(UndecidedDecision{}, row);
   if (row.kind == "closure" && row.verdict == "new-ground") return fill(NewGroundDecision{}, row);
   if (row.kind == "closure" && judged) return fill(ClosureDecision{}, accepted, row);

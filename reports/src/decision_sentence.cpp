@@ -123,6 +123,16 @@ std::string sentence(const core::VerificationDecision& d) {
          rival_sentence(d);
 }
 
+std::string sentence(const core::ShapeDecision& d) {
+  const auto fit = [](int pairs, int alone, double chi2, int dof) {
+    return short_number(pairs) + " landmarks mapped since the search began match old ones, " + short_number(alone) +
+           " have no partner, and χ² is " + short_number(chi2) + " with " + short_number(dof) + " degrees of freedom";
+  };
+  return "The surroundings of the vehicle look alike at " + counted(d.places, "place") +
+         ", and the shape of the drive decides for one of them: " + fit(d.pairs, d.alone, d.chi2, d.dof) +
+         ". At the best of the others " + fit(d.rival_pairs, d.rival_alone, d.rival_chi2, d.rival_dof) + ".";
+}
+
 std::string sentence(const core::UndecidedDecision& d) {
   return "Left undecided: no closing was accepted in " + short_number(d.driven_m) +
          " m. Mapping goes on as on new ground; the next ambiguous return begins a new search.";

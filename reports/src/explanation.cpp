@@ -126,11 +126,13 @@ const core::StepReport& step_numbered(const runs::Run& run, std::int64_t step) {
   throw core::InputError(run.path + ": no step " + std::to_string(step) + "; this run has " + steps);
 }
 
-/// Where the whole map was asked for the place that was closed: how it was found, and what became of the odometry.
+/// Where the constellation alone did not find the place that was closed: what did, and what became of the odometry.
 std::string found_by(const Decided& closure) {
   if (closure.decision == &closure.step->decisions.front()) return {};
   const core::Decision& before = *(closure.decision - 1);
-  return std::holds_alternative<core::WholeMapDecision>(before) ? sentence_of(before) + ' ' : std::string();
+  const bool is_found_by = std::holds_alternative<core::WholeMapDecision>(before) ||  //
+                           std::holds_alternative<core::ShapeDecision>(before);
+  return is_found_by ? sentence_of(before) + ' ' : std::string();
 }
 
 /// A search, or what mapping had come to, was over: with the map closed, or left open.

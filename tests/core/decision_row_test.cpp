@@ -13,7 +13,7 @@ std::vector<DecisionRow> all_rows() {
        {Decision(TriggerDecision{}), Decision(RollbackDecision{}), Decision(SlipDecision{}),
         Decision(LostBySlipDecision{}), Decision(MovingDecision{}), Decision(SystematicDecision{}),
         Decision(AttemptStarted{}), Decision(ReferenceUnusable{}), Decision(UndecidedDecision{}),
-        Decision(NewGroundDecision{}), Decision(CarriedDecision{})}) {
+        Decision(NewGroundDecision{}), Decision(CarriedDecision{}), Decision(ShapeDecision{})}) {
     rows.push_back(row_of(decision));
   }
   for (const char* cause : {"found-out", "broken-off", "by-place", "no-odometry", "wrong-start"})

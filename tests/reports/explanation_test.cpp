@@ -75,6 +75,22 @@ TEST(Explanation, TellsOfNamesWhatIsSoOfThem) {
   EXPECT_NE(said.find("waits: its landmark has not been seen from places far enough apart"), std::string::npos) << said;
 }
 
+TEST(Explanation, SaysOfAClosingThatTheShapeOfTheDriveDecidedIt) {
+  runs::Run run = run_of(10);
+  core::ShapeDecision shape;
+  shape.places = 3;
+  shape.pairs = 41;
+  shape.rival_chi2 = 812.0;
+  core::ClosureDecision closure;
+  closure.accepted = true;
+  closure.pairs = 41;
+  closure.dof = 82;
+  run.steps[7].decisions = {core::VerificationDecision(), shape, closure};
+  EXPECT_TRUE(says(run, "look alike at 3 places")) << explain_run(run);
+  EXPECT_TRUE(says(run, "41 landmarks mapped since the search began match old ones")) << explain_run(run);
+  EXPECT_TRUE(says(run, "χ² is 812")) << explain_run(run);
+}
+
 TEST(Explanation, SaysWhatSlippedAndWhatMovesBesideASearch) {
   runs::Run run = run_of(40);
   core::SlipDecision slip;

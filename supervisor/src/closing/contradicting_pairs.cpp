@@ -2,11 +2,11 @@
 #include "closing/contradicting_pairs.hpp"
 
 #include <algorithm>
-#include <map>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "closing/pair_differences.hpp"
 #include "helixnav/core/chi2.hpp"
 
 namespace helixnav::supervisor {
@@ -14,45 +14,10 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// Differences of the pairs, Gaussian: ν and S.
-struct Differences {
-  Eigen::VectorXd nu_m;
-  Eigen::MatrixXd S_m2;
-};
-
-Differences differences(const cekf::CompressedEkf& filter, const KeptRemoved& pairs, double sigma_m) {
-  std::vector<core::LandmarkId> ids;
-  for (const auto& [kept, removed] : pairs) ids.insert(ids.end(), {kept, removed});
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  const core::JointGaussian joint = filter.joint(ids);
-  const auto row_of = [&](core::LandmarkId id) {
-    return 3 + 2 * static_cast<Index>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
-  };
-  const auto n = 2 * static_cast<Index>(pairs.size());
-  Differences result{Eigen::VectorXd(n), Eigen::MatrixXd(n, n)};
-  Eigen::MatrixXd PHt(joint.covariance.rows(), n);
-  for (Index k = 0; k < n; k += 2) {
-    const auto& [kept, removed] = pairs[static_cast<std::size_t>(k / 2)];
-    PHt.middleCols<2>(k) =
-        joint.covariance.middleCols<2>(row_of(kept)) - joint.covariance.middleCols<2>(row_of(removed));
-    const auto place = [&](core::LandmarkId id) {
-      return joint.points_m[static_cast<std::size_t>((row_of(id) - 3) / 2)];
-    };
-    result.nu_m.segment<2>(k) = place(removed) - place(kept);
-  }
-  for (Index k = 0; k < n; k += 2) {
-    const auto& [kept, removed] = pairs[static_cast<std::size_t>(k / 2)];
-    result.S_m2.middleRows<2>(k) = PHt.middleRows<2>(row_of(kept)) - PHt.middleRows<2>(row_of(removed));
-  }
-  result.S_m2.diagonal().array() += sigma_m * sigma_m;
-  return result;
-}
-
 /// χ² of the remaining pairs, and their S⁻¹.
 class Remaining {
  public:
-  explicit Remaining(const Differences& differences)
+  explicit Remaining(const PairDifferences& differences)
       : K_(differences.S_m2.llt().solve(Eigen::MatrixXd::Identity(differences.S_m2.rows(), differences.S_m2.cols()))),
         lambda_(K_ * differences.nu_m),
         cost_(lambda_.dot(differences.nu_m)),
@@ -103,7 +68,7 @@ class Remaining {
 std::vector<std::size_t> contradicting_pairs(const cekf::CompressedEkf& filter, const KeptRemoved& pairs,
                                              double sigma_m, double closing_probability, MayLeaveOut may) {
   static const double outlier = core::chi2_quantile(0.999, 2);
-  Remaining remaining(differences(filter, pairs, sigma_m));
+  Remaining remaining(pair_differences(filter, pairs, core::Pose2(), sigma_m));
   std::vector<std::size_t> left_out;
   while (left_out.size() < may.any + may.outliers && remaining.dof() > 2 * static_cast<int>(least_pairs) &&
          remaining.cost() > core::chi2_quantile(closing_probability, remaining.dof())) {

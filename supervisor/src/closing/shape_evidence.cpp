@@ -7,9 +7,9 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "closing/pair_differences.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/rigid_fit.hpp"
 
@@ -30,40 +30,16 @@ core::Pose2 fitted_to_pairs(const cekf::CompressedEkf& filter, const KeptRemoved
   return core::fit_rigidly(kept_m, removed_m);
 }
 
-/// Rows of the differences "removed, moved by T, minus kept" on the joint state, and their values.
-struct MovedDifferences {
-  Eigen::VectorXd nu_m;
-  Eigen::MatrixXd S_m2;
-  Eigen::MatrixXd by_pose;  ///< what moving and turning the branch as a whole adds
-};
-
-MovedDifferences differences_at(const cekf::CompressedEkf& filter, const KeptRemoved& pairs, const core::Pose2& T,
-                                double sigma_m) {
-  std::vector<LandmarkId> ids;
-  for (const auto& [kept, removed] : pairs) ids.insert(ids.end(), {kept, removed});
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  const core::JointGaussian joint = filter.joint(ids);
-  const auto place_of = [&](LandmarkId id) {
-    return static_cast<Index>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
-  };
-  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(T.heading_rad).toRotationMatrix();
-  const auto n = 2 * static_cast<Index>(pairs.size());
-  MovedDifferences result{Eigen::VectorXd(n), Eigen::MatrixXd(), Eigen::MatrixXd(n, 3)};
+/// What moving and turning the branch as a whole, about the first pair, adds to the differences of its pairs.
+Eigen::MatrixXd by_pose(const cekf::CompressedEkf& filter, const KeptRemoved& pairs, const core::Pose2& T) {
   const Eigen::Vector2d middle_m = filter.landmark_mean(pairs.front().first);
-  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, joint.covariance.cols());
-  for (Index k = 0; k < n; k += 2) {
-    const auto& [kept, removed] = pairs[static_cast<std::size_t>(k / 2)];
-    H.block<2, 2>(k, 3 + 2 * place_of(kept)) = -Eigen::Matrix2d::Identity();
-    H.block<2, 2>(k, 3 + 2 * place_of(removed)) = turn;
-    const Eigen::Vector2d moved_m = core::transform(T, joint.points_m[static_cast<std::size_t>(place_of(removed))]);
-    const Eigen::Vector2d lever_m = moved_m - middle_m;
-    result.nu_m.segment<2>(k) = moved_m - joint.points_m[static_cast<std::size_t>(place_of(kept))];
-    result.by_pose.block<2, 3>(k, 0) << 1.0, 0.0, -lever_m.y(), 0.0, 1.0, lever_m.x();
+  Eigen::MatrixXd rows(2 * static_cast<Index>(pairs.size()), 3);
+  for (Index k = 0; k < rows.rows(); k += 2) {
+    const LandmarkId removed = pairs[static_cast<std::size_t>(k / 2)].second;
+    const Eigen::Vector2d lever_m = core::transform(T, filter.landmark_mean(removed)) - middle_m;
+    rows.block<2, 3>(k, 0) << 1.0, 0.0, -lever_m.y(), 0.0, 1.0, lever_m.x();
   }
-  result.S_m2 = H * joint.covariance * H.transpose();
-  result.S_m2.diagonal().array() += sigma_m * sigma_m;
-  return result;
+  return rows;
 }
 
 /// Of the branch landmarks that have a pair, those nearest to a point of the branch.
@@ -119,15 +95,39 @@ double nats_of_partners(const AlongBranch& place) {
   return std::lgamma(matched + 1.0) + std::lgamma(alone + 1.0) - std::lgamma(matched + alone + 2.0);
 }
 
+/// With the figures of the other place that explains most landmarks.
+core::ShapeDecision decision_for(std::size_t place, const std::vector<AlongBranch>& places,
+                                 const std::vector<ShapeCost>& costs) {
+  core::ShapeDecision decision;
+  decision.place = static_cast<int>(place);
+  decision.places = static_cast<int>(places.size());
+  decision.pairs = static_cast<int>(places[place].pairs.size());
+  decision.alone = places[place].alone;
+  decision.chi2 = costs[place].chi2;
+  decision.dof = costs[place].dof;
+  std::size_t rival = place;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (i != place && (rival == place || places[i].pairs.size() > places[rival].pairs.size())) rival = i;
+  }
+  if (rival == place) return decision;
+  decision.rival_pairs = static_cast<int>(places[rival].pairs.size());
+  decision.rival_alone = places[rival].alone;
+  decision.rival_chi2 = costs[rival].chi2;
+  decision.rival_dof = costs[rival].dof;
+  return decision;
+}
+
 }  // namespace
 
 std::optional<ShapeCost> shape_cost(const cekf::CompressedEkf& filter, const KeptRemoved& pairs, double sigma_m) {
-  const MovedDifferences at = differences_at(filter, pairs, fitted_to_pairs(filter, pairs), sigma_m);
+  const core::Pose2 T = fitted_to_pairs(filter, pairs);
+  const PairDifferences at = pair_differences(filter, pairs, T, sigma_m);
+  const Eigen::MatrixXd along = by_pose(filter, pairs, T);
   const Eigen::LLT<Eigen::MatrixXd> llt(at.S_m2);
   if (llt.info() != Eigen::Success) return std::nullopt;
   const Eigen::VectorXd weighted = llt.solve(at.nu_m);
-  const Eigen::MatrixXd of_pose = llt.solve(at.by_pose);
-  const Eigen::Matrix3d information = at.by_pose.transpose() * of_pose;
+  const Eigen::MatrixXd of_pose = llt.solve(along);
+  const Eigen::Matrix3d information = along.transpose() * of_pose;
   const Eigen::Vector3d pull = of_pose.transpose() * at.nu_m;
   const double chi2 = at.nu_m.dot(weighted) - pull.dot(information.ldlt().solve(pull));
   if (!std::isfinite(chi2)) return std::nullopt;
@@ -154,8 +154,9 @@ AlongBranch continued_along(const cekf::CompressedEkf& filter, const Branch& bra
   return along;
 }
 
-std::optional<std::size_t> decided_by_shape(const cekf::CompressedEkf& filter, const std::vector<AlongBranch>& places,
-                                            const SearchOptions& options) {
+std::optional<core::ShapeDecision> decided_by_shape(const cekf::CompressedEkf& filter,
+                                                    const std::vector<AlongBranch>& places,
+                                                    const SearchOptions& options) {
   std::vector<ShapeCost> costs;
   for (const AlongBranch& place : places) {
     const std::optional<ShapeCost> cost = shape_cost(filter, place.pairs, options.merge_sigma_m);
@@ -175,7 +176,7 @@ std::optional<std::size_t> decided_by_shape(const cekf::CompressedEkf& filter, c
   for (std::size_t i = 0; i < places.size(); ++i) {
     bool is_alone = fits(i);
     for (std::size_t k = 0; is_alone && k < places.size(); ++k) is_alone = k == i || is_refuted(k, i);
-    if (is_alone) return i;
+    if (is_alone) return decision_for(i, places, costs);
   }
   return std::nullopt;
 }

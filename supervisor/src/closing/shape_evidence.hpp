@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <vector>
 
 #include "closing/branch_pairs.hpp"
+#include "helixnav/core/decision.hpp"
 
 namespace helixnav::supervisor {
 
@@ -34,9 +34,10 @@ AlongBranch continued_along(const cekf::CompressedEkf& filter, const Branch& bra
 /// and every other place is refuted: its χ² exceeds what one right place in a million has, or landmarks without a partner make it a
 /// thousand times less likely; and it explains no more landmarks, since at the rim of an orchard, where most are on unmapped ground, a
 /// few fit by themselves. Where places repeat exactly, the difference of two χ² that are both usual is chance. Nothing if that holds
-/// for none.
+/// for none. `place` of the answer is its index in `places`.
 /// Source: docs/closing.md. Test: supervisor/closing/shape_evidence_test.cpp.
-std::optional<std::size_t> decided_by_shape(const cekf::CompressedEkf& filter, const std::vector<AlongBranch>& places,
-                                            const SearchOptions& options);
+std::optional<core::ShapeDecision> decided_by_shape(const cekf::CompressedEkf& filter,
+                                                    const std::vector<AlongBranch>& places,
+                                                    const SearchOptions& options);
 
 }  // namespace helixnav::supervisor

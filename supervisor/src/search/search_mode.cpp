@@ -86,10 +86,13 @@ void NavigationLoop::close_by_shape(const Scan& scan, StepReport& report) {
     places.push_back(
         continued_along(belief_.filter, branch, search.old_landmarks(), kept_removed(pairs), options_.search));
   }
-  const std::optional<std::size_t> decided = decided_by_shape(belief_.filter, places, options_.search);
+  const std::optional<core::ShapeDecision> decided = decided_by_shape(belief_.filter, places, options_.search);
   if (!decided) return;
+  report.decisions.emplace_back(*decided);
   std::vector<pf_relocalize::ConstellationPair> pairs;
-  for (const auto& [kept, removed] : places[*decided].pairs) pairs.push_back({removed, kept});
+  for (const auto& [kept, removed] : places[static_cast<std::size_t>(decided->place)].pairs) {
+    pairs.push_back({removed, kept});
+  }
   if (search.pass(pairs)) close(scan, pairs, report);
 }
 

@@ -89,7 +89,7 @@ TwoPasses driven_twice(const Posts& posts_m, std::size_t from) {
   return passes;
 }
 
-std::optional<std::size_t> decided_between(const TwoPasses& passes, const std::vector<int>& shifts) {
+std::optional<core::ShapeDecision> decided_between(const TwoPasses& passes, const std::vector<int>& shifts) {
   std::vector<AlongBranch> places;
   for (const int posts : shifts) {
     places.push_back(continued_along(passes.filter, passes.branch, passes.old, passes.last_ones(posts), {}));
@@ -124,14 +124,23 @@ TEST(ShapeEvidence, ContinuesThePairsBackToTheFirst) {
 
 TEST(ShapeEvidence, ASharpBendTellsWhichPostsTheyAre) {
   const TwoPasses passes = driven_twice(road(with_bend(20)), 4);
-  EXPECT_EQ(decided_between(passes, {1, 0, -1}), std::optional<std::size_t>(1));
+  const std::optional<core::ShapeDecision> decided = decided_between(passes, {1, 0, -1});
+  ASSERT_TRUE(decided);
+  EXPECT_EQ(decided->place, 1);
+  EXPECT_EQ(decided->places, 3);
+  EXPECT_EQ(decided->pairs, static_cast<int>(passes.branch.confirmed.size()));
+  EXPECT_LT(decided->chi2, 2.0 * decided->dof);
+  EXPECT_LE(decided->rival_pairs, decided->pairs);
+  EXPECT_TRUE(decided->rival_chi2 > 2.0 * decided->rival_dof || decided->rival_alone > decided->alone);
 }
 
 TEST(ShapeEvidence, AGentleBendTellsWhichPostsTheyAre) {
   std::vector<double> turns(20, 0.0);
   for (std::size_t k = 8; k < 13; ++k) turns[k] = 0.06;
   const TwoPasses passes = driven_twice(road(turns), 4);
-  EXPECT_EQ(decided_between(passes, {1, 0, -1}), std::optional<std::size_t>(1));
+  const std::optional<core::ShapeDecision> decided = decided_between(passes, {1, 0, -1});
+  ASSERT_TRUE(decided);
+  EXPECT_EQ(decided->place, 1);
 }
 
 TEST(ShapeEvidence, AStraightRoadTellsNothing) {

@@ -123,6 +123,21 @@ struct VerificationDecision {
   Pose2 T_world_rival;
 };
 
+/// Several places explain the constellation around the vehicle, and the shape of all that was mapped since the search began
+/// belongs to one of them alone. Two in a row, and the map is closed there (supervisor/shape_evidence).
+struct ShapeDecision {
+  int place = 0;      ///< of those tried, the best constellation first
+  int places = 0;     ///< tried
+  int pairs = 0;      ///< of landmarks, along all that was mapped
+  int alone = 0;      ///< new landmarks without a partner on ground that was mapped before
+  double chi2 = 0.0;  ///< of the pairs with dof, if what was mapped may be moved and turned as a whole
+  int dof = 0;
+  int rival_pairs = 0;  ///< likewise at the other place that explains most
+  int rival_alone = 0;
+  double rival_chi2 = 0.0;
+  int rival_dof = 0;
+};
+
 /// The map was closed by pairs of landmarks, or was not because the cost was too high.
 struct ClosureDecision {
   bool accepted = false;
@@ -273,10 +288,11 @@ struct OtherDecision {
 };
 
 /// A decision of the navigator that is worth a sentence, with the numbers that decided it.
-using Decision = std::variant<TriggerDecision, RollbackDecision, SlipDecision, LostBySlipDecision, MovingDecision,
-                              SystematicDecision, AttemptStarted, AttemptEnded, ReferenceUnusable, VerificationDecision,
-                              ClosureDecision, UndecidedDecision, NewGroundDecision, SmoothingDecision, FixDecision,
-                              CarriedDecision, PlacedDecision, WholeMapDecision, PostponedDecision, OtherDecision>;
+using Decision =
+    std::variant<TriggerDecision, RollbackDecision, SlipDecision, LostBySlipDecision, MovingDecision,
+                 SystematicDecision, AttemptStarted, AttemptEnded, ReferenceUnusable, VerificationDecision,
+                 ShapeDecision, ClosureDecision, UndecidedDecision, NewGroundDecision, SmoothingDecision, FixDecision,
+                 CarriedDecision, PlacedDecision, WholeMapDecision, PostponedDecision, OtherDecision>;
 
 /// True for what ends a search: a closing accepted or refused, new ground, or a search given up.
 inline bool is_closure(const Decision& decision) {
