@@ -20,7 +20,7 @@ core::Scan as_one_look(const core::Scan& scan, double looks_as_one) {
   return look;
 }
 
-/// Places in the filter of landmarks that the robot may see, by a bound on the distance.
+/// Places in the filter of landmarks that the robot may see or that may be rivals of those, by a bound on the distance.
 std::vector<std::size_t> within_reach(std::size_t slot, const core::Scan& look, double gate,
                                       const JointFilter& filter) {
   const core::PoseGaussian pose = filter.pose(slot);
@@ -33,11 +33,12 @@ std::vector<std::size_t> within_reach(std::size_t slot, const core::Scan& look, 
     turn_m2 = std::max(turn_m2, located.point_world_m.squaredNorm() * pose.covariance(2, 2));
     noise_m2 = std::max(noise_m2, (located.G_z * observation.R * located.G_z.transpose()).trace());
   }
-  const double own_m2 = pose.covariance.topLeftCorner<2, 2>().trace() + turn_m2 + noise_m2;
+  const double own_m2 = pose.covariance.topLeftCorner<2, 2>().trace() + turn_m2;
   std::vector<std::size_t> near;
   for (std::size_t i = 0; i < filter.ids().size(); ++i) {
     const double distance_m = (filter.points_m()[i] - pose.mean.position_m()).norm();
-    const double spread_m2 = 2.0 * (own_m2 + filter.variance_m2(i));  // correlations at their worst
+    const double state_m2 = 2.0 * (own_m2 + filter.variance_m2(i));  // correlations at their worst
+    const double spread_m2 = rival_variance_factor * state_m2 + noise_m2;
     if (distance_m <= range_m + std::sqrt(gate * spread_m2)) near.push_back(i);
   }
   return near;

@@ -107,9 +107,8 @@ std::vector<int> decided_jointly(const InnovationProblem& problem, const associa
 
 void leave_doubtful(const core::Scan& scan, const core::Scan& look, const core::JointGaussian& joint,
                     const association::Gates& gates, const association::Options& options, Assignment& assignment) {
-  constexpr double variance_factor = 4.0;
   core::JointGaussian wider = joint;
-  wider.covariance *= variance_factor;
+  wider.covariance *= rival_variance_factor;
   const InnovationProblem problem = association::make_innovation_problem(wider, look, gates);
   const std::vector<bool> doubtful = with_rivals(scan, problem, joint, assignment);
   if (std::none_of(doubtful.begin(), doubtful.end(), [](bool one) { return one; })) return;
