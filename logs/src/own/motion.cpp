@@ -97,10 +97,17 @@ Motion Motions::stretch(std::size_t row, core::Nanoseconds last_ns) const {
     motion.begin_ns = t_ns;
     motion.end_ns = row + 1 < log_.odometry.size() ? log_.odometry[row + 1].t_ns : std::max(t_ns, last_ns);
   } else {
-    motion.begin_ns = row > 0 ? log_.odometry[row - 1].t_ns : t_ns;
+    motion.begin_ns = row > 0 ? log_.odometry[row - 1].t_ns : first_begin_ns();
     motion.end_ns = t_ns;
   }
   return motion;
+}
+
+/// Of the first increment. A row of zeros only says when the log begins.
+core::Nanoseconds Motions::first_begin_ns() const {
+  const OwnOdometry& first = log_.odometry.front();
+  if (log_.odometry.size() < 2 || first.value.isZero(0.0)) return first.t_ns;
+  return first.t_ns - (log_.odometry[1].t_ns - first.t_ns);
 }
 
 /// The interval before the row, if it reports that the vehicle stands still through a gap.
@@ -194,14 +201,22 @@ void Motions::add_sample_noise(Motion& motion, std::size_t row) const {
   motion.covariance += J * rates * J.transpose();
 }
 
-/// Takes the rates of the rows up to this one.
-void Motions::take_rates(std::size_t row) {
+/// Takes the rates that rows up to this one state.
+void Motions::take_held_rates(std::size_t row) {
   for (; taken_ <= row; ++taken_) {
     Motion second;
     second.end_ns = 1'000'000'000;
     move(second, taken_);
     changes_.take(log_.odometry[taken_].t_ns, second.twist);
   }
+}
+
+/// Takes the rates of the motion that a row ends.
+void Motions::take_mean_rates(std::size_t row, const Motion& motion) {
+  const double duration_s = core::seconds(motion.end_ns - motion.begin_ns);
+  if (row < taken_ || !(duration_s > 0.0)) return;
+  changes_.take(motion.end_ns, motion.twist / duration_s);
+  taken_ = row + 1;
 }
 
 std::optional<Motion> Motions::of_row(std::size_t row, core::Nanoseconds last_ns) {
@@ -223,9 +238,19 @@ std::optional<Motion> Motions::of_row(std::size_t row, core::Nanoseconds last_ns
   }
   if (usual_ns) motion.twist.setZero();  // also if it came from a bias
   motion.end_ns = end_ns;
-  if (holds()) take_rates(row);
+  holds() ? take_held_rates(row) : take_mean_rates(row, motion);
   if (holds() && !usual_ns && changes_.is_gap(end_ns - motion.begin_ns)) motion.rate_walk = changes_.variance_per_s();
   motion.covariance = 0.5 * square(model_.noise_scale) * (motion.covariance + motion.covariance.transpose()).eval();
+  last_ = motion;
+  return motion;
+}
+
+std::optional<Motion> Motions::beyond_last() const {
+  if (holds() || !last_ || last_->begin_ns == last_->end_ns) return std::nullopt;
+  Motion motion = *last_;
+  motion.begin_ns = last_->end_ns;
+  motion.end_ns += last_->end_ns - last_->begin_ns;
+  motion.rate_walk = changes_.variance_per_s();
   return motion;
 }
 

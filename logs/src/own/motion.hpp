@@ -38,12 +38,16 @@ class Motions {
   Motions(const OwnLog& log, const Vehicle& vehicle);
 
   /// The motion of a row: up to it (increments, poses) or from it to the next (the others; the last until `last_ns`).
-  /// Nothing for the first pose. A row of speeds that reports standing still, and is held through a gap (of more than a
+  /// The first increment is taken to have lasted as long as the second. Nothing for the first pose. A row of speeds that reports standing still, and is held through a gap (of more than a
   /// second and ten times the interval before it), is as uncertain as if it had been held for that interval: errors
   /// that occur at speed do not add up while nothing moves. If it reports driving and is held through a gap
   /// (RateChanges::is_gap), the rates may change meanwhile as they did in the rows up to it. Rows must be requested in
   /// order; one may be requested again.
   std::optional<Motion> of_row(std::size_t row, core::Nanoseconds last_ns);
+
+  /// Beyond the last row of increments or poses, which was requested before: its rates are held, and may change as they did in the
+  /// rows up to it. Nothing if it has no duration.
+  std::optional<Motion> beyond_last() const;
 
   /// Whether a row describes what comes after it.
   bool holds() const;
@@ -52,7 +56,9 @@ class Motions {
   void forget(std::size_t rows) { taken_ -= std::min(taken_, rows); }
 
  private:
-  void take_rates(std::size_t row);
+  void take_held_rates(std::size_t row);
+  void take_mean_rates(std::size_t row, const Motion& motion);
+  core::Nanoseconds first_begin_ns() const;
   Motion stretch(std::size_t row, core::Nanoseconds last_ns) const;
   std::optional<core::Nanoseconds> stands_through_gap(std::size_t row, const Motion& motion) const;
   void move(Motion& motion, std::size_t row) const;
@@ -64,7 +70,8 @@ class Motions {
   const OwnLog& log_;
   const OdometryModel& model_;
   RateChanges changes_;
-  std::size_t taken_ = 0;  ///< rows that changes_ has taken
+  std::optional<Motion> last_;  ///< that was requested
+  std::size_t taken_ = 0;       ///< rows that changes_ has taken
 };
 
 /// A part of a motion as an increment of the vehicle. If rates may change, s seconds into the gap, the error of a

@@ -148,18 +148,21 @@ core::Nanoseconds weave(const OwnLog& log, const Vehicle& vehicle, std::vector<L
     }
     weaver.move(*motion, motion->end_ns);
   }
-  while (next < scans.size()) add_next(nullptr);
+  const std::optional<Motion> beyond = motions.beyond_last();
+  while (next < scans.size()) add_next(beyond ? &*beyond : nullptr);
   weaver.flush();
   return first_ns;
 }
 
-/// The first row of increments describes what was driven until its time.
-Beginning beginning_of(const OwnLog& log, const Vehicle& vehicle, core::Nanoseconds first_ns) {
+/// The first row of increments describes what was driven until its time: if no scan was taken before that, the first event.
+Beginning beginning_of(const OwnLog& log, const Vehicle& vehicle, core::Nanoseconds first_scan_ns,
+                       core::Nanoseconds first_motion_ns) {
   Beginning beginning;
-  beginning.t_ns = first_ns;
+  beginning.t_ns = std::min(first_scan_ns, first_motion_ns);
   const core::Nanoseconds row_ns = log.odometry.front().t_ns;
-  if (log.odometry_kind != OdometryKind::increments || row_ns != first_ns) return beginning;
-  const std::optional<Motion> first = Motions(log, vehicle).of_row(0, first_ns);
+  if (log.odometry_kind != OdometryKind::increments || first_scan_ns < row_ns) return beginning;
+  beginning.t_ns = row_ns;
+  const std::optional<Motion> first = Motions(log, vehicle).of_row(0, row_ns);
   beginning.T_start_first = part_of(*first, 1.0, row_ns, vehicle.odometry.T_vehicle_odometry).T_before_after;
   if (log.odometry.size() > 1) beginning.lasted_ns = log.odometry[1].t_ns - row_ns;
   return beginning;
@@ -181,7 +184,7 @@ core::Recording make_recording(const OwnLog& log, const Vehicle& vehicle) {
   recording.antenna_robot_m = vehicle.antenna_m;
   const core::Nanoseconds first_scan_ns = scans.front().scan.t_ns;
   const core::Nanoseconds first_motion_ns = weave(log, vehicle, scans, recording);
-  add_truth(log, beginning_of(log, vehicle, std::min(first_scan_ns, first_motion_ns)), recording);
+  add_truth(log, beginning_of(log, vehicle, first_scan_ns, first_motion_ns), recording);
   for (std::string& doubt : doubts_of(log, vehicle, recording)) recording.remarks.push_back(std::move(doubt));
   return recording;
 }

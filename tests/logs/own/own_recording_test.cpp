@@ -232,12 +232,28 @@ TEST(OwnRecording, BeginsTheTruthBeforeTheFirstIncrementWhoseTimeIsItsEnd) {
   }
 }
 
-TEST(OwnRecording, BeginsTheTruthAtTheScanThatComesBeforeTheFirstIncrement) {
+/// The first increment is taken to have lasted as long as the second: the scan is in the middle of it.
+TEST(OwnRecording, MovesBeforeAScanWithinTheFirstIncrement) {
   const OwnLogFolder log;
   log.write("odometry.csv", "t,dx,dheading\n1,1,0\n2,1,0\n");
   log.write("detections.csv", "t,range_m,bearing_deg\n0.5,10,0\n1.5,9,0\n");
-  log.write("truth_poses.csv", "t,x,y,heading_deg\n0.5,100,50,90\n2,100,52,90\n");
-  expect_near(log.recording().true_poses.back().T_world_robot, {2.0, 0.0, 0.0}, 1e-9);
+  log.write("truth_poses.csv", "t,x,y,heading_deg\n0.5,100,50,90\n2,100,51.5,90\n");
+  const core::Recording recording = log.recording();
+  expect_near(std::get<core::Odometry>(recording.events.front()).T_before_after, {0.5, 0.0, 0.0}, 1e-9);
+  expect_near(recording.true_poses.back().T_world_robot, {2.0, 0.0, 0.0}, 1e-9);
+}
+
+/// The vehicle does not stop with certainty where odometry ends.
+TEST(OwnRecording, HoldsTheLastRatesOfIncrementsForAScanJustAfterThem) {
+  for (const char* odometry : {"t,dx,dheading\n0,0,0\n1,8,0\n2,8,0\n", "t,x,y,heading\n0,0,0,0\n1,8,0,0\n2,16,0,0\n"}) {
+    const OwnLogFolder log;
+    log.write("odometry.csv", odometry);
+    log.write("detections.csv", "t,range_m,bearing_deg\n0.5,10,0\n2,9,0\n2.5,5,0\n");
+    const core::Recording recording = log.recording();
+    const auto& beyond = std::get<core::Odometry>(recording.events.at(recording.events.size() - 2));
+    expect_near(beyond.T_before_after, {4.0, 0.0, 0.0}, 1e-9);
+    EXPECT_GT(std::sqrt(beyond.covariance(0, 0)), 0.3) << "it may brake meanwhile";
+  }
 }
 
 TEST(OwnRecording, DrivesByOdometryFromTheStartToATruthThatBeginsLater) {

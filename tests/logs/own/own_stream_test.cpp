@@ -24,13 +24,13 @@ constexpr const char* vehicle_text =
     "[[sensor]]\nname = \"far\"\nx_m = 0.3\nreach_m = 40\nview_deg = [-90, 90]\nsigma_range_m = 0.1\n"
     "sigma_bearing_deg = 0.3\ndelay_s = 0.125\n";
 
-/// A drive of random steps as lines in time order, with odometry given in one of its forms.
+/// A drive of random steps as lines in the order of their times, with odometry given in one of its forms.
 Lines lines_of_drive(const std::string& kind, unsigned seed, int rows = 120) {
   std::mt19937 random(seed);
   const auto uniform = [&](double low, double high) {
     return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
   };
-  Lines lines;
+  std::vector<std::pair<double, std::string>> lines;  // time, line
   double x = 0.0, heading = 0.0;
   double t = uniform(0.0, 0.1);
   for (int i = 0; i < rows; ++i) {
@@ -45,23 +45,27 @@ Lines lines_of_drive(const std::string& kind, unsigned seed, int rows = 120) {
     if (kind == "steering") odometry << R"("v_kmh": )" << v << R"(, "steering": )" << turn;
     if (kind == "wheels") odometry << R"("v_left": )" << v << R"(, "v_right": )" << v + turn;
     if (kind == "poses") odometry << R"("x": )" << (x += v) << R"(, "y": 3, "heading": )" << (heading += turn);
-    lines.push_back(odometry.str() + "}}");
+    lines.emplace_back(t, odometry.str() + "}}");
     if (uniform(0.0, 1.0) < 0.6) {
-      near << R"({"detections": [{"sensor": "near", "id": 7, "t": )" << t + uniform(0.0, 0.05) << R"(, "range": )"
-           << uniform(1.0, 12.0) << R"(, "bearing": 0.5}]})";
-      lines.push_back(near.str());
+      const double near_s = t + uniform(0.0, 0.05);
+      near << R"({"detections": [{"sensor": "near", "id": 7, "t": )" << near_s << R"(, "range": )" << uniform(1.0, 12.0)
+           << R"(, "bearing": 0.5}]})";
+      lines.emplace_back(near_s, near.str());
     }
     if (uniform(0.0, 1.0) < 0.3) {  // at the odometry's own times, row by row
       for (int row = 0; row < 3; ++row) {
         far.str("");
         far << R"({"detections": {"sensor": "far", "t": )" << t + 0.125 + 0.06 << R"(, "range": )"
             << 3.0 + row + uniform(0.0, 0.5) << R"(, "bearing_deg": )" << 10.0 * row << "}}";
-        lines.push_back(far.str());
+        lines.emplace_back(t + 0.125 + 0.06, far.str());
       }
     }
     t += uniform(0.07, 0.1);
   }
-  return lines;
+  std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  Lines in_order;
+  for (auto& line : lines) in_order.push_back(std::move(line.second));
+  return in_order;
 }
 
 /// Everything that results from lines.
@@ -157,7 +161,8 @@ TEST_P(OwnStreamOf, AVehicleThatWasCarriedIsInBothBeforeTheNextScan) {
   const testing::TemporaryFolder folder;
   const Vehicle vehicle = read_vehicle(folder.write("vehicle.toml", vehicle_text));
   Lines lines = lines_of_drive(GetParam(), 7);
-  const std::size_t middle = lines.size() / 2;
+  std::size_t middle = lines.size() / 2;
+  while (lines[middle].rfind(R"({"odometry")", 0) != 0) ++middle;  // not within a scan of several rows
   const std::size_t at = lines[middle].find("\"t\": ");
   const double t = std::stod(lines[middle].substr(at + 5)) + 0.01;
   lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(middle) + 1,
@@ -287,11 +292,57 @@ TEST_F(OwnStreamLines, OfColumnsThatAreNotUsedAndOfASensorWithoutANameAreTold) {
 
 TEST_F(OwnStreamLines, OfOneWrongTimeDoNotMakeTheRestLate) {
   take(odometry(0.0));
-  expect_refused(odometry(2e9), "t", "ahead of the newest");
-  EXPECT_TRUE(take(odometry(0.1)).refused.empty());
-  expect_refused(odometry(1e8), "t", "ahead of the newest");
+  for (const double wrong_s : {2e9, 30.0}) {
+    EXPECT_TRUE(take(odometry(wrong_s)).refused.empty()) << "waits";
+    const StreamedEvents next = take(odometry(0.1));
+    ASSERT_EQ(next.refused.size(), 1u) << wrong_s;
+    EXPECT_NE(next.refused[0].why.find("ahead of the newest"), std::string::npos) << next.refused[0].why;
+  }
+  EXPECT_TRUE(take(odometry(1e8)).refused.empty());
   EXPECT_TRUE(take(odometry(1e8 + 0.1)).refused.empty()) << "the clock did jump";
   expect_refused(odometry(0.2), "t", "comes after");
+  EXPECT_TRUE(take(odometry(2e8)).refused.empty());
+  const StreamedEvents at_end = stream_.finish();
+  ASSERT_EQ(at_end.refused.size(), 1u) << "nothing confirms it";
+}
+
+/// Of two sensors without a delay, the lines of one come 0.8 s later.
+TEST(OwnStream, WaitsForASensorWhoseLinesArriveLate) {
+  const testing::TemporaryFolder folder;
+  for (const bool is_known : {false, true}) {
+    const std::string late = is_known ? "arrives_late_s = 0.8\n" : "";
+    const Vehicle vehicle = read_vehicle(
+        folder.write("vehicle.toml",
+                     "[odometry]\nsigma_v_mps = 0.1\n[[sensor]]\nname = \"a\"\nreach_m = 20\nview_deg = [-90, 90]\n"
+                     "sigma_point_m = 0.1\n[[sensor]]\nname = \"b\"\nreach_m = 20\nview_deg = [-90, 90]\n"
+                     "sigma_point_m = 0.1\n" +
+                         late));
+    Lines lines;
+    for (int k = 0; k < 40; ++k) {
+      const auto at = [](double t_s) { return R"({"t": )" + std::to_string(t_s) + ", "; };
+      const double t_s = 0.1 * k;
+      lines.push_back(R"({"odometry": )" + at(t_s) + R"("v": 1, "omega": 0}})");
+      lines.push_back(R"({"detections": [)" + at(t_s) + R"("x": 5, "y": 1, "sensor": "a"}]})");
+      if (k >= 8) lines.push_back(R"({"detections": [)" + at(t_s - 0.8) + R"("x": 5, "y": 2, "sensor": "b"}]})");
+    }
+    OwnStream stream(vehicle);
+    const StreamedEvents live = streamed(stream, lines);
+    EXPECT_EQ(live.refused.size(), is_known ? 0u : 32u);
+    EXPECT_EQ(live.lines.size(), is_known ? 72u : 40u);
+  }
+}
+
+TEST_F(OwnStreamLines, AfterAGapAreUsedWithTheMotionThroughIt) {
+  const auto increment = [](double t_s) {
+    return "{\"odometry\": {\"t\": " + std::to_string(t_s) +
+           ", \"dx_m\": 1, \"dheading_rad\": 0, \"sigma_x_m\": 0.01, \"sigma_heading_rad\": 0.001}}";
+  };
+  for (const double t_s : {0.0, 1.0, 60.0, 61.0}) take(increment(t_s));
+  double driven_m = 0.0;
+  for (const core::Event& event : take(scan(60.5)).recording.events) {
+    if (const auto* motion = std::get_if<core::Odometry>(&event)) driven_m += motion->T_before_after.x_m;
+  }
+  EXPECT_NEAR(driven_m, 3.5, 1e-12);
 }
 
 TEST_F(OwnStreamLines, OfAnIncrementThatWasSentTwiceAreRefused) {

@@ -32,9 +32,10 @@ struct StreamedEvents {
 ///
 /// A scan is due once the odometry has reached its time, because the motion up to it is not known before. Detections of
 /// one instant in one list are a whole scan; detections in rows of their own form a scan until a line of another kind
-/// comes. Late scans are woven in as long as no later one is due and they are at most late_s behind the newest odometry
-/// (plus the sensors' delays); everything else out of order is refused. A time more than an hour ahead of the newest is
-/// refused unless the next one is there, too. Truth and fixes are skipped with a remark. Memory does not grow
+/// comes. If sensors have different delays, it also waits until lines have come of as long after it as the longest, since a scan taken
+/// earlier may come until then. Late scans are woven in as long as no later one is due and they are at most late_s behind
+/// the newest odometry (plus the sensors' delays); everything else out of order is refused. A line more than ten seconds ahead
+/// of the newest waits for the next one, and is refused unless that is there, too. Truth and fixes are skipped with a remark. Memory does not grow
 /// with the stream. Test: logs/own/own_stream_test.cpp.
 class OwnStream {
  public:

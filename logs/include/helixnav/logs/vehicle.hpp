@@ -60,6 +60,7 @@ struct SensorModel {
   double range_scale = 1.0;             ///< recorded range divided by true range
   double range_offset_m = 0.0;  ///< by which ranges are then too short: half a trunk where its near side is seen
   double delay_s = 0.0;         ///< a scan was taken this long before its stamp
+  double arrives_late_s = 0.0;  ///< in a stream, its lines may come this long after others of the same time
   double noise_scale = 1.0;     ///< times every standard deviation, from the log or from these keys
   std::optional<double> detection_probability;
   std::optional<double> clutter_per_scan;

@@ -7,19 +7,17 @@
 #include "own/own_overlap.hpp"
 
 namespace helixnav::logs {
-namespace {
-
-double longest_delay_s(const Vehicle& vehicle) {
+core::Nanoseconds longest_delay_ns(const Vehicle& vehicle) {
   double longest_s = 0.0;
-  for (const SensorModel& sensor : vehicle.sensors) longest_s = std::max(longest_s, sensor.delay_s);
-  return longest_s;
+  for (const SensorModel& sensor : vehicle.sensors) {
+    longest_s = std::max(longest_s, sensor.delay_s + sensor.arrives_late_s);
+  }
+  return core::nanoseconds_from_seconds(longest_s);
 }
-
-}  // namespace
 
 LiveMotion::LiveMotion(const Vehicle& vehicle, double late_s)
     : vehicle_(vehicle),
-      late_ns_(core::nanoseconds_from_seconds(late_s + longest_delay_s(vehicle))),
+      late_ns_(core::nanoseconds_from_seconds(late_s) + longest_delay_ns(vehicle)),
       weaver_(vehicle.odometry.T_vehicle_odometry, woven_) {}
 
 namespace {
@@ -82,7 +80,8 @@ bool LiveMotion::tells(core::Nanoseconds t_ns) const {
 
 bool LiveMotion::is_known(std::size_t row) const {
   const std::size_t rows = rows_.odometry.size();
-  return motions_ && row < rows && (row + 1 < rows || last_ns_ || !motions_->holds());
+  const bool is_until_next = motions_ && motions_->holds();
+  return motions_ && row < rows && (row + 1 < rows || last_ns_ || (!is_until_next && !is_begin_unknown()));
 }
 
 void LiveMotion::weave_to(core::Nanoseconds t_ns, std::vector<core::Event>& events) {
@@ -95,11 +94,18 @@ void LiveMotion::weave_to(core::Nanoseconds t_ns, std::vector<core::Event>& even
     }
     weaver_.move(*motion, motion->end_ns);
   }
+  move_beyond_last(t_ns);
   weaver_.flush();
   events.insert(events.end(), woven_.begin(), woven_.end());
   woven_.clear();
   woven_ns_ = std::max(woven_ns_, t_ns);
   drop_woven();
+}
+
+/// At the end, to a scan that odometry has not reached.
+void LiveMotion::move_beyond_last(core::Nanoseconds t_ns) {
+  if (!last_ns_ || !motions_ || next_ < rows_.odometry.size() || t_ns <= rows_.odometry.back().t_ns) return;
+  if (const std::optional<Motion> beyond = motions_->beyond_last()) weaver_.move(*beyond, t_ns);
 }
 
 void LiveMotion::weave_old(core::Nanoseconds before_ns) {

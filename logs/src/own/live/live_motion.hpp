@@ -23,6 +23,9 @@ class StreamRefusal : public core::InputError {
   std::string key_;
 };
 
+/// By how much a scan may come after rows of the time at which it was taken, if every line comes when it should; not less than 0.
+core::Nanoseconds longest_delay_ns(const Vehicle& vehicle);
+
 /// The odometry of a stream: rows that arrive, motion that is due. Keeps the rows since the last scan, at most those of
 /// the last second plus the sensors' delays; older ones become one increment.
 class LiveMotion {
@@ -34,11 +37,13 @@ class LiveMotion {
   void check(const OwnLog& log) const;
   void add(const OwnLog& log);
 
-  /// Whether a row at or after that time has arrived.
-  bool covers(core::Nanoseconds t_ns) const { return !rows_.odometry.empty() && rows_.odometry.back().t_ns >= t_ns; }
+  /// Whether a row at or after that time has arrived, and the motion up to it is known.
+  bool covers(core::Nanoseconds t_ns) const {
+    return !rows_.odometry.empty() && rows_.odometry.back().t_ns >= t_ns && !is_begin_unknown();
+  }
 
-  /// Whether, after the last row, the odometry determines where a scan of that time was taken: speeds are held, and
-  /// without any rows the vehicle stands still.
+  /// Whether, after the last row, the odometry determines where a scan of that time was taken: speeds are held, increments and
+  /// poses continue for a mean interval, and without any rows the vehicle stands still.
   bool tells(core::Nanoseconds t_ns) const;
 
   /// Appends the motion up to t_ns, which is covered or at the end, to the events. Times must not go back.
@@ -56,6 +61,8 @@ class LiveMotion {
  private:
   bool is_repeated(const OwnOdometry& last, const OwnOdometry& row) const;
   bool is_known(std::size_t row) const;
+  bool is_begin_unknown() const { return count_ == 1 && rows_.odometry_kind == OdometryKind::increments; }
+  void move_beyond_last(core::Nanoseconds t_ns);
   void drop_woven();
 
   const Vehicle& vehicle_;

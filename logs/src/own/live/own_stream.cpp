@@ -23,6 +23,19 @@ bool is_without_rows(const OwnLog& log) {
          log.true_poses.empty() && log.true_positions.empty() && log.true_landmarks.empty();
 }
 
+/// Rows that a stream has no use for.
+bool tells_more(const OwnLog& log) {
+  return !log.fixes.empty() || !log.true_poses.empty() || !log.true_positions.empty() || !log.true_landmarks.empty();
+}
+
+core::Nanoseconds latest_of(const OwnLog& log) {
+  core::Nanoseconds latest_ns = nothing_yet_ns;
+  for (const OwnOdometry& row : log.odometry) latest_ns = std::max(latest_ns, row.t_ns);
+  for (const OwnDetection& row : log.detections) latest_ns = std::max(latest_ns, row.t_ns);
+  for (const core::Nanoseconds row_ns : log.lost_ns) latest_ns = std::max(latest_ns, row_ns);
+  return latest_ns;
+}
+
 void check_told(const Vehicle& vehicle) {
   if (vehicle.sensors.empty()) throw core::InputError(vehicle.path + ": a stream needs a [[sensor]], found none");
   for (const SensorModel& sensor : vehicle.sensors) {
@@ -57,24 +70,36 @@ void check_is_one_scan(const std::vector<OwnDetection>& rows) {
 struct OwnStream::State {
   State(const Vehicle& given, bool by_identity)
       : vehicle(given),
+        longest_ns(longest_delay_ns(given)),
         motion(vehicle, late_s),
         scans(vehicle, by_identity),
         by_name(by_identity),
         rows(std::make_unique<JsonRows>("stream")) {}
 
-  void read(std::string_view line, std::size_t number);
+  /// A line that could be read.
+  struct Read {
+    OwnLog log;
+    bool is_list = false;
+    std::size_t number = 0;
+    core::Nanoseconds latest_ns = nothing_yet_ns;
+  };
+  std::optional<Read> read(std::string_view line, std::size_t number);
+  void take(Read read);
+  void use(const Read& read);
+  void refuse_held();
+  void forget_columns();
   void refuse(std::size_t line, std::string key, std::string why) {
     out.refused.push_back({line, std::move(key), std::move(why)});
   }
-  void check_times(const OwnLog& log);
   void tell_unnamed_sensor(const std::string& name);
-  void check_jump(core::Nanoseconds t_ns);
   void check_lost(const std::vector<core::Nanoseconds>& rows_ns) const;
   void weave_lost(core::Nanoseconds before_ns);
   void remark_once(const std::string& text);
+  bool is_due(core::Nanoseconds t_ns) const;
   void weave(bool at_end);
 
   Vehicle vehicle;
+  core::Nanoseconds longest_ns;  ///< that a scan may come after others taken with it
   LiveMotion motion;
   LiveScans scans;
   bool by_name;
@@ -82,7 +107,7 @@ struct OwnStream::State {
   std::unique_ptr<JsonRows> rows;
   OwnTables tables{true};
   core::Nanoseconds newest_ns = nothing_yet_ns;
-  core::Nanoseconds jumped_ns = nothing_yet_ns;  ///< an event that was refused because it was too far ahead
+  std::optional<Read> held;  ///< too far ahead to be believed before the next line is there, too
   std::vector<std::string> said;
   StreamedEvents out;
 };
@@ -94,57 +119,31 @@ void OwnStream::State::remark_once(const std::string& text) {
   out.remarks.push_back(text);
 }
 
-/// One wrong stamp must not make everything after it late.
-void OwnStream::State::check_jump(core::Nanoseconds t_ns) {
-  constexpr core::Nanoseconds hour_ns = 3'600'000'000'000;
-  if (newest_ns != nothing_yet_ns && t_ns > newest_ns + hour_ns) {
-    const bool again = jumped_ns != nothing_yet_ns && std::abs(t_ns - jumped_ns) < hour_ns;
-    if (!again) {
-      jumped_ns = t_ns;
-      throw StreamRefusal("t", "the time is " + LiveScans::text_of(t_ns - newest_ns) +
-                                   " s ahead of the newest; it is believed when the next one is there, too");
-    }
-  }
-  jumped_ns = nothing_yet_ns;
-  newest_ns = std::max(newest_ns, t_ns);
-}
-
 /// Whatever a sensor is called, it is taken for the only one if that has no name.
 void OwnStream::State::tell_unnamed_sensor(const std::string& name) {
   if (name.empty() || vehicle.sensors.size() != 1 || !vehicle.sensors.front().name.empty()) return;
   remark_once("stream: sensor '" + name + "' is taken for the only [[sensor]], which has no name");
 }
 
-void OwnStream::State::check_times(const OwnLog& log) {
-  core::Nanoseconds latest_ns = nothing_yet_ns;
-  for (const OwnOdometry& row : log.odometry) latest_ns = std::max(latest_ns, row.t_ns);
-  for (const OwnDetection& row : log.detections) latest_ns = std::max(latest_ns, row.t_ns);
-  for (const core::Nanoseconds row_ns : log.lost_ns) latest_ns = std::max(latest_ns, row_ns);
-  if (latest_ns != nothing_yet_ns) check_jump(latest_ns);
+void OwnStream::State::forget_columns() {
+  tables = OwnTables(true);
+  rows = std::make_unique<JsonRows>("stream");
 }
 
-void OwnStream::State::read(std::string_view line, std::size_t number) {
+/// A refused line leaves nothing behind: no rows, no kind of odometry, no columns.
+std::optional<OwnStream::State::Read> OwnStream::State::read(std::string_view line, std::size_t number) {
   try {
     rows->read(line, number, tables);
-    const OwnLog log = tables.take_rows();
-    for (const std::string& remark : log.remarks) remark_once(remark);
-    if (!log.fixes.empty() || !log.true_poses.empty() || !log.true_positions.empty() || !log.true_landmarks.empty()) {
-      remark_once("stream: fixes and truth are not used; replay compares with them");
-    }
-    if (is_without_rows(log)) {
+    Read read{tables.take_rows(), rows->last_was_list(), number, nothing_yet_ns};
+    for (const std::string& remark : read.log.remarks) remark_once(remark);
+    if (tells_more(read.log)) remark_once("stream: fixes and truth are not used; replay compares with them");
+    if (is_without_rows(read.log)) {
       throw StreamRefusal("", "holds no row; a scan that saw nothing is a time alone, {\"detections\": {\"t\": 1.5}}");
     }
-    if (rows->last_was_list()) check_is_one_scan(log.detections);
-    for (const std::string& name : log.sensor_names) tell_unnamed_sensor(name);
-    check_times(log);
-    motion.check(log);
-    check_lost(log.lost_ns);
-    const std::vector<LiveScans::Seen> seen = scans.check(log, motion.woven_ns());
-    motion.add(log);
-    scans.add(seen, rows->last_was_list(), number);
-    lost_ns.insert(lost_ns.end(), log.lost_ns.begin(), log.lost_ns.end());
-    std::sort(lost_ns.begin(), lost_ns.end());
-    return;
+    if (read.is_list) check_is_one_scan(read.log.detections);
+    for (const std::string& name : read.log.sensor_names) tell_unnamed_sensor(name);
+    read.latest_ns = latest_of(read.log);
+    return read;
   } catch (const PlacedInputError& error) {
     refuse(number, key_at(line, error.column()), error.message());
   } catch (const StreamRefusal& refusal) {
@@ -152,9 +151,52 @@ void OwnStream::State::read(std::string_view line, std::size_t number) {
   } catch (const core::InputError& error) {
     refuse(number, "", error.what());
   }
-  // A refused line leaves nothing behind: no rows, no kind of odometry, no columns.
-  tables = OwnTables(true);
-  rows = std::make_unique<JsonRows>("stream");
+  forget_columns();
+  return std::nullopt;
+}
+
+void OwnStream::State::refuse_held() {
+  if (!held) return;
+  refuse(held->number, "t",
+         "the time is " + LiveScans::text_of(held->latest_ns - newest_ns) +
+             " s ahead of the newest, and no line after it is there, too");
+  held.reset();
+  forget_columns();
+}
+
+/// One wrong stamp must not make everything after it late: a line far ahead waits until the next one is there, too.
+void OwnStream::State::take(Read read) {
+  constexpr core::Nanoseconds far_ns = 10'000'000'000;
+  if (read.latest_ns == nothing_yet_ns) return use(read);  // fixes and truth
+  if (held && std::abs(read.latest_ns - held->latest_ns) < far_ns) {
+    use(*held);
+    held.reset();
+  }
+  refuse_held();
+  if (newest_ns != nothing_yet_ns && read.latest_ns > newest_ns + far_ns) {
+    held = std::move(read);
+    return;
+  }
+  use(read);
+}
+
+void OwnStream::State::use(const Read& read) {
+  newest_ns = std::max(newest_ns, read.latest_ns);
+  try {
+    motion.check(read.log);
+    check_lost(read.log.lost_ns);
+    const std::vector<LiveScans::Seen> seen = scans.check(read.log, motion.woven_ns());
+    motion.add(read.log);
+    scans.add(seen, read.is_list, read.number);
+    lost_ns.insert(lost_ns.end(), read.log.lost_ns.begin(), read.log.lost_ns.end());
+    std::sort(lost_ns.begin(), lost_ns.end());
+    return;
+  } catch (const StreamRefusal& refusal) {
+    refuse(read.number, refusal.key(), refusal.what());
+  } catch (const core::InputError& error) {
+    refuse(read.number, "", error.what());
+  }
+  forget_columns();
 }
 
 void OwnStream::State::check_lost(const std::vector<core::Nanoseconds>& rows_ns) const {
@@ -175,13 +217,19 @@ void OwnStream::State::weave_lost(core::Nanoseconds before_ns) {
   lost_ns.erase(lost_ns.begin(), lost);
 }
 
+/// Once odometry has reached the scan, and no earlier one can come any more: a scan of the sensor with the longest delay comes that
+/// long after others that were taken with it.
+bool OwnStream::State::is_due(core::Nanoseconds t_ns) const {
+  return motion.covers(t_ns) && newest_ns >= t_ns + longest_ns;
+}
+
 void OwnStream::State::weave(bool at_end) {
   if (at_end) {
     scans.close_all();
     if (!scans.empty()) motion.end_at(scans.last_ns());
   }
   std::vector<core::Event>& events = out.recording.events;
-  while (scans.first_is_closed() && (at_end || motion.covers(scans.first_ns()))) {
+  while (scans.first_is_closed() && (at_end || is_due(scans.first_ns()))) {
     LiveScan scan = scans.pop();
     if (at_end && !motion.tells(scan.scan.t_ns)) {
       refuse(scan.line, "t",
@@ -220,7 +268,7 @@ StreamedEvents OwnStream::take(std::string_view line, std::size_t number) {
     state_->refuse(number, "", "a line longer than 1 MiB");
     return std::move(state_->out);
   }
-  state_->read(line, number);
+  if (auto read = state_->read(line, number)) state_->take(std::move(*read));
   state_->weave(false);
   return std::move(state_->out);
 }
@@ -228,6 +276,7 @@ StreamedEvents OwnStream::take(std::string_view line, std::size_t number) {
 StreamedEvents OwnStream::finish() {
   state_->out = StreamedEvents();
   state_->out.recording.extraneous_per_scan = 0.0;
+  state_->refuse_held();
   state_->weave(true);
   return std::move(state_->out);
 }

@@ -74,6 +74,7 @@ SensorModel sensor_of(TomlSection section) {
   sensor.range_scale = section.number("range_scale", 0.01, 100.0).value_or(1.0);
   sensor.range_offset_m = section.number("range_offset_m", -100.0, 100.0).value_or(0.0);
   sensor.delay_s = section.number("delay_s", -100.0, 100.0).value_or(0.0);
+  sensor.arrives_late_s = section.number("arrives_late_s", 0.0, 100.0).value_or(0.0);
   sensor.detection_probability = section.number("detection_probability", 0.15, 0.999);
   sensor.clutter_per_scan = section.number("clutter_per_scan", 0.0, 1000.0);
   sensor.class_error = section.number("class_error", 1e-6, 0.5);
