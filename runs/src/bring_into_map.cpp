@@ -42,6 +42,7 @@ std::vector<FrameOfStep> frames_of(const Run& run) {
   int part = began_off_earlier_map(run) ? 1 : 0;  // part 0: that map
   int times_carried = 0;
   for (const core::StepReport& step : run.steps) {
+    core::Pose2 T_reported_solved;
     for (const core::Decision& decision : step.decisions) {
       if (const auto* carried = std::get_if<core::CarriedDecision>(&decision)) {
         part = carried->part;
@@ -58,10 +59,12 @@ std::vector<FrameOfStep> frames_of(const Run& run) {
         if (frames[k].part != part) continue;
         frames[k].part = placing->part;
         frames[k].T_final_reported = core::compose(placing->T_map_session, frames[k].T_final_reported);
+        frames[k].T_final_solved = core::compose(placing->T_map_session, frames[k].T_final_solved);
       }
+      T_reported_solved = core::compose(placing->T_map_session, T_reported_solved);
       part = placing->part;
     }
-    frames.push_back({times_carried, part, part, {}});
+    frames.push_back({times_carried, part, part, {}, T_reported_solved});
   }
   return frames;
 }

@@ -16,6 +16,7 @@ struct FrameOfStep {
   int reported_part = 0;         ///< the part whose frame that was
   int part = 0;                  ///< the part whose frame it is in at the end
   core::Pose2 T_final_reported;  ///< from that frame into the one in which it is known at the end
+  core::Pose2 T_final_solved;    ///< likewise of a solution of the drive so far, made before this step found its place
 };
 
 /// [step]

@@ -30,7 +30,7 @@ void follow(Run& run, const std::vector<core::StampedPose>& solved) {
   const auto frame_at = [&](core::Nanoseconds t_ns) {
     const auto later = [](const core::StepReport& step, core::Nanoseconds at_ns) { return step.t_ns < at_ns; };
     const auto step = std::lower_bound(run.steps.begin(), run.steps.end(), t_ns, later);
-    if (step == run.steps.end()) return FrameOfStep{frames.back().times_carried, 0, 0, {}};
+    if (step == run.steps.end()) return FrameOfStep{frames.back().times_carried, 0, 0, {}, {}};
     return frames[static_cast<std::size_t>(step - run.steps.begin())];
   };
   run.final_path.clear();
@@ -44,7 +44,7 @@ void follow(Run& run, const std::vector<core::StampedPose>& solved) {
     if (next == solved.end() || frame.times_carried != frames[k].times_carried) {
       run.final_path.push_back(step.pose.mean);
     } else if (next->t_ns == step.t_ns || begins) {
-      run.final_path.push_back(core::compose(frame.T_final_reported, next->T_world_robot));
+      run.final_path.push_back(core::compose(frame.T_final_solved, next->T_world_robot));
     } else {
       const core::Pose2 motion = core::between(run.steps[k - 1].pose.mean, step.pose.mean);
       run.final_path.push_back(core::compose(run.final_path.back(), motion));

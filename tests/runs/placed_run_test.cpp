@@ -130,6 +130,25 @@ TEST(PlacedRun, APartMayHaveBegunBeforeAnybodyKnew) {
   }
 }
 
+/// In one scan the session's own drive is solved, and then the place of the session is found.
+TEST(PlacedRun, OfTheScanThatFoundThePlaceTheSolvedPoseIsMovedToo) {
+  RunRecorder recorder("run", {}, {});
+  for (int k = 0; k < 6; ++k) {
+    core::StepReport step = step_at(k, k >= 3);
+    if (k == 0) step.decisions.emplace_back(placed(core::PlacedDecision::Verdict::sought));
+    if (k == 3) {
+      for (int i = 0; i <= k; ++i) step.solved.push_back({1000000000LL * i, step_at(i, false).pose.mean});
+      step.decisions.emplace_back(placed(core::PlacedDecision::Verdict::accepted));
+    }
+    recorder.add(step, 0.0);
+  }
+  const runs::Run run = recorder.finish({});
+  for (int k = 0; k < 6; ++k) {
+    const core::Pose2 expected = step_at(k, true).pose.mean;
+    EXPECT_LT((run.final_path[static_cast<std::size_t>(k)].vector() - expected.vector()).norm(), 1e-12) << k;
+  }
+}
+
 TEST(PlacedRun, WhatWasKnownBeforeItWasLostStaysWhereItIs) {
   const testing::TemporaryFolder folder;
   const runs::Run run = write_run((folder.path() / "run").string(), false);

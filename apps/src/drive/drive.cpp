@@ -54,6 +54,7 @@ struct Driven {
   std::map<std::string, int> closings;  ///< how many of each verdict
   std::string broken;    ///< what broke down, in the mathematics or the program, and where; the run ended there
   double full_mb = 0.0;  ///< of memory in use when the limit ended the run
+  bool is_start_ambiguous = false;  ///< see StartCheck
 };
 
 /// Peak resident memory of the process.
@@ -121,6 +122,7 @@ runs::Run navigated(const Drive& job, runs::RunWriter& writer, runs::RunRecorder
   run.names = landmark_names(job, run);
   run.joint_map = estimator.joint_map();
   if (run.joint_map) run.joint_map->drives = drives_in_map(job, run);
+  driven.is_start_ambiguous = estimator.is_start_ambiguous && estimator.is_start_ambiguous();
   if (estimator.parts_apart) run.parts_apart = estimator.parts_apart();
   if (estimator.particle_end) run.particle_end = estimator.particle_end();
   return run;
@@ -177,6 +179,7 @@ ExitCode drive(const Drive& job) {
     const auto withheld = std::count(job.withheld.begin(), job.withheld.end(), true);
     run.numbers.emplace_back("blackout.scans", static_cast<double>(withheld));
   }
+  if (driven.is_start_ambiguous) run.numbers.emplace_back(start_is_ambiguous, 1.0);
   const bool whole = !interrupted() && driven.broken.empty() && driven.full_mb == 0.0;
   if (whole && job.may_err_systematically()) note_systematic_errors(job.recording, run);
   const ExitCode smoothed = job.smooth && whole ? smooth_drive(job, run) : ExitCode::ok;

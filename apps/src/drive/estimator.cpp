@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -12,9 +13,14 @@
 #include "helixnav/supervisor/lengths.hpp"
 #include "localizer_feed.hpp"
 #include "navigator_on_map.hpp"
+#include "start_check.hpp"
 
 namespace helixnav::apps {
 namespace {
+
+double reach_of_log(const Drive& job) {
+  return logs::field_of_view_of(job.recording).reach().value_or(supervisor::reference_reach_m);
+}
 
 /// A session that does not know where it is calls its own start the origin.
 ChosenNavigator begun(const Drive& job, const std::vector<std::vector<core::Label>>& labels) {
@@ -25,11 +31,17 @@ ChosenNavigator begun(const Drive& job, const std::vector<std::vector<core::Labe
     navigator.look_for_place_in(earlier.map);
     return {std::move(navigator), labels};
   }
-  const double reach_m = logs::field_of_view_of(job.recording).reach().value_or(supervisor::reference_reach_m);
   const bool at_end = earlier.start.kind == SessionStart::Kind::end;
-  const core::JointMap map = at_end ? earlier.map : seen_from(earlier.map, earlier.start.T_map_robot, reach_m);
+  const core::JointMap map =
+      at_end ? earlier.map : seen_from(earlier.map, earlier.start.T_map_robot, reach_of_log(job));
   if (job.known_association) return {supervisor::NamedNavigator(map, earlier.landmark_of, job.navigator), labels};
   return {supervisor::Navigator::go_on_in(map, job.navigator), labels};
+}
+
+/// Of a pose that was given; names tell by themselves.
+std::optional<StartCheck> check_of_start(const Drive& job) {
+  if (!job.earlier || job.earlier->start.kind != SessionStart::Kind::pose || job.known_association) return std::nullopt;
+  return StartCheck(job.earlier->map, job.earlier->start.T_map_robot, reach_of_log(job), job.navigator);
 }
 
 bool is_same_map(const core::JointMap& one, const core::JointMap& other) {
@@ -49,8 +61,24 @@ std::map<int, core::JointMap> parts_of(const ChosenNavigator& navigator, const D
 struct NavigatorDrive {
   std::vector<std::vector<core::Label>> labels;
   ChosenNavigator navigator;
+  std::optional<StartCheck> check;
+  bool is_start_ambiguous = false;
 
-  explicit NavigatorDrive(const Drive& job) : labels(labels_fed(job)), navigator(begun(job, labels)) {}
+  explicit NavigatorDrive(const Drive& job)
+      : labels(labels_fed(job)), navigator(begun(job, labels)), check(check_of_start(job)) {}
+
+  std::optional<core::StepReport> take(const core::Event& event) {
+    std::optional<core::StepReport> report = navigator.take(event);
+    if (!check) return report;
+    check->take(event, report ? &*report : nullptr, navigator.pose());
+    if (std::optional<StartCheck::RightStart> right = check->right_start()) {
+      navigator = ChosenNavigator(std::move(right->navigator), labels);
+      report = std::move(right->report);
+    }
+    is_start_ambiguous = check->is_ambiguous();
+    if (check->is_over()) check.reset();
+    return report;
+  }
 };
 
 }  // namespace
@@ -65,28 +93,36 @@ std::vector<std::vector<core::Label>> labels_fed(const Drive& job) {
 
 Estimator navigator_of(const Drive& job) {
   const auto drive = std::make_shared<NavigatorDrive>(job);
-  return {[drive](const core::Event& event) { return drive->navigator.take(event); },
+  return {[drive](const core::Event& event) { return drive->take(event); },
           [drive] { return drive->navigator.pose(); },
           [drive] { return drive->navigator.map(); },
           [drive, &job] { return joint_map_of(drive->navigator, job.recording); },
           {},
           [drive, &job] { return parts_of(drive->navigator, job); },
-          [drive] { return drive->navigator.sketch(); }};
+          [drive] { return drive->navigator.sketch(); },
+          [drive] { return drive->is_start_ambiguous; }};
 }
 
 namespace {
 
 template <class Feed>
 Estimator on_given_map(std::shared_ptr<Feed> feed, const Drive& job) {
-  return {[feed](const core::Event& event) { return feed->take(event); }, [feed] { return feed->pose(); },
-          [&job] { return job.given_map->landmarks; }, [] { return std::nullopt; }};
+  Estimator estimator;
+  estimator.take = [feed](const core::Event& event) { return feed->take(event); };
+  estimator.pose = [feed] { return feed->pose(); };
+  estimator.map = [&job] { return job.given_map->landmarks; };
+  estimator.joint_map = [] { return std::nullopt; };
+  return estimator;
 }
 
 }  // namespace
 
 Estimator localizer_of(const Drive& job, LabelAgreement& agreement) {
   if (!job.known_association && can_be_searched(*job.given_map)) {
-    return on_given_map(std::make_shared<NavigatorOnMap>(job, labels_fed(job), agreement), job);
+    const auto feed = std::make_shared<NavigatorOnMap>(job, labels_fed(job), agreement);
+    Estimator estimator = on_given_map(feed, job);
+    estimator.is_start_ambiguous = [feed] { return feed->is_start_ambiguous(); };
+    return estimator;
   }
   return on_given_map(std::make_shared<LocalizerFeed>(job, labels_fed(job), agreement), job);
 }

@@ -26,6 +26,7 @@ struct Estimator {
   std::function<std::map<int, core::JointMap>()> parts_apart =
       {};                                                       ///< of the drive, from before the vehicle was carried
   std::function<std::vector<core::MapLandmark>()> sketch = {};  ///< map() for a picture, if that is cheaper
+  std::function<bool()> is_start_ambiguous = {};  ///< see StartCheck; only where a start on an earlier map was given
 };
 
 /// The one requested by the job. `agreement` as in localizer_of.

@@ -26,14 +26,15 @@ core::JointMap with_pose(core::JointMap map, const core::PoseGaussian& pose) {
   return map;
 }
 
-supervisor::Navigator looking_for_place(const Drive& job, const core::JointMap& map) {
-  supervisor::Navigator navigator(core::PoseGaussian{}, job.navigator);
+/// In a frame of its own, in which the vehicle is at this pose.
+supervisor::Navigator looking_for_place(const Drive& job, const core::JointMap& map, const core::Pose2& T_own_robot) {
+  supervisor::Navigator navigator(core::PoseGaussian{T_own_robot, Eigen::Matrix3d::Zero()}, job.navigator);
   navigator.look_for_place_in(map);
   return navigator;
 }
 
 supervisor::Navigator begun_on_map(const Drive& job, const core::JointMap& map) {
-  if (is_unknown(job)) return looking_for_place(job, map);
+  if (is_unknown(job)) return looking_for_place(job, map, core::Pose2());
   const std::optional<SessionStart>& start = job.given_map->start;
   return supervisor::Navigator::go_on_in(
       start ? seen_from(map, start->T_map_robot, reach_of(job)) : with_pose(map, job.recording.start), job.navigator);
@@ -86,7 +87,9 @@ NavigatorOnMap::NavigatorOnMap(const Drive& job, std::vector<std::vector<core::L
       navigator_(begun_on_map(job, map_)),
       is_placed_(!is_unknown(job)),
       monitor_(job.given_map->landmarks, reach_m_),
-      is_start_in_doubt_(is_placed_) {}
+      is_start_in_doubt_(is_placed_) {
+  if (is_placed_) check_.emplace(map_, navigator_.pose().mean, reach_m_, job.navigator);
+}
 
 std::optional<core::StepReport> NavigatorOnMap::take(const core::Event& event) {
   if (const auto* odometry = std::get_if<core::Odometry>(&event)) {
@@ -99,8 +102,12 @@ std::optional<core::StepReport> NavigatorOnMap::take(const core::Event& event) {
     navigator_.lose(*lost);
   }
   const auto* scan = std::get_if<core::Scan>(&event);
-  if (scan == nullptr) return std::nullopt;
+  if (scan == nullptr) {
+    if (check_) check_->take(event, nullptr, pose());
+    return std::nullopt;
+  }
   core::StepReport report = observe(*scan);
+  if (std::optional<core::StepReport> checked = checked_start(event, report)) report = std::move(*checked);
   if (!job_.recording.labels.empty()) agreement_.count(report, labels_of_[scans_], *job_.given_map);
   report.step = static_cast<std::int64_t>(scans_++);
   return report;
@@ -130,9 +137,30 @@ core::StepReport NavigatorOnMap::observe(const core::Scan& scan) {
     return navigated;
   }
   monitor_.observe(scan, navigated, driven_m);
-  if (is_start_in_doubt_) doubt_start(navigated);
+  is_start_in_doubt_ = is_start_in_doubt_ && !monitor_.is_confirmed();
+  if (is_start_in_doubt_ && monitor_.is_lost()) {
+    is_start_in_doubt_ = false;
+    return begin_anew(scan, navigated);
+  }
   if (monitor_.is_confirmed() && navigated.mode == core::Mode::mapping) track_from(navigated.pose);
   return navigated;
+}
+
+std::optional<core::StepReport> NavigatorOnMap::checked_start(const core::Event& event,
+                                                              const core::StepReport& report) {
+  if (!check_) return std::nullopt;
+  check_->take(event, &report, report.pose);
+  std::optional<StartCheck::RightStart> right = check_->right_start();
+  is_start_ambiguous_ = check_->is_ambiguous();
+  if (check_->is_over()) check_.reset();
+  if (!right) return std::nullopt;
+  navigator_ = std::move(right->navigator);
+  tracker_.reset();
+  monitor_.reset();
+  std::vector<core::StampedPose> path = std::move(right->report.solved);
+  core::StepReport placed = on_map(std::move(right->report));
+  placed.solved = std::move(path);
+  return placed;
 }
 
 /// After a slip, which the navigator considers and the EKF does not: if the map explains the observations from the navigator's pose and not
@@ -144,16 +172,18 @@ bool NavigatorOnMap::knows_better(const core::StepReport& navigated, const core:
   return is_better && (has_slipped(navigated) || better_scans_ >= 2);
 }
 
-/// Begins anew, as a vehicle that does not know where on the map it is: everything mapped so far was put in wrong places of it.
-void NavigatorOnMap::doubt_start(core::StepReport& report) {
-  is_start_in_doubt_ = !monitor_.is_confirmed();
-  if (!monitor_.is_lost()) return;
-  is_start_in_doubt_ = is_placed_ = false;
-  navigator_ = looking_for_place(job_, map_);
+/// Begins anew, as a vehicle that does not know where on the map it is: everything mapped so far was put in wrong places of it. The
+/// path so far, relative to the start that was given, belongs to the part that begins.
+core::StepReport NavigatorOnMap::begin_anew(const core::Scan& scan, const core::StepReport& report) {
+  is_placed_ = false;
+  navigator_ = looking_for_place(job_, map_, report.pose.mean);
+  core::StepReport anew = on_map(navigator_.observe(scan));
   core::CarriedDecision carried;
   carried.part = carried.apart = 1;
   carried.cause = core::CarriedDecision::Cause::wrong_start;
-  report.decisions.emplace_back(carried);
+  carried.scans = static_cast<int>(scans_);
+  anew.decisions.insert(anew.decisions.begin(), carried);
+  return anew;
 }
 
 /// Resets the navigator, too, if it has left the map meanwhile.

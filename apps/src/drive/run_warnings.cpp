@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <map>
 #include <set>
+#include <variant>
 
 #include "has_match.hpp"
 #include "helixnav/reports/run_warnings.hpp"
@@ -75,6 +76,29 @@ std::string given_start_text(const runs::Run& run) {
          "holds landmarks twice; --start unknown finds the start itself";
 }
 
+bool is_wrong_start(const core::Decision& decision) {
+  const auto* carried = std::get_if<core::CarriedDecision>(&decision);
+  return carried != nullptr && carried->cause == core::CarriedDecision::Cause::wrong_start;
+}
+
+/// Empty if the start that was given on an earlier map is right as far as can be told.
+std::string doubted_start_text(const runs::Run& run) {
+  const bool was_wrong = std::any_of(run.steps.begin(), run.steps.end(), [](const core::StepReport& step) {
+    return std::any_of(step.decisions.begin(), step.decisions.end(), is_wrong_start);
+  });
+  if (was_wrong) {
+    return "the start given (--start) is wrong: the landmarks seen stand elsewhere on the map. It was dropped, and the "
+           "place searched for; "
+           "'helixnav explain' says when and with what result";
+  }
+  const bool is_ambiguous = std::any_of(run.numbers.begin(), run.numbers.end(),
+                                        [](const auto& number) { return number.first == start_is_ambiguous; });
+  return is_ambiguous ? "the start given was taken on trust: the landmarks seen fit several places on the map. If it "
+                        "is wrong by a "
+                        "row or by one landmark of many alike, everything is"
+                      : "";
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const Drive& job, const runs::Run& run, const evaluation::Evaluation& evaluation) {
@@ -90,6 +114,7 @@ std::vector<std::string> warnings_of(const Drive& job, const runs::Run& run, con
     const std::string text = names_text(run);
     if (!text.empty()) warnings.push_back(text);
   }
+  if (const std::string text = doubted_start_text(run); !text.empty()) warnings.push_back(text);
   if (job.earlier && job.earlier->start.kind == SessionStart::Kind::pose) {
     const std::string text = given_start_text(run);
     if (!text.empty()) warnings.push_back(text);

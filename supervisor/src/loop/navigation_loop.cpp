@@ -69,24 +69,23 @@ StepReport NavigationLoop::observe(const Scan& measured) {
 
 StepReport NavigationLoop::observe_anywhere(const Scan& scan) {
   const IntegrityLimits& limits = options_.search.integrity;
-  const std::optional<double> paused_m = pause_to_weigh(scan);
-  const StillThere there = paused_m ? weigh_pause(scan, *paused_m) : StillThere{};
+  const std::optional<UnsurePause> pause = pause_to_weigh(scan);
+  const StillThere there = pause ? weigh_pause(scan, pause->path_m) : StillThere{};
   const double driven_m = pending_.driven_m;
   const double turn_rad2 = pending_.motion ? pending_.motion->covariance(2, 2) : 0.0;
   const bool is_open = is_monitored() && rhythm_.leaves_heading_open(turn_rad2);
   const bool is_carried = there.is_elsewhere(limits);
-  const bool has_paused = paused_m && rhythm_.is_pause(scan.t_ns, driven_m);
-  const UnsurePause pause{paused_m.value_or(0.0), belief_.step};
+  const bool has_paused = pause && rhythm_.is_pause(scan.t_ns, driven_m);
   pauses_.reserve(pauses_.size() + 1);  // nothing throws once the scan has been taken
   const bool is_elsewhere = is_carried || is_open;
-  StepReport report = is_carried ? observe_elsewhere(scan, there)
+  StepReport report = is_carried ? observe_elsewhere(scan, there, *pause)
                       : is_open  ? begin_part_with(scan, without_odometry())
                                  : observe_somewhere(scan);
   rhythm_.note(scan.t_ns, driven_m, turn_rad2);
   forget_pauses(report);
   if (is_elsewhere) pauses_.clear();
-  if (has_paused && !is_elsewhere && !there.is_surely_here()) pauses_.push_back(pause);
-  pause_m_ = is_elsewhere || there.is_here(limits) ? std::nullopt : paused_m;
+  if (has_paused && !is_elsewhere && !there.is_surely_here()) pauses_.push_back(*pause);
+  pause_ = is_elsewhere || there.is_here(limits) ? std::nullopt : pause;
   return report;
 }
 

@@ -217,14 +217,16 @@ class NavigationLoop {
 
   // placing/carried.cpp
   core::JointMap map_to_keep(core::CarriedDecision& decision, double until_m) const;
-  Belief belief_elsewhere() const;
+  Belief belief_elsewhere(const core::Pose2& T_part_robot) const;
   Part part_elsewhere(const core::CarriedDecision& decision) const;
+  Part part_since(const UnsurePause& pause, core::CarriedDecision decision) const;
   Part part_apart(core::CarriedDecision decision, core::JointMap map, Belief belief) const;
   void exchange(Part& other) noexcept;
-  std::optional<double> pause_to_weigh(const core::Scan& scan) const;
+  std::optional<UnsurePause> pause_to_weigh(const core::Scan& scan) const;
   StillThere weigh_pause(const core::Scan& scan, double paused_m) const;
-  core::StepReport observe_elsewhere(const core::Scan& scan, const StillThere& there);
+  core::StepReport observe_elsewhere(const core::Scan& scan, const StillThere& there, const UnsurePause& pause);
   core::StepReport begin_part_with(const core::Scan& scan, const core::CarriedDecision& decision);
+  core::StepReport observe_in(Part other, const core::Scan& scan);
   core::CarriedDecision broken_off() const;
   core::CarriedDecision without_odometry() const;
   core::StepReport observe_somewhere(const core::Scan& scan);
@@ -275,7 +277,7 @@ class NavigationLoop {
   OdometryRhythm odometry_rhythm_;
   Undo undo_;
   ScanRhythm rhythm_;
-  std::optional<double> pause_m_;  ///< where on the drive there was a pause that no scan has decided yet
+  std::optional<UnsurePause> pause_;  ///< that no scan has decided yet
   std::vector<UnsurePause>
       pauses_;  ///< since the place was last certain, for which no scan established that it was the same
   std::uint64_t searches_ = 0;

@@ -97,9 +97,9 @@ core::JointMap NavigationLoop::map_to_keep(core::CarriedDecision& decision, doub
   return map;
 }
 
-/// Nothing is known about where it is: the frame begins at the vehicle.
-Belief NavigationLoop::belief_elsewhere() const {
-  return {cekf::CompressedEkf(core::PoseGaussian{}, options_.filter),
+/// Nothing is known about where it is: the frame of the part begins with the vehicle.
+Belief NavigationLoop::belief_elsewhere(const core::Pose2& T_part_robot) const {
+  return {cekf::CompressedEkf(core::PoseGaussian{T_part_robot, Eigen::Matrix3d::Zero()}, options_.filter),
           association::LandmarkLife(options_.life),
           CoverageTrace(options_.search.coverage_spacing_m),
           {},
@@ -110,9 +110,19 @@ Belief NavigationLoop::belief_elsewhere() const {
 NavigationLoop::Part NavigationLoop::part_elsewhere(const core::CarriedDecision& decision) const {
   core::CarriedDecision kept = decision;
   core::JointMap map = map_to_keep(kept, std::numeric_limits<double>::infinity());
-  Belief belief = belief_elsewhere();
+  Belief belief = belief_elsewhere(core::Pose2());
   belief.filter.name_from(map.next_name);
   return part_apart(kept, std::move(map), std::move(belief));
+}
+
+/// The scans since the pause belong to the part, which therefore goes on in their frame; what they mapped and what they matched is
+/// dropped.
+NavigationLoop::Part NavigationLoop::part_since(const UnsurePause& pause, core::CarriedDecision decision) const {
+  decision.scans = static_cast<int>(belief_.step - pause.step);
+  core::JointMap map = map_to_keep(decision, pause.path_m);
+  Belief belief = belief_elsewhere(belief_.filter.pose().mean);
+  belief.filter.name_from(map.next_name);
+  return part_apart(decision, std::move(map), std::move(belief));
 }
 
 /// A part with this belief, apart from what else is and from the map.
@@ -174,18 +184,18 @@ void NavigationLoop::lose(const core::Lost&) {
   exchange(elsewhere);
   rhythm_.lose_last();
   odometry_rhythm_.lose_last();
-  pause_m_.reset();
+  pause_.reset();
   pauses_.clear();
 }
 
 /// Where on the drive the pause was that this scan may tell about: the one that ends with it, or one that the scans
 /// since have left undecided.
-std::optional<double> NavigationLoop::pause_to_weigh(const core::Scan& scan) const {
+std::optional<UnsurePause> NavigationLoop::pause_to_weigh(const core::Scan& scan) const {
   if (!is_monitored()) return std::nullopt;
-  if (rhythm_.is_pause(scan.t_ns, pending_.driven_m)) return belief_.existence.path_m();
-  if (!pause_m_) return std::nullopt;
-  const double driven_m = belief_.existence.path_m() + pending_.driven_m - *pause_m_;
-  return driven_m <= options_.search.rest_m ? pause_m_ : std::nullopt;
+  if (rhythm_.is_pause(scan.t_ns, pending_.driven_m)) return UnsurePause{belief_.existence.path_m(), belief_.step};
+  if (!pause_) return std::nullopt;
+  const double driven_m = belief_.existence.path_m() + pending_.driven_m - pause_->path_m;
+  return driven_m <= options_.search.rest_m ? pause_ : std::nullopt;
 }
 
 StillThere NavigationLoop::weigh_pause(const core::Scan& scan, double paused_m) const {
@@ -195,13 +205,18 @@ StillThere NavigationLoop::weigh_pause(const core::Scan& scan, double paused_m) 
   return still_there(belief_.filter, belief_.existence, T_before_now, scan, {paused_m - lately_m, paused_m}, options_);
 }
 
-StepReport NavigationLoop::observe_elsewhere(const core::Scan& scan, const StillThere& there) {
-  return begin_part_with(scan, found_out(there));
+StepReport NavigationLoop::observe_elsewhere(const core::Scan& scan, const StillThere& there,
+                                             const UnsurePause& pause) {
+  const bool is_first = pause.step == belief_.step;
+  return is_first ? begin_part_with(scan, found_out(there)) : observe_in(part_since(pause, found_out(there)), scan);
 }
 
 /// As observe(), but in a part of the drive that begins with this scan.
 StepReport NavigationLoop::begin_part_with(const core::Scan& scan, const core::CarriedDecision& decision) {
-  Part other = part_elsewhere(decision);
+  return observe_in(part_elsewhere(decision), scan);
+}
+
+StepReport NavigationLoop::observe_in(Part other, const core::Scan& scan) {
   exchange(other);
   try {
     return observe_here(scan);

@@ -31,8 +31,7 @@ void NavigationLoop::forget_pauses(const StepReport& report) {
 }
 
 /// The last pause before the paired branch landmarks were mapped, if the vehicle can have been carried then: the old
-/// landmarks were mapped before it, few other earlier ones were matched since, and it is no longer ago than a search
-/// may last.
+/// landmarks were mapped before it, and few other earlier ones were matched since: none, or it is no longer ago than a search may last.
 std::optional<UnsurePause> NavigationLoop::pause_before(
     const std::vector<pf_relocalize::ConstellationPair>& pairs) const {
   const association::LandmarkLife& existence = belief_.existence;
@@ -48,7 +47,6 @@ std::optional<UnsurePause> NavigationLoop::pause_before(
   if (after == pauses_.begin()) return std::nullopt;
   const UnsurePause pause = *std::prev(after);
   if (last_old_m > pauses_.front().path_m) return std::nullopt;
-  if (existence.path_m() - pause.path_m > options_.search.undecided_m) return std::nullopt;
   int since = 0, across = 0;
   for (const association::LandmarkRecord& record : existence.records()) {
     if (record.last_seen_path_m <= pause.path_m) continue;
@@ -56,7 +54,8 @@ std::optional<UnsurePause> NavigationLoop::pause_before(
     across += record.born_path_m <= pause.path_m;
   }
   constexpr int few = 3;  // at most one in three
-  return few * across <= since ? std::optional(pause) : std::nullopt;
+  const bool is_recent = existence.path_m() - pause.path_m <= options_.search.undecided_m;
+  return few * across <= since && (is_recent || across == 0) ? std::optional(pause) : std::nullopt;
 }
 
 /// Pose and landmarks begun since, in the frame they are in.

@@ -68,6 +68,25 @@ TEST(FoundCarried, ByTheFirstScanAfterThePause) {
   }
 }
 
+/// Nothing is in view at first where it was set down.
+TEST(FoundCarried, ByALaterScanWithThoseSinceThePause) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    core::Recording run = with_pauses(sim::simulate(wide_circuit(), seed), {{220, 290}}, false);
+    std::size_t scans = 0;
+    for (core::Event& event : run.events) {
+      auto* scan = std::get_if<core::Scan>(&event);
+      if (scan != nullptr && scans++ >= 220 && scans <= 223) scan->observations.clear();
+    }
+    const Found driven = drive_through(run);
+    ASSERT_EQ(driven.carried.size(), 1u);
+    EXPECT_EQ(driven.carried[0].cause, core::CarriedDecision::Cause::found_out);
+    ASSERT_GE(driven.carried_at[0], 221u);
+    EXPECT_EQ(driven.carried[0].scans, static_cast<int>(driven.carried_at[0] - 220));
+    EXPECT_LT(driven.error_at_end_m, 0.8);
+  }
+}
+
 TEST(FoundCarried, IsSilentWhereAnEventSaysItToo) {
   core::Recording run = with_pauses(sim::simulate(wide_circuit(), 1), {{220, 290}}, true);
   Navigator navigator(run.start);
