@@ -117,8 +117,14 @@ void bind_run(py::module_& module) {
       .def_property_readonly(
           "path", [](const runs::Run& run) { return text_with_paths(run.path); },
           "The run folder; empty if there is none.")
-      .def_readonly("steps", &runs::Run::steps, "A StepReport for each scan.")
-      .def_property_readonly("trajectory", &trajectory_of, "(N, 4): t, x, y, heading at each scan, as estimated then.")
+      .def_readonly(
+          "steps", &runs::Run::steps,
+          "A StepReport for each scan. Poses from before a session or a part of the drive found its place are "
+          "moved into the frame of the map; their covariances remain those since the part began.")
+      .def_property_readonly(
+          "trajectory", &trajectory_of,
+          "(N, 4): t, x, y, heading at each scan, as estimated then. Scans before a session or a part of "
+          "the drive found its place are moved into the frame of the map.")
       .def_property_readonly(
           "map", [](const runs::Run& run) { return Map{run.map}; }, "The landmarks at the end, in the map frame.")
       .def_readonly("joint_map", &runs::Run::joint_map,

@@ -330,8 +330,8 @@ TEST_F(GoOn, AStartFromWhereNothingOfTheMapIsSeenIsWarnedOf) {
   const auto said = [&](const std::string& start) {
     return replay("tuesday.circles", {"--map", folder("monday"), "--start", start}, "at" + start).err;
   };
-  EXPECT_NE(said("300,0,0").find("matched with the map given"), std::string::npos);
-  EXPECT_EQ(said("0,0,0").find("matched with the map given"), std::string::npos);
+  EXPECT_NE(said("300,0,0").find("the start given (--start) is wrong"), std::string::npos);
+  EXPECT_EQ(said("0,0,0").find("the start given"), std::string::npos);
 }
 
 TEST_F(GoOn, ARunThatNeverFoundItsPlaceHoldsNothingOfThatMapAndIsJoinedAsAnyOther) {

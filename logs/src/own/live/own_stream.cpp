@@ -86,6 +86,7 @@ struct OwnStream::State {
   std::optional<Read> read(std::string_view line, std::size_t number);
   void take(Read read);
   void use(const Read& read);
+  core::Nanoseconds far_ahead_ns() const;
   void refuse_held();
   void forget_columns();
   void refuse(std::size_t line, std::string key, std::string why) {
@@ -107,6 +108,8 @@ struct OwnStream::State {
   std::unique_ptr<JsonRows> rows;
   OwnTables tables{true};
   core::Nanoseconds newest_ns = nothing_yet_ns;
+  core::Nanoseconds advanced_ns = 0;  ///< from line to line, without those that were far ahead
+  std::size_t lines_used = 0;
   std::optional<Read> held;  ///< too far ahead to be believed before the next line is there, too
   std::vector<std::string> said;
   StreamedEvents out;
@@ -164,10 +167,18 @@ void OwnStream::State::refuse_held() {
   forget_columns();
 }
 
+/// Ten seconds, and a hundred mean intervals of the lines so far; an hour before these are known.
+core::Nanoseconds OwnStream::State::far_ahead_ns() const {
+  constexpr std::size_t enough = 20;
+  constexpr core::Nanoseconds hour_ns = 3'600'000'000'000, least_ns = 10'000'000'000, intervals = 100;
+  if (lines_used < enough) return hour_ns;
+  return std::max(least_ns, intervals * (advanced_ns / static_cast<core::Nanoseconds>(lines_used)));
+}
+
 /// One wrong stamp must not make everything after it late: a line far ahead waits until the next one is there, too.
 void OwnStream::State::take(Read read) {
-  constexpr core::Nanoseconds far_ns = 10'000'000'000;
   if (read.latest_ns == nothing_yet_ns) return use(read);  // fixes and truth
+  const core::Nanoseconds far_ns = far_ahead_ns();
   if (held && std::abs(read.latest_ns - held->latest_ns) < far_ns) {
     use(*held);
     held.reset();
@@ -177,10 +188,12 @@ void OwnStream::State::take(Read read) {
     held = std::move(read);
     return;
   }
+  if (newest_ns != nothing_yet_ns) advanced_ns += std::max<core::Nanoseconds>(0, read.latest_ns - newest_ns);
   use(read);
 }
 
 void OwnStream::State::use(const Read& read) {
+  ++lines_used;
   newest_ns = std::max(newest_ns, read.latest_ns);
   try {
     motion.check(read.log);
