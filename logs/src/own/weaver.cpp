@@ -45,8 +45,15 @@ void Weaver::lose(core::Nanoseconds t_ns) {
   events_.emplace_back(core::Lost{t_ns});
 }
 
+/// After a gap of days nothing is known, however large the number that says so.
 void Weaver::flush() {
-  if (pending_) events_.emplace_back(*pending_);
+  constexpr double most = 1e15;
+  if (pending_) {
+    Eigen::Matrix3d& covariance = pending_->covariance;
+    const Eigen::Vector3d scale = (most * covariance.diagonal().cwiseInverse()).cwiseMin(1.0).cwiseSqrt();
+    if (covariance.diagonal().maxCoeff() > most) covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
+    events_.emplace_back(*pending_);
+  }
   pending_.reset();
 }
 

@@ -55,6 +55,13 @@ TEST(OwnGap, IsAsUncertainHoweverOftenScansDivideIt) {
   EXPECT_LT((once - often).norm(), 0.02 * once.norm());
 }
 
+/// The chain of the gap's pieces has variances of 10²³ m²; no event may have those.
+TEST(OwnGap, OfDaysIsStillAnEventThatCanBeTaken) {
+  const Eigen::Matrix3d covariance = way_through(1e6, 0).covariance;
+  EXPECT_LT(covariance.cwiseAbs().maxCoeff(), 1.01e15);
+  EXPECT_GT(covariance(0, 0), 1e10);
+}
+
 TEST(OwnGap, IsNoneWhereRowsAreAsFarApartAsEver) { EXPECT_LT(std::sqrt(way_through(0.9, 0).covariance(2, 2)), 0.01); }
 
 }  // namespace
