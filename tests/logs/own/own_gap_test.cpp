@@ -59,7 +59,7 @@ TEST(OwnGap, IsAsUncertainHoweverOftenScansDivideIt) {
 TEST(OwnGap, OfDaysIsStillAnEventThatCanBeTaken) {
   const Eigen::Matrix3d covariance = way_through(1e6, 0).covariance;
   EXPECT_LT(covariance.cwiseAbs().maxCoeff(), 1.01e15);
-  EXPECT_GT(covariance(0, 0), 1e10);
+  EXPECT_GT(covariance(0, 0), 1e7);
 }
 
 TEST(OwnGap, IsNoneWhereRowsAreAsFarApartAsEver) { EXPECT_LT(std::sqrt(way_through(0.9, 0).covariance(2, 2)), 0.01); }
