@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fuse_gps.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include <Eigen/LU>
-
+#include "align_start.hpp"
+#include "helixnav/core/angle.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/interpolate.hpp"
 #include "helixnav/core/odometry.hpp"
-#include "helixnav/evaluation/alignment.hpp"
 #include "truth_of_fused.hpp"
 
 namespace helixnav::apps {
@@ -39,46 +41,116 @@ void split_at_fixes(core::Recording& recording) {
   recording.events = std::move(events);
 }
 
-struct Beginning {
-  std::vector<Eigen::Vector2d> gps_m;  ///< the fixes
-  std::vector<Eigen::Vector2d> way_m;  ///< the antenna then, dead-reckoned in the frame of the start
-  std::vector<double> variance_m2;     ///< of the dead reckoning, larger of the two axes' sum
-  std::size_t fixes = 0;
+double sigma_of(const core::TruePosition& fix, const GpsSettings& settings) {
+  return fix.sigma_m > 0.0 ? fix.sigma_m : settings.sigma_m;
+}
+
+/// The way so far, as a chain of chords of at least a tenth of the length asked for: the noise of the poses of a parked vehicle
+/// is no way.
+class DrivenWay {
+ public:
+  explicit DrivenWay(double asked_m) : asked_m_(asked_m) {}
+
+  void go_to(const Eigen::Vector2d& position_m) {
+    const double chord_m = (position_m - corner_m_).norm();
+    farthest_m_ = std::max(farthest_m_, position_m.norm());
+    last_chord_m_ = chord_m;
+    if (chord_m < chord_share * asked_m_) return;
+    chords_m_ += chord_m;
+    last_chord_m_ = 0.0;
+    corner_m_ = position_m;
+  }
+
+  double length_m() const { return chords_m_ + last_chord_m_; }
+  double farthest_m() const { return farthest_m_; }
+
+ private:
+  static constexpr double chord_share = 0.1;
+  double asked_m_;
+  double chords_m_ = 0.0;
+  double last_chord_m_ = 0.0;
+  double farthest_m_ = 0.0;
+  Eigen::Vector2d corner_m_ = Eigen::Vector2d::Zero();
 };
 
-Beginning begin(const core::Recording& recording, double start_m) {
-  Beginning beginning;
-  core::Odometry way = core::no_motion(0);
+/// An EKF is consistent with a heading known to a degree or two (Bailey et al., IROS 2006): what comes after is better fused.
+constexpr double sure_heading_rad = 2.0 * core::pi / 180.0;
+
+/// The first fixes, one by one, until they align the start.
+class Beginning {
+ public:
+  Beginning(const GpsSettings& settings, const Eigen::Vector2d& antenna_robot_m)
+      : settings_(settings), antenna_robot_m_(antenna_robot_m), way_(settings.start_m) {}
+
+  void move(const core::Odometry& motion) { since_last_ = core::chain(since_last_, motion); }
+
+  /// True once the start is aligned.
+  bool take(const core::TruePosition& fix) {
+    since_start_ = core::chain(since_start_, since_last_);
+    fixes_.push_back({fix.position_m, sigma_of(fix, settings_), since_last_, since_start_});
+    since_last_ = core::no_motion(fix.t_ns);
+    way_.go_to(since_start_.T_before_after.position_m());
+    if (!may_be_enough()) return false;
+    aligned_ = align_start(fixes_, antenna_robot_m_);
+    next_size_ = fixes_.size() + fixes_.size() / 10 + 1;
+    return is_enough();
+  }
+
+  /// Of as many fixes as there are. InputError if they leave the start open.
+  const AlignedStart& last_resort(const std::string& name);
+
+  const AlignedStart& aligned() const { return aligned_; }
+
+ private:
+  bool is_long() const { return way_.length_m() >= settings_.start_m; }
+
+  /// Without an alignment, which costs time.
+  bool may_be_enough() const {
+    if (fixes_.size() < next_size_) return false;
+    return is_long() || way_.farthest_m() * sure_heading_rad > fixes_.back().sigma_m;
+  }
+
+  bool is_enough() const {
+    constexpr double most_starts = 3.0;  // where no majority agrees, the largest group does
+    constexpr int least = 5;             // beyond the two that fit any path
+    const bool is_majority = 2 * aligned_.agreeing > aligned_.fixes;
+    const bool is_sure =
+        aligned_.agreeing >= least && aligned_.start.covariance(2, 2) < sure_heading_rad * sure_heading_rad;
+    return (is_majority && (is_sure || is_long())) || way_.length_m() >= most_starts * settings_.start_m;
+  }
+
+  const GpsSettings& settings_;
+  Eigen::Vector2d antenna_robot_m_;
+  DrivenWay way_;
+  core::Odometry since_last_ = core::no_motion(0);
+  core::Odometry since_start_ = core::no_motion(0);
+  std::vector<FixOnTheWay> fixes_;
+  std::size_t next_size_ = 2;
+  AlignedStart aligned_;
+};
+
+const AlignedStart& Beginning::last_resort(const std::string& name) {
+  if (!is_long() || fixes_.size() < 2) {
+    throw core::InputError(name + ": --gps fuse aligns the start to the fixes of the first gps.start_m = " +
+                           std::to_string(std::lround(settings_.start_m)) + " m of driving, and this log has " +
+                           std::to_string(fixes_.size()) + " fixes on " + std::to_string(std::lround(way_.length_m())) +
+                           " m: choose a smaller gps.start_m or --gps truth");
+  }
+  aligned_ = align_start(fixes_, antenna_robot_m_);
+  return aligned_;
+}
+
+AlignedStart begin(const core::Recording& recording, const GpsSettings& settings) {
+  Beginning beginning(settings, recording.antenna_robot_m);
   std::size_t event = 0;
   for (const core::TruePosition& fix : recording.true_positions) {
     for (; event < recording.events.size() && core::time_of(recording.events[event]) <= fix.t_ns; ++event) {
       const auto* odometry = std::get_if<core::Odometry>(&recording.events[event]);
-      if (odometry != nullptr) way = core::chain(way, *odometry);
+      if (odometry != nullptr) beginning.move(*odometry);
     }
-    beginning.gps_m.push_back(fix.position_m);
-    beginning.way_m.push_back(core::transform(way.T_before_after, recording.antenna_robot_m));
-    beginning.variance_m2.push_back(way.covariance.topLeftCorner<2, 2>().trace());
-    ++beginning.fixes;
-    if ((beginning.way_m.back() - beginning.way_m.front()).norm() >= start_m) return beginning;
+    if (beginning.take(fix)) return beginning.aligned();
   }
-  throw core::InputError(recording.name +
-                         ": --gps fuse needs fixes over the first gps.start_m metres of driving, and "
-                         "these are too few: choose a smaller gps.start_m or --gps truth");
-}
-
-core::PoseGaussian start_in_gps_frame(const Beginning& beginning, double sigma_m) {
-  core::PoseGaussian start;
-  start.mean = evaluation::align_rigidly(beginning.gps_m, beginning.way_m, 4.0 * sigma_m).T_a_b;
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < beginning.way_m.size(); ++i) {
-    const Eigen::Vector2d arm_m = core::rotation(start.mean.heading_rad) * beginning.way_m[i];
-    Eigen::Matrix<double, 2, 3> J;
-    J << 1.0, 0.0, -arm_m.y(), 0.0, 1.0, arm_m.x();
-    information += J.transpose() * J / (sigma_m * sigma_m + beginning.variance_m2[i]);
-  }
-  const Eigen::Matrix3d covariance = 0.5 * static_cast<double>(beginning.fixes) * information.inverse();
-  start.covariance = 0.5 * (covariance + covariance.transpose());
-  return start;
+  return beginning.last_resort(recording.name);
 }
 
 }  // namespace
@@ -86,18 +158,17 @@ core::PoseGaussian start_in_gps_frame(const Beginning& beginning, double sigma_m
 void fuse_gps(core::Recording& recording, const GpsSettings& settings) {
   if (recording.true_positions.empty()) throw core::InputError(recording.name + ": --gps fuse needs a log with GPS");
   split_at_fixes(recording);
-  const Beginning beginning = begin(recording, settings.start_m);
-  recording.start = start_in_gps_frame(beginning, settings.sigma_m);
+  const AlignedStart beginning = begin(recording, settings);
+  recording.start = beginning.start;
 
   std::vector<core::Event> events;
   events.reserve(recording.events.size() + recording.true_positions.size());
   std::size_t event = 0;
-  for (std::size_t i = beginning.fixes; i < recording.true_positions.size(); ++i) {
+  for (auto i = static_cast<std::size_t>(beginning.fixes); i < recording.true_positions.size(); ++i) {
     core::AbsoluteFix fix;
     fix.t_ns = recording.true_positions[i].t_ns;
     fix.position_world_m = recording.true_positions[i].position_m;
-    const double sigma_m =
-        recording.true_positions[i].sigma_m > 0.0 ? recording.true_positions[i].sigma_m : settings.sigma_m;
+    const double sigma_m = sigma_of(recording.true_positions[i], settings);
     fix.covariance_m2 = sigma_m * sigma_m * Eigen::Matrix2d::Identity();
     fix.antenna_robot_m = recording.antenna_robot_m;
     for (; event < recording.events.size() && core::time_of(recording.events[event]) <= fix.t_ns; ++event) {

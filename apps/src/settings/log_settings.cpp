@@ -62,14 +62,16 @@ void add_gps(CLI::App& command, Settings& settings) {
       .add_option_function<std::string>(
           "--gps.use,--gps", [&gps](const std::string& word) { gps.fuse = word == "fuse"; },
           "truth: GPS is only used for comparison; fuse: it updates the pose, and the map frame is that of the GPS, "
-          "with the start pose aligned to the fixes of the first gps.start_m metres. Errors against GPS are then not "
-          "independent")
+          "with the start pose aligned to the fixes of the first gps.start_m metres, or fewer. Errors against GPS are "
+          "then "
+          "not independent")
       ->check(one_of({"truth", "fuse"}))
       ->default_str("truth")
       ->group(settings_group);
   add_number(command, "--gps.sigma_m", gps.sigma_m, 1e-3, 1000.0, "Noise of a fix in x and in y (fuse)");
-  add_number(command, "--gps.start_m", gps.start_m, 1.0, 1e5,
-             "Length of the drive used to align the start with the GPS frame (fuse)");
+  add_number(
+      command, "--gps.start_m", gps.start_m, 1.0, 1e5,
+      "Length of the drive used to align the start with the GPS frame, unless its heading is sure before (fuse)");
   add_number(command, "--gps.gate_probability", settings.navigator.fix_probability, 0.5, 0.999999,
              "Gate of a fix, as the probability that a correct one is inside (fuse)");
 }
