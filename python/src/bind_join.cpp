@@ -16,6 +16,7 @@
 #include "helixnav/supervisor/join_sessions.hpp"
 #include "join/joined_folder.hpp"
 #include "join/joined_names.hpp"
+#include "join/run_views.hpp"
 #include "join/session_changes.hpp"
 #include "map.hpp"
 #include "signals.hpp"
@@ -32,8 +33,9 @@ struct Joined {
 
 struct Sessions {
   std::vector<core::JointMap> maps;
-  std::vector<std::string> names;              ///< of each
-  std::vector<std::string> folders;            ///< of those that were read
+  std::vector<std::string> names;                        ///< of each
+  std::vector<std::string> folders;                      ///< of those that were read
+  std::vector<std::optional<apps::SessionViews>> views;  ///< of each; of a map in memory they are not known
   std::vector<apps::LandmarkNames> landmarks;  ///< of each, what its landmarks are called; a map in memory does not say
 };
 
@@ -44,6 +46,7 @@ Sessions sessions_from(const py::sequence& list) {
     if (py::isinstance<core::JointMap>(value)) {
       sessions.maps.push_back(value.cast<core::JointMap>());
       sessions.names.push_back("session " + number);
+      sessions.views.emplace_back();
       sessions.landmarks.emplace_back();
       continue;
     }
@@ -51,6 +54,7 @@ Sessions sessions_from(const py::sequence& list) {
     sessions.maps.push_back(apps::read_joint_map_in(folder));
     sessions.names.push_back(folder);
     sessions.folders.push_back(folder);
+    sessions.views.push_back(apps::views_in(folder, sessions.maps.back()));
     sessions.landmarks.push_back(apps::landmark_names_in(folder));
   }
   if (sessions.maps.size() < 2) throw core::PreconditionError("join: expected two sessions or more");
@@ -73,7 +77,7 @@ Joined join(const py::sequence& list, const std::optional<fs::path>& out, bool o
   SignalWatch signals;
   result.joined = supervisor::join_sessions(sessions.maps, [&] { signals.heed(); });
   apps::tell_drives(sessions.maps, result.joined);
-  result.changes = apps::shared_landmarks(sessions.maps, result.joined);
+  result.changes = apps::shared_landmarks(sessions.maps, result.joined, sessions.views);
   apps::make_gone_tentative(result.changes, result.joined.components);
   if (out) {
     const apps::JoinedNames landmarks = apps::joined_names(sessions.landmarks, result.joined);

@@ -32,6 +32,7 @@ class TwoSessions {
     if (second) sessions_[1].name_of[id] = id;
     return id;
   }
+  void was_seen(core::LandmarkId id, int times) { map_.observations[static_cast<std::size_t>(id)] = times; }
   void take_out(core::LandmarkId id, std::size_t session) { sessions_[session].name_of.erase(id); }
   Eigen::Vector2d place_m(core::LandmarkId id) const { return map_.joint.points_m[static_cast<std::size_t>(id)]; }
 
@@ -43,10 +44,25 @@ class TwoSessions {
     joined.components.front().joint.covariance = 1e-4 * Eigen::MatrixXd::Identity(rows, rows);
     return joined;
   }
-  std::vector<ChangedLandmark> changes() const {
+  std::vector<ChangedLandmark> changes(const std::vector<std::optional<SessionViews>>& views = {}) const {
     core::JointMap map = map_;
     map.reach_m = 20.0;
-    return shared_landmarks({map, map}, joined());
+    return shared_landmarks({map, map}, joined(), views);
+  }
+
+  /// Of a session that drove around all trees, 4 m outside, and saw everything of its own within reach.
+  SessionViews views_of(std::size_t session, double reach_m) const {
+    std::vector<Look> looks;
+    for (int k = 0; k < 200; ++k) {
+      const double along_m = 53.0 * (k % 50) / 50.0 - 4.0;
+      const bool rises = k / 50 % 2 == 1;
+      const double across_m = k / 50 == 1 || k / 50 == 2 ? 49.0 : -4.0;
+      looks.push_back({{rises ? across_m : along_m, rises ? along_m : across_m, 0.0}, {}});
+      for (const auto& [own, name] : sessions_[session].name_of) {
+        if ((place_m(name) - looks.back().T_map_robot.position_m()).norm() < reach_m) looks.back().seen.push_back(own);
+      }
+    }
+    return {looks, map_};
   }
   Change of(core::LandmarkId id) const {
     const std::vector<ChangedLandmark> all = changes();
@@ -72,6 +88,32 @@ TEST(SessionChanges, BeyondTheRimOfWhatASessionMappedNothingIsGone) {
   for (core::LandmarkId id = 0; id < 100; ++id) {
     if (id % 10 >= 6) world.take_out(id, 1);  // the second reached x = 25 m only
   }
+  const std::vector<ChangedLandmark> changes = world.changes();
+  EXPECT_TRUE(std::none_of(changes.begin(), changes.end(), [](const ChangedLandmark& one) { return one.is_gone(); }));
+}
+
+/// The second session drove around them and saw trees on all sides of them.
+TEST(SessionChanges, OutOfReachOfEveryLookNothingIsGone) {
+  constexpr double reach_m = 15.0;
+  TwoSessions world;
+  for (core::LandmarkId id = 0; id < 100; ++id) {
+    const Eigen::Vector2d at_m = world.place_m(id);
+    if (std::min({at_m.x() + 4.0, at_m.y() + 4.0, 49.0 - at_m.x(), 49.0 - at_m.y()}) > reach_m) world.take_out(id, 1);
+  }
+  world.take_out(15, 1);  // 8 m from where it drove
+  const std::vector<ChangedLandmark> changes = world.changes({world.views_of(0, 30.0), world.views_of(1, reach_m)});
+  for (const ChangedLandmark& one : changes) EXPECT_EQ(one.is_gone(), one.id == 15) << one.id;
+  const auto gone = std::find_if(changes.begin(), changes.end(), [](const auto& one) { return one.id == 15; });
+  ASSERT_NE(gone, changes.end());
+  EXPECT_LT(gone->missed_by_chance, 1e-3);
+}
+
+/// What is known of a map in memory is its landmarks, and how often each was seen.
+TEST(SessionChanges, WithoutLooksNothingIsGoneBesideWhatWasSeldomSeen) {
+  TwoSessions world;
+  world.take_out(44, 1);
+  EXPECT_EQ(world.of(44), Change::gone);
+  world.was_seen(45, 2);
   const std::vector<ChangedLandmark> changes = world.changes();
   EXPECT_TRUE(std::none_of(changes.begin(), changes.end(), [](const ChangedLandmark& one) { return one.is_gone(); }));
 }

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "helixnav/core/decision_row.hpp"
 #include "joined_folder.hpp"
 #include "joined_names.hpp"
+#include "run_views.hpp"
 #include "session_changes.hpp"
 
 namespace helixnav::apps {
@@ -28,6 +30,13 @@ std::vector<core::JointMap> read_maps(const std::vector<std::string>& runs) {
   std::vector<core::JointMap> maps;
   for (const std::string& run : runs) maps.push_back(read_joint_map_in(run));
   return maps;
+}
+
+std::vector<std::optional<SessionViews>> read_views(const std::vector<std::string>& runs,
+                                                    const std::vector<core::JointMap>& maps) {
+  std::vector<std::optional<SessionViews>> views;
+  for (std::size_t k = 0; k < runs.size(); ++k) views.push_back(views_in(runs[k], maps[k]));
+  return views;
 }
 
 std::vector<LandmarkNames> read_names(const std::vector<std::string>& runs) {
@@ -87,7 +96,7 @@ void join(CLI::App& command, const JoinJob& job) {
   note_unknown_drives(job.runs, maps);
   supervisor::JoinedSessions joined = supervisor::join_sessions(maps);
   tell_drives(maps, joined);
-  const std::vector<ChangedLandmark> shared = shared_landmarks(maps, joined);
+  const std::vector<ChangedLandmark> shared = shared_landmarks(maps, joined, read_views(job.runs, maps));
   make_gone_tentative(shared, joined.components);
   const JoinedNames names = joined_names(read_names(job.runs), joined);
   for (const std::string& note : names.notes) std::fprintf(stderr, "helixnav: note: %s\n", note.c_str());

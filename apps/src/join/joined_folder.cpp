@@ -2,6 +2,7 @@
 #include "joined_folder.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <iterator>
@@ -56,13 +57,20 @@ std::string numbers_of(const std::vector<std::size_t>& sessions) {
 }
 
 std::string changes_table(const std::vector<ChangedLandmark>& shared) {
-  std::string text = "component,landmark,x,y,change,seen_in,missing_in,counterpart\n";
+  std::string text = "component,landmark,x,y,change,seen_in,missing_in,counterpart,missed_by_chance\n";
   for (const ChangedLandmark& landmark : shared) {
     text += std::to_string(landmark.component + 1) + ',' + std::to_string(landmark.id);
     files::append_cells(text, {landmark.point_m.x(), landmark.point_m.y()});
     text += std::string(",") + name_of(landmark.change()) + ',' + numbers_of(landmark.seen_in) + ',' +
             numbers_of(landmark.missing_in) + ',' +
-            (landmark.counterpart == core::no_landmark ? "" : std::to_string(landmark.counterpart)) + '\n';
+            (landmark.counterpart == core::no_landmark ? "" : std::to_string(landmark.counterpart));
+    const bool unknown = landmark.missing_in.empty() || std::isnan(landmark.missed_by_chance);
+    if (unknown) {
+      text += ',';
+    } else {
+      files::append_cells(text, {landmark.missed_by_chance});
+    }
+    text += '\n';
   }
   return text;
 }

@@ -3,28 +3,40 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <Eigen/Cholesky>
 
 #include "helixnav/core/angle.hpp"
+#include "helixnav/evaluation/alignment.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 
 namespace helixnav::apps {
 namespace {
 
+std::size_t index_of(const core::JointMap& map, core::LandmarkId id) {
+  const auto at = std::lower_bound(map.joint.ids.begin(), map.joint.ids.end(), id);
+  return static_cast<std::size_t>(at - map.joint.ids.begin());
+}
+
 /// The ground around the landmarks of a session, in the frame of its component.
 class Ground {
  public:
-  Ground(const core::JointMap& component, const supervisor::JoinedSession& session, double reach_m) {
+  Ground(const core::JointMap& component, const supervisor::JoinedSession& session, const core::JointMap& map,
+         const SessionViews* views)
+      : reach_m_(map.reach_m > 0.0 ? map.reach_m : supervisor::reference_reach_m), views_(views) {
     for (const auto& [own, name] : session.name_of) {
-      const auto at = std::lower_bound(component.joint.ids.begin(), component.joint.ids.end(), name);
-      ids_.push_back(name);
-      points_m_.push_back(component.joint.points_m[static_cast<std::size_t>(at - component.joint.ids.begin())]);
+      const std::size_t own_row = index_of(map, own);
+      own_ids_.push_back(own);
+      named_.push_back(name);
+      points_m_.push_back(component.joint.points_m[index_of(component, name)]);
+      own_points_m_.push_back(map.joint.points_m[own_row]);
+      observations_.push_back(map.observations[own_row]);
     }
-    named_ = ids_;
+    ids_ = named_;
     std::sort(ids_.begin(), ids_.end());
-    for (const Eigen::Vector2d& point_m : points_m_) radii_m_.push_back(radius_m(point_m, reach_m));
+    for (const Eigen::Vector2d& point_m : points_m_) radii_m_.push_back(radius_m(point_m));
   }
 
   /// Whether this session or the other has at least half of the other's eight nearest landmarks. If the two are bent apart, each has
@@ -35,11 +47,30 @@ class Ground {
   }
 
   bool has(core::LandmarkId id) const { return std::binary_search(ids_.begin(), ids_.end(), id); }
+  bool knows_its_looks() const { return views_ != nullptr; }
+
+  /// Probability that the session's looks missed what stands there, which is so easily seen.
+  double missed_by_chance(const Eigen::Vector2d& at_m, double visibility) const {
+    return views_->missed_by_chance(visibility * views_->surely_expected(in_own_frame(at_m)));
+  }
+
+  /// Share of the expected detections that the landmark had, at most 1; a few detections do not make it less visible than it is.
+  double visibility(core::LandmarkId id) const {
+    if (!knows_its_looks()) return 1.0;
+    double detections = 1.0, expected = 1.0;
+    for (std::size_t i = 0; i < named_.size(); ++i) {
+      if (named_[i] != id) continue;
+      detections += views_->detections(own_ids_[i]);
+      expected += views_->expected(own_points_m_[i]);
+    }
+    return std::min(1.0, detections / expected);
+  }
+
   /// Near a landmark of the session, and with others on all sides: it may not have looked beyond the edge of what it
-  /// mapped.
+  /// mapped. Where what it has nearest was seldom seen, or is far away, there is such an edge.
   bool looked_at(const Eigen::Vector2d& at_m) const {
     for (std::size_t i = 0; i < points_m_.size(); ++i) {
-      if ((points_m_[i] - at_m).norm() <= radii_m_[i]) return is_surrounded(at_m);
+      if ((points_m_[i] - at_m).norm() <= radii_m_[i]) return is_surrounded(at_m) && is_well_in_view(at_m);
     }
     return false;
   }
@@ -76,26 +107,87 @@ class Ground {
     return true;
   }
 
-  double radius_m(const Eigen::Vector2d& at_m, double reach_m) const {
+  /// [place] indices of the landmarks nearest to it.
+  std::vector<std::size_t> nearest_to(const Eigen::Vector2d& at_m, std::size_t most) const {
+    std::vector<std::size_t> order(points_m_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    most = std::min(most, order.size());
+    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(most), order.end(),
+                      [&](std::size_t a, std::size_t b) {
+                        return (points_m_[a] - at_m).squaredNorm() < (points_m_[b] - at_m).squaredNorm();
+                      });
+    order.resize(most);
+    return order;
+  }
+
+  /// The joined map is bent where the session's own is not: carried over with the landmarks around.
+  Eigen::Vector2d in_own_frame(const Eigen::Vector2d& at_m) const {
+    constexpr std::size_t around = 8;
+    constexpr double any_m = 1e9;
+    std::vector<Eigen::Vector2d> own_m, here_m;
+    for (const std::size_t i : nearest_to(at_m, around)) {
+      own_m.push_back(own_points_m_[i]);
+      here_m.push_back(points_m_[i]);
+    }
+    return core::transform(evaluation::align_rigidly(own_m, here_m, any_m).T_a_b, at_m);
+  }
+
+  bool is_well_in_view(const Eigen::Vector2d& at_m) const {
+    constexpr std::size_t three = 3;
+    if (points_m_.size() < three) return false;
+    std::vector<int> observations = observations_;
+    const auto middle = observations.begin() + static_cast<std::ptrdiff_t>(observations.size() / 2);
+    std::nth_element(observations.begin(), middle, observations.end());
+    const std::vector<std::size_t> nearest = nearest_to(at_m, three);
+    return std::all_of(nearest.begin(), nearest.end(), [&](std::size_t i) {
+      return 2 * observations_[i] >= *middle && (points_m_[i] - at_m).norm() <= 0.5 * reach_m_;
+    });
+  }
+
+  double radius_m(const Eigen::Vector2d& at_m) const {
     constexpr std::size_t eighth = 8;  // the landmark itself is the nearest
     constexpr double share = 0.6;
     std::vector<double> distances_m;
     for (const Eigen::Vector2d& other_m : points_m_) distances_m.push_back((other_m - at_m).norm());
     if (distances_m.size() <= eighth) return 0.0;
     std::nth_element(distances_m.begin(), distances_m.begin() + eighth, distances_m.end());
-    return share * std::min(distances_m[eighth], reach_m);
+    return share * std::min(distances_m[eighth], reach_m_);
   }
 
-  std::vector<core::LandmarkId> ids_;    ///< ascending
-  std::vector<core::LandmarkId> named_;  ///< [landmark], as the points
-  std::vector<Eigen::Vector2d> points_m_;
+  double reach_m_;
+  const SessionViews* views_;
+  std::vector<core::LandmarkId> ids_;  ///< ascending
+  // [landmark]:
+  std::vector<core::LandmarkId> own_ids_, named_;
+  std::vector<Eigen::Vector2d> points_m_, own_points_m_;
+  std::vector<int> observations_;
   std::vector<double> radii_m_;
 };
+
+/// Whether the session should have mapped the landmark that others saw, and why it may still have missed it.
+bool should_have(const Ground& session, const std::vector<const Ground*>& seen, ChangedLandmark& landmark) {
+  constexpr double unlikely = 1e-3;
+  const auto agrees = [&](const Ground* one) { return session.agrees_with(*one, landmark.point_m); };
+  if (std::none_of(seen.begin(), seen.end(), agrees)) return false;
+  double& chance = landmark.missed_by_chance;
+  if (!session.knows_its_looks()) {
+    if (!session.looked_at(landmark.point_m)) return false;
+    chance = std::numeric_limits<double>::quiet_NaN();
+    return true;
+  }
+  double visibility = 0.0;
+  for (const Ground* one : seen) visibility = std::max(visibility, one->visibility(landmark.id));
+  const double missed = session.missed_by_chance(landmark.point_m, visibility);
+  if (missed >= unlikely) return false;
+  const bool first = landmark.missing_in.empty();
+  if (first || !std::isnan(chance)) chance = first ? missed : std::max(chance, missed);
+  return true;
+}
 
 void add_shared(std::size_t number, const core::JointMap& component, const std::vector<Ground>& grounds,
                 const std::vector<std::size_t>& sessions, std::vector<ChangedLandmark>& shared) {
   for (std::size_t i = 0; i < component.joint.ids.size(); ++i) {
-    ChangedLandmark landmark{number, component.joint.ids[i], component.joint.points_m[i], {}, {}, core::no_landmark};
+    ChangedLandmark landmark{number, component.joint.ids[i], component.joint.points_m[i], {}, {}};
     std::vector<const Ground*> seen;
     for (std::size_t k = 0; k < sessions.size(); ++k) {
       if (!grounds[k].has(landmark.id)) continue;
@@ -103,9 +195,8 @@ void add_shared(std::size_t number, const core::JointMap& component, const std::
       seen.push_back(&grounds[k]);
     }
     for (std::size_t k = 0; k < sessions.size(); ++k) {
-      if (grounds[k].has(landmark.id) || !grounds[k].looked_at(landmark.point_m)) continue;
-      const auto agrees = [&](const Ground* one) { return grounds[k].agrees_with(*one, landmark.point_m); };
-      if (std::any_of(seen.begin(), seen.end(), agrees)) landmark.missing_in.push_back(sessions[k]);
+      if (grounds[k].has(landmark.id) || !should_have(grounds[k], seen, landmark)) continue;
+      landmark.missing_in.push_back(sessions[k]);
     }
     if (landmark.seen_in.size() + landmark.missing_in.size() > 1) shared.push_back(std::move(landmark));
   }
@@ -250,7 +341,8 @@ const char* name_of(Change change) {
 }
 
 std::vector<ChangedLandmark> shared_landmarks(const std::vector<core::JointMap>& sessions,
-                                              const supervisor::JoinedSessions& joined) {
+                                              const supervisor::JoinedSessions& joined,
+                                              const std::vector<std::optional<SessionViews>>& views) {
   std::vector<ChangedLandmark> shared;
   for (std::size_t number = 0; number < joined.components.size(); ++number) {
     std::vector<std::size_t> members;
@@ -261,7 +353,8 @@ std::vector<ChangedLandmark> shared_landmarks(const std::vector<core::JointMap>&
       const double reach_m = sessions[k].reach_m > 0.0 ? sessions[k].reach_m : supervisor::reference_reach_m;
       members.push_back(k);
       farthest_m = std::max(farthest_m, reach_m);
-      grounds.emplace_back(joined.components[number], joined.sessions[k], reach_m);
+      const SessionViews* looks = k < views.size() && views[k] ? &*views[k] : nullptr;
+      grounds.emplace_back(joined.components[number], joined.sessions[k], sessions[k], looks);
     }
     add_shared(number, joined.components[number], grounds, members, shared);
     keep_copies(joined.components[number], number, farthest_m, shared);
