@@ -26,13 +26,13 @@ double median_sigma_m(const std::vector<FixOnTheWay>& fixes) {
   return *middle;
 }
 
-struct Points {
+struct FixesAndWay {
   std::vector<Eigen::Vector2d> gps_m;
   std::vector<Eigen::Vector2d> way_m;  ///< the antenna then, dead-reckoned in the frame of the start
 };
 
-Points points_of(const std::vector<FixOnTheWay>& fixes, const Eigen::Vector2d& antenna_robot_m) {
-  Points points;
+FixesAndWay points_of(const std::vector<FixOnTheWay>& fixes, const Eigen::Vector2d& antenna_robot_m) {
+  FixesAndWay points;
   for (const FixOnTheWay& fix : fixes) {
     points.gps_m.push_back(fix.position_m);
     points.way_m.push_back(core::transform(fix.since_start.T_before_after, antenna_robot_m));
@@ -45,12 +45,12 @@ struct Agreement {
   double sigma_m = 0.0;  ///< the limit was four of these
 };
 
-Agreement agree_within(const Points& points, double sigma_m) {
+Agreement agree_within(const FixesAndWay& points, double sigma_m) {
   return {evaluation::align_rigidly(points.gps_m, points.way_m, 4.0 * sigma_m), sigma_m};
 }
 
 /// The errors of fixes may be larger than stated, or some of the fixes may be outliers: the likelier of the two.
-Agreement likeliest(const Points& points, double stated_m) {
+Agreement likeliest(const FixesAndWay& points, double stated_m) {
   constexpr int octaves = 16;
   std::vector<Agreement> all;
   for (int octave = 0; octave <= octaves; ++octave) {
@@ -65,7 +65,7 @@ Agreement likeliest(const Points& points, double stated_m) {
 }
 
 /// Of one fix, from the residuals of those that agree.
-double sigma_of_residuals_m(const Points& points, const evaluation::RigidAlignment& alignment) {
+double sigma_of_residuals_m(const FixesAndWay& points, const evaluation::RigidAlignment& alignment) {
   double squares_m2 = 0.0;
   for (std::size_t i = 0; i < points.gps_m.size(); ++i) {
     if (!alignment.used[i]) continue;
@@ -75,7 +75,7 @@ double sigma_of_residuals_m(const Points& points, const evaluation::RigidAlignme
 }
 
 /// With σ and the limit, which is four of it, as the residuals have them; but not below what is stated.
-Agreement agree(const Points& points, double stated_m) {
+Agreement agree(const FixesAndWay& points, double stated_m) {
   Agreement agreement = likeliest(points, stated_m);
   constexpr int iterations = 10;
   for (int i = 0; i < iterations; ++i) {
