@@ -153,6 +153,21 @@ TEST(SessionChanges, GoneAndNewWhereTwoDrivesSeeOneLandmarkIsKept) {
   EXPECT_EQ(world.of(copy), Change::kept);
 }
 
+/// Two sessions bent against each other by less than is known of them: each has a copy of its own there.
+TEST(SessionChanges, WhatNoSessionHasBothOfAndMayBeOneIsReportedAsThat) {
+  TwoSessions world;
+  world.take_out(44, 1);
+  const core::LandmarkId copy = world.add(world.place_m(44) + Eigen::Vector2d(0.1, 0.05), false, true);
+  const core::LandmarkId neighbour = world.add(world.place_m(55) + Eigen::Vector2d(0.1, 0.05), false, true);
+  for (const ChangedLandmark& landmark : world.changes()) {
+    const bool is_either = landmark.id == 44 || landmark.id == copy;
+    EXPECT_EQ(landmark.perhaps_copy_of != core::no_landmark, is_either) << landmark.id;
+    if (!is_either) continue;
+    EXPECT_EQ(landmark.perhaps_copy_of, landmark.id == 44 ? copy : 44);
+  }
+  EXPECT_NE(world.of(neighbour), Change::gone) << "the second session has both, so they are two";
+}
+
 TEST(SessionChanges, WhereMuchIsNewTheSameDistanceIsChance) {
   TwoSessions world;
   world.take_out(44, 1);

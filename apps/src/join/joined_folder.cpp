@@ -57,7 +57,7 @@ std::string numbers_of(const std::vector<std::size_t>& sessions) {
 }
 
 std::string changes_table(const std::vector<ChangedLandmark>& shared) {
-  std::string text = "component,landmark,x,y,change,seen_in,missing_in,counterpart,missed_by_chance\n";
+  std::string text = "component,landmark,x,y,change,seen_in,missing_in,counterpart,missed_by_chance,perhaps_copy_of\n";
   for (const ChangedLandmark& landmark : shared) {
     text += std::to_string(landmark.component + 1) + ',' + std::to_string(landmark.id);
     files::append_cells(text, {landmark.point_m.x(), landmark.point_m.y()});
@@ -70,7 +70,8 @@ std::string changes_table(const std::vector<ChangedLandmark>& shared) {
     } else {
       files::append_cells(text, {landmark.missed_by_chance});
     }
-    text += '\n';
+    const bool is_copy = landmark.perhaps_copy_of != core::no_landmark;
+    text += ',' + (is_copy ? std::to_string(landmark.perhaps_copy_of) : "") + '\n';
   }
   return text;
 }

@@ -6,11 +6,10 @@
 #include <numeric>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "helixnav/core/angle.hpp"
 #include "helixnav/evaluation/alignment.hpp"
 #include "helixnav/supervisor/lengths.hpp"
+#include "left_double.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -206,21 +205,44 @@ bool is_gone_then_new(const ChangedLandmark& gone, const ChangedLandmark& other)
   return other.change() == Change::appeared && other.seen_in.front() > gone.seen_in.back();
 }
 
-/// What two drives see of one landmark differs by a two-hundredth of the reach each, besides what the covariance allows.
 bool stand_alike(const core::JointMap& component, const ChangedLandmark& a, const ChangedLandmark& b, double reach_m) {
-  constexpr double of_reach = 1.0 / 200.0, surely = 9.21;  // χ²₂ of 99 %
-  const auto row = [&](const ChangedLandmark& one) {
-    const auto at = std::lower_bound(component.joint.ids.begin(), component.joint.ids.end(), one.id);
-    return 3 + 2 * (at - component.joint.ids.begin());
+  constexpr double surely = 9.21;  // χ²₂ of 99 %
+  return chi2_as_one(component, index_of(component, a.id), index_of(component, b.id), reach_m) < surely;
+}
+
+ChangedLandmark& entry_of(const core::JointMap& component, std::size_t number, core::LandmarkId id,
+                          const std::vector<std::size_t>& seen_in, std::vector<ChangedLandmark>& shared) {
+  const auto found = std::find_if(shared.begin(), shared.end(),
+                                  [&](const ChangedLandmark& one) { return one.component == number && one.id == id; });
+  if (found != shared.end()) return *found;
+  shared.push_back({number, id, component.joint.points_m[index_of(component, id)], seen_in, {}});
+  return shared.back();
+}
+
+void note_copy(core::LandmarkId other, const std::vector<std::size_t>& other_seen_in, ChangedLandmark& one) {
+  one.perhaps_copy_of = other;
+  const auto is_seen = [&](std::size_t session) {
+    return std::binary_search(other_seen_in.begin(), other_seen_in.end(), session);
   };
-  const auto block = [&](const ChangedLandmark& one, const ChangedLandmark& other) {
-    return component.joint.covariance.block<2, 2>(row(one), row(other));
+  one.missing_in.erase(std::remove_if(one.missing_in.begin(), one.missing_in.end(), is_seen), one.missing_in.end());
+}
+
+/// Neither of two that may be one is missing where the other was seen.
+void note_left_double(const supervisor::JoinedSessions& joined, std::size_t number, double reach_m,
+                      const std::vector<Ground>& grounds, const std::vector<std::size_t>& sessions,
+                      std::vector<ChangedLandmark>& shared) {
+  const auto seen_in = [&](core::LandmarkId id) {
+    std::vector<std::size_t> seen;
+    for (std::size_t k = 0; k < sessions.size(); ++k) {
+      if (grounds[k].has(id)) seen.push_back(sessions[k]);
+    }
+    return seen;
   };
-  const double seen_m = of_reach * reach_m;
-  const Eigen::Matrix2d S =
-      block(a, a) + block(b, b) - block(a, b) - block(b, a) + 2.0 * seen_m * seen_m * Eigen::Matrix2d::Identity();
-  const Eigen::Vector2d apart_m = a.point_m - b.point_m;
-  return apart_m.dot(S.ldlt().solve(apart_m)) < surely;
+  const core::JointMap& component = joined.components[number];
+  for (const auto& [a, b] : left_double(joined, number, reach_m)) {
+    note_copy(b, seen_in(b), entry_of(component, number, a, seen_in(a), shared));
+    note_copy(a, seen_in(a), entry_of(component, number, b, seen_in(b), shared));
+  }
 }
 
 /// One that is gone where a later session has a new one is still there: as with two stems beside each other, of which either may be
@@ -357,6 +379,7 @@ std::vector<ChangedLandmark> shared_landmarks(const std::vector<core::JointMap>&
       grounds.emplace_back(joined.components[number], joined.sessions[k], sessions[k], looks);
     }
     add_shared(number, joined.components[number], grounds, members, shared);
+    note_left_double(joined, number, farthest_m, grounds, members, shared);
     keep_copies(joined.components[number], number, farthest_m, shared);
     tell_moved(joined.components[number], number, shared);
   }

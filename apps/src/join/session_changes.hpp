@@ -23,6 +23,8 @@ struct ChangedLandmark {
   core::LandmarkId counterpart =
       core::no_landmark;  ///< moved: the landmark that is gone has the new one here, and vice versa
 
+  /// No session has both, and by what is known of them the two may be one landmark that is left on the map twice.
+  core::LandmarkId perhaps_copy_of = core::no_landmark;
   /// The largest probability with which one of the sessions that lack it would have missed it if it had stood there; NaN if none lacks
   /// it, or if one whose looks are not known does.
   double missed_by_chance = std::numeric_limits<double>::quiet_NaN();
@@ -45,7 +47,8 @@ const char* name_of(Change change);
 /// apart, and hold copies. Joint landmarks only: those on ground of one session are left out. O(N²), and O(N·looks) with
 /// views. A landmark that is gone within what two drives see of one (99 %) of a new one is still there: both are kept. A
 /// move is one landmark that is gone and one that is new in a later session, each the other's nearest and nearer than chance
-/// would put new ones at their density: 5 % of the reported moves are wrong on average.
+/// would put new ones at their density: 5 % of the reported moves are wrong on average. Possible copies (left_double) are listed on
+/// any ground, and neither is missing where the other was seen.
 /// Test: apps/session_changes_test.cpp.
 std::vector<ChangedLandmark> shared_landmarks(const std::vector<core::JointMap>& sessions,
                                               const supervisor::JoinedSessions& joined,

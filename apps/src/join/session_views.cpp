@@ -35,6 +35,7 @@ void for_each_own(const core::JointMap& map, const std::vector<Look>& looks, F f
 SessionViews::SessionViews(std::vector<Look> looks, const core::JointMap& map) : looks_(std::move(looks)) {
   measure_reach(map);
   count(map);
+  fill_sparse_cells();
   measure_spread(map);
 }
 
@@ -74,6 +75,24 @@ void SessionViews::count(const core::JointMap& map) {
   });
 }
 
+/// In a sparse map, hardly any landmark passes through some of the cells: they are counted with those around them.
+void SessionViews::fill_sparse_cells() {
+  constexpr double enough_looks = 5.0;
+  const std::array<Cell, rings* sectors> counted = cells_;
+  for (std::size_t k = 0; k < counted.size(); ++k) {
+    if (counted[k].looks >= enough_looks) continue;
+    const std::size_t ring = k / sectors, sector = k % sectors;
+    for (std::size_t r = ring == 0 ? 0 : ring - 1; r <= std::min(ring + 1, rings - 1); ++r) {
+      for (std::size_t turn = sectors - 1; turn <= sectors + 1; ++turn) {
+        const std::size_t other = r * sectors + (sector + turn) % sectors;
+        if (other == k) continue;
+        cells_[k].looks += counted[other].looks;
+        cells_[k].detections += counted[other].detections;
+      }
+    }
+  }
+}
+
 double SessionViews::expected(const Eigen::Vector2d& at_map_m) const {
   double sum = 0.0;
   for (const Look& look : looks_) {
@@ -96,17 +115,17 @@ double SessionViews::surely_expected(const Eigen::Vector2d& at_map_m) const {
   return least;
 }
 
-/// What the numbers of detections differ by from those expected, beyond what chance makes of the same number.
+/// What the numbers of detections differ by from those expected, beyond what chance makes of the same number. Landmarks of which many
+/// are expected count most: at the edge of the view the differences are those of the cells.
 void SessionViews::measure_spread(const core::JointMap& map) {
-  double sum = 0.0, landmarks = 0.0;
+  double beyond_chance = 0.0, squares = 0.0;
   for_each_own(map, looks_, [&](core::LandmarkId id, const Eigen::Vector2d& at_m) {
     const double should = expected(at_m);
-    if (should < 1.0) return;
-    const double did = detections_of(looks_, id);
-    sum += ((did - should) * (did - should) - should) / (should * should);
-    landmarks += 1.0;
+    const double off = detections_of(looks_, id) - should;
+    beyond_chance += off * off - should;
+    squares += should * should;
   });
-  if (landmarks > 0.0) spread_ = std::max(0.0, sum / landmarks);
+  if (squares > 0.0) spread_ = std::max(0.0, beyond_chance / squares);
 }
 
 double SessionViews::missed_by_chance(double expected_detections) const {

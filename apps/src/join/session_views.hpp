@@ -31,8 +31,8 @@ class SessionViews {
   /// Number of looks that saw the landmark.
   double detections(core::LandmarkId id) const;
 
-  /// The least of `expected` within a tenth of the distance that the sensor reaches: neither the place nor the edge of what is in view is known
-  /// better.
+  /// The least of `expected` within a tenth of the distance that the sensor reaches: neither the place nor the edge of what is
+  /// in view is known better.
   double surely_expected(const Eigen::Vector2d& at_map_m) const;
 
   /// Probability that a landmark with so many expected detections has fewer than a mature landmark needs. Negative binomial: how much
@@ -49,6 +49,7 @@ class SessionViews {
   std::optional<std::size_t> cell(const core::Pose2& T_map_robot, const Eigen::Vector2d& at_map_m) const;
   void measure_reach(const core::JointMap& map);
   void count(const core::JointMap& map);
+  void fill_sparse_cells();
   void measure_spread(const core::JointMap& map);
 
   std::vector<Look> looks_;
