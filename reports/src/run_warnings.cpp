@@ -141,10 +141,16 @@ bool is_elsewhere(const core::WholeMapDecision& asked, const core::PoseGaussian&
 }
 
 /// How often in a row the whole map surely had another place for what was mapped than the vehicle was believed to be at, and nothing
-/// came of it; and how far away the last one was.
-std::pair<int, double> contradicted_places(const runs::Run& run) {
+/// came of it.
+struct ContradictedPlaces {
   int times = 0;
-  double away_m = 0.0;
+  int by_far = 0;       ///< of these, by more than any map is bent
+  double away_m = 0.0;  ///< the last one
+};
+
+ContradictedPlaces contradicted_places(const runs::Run& run) {
+  constexpr double far = 30.0;  // times what the pairs of a closing may cost
+  ContradictedPlaces places;
   for (const core::StepReport& step : run.steps) {
     for (const core::Decision& decision : step.decisions) {
       const auto* placed = std::get_if<core::PlacedDecision>(&decision);
@@ -153,15 +159,16 @@ std::pair<int, double> contradicted_places(const runs::Run& run) {
       const bool accepted = (closure != nullptr && closure->accepted) ||
                             (placed != nullptr && placed->verdict == core::PlacedDecision::Verdict::accepted) ||
                             (asked != nullptr && asked->verdict == core::WholeMapDecision::Verdict::accepted);
-      if (accepted || std::holds_alternative<core::CarriedDecision>(decision)) times = 0;
+      if (accepted || std::holds_alternative<core::CarriedDecision>(decision)) places = {};
       if (asked == nullptr || asked->verdict != core::WholeMapDecision::Verdict::refused) continue;
       if (asked->lead < asked->needed) continue;  // another place may fit as well
       if (!is_elsewhere(*asked, step.pose)) continue;
-      ++times;
-      away_m = asked->displaced_m;
+      ++places.times;
+      places.by_far += asked->cost > far * asked->limit ? 1 : 0;
+      places.away_m = asked->displaced_m;
     }
   }
-  return {times, away_m};
+  return places;
 }
 
 /// Empty unless the odometry and what is seen contradict each other all along, as with a mounting, a delay or a scale that is far
@@ -241,21 +248,21 @@ std::pair<std::size_t, std::size_t> longest_without_match(const std::vector<core
 }  // namespace
 
 std::string contradicted_place_text(const runs::Run& run) {
-  const auto [times, away_m] = contradicted_places(run);
+  const auto [times, by_far, away_m] = contradicted_places(run);
   constexpr int least = 3;  // once or twice the pairs of a right place are refused for a bent map
-  if (times < least) return {};
+  if (times < least && by_far == 0) return {};
   const bool on_earlier_map = run.manifest.command.find(" --map") != std::string::npos;
   if (on_earlier_map && was_placed(run)) {
     return warning(
         "the landmarks seen fit another place on the map, %.3g m from the estimated pose: the search of the whole map "
-        "found it %d times, but it was not adopted. The place found before is wrong, or was lost since, and the map "
+        "found it (times: %d), but it was not adopted. The place found before is wrong, or was lost since, and the map "
         "may hold landmarks twice: do not continue in it. 'helixnav join' brings a run without --map together with the "
         "earlier one, by all that both have mapped",
         away_m, times);
   }
   return warning(
       "the landmarks seen fit another place on the map, %.3g m from the estimated pose: the search of the whole map "
-      "found it %d times, but it was not adopted. %s",
+      "found it (times: %d), but it was not adopted. %s",
       away_m, times,
       on_earlier_map ? "The start given (--start) is wrong, or the place was lost, and the map may hold landmarks "
                        "twice. 'replay --map RUN --start unknown' finds the start itself"

@@ -246,6 +246,23 @@ TEST(Opening, WarnsWhereTheWholeMapHasAnotherPlaceAgainAndAgain) {
   EXPECT_TRUE(contradicted_place_text(run).empty()) << "closed at last";
 }
 
+TEST(Opening, WarnsWhereTheWholeMapHasAnotherPlaceOnceThatNoBentMapExplains) {
+  runs::Run run = drifting_run(0.0);
+  run.steps[60].decisions.clear();
+  core::WholeMapDecision asked;
+  asked.verdict = core::WholeMapDecision::Verdict::refused;
+  asked.lead = 60.0;
+  asked.needed = 25.0;
+  asked.displaced_m = 317.0;
+  asked.limit = 29.0;
+  asked.cost = 200.0;
+  run.steps[10].decisions = {asked};
+  EXPECT_TRUE(contradicted_place_text(run).empty());
+  asked.cost = 5000.0;
+  run.steps[10].decisions = {asked};
+  EXPECT_NE(contradicted_place_text(run).find("317 m"), std::string::npos);
+}
+
 std::string all_warnings(const runs::Run& run) {
   std::string all;
   for (const std::string& text : warnings_of(run, evaluation::evaluate(run))) all += text + '\n';
