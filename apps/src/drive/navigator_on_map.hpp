@@ -18,9 +18,8 @@ namespace helixnav::apps {
 /// which uses each of them in every scan (localization::Localizer). Beside it, and in its place once nothing has confirmed the pose over a
 /// reach, a navigator takes the map as it is drawn (supervisor::as_drawn) and maps for itself what the map does not contain: so it has all of
 /// mapping's protection against wrong matches, slips and carrying. Reports name landmarks of the given map only. A given start that the
-/// observations contradict before anything has confirmed it is dropped, and the place is searched for; so is one where the place is found
-/// elsewhere (StartCheck). Fixes are not used. The job must
-/// outlive it. Test: apps/navigator_on_map_test.cpp.
+/// observations contradict before anything has confirmed it is dropped, and the place is searched for; so is one where the
+/// place is found elsewhere (StartCheck). Fixes are not used. The job must outlive it. Test: apps/navigator_on_map_test.cpp.
 class NavigatorOnMap {
  public:
   NavigatorOnMap(const Drive& job, std::vector<std::vector<core::Label>> labels_fed, LabelAgreement& agreement);

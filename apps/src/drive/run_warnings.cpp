@@ -88,14 +88,12 @@ std::string doubted_start_text(const runs::Run& run) {
   });
   if (was_wrong) {
     return "the start given (--start) is wrong or off the map: what was seen does not fit the map there. It was "
-           "dropped, and the "
-           "place searched for; 'helixnav explain' says when and with what result";
+           "dropped, and the place searched for; 'helixnav explain' says when and with what result";
   }
   const bool is_ambiguous = std::any_of(run.numbers.begin(), run.numbers.end(),
                                         [](const auto& number) { return number.first == start_is_ambiguous; });
   return is_ambiguous ? "the start given was taken on trust: the landmarks seen fit several places on the map. If it "
-                        "is wrong by a "
-                        "row or by one landmark of many alike, everything is"
+                        "is wrong by a row or by one landmark of many alike, everything is"
                       : "";
 }
 

@@ -11,6 +11,7 @@
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/supervisor/lengths.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -44,7 +45,10 @@ bool has_place(const core::StepReport& report) {
 
 StartCheck::StartCheck(const core::JointMap& map, const core::Pose2& T_map_start, double reach_m,
                        const supervisor::NavigatorOptions& options)
-    : reach_m_(reach_m), navigator_(looking_in(map, T_map_start, options)) {}
+    : reach_m_(reach_m),
+      apart_m_(options.search.rivals.apart_m * reach_m / supervisor::reference_reach_m),
+      apart_rad_(options.search.rivals.apart_rad),
+      navigator_(looking_in(map, T_map_start, options)) {}
 
 void StartCheck::take(const core::Event& event, const core::StepReport* report, const core::PoseGaussian& believed) {
   constexpr double most_reaches = 30.0;
@@ -84,12 +88,11 @@ void StartCheck::observe(core::StepReport own, const core::PoseGaussian& believe
 
 /// Farther than two hypotheses of one place are apart, and than the two may err.
 bool StartCheck::is_elsewhere(const core::PoseGaussian& believed) const {
-  constexpr double apart_reaches = 1.0 / 12.0, apart_rad = 8.0 * core::pi / 180.0;
   static const double limit = core::chi2_quantile(0.9999, 3);
   const core::PoseGaussian found = navigator_.pose();
   Eigen::Vector3d d = found.mean.vector() - believed.mean.vector();
   d.z() = core::wrap_to_pi(d.z());
-  if (d.head<2>().norm() < apart_reaches * reach_m_ && std::abs(d.z()) < apart_rad) return false;
+  if (d.head<2>().norm() < apart_m_ && std::abs(d.z()) < apart_rad_) return false;
   return d.dot((found.covariance + believed.covariance).ldlt().solve(d)) > limit;
 }
 

@@ -44,6 +44,7 @@ class StartCheck {
   bool is_elsewhere(const core::PoseGaussian& believed) const;
 
   double reach_m_;
+  double apart_m_, apart_rad_;  ///< of two hypotheses of one place
   supervisor::Navigator navigator_;
   std::vector<core::RevisedScan> revised_;  ///< [scan] as the second navigator associated it …
   std::vector<core::StampedPose> path_;     ///< … and where

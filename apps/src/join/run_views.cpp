@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <utility>
 
 #include "helixnav/core/errors.hpp"
+#include "helixnav/core/merged_ids.hpp"
 #include "helixnav/runs/run_folder.hpp"
 
 namespace helixnav::apps {
@@ -14,43 +14,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names that landmarks had before they were merged, by merges in the order in which they were made.
-class KeptNames {
- public:
-  void note(const core::MergedLandmarks& merged) {
-    if (merged.kept == merged.removed) {
-      kept_of_.erase(merged.removed);  // the merge was taken back
-    } else {
-      kept_of_[merged.removed] = merged.kept;
-    }
-  }
-
-  core::LandmarkId of(core::LandmarkId id) const {
-    for (std::size_t steps = 0; steps <= kept_of_.size(); ++steps) {
-      const auto kept = kept_of_.find(id);
-      if (kept == kept_of_.end()) break;
-      id = kept->second;
-    }
-    return id;
-  }
-
- private:
-  std::map<core::LandmarkId, core::LandmarkId> kept_of_;
-};
-
-KeptNames kept_names(const runs::Run& run) {
-  KeptNames names;
-  for (const core::StepReport& step : run.steps) {
-    for (const core::MergedLandmarks& merged : step.merged) names.note(merged);
-  }
-  return names;
-}
-
-std::vector<core::LandmarkId> seen_in(const core::StepReport& step, const KeptNames& names) {
+std::vector<core::LandmarkId> seen_in(const core::StepReport& step, const core::MergedIds& names) {
   std::vector<core::LandmarkId> seen;
   for (const core::AssociationReport& one : step.associations) {
     const bool used = one.outcome == core::Outcome::matched || one.outcome == core::Outcome::augmented;
-    if (used && one.landmark != core::no_landmark) seen.push_back(names.of(one.landmark));
+    if (used && one.landmark != core::no_landmark) seen.push_back(names.now(one.landmark));
   }
   std::sort(seen.begin(), seen.end());
   return seen;
@@ -78,7 +46,7 @@ std::optional<SessionViews> views_in(const std::string& folder, const core::Join
   if (!fs::exists(fs::path(folder) / "manifest.json") || has_parts(folder)) return std::nullopt;
   const runs::Run run = read_if_whole(folder);
   if (run.steps.empty() || runs::begin_of_last_part(run)) return std::nullopt;
-  const KeptNames names = kept_names(run);
+  const core::MergedIds names(run.steps);
   std::vector<Look> looks;
   for (std::size_t k = 0; k < run.steps.size(); ++k) {
     const bool corrected = run.final_path.size() == run.steps.size();

@@ -38,11 +38,11 @@ class Motions {
   Motions(const OwnLog& log, const Vehicle& vehicle);
 
   /// The motion of a row: up to it (increments, poses) or from it to the next (the others; the last until `last_ns`).
-  /// The first increment is taken to have lasted as long as the second. Nothing for the first pose. A row of speeds that reports standing still, and is held through a gap (of more than a
-  /// second and ten times the interval before it), is as uncertain as if it had been held for that interval: errors
-  /// that occur at speed do not add up while nothing moves. If it reports driving and is held through a gap
-  /// (RateChanges::is_gap), the rates may change meanwhile as they did in the rows up to it. Rows must be requested in
-  /// order; one may be requested again.
+  /// The first increment is taken to have lasted as long as the second. Nothing for the first pose. A row of speeds
+  /// that reports standing still, and is held through a gap (of more than a second and ten times the interval before
+  /// it), is as uncertain as if it had been held for that interval: errors that occur at speed do not add up while
+  /// nothing moves. If it reports driving and is held through a gap (RateChanges::is_gap), the rates may change meanwhile
+  /// as they did in the rows up to it. Rows must be requested in order; one may be requested again.
   std::optional<Motion> of_row(std::size_t row, core::Nanoseconds last_ns);
 
   /// Beyond the last row of increments or poses, which was requested before: its rates are held, and may change as they did in the

@@ -50,8 +50,10 @@ void Weaver::flush() {
   constexpr double most = 1e15;
   if (pending_) {
     Eigen::Matrix3d& covariance = pending_->covariance;
-    const Eigen::Vector3d scale = (most * covariance.diagonal().cwiseInverse()).cwiseMin(1.0).cwiseSqrt();
-    if (covariance.diagonal().maxCoeff() > most) covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
+    if (covariance.diagonal().maxCoeff() > most) {
+      const Eigen::Vector3d scale = (most * covariance.diagonal().cwiseInverse()).cwiseMin(1.0).cwiseSqrt();
+      covariance = (scale.asDiagonal() * covariance * scale.asDiagonal()).eval();
+    }
     events_.emplace_back(*pending_);
   }
   pending_.reset();

@@ -32,11 +32,11 @@ struct StreamedEvents {
 ///
 /// A scan is due once the odometry has reached its time, because the motion up to it is not known before. Detections of
 /// one instant in one list are a whole scan; detections in rows of their own form a scan until a line of another kind
-/// comes. If sensors have different delays, it also waits until lines have come of as long after it as the longest, since a scan taken
+/// comes. If sensors have different delays, a scan also waits for lines as much later as the longest delay, since one taken
 /// earlier may come until then. Late scans are woven in as long as no later one is due and they are at most late_s behind
-/// the newest odometry (plus the sensors' delays); everything else out of order is refused. A line more than ten seconds and a
-/// hundred mean intervals ahead of the newest waits for the next one, and is refused unless that is there, too. Truth and fixes are skipped with a remark. Memory does not grow
-/// with the stream. Test: logs/own/own_stream_test.cpp.
+/// the newest odometry (plus the sensors' delays); everything else out of order is refused. A line more than ten seconds and
+/// a hundred mean intervals ahead of the newest waits for the next one, and is refused unless that is there, too. Truth
+/// and fixes are skipped with a remark. Memory does not grow with the stream. Test: logs/own/own_stream_test.cpp.
 class OwnStream {
  public:
   static constexpr double late_s = 1.0;

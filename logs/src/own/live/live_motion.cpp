@@ -7,6 +7,7 @@
 #include "own/own_overlap.hpp"
 
 namespace helixnav::logs {
+
 core::Nanoseconds longest_delay_ns(const Vehicle& vehicle) {
   double longest_s = 0.0;
   for (const SensorModel& sensor : vehicle.sensors) {
