@@ -82,6 +82,31 @@ TEST_P(BadInput, ADerivedPointThatIsIncompleteOrNotFiniteIsRefusedBeforeAnything
   EXPECT_NO_THROW(filter_.augment(good));
 }
 
+TEST_P(BadInput, RowsAboutPointsThatDoNotFitAreRefusedBeforeAnythingIsActivated) {
+  PointRows good;
+  good.ids = {passive_};
+  good.H = Eigen::MatrixXd::Ones(3, 2);
+  good.nu = Eigen::Vector3d::Zero();
+  PointRows bad = good;
+  bad.ids = {99999};
+  expect_refused<core::PreconditionError>([&] { filter_.update(bad); }, "99999");
+  bad = good;
+  bad.ids = {passive_, passive_};
+  bad.H = Eigen::MatrixXd::Ones(3, 4);
+  expect_refused<core::PreconditionError>([&] { filter_.update(bad); }, "each landmark once");
+  bad = good;
+  bad.H = Eigen::MatrixXd::Ones(3, 3);
+  expect_refused<core::PreconditionError>([&] { filter_.update(bad); }, "rows");
+  bad = good;
+  bad.H(1, 1) = nan;
+  expect_refused<core::PreconditionError>([&] { filter_.update(bad); }, "rows");
+  bad = good;
+  bad.nu[2] = nan;
+  expect_refused<core::PreconditionError>([&] { filter_.update(bad); }, "rows");
+  EXPECT_FALSE(filter_.is_active(passive_));
+  EXPECT_NO_THROW(filter_.update(good));
+}
+
 TEST_P(BadInput, ANoiseCovarianceThatIsNotPositiveDefiniteIsRefused) {
   core::Observation z = core::make_range_bearing(5.0, 0.1, 0.1, 0.01);
   z.R(1, 1) = -1e-4;

@@ -145,6 +145,31 @@ TEST_P(Equality, HoldsForALandmarkDerivedFromPoseAndLandmarks) {
   EXPECT_LE(later.mean, 1e-8);
 }
 
+TEST_P(Equality, HoldsForRowsAboutPoints) {
+  RandomProgram program(7, {GetParam(), 220, 14, false});
+  for (int k = 0; k < 200; ++k) program.step();
+  const std::vector<core::LandmarkId> mapped = program.filter.landmarks();
+  const auto passive =
+      std::find_if(mapped.begin(), mapped.end(), [&](core::LandmarkId id) { return !program.filter.is_active(id); });
+  ASSERT_NE(passive, mapped.end());
+  PointRows rows;
+  rows.ids = {program.filter.active_landmarks().front(), *passive};
+  rows.H.resize(3, 4);
+  rows.H << 3.0, -1.0, 0.5, 2.0,  //
+      0.2, 4.0, -1.5, -0.1,       //
+      0.0, 1.0, 1.0, -2.0;
+  rows.nu = Eigen::Vector3d(0.3, -0.2, 0.4);
+  const double nis = program.filter.update(rows).nis;
+  EXPECT_NEAR(nis, program.oracle.update(rows.ids, rows.H, rows.nu), 1e-8);
+  const Differences at_once = compare(program.filter, program.oracle);
+  EXPECT_LE(at_once.covariance, 1e-9);
+  EXPECT_LE(at_once.mean, 1e-9);
+  for (int k = 0; k < 60; ++k) program.step();  // two switches and more
+  const Differences later = compare(program.filter, program.oracle);
+  EXPECT_LE(later.covariance, 1e-8);
+  EXPECT_LE(later.mean, 1e-8);
+}
+
 INSTANTIATE_TEST_SUITE_P(BothRetractions, Equality, testing::Values(Retraction::standard, Retraction::right_invariant),
                          [](const auto& tested) {
                            return tested.param == Retraction::standard ? "Standard" : "RightInvariant";

@@ -96,6 +96,18 @@ class FullEkf {
     return lin.nu.dot(S.inverse() * lin.nu);
   }
 
+  /// With rows about landmarks in the order of `of`, of unit noise. νᵀS⁻¹ν.
+  double update(const std::vector<core::LandmarkId>& of, const Eigen::MatrixXd& rows, const Eigen::VectorXd& nu) {
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(nu.size(), x.size());
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      H.middleCols<2>(row_of(of[k])) = rows.middleCols<2>(2 * static_cast<Eigen::Index>(k));
+    }
+    const Eigen::MatrixXd R = Eigen::MatrixXd::Identity(nu.size(), nu.size());
+    const Eigen::MatrixXd S = H * P * H.transpose() + R;
+    correct(H, R, P * H.transpose() * S.inverse() * nu);
+    return nu.dot(S.inverse() * nu);
+  }
+
   double update_position(const core::AbsoluteFix& fix) {
     const Linearised lin = linearise(fix);
     const Eigen::MatrixXd S = lin.H * P * lin.H.transpose() + lin.R;

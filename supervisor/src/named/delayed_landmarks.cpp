@@ -2,227 +2,237 @@
 #include "helixnav/supervisor/delayed_landmarks.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
+#include <set>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
-#include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
-#include "named/fit_point.hpp"
+#include "named/sensor_places.hpp"
+#include "named/waiting_fit.hpp"
 
 namespace helixnav::supervisor {
 namespace {
 
 using core::LandmarkId;
-using Index = Eigen::Index;
 
-LandmarkId clone(cekf::CompressedEkf& filter, const Eigen::Vector2d& point_robot_m, double clone_sigma_m) {
-  return filter.augment(
-      core::make_cartesian(point_robot_m, clone_sigma_m * clone_sigma_m * Eigen::Matrix2d::Identity()), {});
-}
-
-/// Points of the map in the frame of the robot, with their derivative by (pose, points) and their covariance.
-struct RelativePoints {
-  std::vector<Eigen::Vector2d> points_m;
-  Eigen::MatrixXd J;
-  Eigen::MatrixXd P;
-};
-
-RelativePoints relative_points(const core::JointGaussian& joint) {
-  RelativePoints relative;
-  const auto n = static_cast<Index>(joint.ids.size());
-  const Eigen::Matrix2d R_robot_world = core::rotation(joint.pose.heading_rad).transpose();
-  relative.J.setZero(2 * n, 3 + 2 * n);
-  for (Index i = 0; i < n; ++i) {
-    const Eigen::Vector2d point_m =
-        R_robot_world * (joint.points_m[static_cast<std::size_t>(i)] - joint.pose.position_m());
-    relative.points_m.push_back(point_m);
-    relative.J.block<2, 2>(2 * i, 0) = -R_robot_world;
-    relative.J.block<2, 1>(2 * i, 2) = Eigen::Vector2d(point_m.y(), -point_m.x());
-    relative.J.block<2, 2>(2 * i, 3 + 2 * i) = R_robot_world;
+void check_delayed(const std::vector<DelayedSighting>& sightings) {
+  std::set<std::int64_t> identities;
+  for (const DelayedSighting& sighting : sightings) {
+    core::check_observation(sighting.observation);
+    if (core::dimension(sighting.observation.kind) != 1) {
+      throw core::PreconditionError("sight: an observation of two rows needs no delay");
+    }
+    if (!identities.insert(sighting.identity).second) throw core::PreconditionError("sight: an identity occurs twice");
   }
-  relative.P = relative.J * joint.covariance * relative.J.transpose();
-  return relative;
-}
-
-/// The sensor's pose from the point(s) of its clone; `first` is the column of its position.
-void place_sensor(const RelativePoints& relative, Index first, FitRow& row) {
-  const Eigen::Vector2d position_m = relative.points_m[static_cast<std::size_t>(first / 2)];
-  row.first = first;
-  row.J.setZero(3, row.kind == core::ObservationKind::bearing ? 4 : 2);
-  row.J.topLeftCorner<2, 2>().setIdentity();
-  double heading_rad = 0.0;
-  if (row.kind == core::ObservationKind::bearing) {
-    const Eigen::Vector2d way_m = relative.points_m[static_cast<std::size_t>(first / 2 + 1)] - position_m;
-    heading_rad = std::atan2(way_m.y(), way_m.x());
-    const Eigen::RowVector2d by_ahead = Eigen::RowVector2d(-way_m.y(), way_m.x()) / way_m.squaredNorm();
-    row.J.block<1, 2>(2, 0) = -by_ahead;
-    row.J.block<1, 2>(2, 2) = by_ahead;
-  }
-  row.sensor = core::Pose2(position_m.x(), position_m.y(), heading_rad);
-}
-
-double largest_sigma(const Eigen::Matrix2d& covariance) {
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance).eigenvalues()[1]);
-}
-
-double nearest_sensor_m(const std::vector<FitRow>& rows, const Eigen::Vector2d& point_m) {
-  double nearest_m = std::numeric_limits<double>::infinity();
-  for (const FitRow& row : rows) nearest_m = std::min(nearest_m, (row.sensor.position_m() - point_m).norm());
-  return nearest_m;
-}
-
-bool is_contradicted(const FittedPoint& best, std::size_t rows, const DelayedOptions& options) {
-  return best.nis > core::chi2_quantile(options.fit_probability, static_cast<int>(rows) - 2);
-}
-
-bool is_settled(const std::vector<FittedPoint>& solutions, const std::vector<FitRow>& rows,
-                const DelayedOptions& options) {
-  if (solutions.empty()) return false;
-  const FittedPoint& best = solutions.front();
-  if (solutions.size() > 1 && solutions[1].cost - best.cost < options.min_rival_margin) return false;
-  if (is_contradicted(best, rows.size(), options)) return false;
-  return largest_sigma(best.covariance_m2) < options.max_relative_sigma * nearest_sensor_m(rows, best.point_m);
-}
-
-/// From the frame of the robot into the map, with the pose's share in it.
-cekf::DerivedPoint in_map(const FittedPoint& fitted, const core::JointGaussian& joint, const RelativePoints& relative) {
-  cekf::DerivedPoint point;
-  const Eigen::Matrix2d R_world_robot = core::rotation(joint.pose.heading_rad);
-  const Eigen::Vector2d arm_m = R_world_robot * fitted.point_m;
-  point.point_m = joint.pose.position_m() + arm_m;
-  point.ids = joint.ids;
-  point.G = R_world_robot * fitted.G * relative.J;
-  point.G.leftCols<2>() += Eigen::Matrix2d::Identity();
-  point.G.col(2) += Eigen::Vector2d(-arm_m.y(), arm_m.x());
-  const Eigen::Matrix2d noise = R_world_robot * fitted.noise_m2 * R_world_robot.transpose();
-  point.noise_m2 = 0.5 * (noise + noise.transpose());
-  return point;
-}
-
-template <class Sightings>
-std::vector<LandmarkId> clones_of(const Sightings& sightings) {
-  std::vector<LandmarkId> ids;
-  for (const auto& sighting : sightings) {
-    ids.push_back(sighting.position);
-    if (sighting.ahead != core::no_landmark) ids.push_back(sighting.ahead);
-  }
-  return ids;
-}
-
-/// Where a landmark is according to its sightings, and how well they agree.
-struct Located {
-  std::optional<cekf::DerivedPoint> point;
-  double nis = 0.0;              ///< of the best solution
-  bool is_contradicted = false;  ///< by sightings that do not fit it
-};
-
-template <class Sightings>
-Located locate(const cekf::CompressedEkf& filter, const Sightings& sightings, const DelayedOptions& options) {
-  if (sightings.size() < 4) return {};
-  const core::JointGaussian joint = filter.joint(clones_of(sightings));
-  const RelativePoints relative = relative_points(joint);
-  std::vector<FitRow> rows;
-  Index first = 0;
-  for (const auto& sighting : sightings) {
-    FitRow& row = rows.emplace_back();
-    row.kind = sighting.observation.kind;
-    row.z = sighting.observation.z[0];
-    row.variance = sighting.observation.R(0, 0);
-    place_sensor(relative, first, row);
-    first += sighting.ahead == core::no_landmark ? 2 : 4;
-  }
-  const std::vector<FittedPoint> solutions = fit_from_everywhere(rows, relative.P, options.spacing_m, options.same_m);
-  Located located;
-  if (solutions.empty()) return located;
-  located.nis = solutions.front().nis;
-  located.is_contradicted = is_contradicted(solutions.front(), rows.size(), options);
-  if (is_settled(solutions, rows, options) && looks_gaussian(rows, relative.P, solutions.front()))
-    located.point = in_map(solutions.front(), joint, relative);
-  return located;
-}
-
-/// One sighting bore another landmark's name if all others agree without it and it is far off: two sightings and noise
-/// do not do that.
-template <class Sightings>
-std::optional<cekf::DerivedPoint> locate_without_one(const cekf::CompressedEkf& filter, const Sightings& sightings,
-                                                     double nis, const DelayedOptions& options) {
-  constexpr std::size_t least_others = 5;  // three more than place it
-  constexpr double least_gain = 30.0;      // one in a thousand is wrong, somewhere in view
-  std::optional<cekf::DerivedPoint> point;
-  if (sightings.size() <= least_others) return point;
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    Sightings others = sightings;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    Located located = locate(filter, others, options);
-    if (!located.point || nis - located.nis < least_gain) continue;
-    if (point) return std::nullopt;  // either of the two might be the wrong one
-    point = std::move(located.point);
-  }
-  return point;
 }
 
 }  // namespace
 
-std::optional<LandmarkId> DelayedLandmarks::sight(cekf::CompressedEkf& filter, std::int64_t identity,
-                                                  const core::Observation& observation,
-                                                  const core::Pose2& T_robot_sensor) {
-  core::check_observation(observation);
-  if (core::dimension(observation.kind) != 1) {
-    throw core::PreconditionError("sight: an observation of two rows needs no delay");
-  }
-  Window& window = windows_[identity];
-  if (window.spacing_m == 0.0) window.spacing_m = options_.spacing_m;
-  const Eigen::Vector2d sensor_m = core::transform(filter.pose().mean, T_robot_sensor.position_m());
-  if (!window.sightings.empty() &&
-      (filter.landmark(window.sightings.back().position).mean_m - sensor_m).norm() < window.spacing_m) {
-    return std::nullopt;
-  }
-  if (static_cast<int>(window.sightings.size()) >= options_.window) thin_out(filter, window);
-  Sighting sighting{observation, clone(filter, T_robot_sensor.position_m(), options_.clone_sigma_m), core::no_landmark};
-  if (observation.kind == core::ObservationKind::bearing) {
-    sighting.ahead =
-        clone(filter, core::transform(T_robot_sensor, Eigen::Vector2d(options_.ahead_m, 0.0)), options_.clone_sigma_m);
-  }
-  window.sightings.push_back(sighting);
-
-  Located located = locate(filter, window.sightings, options_);
-  if (!located.point && located.is_contradicted && options_.names_may_be_wrong)
-    located.point = locate_without_one(filter, window.sightings, located.nis, options_);
-  if (!located.point) return std::nullopt;
-  const LandmarkId landmark = filter.augment(*located.point);
-  for (const LandmarkId id : clones_of(window.sightings)) filter.remove(id);
-  windows_.erase(identity);
-  return landmark;
-}
-
-void DelayedLandmarks::thin_out(cekf::CompressedEkf& filter, Window& window) const {
-  std::vector<Sighting> kept;
-  for (std::size_t i = 0; i < window.sightings.size(); ++i) {
-    if (i % 2 == 0) {
-      kept.push_back(window.sightings[i]);
-    } else {
-      for (const LandmarkId id : clones_of(std::vector<Sighting>{window.sightings[i]})) filter.remove(id);
-    }
-  }
-  window.sightings = kept;
-  window.spacing_m *= 2.0;
-}
-
-bool DelayedLandmarks::is_clone(LandmarkId id) const {
-  return std::any_of(windows_.begin(), windows_.end(), [&](const auto& entry) {
-    const std::vector<LandmarkId> ids = clones_of(entry.second.sightings);
-    return std::find(ids.begin(), ids.end(), id) != ids.end();
+std::vector<std::optional<LandmarkId>> DelayedLandmarks::sight(cekf::CompressedEkf& filter,
+                                                               const std::vector<DelayedSighting>& sightings,
+                                                               const core::Pose2& T_robot_sensor) {
+  check_delayed(sightings);
+  std::vector<std::optional<LandmarkId>> entered(sightings.size());
+  const bool any_is_due = std::any_of(sightings.begin(), sightings.end(), [&](const DelayedSighting& sighting) {
+    return is_due(filter, sighting.identity, T_robot_sensor, options_.spacing_m);
   });
+  if (!any_is_due) return entered;
+  keep(filter, sightings, T_robot_sensor);
+  thin_out();
+  const std::map<std::int64_t, LandmarkId> names = enter(filter, sightings);
+  remove_unused_places(filter);
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    const auto name = names.find(sightings[i].identity);
+    if (name != names.end()) entered[i] = name->second;
+  }
+  return entered;
+}
+
+double DelayedLandmarks::distance_m(const cekf::CompressedEkf& filter, const Place& place,
+                                    const core::Pose2& T_robot_sensor) const {
+  const Eigen::Vector2d sensor_m = core::transform(filter.pose().mean, T_robot_sensor.position_m());
+  return (filter.landmark_mean(place.position) - sensor_m).norm();
+}
+
+/// Whether the sensor has moved since the last sighting that was kept; before the first one, since the same sensor's
+/// last place.
+bool DelayedLandmarks::is_due(const cekf::CompressedEkf& filter, std::int64_t identity,
+                              const core::Pose2& T_robot_sensor, double spacing_m) const {
+  const auto known = waiting_.find(identity);
+  if (known != waiting_.end()) {
+    const Place& last = places_.at(known->second.seen.rbegin()->first);
+    return distance_m(filter, last, T_robot_sensor) >= spacing_m;
+  }
+  const auto last = std::find_if(places_.rbegin(), places_.rend(), [&](const auto& place) {
+    return place.second.T_robot_sensor.vector() == T_robot_sensor.vector();
+  });
+  return last == places_.rend() || distance_m(filter, last->second, T_robot_sensor) >= spacing_m;
+}
+
+/// A new place, and all sightings from it that are not too close to the last ones, so that landmarks share places.
+void DelayedLandmarks::keep(cekf::CompressedEkf& filter, const std::vector<DelayedSighting>& sightings,
+                            const core::Pose2& T_robot_sensor) {
+  std::vector<const DelayedSighting*> kept;
+  bool any_bearing = false;
+  for (const DelayedSighting& sighting : sightings) {
+    const bool is_new = waiting_.count(sighting.identity) == 0;
+    if (!is_new && !is_due(filter, sighting.identity, T_robot_sensor, 0.5 * options_.spacing_m)) continue;
+    kept.push_back(&sighting);
+    any_bearing |= sighting.observation.kind == core::ObservationKind::bearing;
+  }
+  Place place;
+  place.T_robot_sensor = T_robot_sensor;
+  if (!places_.empty()) {
+    const Place& last = places_.rbegin()->second;
+    place.along_m = last.along_m + distance_m(filter, last, T_robot_sensor);
+  }
+  const SensorClone clone =
+      clone_sensor(filter, T_robot_sensor, any_bearing ? options_.ahead_m : 0.0, options_.clone_sigma_m);
+  place.position = clone.position;
+  place.ahead = clone.ahead;
+  for (const DelayedSighting* sighting : kept) {
+    waiting_[sighting->identity].seen.emplace(next_place_, sighting->observation);
+  }
+  places_.emplace(next_place_++, place);
+}
+
+/// Of numbered places, neither the first nor the last, the one whose neighbours are closest together for how long ago it
+/// was: dense where the vehicle is, sparse where it was.
+template <class ByNumber>
+DelayedLandmarks::PlaceNumber DelayedLandmarks::least_needed(const ByNumber& by_number) const {
+  const double now_m = places_.rbegin()->second.along_m;
+  double least = std::numeric_limits<double>::infinity();
+  PlaceNumber number = by_number.begin()->first;
+  for (auto place = std::next(by_number.begin()); std::next(place) != by_number.end(); ++place) {
+    const double gap_m = places_.at(std::next(place)->first).along_m - places_.at(std::prev(place)->first).along_m;
+    const double need = gap_m / (now_m - places_.at(place->first).along_m + options_.spacing_m);
+    if (need >= least) continue;
+    least = need;
+    number = place->first;
+  }
+  return number;
+}
+
+void DelayedLandmarks::thin_out() {
+  const auto window = static_cast<std::size_t>(options_.window);
+  for (auto& [identity, waiting] : waiting_) {
+    if (waiting.seen.size() > window) waiting.seen.erase(least_needed(waiting.seen));
+  }
+  constexpr std::size_t groups = 4;  // of landmarks that are not seen together
+  if (places_.size() > groups * window) forget_place(least_needed(places_));
+}
+
+void DelayedLandmarks::forget_place(PlaceNumber number) {
+  for (auto waiting = waiting_.begin(); waiting != waiting_.end();) {
+    waiting->second.seen.erase(number);
+    waiting = waiting->second.seen.empty() ? waiting_.erase(waiting) : std::next(waiting);
+  }
+}
+
+void DelayedLandmarks::remove_unused_places(cekf::CompressedEkf& filter) {
+  std::set<PlaceNumber> used;
+  for (const auto& [identity, waiting] : waiting_) {
+    for (const auto& [number, observation] : waiting.seen) used.insert(number);
+  }
+  for (auto place = places_.begin(); place != places_.end();) {
+    if (used.count(place->first) != 0) {
+      ++place;
+      continue;
+    }
+    remove_clone(filter, {place->second.position, place->second.ahead});
+    place = places_.erase(place);
+  }
+}
+
+/// The places that the sightings' landmarks were seen from.
+DelayedLandmarks::PlacesInUse DelayedLandmarks::places_in_use(const std::vector<DelayedSighting>& sightings) const {
+  PlacesInUse used;
+  for (const DelayedSighting& sighting : sightings) {
+    const auto waiting = waiting_.find(sighting.identity);
+    if (waiting == waiting_.end()) continue;
+    for (const auto& [number, observation] : waiting->second.seen) used.emplace(number, 0);
+  }
+  Eigen::Index first = 0;
+  for (auto& [number, coordinate] : used) coordinate = std::exchange(first, first + 3);
+  return used;
+}
+
+std::map<std::int64_t, LandmarkId> DelayedLandmarks::enter(cekf::CompressedEkf& filter,
+                                                           const std::vector<DelayedSighting>& sightings) {
+  const PlacesInUse used = places_in_use(sightings);
+  std::vector<SensorClone> clones;
+  for (const auto& [number, first] : used) {
+    clones.push_back({places_.at(number).position, places_.at(number).ahead});
+  }
+  const SensorPlaces places = sensor_places(filter, clones);
+  const DeterminedLandmarks found = determined(with_guesses(sightings, used, places), places.covariance, options_);
+  for (const std::int64_t identity : found.contradicted) waiting_.at(identity).guess_m.reset();
+  std::map<std::int64_t, LandmarkId> names;
+  if (found.landmarks.empty()) return names;
+  filter.update(rows_about_places(found, places));
+  const SensorPlaces now = sensor_places(filter, clones);
+  for (std::size_t j = 0; j < found.landmarks.size(); ++j) {
+    std::vector<FitRow> rows = found.landmarks[j].rows;
+    for (FitRow& row : rows) {
+      row.sensor = now.T_robot_sensor[static_cast<std::size_t>(row.first / 3)];
+      row.variance *= found.noise_scale;
+    }
+    const std::int64_t identity = found.landmarks[j].identity;
+    waiting_.erase(identity);  // its sightings have been used
+    if (!found.landmarks[j].enters) continue;
+    const auto point = derived_from_places(rows, found.fit.points_m[j], now, options_.same_m);
+    if (point) names.emplace(identity, filter.augment(*point));
+  }
+  return names;
+}
+
+/// The longer a landmark waits, the less the next sighting tells, and the search from everywhere is dear.
+bool DelayedLandmarks::is_worth_a_guess(const Waiting& waiting) const {
+  const double first_m = places_.at(waiting.seen.begin()->first).along_m;
+  const double last_m = places_.at(waiting.seen.rbegin()->first).along_m;
+  return last_m - waiting.guessed_at_m >= (last_m - first_m) / options_.window;
+}
+
+std::vector<WaitingLandmark> DelayedLandmarks::with_guesses(const std::vector<DelayedSighting>& sightings,
+                                                            const PlacesInUse& used, const SensorPlaces& places) {
+  std::vector<WaitingLandmark> guessed;
+  const core::Pose2& pose = places.joint.pose;
+  for (const DelayedSighting& sighting : sightings) {
+    const auto known = waiting_.find(sighting.identity);
+    if (known == waiting_.end()) continue;
+    Waiting& waiting = known->second;
+    WaitingLandmark landmark{sighting.identity, {}, {}};
+    for (const auto& [number, observation] : waiting.seen) {
+      const Eigen::Index first = used.at(number);
+      landmark.rows.push_back({observation.kind, observation.z[0], observation.R(0, 0),
+                               places.T_robot_sensor[static_cast<std::size_t>(first / 3)], first});
+    }
+    if (waiting.guess_m) {
+      landmark.guess_m = core::transform(core::inverse(pose), *waiting.guess_m);
+    } else {
+      if (!is_worth_a_guess(waiting)) continue;
+      waiting.guessed_at_m = places_.rbegin()->second.along_m;
+      const OwnGuess own = guess_alone(landmark.rows, places.covariance, options_);
+      if (!own.point_m) continue;
+      if (own.wrong_row) {
+        const auto row = static_cast<std::ptrdiff_t>(*own.wrong_row);
+        landmark.rows.erase(landmark.rows.begin() + row);
+        waiting.seen.erase(std::next(waiting.seen.begin(), row));
+      }
+      landmark.guess_m = own.point_m;
+      waiting.guess_m = core::transform(pose, *own.point_m);
+    }
+    guessed.push_back(std::move(landmark));
+  }
+  return guessed;
 }
 
 int DelayedLandmarks::clones() const {
-  std::size_t count = 0;
-  for (const auto& entry : windows_) count += clones_of(entry.second.sightings).size();
-  return static_cast<int>(count);
+  int count = 0;
+  for (const auto& [number, place] : places_) count += place.ahead == core::no_landmark ? 1 : 2;
+  return count;
 }
 
 }  // namespace helixnav::supervisor

@@ -20,8 +20,8 @@ using Index = Eigen::Index;
 
 constexpr double at_the_sensor_m = 1e-6;  // there no direction is defined, whatever the world's size
 
-/// Derivative of a row by the coordinates of P that it depends on, from FitRow::first on.
-using PlaceRow = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, 4>;
+/// Derivative of a row by the coordinates of its place.
+using PlaceRow = Eigen::RowVector3d;
 
 struct Linearised {
   Eigen::VectorXd nu;
@@ -63,7 +63,7 @@ Linearised linearise(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P, 
     const core::PredictedObservation predicted = core::predict_observation(row.kind, row.sensor, {}, point_m);
     l.nu[i] = core::innovation(row.kind, core::ObsVector::Constant(1, row.z), predicted.z_hat)[0];
     l.H_point.row(i) = predicted.H_landmark.row(0);
-    l.H_places[static_cast<std::size_t>(i)] = predicted.H_pose.row(0) * row.J;
+    l.H_places[static_cast<std::size_t>(i)] = predicted.H_pose.row(0);
   }
   l.S.compute(innovation_covariance_of(rows, l.H_places, P));
   if (l.S.info() != Eigen::Success) return l;
@@ -71,26 +71,6 @@ Linearised linearise(const std::vector<FitRow>& rows, const Eigen::MatrixXd& P, 
   l.cost = l.nis + 2.0 * l.S.matrixLLT().diagonal().array().log().sum();
   l.good = std::isfinite(l.cost);
   return l;
-}
-
-FittedPoint finish(const std::vector<FitRow>& rows, Index coordinates, const Linearised& l,
-                   const Eigen::Vector2d& point_m, const Eigen::Matrix2d& information) {
-  FittedPoint fitted;
-  fitted.point_m = point_m;
-  fitted.covariance_m2 = information.inverse();
-  const Eigen::MatrixXd gain = fitted.covariance_m2 * l.S.solve(l.H_point).transpose();
-  fitted.G.setZero(2, coordinates);
-  Eigen::VectorXd R(static_cast<Index>(rows.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const PlaceRow& H = l.H_places[i];
-    fitted.G.middleCols(rows[i].first, H.cols()) -= gain.col(static_cast<Index>(i)) * H;
-    R[static_cast<Index>(i)] = rows[i].variance;
-  }
-  const Eigen::Matrix2d noise = gain * R.asDiagonal() * gain.transpose();
-  fitted.noise_m2 = 0.5 * (noise + noise.transpose());
-  fitted.nis = l.nis;
-  fitted.cost = l.cost;
-  return fitted;
 }
 
 std::vector<Eigen::Vector2d> starts(const FitRow& row, double spacing_m) {
@@ -127,7 +107,9 @@ std::optional<FittedPoint> fit_point(const std::vector<FitRow>& rows, const Eige
     damped.diagonal().array() += damping * information.trace();
     const Eigen::Vector2d move_m = damped.inverse() * gradient;
     if (!move_m.allFinite()) return std::nullopt;
-    if ((information.inverse() * gradient).norm() < settled_m) return finish(rows, P.cols(), now, point_m, information);
+    if ((information.inverse() * gradient).norm() < settled_m) {
+      return FittedPoint{point_m, information.inverse(), now.nis, now.cost};
+    }
     const Linearised next = linearise(rows, P, point_m + move_m);
     // S is held fixed while steps are judged: its own dependence on the point is not part of the Gauss-Newton descent.
     if (next.good && next.nu.dot(now.S.solve(next.nu)) <= now.nis) {

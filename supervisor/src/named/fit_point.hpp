@@ -11,23 +11,20 @@
 
 namespace helixnav::supervisor {
 
-/// One row of a fit: where the sensor was, and how its pose depends on two to four coordinates of `P`.
+/// One row of a fit: what was measured, and from where. `P` below is the covariance of all places of the sensor,
+/// (x, y, heading) of each.
 struct FitRow {
   core::ObservationKind kind = core::ObservationKind::range;
   double z = 0.0;
   double variance = 0.0;
   core::Pose2 sensor;
-  Eigen::Index first = 0;                               ///< the coordinates from this one on
-  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 4> J;  ///< (x, y, heading) of the sensor by those coordinates
+  Eigen::Index first = 0;  ///< of the three coordinates of its place in P
 };
 
-/// A point with its dependence: error = G · error of the coordinates + noise. `cost` is νᵀS⁻¹ν + ln|S|, twice the
-/// negative log-likelihood up to a constant.
+/// A point that has been fitted. `cost` is νᵀS⁻¹ν + ln|S|, twice the negative log-likelihood up to a constant.
 struct FittedPoint {
   Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Zero();
-  Eigen::Matrix<double, 2, Eigen::Dynamic> G;
-  Eigen::Matrix2d noise_m2 = Eigen::Matrix2d::Zero();
   double nis = 0.0;
   double cost = 0.0;
 };

@@ -262,6 +262,8 @@ void NamedNavigator::leave_wrong_names_out(const core::Scan& scan, const std::ve
 }
 
 void NamedNavigator::augment(const NamedScan& named, StepReport& report) {
+  std::vector<DelayedSighting> delayed;
+  std::vector<std::size_t> of_delayed;
   for (AssociationReport& association : report.associations) {
     if (association.outcome != Outcome::augmented) continue;
     const auto index = static_cast<std::size_t>(association.observation);
@@ -270,16 +272,16 @@ void NamedNavigator::augment(const NamedScan& named, StepReport& report) {
       association.landmark = names_.in_map(filter_.augment(observation, named.scan.T_robot_sensor));
       continue;
     }
-    if (names_.is_part) {
-      association.outcome = Outcome::ambiguous;
-      continue;
-    }
-    const auto entered = delayed_.sight(filter_, named.identities[index], observation, named.scan.T_robot_sensor);
-    if (entered) {
-      association.landmark = *entered;
-    } else {
-      association.outcome = Outcome::ambiguous;
-    }
+    association.outcome = Outcome::ambiguous;
+    if (names_.is_part) continue;
+    delayed.push_back({named.identities[index], observation});
+    of_delayed.push_back(index);
+  }
+  const auto entered = delayed_.sight(filter_, delayed, named.scan.T_robot_sensor);
+  for (std::size_t i = 0; i < entered.size(); ++i) {
+    if (!entered[i]) continue;
+    report.associations[of_delayed[i]].outcome = Outcome::augmented;
+    report.associations[of_delayed[i]].landmark = *entered[i];
   }
 }
 

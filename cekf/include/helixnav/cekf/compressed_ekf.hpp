@@ -69,6 +69,9 @@ class CompressedEkf {
   /// The innovation that update would use, for a caller that weighs its matches one by one; read-only. O(m²·n).
   /// Test: cekf/update_within_test.cpp.
   Innovation innovation(const std::vector<Match>& matches) const;
+  /// Update with rows that the caller has linearised; `ids` without repetition. PreconditionError for sizes that do not
+  /// fit and values that are not finite. Test: cekf/equality_test.cpp, cekf/bad_input_test.cpp.
+  UpdateResult update(const PointRows& rows);
   /// Joint Gauss-Newton update to the minimum of J = |x ⊖ x̂|²_P + |ν|²_R, for closings where one linearisation is not
   /// enough; the covariance is that of an update linearised at the minimum. Result: J and its degrees of freedom.
   /// NumericalError when the iteration has not converged (step below 1e-9) after max_iterations.
@@ -211,6 +214,7 @@ class CompressedEkf {
 
   // update.cpp, update_iterated.cpp, merge.cpp, apply_correction.cpp
   void check_matches(const std::vector<Match>& matches, const char* verb) const;
+  void check_rows(const PointRows& rows) const;
   bool are_active(const std::vector<Match>& matches) const;
   void check_pairs(const std::vector<LandmarkPair>& kept_removed, double sigma_m, const char* verb) const;
   void gather_involved(UpdateWorkspace& w) const;

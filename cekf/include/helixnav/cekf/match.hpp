@@ -27,6 +27,15 @@ struct DerivedPoint {
   Eigen::Matrix2d noise_m2 = Eigen::Matrix2d::Zero();  ///< symmetric positive semidefinite
 };
 
+/// A measurement that is linear in points of the map: nu = H·(their errors) + noise of covariance 1, with (x, y) of each
+/// landmark in the order of `ids`. Sightings from past poses become such rows once the point they are of is eliminated
+/// (docs/names.md).
+struct PointRows {
+  std::vector<core::LandmarkId> ids;
+  Eigen::MatrixXd H;   ///< m × 2·ids
+  Eigen::VectorXd nu;  ///< true minus estimated
+};
+
 /// The statistics of an update: nis is νᵀS⁻¹ν or, for an iterated update, the cost J at its minimum; either is
 /// χ²-distributed with dof degrees of freedom when the model holds.
 struct UpdateResult {
