@@ -14,14 +14,15 @@
 namespace helixnav::apps {
 namespace {
 
-/// Four poles beside a straight road, named by words or by numbers.
-void write_named_log(const testing::TemporaryFolder& folder, const std::vector<std::string>& names) {
+/// Four poles beside a straight road, named by words or by numbers. The first may be moved before the sixth scan.
+void write_named_log(const testing::TemporaryFolder& folder, const std::vector<std::string>& names, bool is_moved) {
   std::string odometry = "t,v,omega\n", detections = "t,x_m,y_m,id\n";
   for (int t = 0; t <= 10; ++t) {
     odometry += std::to_string(t) + ",1,0\n";
     for (std::size_t pole = 0; pole < names.size(); ++pole) {
-      detections += std::to_string(t) + ',' + std::to_string(6.0 + 3.0 * static_cast<double>(pole) - t) + ",4," +
-                    names[pole] + '\n';
+      const double y_m = is_moved && pole == 0 && t > 4 ? 12.0 : 4.0;
+      detections += std::to_string(t) + ',' + std::to_string(6.0 + 3.0 * static_cast<double>(pole) - t) + ',' +
+                    std::to_string(y_m) + ',' + names[pole] + '\n';
     }
   }
   folder.write("log/vehicle.toml",
@@ -31,9 +32,10 @@ void write_named_log(const testing::TemporaryFolder& folder, const std::vector<s
   folder.write("log/detections.csv", detections);
 }
 
-std::map<core::LandmarkId, std::string> names_in_run(const std::vector<std::string>& names, bool is_known) {
+std::map<core::LandmarkId, std::string> names_in_run(const std::vector<std::string>& names, bool is_known,
+                                                     bool is_moved = false) {
   const testing::TemporaryFolder folder;
-  write_named_log(folder, names);
+  write_named_log(folder, names, is_moved);
   const std::filesystem::path out = folder.path() / "run";
   std::vector<std::string> words{"replay", folder.path() / "log", "--out", out, "--quiet"};
   if (is_known) words.insert(words.end(), {"--association", "known"});
@@ -50,6 +52,12 @@ TEST(LandmarkNames, StandInTheMapAsTheLogHasThem) {
             (Names{{0, "oak"}, {1, "elm"}, {2, "beech"}, {3, "gate 4"}}));
   EXPECT_EQ(names_in_run({"11", "400", "7", "12"}, true), (Names{{0, "11"}, {1, "400"}, {2, "7"}, {3, "12"}}));
   EXPECT_EQ(names_in_run({"oak", "elm", "beech", "gate 4"}, false), Names());
+}
+
+/// Seen twice where it is now, and five times where it was.
+TEST(LandmarkNames, AreOfTheLandmarksThatAreStillInTheMap) {
+  EXPECT_EQ(names_in_run({"oak", "elm", "beech", "gate 4"}, true, true),
+            (std::map<core::LandmarkId, std::string>{{1, "elm"}, {2, "beech"}, {3, "gate 4"}, {4, "oak"}}));
 }
 
 TEST(LandmarkNames, AreTheSameOnAnotherDayInAnotherOrder) {

@@ -50,12 +50,15 @@ void tell_missing_landmarks(const std::filesystem::path& table, const std::files
 }  // namespace
 
 std::map<core::Label, core::LandmarkId> landmarks_by_label(const runs::Run& run) {
+  std::set<core::LandmarkId> kept;  // a landmark that was moved is begun anew, and the old one is in no map
+  for (const core::MapLandmark& landmark : run.map) kept.insert(landmark.id);
   std::map<core::Label, std::map<core::LandmarkId, int>> votes;
   for (std::size_t k = 0; k < std::min(run.steps.size(), run.truth.labels.size()); ++k) {
     const std::vector<core::Label>& labels = run.truth.labels[k];
     for (const core::AssociationReport& a : run.steps[k].associations) {
       const auto observation = static_cast<std::size_t>(a.observation);
-      const bool settled = a.outcome == core::Outcome::matched || a.outcome == core::Outcome::augmented;
+      const bool settled = (a.outcome == core::Outcome::matched || a.outcome == core::Outcome::augmented) &&
+                           (kept.empty() || kept.count(a.landmark) > 0);
       if (settled && observation < labels.size() && labels[observation] >= 0) ++votes[labels[observation]][a.landmark];
     }
   }

@@ -177,4 +177,23 @@ bool agree_about_a_pose(const cekf::CompressedEkf& filter, const std::vector<cek
   return least_cost(anywhere, matches) <= assumed.noise_scale * usual_nis(matches);
 }
 
+ContradictedName contradicted_name(const cekf::CompressedEkf& filter, const cekf::Match& match,
+                                   const core::FieldOfView& view, core::LandmarkId landmark) {
+  ContradictedName name;
+  name.landmark = landmark;
+  const core::PoseGaussian pose = filter.pose();
+  if (core::dimension(match.observation.kind) == 2) {
+    const core::LocatedLandmark seen = core::locate_landmark(match.observation, pose.mean, match.T_robot_sensor);
+    const Eigen::Matrix2d covariance_m2 = seen.G_pose * pose.covariance * seen.G_pose.transpose() +
+                                          seen.G_z * Eigen::Matrix2d(match.observation.R) * seen.G_z.transpose();
+    name.seen_at = core::PointGaussian{seen.point_world_m, covariance_m2};
+    return name;
+  }
+  const core::Pose2 T_world_sensor = core::compose(pose.mean, match.T_robot_sensor);
+  const Eigen::Vector2d mapped_m = core::transform(core::inverse(T_world_sensor), filter.landmark_mean(match.landmark));
+  name.is_in_view =
+      mapped_m.norm() <= view.max_range_m && core::is_between_bearings(view, std::atan2(mapped_m.y(), mapped_m.x()));
+  return name;
+}
+
 }  // namespace helixnav::supervisor

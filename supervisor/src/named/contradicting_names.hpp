@@ -6,6 +6,7 @@
 
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/events.hpp"
+#include "helixnav/supervisor/name_integrity.hpp"
 #include "helixnav/supervisor/slip_options.hpp"
 
 namespace helixnav::supervisor {
@@ -48,5 +49,9 @@ double nats_for_slip(const cekf::CompressedEkf& filter, const std::vector<cekf::
 /// rows than a pose has unknowns. Test: supervisor/named/contradicting_names_test.cpp.
 bool agree_about_a_pose(const cekf::CompressedEkf& filter, const std::vector<cekf::Match>& matches,
                         const AssumedOfNames& assumed);
+
+/// What a contradicting sighting says about where its landmark is instead. `landmark`: as known outside the filter.
+ContradictedName contradicted_name(const cekf::CompressedEkf& filter, const cekf::Match& match,
+                                   const core::FieldOfView& view, core::LandmarkId landmark);
 
 }  // namespace helixnav::supervisor

@@ -37,6 +37,13 @@ DelayedOptions delayed_of(const NavigatorOptions& options) {
   return delayed;
 }
 
+AssociationReport begun_by(int observation) {
+  AssociationReport begun;
+  begun.observation = observation;
+  begun.outcome = Outcome::augmented;
+  return begun;
+}
+
 /// One step with a scan's identities. If the mathematics fails on what they claim, one without any: no scan ends a
 /// drive.
 template <class StepWith>
@@ -201,7 +208,7 @@ std::vector<AssociationReport> NamedNavigator::associate(const NamedScan& named)
     const auto known = landmark_of_identity_.find(identity);
     if (identity < 0) {
       reports[i].outcome = Outcome::rejected;
-    } else if (known == landmark_of_identity_.end() || integrity_.is_misplaced(known->second)) {
+    } else if (known == landmark_of_identity_.end() || waits_anew(named.scan.observations[i], known->second)) {
       reports[i].outcome = born.insert(identity).second ? Outcome::augmented : Outcome::rejected;
     } else {
       reports[i].outcome = Outcome::matched;
@@ -209,6 +216,11 @@ std::vector<AssociationReport> NamedNavigator::associate(const NamedScan& named)
     }
   }
   return reports;
+}
+
+/// Whether its landmark is misplaced and begun anew by this sighting's place later; others begin at once, in update.
+bool NamedNavigator::waits_anew(const core::Observation& observation, LandmarkId known) const {
+  return core::dimension(observation.kind) == 1 && integrity_.is_misplaced(known);
 }
 
 std::vector<cekf::Match> NamedNavigator::matches_in_filter(const core::Scan& scan,
@@ -245,10 +257,10 @@ void NamedNavigator::leave_wrong_names_out(const core::Scan& scan, const std::ve
     if (left_out[i].outcome == Outcome::matched) of_match.push_back(i);
   }
   const std::vector<ContradictingName> wrong = contradicting_names(filter_, matched, assumed);
-  std::vector<LandmarkId> contradicting;
+  std::vector<ContradictedName> contradicting;
   for (const ContradictingName& name : wrong) {
     AssociationReport& one = left_out[of_match[name.match]];
-    contradicting.push_back(one.landmark);
+    contradicting.push_back(contradicted_name(filter_, matched[name.match], assumed.view, one.landmark));
     one.outcome = Outcome::rejected;
     one.nis = name.nis;
     one.dof = name.dof;
@@ -258,7 +270,13 @@ void NamedNavigator::leave_wrong_names_out(const core::Scan& scan, const std::ve
   if (wrong.empty()) return integrity_.agree(agreeing);
   const NameIntegrity::AboutMotion about_motion{nats_for_slip(filter_, matched, wrong, assumed, options_.slip),
                                                 agree_about_a_pose(filter_, matched, assumed)};
-  if (integrity_.blames_names(contradicting, agreeing, about_motion)) associations = std::move(left_out);
+  if (!integrity_.blames_names(contradicting, agreeing, about_motion)) return;
+  associations = std::move(left_out);
+  for (const ContradictingName& name : wrong) {
+    AssociationReport& one = associations[of_match[name.match]];
+    const bool is_at_a_place = core::dimension(matched[name.match].observation.kind) == 2;
+    if (is_at_a_place && integrity_.is_misplaced(one.landmark)) one = begun_by(one.observation);
+  }
 }
 
 void NamedNavigator::augment(const NamedScan& named, StepReport& report) {

@@ -7,59 +7,87 @@ namespace helixnav::supervisor {
 namespace {
 
 using Ids = std::vector<core::LandmarkId>;
+using Names = std::vector<ContradictedName>;
 
 constexpr NameIntegrity::AboutMotion no_slip{-5.0, false};
 constexpr NameIntegrity::AboutMotion slip{5.0, true};
 constexpr NameIntegrity::AboutMotion far_away{-5.0, true};
 
+Names names(const Ids& contradicting) {
+  Names all;
+  for (const core::LandmarkId id : contradicting) all.push_back({id, {}, true});
+  return all;
+}
+
+Names seen_at(core::LandmarkId id, double x_m) {
+  return {{id, core::PointGaussian{{x_m, 0.0}, 0.01 * Eigen::Matrix2d::Identity()}, true}};
+}
+
 TEST(NameIntegrity, BlamesOneNameAmongMany) {
   NameIntegrity integrity;
-  EXPECT_TRUE(integrity.blames_names({7}, {1, 2, 3}, no_slip));
-  EXPECT_TRUE(integrity.blames_names({7}, {1, 2, 3}, no_slip));
+  EXPECT_TRUE(integrity.blames_names(names({7}), {1, 2, 3}, no_slip));
+  EXPECT_TRUE(integrity.blames_names(names({7}), {1, 2, 3}, no_slip));
 }
 
 TEST(NameIntegrity, BlamesTheMotionWhereASlipIsLikelierAndTwoContradict) {
   NameIntegrity integrity;
-  EXPECT_FALSE(integrity.blames_names({1, 2, 3}, {}, slip));
+  EXPECT_FALSE(integrity.blames_names(names({1, 2, 3}), {}, slip));
 }
 
 TEST(NameIntegrity, BlamesTheMotionWhereOneContradictsAgain) {
   NameIntegrity integrity;
-  EXPECT_TRUE(integrity.blames_names({1}, {}, slip));
-  EXPECT_FALSE(integrity.blames_names({1}, {}, slip));
+  EXPECT_TRUE(integrity.blames_names(names({1}), {}, slip));
+  EXPECT_FALSE(integrity.blames_names(names({1}), {}, slip));
 }
 
 TEST(NameIntegrity, ForgetsAContradictionOnceOthersHaveAgreed) {
   NameIntegrity integrity;
-  EXPECT_TRUE(integrity.blames_names({1}, {}, slip));
+  EXPECT_TRUE(integrity.blames_names(names({1}), {}, slip));
   integrity.agree({2, 3});
-  EXPECT_TRUE(integrity.blames_names({4}, {}, slip));
+  EXPECT_TRUE(integrity.blames_names(names({4}), {}, slip));
 }
 
 TEST(NameIntegrity, BlamesTheMotionWhereAllAgreeAboutAPoseFarAway) {
   NameIntegrity integrity;
-  EXPECT_TRUE(integrity.blames_names({1, 2}, {3, 4, 5}, far_away));
+  EXPECT_TRUE(integrity.blames_names(names({1, 2}), {3, 4, 5}, far_away));
   NameIntegrity outnumbered;
-  EXPECT_FALSE(outnumbered.blames_names({1, 2, 3}, {4}, far_away));
+  EXPECT_FALSE(outnumbered.blames_names(names({1, 2, 3}), {4}, far_away));
 }
 
 TEST(NameIntegrity, BelievesInAMotionThatFarByNothingLessThanSixLandmarksOneByOne) {
   NameIntegrity integrity;
-  for (core::LandmarkId id = 0; id < 5; ++id) EXPECT_TRUE(integrity.blames_names({id}, {}, far_away)) << id;
-  EXPECT_FALSE(integrity.blames_names({5}, {}, far_away));
+  for (core::LandmarkId id = 0; id < 5; ++id) EXPECT_TRUE(integrity.blames_names(names({id}), {}, far_away)) << id;
+  EXPECT_FALSE(integrity.blames_names(names({5}), {}, far_away));
 }
 
 TEST(NameIntegrity, FindsALandmarkMisplacedThatIsContradictedFiveTimesInARow) {
   NameIntegrity integrity;
-  for (int i = 0; i < 4; ++i) integrity.blames_names({7}, {1, 2}, no_slip);
+  for (int i = 0; i < 4; ++i) integrity.blames_names(names({7}), {1, 2}, no_slip);
   integrity.agree({7});
-  for (int i = 0; i < 4; ++i) integrity.blames_names({7}, {1, 2}, no_slip);
+  for (int i = 0; i < 4; ++i) integrity.blames_names(names({7}), {1, 2}, no_slip);
   EXPECT_FALSE(integrity.is_misplaced(7));
-  integrity.blames_names({7}, {1, 2}, no_slip);
+  integrity.blames_names(names({7}), {1, 2}, no_slip);
   EXPECT_TRUE(integrity.is_misplaced(7));
   integrity.begin_anew(70, 7);
   EXPECT_FALSE(integrity.is_misplaced(7));
   EXPECT_TRUE(integrity.is_superseded(7));
+}
+
+/// Out of view, a landmark has no other sightings than those of others under its name.
+TEST(NameIntegrity, FindsNoLandmarkMisplacedThatIsSeenHereAndThere) {
+  NameIntegrity integrity;
+  for (int i = 0; i < 30; ++i) {
+    integrity.blames_names(seen_at(7, 10.0 * (i % 7)), {1, 2}, no_slip);
+    EXPECT_FALSE(integrity.is_misplaced(7)) << i;
+  }
+  for (int i = 0; i < 7; ++i) integrity.blames_names(seen_at(7, 100.0 + 0.05 * (i % 3)), {1, 2}, no_slip);
+  EXPECT_TRUE(integrity.is_misplaced(7));
+}
+
+TEST(NameIntegrity, CountsNoRangeOrBearingOfWhatIsOutOfView) {
+  NameIntegrity integrity;
+  for (int i = 0; i < 10; ++i) integrity.blames_names({{7, {}, false}}, {1, 2}, no_slip);
+  EXPECT_FALSE(integrity.is_misplaced(7));
 }
 
 /// Nine scans of ten degrees of freedom each.

@@ -138,6 +138,7 @@ class NamedNavigator {
   void update(const core::Scan& scan, core::StepReport& report);
   void leave_wrong_names_out(const core::Scan& scan, const std::vector<cekf::Match>& matched,
                              std::vector<core::AssociationReport>& associations);
+  bool waits_anew(const core::Observation& observation, core::LandmarkId known) const;
   std::vector<cekf::Match> matches_in_filter(const core::Scan& scan,
                                              const std::vector<core::AssociationReport>& associations) const;
   void augment(const NamedScan& scan, core::StepReport& report);
