@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <limits>
 
+#include "helixnav/core/mirror_lower.hpp"
 #include "helixnav/core/random.hpp"
 
 namespace helixnav::core {
@@ -29,6 +30,17 @@ TEST(Asymmetry, IsTheLargestDifferenceAcrossTheDiagonal) {
     EXPECT_EQ(asymmetry(M), (M - M.transpose()).cwiseAbs().maxCoeff()) << n;
   }
   EXPECT_EQ(asymmetry(Eigen::MatrixXd()), 0.0);
+}
+
+TEST(MirrorLower, MakesTheUpperTriangleThatBelow) {
+  core::RandomStream random(6, "mirror");
+  for (const Eigen::Index n : {0, 1, 2, 63, 64, 65, 130}) {
+    Eigen::MatrixXd M(n, n);
+    for (double& m : M.reshaped()) m = random.normal();
+    const Eigen::MatrixXd expected = M.selfadjointView<Eigen::Lower>();
+    mirror_lower(M);
+    EXPECT_EQ(M, expected) << n;
+  }
 }
 
 TEST(PositiveDefinite, IsDecidedByTheSmallestEigenvalue) {

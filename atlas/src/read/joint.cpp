@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "helixnav/core/errors.hpp"
+#include "helixnav/core/mirror_lower.hpp"
 #include "helixnav/core/packed_product.hpp"
 #include "read/joint.hpp"
 #include "read/read.hpp"
@@ -15,37 +16,13 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Calls act(rows, columns) for the tiles on and below the diagonal, as ranges: a large matrix is traversed tile by tile, because
-/// the elements of a row are far apart in memory.
-template <class Act>
-void for_lower_tiles(Index size, const Act& act) {
-  constexpr Index tile = 64;
-  for (Index j = 0; j < size; j += tile) {
-    for (Index i = j; i < size; i += tile) {
-      act(Eigen::seqN(i, std::min(tile, size - i)), Eigen::seqN(j, std::min(tile, size - j)));
-    }
-  }
-}
-
-/// The upper triangle becomes that below.
-void mirror_lower(Eigen::Ref<MatrixXd> P) {
-  for_lower_tiles(P.cols(), [&](const auto& rows, const auto& columns) {
-    const MatrixXd lower = P(rows, columns);
-    auto upper = P(columns, rows);
-    if (rows.first() != columns.first()) {
-      upper = lower.transpose();
-    } else {
-      upper.template triangularView<Eigen::StrictlyUpper>() = lower.transpose();
-    }
-  });
-}
-
 /// A covariance of the map frame and of others, in memory that can go on to hold the covariance of the others alone: for a large
 /// map this is the largest object there is, and there is room for one.
 class Joint {
  public:
   explicit Joint(Index size) : size_(size), memory_(size - 3, (size * size + spare_rows) / (size - 3) + 1) {
-    memory_.setZero();
+    // Not all at once: of what is allocated as zero, each page costs one fault to be read and one more to be written.
+    for (Index column = 0; column < size; ++column) std::fill(at(column, column), at(0, column + 1), 0.0);
   }
 
   Index size() const { return size_; }
@@ -117,7 +94,7 @@ class PathSolve {
       const auto found = std::lower_bound(column_of_.begin(), column_of_.end(), std::make_pair(v, Index{-1}));
       for (int i = 0; i < state_.variable(v).dim; ++i) rows.push_back(found->second + i);
     }
-    mirror_lower(P_.matrix());
+    core::mirror_lower(P_.matrix());
     P_.reorder(rows);
     return std::move(P_);
   }
@@ -223,16 +200,19 @@ Eigen::Matrix<double, Eigen::Dynamic, 3> carried(const Eigen::Vector3d& world, c
   return G;
 }
 
-/// Errors in another frame.
-void turn(Eigen::Ref<MatrixXd> P, const Eigen::Matrix2d& R) {
-  for (Index column = 0; column < P.cols(); ++column) {
-    for (Index row = 0; row < P.rows(); row += row == 0 ? 3 : 2) {
-      P.block<2, 1>(row, column) = (R * P.block<2, 1>(row, column)).eval();
+/// Errors in another frame, of a covariance given by its lower triangle, of which only that is right afterwards.
+void turn_lower(Eigen::Ref<MatrixXd> P, const Eigen::Matrix2d& R) {
+  const Index n = P.cols();
+  const auto next = [](Index row) { return row == 0 ? 3 : row + 2; };
+  for (Index column = 0; column < n; column = next(column)) {
+    P(column, column + 1) = P(column + 1, column);
+    for (Index row = column; row < n; row = next(row)) {
+      const Eigen::Matrix2d turned = R * P.block<2, 2>(row, column);
+      P.block<2, 2>(row, column) = turned * R.transpose();
     }
   }
-  for (Index row = 0; row < P.rows(); row += row == 0 ? 3 : 2) {
-    P.middleCols<2>(row) = (P.middleCols<2>(row) * R.transpose()).eval();
-  }
+  P.block<1, 2>(2, 0) = (P.block<1, 2>(2, 0) * R.transpose()).eval();
+  for (Index row = 3; row < n; row += 2) P.block<2, 1>(row, 2) = (R * P.block<2, 1>(row, 2)).eval();
 }
 
 /// Covariance of what is seen from the map frame: errors δ − G·δ_world, turned.
@@ -246,9 +226,8 @@ MatrixXd seen_from_world(Joint joint, const Eigen::Vector3d& world, const Values
   with << G, cross;
   core::add_product_lower(joint.at(0, 0), n, core::Panels(of_pairs, core::left_width),
                           core::Panels(with, core::right_width));
-  mirror_lower(joint.matrix());
-  turn(joint.matrix(), core::rotation(turn_rad));
-  mirror_lower(joint.matrix());
+  turn_lower(joint.matrix(), core::rotation(turn_rad));
+  core::mirror_lower(joint.matrix());
   return joint.take();
 }
 

@@ -5,6 +5,7 @@
 
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/add_outer.hpp"
+#include "helixnav/core/mirror_lower.hpp"
 #include "helixnav/core/packed_product.hpp"
 #include "region/touched_weights.hpp"
 
@@ -66,7 +67,7 @@ void add_between(const Eigen::MatrixXd& e, const core::Panels& M, ReservedMatrix
 }  // namespace
 
 /// Covariances of many passive landmarks with one another, written where they belong: for a whole map there is no room for
-/// a second matrix of its size.
+/// a second matrix of its size. `rows` ascend.
 void CompressedEkf::fill_own_of_many(const std::vector<int>& slots, const std::vector<int>& rows,
                                      const Eigen::MatrixXd& e, Eigen::MatrixXd& C) const {
   const Eigen::MatrixXd M = active_.M.view().selfadjointView<Eigen::Lower>();
@@ -85,9 +86,10 @@ void CompressedEkf::fill_own_of_many(const std::vector<int>& slots, const std::v
     if (!touched.empty()) add_between(e.bottomRows(own.rows())(Eigen::all, touched), weights, own);
     const int* const row = rows.data() + 2 * first;
     for (Eigen::Index j = 0; j < own.cols(); ++j) {
-      for (Eigen::Index i = j; i < own.rows(); ++i) C(row[i], row[j]) = C(row[j], row[i]) = own.view()(i, j);
+      for (Eigen::Index i = j; i < own.rows(); ++i) C(row[i], row[j]) = own.view()(i, j);
     }
   }
+  core::mirror_lower(C);
 }
 
 core::JointGaussian CompressedEkf::joint(const std::vector<core::LandmarkId>& ids) const {

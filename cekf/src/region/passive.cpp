@@ -86,7 +86,7 @@ void replay_on_columns(const Phase& phase, const std::vector<Carried>& carried, 
 
 /// Blocks of rows and columns whose slots the phase wrote when it closed.
 void overwrite_written(const Phase& phase, const std::vector<int>& rows, const std::vector<int>& columns,
-                       Eigen::MatrixXd& blocks) {
+                       Eigen::Ref<Eigen::MatrixXd> blocks) {
   const auto written = phase.written_covariance();
   const auto block = [&](std::size_t i, std::size_t j) {
     return blocks.block<2, 2>(2 * static_cast<Eigen::Index>(i), 2 * static_cast<Eigen::Index>(j));
@@ -115,16 +115,22 @@ void replay_on_blocks(const Phase& phase, const std::vector<int>& slots, Eigen::
   overwrite_written(phase, slots, slots, blocks);
 }
 
-/// Carries the covariance of some slots with others over a closed phase.
+/// Carries the covariance of some slots with others over a closed phase; some columns at a time, so that what they change by stays in
+/// the second-level cache.
 void replay_on_blocks(const Phase& phase, const std::vector<int>& rows, const std::vector<int>& columns,
-                      Eigen::MatrixXd& blocks) {
+                      Eigen::Ref<Eigen::MatrixXd> blocks) {
+  constexpr Eigen::Index at_once = 32;
   if (!phase.touched.empty()) {
-    const Eigen::MatrixXd response = rows_of(phase.response, rows, all_columns(phase.response.cols()));
+    const core::Panels response(rows_of(phase.response, rows, all_columns(phase.response.cols())), core::left_width);
     const Eigen::MatrixXd basis = rows_of(phase.basis.view(), columns, phase.touched);
-    ReservedMatrix change(response.rows(), basis.rows());
-    core::add_product(change.col(0), change.stride(), core::Panels(response, core::left_width),
-                      core::Panels(basis, core::right_width));
-    blocks += change.view();
+    ReservedMatrix change(blocks.rows(), std::min(at_once, blocks.cols()));
+    for (Eigen::Index first = 0; first < blocks.cols(); first += at_once) {
+      const Eigen::Index count = std::min(at_once, blocks.cols() - first);
+      change.set_zero();
+      core::add_product(change.col(0), change.stride(), response,
+                        core::Panels(basis.middleRows(first, count), core::right_width));
+      blocks.middleCols(first, count) += change.view().leftCols(count);
+    }
   }
   overwrite_written(phase, rows, columns, blocks);
 }
@@ -185,8 +191,8 @@ Eigen::MatrixXd CompressedEkf::phase_start_blocks(const std::vector<int>& rows, 
   const Eigen::Index most = absorbed_->rows();
   Eigen::MatrixXd blocks =
       Eigen::MatrixXd::Zero(2 * static_cast<Eigen::Index>(rows.size()), 2 * static_cast<Eigen::Index>(columns.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (std::size_t j = 0; j < columns.size(); ++j) {
+  for (std::size_t j = 0; j < columns.size(); ++j) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
       if (2 * std::max(rows[i], columns[j]) >= most) continue;
       blocks.block<2, 2>(2 * static_cast<Eigen::Index>(i), 2 * static_cast<Eigen::Index>(j)) =
           absorbed_->block(rows[i], columns[j]);
