@@ -99,11 +99,20 @@ double raise_to_zero(double tolerance, Eigen::MatrixXd& P) {
   return least;
 }
 
+/// As the covariance of all in the base frame would be judged, whose largest element is the largest variance: the first base, whose
+/// own covariance is nothing but rounding, is not judged by that.
 bool is_sound(const MarginalsInBaseFrame& marginals) {
-  return core::is_symmetric_positive_semidefinite(marginals.pose.covariance) &&
-         std::all_of(marginals.points.begin(), marginals.points.end(), [](const core::PointGaussian& point) {
-           return core::is_symmetric_positive_semidefinite(point.covariance_m2);
-         });
+  double largest = marginals.pose.covariance.diagonal().maxCoeff();
+  for (const core::PointGaussian& point : marginals.points)
+    largest = std::max(largest, point.covariance_m2.diagonal().maxCoeff());
+  const auto is_covariance = [shift = rounding * largest](const auto& covariance) {
+    auto raised = covariance.eval();
+    raised.diagonal().array() += shift;
+    return core::is_symmetric_positive_semidefinite(raised);
+  };
+  return is_covariance(marginals.pose.covariance) &&
+         std::all_of(marginals.points.begin(), marginals.points.end(),
+                     [&](const core::PointGaussian& point) { return is_covariance(point.covariance_m2); });
 }
 
 /// The marginals need neither the covariances between landmarks nor a joint test, O(n³).
