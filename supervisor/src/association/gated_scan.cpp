@@ -59,16 +59,15 @@ void defer_matches(const std::vector<core::LandmarkId>& loose, std::vector<core:
 }
 
 /// Pose and one landmark: all that its own gate needs.
-core::JointGaussian with_pose(const cekf::CompressedEkf& filter, core::LandmarkId id,
-                              const core::PointGaussian& point) {
-  const core::PoseGaussian pose = filter.pose();
+core::JointGaussian pose_and(const core::PoseGaussian& pose, core::LandmarkId id, const core::PointGaussian& point,
+                             const Eigen::Matrix<double, 2, 3>& with_pose) {
   core::JointGaussian joint;
   joint.pose = pose.mean;
   joint.ids = {id};
   joint.points_m = {point.mean_m};
   joint.covariance.resize(5, 5);
   joint.covariance.topLeftCorner<3, 3>() = pose.covariance;
-  joint.covariance.bottomLeftCorner<2, 3>() = filter.covariance_with_pose(id);
+  joint.covariance.bottomLeftCorner<2, 3>() = with_pose;
   joint.covariance.topRightCorner<3, 2>() = joint.covariance.bottomLeftCorner<2, 3>().transpose();
   joint.covariance.bottomRightCorner<2, 2>() = point.covariance_m2;
   return joint;
@@ -81,10 +80,12 @@ std::vector<core::LandmarkId> inside_gates(const cekf::CompressedEkf& filter, st
                                            const core::Scan& scan, const association::Gates& gates) {
   constexpr std::size_t few = 48;
   if (candidates.size() <= few) return candidates;
+  const core::PoseGaussian pose = filter.pose();
   const std::vector<core::PointGaussian> points = filter.marginals(candidates);
+  const std::vector<cekf::Outlook> outlooks = filter.outlooks(candidates);  // all in one pass over the basis
   std::vector<core::LandmarkId> inside;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const core::JointGaussian joint = with_pose(filter, candidates[i], points[i]);
+    const core::JointGaussian joint = pose_and(pose, candidates[i], points[i], outlooks[i].with_pose);
     const association::InnovationProblem own = association::make_innovation_problem(joint, scan, gates);
     const bool is_inside =
         std::any_of(own.observations.begin(), own.observations.end(),
