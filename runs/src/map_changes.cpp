@@ -42,6 +42,7 @@ MapChange MapChanges::since_last(std::int64_t step, const std::vector<core::MapL
   change.step = step;
   const double seen_m = visible_m(told_);
   std::vector<core::MapLandmark> next;
+  next.reserve(map.size());
   auto before = shown_.begin();
   for (const core::MapLandmark& landmark : map) {
     if (landmark.state == core::LandmarkState::dead) continue;
@@ -53,6 +54,8 @@ MapChange MapChanges::since_last(std::int64_t step, const std::vector<core::MapL
     if (known) ++before;
   }
   for (; before != shown_.end(); ++before) change.removed.push_back(before->id);
+  change.changed.shrink_to_fit();
+  change.removed.shrink_to_fit();
   shown_ = std::move(next);
   told_ += change.changed.size();
   return change;

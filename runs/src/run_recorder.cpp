@@ -23,6 +23,12 @@ void mirror_upper_triangle(Matrix& matrix) {
   }
 }
 
+/// With its memory, which it would hold for as long as the run if it were cleared.
+template <typename Element>
+void drop(std::vector<Element>& elements) {
+  elements = std::vector<Element>();
+}
+
 core::PoseGaussian gaussian_as_kept(core::PoseGaussian pose) {
   pose.mean = as_kept(pose.mean);
   mirror_upper_triangle(pose.covariance);
@@ -48,6 +54,7 @@ RunRecorder::RunRecorder(const std::string& path, const RunManifest& manifest, c
   for (const core::Event& event : recording.events) {
     if (const auto* scan = std::get_if<core::Scan>(&event)) book_->run.scans.push_back(points_of_scan(*scan));
   }
+  book_->run.steps.reserve(book_->run.scans.size());
   book_->map_changes = MapChanges(book_->run.scans.size());
 }
 
@@ -59,19 +66,19 @@ void RunRecorder::add(const core::StepReport& report, double microseconds) {
   run.microseconds.push_back(std::round(microseconds * 10.0) / 10.0);
   step.pose = gaussian_as_kept(report.pose);
   if (!book_->cloud_choice.keeps(report)) {
-    step.cloud.clear();
+    drop(step.cloud);
   } else if (!report.drawn.empty()) {
     step.cloud = report.drawn;
   }
-  step.drawn.clear();
+  drop(step.drawn);
   book_->wants_map = book_->map_changes.wants(report);
   if (std::any_of(report.decisions.begin(), report.decisions.end(), core::begins_part)) {
     book_->solved_before.insert(book_->solved_before.end(), book_->solved.begin(), book_->solved.end());
     book_->solved.clear();
   }
   if (!report.solved.empty()) book_->solved = std::move(step.solved);
-  step.solved.clear();
-  step.revised.clear();
+  drop(step.solved);
+  drop(step.revised);
   step.associations.clear();
   for (const core::RevisedScan& scan : report.revised) {
     for (const core::AssociationReport& a : scan.associations) put_association(scan.step, a, run.steps);

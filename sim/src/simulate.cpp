@@ -24,6 +24,7 @@ std::vector<core::TrueLandmark> true_landmarks(const World& world) {
 void record(LabelledScan seen, const core::Pose2& T_world_robot, core::Recording& recording) {
   recording.true_poses.push_back({seen.scan.t_ns, T_world_robot});
   recording.labels.push_back(std::move(seen.labels));
+  seen.scan.observations.shrink_to_fit();
   recording.events.emplace_back(std::move(seen.scan));
 }
 
@@ -65,6 +66,7 @@ core::Recording simulate_in(const World& world, const Scenario& scenario, std::u
     }
   }
   recording.true_slips_ns = odometer.slips();
+  recording.events.shrink_to_fit();
   return recording;
 }
 
