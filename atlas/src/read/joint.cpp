@@ -163,18 +163,33 @@ class PathSolve {
     }
   }
 
-  void add_from_child(const TreeNode& node, std::size_t c, const Passed& passed, Index first, MatrixXd& F) const {
+  /// Rows of a variable of the boundary among those passed, and in the front above.
+  struct Rows {
+    Index from, to;
+    bool is_pose;
+  };
+
+  std::vector<Rows> boundary_rows(const TreeNode& node, std::size_t c) const {
     const FrontShape& child = *state_.node(node.child[c]).shape;
-    const Eigen::Matrix2d R = core::rotation(node.front->child_turn_rad[c]);
-    const Index column = passed.first - first;
-    const Index count = passed.rows.cols();
+    std::vector<Rows> boundary;
     for (std::size_t k = 0; k < node.shape->from_child[c].size(); ++k) {
       const std::size_t at = k + State::index(child.eliminated);
-      const Index from = child.offsets[at] - child.ne;
-      const Index to = node.shape->from_child[c][k];
-      F.block(to, column, 2, count) += R * passed.rows.middleRows<2>(from);
-      if (state_.variable(child.variables[at]).dim == 3) {
-        F.block(to + 2, column, 1, count) += passed.rows.middleRows<1>(from + 2);
+      const bool is_pose = state_.variable(child.variables[at]).dim == 3;
+      boundary.push_back({child.offsets[at] - child.ne, node.shape->from_child[c][k], is_pose});
+    }
+    return boundary;
+  }
+
+  /// Column after column, as they lie in memory.
+  void add_from_child(const TreeNode& node, std::size_t c, const Passed& passed, Index first, MatrixXd& F) const {
+    const std::vector<Rows> boundary = boundary_rows(node, c);
+    const Eigen::Matrix2d R = core::rotation(node.front->child_turn_rad[c]);
+    for (Index column = 0; column < passed.rows.cols(); ++column) {
+      const auto source = passed.rows.col(column);
+      auto target = F.col(passed.first - first + column);
+      for (const Rows& rows : boundary) {
+        target.segment<2>(rows.to) += R * source.segment<2>(rows.from);
+        if (rows.is_pose) target(rows.to + 2) += source(rows.from + 2);
       }
     }
   }
