@@ -10,6 +10,7 @@
 
 #include "closing_warnings.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
+#include "known_by_name.hpp"
 #include "numerics_text.hpp"
 #include "only_localized.hpp"
 #include "open_searches.hpp"
@@ -24,6 +25,7 @@ namespace {
 /// What became of the observations of a run.
 struct ObservationCounts {
   std::size_t seen = 0, matched = 0, began = 0;
+  std::size_t waiting = 0;  ///< ranges or bearings alone of landmarks that they have not yet placed
 };
 
 /// Whether the place on the map is known after the step, if it was before.
@@ -40,6 +42,7 @@ bool knows_place_after(const core::StepReport& step, bool knows) {
 ObservationCounts count_observations(const runs::Run& run) {
   ObservationCounts counts;
   bool counts_step = true;
+  const bool by_name = known_by_name(run);
   for (const core::StepReport& step : run.steps) {
     if (only_localized(run)) counts_step = knows_place_after(step, counts_step);
     if (!counts_step) continue;
@@ -47,6 +50,7 @@ ObservationCounts count_observations(const runs::Run& run) {
     for (const core::AssociationReport& a : step.associations) {
       counts.matched += a.outcome == core::Outcome::matched ? 1 : 0;
       counts.began += a.outcome == core::Outcome::augmented ? 1 : 0;
+      counts.waiting += by_name && a.outcome == core::Outcome::ambiguous ? 1 : 0;
     }
   }
   return counts;
@@ -71,6 +75,14 @@ std::string no_landmark_text(const ObservationCounts& counts) {
       counts.seen, counts.matched, counts.began);
 }
 
+std::string waiting_text(const ObservationCounts& counts) {
+  return warning(
+      "%.0f %% of %zu detections are ranges or bearings of landmarks that could not be placed from them: while they "
+      "pass, the odometry errs by more than what is seen of them changes, or the view is too narrow. 'helixnav smooth' "
+      "solves the whole drive at once and places what can be placed",
+      100.0 * share(counts.waiting, counts.seen), counts.seen);
+}
+
 std::string collapse_text(const ObservationCounts& counts, const runs::Run& run) {
   if (const std::string text = scans_apart_text(run); !text.empty()) {
     return warning("of %zu detections %.0f %% were matched; %s", counts.seen,
@@ -81,6 +93,18 @@ std::string collapse_text(const ObservationCounts& counts, const runs::Run& run)
       "detections are worse than assumed, or mounting, units or times are wrong. "
       "'helixnav check' shows what was understood, 'helixnav calibrate' estimates the noise from the log",
       counts.seen, 100.0 * share(counts.matched, counts.seen), 100.0 * share(counts.began, counts.seen));
+}
+
+/// Empty unless the particles hardly know other paths than one, which ESS and NIS do not show.
+std::string ancestors_text(const evaluation::Evaluation& evaluation) {
+  constexpr std::size_t few = 3;
+  if (!evaluation.particles || evaluation.particles->least_ancestors > few) return {};
+  return warning(
+      "the covariance of this run is not to be trusted: all particles descend from %zu of those a loop's length ago, "
+      "so "
+      "that the path before is a single guess, wrong by as much as the odometry was (docs/fastslam.md). The default "
+      "filter keeps the uncertainty of a loop",
+      evaluation.particles->least_ancestors);
 }
 
 std::string nis_text(double mean_per_dof) {
@@ -290,8 +314,10 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
     return landmark.state == core::LandmarkState::mature;
   });
   constexpr std::size_t enough = 200;
-  constexpr double least_matched = 0.15;
-  if (!mature) {
+  constexpr double least_matched = 0.15, most_waiting = 0.5;
+  if (share(counts.waiting, counts.seen) > most_waiting) {
+    warnings.push_back(waiting_text(counts));
+  } else if (!mature) {
     warnings.push_back(no_landmark_text(counts));
   } else if (counts.seen >= enough && share(counts.matched, counts.seen) < least_matched) {
     warnings.push_back(collapse_text(counts, run));
@@ -306,8 +332,8 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
                 evaluation.position->fixes_outside));
   }
   for (const std::string& text :
-       {only_localized(run) ? std::string() : calibration_text(run), fixes_text(run), widened_fixes_text(run),
-        contradicted_place_text(run), wrong_place_text(run), numerics_text(numerics_of(run)),
+       {only_localized(run) ? std::string() : calibration_text(run), ancestors_text(evaluation), fixes_text(run),
+        widened_fixes_text(run), contradicted_place_text(run), wrong_place_text(run), numerics_text(numerics_of(run)),
         postponed_text(postponed_in(run)), open_search_text(run)}) {
     if (!text.empty()) warnings.push_back(text);
   }

@@ -293,5 +293,36 @@ TEST(Opening, OfARunWithoutStepsSaysNothing) {
   EXPECT_TRUE(opening["warnings"].empty());
 }
 
+TEST(Warnings, SayThatNamedBearingsDoNotPlaceTheirLandmarks) {
+  runs::Run run = drifting_run(0.0);
+  run.manifest.command = "replay log --association known";
+  const auto said = [&run] {
+    std::string all;
+    for (const std::string& text : warnings_of(run, evaluation::evaluate(run))) all += text + '\n';
+    return all;
+  };
+  EXPECT_EQ(said(), "");
+  for (core::StepReport& step : run.steps) {
+    step.associations = {{0, core::Outcome::ambiguous, core::no_landmark, 0.0, 0, 0.0}};
+  }
+  EXPECT_NE(said().find("100 % of 120 detections are ranges or bearings of landmarks that could not be placed"),
+            std::string::npos)
+      << said();
+}
+
+TEST(Warnings, SayThatParticlesOfOneAncestorDoNotKnowHowWrongTheyAre) {
+  runs::Run run = drifting_run(0.0);
+  core::CloudReport cloud;
+  cloud.hypotheses = 100;
+  cloud.effective_size = 80.0;
+  cloud.distinct_ancestors = 40;
+  for (core::StepReport& step : run.steps) step.particles = cloud;
+  EXPECT_TRUE(warnings_of(run, evaluation::evaluate(run)).empty());
+  run.steps[90].particles->distinct_ancestors = 1;
+  const std::vector<std::string> warnings = warnings_of(run, evaluation::evaluate(run));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("descend from 1 of those a loop's length ago"), std::string::npos) << warnings[0];
+}
+
 }  // namespace
 }  // namespace helixnav::reports

@@ -93,7 +93,8 @@ std::string doubted_start_text(const runs::Run& run) {
   const bool is_ambiguous = std::any_of(run.numbers.begin(), run.numbers.end(),
                                         [](const auto& number) { return number.first == start_is_ambiguous; });
   return is_ambiguous ? "the start given was taken on trust: the landmarks seen fit several places on the map. If it "
-                        "is wrong by a row or by one landmark of many alike, everything is"
+                        "is off by a row, or by one landmark of many alike, the whole drive is off by as much, and its "
+                        "covariance does not say so"
                       : "";
 }
 
