@@ -34,8 +34,14 @@ Places place(Get get) {
   return [get](Settings& settings) { return std::vector<double*>{&get(settings)}; };
 }
 
+/// A mounting that is given has been measured; one at the origin may just not have been given.
+double usual_arm_m(const core::Pose2& T_vehicle_sensor, double reach_m) {
+  const bool is_given = T_vehicle_sensor.position_m().norm() > 0.0;
+  return reach_m / (is_given ? 100.0 : 50.0);
+}
+
 template <class Truck>
-std::vector<VehicleConstant> of_truck(Truck truck, double reach_m) {
+std::vector<VehicleConstant> of_truck(Truck truck, double usual_arm_m) {
   return {
       factor("scale", Eigen::Vector3d::Ones(), place([truck](Settings& s) -> double& { return truck(s).speed_scale; })),
       factor("steering_scale", Eigen::Vector3d::UnitZ(),
@@ -44,8 +50,8 @@ std::vector<VehicleConstant> of_truck(Truck truck, double reach_m) {
             place([truck](Settings& s) -> double& { return truck(s).steering_offset_rad; })),
       angle("heading_deg", "heading", 0, 3.0 * degree_rad, core::pi,
             place([truck](Settings& s) -> double& { return truck(s).T_robot_laser.heading_rad; })),
-      length("x_m", 0, reach_m / 50.0, place([truck](Settings& s) -> double& { return truck(s).T_robot_laser.x_m; })),
-      length("y_m", 0, reach_m / 50.0, place([truck](Settings& s) -> double& { return truck(s).T_robot_laser.y_m; })),
+      length("x_m", 0, usual_arm_m, place([truck](Settings& s) -> double& { return truck(s).T_robot_laser.x_m; })),
+      length("y_m", 0, usual_arm_m, place([truck](Settings& s) -> double& { return truck(s).T_robot_laser.y_m; })),
       delay(0.0, 1.0, place([truck](Settings& s) -> double& { return truck(s).laser_delay_s; })),
   };
 }
@@ -68,18 +74,18 @@ std::vector<VehicleConstant> of_own_odometry(bool steered) {
   };
 }
 
-void add_own_sensors(std::size_t sensors, double reach_m, std::vector<VehicleConstant>& constants) {
-  for (std::size_t i = 0; i < sensors; ++i) {
+void add_own_sensors(const std::vector<logs::SensorModel>& sensors, double reach_m,
+                     std::vector<VehicleConstant>& constants) {
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const double arm_m = usual_arm_m(sensors[i].T_vehicle_sensor, reach_m);
     const auto mounting = [i](auto get) {
       return place([i, get](Settings& s) -> double& { return get(s.logs.vehicle->sensors[i].T_vehicle_sensor); });
     };
     const int sensor = static_cast<int>(i);
     constants.push_back(angle("heading_deg", "heading", sensor, 3.0 * degree_rad, 2.0 * core::pi,
                               mounting([](core::Pose2& T) -> double& { return T.heading_rad; })));
-    constants.push_back(
-        length("x_m", sensor, reach_m / 50.0, mounting([](core::Pose2& T) -> double& { return T.x_m; })));
-    constants.push_back(
-        length("y_m", sensor, reach_m / 50.0, mounting([](core::Pose2& T) -> double& { return T.y_m; })));
+    constants.push_back(length("x_m", sensor, arm_m, mounting([](core::Pose2& T) -> double& { return T.x_m; })));
+    constants.push_back(length("y_m", sensor, arm_m, mounting([](core::Pose2& T) -> double& { return T.y_m; })));
     constants.push_back(length("range_offset_m", sensor, reach_m / 100.0, place([i](Settings& s) -> double& {
                                  return s.logs.vehicle->sensors[i].range_offset_m;
                                })));
@@ -108,17 +114,18 @@ std::vector<VehicleConstant> constants_of(const Settings& settings, logs::LogFor
   using logs::LogFormat;
   if (format == LogFormat::own && settings.logs.vehicle && !vehicle.sensors.empty()) {
     std::vector<VehicleConstant> constants = of_own_odometry(vehicle.odometry.wheelbase_m.has_value());
-    add_own_sensors(vehicle.sensors.size(), reach_m, constants);
+    add_own_sensors(vehicle.sensors, reach_m, constants);
     return constants;
   }
   const bool described = vehicle.odometry.wheelbase_m && vehicle.sensors.size() == 1 &&
                          !vehicle.sensors.front().T_vehicle_sensor.vector().isZero(0.0);
   if (!described) return {};  // the shipped vehicle would supply what the file does not give
+  const double arm_m = usual_arm_m(vehicle.sensors.front().T_vehicle_sensor, reach_m);
   if (format == LogFormat::acfr_ascii || format == LogFormat::victoria_park_mat) {
-    return of_truck([](Settings& s) -> logs::AcfrSettings& { return s.logs.victoria_park; }, reach_m);
+    return of_truck([](Settings& s) -> logs::AcfrSettings& { return s.logs.victoria_park; }, arm_m);
   }
   if (format == LogFormat::car_park_mat) {
-    return of_truck([](Settings& s) -> logs::AcfrSettings& { return s.logs.car_park; }, reach_m);
+    return of_truck([](Settings& s) -> logs::AcfrSettings& { return s.logs.car_park; }, arm_m);
   }
   return {};
 }

@@ -122,9 +122,13 @@ TEST_F(CalibrateProgram, WritesNothingThatHasNotSettledAndUsesLittle) {
   EXPECT_FALSE(fs::exists(out_));
 }
 
-/// It settles, at a lever arm of 8 m.
+/// It settles, at a lever arm of 8 m that is not given.
 TEST_F(CalibrateProgram, WritesNothingThatNoVehicleFileHas) {
   stretch_bearings_and_cut(log_, 1.5);
+  std::string vehicle = text_of(log_ / "vehicle.toml");
+  const std::size_t arm = vehicle.find("\nx_m = 0.5");
+  ASSERT_NE(arm, std::string::npos);
+  std::ofstream(log_ / "vehicle.toml") << vehicle.replace(arm, 10, "\nx_m = 0.0");
   const Outcome outcome = run({"calibrate", log_, "--out", out_});
   EXPECT_EQ(outcome.exit_code, 3) << outcome.out;
   EXPECT_NE(outcome.err.find("not written, since x_m"), std::string::npos) << outcome.err;
