@@ -83,6 +83,17 @@ TEST(SystematicMotion, FindsScaleAndSensorThatLooksAside) {
   EXPECT_LT(found->too_long_sigma, 0.002);
 }
 
+TEST(SystematicMotion, FindsNoScaleByBearings) {
+  Drive400 made = drive400({0.03, -0.02}, 1);
+  for (core::Event& event : made.recording.events) {
+    if (auto* scan = std::get_if<core::Scan>(&event)) scan->observations = {core::make_bearing(0.1, 0.01)};
+  }
+  const auto found = systematic_motion_of(made.recording, made.run);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->too_long, 0.0);
+  EXPECT_NEAR(found->sideways_rad, -0.02, 4.0 * found->sideways_sigma_rad);
+}
+
 TEST(SystematicMotion, ForgetsJumps) {
   const Drive400 made = drive400({0.0, 0.0, 8}, 1);
   const auto found = systematic_motion_of(made.recording, made.run);

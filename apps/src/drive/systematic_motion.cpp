@@ -111,6 +111,20 @@ void note(const SensorsApart& apart, runs::Run& run) {
   run.numbers.emplace_back("sensors_apart.left_sigma_rad", apart.left_sigma_rad);
 }
 
+/// Bearings do not change if the world and the drive grow by the same factor.
+bool has_bearings_only(const core::Recording& recording) {
+  bool any = false, only = true;
+  for (const core::Event& event : recording.events) {
+    const auto* scan = std::get_if<core::Scan>(&event);
+    if (scan == nullptr) continue;
+    for (const core::Observation& observation : scan->observations) {
+      any = true;
+      only = only && observation.kind == core::ObservationKind::bearing;
+    }
+  }
+  return any && only;
+}
+
 /// In standard deviations; 0 if there is none.
 double sigmas(double value, double sigma) { return sigma > 0.0 ? std::abs(value) / sigma : 0.0; }
 
@@ -120,7 +134,7 @@ std::optional<SystematicMotion> systematic_motion_of(const core::Recording& reco
   const std::vector<StepMotion> motions = moving(motions_of(recording, run));
   constexpr std::size_t enough = 50;
   if (motions.size() < enough) return std::nullopt;
-  const Share along = share_of_way(motions, 0);
+  const Share along = has_bearings_only(recording) ? Share() : share_of_way(motions, 0);
   const Share across = share_of_way(motions, 1);
   return SystematicMotion{-along.mean, along.sigma, across.mean, across.sigma};
 }
