@@ -13,7 +13,7 @@ namespace helixnav::apps {
 /// part of it across.
 struct SystematicMotion {
   double too_long =
-      0.0;  ///< of the odometry's distances, as a share of the corrected ones; negative: too short; 0 if bearings are all there is
+      0.0;  ///< odometry's distances, as a share of the corrected ones; negative: too short; 0 by bearings
   double too_long_sigma = 0.0;
   double sideways_rad = 0.0;  ///< to the left of the odometry, as if the sensors looked this much farther to the right
   double sideways_sigma_rad = 0.0;
