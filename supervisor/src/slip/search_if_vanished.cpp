@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "association/expected_landmarks.hpp"
 #include "loop/navigation_loop.hpp"
 #include "loop/process_again.hpp"
+#include "slip/should_be_seen.hpp"
 #include "slip/slip_evidence.hpp"
 
 namespace helixnav::supervisor {
@@ -28,9 +28,13 @@ void NavigationLoop::note_seen_again(const core::Scan& scan, bool slipped, const
     belief_.seen_again.start_from(report.associations);
     return;
   }
-  belief_.seen_again.see(belief_.step, report.associations,
-                         expected_unseen(belief_.filter, scan, options_.view_margin_m, report.associations),
-                         belief_.existence, options_.extraneous_per_scan, belief_.slips.count);
+  const auto chance = [&](const std::vector<core::LandmarkId>& ids) {
+    return chance_of_match(belief_.filter, scan, ids, options_.gates.match_probability);
+  };
+  belief_.seen_again.see(
+      belief_.step, report.associations,
+      should_be_seen(belief_.filter, scan, options_.view_margin_m, belief_.seen_again.watched(), report.associations),
+      belief_.existence, options_.extraneous_per_scan, belief_.slips.count, chance);
 }
 
 /// Before anything was trusted that came after the slip.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "association/association_report.hpp"
@@ -13,10 +14,8 @@ namespace {
 using core::LandmarkId;
 using core::Outcome;
 
-constexpr double assumed_share = 0.7;   ///< before anything is known, …
-constexpr double assumed_looks = 20.0;  ///< … as if seen in so many looks
-constexpr double most_share = 0.9;      ///< what hides one landmark may hide its neighbours
-constexpr double by_chance = 0.05;      ///< a match after a slip
+constexpr double most_share = 0.9;     ///< what hides one landmark may hide its neighbours
+constexpr double least_chance = 0.05;  ///< of a match after a slip: landmarks stand in groups
 constexpr double keep = 1.0 - 1.0 / 200.0;
 constexpr double scans_a_slip = 400.0;  ///< before anything is known
 constexpr std::size_t least_missing = 2;
@@ -30,85 +29,157 @@ std::size_t in_both(const std::vector<LandmarkId>& some, const std::vector<Landm
   }));
 }
 
-}  // namespace
+bool is_nearly_all(std::size_t missing, std::size_t seen) { return missing >= least_missing && missing >= 3 * seen; }
 
-double SeenAgain::share() const {
-  return std::min(most_share, (again_ + assumed_share * assumed_looks) / (expected_ + assumed_looks));
+std::vector<LandmarkId> seen_by(const std::vector<core::AssociationReport>& fate) {
+  std::vector<LandmarkId> seen = landmarks_with(Outcome::matched, fate);
+  for (const LandmarkId id : landmarks_with(Outcome::augmented, fate)) seen.push_back(id);
+  return seen;
 }
 
-Vanished SeenAgain::weigh(const std::vector<core::AssociationReport>& fate, const std::vector<LandmarkId>& expected,
-                          const association::LandmarkLife& existence, double extraneous_per_scan) const {
+/// Those seen by a single look may be clutter, which does not come again.
+void keep_well_known(const association::LandmarkLife& existence, std::vector<LandmarkId>& ids) {
   constexpr int well_known = 2;  // looks
-  Vanished vanished;
+  const auto is_not = [&](LandmarkId id) { return !existence.contains(id) || existence.record(id).hits < well_known; };
+  ids.erase(std::remove_if(ids.begin(), ids.end(), is_not), ids.end());
+}
+
+/// ln P(so many are back | elsewhere) / P(the same | any number was as likely).
+double nats_of_return(std::size_t back, std::size_t of, double by_chance) {
+  const auto n = static_cast<double>(of);
+  const auto k = static_cast<double>(back);
+  const double ways = std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0);
+  return ways + k * std::log(by_chance) + (n - k) * std::log(1.0 - by_chance) + std::log(n + 1.0);
+}
+
+}  // namespace
+
+void ShareSeen::forget_slowly() {
+  seen_ *= keep;
+  looks_ *= keep;
+}
+
+void ShareSeen::count(bool is_seen) {
+  seen_ += is_seen ? 1.0 : 0.0;
+  looks_ += 1.0;
+}
+
+double ShareSeen::share() const {
+  return std::min(most_share, (seen_ + assumed_ * assumed_looks) / (looks_ + assumed_looks));
+}
+
+double ShareSeen::nats(bool is_seen, double by_chance) const {
+  return is_seen ? std::log(by_chance / share()) : std::log((1.0 - by_chance) / (1.0 - share()));
+}
+
+/// What became of some landmarks in a scan.
+struct SeenAgain::Again {
+  std::vector<LandmarkId> missing;
+  std::vector<LandmarkId> seen;
+  double nats = 0.0;  ///< by which "elsewhere" explains it better
+  double by_chance = least_chance;
+};
+
+SeenAgain::Again SeenAgain::again(const std::vector<LandmarkId>& ids, const std::vector<core::AssociationReport>& fate,
+                                  const InView& in_view, const Chance& chance) const {
   const std::vector<LandmarkId> matched = landmarks_with(Outcome::matched, fate);
-  vanished.unknown = landmarks_with(Outcome::augmented, fate);
-  for (const LandmarkId id : last_) {
-    if (!existence.contains(id) || existence.record(id).hits < well_known) continue;
+  Again again;
+  for (const LandmarkId id : ids) {
+    const bool is_in_view = in_both({id}, in_view.surely) + in_both({id}, in_view.perhaps) > 0;
     if (in_both({id}, matched) > 0) {
-      ++vanished.seen;
-    } else if (in_both({id}, expected) > 0) {
-      vanished.missing.push_back(id);
+      again.seen.push_back(id);
+    } else if (is_in_view) {
+      again.missing.push_back(id);
     }
   }
+  const bool is_in_question = suspicion_ || is_nearly_all(again.missing.size(), again.seen.size());
+  if (is_in_question && !again.seen.empty()) {
+    std::vector<LandmarkId> both = again.missing;
+    both.insert(both.end(), again.seen.begin(), again.seen.end());
+    again.by_chance = std::clamp(chance(both), least_chance, most_share);
+  }
+  for (const bool is_seen : {false, true}) {
+    const std::vector<LandmarkId>& those = is_seen ? again.seen : again.missing;
+    const auto surely = static_cast<double>(in_both(those, in_view.surely));
+    const double perhaps = static_cast<double>(those.size()) - surely;
+    again.nats += surely * surely_.nats(is_seen, again.by_chance) + perhaps * perhaps_.nats(is_seen, again.by_chance);
+  }
+  return again;
+}
+
+Vanished SeenAgain::weigh(const std::vector<core::AssociationReport>& fate, const InView& in_view,
+                          const association::LandmarkLife& existence, double extraneous_per_scan,
+                          const Chance& chance) const {
+  Again again = this->again(last_, fate, in_view, chance);
+  Vanished vanished;
+  vanished.missing = std::move(again.missing);
+  vanished.seen = static_cast<int>(again.seen.size());
+  vanished.unknown = landmarks_with(Outcome::augmented, fate);
   const double new_per_scan = existence.born_per_scan(extraneous_per_scan);
   const double known_per_scan = std::max(existence.seen_per_scan(), new_per_scan);
-  const auto missing = static_cast<double>(vanished.missing.size());
   const auto unknown = static_cast<double>(vanished.unknown.size());
-  vanished.nats = -missing * std::log(1.0 - share()) + vanished.seen * std::log(by_chance / share()) +
-                  unknown * std::log(known_per_scan / new_per_scan) + new_per_scan - known_per_scan;
+  vanished.nats = again.nats + unknown * std::log(known_per_scan / new_per_scan) + new_per_scan - known_per_scan;
   return vanished;
 }
 
-void SeenAgain::count(const std::vector<core::AssociationReport>& fate, const std::vector<LandmarkId>& expected) {
+void SeenAgain::count(const std::vector<core::AssociationReport>& fate, const InView& in_view) {
   const std::vector<LandmarkId> matched = landmarks_with(Outcome::matched, fate);
-  again_ *= keep;
-  expected_ *= keep;
+  surely_.forget_slowly();
+  perhaps_.forget_slowly();
   for (const LandmarkId id : last_) {
     const bool is_seen = in_both({id}, matched) > 0;
-    again_ += is_seen ? 1.0 : 0.0;
-    expected_ += is_seen || in_both({id}, expected) > 0 ? 1.0 : 0.0;
+    if (in_both({id}, in_view.surely) > 0) surely_.count(is_seen);
+    if (in_both({id}, in_view.perhaps) > 0) perhaps_.count(is_seen);
   }
 }
 
-/// If one of the landmarks is back, the vehicle is where odometry puts it.
-void SeenAgain::judge(std::int64_t step, const std::vector<core::AssociationReport>& fate,
-                      const std::vector<LandmarkId>& expected) {
-  const std::vector<LandmarkId> matched = landmarks_with(Outcome::matched, fate);
-  const bool is_back = in_both(suspicion_->missing, matched) > 0;
-  const bool is_away =
-      in_both(suspicion_->missing, expected) > 0 && in_both(suspicion_->unknown, matched) >= least_lasting;
-  if (is_away && !is_back) {
+std::vector<LandmarkId> SeenAgain::watched() const {
+  std::vector<LandmarkId> ids = last_;
+  if (!suspicion_) return ids;
+  ids.insert(ids.end(), suspicion_->missing.begin(), suspicion_->missing.end());
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+/// What hid the landmarks may still hide any share of them, if the vehicle is where odometry puts it; elsewhere, chance brings them back.
+void SeenAgain::judge(std::int64_t step, const std::vector<core::AssociationReport>& fate, const InView& in_view,
+                      const Chance& chance) {
+  const Again since = again(suspicion_->missing, fate, in_view, chance);
+  const std::size_t of = since.missing.size() + since.seen.size();
+  const double nats = nats_of_return(since.seen.size(), of, since.by_chance);
+  const bool is_there = in_both(suspicion_->unknown, landmarks_with(Outcome::matched, fate)) >= least_lasting;
+  if (is_there && of > 0 && nats > 0.0) {
     is_confirmed_ = true;
-  } else if (is_back || step - suspicion_->step >= decided_after) {
+  } else if (nats < 0.0 || step - suspicion_->step >= decided_after) {
     suspicion_.reset();
   }
 }
 
-void SeenAgain::see(std::int64_t step, const std::vector<core::AssociationReport>& fate,
-                    const std::vector<LandmarkId>& expected, const association::LandmarkLife& existence,
-                    double extraneous_per_scan, int slips) {
+void SeenAgain::see(std::int64_t step, const std::vector<core::AssociationReport>& fate, const InView& in_view,
+                    const association::LandmarkLife& existence, double extraneous_per_scan, int slips,
+                    const Chance& chance) {
   if (std::exchange(is_confirmed_, false)) suspicion_.reset();  // nothing came of it: too late to go back
+  keep_well_known(existence, last_);
   if (suspicion_) {
-    judge(step, fate, expected);
+    judge(step, fate, in_view, chance);
   } else {
     const double needed = std::log((static_cast<double>(step) + scans_a_slip) / (static_cast<double>(slips) + 1.0));
-    Vanished vanished = weigh(fate, expected, existence, extraneous_per_scan);
+    Vanished vanished = weigh(fate, in_view, existence, extraneous_per_scan, chance);
     vanished.step = step;
-    const std::size_t missing = vanished.missing.size();
-    const bool is_nearly_all = missing >= least_missing && missing >= 3 * static_cast<std::size_t>(vanished.seen);
-    if (is_nearly_all && vanished.unknown.size() >= least_unknown && vanished.nats > needed)
+    const auto seen = static_cast<std::size_t>(vanished.seen);
+    if (is_nearly_all(vanished.missing.size(), seen) && vanished.unknown.size() >= least_unknown &&
+        vanished.nats > needed)
       suspicion_ = std::move(vanished);
   }
-  count(fate, expected);
-  last_ = landmarks_with(Outcome::matched, fate);
-  for (const LandmarkId id : landmarks_with(Outcome::augmented, fate)) last_.push_back(id);
+  count(fate, in_view);
+  last_ = seen_by(fate);
 }
 
 void SeenAgain::start_from(const std::vector<core::AssociationReport>& fate) {
   suspicion_.reset();
   is_confirmed_ = false;
-  last_ = landmarks_with(Outcome::matched, fate);
-  for (const LandmarkId id : landmarks_with(Outcome::augmented, fate)) last_.push_back(id);
+  last_ = seen_by(fate);
 }
 
 }  // namespace helixnav::supervisor

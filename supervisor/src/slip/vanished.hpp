@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "helixnav/association/landmark_life.hpp"
 #include "helixnav/core/step_report.hpp"
+#include "slip/should_be_seen.hpp"
 
 namespace helixnav::supervisor {
 
@@ -22,15 +24,36 @@ struct Vanished {
   double nats = 0.0;
 };
 
+/// How many of the landmarks that one scan saw are seen again by the next, lately on this drive.
+class ShareSeen {
+ public:
+  explicit ShareSeen(double assumed) : assumed_(assumed) {}
+
+  void forget_slowly();
+  void count(bool is_seen);
+  double share() const;
+  /// ln P(seen or not | the vehicle is elsewhere) / P(the same | it is where odometry puts it).
+  double nats(bool is_seen, double by_chance) const;
+
+ private:
+  static constexpr double assumed_looks = 20.0;  ///< before anything is known, as if seen in so many looks
+  double assumed_;
+  double seen_ = 0.0;
+  double looks_ = 0.0;
+};
+
 /// Whether all that was in view vanishes from one scan to the next, as after a slip, and stays away. A value that rolls back with the
 /// belief: O(landmarks in view) bytes. Test: supervisor/slip/vanished_test.cpp.
 class SeenAgain {
  public:
-  /// A scan that was taken at this step, with its new landmarks begun; `expected`: mapped landmarks that it should have seen, those
-  /// that it did see may be among them. `slips`: known of the drive so far.
-  void see(std::int64_t step, const std::vector<core::AssociationReport>& fate,
-           const std::vector<core::LandmarkId>& expected, const association::LandmarkLife& existence,
-           double extraneous_per_scan, int slips);
+  /// Landmarks that the next scan is asked about.
+  std::vector<core::LandmarkId> watched() const;
+
+  /// A scan that was taken at this step, with its new landmarks begun; `in_view`: of those watched. `chance`: probability that
+  /// some of them are matched by chance, asked only if that matters. `slips`: known of the drive so far.
+  using Chance = std::function<double(const std::vector<core::LandmarkId>&)>;
+  void see(std::int64_t step, const std::vector<core::AssociationReport>& fate, const InView& in_view,
+           const association::LandmarkLife& existence, double extraneous_per_scan, int slips, const Chance& chance);
 
   /// A scan for which the vehicle had slipped, or in a search: what was seen before says nothing about it.
   void start_from(const std::vector<core::AssociationReport>& fate);
@@ -42,16 +65,18 @@ class SeenAgain {
   const Vanished* lost() const { return is_confirmed_ ? &*suspicion_ : nullptr; }
 
  private:
-  double share() const;
-  Vanished weigh(const std::vector<core::AssociationReport>& fate, const std::vector<core::LandmarkId>& expected,
-                 const association::LandmarkLife& existence, double extraneous_per_scan) const;
-  void count(const std::vector<core::AssociationReport>& fate, const std::vector<core::LandmarkId>& expected);
-  void judge(std::int64_t step, const std::vector<core::AssociationReport>& fate,
-             const std::vector<core::LandmarkId>& expected);
+  struct Again;
+  Again again(const std::vector<core::LandmarkId>& ids, const std::vector<core::AssociationReport>& fate,
+              const InView& in_view, const Chance& chance) const;
+  Vanished weigh(const std::vector<core::AssociationReport>& fate, const InView& in_view,
+                 const association::LandmarkLife& existence, double extraneous_per_scan, const Chance& chance) const;
+  void count(const std::vector<core::AssociationReport>& fate, const InView& in_view);
+  void judge(std::int64_t step, const std::vector<core::AssociationReport>& fate, const InView& in_view,
+             const Chance& chance);
 
   std::vector<core::LandmarkId> last_;  ///< matched or begun by the last scan
-  double again_ = 0.0;
-  double expected_ = 0.0;
+  ShareSeen surely_{0.7};
+  ShareSeen perhaps_{0.5};
   std::optional<Vanished> suspicion_;
   bool is_confirmed_ = false;
 };

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Towns in which the vehicle slips, and orchards in which it does not, judged by the truth.
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <random>
 #include <variant>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -119,6 +123,75 @@ TEST(SlipDrive, ThatHasARivalOpensASearchAndTheCovariance) {
   const core::PoseGaussian pose = navigator.pose();
   EXPECT_NEAR(pose.mean.x_m, vehicle_x_m - 1.5, 0.3) << "or it shows nothing";
   EXPECT_GT(std::sqrt(pose.covariance(0, 0)), 0.75);
+}
+
+/// Stems of a forest in a strip of 400 by 60 m, one per 25 m².
+std::vector<Eigen::Vector2d> stems_of_forest() {
+  std::mt19937 engine(1);
+  const auto draw_m = [&engine](double from_m, double to_m) {
+    return from_m + (to_m - from_m) * static_cast<double>(engine()) / 4294967296.0;
+  };
+  std::vector<Eigen::Vector2d> stems_m(960);
+  for (Eigen::Vector2d& stem_m : stems_m) {
+    stem_m.x() = draw_m(-20.0, 380.0);
+    stem_m.y() = draw_m(-30.0, 30.0);
+  }
+  return stems_m;
+}
+
+core::Scan scan_of_forest(const std::vector<Eigen::Vector2d>& stems_m, double vehicle_x_m, int scan,
+                          double reliable_m) {
+  core::Scan seen;
+  seen.t_ns = 500'000'000LL * scan;
+  seen.field_of_view.max_range_m = reliable_m;
+  seen.field_of_view.reach_m = 12.0;
+  for (const Eigen::Vector2d& stem_m : stems_m) {
+    const Eigen::Vector2d at_m = stem_m - Eigen::Vector2d(vehicle_x_m, 0.0);
+    if (at_m.norm() > 12.0) continue;
+    core::Observation observation;
+    observation.z = Eigen::Vector2d(at_m.norm(), std::atan2(at_m.y(), at_m.x()));
+    observation.R = Eigen::Vector2d(0.05, 0.01).cwiseAbs2().asDiagonal();
+    seen.observations.push_back(observation);
+  }
+  return seen;
+}
+
+/// Carried from 20 to 320 m between two scans, without a pause: how often it is found lost. `hidden_m`: a stem that the first scan
+/// there does not see.
+int times_lost_when_carried(std::vector<Eigen::Vector2d> stems_m, double reliable_m,
+                            const std::optional<Eigen::Vector2d>& hidden_m = {}) {
+  Navigator navigator({}, {});
+  double vehicle_x_m = 0.0;
+  int lost = 0;
+  for (int scan = 0; scan < 50; ++scan) {
+    core::Odometry motion = core::no_motion(500'000'000LL * scan);
+    motion.T_before_after = core::Pose2(0.5, 0.0, 0.0);
+    motion.covariance = Eigen::Vector3d(0.02, 0.01, 0.005).cwiseAbs2().asDiagonal();
+    if (scan > 0) navigator.move(motion);
+    if (scan > 0) vehicle_x_m += 0.5;
+    if (scan == 40) vehicle_x_m += 300.0;
+    if (scan == 41 && hidden_m) stems_m.push_back(*hidden_m);
+    for (const core::Decision& decision :
+         navigator.observe(scan_of_forest(stems_m, vehicle_x_m, scan, reliable_m)).decisions)
+      lost += std::holds_alternative<core::LostBySlipDecision>(decision);
+  }
+  return lost;
+}
+
+/// Hardly anything stands within the range that is seen reliably, but a dozen stems beyond it vanish.
+TEST(SlipDrive, OfAVehicleCarriedInAForestIsNoticedByWhatIsFarOff) {
+  EXPECT_EQ(times_lost_when_carried(stems_of_forest(), 2.5), 1);
+}
+
+/// Where it is put down, one stem stands where one of a dozen was.
+TEST(SlipDrive, OfAVehicleCarriedInAForestIsNoticedDespiteAChanceMatch) {
+  const std::vector<Eigen::Vector2d> stems_m = stems_of_forest();
+  const Eigen::Vector2d ahead_m(22.0, 0.0);
+  const auto nearest = std::min_element(stems_m.begin(), stems_m.end(), [&](const auto& a, const auto& b) {
+    return (a - ahead_m).squaredNorm() < (b - ahead_m).squaredNorm();
+  });
+  const Eigen::Vector2d alike_m = *nearest + Eigen::Vector2d(300.0, 0.0);
+  EXPECT_EQ(times_lost_when_carried(stems_m, 12.0, alike_m), 1);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ constexpr double extraneous = 0.5;
 struct WatchedDrive {
   /// One scan: what it matches, what it begins, and what it should have seen.
   void scan(const std::vector<LandmarkId>& matched, const std::vector<LandmarkId>& begun,
-            const std::vector<LandmarkId>& expected) {
+            const std::vector<LandmarkId>& expected, const std::vector<LandmarkId>& far_off = {}) {
     std::vector<core::AssociationReport> fate;
     const auto add = [&](LandmarkId id, Outcome outcome) {
       core::AssociationReport one;
@@ -28,7 +28,8 @@ struct WatchedDrive {
     };
     for (const LandmarkId id : matched) add(id, Outcome::matched);
     for (const LandmarkId id : begun) add(id, Outcome::augmented);
-    watched.see(step++, fate, expected, life, extraneous, 0);
+    watched.see(step++, fate, {expected, far_off}, life, extraneous, 0,
+                [this](const std::vector<LandmarkId>&) { return by_chance; });
     life.observe({static_cast<double>(step), 0.0}, matched, begun, {});
   }
 
@@ -40,6 +41,7 @@ struct WatchedDrive {
   SeenAgain watched;
   association::LandmarkLife life;
   std::int64_t step = 0;
+  double by_chance = 0.0;  ///< that a landmark is matched in another place
 };
 
 const std::vector<LandmarkId> known = {0, 1, 2, 3, 4, 5};
@@ -59,13 +61,47 @@ TEST(SeenAgain, BelievesASlipOnceWhatVanishedStaysAwayAndWhatCameIsThere) {
   EXPECT_EQ(drive.watched.lost()->unknown, unknown);
 }
 
-TEST(SeenAgain, IsNoLongerSuspiciousOnceOneIsBack) {
+TEST(SeenAgain, IsNoLongerSuspiciousOnceMoreAreBackThanByChance) {
   WatchedDrive drive;
   drive.pass_quietly(known, 50);
   drive.scan({}, unknown, known);
-  drive.scan({2, 10, 11, 12}, {}, known);
+  drive.scan({1, 2, 3, 10, 11, 12}, {}, known);
   EXPECT_FALSE(drive.watched.is_suspicious());
   EXPECT_EQ(drive.watched.lost(), nullptr);
+}
+
+/// In a forest one stem stands where another should be.
+TEST(SeenAgain, IsNotReassuredByOneMatchAmongMany) {
+  WatchedDrive drive;
+  drive.pass_quietly(known, 50);
+  drive.scan({}, unknown, known);
+  drive.scan({2, 10, 11, 12, 13}, {}, known);
+  EXPECT_NE(drive.watched.lost(), nullptr);
+}
+
+/// Where a gate holds something nearly anywhere, a match says nothing, and the landmarks that stay away decide.
+TEST(SeenAgain, IsNotReassuredByMatchesThatChanceExplains) {
+  for (const bool is_crowded : {false, true}) {
+    WatchedDrive drive;
+    drive.pass_quietly(known, 50);
+    drive.scan({}, unknown, known);
+    drive.by_chance = is_crowded ? 0.5 : 0.01;
+    drive.scan({2, 3, 10, 11, 12, 13}, {}, {2, 3, 4, 5});
+    EXPECT_EQ(drive.watched.lost() != nullptr, is_crowded);
+  }
+}
+
+/// Most of what a scan saw is farther off than landmarks are seen reliably.
+TEST(SeenAgain, MissesWhatIsSeenLessReliablyToo) {
+  WatchedDrive drive;
+  const std::vector<LandmarkId> near_by = {0}, far_off = {1, 2, 3, 4, 5};
+  drive.scan({}, known, near_by, far_off);
+  for (int k = 1; k < 50; ++k) drive.scan(known, {}, near_by, far_off);
+  drive.scan({}, unknown, near_by, far_off);
+  EXPECT_TRUE(drive.watched.is_suspicious());
+  drive.scan(unknown, {}, near_by, far_off);
+  ASSERT_NE(drive.watched.lost(), nullptr);
+  EXPECT_EQ(drive.watched.lost()->missing, known);
 }
 
 TEST(SeenAgain, DoesNotSuspectWhereSomeAreSeenAgain) {
