@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "helixnav/core/errors.hpp"
+#include "turning.hpp"
 
 namespace helixnav::team {
 
@@ -73,10 +74,7 @@ JointFilter::Judged JointFilter::update(std::size_t robot, const Point& point, c
   const Eigen::MatrixXd W = llt.matrixL().solve(PHt.transpose()).transpose();
   const Eigen::VectorXd step = PHt * llt.solve(nu);
   covariance_.noalias() -= W * W.transpose();
-  for (std::size_t r = 0; r < poses_.size(); ++r) {
-    poses_[r] = core::Pose2(poses_[r].vector() + step.segment<3>(static_cast<Eigen::Index>(3 * r)));
-  }
-  for (std::size_t i = 0; i < points_m_.size(); ++i) points_m_[i] += step.segment<2>(column_of(i));
+  add_step(robot, step, {poses_, points_m_, covariance_});
   return judged;
 }
 

@@ -14,7 +14,8 @@
 namespace helixnav::team {
 
 /// An EKF over the poses of several robots and the landmarks of their map, all correlated: what is known between two
-/// solutions of the graph. Columns of the covariance: (x, y, heading) of each robot, then (x, y) of each landmark. Dense:
+/// solutions of the graph. A robot that has lost its heading does not find it again in what it has begun since
+/// (turning.hpp). Columns of the covariance: (x, y, heading) of each robot, then (x, y) of each landmark. Dense:
 /// an observation costs O(N²) for N columns. Robots are counted from 0.
 /// Test: team/joint_filter_test.cpp (equal to the information form of the same linear problem).
 class JointFilter {
