@@ -142,6 +142,8 @@ std::pair<std::vector<LandmarkId>, std::vector<LandmarkId>> sides_of(const SameP
 NamesFit fit_names(std::size_t into, std::size_t from, const SamePairs& pairs, const JoinOptions& options,
                    const State& state) {
   constexpr int kept_for_one_left_out = 3;
+  constexpr double far_off = 100.0;
+  bool is_far_off = false;
   NamesFit result;
   result.kept = pairs;
   int kept = 0, left_out = 0;
@@ -154,7 +156,9 @@ NamesFit fit_names(std::size_t into, std::size_t from, const SamePairs& pairs, c
         result.left_out.empty() ? rigid_fit(a, b, std::vector<double>(ours.size(), 1.0)) : robust_fit(a, b);
     const Fit fit = fit_of(a, b, begin);
     result.T_into_from = fit.T;
-    result.agree = fit.chi2 <= core::chi2_quantile(options.probability, 2 * static_cast<int>(ours.size()) - 3);
+    const double limit = core::chi2_quantile(options.probability, 2 * static_cast<int>(ours.size()) - 3);
+    result.agree = fit.chi2 <= limit;
+    if (result.left_out.empty()) is_far_off = fit.chi2 > far_off * limit;
     if (result.agree || !(fit.chi2 >= 0.0)) break;
     const auto worst = result.kept.begin() + (std::max_element(fit.saved.begin(), fit.saved.end()) - fit.saved.begin());
     const int weight = weight_of(*worst, options, state);
@@ -164,6 +168,7 @@ NamesFit fit_names(std::size_t into, std::size_t from, const SamePairs& pairs, c
     result.left_out.push_back(*worst);
     result.kept.erase(worst);
   }
+  result.hopeless = is_far_off && !result.agree;
   return result;
 }
 

@@ -14,7 +14,8 @@ namespace helixnav::team {
 using SamePairs = std::vector<std::pair<core::LandmarkId, core::LandmarkId>>;
 
 struct NamesFit {
-  bool agree = false;  ///< χ² of those kept is within JoinOptions::probability
+  bool agree = false;     ///< χ² of those kept is within JoinOptions::probability
+  bool hopeless = false;  ///< they do not agree, and χ² of all is beyond what any inaccuracy of a linear model explains
   core::PoseGaussian T_into_from;
   SamePairs kept, left_out;
 };

@@ -135,6 +135,9 @@ void forget_misread(const Candidate& candidate, State& state) {
   }
 }
 
+/// Graphs that belong together are one in fewer than ten iterations (MRCLAM 6: at most 8).
+constexpr int most_iterations = 30;
+
 bool join_by(const Candidate& candidate, core::Nanoseconds t_ns, const TeamOptions& options, State& state) {
   State trial = state;
   const Component& into = state.components[candidate.into];
@@ -152,13 +155,13 @@ bool join_by(const Candidate& candidate, core::Nanoseconds t_ns, const TeamOptio
   for (const std::size_t row : candidate.sightings) trial.sighting_rows[row].use = Use::used;
   join.sightings = static_cast<int>(candidate.sightings.size());
   try {
-    if (!solve(candidate.into, trial)) return false;
+    if (!solve(candidate.into, trial, most_iterations)) return false;
     if (!passes(apart_chi2, 2 * (join.merged + join.sightings), trial, options, join)) return false;
     if (join.by == TeamJoin::By::names && !is_placed(join, trial, options.join)) return false;
     const Explained others = use_sightings(candidate.into, options.gate_probability, trial);
     if (others.refused > others.used) return false;
     forget_misread(candidate, trial);  // not earlier: the cost of their sightings is included in that of both apart
-    if ((others.used > 0 || join.left_out > 0) && !solve(candidate.into, trial)) return false;
+    if ((others.used > 0 || join.left_out > 0) && !solve(candidate.into, trial, most_iterations)) return false;
   } catch (const core::NumericalError&) {
     return false;
   }
@@ -175,10 +178,12 @@ bool join_by(const Candidate& candidate, core::Nanoseconds t_ns, const TeamOptio
 
 bool join_components(Candidate candidate, core::Nanoseconds t_ns, const TeamOptions& options, State& state) {
   if (options.join.by_names) add_common_names(candidate, state);
-  if (join_by(candidate, t_ns, options, state)) return true;
   constexpr std::size_t enough = 4;
-  if (!options.join.by_names || candidate.same.size() < enough) return false;
-  NamesFit fit = fit_names(candidate.into, candidate.from, candidate.same, options.join, state);
+  const bool have_names = options.join.by_names && candidate.same.size() >= enough;
+  NamesFit fit;
+  if (have_names) fit = fit_names(candidate.into, candidate.from, candidate.same, options.join, state);
+  if (fit.hopeless) return false;  // least squares over both graphs would look for a long time, and say the same
+  if (join_by(candidate, t_ns, options, state)) return true;
   if (!fit.agree || fit.left_out.empty()) return false;
   candidate.same = std::move(fit.kept);
   candidate.left_out.insert(candidate.left_out.end(), fit.left_out.begin(), fit.left_out.end());

@@ -94,8 +94,9 @@ class ComponentGraph {
   std::vector<int> first_pose_;
 };
 
-smoothing::Options from_a_good_start() {
+smoothing::Options from_a_good_start(int most_iterations) {
   smoothing::Options options;
+  options.max_iterations = most_iterations;
   options.first_damping = 1e-8;
   options.ordering = smoothing::Ordering::amd;
   options.tolerance_chi2 = 1e-4;
@@ -130,9 +131,9 @@ SeenPosition seen_position(const core::Pose2& T_robot_sensor, const core::Observ
 
 namespace {
 
-bool minimise(Component& solved, State& state) {
+bool minimise(Component& solved, State& state, int most_iterations) {
   ComponentGraph graph(solved, state);
-  const smoothing::Minimum minimum(graph.problem, from_a_good_start());
+  const smoothing::Minimum minimum(graph.problem, from_a_good_start(most_iterations));
   if (minimum.report().reason != smoothing::Reason::converged) return false;
   solved.filter = filter_at(minimum, graph, solved);
   solved.chi2 = minimum.report().chi2.total();
@@ -148,11 +149,11 @@ bool minimise(Component& solved, State& state) {
 
 }  // namespace
 
-bool solve(std::size_t component, State& state) {
+bool solve(std::size_t component, State& state, int most_iterations) {
   Component& solved = state.components[component];
   for (const std::size_t r : solved.robots) clone_now(r, state);
   try {
-    return minimise(solved, state);
+    return minimise(solved, state, most_iterations);
   } catch (const core::NumericalError&) {
     return false;  // e.g. an iterate that puts a landmark into the sensor: the filter goes on, and the next solution may succeed
   }

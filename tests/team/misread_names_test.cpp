@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cstdint>
+#include <ctime>
 #include <utility>
 #include <vector>
 
@@ -84,6 +85,34 @@ TEST(MisreadNames, TooManyJoinNothing) {
   Team team = testing::run(small, testing::unknown_starts(small));
   team.solve();
   EXPECT_TRUE(team.joins().empty());
+}
+
+struct TimedRun {
+  double cpu_s = 0.0;
+  std::size_t joins = 0;
+};
+
+TimedRun timed_run(const SmallTeam& small) {
+  const std::clock_t begin = std::clock();
+  const Team team = testing::run(small, testing::unknown_starts(small));
+  return {static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, team.joins().size()};
+}
+
+/// Nobody's names agree, while the robots see each other and so have a reason to ask again at each solution.
+TEST(MisreadNames, ThatAllContradictTakeNoLongTimeToRefuse) {
+  SmallTeamOptions options;
+  options.steps = 120;
+  const SmallTeam right = testing::small_team(options);
+  SmallTeam shifted = right;
+  for (Message& message : shifted.messages) {
+    if (message.robot != 1) continue;
+    for (std::int64_t& name : message.names) name = (name + 1) % 12;
+  }
+  const TimedRun joined = timed_run(right);
+  const TimedRun apart = timed_run(shifted);
+  EXPECT_EQ(joined.joins, 1u);
+  EXPECT_EQ(apart.joins, 0u);
+  EXPECT_LT(apart.cpu_s, 5.0 * joined.cpu_s);
 }
 
 }  // namespace
