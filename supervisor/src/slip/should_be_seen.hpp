@@ -17,12 +17,13 @@ struct InView {
 };
 
 /// Those of `ids` that are in view, without those next to an unused observation, which may have been theirs. O(|ids|).
+/// Test: supervisor/slip/should_be_seen_test.cpp.
 InView should_be_seen(const cekf::CompressedEkf& filter, const core::Scan& scan, double margin_m,
                       const std::vector<core::LandmarkId>& ids, const std::vector<core::AssociationReport>& fate);
 
 /// Probability that one of these landmarks is matched by chance if the scan is of another place: that one of as many
 /// observations, anywhere in view, falls into its gate (mean over the landmarks). 0 without an observation or a landmark.
-/// O(|ids| · observations).
+/// O(|ids| · observations), and the joint estimate of the landmarks. Test: supervisor/slip/should_be_seen_test.cpp.
 double chance_of_match(const cekf::CompressedEkf& filter, const core::Scan& scan,
                        const std::vector<core::LandmarkId>& ids, double gate_probability);
 
