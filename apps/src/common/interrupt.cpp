@@ -16,23 +16,20 @@ volatile std::sig_atomic_t noticed = 0;
 volatile std::sig_atomic_t has_timer = 0;
 timer_t timer;
 
-constexpr long patience_ns = 700'000'000;
+itimerspec once{};  // until the end of patience
 
 /// Only what POSIX allows in a handler: of the timer calls, timer_settime.
 void on_signal(int signal) {
   interrupt_count = interrupt_count + 1;
   std::signal(signal, SIG_DFL);
-  itimerspec once{};
-  once.it_value.tv_nsec = patience_ns;
   if (has_timer != 0) timer_settime(timer, 0, &once, nullptr);
 }
 
-/// A step, a solution or an evaluation in progress may take minutes. A run folder is complete up to its last step at any
-/// time.
+/// A step, a solution or an evaluation in progress may take minutes. A run folder that is written step by step is complete up to
+/// its last step at any time.
 void on_end_of_patience(int) {
   if (noticed != 0) return;
-  constexpr char words[] =
-      "helixnav: interrupted in the middle of a step; what is in the folder is whole up to there\n";
+  constexpr char words[] = "helixnav: interrupted in the middle of a step; what had been written until then is whole\n";
   const ssize_t ignored = ::write(STDERR_FILENO, words, sizeof words - 1);
   static_cast<void>(ignored);
   ::_exit(static_cast<int>(ExitCode::interrupted));
@@ -48,7 +45,9 @@ void make_timer() {
 
 }  // namespace
 
-void catch_interrupts() {
+void catch_interrupts(std::chrono::milliseconds patience) {
+  once.it_value.tv_sec = patience.count() / 1000;
+  once.it_value.tv_nsec = 1'000'000 * (patience.count() % 1000);
   make_timer();
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "team/replay_team.hpp"
 
+#include <chrono>
 #include <cstdio>
 #include <utility>
 
@@ -35,7 +36,8 @@ ExitCode navigate(const TeamTask& task, runs::RunManifest manifest, const RunOpt
   manifest.commit = core::commit();
   manifest.command = command_line_text();
   manifest.config = config;
-  catch_interrupts();
+  catch_interrupts(
+      std::chrono::minutes(5));  // nothing is written before the end, and a replay after a wrong join takes long
   const TeamDrive drive = drive_team(task);
   const bool whole = !interrupted();
   const TeamEvaluation evaluation = evaluate_team(task, drive);
