@@ -23,6 +23,10 @@ constexpr std::size_t least_unknown = 3;
 constexpr std::size_t least_lasting = 2;
 constexpr std::int64_t decided_after = 3;  ///< scans
 
+bool holds(const std::vector<LandmarkId>& ids, LandmarkId id) {
+  return std::find(ids.begin(), ids.end(), id) != ids.end();
+}
+
 std::size_t in_both(const std::vector<LandmarkId>& some, const std::vector<LandmarkId>& others) {
   return static_cast<std::size_t>(std::count_if(some.begin(), some.end(), [&others](LandmarkId id) {
     return std::find(others.begin(), others.end(), id) != others.end();
@@ -85,8 +89,8 @@ SeenAgain::Again SeenAgain::again(const std::vector<LandmarkId>& ids, const std:
   const std::vector<LandmarkId> matched = landmarks_with(Outcome::matched, fate);
   Again again;
   for (const LandmarkId id : ids) {
-    const bool is_in_view = in_both({id}, in_view.surely) + in_both({id}, in_view.perhaps) > 0;
-    if (in_both({id}, matched) > 0) {
+    const bool is_in_view = holds(in_view.surely, id) || holds(in_view.perhaps, id);
+    if (holds(matched, id)) {
       again.seen.push_back(id);
     } else if (is_in_view) {
       again.missing.push_back(id);
@@ -127,9 +131,9 @@ void SeenAgain::count(const std::vector<core::AssociationReport>& fate, const In
   surely_.forget_slowly();
   perhaps_.forget_slowly();
   for (const LandmarkId id : last_) {
-    const bool is_seen = in_both({id}, matched) > 0;
-    if (in_both({id}, in_view.surely) > 0) surely_.count(is_seen);
-    if (in_both({id}, in_view.perhaps) > 0) perhaps_.count(is_seen);
+    const bool is_seen = holds(matched, id);
+    if (holds(in_view.surely, id)) surely_.count(is_seen);
+    if (holds(in_view.perhaps, id)) perhaps_.count(is_seen);
   }
 }
 
