@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/LU>
+
 #include "association/association_report.hpp"
 #include "association/view_area.hpp"
 #include "helixnav/core/chi2.hpp"
