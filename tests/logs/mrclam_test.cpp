@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "helixnav/logs/mrclam.hpp"
 
+#include <cmath>
 #include <string>
 #include <variant>
 
@@ -115,6 +116,38 @@ TEST_F(MrclamFolder, RefusesWhatIsMissingOrContradictsItself) {
   EXPECT_NE(input_error_of([&] { read_mrclam(folder_.path(), {4}); }).find("no robot 4"), std::string::npos);
   std::filesystem::remove(folder_.path() / "measurements.csv");
   EXPECT_NE(error().find("measurements.csv: expected this file"), std::string::npos) << error();
+}
+
+/// Robot 1 drives a circle past four landmarks; bearings may be counted clockwise.
+std::string sightings_on_a_circle(double sign) {
+  const double landmarks_m[4][2] = {{3.0, 1.0}, {1.0, 4.0}, {-2.0, 2.5}, {0.5, -1.5}};
+  std::string rows = "2,3.0,63,6,2.0,0.0\n";
+  for (int k = 0; k < 60; ++k) {
+    const double t_s = 0.25 * k;
+    const core::Pose2 pose(std::sin(0.4 * t_s), 1.0 - std::cos(0.4 * t_s), 0.4 * t_s);
+    for (int i = 0; i < 4; ++i) {
+      const Eigen::Vector2d seen_m =
+          core::transform(core::inverse(pose), Eigen::Vector2d(landmarks_m[i][0], landmarks_m[i][1]));
+      rows += "1," + std::to_string(t_s) + ",63," + std::to_string(6 + i) + ',' + std::to_string(seen_m.norm()) + ',' +
+              std::to_string(sign * std::atan2(seen_m.y(), seen_m.x())) + '\n';
+    }
+  }
+  return rows;
+}
+
+TEST_F(MrclamFolder, SaysThatBearingsAreClockwise) {
+  folder_.write("odometry.csv", "1,0.0,0.4,0.4\n1,16.0,0.0,0.0\n2,0.0,0.5,0.0\n2,16.0,0.0,0.0\n");
+  folder_.write("landmarks_true.csv", "6,0,0,0,0\n7,0,0,0,0\n8,0,0,0,0\n9,0,0,0,0\n");
+  MrclamSettings precise;
+  precise.looks_as_one = 1.0;
+  precise.sigma_range_m = 0.05;
+  precise.sigma_bearing_rad = 0.02;
+  folder_.write("measurements.csv", sightings_on_a_circle(1.0));
+  EXPECT_TRUE(read_mrclam(folder_.path(), {}, precise).remarks.empty());
+  folder_.write("measurements.csv", sightings_on_a_circle(-1.0));
+  const core::TeamRecording team = read_mrclam(folder_.path(), {}, precise);
+  ASSERT_EQ(team.remarks.size(), 1u);
+  EXPECT_NE(team.remarks[0].find("robot 1: while the vehicle turns"), std::string::npos) << team.remarks[0];
 }
 
 TEST_F(MrclamFolder, IsRecognisedAndNothingElseIs) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "helixnav/core/errors.hpp"
+#include "helixnav/logs/handedness.hpp"
 #include "input_files.hpp"
 #include "mrclam/command_motion.hpp"
 #include "mrclam/mrclam_tables.hpp"
@@ -296,6 +297,8 @@ core::TeamRecording read_mrclam(const fs::path& path, const std::vector<int>& ro
   for (const int number : chosen) {
     remark_on_longest_gap(tables.robots.at(number), number, team.remarks);
     team.robots.push_back(member_of(tables, chosen, number, settings, team));
+    if (const std::optional<std::string> doubt = doubt_handedness(team.robots.back().recording))
+      team.remarks.push_back("warning: robot " + std::to_string(number) + ": " + *doubt);
   }
   return team;
 }
