@@ -101,8 +101,7 @@ std::string ancestors_text(const evaluation::Evaluation& evaluation) {
   if (!evaluation.particles || evaluation.particles->least_ancestors > few) return {};
   return warning(
       "the covariance of this run is not to be trusted: all particles descend from %zu of those a loop's length ago, "
-      "so "
-      "that the path before is a single guess, wrong by as much as the odometry was (docs/fastslam.md). The default "
+      "so that the path before is a single guess, wrong by as much as the odometry was (docs/fastslam.md). The default "
       "filter keeps the uncertainty of a loop",
       evaluation.particles->least_ancestors);
 }

@@ -41,7 +41,7 @@ double usual_arm_m(const core::Pose2& T_vehicle_sensor, double reach_m) {
 }
 
 template <class Truck>
-std::vector<VehicleConstant> of_truck(Truck truck, double usual_arm_m) {
+std::vector<VehicleConstant> of_truck(Truck truck, double arm_m) {
   return {
       factor("scale", Eigen::Vector3d::Ones(), place([truck](Settings& s) -> double& { return truck(s).speed_scale; })),
       factor("steering_scale", Eigen::Vector3d::UnitZ(),
@@ -50,8 +50,8 @@ std::vector<VehicleConstant> of_truck(Truck truck, double usual_arm_m) {
             place([truck](Settings& s) -> double& { return truck(s).steering_offset_rad; })),
       angle("heading_deg", "heading", 0, 3.0 * degree_rad, core::pi,
             place([truck](Settings& s) -> double& { return truck(s).T_robot_laser.heading_rad; })),
-      length("x_m", 0, usual_arm_m, place([truck](Settings& s) -> double& { return truck(s).T_robot_laser.x_m; })),
-      length("y_m", 0, usual_arm_m, place([truck](Settings& s) -> double& { return truck(s).T_robot_laser.y_m; })),
+      length("x_m", 0, arm_m, place([truck](Settings& s) -> double& { return truck(s).T_robot_laser.x_m; })),
+      length("y_m", 0, arm_m, place([truck](Settings& s) -> double& { return truck(s).T_robot_laser.y_m; })),
       delay(0.0, 1.0, place([truck](Settings& s) -> double& { return truck(s).laser_delay_s; })),
   };
 }

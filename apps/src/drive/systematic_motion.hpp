@@ -12,8 +12,8 @@ namespace helixnav::apps {
 /// whatever the map; so have its corrections. A scale error of the odometry leaves a part of the distance in them, a misaligned sensor a
 /// part of it across.
 struct SystematicMotion {
-  double too_long =
-      0.0;  ///< odometry's distances, as a share of the corrected ones; negative: too short; 0 by bearings
+  /// Of the odometry's distances, as a share of the corrected ones; negative: too short; 0 if all detections are bearings.
+  double too_long = 0.0;
   double too_long_sigma = 0.0;
   double sideways_rad = 0.0;  ///< to the left of the odometry, as if the sensors looked this much farther to the right
   double sideways_sigma_rad = 0.0;

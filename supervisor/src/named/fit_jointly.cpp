@@ -9,7 +9,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "helixnav/core/angle.hpp"
 #include "helixnav/core/observation.hpp"
 
 namespace helixnav::supervisor {

@@ -218,7 +218,8 @@ std::vector<AssociationReport> NamedNavigator::associate(const NamedScan& named)
   return reports;
 }
 
-/// Whether its landmark is misplaced and begun anew by this sighting's place later; others begin at once, in update.
+/// A range or a bearing alone of a misplaced landmark waits until several place it anew; sightings that place it
+/// themselves begin it at once, in leave_wrong_names_out.
 bool NamedNavigator::waits_anew(const core::Observation& observation, LandmarkId known) const {
   return core::dimension(observation.kind) == 1 && integrity_.is_misplaced(known);
 }
