@@ -13,10 +13,15 @@
 namespace helixnav::team {
 namespace {
 
-/// The scan with the noise of one look, by which things are told apart.
-core::Scan as_one_look(const core::Scan& scan, double looks_as_one) {
+/// The scan with the noise of one look, by which things are told apart, and the field of view that has shown landmarks so far if it
+/// does not say its own.
+core::Scan as_one_look(const core::Scan& scan, double looks_as_one, const State& state) {
   core::Scan look = scan;
   for (core::Observation& observation : look.observations) observation.R /= looks_as_one;
+  const bool is_known = std::isfinite(look.field_of_view.max_range_m);
+  if (!is_known && state.reach_m > 0.0 && state.widest_rad > 0.0) {
+    look.field_of_view = {0.0, state.reach_m, -state.widest_rad, state.widest_rad};
+  }
   return look;
 }
 
@@ -51,7 +56,7 @@ association::Assignment associate_scan(std::size_t robot, const core::Scan& scan
   const supervisor::NavigatorOptions as_navigator;
   const JointFilter& filter = state.components[state.robots[robot].component].filter;
   const std::size_t slot = state.robots[robot].slot;
-  const core::Scan look = as_one_look(scan, options.looks_as_one);
+  const core::Scan look = as_one_look(scan, options.looks_as_one, state);
   const double gate = core::chi2_quantile(as_navigator.gates.new_probability, 2);
   const core::JointGaussian joint = filter.joint(slot, within_reach(slot, look, gate, filter));
   const association::InnovationProblem problem = association::make_innovation_problem(joint, look, as_navigator.gates);

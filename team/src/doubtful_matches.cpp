@@ -31,10 +31,12 @@ std::vector<bool> found_in(const Assignment& assignment, std::size_t landmarks) 
   return found;
 }
 
-/// [observation] its match may equally be of another landmark.
+/// [observation] its match may equally be of another landmark, or of one that nobody has begun.
 std::vector<bool> with_rivals(const core::Scan& scan, const InnovationProblem& problem,
-                              const core::JointGaussian& joint, const Assignment& assignment) {
+                              const core::JointGaussian& joint, const association::Options& options,
+                              const Assignment& assignment) {
   static const double needed_nats = std::log(20.0);
+  const double detection_nats = std::log(options.detection_probability / (1.0 - options.detection_probability));
   const std::vector<bool> found = found_in(assignment, problem.ids.size());
   std::vector<bool> doubtful(assignment.observations.size(), false);
   for (std::size_t i = 0; i < doubtful.size(); ++i) {
@@ -45,11 +47,12 @@ std::vector<bool> with_rivals(const core::Scan& scan, const InnovationProblem& p
     const auto begin = problem.pairs.begin() + problem.observations[i].begin;
     const auto end = problem.pairs.begin() + problem.observations[i].end;
     const auto own = std::find_if(begin, end, [&](const GatedPair& pair) { return pair.candidate == one.candidate; });
-    doubtful[i] = std::any_of(begin, end, [&](const GatedPair& other) {
-      const auto candidate = static_cast<std::size_t>(other.candidate);
-      return !found[candidate] && own->log_likelihood - other.log_likelihood < needed_nats &&
-             (joint.points_m[candidate] - at_m).squaredNorm() > one_m2;
-    });
+    const double new_nats = std::log(options.extraneous.of(problem.observations[i].kind)) - detection_nats;
+    doubtful[i] = own->log_likelihood - new_nats < needed_nats || std::any_of(begin, end, [&](const GatedPair& other) {
+                    const auto candidate = static_cast<std::size_t>(other.candidate);
+                    return !found[candidate] && own->log_likelihood - other.log_likelihood < needed_nats &&
+                           (joint.points_m[candidate] - at_m).squaredNorm() > one_m2;
+                  });
   }
   return doubtful;
 }
@@ -107,14 +110,15 @@ std::vector<int> decided_jointly(const InnovationProblem& problem, const associa
 
 void leave_doubtful(const core::Scan& scan, const core::Scan& look, const core::JointGaussian& joint,
                     const association::Gates& gates, const association::Options& options, Assignment& assignment) {
+  if (look.observations.empty()) return;
   core::JointGaussian wider = joint;
   wider.covariance *= rival_variance_factor;
   const InnovationProblem problem = association::make_innovation_problem(wider, look, gates);
-  const std::vector<bool> doubtful = with_rivals(scan, problem, joint, assignment);
-  if (std::none_of(doubtful.begin(), doubtful.end(), [](bool one) { return one; })) return;
   association::Options how = options;  // anything that is seen may be new
   how.extraneous =
       association::density_in_view(look, static_cast<double>(look.observations.size()), options.extraneous);
+  const std::vector<bool> doubtful = with_rivals(scan, problem, joint, how, assignment);
+  if (std::none_of(doubtful.begin(), doubtful.end(), [](bool one) { return one; })) return;
   const std::vector<int> decided = decided_jointly(problem, how);
   for (std::size_t i = 0; i < doubtful.size(); ++i) {
     ObservationOutcome& one = assignment.observations[i];

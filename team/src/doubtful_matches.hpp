@@ -10,7 +10,8 @@ namespace helixnav::team {
 constexpr double rival_variance_factor = 4.0;  ///< on the covariance within which rivals of a match are looked for
 
 /// Revokes matches that may equally be of another landmark, which the scan has not found elsewhere: odds of 20 are required. Which of
-/// two landmarks it is makes no difference if the noise given is wider than they are apart. Rivals are looked for as if all
+/// two landmarks it is makes no difference if the noise given is wider than they are apart. A landmark that nobody has begun is a rival,
+/// too: as many as the scan shows, anywhere in its field of view. Rivals are looked for as if all
 /// deviations of `joint` were twice as large: after a stretch in which nothing was seen the heading may be off by more than a
 /// linear prediction covers, and the true landmark beyond the gate. A match that has rivals by itself stays where the scan as a
 /// whole has none: the best joint matching contains it, and is a thousand times as likely as any that shares no pair with it.

@@ -67,10 +67,11 @@ LandmarkId new_id(const Birth& birth, State& state) {
   return id;
 }
 
-void note_reach(const core::Observation& observation, State& state) {
+void note_view(const core::Observation& observation, State& state) {
   const core::Pose2 at_sensor;
-  const double range_m = core::locate_landmark(observation, at_sensor, at_sensor).point_world_m.norm();
-  state.reach_m = std::max(state.reach_m, range_m);
+  const Eigen::Vector2d at_m = core::locate_landmark(observation, at_sensor, at_sensor).point_world_m;
+  state.reach_m = std::max(state.reach_m, at_m.norm());
+  state.widest_rad = std::max(state.widest_rad, std::abs(std::atan2(at_m.y(), at_m.x())));
 }
 
 /// Adds one observation to filter and graph: of the landmark given, or of a new one if none is.
@@ -102,7 +103,7 @@ core::AssociationReport observe(std::size_t robot, const core::Scan& scan, int i
   state.landmark_rows.push_back(row_of(robot, place, report.landmark, T_robot_sensor, observation));
   state.landmark_rows.back().scan = state.robots[robot].scans;
   ++state.observations[static_cast<std::size_t>(report.landmark)];
-  note_reach(observation, state);
+  note_view(observation, state);
   state.of(robot).news = true;
   return report;
 }

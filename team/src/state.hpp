@@ -101,6 +101,7 @@ struct State {
   std::vector<Birth> births;                                                    ///< [id]
   std::size_t born_before_solution = 0;                                         ///< landmarks, by id
   double reach_m = 0.0;                                                         ///< farthest landmark seen
+  double widest_rad = 0.0;  ///< largest bearing of a landmark seen, to either side
   std::vector<TeamJoin> joins;
   std::vector<JoinEvidence> evidence;  ///< [join]
   bool news_of_joins = false;          ///< a sighting was refused since it was asked whether a join is wrong

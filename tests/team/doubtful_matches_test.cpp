@@ -58,6 +58,23 @@ TEST(DoubtfulMatches, ARobotThatKnowsItsPlaceHasNone) {
   EXPECT_EQ(count(asked(scan_of({points_m[0]}, {0.05, 0.0, 0.0}), joint), association::Outcome::matched), 1);
 }
 
+TEST(DoubtfulMatches, ALandmarkThatNobodyHasBegunIsARivalOfARobotThatHardlyKnowsItsPlace) {
+  const Points points_m{{8.0, 0.0}};
+  const core::Scan scan = scan_of(points_m, {0.05, 0.0, 0.0});
+  EXPECT_EQ(count(asked(scan, joint_of(points_m, 4.0, 0.6)), association::Outcome::ambiguous), 1);
+  EXPECT_EQ(count(asked(scan, joint_of(points_m, 0.3, 0.05)), association::Outcome::matched), 1);
+}
+
+TEST(DoubtfulMatches, ThreeLandmarksSeenTogetherOutweighTheNew) {
+  const Points points_m{{8.0, 0.0}, {8.0, 3.0}, {5.0, -4.0}};
+  const core::JointGaussian joint = joint_of(points_m, 4.0, 0.6);
+  EXPECT_EQ(count(asked(scan_of(points_m, {0.05, 0.0, 0.0}), joint), association::Outcome::matched), 3);
+}
+
+TEST(DoubtfulMatches, AScanWithoutObservationsHasNone) {
+  EXPECT_TRUE(asked(scan_of({}, {}), joint_of({{8.0, 0.0}}, 2.0, 0.3)).observations.empty());
+}
+
 /// Turned by two and a half standard deviations: the true landmark is beyond the gate of the linear prediction, and another one is
 /// near where it should be.
 TEST(DoubtfulMatches, TheTrueLandmarkMayBeBeyondTheGate) {
