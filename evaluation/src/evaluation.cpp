@@ -169,6 +169,10 @@ std::pair<PositionEvaluation, PoseEvaluation> evaluate_poses(const Steps& steps,
   position.fixes_used = position.errors.size();
   const core::Nanoseconds most_ns = most_apart_ns(steps);
   position.gap_s = core::seconds(most_ns);
+  for (const runs::ReportFrame& frame : frames) {
+    position.steps_moved += frame.is_moved ? 1 : 0;
+    position.moved_m = std::max(position.moved_m, frame.moved_m);
+  }
   for (const core::TruePose& known : poses) position.fixes_in_gaps += is_in_gap(steps, known.t_ns, most_ns) ? 1 : 0;
   position.fixes_outside = poses.size() - position.fixes_used - position.fixes_in_gaps;
   position.error_m = statistics_of_used(position.errors);

@@ -74,6 +74,11 @@ std::string position_text(const evaluation::PositionEvaluation& position) {
                    position.T_truth_map.x_m, position.T_truth_map.y_m, in_degrees(position.T_truth_map.heading_rad),
                    position.against_poses ? "true poses" : "fixes");
   }
+  if (position.steps_moved > 0) {
+    text +=
+        format("  judged elsewhere   %zu scans, reported up to %.3g m from where they are known to have been since\n",
+               position.steps_moved, position.moved_m);
+  }
   if (position.fixes_outside > 0) text += format("  outside the run    %zu\n", position.fixes_outside);
   if (position.fixes_in_gaps > 0) {
     text += format("  in gaps            %zu, left out: between scans farther apart than %.3g s\n",
@@ -159,6 +164,7 @@ Json position_to_json(const evaluation::PositionEvaluation& position) {
   json["aligned"] = position.aligned;
   if (position.against_poses) json["rmse_aligned_m"] = position.rmse_aligned_m;
   if (position.off_earlier_map) json["off_earlier_map"] = true;
+  if (position.steps_moved > 0) json["moved"] = {{"scans", position.steps_moved}, {"most_m", position.moved_m}};
   if (!position.against_poses) json["limit_m"] = position.limit_m;
   if (position.aligned) {
     json["alignment"] = {{"x_m", position.T_truth_map.x_m},

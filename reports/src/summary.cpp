@@ -78,7 +78,7 @@ std::optional<Json> carried_to_json(const runs::Run& run) {
   bool is_placed = true;
   for (const core::StepReport& step : run.steps) {
     for (const core::Decision& decision : step.decisions) {
-      if (std::holds_alternative<core::CarriedDecision>(decision) && !is_wrong_place(decision)) {
+      if (is_carried_off(decision)) {
         ++times;
         is_placed = false;
       }

@@ -30,6 +30,16 @@ bool is_wrong_place(const core::Decision& decision) {
   return carried != nullptr && carried->cause == core::CarriedDecision::Cause::wrong_place;
 }
 
+bool is_wrong_start(const core::Decision& decision) {
+  const auto* carried = std::get_if<core::CarriedDecision>(&decision);
+  return carried != nullptr && carried->cause == core::CarriedDecision::Cause::wrong_start;
+}
+
+bool is_carried_off(const core::Decision& decision) {
+  return std::holds_alternative<core::CarriedDecision>(decision) && !is_wrong_place(decision) &&
+         !is_wrong_start(decision);
+}
+
 std::string wrong_place_text(const runs::Run& run) {
   std::string text;
   const core::StepReport* placed_at = nullptr;

@@ -18,6 +18,9 @@ std::vector<ReportFrame> report_frames(const Run& run) {
     reported[k].is_own = frames[k].reported_part != of_truth;
     reported[k].is_placed = frames[k].part == of_truth;
     reported[k].is_moved = !reported[k].is_own && !frames[k].T_final_reported.vector().isZero(0.0);
+    if (!reported[k].is_moved) continue;
+    const Eigen::Vector2d now_m = run.steps[k].pose.mean.position_m();
+    reported[k].moved_m = (core::transform(core::inverse(frames[k].T_final_reported), now_m) - now_m).norm();
   }
   return reported;
 }

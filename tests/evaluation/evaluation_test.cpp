@@ -225,6 +225,8 @@ TEST(Evaluation, LeavesNeesOutOfWhatWasMovedAfterwards) {
   const Evaluation evaluation = evaluate(run);
   EXPECT_EQ(evaluation.pose->nees_count, 9u);
   EXPECT_EQ(evaluation.pose->nees_left_out, 2u);
+  EXPECT_EQ(evaluation.position->steps_moved, 2u);
+  EXPECT_GT(evaluation.position->moved_m, 1.0);
 }
 
 TEST(Evaluation, CountsNisAgainstItsTwoSidedBand) {

@@ -107,6 +107,35 @@ TEST(Opening, SaysThatAPlaceWasWrongAndNotThatTheVehicleWasCarried) {
   EXPECT_EQ(said.find("carried"), std::string::npos) << said;
 }
 
+TEST(Opening, SaysThatAStartWasWrongAndNotThatTheVehicleWasCarried) {
+  runs::Run run = drifting_run(0.0);
+  core::CarriedDecision wrong;
+  wrong.cause = core::CarriedDecision::Cause::wrong_start;
+  wrong.part = 1;
+  wrong.scans = 5;
+  core::PlacedDecision placed;
+  placed.verdict = core::PlacedDecision::Verdict::accepted;
+  placed.part = 0;
+  placed.driven_m = 12.0;
+  placed.T_map_session = {40.0, 0.0, 0.0};
+  run.steps[10].decisions = {wrong, placed};
+  run.warnings = {"the start given (--start) is wrong"};
+  const auto data = [&run] { return opening_data(run, evaluation::evaluate(run)); };
+  EXPECT_NE(
+      all_of(data()["sentences"])
+          .find("The start given on the earlier map was wrong. It found its place on the earlier map after 12 m."),
+      std::string::npos)
+      << all_of(data()["sentences"]);
+  EXPECT_NE(all_of(data()["sentences"]).find("5 scans were reported at another place at the time, up to 40 m"),
+            std::string::npos)
+      << all_of(data()["sentences"]);
+  EXPECT_EQ(all_of(data()["sentences"]).find("carried"), std::string::npos);
+  EXPECT_NE(all_of(data()["warnings"]).find("(--start) is wrong"), std::string::npos);
+  run.steps[10].decisions = {wrong};
+  EXPECT_NE(all_of(data()["sentences"]).find("was wrong, and the place was not found."), std::string::npos)
+      << all_of(data()["sentences"]);
+}
+
 TEST(Opening, WritesNoPowersOfTen) {
   EXPECT_EQ(short_number(1617.25), "1617");
   EXPECT_EQ(short_number(314.6), "315");

@@ -100,9 +100,15 @@ std::string doubted_start_text(const runs::Run& run) {
 
 }  // namespace
 
-std::vector<std::string> warnings_of(const Drive& job, const runs::Run& run, const evaluation::Evaluation& evaluation) {
+std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Evaluation& evaluation) {
   std::vector<std::string> warnings = reports::warnings_of(run, evaluation);
   if (const std::string text = reports::place_not_found_text(run); !text.empty()) warnings.push_back(text);
+  warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
+  return warnings;
+}
+
+std::vector<std::string> warnings_of_job(const Drive& job, const runs::Run& run) {
+  std::vector<std::string> warnings;
   const bool mature = std::any_of(run.map.begin(), run.map.end(), [](const core::MapLandmark& landmark) {
     return landmark.state == core::LandmarkState::mature;
   });

@@ -100,16 +100,22 @@ std::string movers_sentence(const runs::Run& run) {
 /// How often the vehicle was carried, and whether its place was found again, or that of the session on an earlier map; else empty.
 std::string places_sentence(const runs::Run& run) {
   int carried = 0, found_again = 0, wrong = 0;
+  bool is_start_wrong = false;
   std::string found;
   for (const core::StepReport& step : run.steps) {
     for (const core::Decision& decision : step.decisions) {
       wrong += is_wrong_place(decision);
-      carried += std::holds_alternative<core::CarriedDecision>(decision) && !is_wrong_place(decision);
+      is_start_wrong = is_start_wrong || is_wrong_start(decision);
+      carried += is_carried_off(decision);
       const auto* placed = std::get_if<core::PlacedDecision>(&decision);
       if (placed == nullptr || placed->verdict != core::PlacedDecision::Verdict::accepted) continue;
       found_again += carried > 0;
       if (carried == 0) found = "It found its place on the earlier map after " + length(placed->driven_m) + '.';
     }
+  }
+  if (is_start_wrong) {
+    found = "The start given on the earlier map was wrong" + std::string(found.empty() ? "" : ". ") + found;
+    if (found.back() != '.') found += ", and the place was not found.";
   }
   if (wrong > 0) found += " A place found before was wrong.";
   if (carried == 0) return found;
@@ -134,7 +140,13 @@ std::string error_sentence(const evaluation::Evaluation& evaluation) {
   if (evaluation.final_position && evaluation.final_position->error_m.count > 0) {
     text += "; of the path as corrected since: " + figures_of(evaluation.final_position->error_m);
   }
-  return text + '.';
+  text += '.';
+  const evaluation::PositionEvaluation& position = *evaluation.position;
+  if (position.steps_moved == 0) return text;
+  return text + ' ' + counted(static_cast<double>(position.steps_moved), "scan") +
+         (position.steps_moved == 1 ? " was" : " were") + " reported at another place at the time, up to " +
+         short_number(position.moved_m) + " m from the one found since, and " +
+         (position.steps_moved == 1 ? "is" : "are") + " judged there.";
 }
 
 }  // namespace
@@ -173,6 +185,7 @@ Json opening_data(const runs::Run& run, const evaluation::Evaluation& evaluation
     }
     for (const std::string& warning : warnings_of(run, evaluation)) json["warnings"].push_back(warning);
     for (const std::string& warning : warnings_of_place(run)) json["warnings"].push_back(warning);
+    for (const std::string& warning : run.warnings) json["warnings"].push_back(warning);
   }
   json["sentences"].push_back(error_sentence(evaluation));
   return json;

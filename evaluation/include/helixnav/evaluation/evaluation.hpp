@@ -55,6 +55,8 @@ struct PositionEvaluation {
   std::size_t fixes_outside = 0;   ///< before the first or after the last step: nothing to compare with
   std::size_t fixes_in_gaps = 0;   ///< between steps farther apart than `gap_s`: the path there is a guess
   double gap_s = 0.0;              ///< three times the 90 % quantile of the run's step intervals
+  std::size_t steps_moved = 0;  ///< reported elsewhere at the time, and judged where they are known to have been since
+  double moved_m = 0.0;         ///< the farthest of them
   std::vector<PositionError> errors;
 };
 

@@ -17,6 +17,7 @@ struct ReportFrame {
   bool is_own = false;    ///< not the frame of the run's truth
   bool is_placed = true;  ///< the mean is in the frame of the run's truth
   bool is_moved = false;  ///< reported in the frame of the truth, and moved within it since: at the time it was wrong
+  double moved_m = 0.0;   ///< how far, if so
 };
 
 /// [step] Test: evaluation/evaluation_test.cpp.
