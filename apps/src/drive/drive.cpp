@@ -183,6 +183,7 @@ ExitCode drive(const Drive& job) {
   const bool whole = !interrupted() && driven.broken.empty() && driven.full_mb == 0.0;
   if (whole && job.may_err_systematically()) note_systematic_errors(job.recording, run);
   const ExitCode smoothed = job.smooth && whole ? smooth_drive(job, run) : ExitCode::ok;
+  run.remarks = job.recording.remarks;
   if (whole) run.warnings = warnings_of_job(job, run);
   const evaluation::Evaluation evaluation = reports::finish_run(run, writer);
   std::fputs(reports::evaluation_text(evaluation).c_str(), stdout);

@@ -42,6 +42,36 @@ std::vector<double> intervals_s(const OwnLog& log) {
   return intervals;
 }
 
+/// How far the vehicle moved between the previous row and this one, according to the rows; 0 if that needs its
+/// geometry.
+double length_m(const OwnLog& log, std::size_t row) {
+  const Eigen::Vector3d& value = log.odometry[row].value;
+  if (log.odometry_kind == OdometryKind::increments) return value.head<2>().norm();
+  if (log.odometry_kind == OdometryKind::poses) return (value - log.odometry[row - 1].value).head<2>().norm();
+  if (log.odometry_kind != OdometryKind::velocities) return 0.0;
+  const core::Nanoseconds before_ns = log.odometry[row - 1].t_ns;
+  return log.odometry[row - 1].value.head<2>().norm() * core::seconds(log.odometry[row].t_ns - before_ns);
+}
+
+/// The increment after a gap covers no more than those beside it do, in a much longer time: the rows between are missing,
+/// and the motion in them.
+bool doubt_missing_rows(const OwnLog& log, std::size_t before, double gap_s, Doubts& doubts) {
+  constexpr double much = 0.3;
+  if (log.odometry_kind != OdometryKind::increments || before == 0 || before + 2 >= log.odometry.size()) return false;
+  const auto speed_mps = [&](std::size_t row) {
+    const double duration_s = core::seconds(log.odometry[row].t_ns - log.odometry[row - 1].t_ns);
+    return duration_s > 0.0 ? length_m(log, row) / duration_s : 0.0;
+  };
+  const double beside_mps = std::min(speed_mps(before), speed_mps(before + 2));
+  if (!(speed_mps(before + 1) < much * beside_mps)) return false;
+  doubts.push_back(
+      sentence("odometry: rows are missing from %.9g s on for %.4g s: the vehicle moves %.3g m in that time, and %.3g "
+               "m/s before and "
+               "after. The path breaks there; if the vehicle did drive, the motion is lost (event lost says so)",
+               core::seconds(log.odometry[before].t_ns), gap_s, length_m(log, before + 1), beside_mps));
+  return true;
+}
+
 void doubt_times(const OwnLog& log, Doubts& doubts) {
   std::vector<double> intervals = intervals_s(log);
   if (intervals.empty()) return;
@@ -60,9 +90,11 @@ void doubt_times(const OwnLog& log, Doubts& doubts) {
     if (intervals[i] > intervals[longest]) longest = i;
   }
   if (count == 0) return;
+  if (doubt_missing_rows(log, longest, intervals[longest], doubts)) return;
   const bool held = log.odometry_kind != OdometryKind::increments && log.odometry_kind != OdometryKind::poses;
-  doubts.push_back(sentence("odometry: %zu gaps longer than %.3g s, the longest %.4g s from %.9g s on; %s", count,
-                            long_s, intervals[longest], core::seconds(log.odometry[longest].t_ns),
+  doubts.push_back(sentence("odometry: %zu %s longer than %.3g s, the longest %.4g s from %.9g s on; %s", count,
+                            count == 1 ? "gap" : "gaps", long_s, intervals[longest],
+                            core::seconds(log.odometry[longest].t_ns),
                             held ? "the row before a gap is held through it, as uncertain as its changes so far"
                                  : "motion in it is spread evenly"));
 }
@@ -85,17 +117,6 @@ void doubt_speeds(const core::Recording& recording, Doubts& doubts) {
   if (*std::max_element(speeds_mps.begin(), speeds_mps.end()) == 0.0) {
     doubts.emplace_back("odometry: the vehicle never moves");
   }
-}
-
-/// How far the vehicle moved between the previous row and this one, according to the rows; 0 if that needs its
-/// geometry.
-double length_m(const OwnLog& log, std::size_t row) {
-  const Eigen::Vector3d& value = log.odometry[row].value;
-  if (log.odometry_kind == OdometryKind::increments) return value.head<2>().norm();
-  if (log.odometry_kind == OdometryKind::poses) return (value - log.odometry[row - 1].value).head<2>().norm();
-  if (log.odometry_kind != OdometryKind::velocities) return 0.0;
-  const core::Nanoseconds before_ns = log.odometry[row - 1].t_ns;
-  return log.odometry[row - 1].value.head<2>().norm() * core::seconds(log.odometry[row].t_ns - before_ns);
 }
 
 /// A row that exceeds what the log itself drives: a wrong digit, or a vehicle that was moved elsewhere.

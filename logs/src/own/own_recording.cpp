@@ -117,6 +117,14 @@ void leave_out_untold(const OwnLog& log, std::vector<LabelledScan>& scans, std::
   scans.erase(first, scans.end());
 }
 
+/// Identities may also stand with the true landmarks alone.
+bool names_any(const std::vector<LabelledScan>& scans) {
+  return std::any_of(scans.begin(), scans.end(), [](const LabelledScan& scan) {
+    return std::any_of(scan.labels.begin(), scan.labels.end(),
+                       [](core::Label label) { return label != core::no_label; });
+  });
+}
+
 /// Adds motion and scans of the whole log; that the vehicle was carried, before the first scan after it. Returns when
 /// the first motion begins.
 core::Nanoseconds weave(const OwnLog& log, const Vehicle& vehicle, std::vector<LabelledScan>& scans,
@@ -125,6 +133,7 @@ core::Nanoseconds weave(const OwnLog& log, const Vehicle& vehicle, std::vector<L
   Weaver weaver(vehicle.odometry.T_vehicle_odometry, recording.events);
   auto lost = log.lost_ns.begin();
   std::size_t next = 0;
+  const bool has_labels = log.has_labels && names_any(scans);
   const auto add_next = [&](const Motion* motion) {
     LabelledScan& scan = scans[next++];
     for (; lost != log.lost_ns.end() && *lost < scan.scan.t_ns; ++lost) {
@@ -133,7 +142,7 @@ core::Nanoseconds weave(const OwnLog& log, const Vehicle& vehicle, std::vector<L
     }
     if (motion != nullptr) weaver.move(*motion, scan.scan.t_ns);
     weaver.add(std::move(scan.scan));
-    if (log.has_labels) recording.labels.push_back(std::move(scan.labels));
+    if (has_labels) recording.labels.push_back(std::move(scan.labels));
   };
   const core::Nanoseconds last_ns = scans.back().scan.t_ns;
   core::Nanoseconds first_ns = last_ns;

@@ -185,6 +185,7 @@ Json opening_data(const runs::Run& run, const evaluation::Evaluation& evaluation
     }
     for (const std::string& warning : warnings_of(run, evaluation)) json["warnings"].push_back(warning);
     for (const std::string& warning : warnings_of_place(run)) json["warnings"].push_back(warning);
+    for (const std::string& remark : run.remarks) json["warnings"].push_back("the log: " + remark);
     for (const std::string& warning : run.warnings) json["warnings"].push_back(warning);
   }
   json["sentences"].push_back(error_sentence(evaluation));

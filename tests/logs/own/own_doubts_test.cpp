@@ -38,9 +38,25 @@ TEST(OwnDoubts, TellDegreesTakenForRadians) {
 TEST(OwnDoubts, TellGapsWithTheirLengthAndPlace) {
   const std::string all = remarks("odometry.csv", "t,v,omega\n0,1,0\n0.1,1,0\n0.2,1,0\n5.2,1,0\n5.3,1,0\n");
   EXPECT_TRUE(says(all,
-                   "1 gaps longer than 1 s, the longest 5 s from 0.2 s on; the row before a gap is held through it, as "
+                   "1 gap longer than 1 s, the longest 5 s from 0.2 s on; the row before a gap is held through it, as "
                    "uncertain as its changes so far"))
       << all;
+}
+
+TEST(OwnDoubts, TellMissingRowsOfIncrements) {
+  const auto rows = [](double over_gap_m) {
+    std::string text = "t_s,dx_m,dy_m,dheading_rad\n";
+    for (int i = 1; i <= 20; ++i) text += std::to_string(0.1 * i) + ",0.3,0,0\n";
+    text += "32.1," + std::to_string(over_gap_m) + ",0,0\n";
+    for (int i = 1; i <= 20; ++i) text += std::to_string(32.1 + 0.1 * i) + ",0.3,0,0\n";
+    return text;
+  };
+  const std::string missing = remarks("odometry.csv", rows(0.3));
+  EXPECT_TRUE(
+      says(missing, "rows are missing from 2 s on for 30.1 s: the vehicle moves 0.3 m in that time, and 3 m/s before"))
+      << missing;
+  EXPECT_TRUE(says(remarks("odometry.csv", rows(90.0)),
+                   "1 gap longer than 1 s, the longest 30.1 s from 2 s on; motion in it is spread"));
 }
 
 /// A drive at 3 m/s, a row every 0.1 s; row 20 covers the given distance.

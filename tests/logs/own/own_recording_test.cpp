@@ -208,6 +208,12 @@ TEST(OwnRecording, GivesEachSensorItsMountingViewAndDelay) {
   EXPECT_DOUBLE_EQ(*scans[1].field_of_view.reach(), 40.0);
 }
 
+TEST(OwnRecording, HasNoLabelsIfOnlyTheTrueLandmarksHaveIdentities) {
+  OwnLogFolder folder;
+  folder.write("truth_landmarks.csv", "id,x_m,y_m\nT0,1,2\nT1,3,4\n");
+  EXPECT_TRUE(folder.recording().labels.empty());
+}
+
 TEST(OwnRecording, PutsTruthIntoTheFrameOfTheStart) {
   const OwnLogFolder log;
   log.write("truth_poses.csv", "t,x,y,heading_deg\n0,100,50,90\n2,100,60,90\n");

@@ -65,6 +65,7 @@ struct Run {
   std::vector<std::string> missing;
 
   // Known in memory only; read_run leaves them empty.
+  std::vector<std::string> remarks;   ///< of the log's reader, into the report
   std::vector<std::string> warnings;  ///< of whoever made it, about what the run itself does not show; into the report
   /// Into summary.json, such as chi2 and dof of a smoother. Keys with dots nest: ("closures.pending", 2) becomes
   /// {"closures": {"pending": 2}}.
