@@ -10,6 +10,7 @@
 
 #include "helixnav/association/chi2_table.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/core/in_view.hpp"
 
 namespace helixnav::supervisor {
 namespace {
