@@ -14,9 +14,10 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double prior_errors = 20.0;       // of the belief that the detector is as assumed
-constexpr double most_pose_nis = 16.3;      // χ²₃ of 99.9 %: a slip is not noise
-constexpr double least_weight = 2.0;        // scans in which odometry's share is all that there is
+constexpr double prior_errors = 20.0;   // of the belief that the detector is as assumed
+constexpr double most_pose_nis = 16.3;  // χ²₃ of 99.9 %: a slip is not noise
+constexpr double least_weight = 2.0;    // scans in which odometry's share is all that there is
+constexpr double least_errors = 4.0;    // errors, before more noise is believed: three pairs of a scan may all be wrong
 constexpr double least_independent = 20.0;  // pairs from new sides, before less noise is believed
 constexpr double dead_band = 1.35;
 constexpr double most = 25.0;
@@ -104,9 +105,10 @@ void NoiseScale::add_displacement(const Eigen::Vector3d& w, double share) {
 /// Up from all errors, at once if the quick window is sure of the rise. Down only if independent errors confirm it.
 double NoiseScale::detector_factor() const {
   const double sigmas = most_sigmas(observations_);
-  const double rise = std::log(quick_.scale()) - sure_sigmas * quick_.log_sigma();
+  const bool is_enough = quick_.weight() >= least_errors;
+  const double rise = is_enough ? std::log(quick_.scale()) - sure_sigmas * quick_.log_sigma() : 0.0;
   const double slow = std::log(slow_.scale());
-  const double up = std::max(rise, slow > sigmas * slow_.log_sigma() ? slow : 0.0);
+  const double up = std::max(rise, is_enough && slow > sigmas * slow_.log_sigma() ? slow : 0.0);
   if (up > std::log(dead_band)) return bounded(std::exp(up));
   const double independent = std::log(new_sides_.scale());
   const double sigma = new_sides_.log_sigma();

@@ -24,17 +24,18 @@ std::size_t position_of(std::int64_t step, std::int64_t first, const std::vector
 }  // namespace
 
 void NavigationLoop::note_seen_again(const core::Scan& scan, bool slipped, const core::StepReport& report) {
+  const std::size_t sensor = belief_.seen_again.sensor_of(scan);
   if (slipped || !options_.slip.enabled || !is_monitored() || searching() != nullptr || has_unplaced(scan)) {
-    belief_.seen_again.start_from(report.associations);
+    belief_.seen_again.start_from(sensor, report.associations);
     return;
   }
   const auto chance = [&](const std::vector<core::LandmarkId>& ids) {
     return chance_of_match(belief_.filter, scan, ids, options_.gates.match_probability);
   };
-  belief_.seen_again.see(
-      belief_.step, report.associations,
-      should_be_seen(belief_.filter, scan, options_.view_margin_m, belief_.seen_again.watched(), report.associations),
-      belief_.existence, options_.extraneous_per_scan, belief_.slips.count, chance);
+  belief_.seen_again.see(belief_.step, sensor, report.associations,
+                         should_be_seen(belief_.filter, scan, options_.view_margin_m,
+                                        belief_.seen_again.watched(sensor), report.associations),
+                         belief_.existence, options_.extraneous_per_scan, belief_.slips.count, chance);
 }
 
 /// Before anything was trusted that came after the slip.

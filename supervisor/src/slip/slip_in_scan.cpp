@@ -89,8 +89,8 @@ void match_pairs(const std::vector<SlipPair>& pairs, std::vector<AssociationRepo
 /// Landmarks that may be seen, unless an open question excludes them.
 std::vector<LandmarkId> NavigationLoop::landmarks_near(const core::Scan& scan) const {
   const Eigen::Vector2d sensor_m = core::transform(belief_.filter.pose().mean, scan.T_robot_sensor.position_m());
-  std::vector<LandmarkId> near =
-      belief_.filter.landmarks_within(sensor_m, scan.field_of_view.max_range_m + options_.view_margin_m);
+  const double reach_m = scan.field_of_view.reach().value_or(scan.field_of_view.max_range_m);
+  std::vector<LandmarkId> near = belief_.filter.landmarks_within(sensor_m, reach_m + options_.view_margin_m);
   const std::vector<LandmarkId>& not_asked = excluded();
   near.erase(std::remove_if(near.begin(), near.end(),
                             [&](LandmarkId id) {

@@ -21,7 +21,8 @@ constexpr double scans_a_slip = 400.0;  ///< before anything is known
 constexpr std::size_t least_missing = 2;
 constexpr std::size_t least_unknown = 3;
 constexpr std::size_t least_lasting = 2;
-constexpr std::int64_t decided_after = 3;  ///< scans
+constexpr int decided_after = 3;  ///< scans
+constexpr std::size_t most_sensors = 8;
 
 bool holds(const std::vector<LandmarkId>& ids, LandmarkId id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
@@ -39,6 +40,15 @@ std::vector<LandmarkId> seen_by(const std::vector<core::AssociationReport>& fate
   std::vector<LandmarkId> seen = landmarks_with(Outcome::matched, fate);
   for (const LandmarkId id : landmarks_with(Outcome::augmented, fate)) seen.push_back(id);
   return seen;
+}
+
+/// Of those in view, that the last scan saw.
+void count_seen_again(const std::vector<LandmarkId>& matched, const std::vector<LandmarkId>& in_view,
+                      const std::vector<LandmarkId>& last, ShareSeen& share) {
+  share.forget_slowly();
+  for (const LandmarkId id : last) {
+    if (holds(in_view, id)) share.count(holds(matched, id));
+  }
 }
 
 /// Those seen by a single look may be clutter, which does not come again.
@@ -84,8 +94,22 @@ struct SeenAgain::Again {
   double by_chance = least_chance;
 };
 
-SeenAgain::Again SeenAgain::again(const std::vector<LandmarkId>& ids, const std::vector<core::AssociationReport>& fate,
-                                  const InView& in_view, const Chance& chance) const {
+std::size_t SeenAgain::sensor_of(const core::Scan& scan) {
+  const core::FieldOfView& view = scan.field_of_view;
+  const auto is_it = [&](const BySensor& one) {
+    return one.T_robot_sensor.vector() == scan.T_robot_sensor.vector() && one.min_bearing_rad == view.min_bearing_rad &&
+           one.max_bearing_rad == view.max_bearing_rad;
+  };
+  const auto found = std::find_if(sensors_.begin(), sensors_.end(), is_it);
+  if (found != sensors_.end()) return static_cast<std::size_t>(found - sensors_.begin());
+  if (sensors_.size() == most_sensors) sensors_.pop_back();
+  sensors_.push_back({scan.T_robot_sensor, view.min_bearing_rad, view.max_bearing_rad});
+  return sensors_.size() - 1;
+}
+
+SeenAgain::Again SeenAgain::again(const BySensor& by, const std::vector<LandmarkId>& ids,
+                                  const std::vector<core::AssociationReport>& fate, const InView& in_view,
+                                  const Chance& chance) const {
   const std::vector<LandmarkId> matched = landmarks_with(Outcome::matched, fate);
   Again again;
   for (const LandmarkId id : ids) {
@@ -106,15 +130,16 @@ SeenAgain::Again SeenAgain::again(const std::vector<LandmarkId>& ids, const std:
     const std::vector<LandmarkId>& those = is_seen ? again.seen : again.missing;
     const auto surely = static_cast<double>(in_both(those, in_view.surely));
     const double perhaps = static_cast<double>(those.size()) - surely;
-    again.nats += surely * surely_.nats(is_seen, again.by_chance) + perhaps * perhaps_.nats(is_seen, again.by_chance);
+    again.nats +=
+        surely * by.surely.nats(is_seen, again.by_chance) + perhaps * by.perhaps.nats(is_seen, again.by_chance);
   }
   return again;
 }
 
-Vanished SeenAgain::weigh(const std::vector<core::AssociationReport>& fate, const InView& in_view,
+Vanished SeenAgain::weigh(const BySensor& by, const std::vector<core::AssociationReport>& fate, const InView& in_view,
                           const association::LandmarkLife& existence, double extraneous_per_scan,
                           const Chance& chance) const {
-  Again again = this->again(last_, fate, in_view, chance);
+  Again again = this->again(by, by.last, fate, in_view, chance);
   Vanished vanished;
   vanished.missing = std::move(again.missing);
   vanished.seen = static_cast<int>(again.seen.size());
@@ -126,19 +151,8 @@ Vanished SeenAgain::weigh(const std::vector<core::AssociationReport>& fate, cons
   return vanished;
 }
 
-void SeenAgain::count(const std::vector<core::AssociationReport>& fate, const InView& in_view) {
-  const std::vector<LandmarkId> matched = landmarks_with(Outcome::matched, fate);
-  surely_.forget_slowly();
-  perhaps_.forget_slowly();
-  for (const LandmarkId id : last_) {
-    const bool is_seen = holds(matched, id);
-    if (holds(in_view.surely, id)) surely_.count(is_seen);
-    if (holds(in_view.perhaps, id)) perhaps_.count(is_seen);
-  }
-}
-
-std::vector<LandmarkId> SeenAgain::watched() const {
-  std::vector<LandmarkId> ids = last_;
+std::vector<LandmarkId> SeenAgain::watched(std::size_t sensor) const {
+  std::vector<LandmarkId> ids = sensors_[sensor].last;
   if (!suspicion_) return ids;
   ids.insert(ids.end(), suspicion_->missing.begin(), suspicion_->missing.end());
   std::sort(ids.begin(), ids.end());
@@ -147,43 +161,49 @@ std::vector<LandmarkId> SeenAgain::watched() const {
 }
 
 /// What hid the landmarks may still hide any share of them, if the vehicle is where odometry puts it; elsewhere, chance brings them back.
-void SeenAgain::judge(std::int64_t step, const std::vector<core::AssociationReport>& fate, const InView& in_view,
+void SeenAgain::judge(std::size_t sensor, const std::vector<core::AssociationReport>& fate, const InView& in_view,
                       const Chance& chance) {
-  const Again since = again(suspicion_->missing, fate, in_view, chance);
+  const Again since = again(sensors_[sensor], suspicion_->missing, fate, in_view, chance);
   const std::size_t of = since.missing.size() + since.seen.size();
+  if (of == 0 && sensor != suspicion_->sensor) return;  // it looks elsewhere
+  suspicion_->looks += sensor == suspicion_->sensor ? 1 : 0;
   const double nats = nats_of_return(since.seen.size(), of, since.by_chance);
   const bool is_there = in_both(suspicion_->unknown, landmarks_with(Outcome::matched, fate)) >= least_lasting;
   if (is_there && of > 0 && nats > 0.0) {
     is_confirmed_ = true;
-  } else if (nats < 0.0 || step - suspicion_->step >= decided_after) {
+  } else if (nats < 0.0 || suspicion_->looks >= decided_after) {
     suspicion_.reset();
   }
 }
 
-void SeenAgain::see(std::int64_t step, const std::vector<core::AssociationReport>& fate, const InView& in_view,
-                    const association::LandmarkLife& existence, double extraneous_per_scan, int slips,
-                    const Chance& chance) {
+void SeenAgain::see(std::int64_t step, std::size_t sensor, const std::vector<core::AssociationReport>& fate,
+                    const InView& in_view, const association::LandmarkLife& existence, double extraneous_per_scan,
+                    int slips, const Chance& chance) {
   if (std::exchange(is_confirmed_, false)) suspicion_.reset();  // nothing came of it: too late to go back
-  keep_well_known(existence, last_);
+  BySensor& by = sensors_[sensor];
+  keep_well_known(existence, by.last);
   if (suspicion_) {
-    judge(step, fate, in_view, chance);
+    judge(sensor, fate, in_view, chance);
   } else {
     const double needed = std::log((static_cast<double>(step) + scans_a_slip) / (static_cast<double>(slips) + 1.0));
-    Vanished vanished = weigh(fate, in_view, existence, extraneous_per_scan, chance);
+    Vanished vanished = weigh(by, fate, in_view, existence, extraneous_per_scan, chance);
     vanished.step = step;
+    vanished.sensor = sensor;
     const auto seen = static_cast<std::size_t>(vanished.seen);
     if (is_nearly_all(vanished.missing.size(), seen) && vanished.unknown.size() >= least_unknown &&
         vanished.nats > needed)
       suspicion_ = std::move(vanished);
   }
-  count(fate, in_view);
-  last_ = seen_by(fate);
+  count_seen_again(landmarks_with(Outcome::matched, fate), in_view.surely, by.last, by.surely);
+  count_seen_again(landmarks_with(Outcome::matched, fate), in_view.perhaps, by.last, by.perhaps);
+  by.last = seen_by(fate);
 }
 
-void SeenAgain::start_from(const std::vector<core::AssociationReport>& fate) {
+void SeenAgain::start_from(std::size_t sensor, const std::vector<core::AssociationReport>& fate) {
   suspicion_.reset();
   is_confirmed_ = false;
-  last_ = seen_by(fate);
+  for (BySensor& by : sensors_) by.last.clear();
+  sensors_[sensor].last = seen_by(fate);
 }
 
 }  // namespace helixnav::supervisor

@@ -15,6 +15,8 @@ namespace helixnav::supervisor {
 /// What became of the landmarks that one scan matched, and that the next should have seen.
 struct Vanished {
   std::int64_t step = 0;                  ///< of the scan that did not see them
+  std::size_t sensor = 0;                 ///< whose scan it was
+  int looks = 0;                          ///< of that sensor since
   std::vector<core::LandmarkId> missing;  ///< nothing is where they should be
   std::vector<core::LandmarkId> unknown;  ///< begun by that scan instead
   int seen = 0;                           ///< matched again
@@ -42,21 +44,25 @@ class ShareSeen {
   double looks_ = 0.0;
 };
 
-/// Whether all that was in view vanishes from one scan to the next, as after a slip, and stays away. A value that rolls back with the
-/// belief: O(landmarks in view) bytes. Test: supervisor/slip/vanished_test.cpp.
+/// Whether all that was in view of a sensor vanishes from one of its scans to the next, as after a slip, and stays away. A value that
+/// rolls back with the belief: O(sensors + landmarks in view) bytes. Test: supervisor/slip/vanished_test.cpp.
 class SeenAgain {
  public:
-  /// Landmarks that the next scan is asked about.
-  std::vector<core::LandmarkId> watched() const;
+  /// Number of the sensor that took this scan, told by where it is mounted and looks to.
+  std::size_t sensor_of(const core::Scan& scan);
+
+  /// Landmarks that the next scan of this sensor is asked about.
+  std::vector<core::LandmarkId> watched(std::size_t sensor) const;
 
   /// A scan that was taken at this step, with its new landmarks begun; `in_view`: of those watched. `chance`: probability that
   /// some of them are matched by chance, asked only if that matters. `slips`: known of the drive so far.
   using Chance = std::function<double(const std::vector<core::LandmarkId>&)>;
-  void see(std::int64_t step, const std::vector<core::AssociationReport>& fate, const InView& in_view,
-           const association::LandmarkLife& existence, double extraneous_per_scan, int slips, const Chance& chance);
+  void see(std::int64_t step, std::size_t sensor, const std::vector<core::AssociationReport>& fate,
+           const InView& in_view, const association::LandmarkLife& existence, double extraneous_per_scan, int slips,
+           const Chance& chance);
 
   /// A scan for which the vehicle had slipped, or in a search: what was seen before says nothing about it.
-  void start_from(const std::vector<core::AssociationReport>& fate);
+  void start_from(std::size_t sensor, const std::vector<core::AssociationReport>& fate);
 
   /// Something has vanished, and the next scans decide whether it stays away.
   bool is_suspicious() const { return suspicion_.has_value(); }
@@ -66,17 +72,22 @@ class SeenAgain {
 
  private:
   struct Again;
-  Again again(const std::vector<core::LandmarkId>& ids, const std::vector<core::AssociationReport>& fate,
-              const InView& in_view, const Chance& chance) const;
-  Vanished weigh(const std::vector<core::AssociationReport>& fate, const InView& in_view,
+  /// What one sensor saw. Sensors that see the same landmarks seldom do so one after the other.
+  struct BySensor {
+    core::Pose2 T_robot_sensor;
+    double min_bearing_rad = 0.0, max_bearing_rad = 0.0;
+    std::vector<core::LandmarkId> last = {};  ///< matched or begun by its last scan
+    ShareSeen surely{0.7};
+    ShareSeen perhaps{0.5};
+  };
+  Again again(const BySensor& by, const std::vector<core::LandmarkId>& ids,
+              const std::vector<core::AssociationReport>& fate, const InView& in_view, const Chance& chance) const;
+  Vanished weigh(const BySensor& by, const std::vector<core::AssociationReport>& fate, const InView& in_view,
                  const association::LandmarkLife& existence, double extraneous_per_scan, const Chance& chance) const;
-  void count(const std::vector<core::AssociationReport>& fate, const InView& in_view);
-  void judge(std::int64_t step, const std::vector<core::AssociationReport>& fate, const InView& in_view,
+  void judge(std::size_t sensor, const std::vector<core::AssociationReport>& fate, const InView& in_view,
              const Chance& chance);
 
-  std::vector<core::LandmarkId> last_;  ///< matched or begun by the last scan
-  ShareSeen surely_{0.7};
-  ShareSeen perhaps_{0.5};
+  std::vector<BySensor> sensors_;
   std::optional<Vanished> suspicion_;
   bool is_confirmed_ = false;
 };

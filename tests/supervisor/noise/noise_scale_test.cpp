@@ -184,6 +184,26 @@ TEST(NoiseScale, RisesWithinAMinuteOfScans) {
   EXPECT_GT(scale.odometry(), 1.35);
 }
 
+/// Three pairs that are metres off in one scan, as where the vehicle is not where it is believed to be. The drive would be solved
+/// again with 25 times the noise.
+TEST(NoiseScale, BelievesNoSingleScanOfThreePairs) {
+  NoiseScale scale;
+  RelativeGeometry geometry(core::JointGaussian{{}, {}, {}, Eigen::MatrixXd::Identity(3, 3)});
+  geometry.points_m = {{8, 0}, {4, 7}, {-4, 7}};
+  geometry.ids = {0, 1, 2};
+  geometry.covariance_m2 = 1e-4 * Eigen::MatrixXd::Identity(6, 6);
+  const std::vector<Eigen::Vector2d> off_m = {{2.0, 1.0}, {-1.5, 2.0}, {0.5, -3.0}};
+  std::vector<SeenPoint> seen;
+  std::vector<PointPair> pairs;
+  for (std::size_t i = 0; i < off_m.size(); ++i) {
+    seen.push_back({static_cast<int>(i), geometry.points_m[i] + off_m[i], 0.01 * Eigen::Matrix2d::Identity()});
+    pairs.push_back({i, i});
+  }
+  const Eigen::Matrix3d Q = Eigen::Vector3d(1e-4, 1e-4, 1e-6).asDiagonal();
+  scale.observe(PairEquations(geometry, seen, pairs, Eigen::Vector3d::Zero()), std::vector<Look>(3), 0.0, Q);
+  EXPECT_EQ(scale.observations(), 1.0);
+}
+
 TEST(NoiseScale, TakesABiasForNoNoise) {
   const NoiseScale scale = NoisyDrive(1.0, 1.0, {0.2, 0.0, 0.0}).learn(1500);
   EXPECT_LT(scale.odometry(), 1.6) << "two deviations of forward motion too much in every scan";

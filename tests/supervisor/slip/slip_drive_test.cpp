@@ -194,5 +194,43 @@ TEST(SlipDrive, OfAVehicleCarriedInAForestIsNoticedDespiteAChanceMatch) {
   EXPECT_EQ(times_lost_when_carried(stems_m, 12.0, alike_m), 1);
 }
 
+/// Most of what a sensor sees stands beyond the range up to which it sees landmarks reliably. The vehicle is pushed round by 6°.
+TEST(SlipDrive, IsFoundByLandmarksThatAreSeenLessReliably) {
+  std::vector<Eigen::Vector2d> trees_m;
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> along_m(0.0, 140.0), across_m(4.0, 30.0);
+  for (int k = 0; k < 40; ++k) {
+    const double x_m = along_m(random);
+    const double y_m = across_m(random);
+    trees_m.emplace_back(x_m, k % 2 == 0 ? y_m : -y_m);
+  }
+  Navigator navigator({}, {});
+  core::Pose2 truth;
+  int slips = 0;
+  for (int scan = 0; scan < 60; ++scan) {
+    core::Odometry motion = core::no_motion(500'000'000LL * scan);
+    motion.T_before_after = core::Pose2(1.0, 0.0, 0.0);
+    motion.covariance = Eigen::Vector3d(0.03, 0.01, 0.004).cwiseAbs2().asDiagonal();
+    if (scan > 0) {
+      navigator.move(motion);
+      truth = core::compose(truth, motion.T_before_after);
+    }
+    if (scan == 40) truth = core::compose(truth, core::Pose2(0.3, 0.0, 6.0 * core::pi / 180.0));
+    core::Scan seen;
+    seen.t_ns = 500'000'000LL * scan;
+    seen.field_of_view = {1.0, 15.0, -core::pi / 4, core::pi / 4, 60.0};
+    for (const Eigen::Vector2d& tree_m : trees_m) {
+      const Eigen::Vector2d at_m = core::transform(core::inverse(truth), tree_m);
+      if (at_m.norm() > 60.0 || std::abs(std::atan2(at_m.y(), at_m.x())) > core::pi / 4) continue;
+      seen.observations.push_back(core::make_range_bearing(at_m.norm(), std::atan2(at_m.y(), at_m.x()), 0.15, 0.005));
+    }
+    for (const core::Decision& decision : navigator.observe(seen).decisions) {
+      slips += std::holds_alternative<core::SlipDecision>(decision);
+    }
+  }
+  EXPECT_EQ(slips, 1);
+  EXPECT_NEAR(navigator.pose().mean.heading_rad, truth.heading_rad, 0.02);
+}
+
 }  // namespace
 }  // namespace helixnav::supervisor

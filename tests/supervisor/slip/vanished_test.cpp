@@ -28,7 +28,7 @@ struct WatchedDrive {
     };
     for (const LandmarkId id : matched) add(id, Outcome::matched);
     for (const LandmarkId id : begun) add(id, Outcome::augmented);
-    watched.see(step++, fate, {expected, far_off}, life, extraneous, 0,
+    watched.see(step++, watched.sensor_of(by), fate, {expected, far_off}, life, extraneous, 0,
                 [this](const std::vector<LandmarkId>&) { return by_chance; });
     life.observe({static_cast<double>(step), 0.0}, matched, begun, {});
   }
@@ -39,6 +39,7 @@ struct WatchedDrive {
   }
 
   SeenAgain watched;
+  core::Scan by;  ///< the sensor's mounting and view
   association::LandmarkLife life;
   std::int64_t step = 0;
   double by_chance = 0.0;  ///< that a landmark is matched in another place
@@ -116,6 +117,30 @@ TEST(SeenAgain, DoesNotSuspectWhereNothingCameInstead) {
   drive.pass_quietly(known, 50);
   drive.scan({}, {}, known);
   EXPECT_FALSE(drive.watched.is_suspicious()) << "a sensor that was blinded";
+}
+
+/// A second sensor looks back, and takes a scan after each of the first's.
+TEST(SeenAgain, AsksEachSensorForWhatItSawItself) {
+  WatchedDrive drive;
+  const std::vector<LandmarkId> behind = {20, 21};
+  const auto look_back = [&](const std::vector<LandmarkId>& seen, const std::vector<LandmarkId>& begun) {
+    drive.by.T_robot_sensor.heading_rad = 3.0;
+    drive.scan(seen, begun, drive.watched.is_suspicious() ? std::vector<LandmarkId>{} : behind);
+    drive.by.T_robot_sensor.heading_rad = 0.0;
+  };
+  drive.scan({}, known, known);
+  look_back({}, behind);
+  for (int k = 0; k < 50; ++k) {
+    drive.scan(known, {}, known);
+    look_back(behind, {});
+  }
+  drive.scan({}, unknown, known);
+  EXPECT_TRUE(drive.watched.is_suspicious());
+  for (int k = 0; k < 4; ++k) look_back({}, {});
+  EXPECT_TRUE(drive.watched.is_suspicious()) << "scans that look elsewhere decide nothing";
+  drive.scan(unknown, {}, known);
+  ASSERT_NE(drive.watched.lost(), nullptr);
+  EXPECT_EQ(drive.watched.lost()->missing, known);
 }
 
 TEST(SeenAgain, StopsSuspectingWhatNoScanDecides) {
