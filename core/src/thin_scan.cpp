@@ -47,9 +47,11 @@ std::vector<std::size_t> observations_to_use(const Scan& scan) {
     std::iota(used.begin(), used.end(), std::size_t{0});
     return used;
   }
+  constexpr std::size_t most_tested = 200 * most_observations_used;  // more than that say nothing that these do not
+  std::size_t tested = 0;
   static const double gates[] = {chi2_quantile(0.99, 1), chi2_quantile(0.99, 2)};
   for (const std::size_t i : spread_order(count)) {
-    if (used.size() == most_observations_used) break;
+    if (used.size() == most_observations_used || ++tested > most_tested) break;
     const Observation& candidate = scan.observations[i];
     const double gate = gates[dimension(candidate.kind) - 1];
     const bool known = std::any_of(used.begin(), used.end(),

@@ -109,6 +109,9 @@ void MapBuilder::initializeFromRun(const std::string& runFolder, const mrpt::pos
 void MapBuilder::loadCurrentMapFromFile(const std::string& fileName) {
   const fs::path path(fileName);
   if (fs::is_directory(path) || path.filename() == map_file) return initializeFromRun(fileName);
+  if (!fileName.empty() && !fs::exists(path)) {  // MRPT begins with an empty map, which knows where the vehicle is
+    throw core::InputError(fileName + ": there is no such run folder or file");
+  }
   CMetricMapBuilder::loadCurrentMapFromFile(fileName);
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "closing_warnings.hpp"
 
-#include <utility>
 #include <variant>
 
 #include "helixnav/core/decision.hpp"
 #include "helixnav/core/time.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
+#include "only_localized.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -54,6 +54,16 @@ const char* const typical_causes =
     "near "
     "side taken for its centre); 'helixnav calibrate' estimates the noise from the log";
 
+/// The given map stays as it is, whatever is refused.
+std::string refused_while_localizing_text(const Closings& closings) {
+  return "places that the landmarks show were refused " + std::to_string(closings.refused) + " times (" +
+         counted(closings.accepted, "time") +
+         " accepted; searches that ended undecided: " + std::to_string(closings.undecided) +
+         "): what was seen there differs from the map by more than the covariances allow. The map is bent by more than "
+         "it "
+         "says, or the vehicle was elsewhere meanwhile. The map itself is unchanged";
+}
+
 /// Of 193 drives of a tester, the seven like that had a mean NEES of 4 to 14.
 std::string often_refused_text(const Closings& closings) {
   constexpr int often = 5;
@@ -72,14 +82,18 @@ std::vector<std::string> closing_warnings(const runs::Run& run) {
   constexpr int several = 3;
   const bool is_mostly_refused = closings.refused_since >= several && closings.refused > 2 * closings.accepted;
   const bool is_mostly_undecided = closings.undecided >= 2 && closings.undecided > closings.accepted;
-  if (is_mostly_refused || is_mostly_undecided) {
+  const std::string often = often_refused_text(closings);
+  if (only_localized(run)) {
+    if (is_mostly_refused || is_mostly_undecided || !often.empty())
+      warnings.push_back(refused_while_localizing_text(closings));
+  } else if (is_mostly_refused || is_mostly_undecided) {
     warnings.push_back("returns to old ground were left open (" + counted(closings.accepted, "closing") +
                        " accepted, " + std::to_string(closings.refused) +
                        " refused; searches that ended undecided: " + std::to_string(closings.undecided) +
                        "): landmarks there may be in the map twice, and the path keeps the drift until then. " +
                        typical_causes);
-  } else if (std::string text = often_refused_text(closings); !text.empty()) {
-    warnings.push_back(std::move(text));
+  } else if (!often.empty()) {
+    warnings.push_back(often);
   }
   if (closings.cuts > 0) {
     warnings.push_back("odometry and the map were up to " + short_number(closings.cut_by_m) + " m apart at a return (" +

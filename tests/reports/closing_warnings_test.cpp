@@ -51,6 +51,15 @@ TEST(ClosingWarnings, SayNothingWhereMostReturnsAreClosed) {
   EXPECT_TRUE(closing_warnings(run_of({})).empty());
 }
 
+TEST(ClosingWarnings, SpeakOfTheMapAsItIsWhereItWasOnlyLocalized) {
+  runs::Run run = run_of({closure(false), closure(false), closure(false)});
+  run.manifest.command = "helixnav replay log --map run --localize";
+  const auto texts = closing_warnings(run);
+  ASSERT_EQ(texts.size(), 1u);
+  EXPECT_NE(texts[0].find("The map itself is unchanged"), std::string::npos) << texts[0];
+  EXPECT_EQ(texts[0].find("twice"), std::string::npos) << texts[0];
+}
+
 TEST(ClosingWarnings, SayThatThePathIsNotSolvedOnlyOfTheLastClosing) {
   EXPECT_TRUE(closing_warnings(run_of({closure(true), solved(false), closure(true), solved(true)})).empty());
   const auto texts = closing_warnings(run_of({closure(true), solved(true), closure(true), solved(false)}));

@@ -22,8 +22,8 @@ const std::vector<KindColumns>& kinds() {
   using namespace odometry_columns;
   // never destroyed: a thread may still be here when the process ends
   static const auto& all = *new const std::vector<KindColumns>{
-      {OdometryKind::increments, {dx, dheading}, {dy}}, {OdometryKind::steering, {v, steering}, {}},
-      {OdometryKind::velocities, {v, omega}, {vy}},     {OdometryKind::wheels, {v_left, v_right}, {}},
+      {OdometryKind::increments, {dx, dheading}, {dy}}, {OdometryKind::velocities, {v, omega}, {vy}},
+      {OdometryKind::steering, {v, steering}, {}},      {OdometryKind::wheels, {v_left, v_right}, {}},
       {OdometryKind::poses, {x, y, heading}, {}},
   };
   return all;

@@ -17,7 +17,7 @@ void check(const TeamWorldOptions& options) {
   const auto require = [](bool holds, const char* what) {
     if (!holds) throw core::PreconditionError(std::string("sim: of a team's world, ") + what);
   };
-  require(options.robots >= 2, "robots must be 2 or more");
+  require(options.robots >= 2 && options.robots <= 100, "robots must be 2 to 100");
   require(options.landmarks_each >= 1 && options.landmarks_each <= 100, "landmarks_each must be 1 to 100");
   require(options.common >= 1, "common must be 1 or more");
   const int neighbours = options.robots > 2 ? 2 : 1;

@@ -262,7 +262,7 @@ TEST_F(OwnStreamLines, ThatAreWrongAreRefusedWithTheirKeyAndLeaveNothingBehind) 
   expect_refused("[1, 2]", "", "expected an object");
   expect_refused("{}", "", "holds no row");
   expect_refused(R"({"detections": []})", "", "a time alone");
-  expect_refused(R"({"odometry": {"t": NaN, "v": 1, "omega": 0}})", "", "no JSON");
+  expect_refused(R"({"odometry": {"t": NaN, "v": 1, "omega": 0}})", "", "NaN and Infinity are no numbers of JSON");
   expect_refused(R"({"odometry": {"t": 0.5, "v": "nan", "omega": 0}})", "v", "expected a number");
   expect_refused(R"({"odometry": {"t": 0.5, "v": 1e999, "omega": 0}})", "", "larger than any");
   expect_refused(R"({"odometry": {"note": ")" + std::string(1 << 20, 'y') + R"("}})", "", "longer than 1 MiB");

@@ -96,7 +96,7 @@ class MapBuilder : public mrpt::slam::CMetricMapBuilder {
   void initializeFromRun(const std::string& runFolder, const mrpt::poses::CPosePDF* x0 = nullptr);
 
   /// A run folder, or the map.bin in it, as initializeFromRun() does from anywhere; any other file as MRPT does, which loads a
-  /// CSimpleMap (InputError unless it is empty). Hides MRPT's, which is not virtual: call it on a MapBuilder.
+  /// CSimpleMap (InputError unless it is empty, or if there is none). Hides MRPT's, which is not virtual: call it on a MapBuilder.
   void loadCurrentMapFromFile(const std::string& fileName);
 
   /// The vehicle is at x0 on the map: on the earlier one, as long as its place on that is sought (what was mapped meanwhile is
