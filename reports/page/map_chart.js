@@ -2,6 +2,10 @@
 const ordinal = (n) => `${count(n)}${n % 100 - n % 10 === 10 ? "th" : { 1: "st", 2: "nd", 3: "rd" }[n % 10] || "th"}`;
 const everyLandmarkText = () => (data.landmarks_stride > 1 ? `, every ${ordinal(data.landmarks_stride)}` : "");
 
+// Sizes of marks on the map: many, or on a narrow screen, they would merge into bars.
+const landmarkSize = (number) => (number > 1000 ? 3 : narrow.matches ? (number > 150 ? 3 : 4) : 6);
+const trueLandmarkSize = (number) => (number > 1000 ? 5 : narrow.matches ? (number > 150 ? 5 : 7) : 10);
+
 const landmarkTraces = (state, colour, symbol) => {
   const chosen = data.landmarks.filter((landmark) => landmark.state === state);
   if (chosen.length === 0) return [];
@@ -15,7 +19,7 @@ const landmarkTraces = (state, colour, symbol) => {
     line(name, outline.x, outline.y, colour,
       { line: { color: colour, width: 1 }, hoverinfo: "skip", legendgroup: name, showlegend: false }),
     dots(name, chosen.map((m) => m.x), chosen.map((m) => m.y), colour,
-      { marker: { color: colour, size: chosen.length > 1000 ? 3 : 6, symbol }, text, legendgroup: name,
+      { marker: { color: colour, size: landmarkSize(chosen.length), symbol }, text, legendgroup: name,
         hovertemplate: "%{text}<br>(%{x:.2f}, %{y:.2f}) m<extra></extra>" }),
   ];
 };
@@ -66,7 +70,7 @@ const drawMap = () => {
     ...(filtered ? [line("95 % ellipses", outline.x, outline.y, c.estimate,
       { line: { color: c.estimate, width: 1 }, opacity: .55, hoverinfo: "skip" })] : []),
     ...(known_x.length > 0 ? [dots("true landmarks", known_x, known_y, c.truth,
-      { marker: { color: c.truth, size: known_x.length > 1000 ? 5 : 10, symbol: "circle-open" }, hoverinfo: "x+y" })] : []),
+      { marker: { color: c.truth, size: trueLandmarkSize(known_x.length), symbol: "circle-open" }, hoverinfo: "x+y" })] : []),
     ...landmarkTraces("tentative", c.faint, "diamond"),
     ...landmarkTraces("mature", c.landmark, "circle"),
     ...mixtureTraces(),
@@ -76,7 +80,7 @@ const drawMap = () => {
     xaxis: axis("x [m]", { range: data.map_extent.slice(0, 2) }),
     yaxis: axis("y [m]", { range: data.map_extent.slice(2), scaleanchor: "x" }),
   });
-  const frame = data.frame_of_fixes ? "that of the position fixes" : "pose at the start";
+  const frame = { fixes: "that of the position fixes", earlier: "that of the earlier map", start: "pose at the start" }[data.frame];
   byId("map-note").textContent = (filtered
     ? `Map frame (${frame}). Ellipses hold the true position with 95 % if the filter is right; those of the
        path stand ${path.ellipse_stride === 1 ? "a scan" : `${count(path.ellipse_stride)} scans`} apart.`

@@ -193,6 +193,11 @@ std::string fates_line(const runs::Run& run) {
          of(core::Outcome::rejected) + " rejected.\n";
 }
 
+bool has_observations(const runs::Run& run) {
+  return std::any_of(run.steps.begin(), run.steps.end(),
+                     [](const core::StepReport& step) { return !step.associations.empty(); });
+}
+
 bool is_of_search(const Decided& decided) {
   return is_closure(decided) || is_trigger(decided) ||
          std::holds_alternative<core::WholeMapDecision>(*decided.decision);
@@ -213,10 +218,11 @@ std::string numerics_line(const runs::Run& run) {
 }  // namespace
 
 std::string explain_run(const runs::Run& run) {
+  if (run.steps.empty()) return "0 steps: " + nothing_mapped_text(run) + ".\n";
   const std::vector<Decided> decided = decisions_of(run);
   std::vector<Decided> closures;
   std::copy_if(decided.begin(), decided.end(), std::back_inserter(closures), is_closure);
-  if (!run.steps.empty() && run.steps.back().particles) {
+  if (run.steps.back().particles) {
     return std::to_string(run.steps.size()) +
            " steps of a cloud of particles, each of which associates for itself: there are no closings to explain. "
            "--step N shows what the heaviest one made of a scan.\n";
@@ -229,18 +235,19 @@ std::string explain_run(const runs::Run& run) {
   text += fates_line(run) + places_of(run, decided);
   if (only_localized(run)) {
     text += "The map stays as it was given: what fits none of its landmarks is rejected.\n";
-  } else if (std::none_of(decided.begin(), decided.end(), is_of_search)) {
+  } else if (has_observations(run) && std::none_of(decided.begin(), decided.end(), is_of_search)) {
     text += "No return was ambiguous enough for a search: every scan was associated at once.\n";
   }
   for (std::size_t i = 0; i < closures.size(); ++i) {
     text += "\nClosure " + std::to_string(i + 1) + ", " + when(*closures[i].step) + ". " + found_by(closures[i]) +
             sentence_of(*closures[i].decision) + '\n';
   }
-  if (!run.steps.empty() && run.steps.back().mode == core::Mode::searching) {
+  if (run.steps.back().mode == core::Mode::searching) {
     text += "\nAt the end of the run a search was still open.\n";
   }
-  const std::string contradicted = contradicted_place_text(run);
-  if (!contradicted.empty()) text += "\nWarning: " + contradicted + ".\n";
+  for (const std::string& warning : {nothing_mapped_text(run), contradicted_place_text(run)}) {
+    if (!warning.empty()) text += "\nWarning: " + warning + ".\n";
+  }
   text += slips_text(run);
   text += all_of_kind<core::MovingDecision>(decided, "What moves");
   text += all_of_kind<core::SystematicDecision>(decided, "Constant errors");

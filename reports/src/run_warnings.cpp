@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <set>
 #include <utility>
 #include <variant>
 
 #include "closing_warnings.hpp"
+#include "frame_of_map.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
 #include "known_by_name.hpp"
 #include "numerics_text.hpp"
@@ -67,12 +69,35 @@ double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-std::string no_landmark_text(const ObservationCounts& counts) {
-  if (counts.seen == 0) return "the log holds no detections: nothing was mapped, and the path is odometry alone";
+/// Landmarks that were begun and never matched.
+std::size_t never_seen_again(const runs::Run& run) {
+  std::set<core::LandmarkId> began, matched;
+  for (const core::StepReport& step : run.steps) {
+    for (const core::AssociationReport& a : step.associations) {
+      if (a.outcome == core::Outcome::augmented) began.insert(a.landmark);
+      if (a.outcome == core::Outcome::matched) matched.insert(a.landmark);
+    }
+  }
+  return static_cast<std::size_t>(
+      std::count_if(began.begin(), began.end(), [&](core::LandmarkId id) { return matched.count(id) == 0; }));
+}
+
+std::string no_landmark_text(const ObservationCounts& counts, const runs::Run& run) {
+  if (run.steps.empty()) return "no scan came in: there is neither a path nor a map";
+  if (counts.seen == 0) return "the scans hold no detections: nothing was mapped, and the path is odometry alone";
+  constexpr int enough_to_tell = 10;  // scans; a landmark needs looks from three places, so each look had three chances
+  const auto seeing = std::count_if(run.steps.begin(), run.steps.end(),
+                                    [](const core::StepReport& step) { return !step.associations.empty(); });
+  if (seeing < enough_to_tell) return {};
   return warning(
-      "the map has no landmark: of %zu detections %zu were matched, and %zu started landmarks that were never seen "
+      "the map has no landmark: of %zu detections %zu were matched, and %zu of the %zu landmarks begun were never seen "
       "again. Are reach, mounting and noise right for this sensor? 'helixnav check' shows what was understood",
-      counts.seen, counts.matched, counts.began);
+      counts.seen, counts.matched, never_seen_again(run), counts.began);
+}
+
+bool has_mature_landmark(const runs::Run& run) {
+  return std::any_of(run.map.begin(), run.map.end(),
+                     [](const core::MapLandmark& landmark) { return landmark.state == core::LandmarkState::mature; });
 }
 
 std::string waiting_text(const ObservationCounts& counts) {
@@ -274,7 +299,7 @@ std::string contradicted_place_text(const runs::Run& run) {
   const auto [times, by_far, away_m] = contradicted_places(run);
   constexpr int least = 3;  // once or twice the pairs of a right place are refused for a bent map
   if (times < least && by_far == 0) return {};
-  const bool on_earlier_map = run.manifest.command.find(" --map") != std::string::npos;
+  const bool on_earlier_map = has_earlier_map(run);
   if (on_earlier_map && was_placed(run)) {
     return warning(
         "the landmarks seen fit another place on the map, %.3g m from the estimated pose: the search of the whole map "
@@ -305,20 +330,22 @@ std::string place_not_found_text(const runs::Run& run) {
   return what + best_answer_text(questions_in(run));
 }
 
+std::string nothing_mapped_text(const runs::Run& run) {
+  const ObservationCounts counts = count_observations(run);
+  constexpr double most_waiting = 0.5;
+  if (share(counts.waiting, counts.seen) > most_waiting) return waiting_text(counts);
+  return has_mature_landmark(run) ? std::string() : no_landmark_text(counts, run);
+}
+
 std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Evaluation& evaluation) {
   std::vector<std::string> warnings;
   if (run.smoothed && run.smoothed->alone) return warnings;  // nothing was matched step by step
   const ObservationCounts counts = count_observations(run);
-  const bool mature = std::any_of(run.map.begin(), run.map.end(), [](const core::MapLandmark& landmark) {
-    return landmark.state == core::LandmarkState::mature;
-  });
   constexpr std::size_t enough = 200;
-  constexpr double least_matched = 0.15, most_waiting = 0.5;
-  if (share(counts.waiting, counts.seen) > most_waiting) {
-    warnings.push_back(waiting_text(counts));
-  } else if (!mature) {
-    warnings.push_back(no_landmark_text(counts));
-  } else if (counts.seen >= enough && share(counts.matched, counts.seen) < least_matched) {
+  constexpr double least_matched = 0.15;
+  if (const std::string text = nothing_mapped_text(run); !text.empty()) {
+    warnings.push_back(text);
+  } else if (has_mature_landmark(run) && counts.seen >= enough && share(counts.matched, counts.seen) < least_matched) {
     warnings.push_back(collapse_text(counts, run));
   }
   constexpr double least_nis = 0.25, most_nis = 2.0;

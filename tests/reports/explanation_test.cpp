@@ -32,6 +32,16 @@ TEST(Explanation, SaysOfADriveWithoutASearchThatThereWasNone) {
   EXPECT_FALSE(says(run, "What moves"));
 }
 
+TEST(Explanation, OfARunWithoutLandmarksSaysWhatTheReportWarnsOf) {
+  runs::Run run = run_of(10);
+  EXPECT_TRUE(says(run, "Warning: the map has no landmark")) << explain_run(run);
+  for (core::StepReport& step : run.steps) step.associations.clear();
+  EXPECT_TRUE(says(run, "Warning: the scans hold no detections: nothing was mapped")) << explain_run(run);
+  EXPECT_FALSE(says(run, "every scan was associated at once")) << explain_run(run);
+  run.steps.clear();
+  EXPECT_EQ(explain_run(run), "0 steps: no scan came in: there is neither a path nor a map.\n");
+}
+
 TEST(Explanation, SaysOfALocalisedRunThatTheMapStays) {
   runs::Run run = run_of(10);
   run.manifest.command = "helixnav replay log --map monday --localize";

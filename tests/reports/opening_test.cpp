@@ -47,6 +47,39 @@ TEST(Opening, SaysWhatWasDrivenAndClosedAndHowWrongItWas) {
   EXPECT_NE(said.find("4 m at most; of the path as corrected since: 0.5 m RMSE"), std::string::npos) << said;
 }
 
+/// Two landmarks are begun in scan 0 and one of them is matched in scan 1; then one is begun in every scan.
+runs::Run run_without_landmarks(int steps) {
+  runs::Run run = drifting_run(0.0);
+  run.steps.resize(static_cast<std::size_t>(steps));
+  run.map.clear();
+  core::LandmarkId next = 1;
+  for (core::StepReport& step : run.steps) {
+    step.decisions.clear();
+    step.associations = {{0, core::Outcome::augmented, next, 1.0, 2, 1.0}};
+    ++next;
+  }
+  if (steps > 1) run.steps[1].associations.push_back({1, core::Outcome::matched, 1, 1.0, 2, 1.0});
+  return run;
+}
+
+TEST(Opening, WarnsOfAMapWithoutLandmarksOnlyAfterScansEnoughToTell) {
+  for (const int steps : {1, 2, 9}) {
+    const runs::Run run = run_without_landmarks(steps);
+    EXPECT_EQ(nothing_mapped_text(run), "") << steps;
+  }
+  const std::string text = nothing_mapped_text(run_without_landmarks(10));
+  EXPECT_NE(text.find("of 11 detections 1 were matched, and 9 of the 10 landmarks begun were never seen again."),
+            std::string::npos)
+      << text;
+}
+
+TEST(Opening, OfASingleScanSpeaksOfNoWay) {
+  const runs::Run run = run_without_landmarks(1);
+  const std::string said = all_of(opening_data(run, evaluation::evaluate(run))["sentences"]);
+  EXPECT_NE(said.find("A single scan was taken, and a map of 0 landmarks."), std::string::npos) << said;
+  EXPECT_EQ(said.find("drove"), std::string::npos) << said;
+}
+
 TEST(Opening, SaysHowOftenTheVehicleSlipped) {
   runs::Run run = drifting_run(0.0);
   const auto said = [&run] { return all_of(opening_data(run, evaluation::evaluate(run))["sentences"]); };
@@ -316,10 +349,10 @@ TEST(Opening, WarnsWhereOdometryAndWhatIsSeenContradictEachOtherAllAlong) {
       << "what is not on the map given is rejected";
 }
 
-TEST(Opening, OfARunWithoutStepsSaysNothing) {
+TEST(Opening, OfARunWithoutStepsSaysOnlyThatNothingCameIn) {
   const Json opening = opening_data({}, {});
   EXPECT_TRUE(opening["sentences"].empty());
-  EXPECT_TRUE(opening["warnings"].empty());
+  EXPECT_EQ(opening["warnings"], Json({"no scan came in: there is neither a path nor a map"}));
 }
 
 TEST(Warnings, SayThatNamedBearingsDoNotPlaceTheirLandmarks) {

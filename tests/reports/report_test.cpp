@@ -110,7 +110,7 @@ TEST(Report, HoldsNamesTheAntennaOfFixesAndTheFrameOfAFusedMap) {
   const nlohmann::json plain = element(render(run), "run-data");
   EXPECT_TRUE(plain["names"].is_null());
   EXPECT_TRUE(plain["antenna"].is_null());
-  EXPECT_FALSE(plain["frame_of_fixes"].get<bool>());
+  EXPECT_EQ(plain["frame"], "start");
   run.names[7] = "north pier";
   run.truth.positions = {{run.steps[3].t_ns, {1.0, 2.0}, 0.1}};
   run.truth.antenna_robot_m = {3.0, -0.5};
@@ -118,7 +118,36 @@ TEST(Report, HoldsNamesTheAntennaOfFixesAndTheFrameOfAFusedMap) {
   const nlohmann::json data = element(render(run), "run-data");
   EXPECT_EQ(data["names"]["7"], "north pier");
   EXPECT_EQ(data["antenna"], nlohmann::json({3.0, -0.5}));
-  EXPECT_TRUE(data["frame_of_fixes"].get<bool>());
+  EXPECT_EQ(data["frame"], "fixes");
+}
+
+TEST(Report, SaysOfASessionOnAnEarlierMapThatItsFrameIsThatOfThatMap) {
+  runs::Run run = example_run(20);
+  const auto frame = [&run] { return element(render(run), "run-data")["frame"].get<std::string>(); };
+  run.manifest.command = "helixnav replay log --map.whole 100";
+  EXPECT_EQ(frame(), "start");
+  run.manifest.command = "helixnav replay log --map monday";
+  EXPECT_EQ(frame(), "start") << "no place was found on it";
+  core::PlacedDecision placed;
+  placed.verdict = core::PlacedDecision::Verdict::accepted;
+  run.steps[5].decisions = {placed};
+  EXPECT_EQ(frame(), "earlier");
+  run.steps[5].decisions.clear();
+  run.manifest.command = "helixnav replay log --map monday --start 1,2,0.5";
+  EXPECT_EQ(frame(), "earlier");
+}
+
+TEST(Report, EndsTheLineOfInnovationsWhereNothingIsUpdatedForLong) {
+  runs::Run run = example_run(100);
+  for (std::size_t k = 0; k < run.steps.size(); ++k) {
+    run.steps[k].joint_dof = k >= 30 && k < 70 ? 0 : 2;
+    run.steps[k].joint_nis = 2.0;
+  }
+  const nlohmann::json nis = element(render(run), "run-data")["nis"];
+  ASSERT_EQ(nis["t"].size(), 61u);
+  EXPECT_TRUE(nis["mean"][30].is_null());
+  EXPECT_TRUE(nis["low"][30].is_null());
+  EXPECT_EQ(std::count(nis["mean"].begin(), nis["mean"].end(), nullptr), 1);
 }
 
 TEST(Report, ShowsTentativeLandmarksWhereThereAreNoOthers) {

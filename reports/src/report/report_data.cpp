@@ -6,6 +6,7 @@
 #include <limits>
 #include <variant>
 
+#include "frame_of_map.hpp"
 #include "helixnav/core/decision_row.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
 #include "helixnav/runs/words.hpp"
@@ -127,15 +128,6 @@ Json map_extent(const runs::Run& run, const evaluation::Evaluation& evaluation) 
           rounded(high.y() + margin_m)};
 }
 
-/// The map then lies in the frame of the fixes.
-bool has_fused_fixes(const runs::Run& run) {
-  return std::any_of(run.steps.begin(), run.steps.end(), [](const core::StepReport& step) {
-    return std::any_of(step.decisions.begin(), step.decisions.end(), [](const core::Decision& decision) {
-      return std::holds_alternative<core::FixDecision>(decision);
-    });
-  });
-}
-
 /// {number: name} for labels that the map gives as words; null if it has only numbers.
 Json names_json(const runs::Run& run) {
   Json json;
@@ -182,7 +174,7 @@ Json report_data(const runs::Run& run, const evaluation::Evaluation& evaluation)
   json["time_range_s"] = time_range_s(steps);
   json["names"] = names_json(run);
   json["antenna"] = antenna_json(run);
-  json["frame_of_fixes"] = has_fused_fixes(run);
+  json["frame"] = frame_of_map(run);
   json["map_extent"] = map_extent(run, evaluation);
   json["path"] = path_json(steps);
   json["final_path"] = final_path_json(run);

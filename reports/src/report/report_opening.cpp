@@ -36,10 +36,11 @@ std::string drive_sentence(const runs::Run& run) {
   const auto mature = std::count_if(run.map.begin(), run.map.end(), [](const core::MapLandmark& landmark) {
     return landmark.state == core::LandmarkState::mature;
   });
+  const std::string map = ", and a map of " + counted(static_cast<double>(mature), "landmark") + '.';
+  if (run.steps.size() == 1) return "A single scan was taken" + map;  // what was driven before it is not recorded
   const double time_s = core::seconds(run.steps.back().t_ns - run.steps.front().t_ns);
   return "The vehicle drove " + length(driven_m) + " in " + duration(time_s) + ": " +
-         counted(static_cast<double>(run.steps.size()), "scan") + ", and a map of " +
-         counted(static_cast<double>(mature), "landmark") + '.';
+         counted(static_cast<double>(run.steps.size()), "scan") + map;
 }
 
 std::string times(int count) {
@@ -177,7 +178,10 @@ ErrorAround error_around(const runs::Run& run, std::size_t k, const evaluation::
 
 Json opening_data(const runs::Run& run, const evaluation::Evaluation& evaluation) {
   Json json = {{"sentences", Json::array()}, {"warnings", Json::array()}};
-  if (run.steps.empty()) return json;
+  if (run.steps.empty()) {
+    json["warnings"] = warnings_of(run, evaluation);
+    return json;
+  }
   if (!(run.smoothed && run.smoothed->alone)) {
     json["sentences"] = {drive_sentence(run), closings_sentence(run)};
     for (const std::string& said : {slips_sentence(run), movers_sentence(run), places_sentence(run)}) {

@@ -65,6 +65,17 @@ void append_nis_block(Json& json, double t_s, double nis, int dof) {
   json["high"].push_back(rounded(core::chi2_quantile(0.975, dof) / dof));
 }
 
+/// Where nothing was updated for long, as in a search: blocks and lines end there.
+bool is_gap(const core::StepReport& update, const core::StepReport& next, std::size_t block) {
+  constexpr std::size_t least = 20;  // scans
+  return static_cast<std::size_t>(next.step - update.step) > std::max(least, 2 * block);
+}
+
+void append_nis_gap(Json& json, double t_s) {
+  json["t"].push_back(rounded(t_s, 1e-3));
+  for (const char* column : {"mean", "low", "high"}) json[column].push_back(nullptr);
+}
+
 }  // namespace
 
 Json path_json(const std::vector<core::StepReport>& steps) {
@@ -117,11 +128,16 @@ Json nis_json(const std::vector<core::StepReport>& steps) {
   for (const core::StepReport& step : steps) {
     if (step.joint_dof > 0 && std::isfinite(step.joint_nis)) updates.push_back(&step);
   }
+  const std::size_t block = stride_for(updates.size(), most_blocks);
   Json json = {{"t", Json::array()},    {"mean", Json::array()},    {"low", Json::array()},
                {"high", Json::array()}, {"steps_t", Json::array()}, {"steps", Json::array()}};
-  const std::size_t block = stride_for(updates.size(), most_blocks);
-  for (std::size_t begin = 0; begin < updates.size(); begin += block) {
-    const std::size_t end = std::min(begin + block, updates.size());
+  for (std::size_t begin = 0, end = 0; begin < updates.size(); begin = end) {
+    if (begin > 0 && is_gap(*updates[begin - 1], *updates[begin], block)) {
+      append_nis_gap(json, 0.5 * (core::seconds(updates[begin - 1]->t_ns) + core::seconds(updates[begin]->t_ns)));
+    }
+    for (end = begin + 1; end < std::min(begin + block, updates.size()); ++end) {
+      if (is_gap(*updates[end - 1], *updates[end], block)) break;
+    }
     double nis = 0.0;
     int dof = 0;
     for (std::size_t i = begin; i < end; ++i) {

@@ -14,6 +14,10 @@ namespace helixnav::reports {
 /// a good run. Test: apps/hostile/warnings_test.cpp.
 std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Evaluation& evaluation);
 
+/// Warns that no scan came in, that nothing was detected, or that no landmark could be placed although there were scans enough to tell:
+/// otherwise empty. Test: reports/opening_test.cpp.
+std::string nothing_mapped_text(const runs::Run& run);
+
 /// Warns that the whole map was repeatedly sure of another place than the vehicle was believed to be at, and nothing
 /// came of it: otherwise empty. Test: reports/opening_test.cpp.
 std::string contradicted_place_text(const runs::Run& run);
