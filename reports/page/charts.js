@@ -1,5 +1,6 @@
 // The charts of a run.
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
+const narrow = window.matchMedia("(max-width: 600px)");
 const colours = () => (dark.matches
   ? { paper: "#14181f", ink: "#e6eaf0", grid: "#2b333e", zero: "#4a5564", estimate: "#5aa9ee", truth: "#f0a04b",
       landmark: "#5fc98f", faint: "#7d8896", bad: "#f2867e", band: "rgba(90,169,238,.18)", other: "#b79af0" }
@@ -25,8 +26,31 @@ const needCharts = () => {
   document.head.append(script);
 };
 
-const draw = (id, traces, more) => needCharts() || Plotly.react(byId(id), traces, layout(more), {
-  responsive: true, scrollZoom: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d"],
+// Plotly places the legend of a resized chart by the margins from before: drawn a second time it stands above the chart again.
+const fitChart = async (chart) => {
+  await Plotly.Plots.resize(chart);
+  await Plotly.redraw(chart);
+};
+
+const sizes = new WeakMap();  // [chart] as drawn or fitted last
+const sizeOf = (chart) => `${chart.clientWidth} ${chart.clientHeight}`;
+const resizing = new ResizeObserver((entries) => {
+  for (const { target } of entries) {
+    if (target.clientWidth === 0 || sizes.get(target) === sizeOf(target)) continue;
+    sizes.set(target, sizeOf(target));
+    fitChart(target);
+  }
+});
+
+const draw = (id, traces, more) => {
+  needCharts();
+  if (!sizes.has(byId(id))) sizes.set(byId(id), sizeOf(byId(id)));
+  resizing.observe(byId(id));
+  return plot(id, traces, more);
+};
+
+const plot = (id, traces, more) => Plotly.react(byId(id), traces, layout(more), {
+  scrollZoom: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d"],
   toImageButtonOptions: { filename: `helixnav-${id}`, scale: 2 },
 });
 const line = (name, x, y, colour, more) =>
@@ -34,12 +58,27 @@ const line = (name, x, y, colour, more) =>
 const dots = (name, x, y, colour, more) =>
   ({ type: "scatter", mode: "markers", name, x, y, marker: { color: colour, size: 5 }, ...more });
 // Two lines with the space between them filled; one entry in the legend.
-const band = (name, x, low, high, more) => [
-  { type: "scatter", mode: "lines", x, y: low, line: { width: 0 }, hoverinfo: "skip", showlegend: false,
-    legendgroup: name, ...more },
+const bandPiece = (name, x, low, high, more) => [
+  { type: "scatter", mode: "lines", x, y: low, line: { width: 0 }, hoverinfo: "skip", legendgroup: name, ...more,
+    showlegend: false },
   { type: "scatter", mode: "lines", name, x, y: high, line: { width: 0 }, fill: "tonexty", fillcolor: c.band,
     hoverinfo: "skip", legendgroup: name, ...more },
 ];
+
+// In pieces where the lines have gaps (null): Plotly would fill across them.
+const band = (name, x, low, high, more) => {
+  const pieces = [];
+  for (let from = 0; from <= low.length;) {
+    const gap = low.indexOf(null, from);
+    const to = gap < 0 ? low.length : gap;
+    const later = pieces.length > 0 ? { showlegend: false } : {};
+    if (to > from || low.length === 0) {
+      pieces.push(...bandPiece(name, x.slice(from, to), low.slice(from, to), high.slice(from, to), { ...more, ...later }));
+    }
+    from = to + 1;
+  }
+  return pieces;
+};
 
 // Outline of {e : eᵀP⁻¹e = 5.99}, the 95 % region of a Gaussian in the plane, all in one line with gaps.
 const ellipses = (items) => {
@@ -73,7 +112,7 @@ const errorRows = () => {
 };
 
 const drawErrors = () => {
-  byId("errors-section").hidden = !filtered && !data.errors;
+  byId("errors-section").hidden = empty || (!filtered && !data.errors);
   if (byId("errors-section").hidden) return;
   const rows = errorRows();
   const traces = [];
@@ -118,7 +157,7 @@ const drawNis = () => {
   ], { xaxis: timeAxis(), yaxis: axis("NIS / dof [–]", { range: [0, top] }) });
   byId("nis-note").textContent = n.t.length === 0 ? "No update was made in this run."
     : `Normalised innovation squared of the joint updates, and its mean over blocks of ${count(n.block)} updates with
-       the band that such a mean keeps to with 95 % if the filter is consistent.`;
+       the band that such a mean keeps to with 95 % if the filter is consistent. Gaps: scans without an update.`;
 };
 
 const drawLandmarks = () => {

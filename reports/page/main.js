@@ -31,12 +31,14 @@ const drawWhenSeen = () => {
 const hide = (className, hidden) => {
   for (const section of document.querySelectorAll(className)) section.hidden = hidden;
 };
-hide(".of-filter", !filtered);
-hide(".of-navigator", !filtered || Boolean(particles));
+hide(".of-scans", empty);
+hide(".of-filter", !filtered || empty);
+hide(".of-navigator", !filtered || Boolean(particles) || empty);
 hide(".of-particles", !particles);
-byId("errors-section").hidden = !filtered && !data.errors;
+byId("errors-section").hidden = empty || (!filtered && !data.errors);
 byId("smoothing").hidden = !smoothing;
 dark.addEventListener("change", redraw);
+narrow.addEventListener("change", redraw);  // marks have other sizes then
 writeHeader();
 writeAntenna();
 writeOpening();

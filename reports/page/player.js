@@ -13,7 +13,7 @@ const makePlayer = (drive) => {
     lines: { path: line_(drive), final: line_(drive.final), truth: line_(drive.truth) },
     present: makePresent(drive.landmarks), visible: new Int32Array(drive.landmarks.id.length),
     ground: makeLayer(), trail: makeLayer(), ink: makeInk(), cells: makeCells(),
-    camera: makeCamera(), show: { truth: true, final: false, ids: false }, follow: false, playing: false,
+    camera: makeCamera(), fitted: false, show: { truth: true, final: false, ids: false }, follow: false, playing: false,
     t: 0, end: drive.t[drive.count - 1], speed: 1, k: 0, pose: { x: 0, y: 0, heading: 0 }, palette: c,
   };
 };
@@ -35,6 +35,7 @@ const setPose = ({ drive, t, k, pose }) => {
 };
 
 const drawPlayer = (player) => {
+  if (!player.fitted) return;
   player.k = scanAt(player);
   player.palette = c;
   setPose(player);
@@ -122,14 +123,15 @@ const showAll = (player) => {
 
 const fitCanvas = (player) => {
   const { canvas, camera } = player;
+  if (canvas.clientWidth === 0 || canvas.clientHeight === 0) return;  // hidden, as in a frame that is not shown
   const ratio = Math.min(2, window.devicePixelRatio || 1);  // more costs a phone time and shows nothing
-  const first = camera.width === 1;
   camera.width = canvas.clientWidth;
   camera.height = canvas.clientHeight;
   canvas.width = Math.round(camera.width * ratio);
   canvas.height = Math.round(camera.height * ratio);
   player.context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  if (first) fitCamera(camera, data.map_extent);
+  if (!player.fitted) fitCamera(camera, data.map_extent);
+  player.fitted = true;
   drawStrip(player);
   requestDraw(player);
 };

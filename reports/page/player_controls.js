@@ -55,12 +55,20 @@ const keysOf = (player) => ({
   f: () => setFollow(player, !player.follow),
 });
 
-// Keys are the player's while the focus is in it, and everywhere for the space bar and + and - where nothing else is focused.
+// Keys are the player's while the focus is in it. While nothing has the focus and the picture is in view, so are those that do not
+// scroll a page up and down.
+const scrolling_keys = ["ArrowUp", "ArrowDown", "Home", "End"];
+
+const isInView = (node) => {
+  const { top, bottom } = node.getBoundingClientRect();
+  return bottom > 0 && top < window.innerHeight;
+};
+
 const onKeys = (player) => {
   const keys = keysOf(player);
   document.addEventListener("keydown", (event) => {
     const inside = byId("player").contains(document.activeElement);
-    const nowhere = document.activeElement === document.body && [" ", "+", "=", "-"].includes(event.key);
+    const nowhere = document.activeElement === document.body && !scrolling_keys.includes(event.key) && isInView(player.canvas);
     if (event.ctrlKey || event.altKey || event.metaKey || !(inside || nowhere)) return;
     const typed = document.activeElement.tagName;
     if (typed === "SELECT" || ((typed === "BUTTON" || typed === "INPUT") && event.key === " " && document.activeElement.id !== "player-time")) return;

@@ -11,9 +11,10 @@ const scanText = ({ drive }, k) => {
   return parts.length > 0 ? `seen: ${parts.join(", ")}` : "nothing seen";
 };
 
+// To the centimetre: places are packed in centimetres.
 const errorNow = ({ drive, t }, k) => {
   const truth = drive.truth && !drive.truth.aligned && truthAt(drive.truth, drive.t[k]);
-  return truth ? `, error ${metres(Math.hypot(drive.x[k] - truth[0], drive.y[k] - truth[1]))}` : "";
+  return truth ? `, error ${fixed(Math.hypot(drive.x[k] - truth[0], drive.y[k] - truth[1]), 2)} m` : "";
 };
 
 const setText = (id, text) => {

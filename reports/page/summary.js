@@ -81,8 +81,9 @@ const writeSummary = () => {
     card(`${closures.accepted} / ${closures.refused} / ${closures.new_ground || 0} / ${closures.undecided}`,
          "closures accepted / refused / new ground / undecided");
   }
-  card(count(summary.steps), filtered ? `scans in ${duration(data.duration_s)}` : "scans");
-  card(`${count(Math.round(data.length_m))} m`, "path");
+  const passes = summary.steps > 1;  // a single scan has neither way nor time
+  card(count(summary.steps), filtered && passes ? `scans in ${duration(data.duration_s)}` : summary.steps === 1 ? "scan" : "scans");
+  if (passes) card(`${count(Math.round(data.length_m))} m`, "path");
   if (filtered) {
     card(microseconds(clock.timing.median_us), `per scan, median (99 % within ${microseconds(clock.timing.p99_us)})`);
   } else {

@@ -47,3 +47,4 @@ const last = (list) => list[list.length - 1];
 // A smoother's run without a filter: no steps that were estimated one after the other, so nothing of them to show.
 const smoothing = data.smoothing;
 const filtered = !(smoothing && smoothing.alone);
+const empty = summary.steps === 0;

@@ -71,6 +71,36 @@ class ReportPage(unittest.TestCase):
                 self.assertEqual(page.errors, [])
                 self.assertLessEqual(page.run("document.documentElement.scrollWidth"), look[0])
 
+    def test_keeps_the_legend_above_the_chart_when_the_screen_is_turned(self):
+        page = self.open(phone)
+        page.run("document.getElementById('map').scrollIntoView()")
+        for width, height, mobile in ((390, 844, True), (844, 390, True), (1280, 900, False), (390, 844, True)):
+            page.look(width, height, mobile=mobile)
+            page.run("new Promise((done) => setTimeout(done, 1500))")
+            legend, chart = page.run("""['.legend .bg', '.nsewdrag'].map((part) =>
+              document.querySelector(`#map ${part}`).getBoundingClientRect()).map(({ top, bottom }) => [top, bottom])""")
+            self.assertLessEqual(legend[1], chart[0] + 1, f"{width} pixels wide")
+
+    def test_can_be_opened_where_nothing_of_it_is_shown(self):
+        page = self.browser.page()
+        page.look(*wide[:2])
+        page.open(self.report)
+        page.run(player_is_ready)
+        address = page.run("location.href")
+        for style in ("display: none", "width: 0; height: 0; border: 0", "width: 1px; height: 1px; border: 0"):
+            page.run(f"""new Promise((done) => {{
+              const frame = document.createElement('iframe');
+              frame.style.cssText = {style!r};
+              frame.onload = () => setTimeout(done, 1000);
+              frame.src = {address!r};
+              document.body.append(frame);
+            }})""")
+            self.assertEqual(page.errors, [], style)
+        page.look(1, 1)
+        page.run("helixnavPlayer.goTo(5)")
+        page.run("new Promise((done) => setTimeout(done, 300))")
+        self.assertEqual(page.errors, [])
+
     def test_breaks_a_long_name_of_a_log_where_the_screen_ends(self):
         page = self.open(phone)
         page.run("document.getElementById('title').textContent = '2026-05-12_field_north_robot_one_run_three_long'")
@@ -165,6 +195,25 @@ class ReportPage(unittest.TestCase):
         page.press("-")
         self.assertEqual(page.run("helixnavPlayer.speed"), speed)
         self.assertEqual(page.errors, [])
+
+    def test_leaves_the_keys_that_scroll_to_the_page_until_the_player_has_the_focus(self):
+        page = self.open()
+        page.run("document.getElementById('player-canvas').scrollIntoView()")
+        page.press("ArrowRight")
+        self.assertEqual(page.run("helixnavPlayer.t"), page.run("helixnavPlayer.drive.t[1]"))
+        page.press("f")
+        self.assertTrue(page.run("document.getElementById('player-follow').checked"))
+        page.press("End")
+        self.assertEqual(page.run("helixnavPlayer.t"), page.run("helixnavPlayer.drive.t[1]"))
+        page.run("window.scrollTo(0, document.documentElement.scrollHeight)")
+        page.run(two_frames)
+        page.press("f")
+        page.press(" ", "Space")
+        self.assertTrue(page.run("document.getElementById('player-follow').checked"), "out of view")
+        self.assertFalse(page.run("helixnavPlayer.playing"), "out of view")
+        page.run("document.getElementById('player-canvas').focus()")
+        page.press("End")
+        self.assertEqual(page.run("helixnavPlayer.t"), page.run("helixnavPlayer.end"))
 
     def test_zooms_by_the_wheel_about_the_pointer_and_returns_to_the_whole_map(self):
         page = self.open()
