@@ -359,6 +359,31 @@ TEST_F(OwnStreamLines, OfAnIncrementThatWasSentTwiceAreRefused) {
   EXPECT_TRUE(take(increment(0.5, 1.0)).refused.empty());
 }
 
+TEST_F(OwnStreamLines, OfDetectionsThatWereSentTwiceAreRefused) {
+  take(odometry(0.0));
+  const auto row = [](double t_s, double range_m, const std::string& more) {
+    return "{\"sensor\": \"near\", \"t\": " + std::to_string(t_s) + ", \"range\": " + std::to_string(range_m) +
+           ", \"bearing\": 0.5" + more + "}";
+  };
+  const std::string list = "{\"detections\": [" + row(0.3, 4.0, "") + ", " + row(0.3, 5.0, "") + "]}";
+  EXPECT_TRUE(take(list).refused.empty());
+  expect_refused(list, "t", "repeats the detections of 0.3 s");
+  const std::string empty = R"({"detections": [{"sensor": "near", "t": 0.4}]})";
+  EXPECT_TRUE(take(empty).refused.empty());
+  expect_refused(empty, "t", "repeats the detections of 0.4 s");
+  EXPECT_TRUE(take("{\"detections\": " + row(0.5, 4.0, "") + "}").refused.empty());
+  EXPECT_TRUE(take("{\"detections\": " + row(0.5, 5.0, "") + "}").refused.empty());
+  expect_refused("{\"detections\": " + row(0.5, 4.0, "") + "}", "t", "repeats the detections of 0.5 s");
+  std::size_t scans = 0;
+  for (const core::Event& event : take(odometry(1.0)).recording.events) {
+    const auto* seen = std::get_if<core::Scan>(&event);
+    if (seen == nullptr) continue;
+    ++scans;
+    EXPECT_EQ(seen->observations.size(), seen->t_ns == 400'000'000 ? 0u : 2u);
+  }
+  EXPECT_EQ(scans, 3u);
+}
+
 TEST_F(OwnStreamLines, OfAnotherClockAreNotKeptForEver) {
   take(odometry(0.0));
   std::size_t refused = 0;

@@ -93,7 +93,27 @@ std::vector<LiveScans::Seen> LiveScans::check(const OwnLog& log, core::Nanosecon
     const core::Label label = log.detections[i].label;
     if (label >= 0) rows[i].label = label_of[static_cast<std::size_t>(label)];
   }
+  check_is_new(rows);
   return rows;
+}
+
+/// A line that adds nothing to scans that still wait was sent twice.
+void LiveScans::check_is_new(const std::vector<Seen>& rows) {
+  const auto is_known = [this](const Seen& row) {
+    const LiveScan* scan = waiting_scan(row.row_ns, row.sensor);
+    return scan != nullptr && (!row.observation || holds(*scan, row));
+  };
+  if (rows.empty() || !std::all_of(rows.begin(), rows.end(), is_known)) return;
+  throw StreamRefusal("t", "repeats the detections of " + text_of(rows.front().row_ns) + " s");
+}
+
+bool LiveScans::holds(const LiveScan& scan, const Seen& row) {
+  for (std::size_t i = 0; i < scan.labels.size(); ++i) {
+    const core::Observation& other = scan.scan.observations[i];
+    if (other.kind == row.observation->kind && other.z == row.observation->z && scan.labels[i] == row.label)
+      return true;
+  }
+  return false;
 }
 
 LiveScan* LiveScans::waiting_scan(core::Nanoseconds row_ns, std::size_t sensor) {
@@ -126,13 +146,7 @@ void LiveScans::add(const std::vector<Seen>& rows, bool whole, std::size_t line)
     LiveScan* known = waiting_scan(row.row_ns, row.sensor);
     LiveScan& scan = known != nullptr ? *known : begun_scan(row, line);
     scan.closed = whole;
-    if (!row.observation) continue;
-    bool repeated = false;
-    for (std::size_t i = 0; i < scan.labels.size() && !repeated; ++i) {
-      const core::Observation& other = scan.scan.observations[i];
-      repeated = other.kind == row.observation->kind && other.z == row.observation->z && scan.labels[i] == row.label;
-    }
-    if (repeated) continue;
+    if (!row.observation || holds(scan, row)) continue;
     scan.scan.observations.push_back(*row.observation);
     scan.labels.push_back(row.label);
   }

@@ -70,6 +70,8 @@ class LiveScans {
   std::size_t sensor_called(const std::string& name);
   void check_time(const OwnDetection& row, const Sensor& sensor, core::Nanoseconds woven_ns) const;
   core::Nanoseconds time_of(core::Nanoseconds row_ns, const Sensor& sensor) const;
+  void check_is_new(const std::vector<Seen>& rows);
+  static bool holds(const LiveScan& scan, const Seen& row);
   LiveScan* waiting_scan(core::Nanoseconds row_ns, std::size_t sensor);
   LiveScan& begun_scan(const Seen& row, std::size_t line);
   std::vector<core::Label> labels_of(const std::vector<std::string>& words);
