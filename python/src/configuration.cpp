@@ -43,7 +43,9 @@ void refuse_unknown(const CLI::App& app, const std::vector<std::string>& words) 
   for (const std::string& word : words) {
     const std::string key = word.substr(2, word.find('=') - 2);
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    throw core::InputError("unknown option '" + key + "'; the nearest is '" + core::nearest_name(key, known) + "'");
+    const std::string near = core::near_name(key, known);
+    throw core::InputError("unknown option '" + key + '\'' +
+                           (near.empty() ? std::string() : "; the nearest is '" + near + '\''));
   }
 }
 

@@ -281,8 +281,9 @@ Scenario named_scenario(std::string_view name) {
     scenario.description = entry.description;
     return scenario;
   }
-  throw core::InputError("scenario: unknown name '" + std::string(name) + "', did you mean '" +
-                         core::nearest_name(name, scenario_names()) + "'?");
+  const std::string near = core::near_name(name, scenario_names());
+  throw core::InputError("scenario: unknown name '" + std::string(name) + '\'' +
+                         (near.empty() ? std::string() : ", did you mean '" + near + "'?"));
 }
 
 }  // namespace helixnav::sim

@@ -20,6 +20,16 @@ TEST(NearestName, CountsInsertionsDeletionsAndReplacements) {
   EXPECT_EQ(nearest_name("", {"abc", "a"}), "a");
 }
 
+TEST(NearName, IsTheNearestUnlessItIsUnlike) {
+  EXPECT_EQ(near_name("large_lop", {"large-loop", "sparse"}), "large-loop");
+  EXPECT_EQ(near_name("jbcc", {"jcbb", "nearest"}), "jcbb");
+  EXPECT_EQ(near_name("nosuch", {"long", "large-loop"}), "");
+  EXPECT_EQ(near_name("foo", {"dlr", "plaza"}), "");
+  EXPECT_EQ(near_name("search.particls", {"search.particles", "search.limit"}), "search.particles");
+  EXPECT_EQ(near_name("search.foo", {"search.particles", "search.limit"}), "") << "the section alone is no likeness";
+  EXPECT_EQ(near_name("x", {}), "");
+}
+
 TEST(NearestName, IsEmptyWithoutCandidates) { EXPECT_EQ(nearest_name("x", {}), ""); }
 
 }  // namespace

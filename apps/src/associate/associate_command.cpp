@@ -62,8 +62,9 @@ core::Recording recording_of(const AssociateJob& job, std::uint64_t seed) {
   }
   if (is_scenario(job.input)) return sim::simulate(sim::named_scenario(job.input), seed);
   if (!std::filesystem::exists(job.input)) {
-    throw core::InputError(job.input + ": neither a log nor a scenario; the nearest scenario is '" +
-                           core::nearest_name(job.input, known_scenarios()) + "'");
+    const std::string near = core::near_name(job.input, known_scenarios());
+    throw core::InputError(job.input + ": neither a log nor a scenario" +
+                           (near.empty() ? std::string() : "; the nearest scenario is '" + near + '\''));
   }
   core::Recording recording = logs::read_recording(job.input, job.settings.logs);
   apply_log_settings(recording, job.settings);

@@ -16,7 +16,8 @@ namespace {
 
 std::string section_of(const std::string& key) { return key.substr(0, key.find('.')); }
 
-/// Line of the text, from 1, that begins with the last part of `key`: CLI11's parser keeps no line numbers.
+/// Line of the text, from 1, that begins with `name` in its section, or with both and a dot outside of any: CLI11's parser keeps no line
+/// numbers.
 int line_of(const std::string& text, const std::string& section, const std::string& name) {
   std::istringstream file(text);
   std::string line;
@@ -25,8 +26,9 @@ int line_of(const std::string& text, const std::string& section, const std::stri
     const std::size_t first = line.find_first_not_of(" \t");
     if (first == std::string::npos) continue;
     if (line[first] == '[') current = line.substr(first + 1, line.find(']') - first - 1);
-    const bool starts_with_name = line.compare(first, name.size(), name) == 0;
-    if (starts_with_name && (current == section || section.empty())) return number;
+    const auto starts_with = [&](const std::string& word) { return line.compare(first, word.size(), word) == 0; };
+    if (starts_with(name) && (current == section || section.empty())) return number;
+    if (current.empty() && starts_with(section + '.' + name)) return number;
   }
   return 0;
 }
@@ -71,8 +73,10 @@ void apply_item(const std::vector<CLI::Option*>& options, const CLI::ConfigItem&
     for (const CLI::Option* option : options) {
       if (!known_section || section_of(key_of(*option)) == section) keys.push_back(key_of(*option));
     }
+    const std::string near = core::near_name(key, keys);
     throw config_error(path, line_of(text, section, item.name),
-                       "unknown key '" + key + "'; the nearest is '" + core::nearest_name(key, keys) + "'");
+                       "unknown key '" + key + "'; " +
+                           (near.empty() ? "'helixnav config --dump' lists all" : "the nearest is '" + near + '\''));
   }
   CLI::Option& option = **found;
   const auto [known, fresh] = given.emplace(&option, true);

@@ -45,12 +45,13 @@ inline CLI::Validator robot_numbers() {
   return CLI::Validator(objection, "");
 }
 
-/// One of these words; the objection names the nearest.
+/// One of these words; the objection names one that is near.
 inline CLI::Validator one_of(const std::vector<std::string>& words) {
   const auto objection = [words](std::string& word) -> std::string {
     if (std::find(words.begin(), words.end(), word) != words.end()) return {};
-    return "unknown name '" + word + "'; did you mean '" + core::nearest_name(word, words) +
-           "'? Known are: " + CLI::detail::join(words, ", ");
+    const std::string near = core::near_name(word, words);
+    return "unknown name '" + word + '\'' + (near.empty() ? "." : "; did you mean '" + near + "'?") +
+           " Known are: " + CLI::detail::join(words, ", ");
   };
   return CLI::Validator(objection, "{" + CLI::detail::join(words, ",") + "}");
 }

@@ -104,6 +104,9 @@ TEST_F(Usage, OfAConfigurationNamesFileAndLine) {
                        {"mine.toml:3", "unknown key 'filter.cell_sid_m'", "'filter.cell_side_m'"});
   expect_misconfigured("[filter]\ncell_side_m = -0.5\n", {"mine.toml:2", "from 0.001 to 1000000", "'-0.5'"});
   expect_misconfigured("[filter]\ncell_side_m = nan\n", {"mine.toml:2", "'nan'"});
+  expect_misconfigured("filter.cell_side_m = -0.5\n", {"mine.toml:1:", "'-0.5'"});
+  expect_misconfigured("[filter]\nfoo = 30\n",
+                       {"mine.toml:2", "unknown key 'filter.foo'; 'helixnav config --dump' lists all"});
   expect_misconfigured("[filters]\ncell_side_m = 30\n", {"mine.toml:2", "'filter.cell_side_m'"});
   expect_misconfigured("[association]\nmethod = \"jbcc\"\n", {"mine.toml:2", "did you mean 'jcbb'"});
 }

@@ -98,7 +98,7 @@ TEST_F(Warnings, RefuseToSmoothOrKnowWhatHasNoLabels) {
 }
 
 TEST_F(Warnings, ProposeKeysOfTheSectionThatWasMeant) {
-  const fs::path config = folder_.write("mine.toml", "[landmarks]\ncell_side_m = 4\n");
+  const fs::path config = folder_.write("mine.toml", "[landmarks]\nmature_look = 4\n");
   const Outcome outcome = replay({"--config", config});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find("the nearest is 'landmarks."), std::string::npos) << outcome.err;

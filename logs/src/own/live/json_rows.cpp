@@ -77,7 +77,11 @@ struct JsonRows::Line {
   [[noreturn]] void fail_unknown(const std::string& name) const {
     std::vector<std::string> names;
     for (const Table table : OwnTables::all) names.emplace_back(OwnTables::name_of(table));
-    fail(place_of(name, text), "unknown name '" + name + "'; the nearest is '" + core::nearest_name(name, names) + "'");
+    const std::string near = core::near_name(name, names);
+    std::string known;
+    for (const std::string& one : names) known += (known.empty() ? "; known are " : ", ") + one;
+    fail(place_of(name, text),
+         "unknown name '" + name + '\'' + (near.empty() ? known : "; the nearest is '" + near + '\''));
   }
 
   void add(Table table, const Json& row) {

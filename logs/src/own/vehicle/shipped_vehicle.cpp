@@ -28,8 +28,10 @@ std::string_view shipped_vehicle_text(const std::string& name) {
   const auto found = shipped_vehicle_texts().find(name);
   if (found != shipped_vehicle_texts().end()) return found->second;
   const std::vector<std::string> names = shipped_vehicle_names();
-  throw core::InputError(name + ": no such file, and no vehicle of that name ships; did you mean '" +
-                         core::nearest_name(name, names) + "'? Those that ship: " + listed(names));
+  const std::string near = core::near_name(name, names);
+  throw core::InputError(name + ": no such file, and no vehicle of that name ships" +
+                         (near.empty() ? "." : "; did you mean '" + near + "'?") +
+                         " Those that ship: " + listed(names));
 }
 
 std::optional<std::string> shipped_vehicle_of(LogFormat format) {

@@ -139,8 +139,10 @@ void TomlSection::refuse_rest() const {
     const std::string name(key.str());
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
     const toml::source_position at = key.source().begin;
+    const std::string near = core::near_name(name, known_);
     fail_at(path_, at.line, at.column,
-            "unknown key '" + full(name) + "'; the nearest is '" + full(core::nearest_name(name, known_)) + "'");
+            "unknown key '" + full(name) + '\'' +
+                (near.empty() ? std::string() : "; the nearest is '" + full(near) + '\''));
   }
 }
 
