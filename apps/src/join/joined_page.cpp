@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 
+#include "common/plan.hpp"
 #include "helixnav/core/decision_row.hpp"
 
 namespace helixnav::apps {
@@ -14,7 +15,6 @@ constexpr const char* page_style = R"(
 :root{color-scheme:light dark;--paper:#fff;--ink:#1b2330;--quiet:#5d6878;--line:#d9dde3;--kept:#8a94a3;--gone:#b3261e;--new:#1a7f4b;--moved:#6b46c1;--both:#b35900}
 @media(prefers-color-scheme:dark){:root{--paper:#12161c;--ink:#e6e9ee;--quiet:#9aa5b4;--line:#313a46;--kept:#6d7887;--gone:#ff8a80;--new:#5fd39a;--moved:#b79cff;--both:#ffb066}}
 body{font:15px/1.45 sans-serif;max-width:70em;margin:2em auto;padding:0 1em;background:var(--paper);color:var(--ink)}
-svg{width:100%;height:auto;max-height:85vh;border:1px solid var(--line)}
 .scroll{overflow-x:auto}table{border-collapse:collapse}td,th{padding:.2em .8em .2em 0;text-align:left;border-bottom:1px solid var(--line);white-space:nowrap}
 .quiet{color:var(--quiet)}.key{display:inline-block;margin-right:1.4em}.key svg{width:1.1em;height:1.1em;border:0;vertical-align:-.15em;margin-right:.3em}
 svg *{vector-effect:non-scaling-stroke}.alone{fill:none;stroke:var(--kept);stroke-width:1}.kept{fill:var(--kept)}
@@ -81,7 +81,7 @@ std::string component_picture(std::size_t component, const core::JointMap& map,
   Eigen::Vector2d low = map.joint.points_m.front(), high = low;
   for (const Eigen::Vector2d& point_m : map.joint.points_m) low = low.cwiseMin(point_m), high = high.cwiseMax(point_m);
   const double wide = std::max({(high - low).maxCoeff(), 1.0});
-  const double r = 0.008 * wide, margin = 0.03 * wide;
+  const double r = 0.008 * wide;
   std::map<core::LandmarkId, const ChangedLandmark*> changed;
   for (const ChangedLandmark& landmark : shared) {
     if (landmark.component == component) changed[landmark.id] = &landmark;
@@ -103,10 +103,7 @@ std::string component_picture(std::size_t component, const core::JointMap& map,
       loud += moved_mark(landmark.point_m, changed.at(landmark.counterpart)->point_m, r, title);
     }
   }
-  return "<svg role=\"img\" aria-label=\"Map of component " + std::to_string(component + 1) + "\" viewBox=\"" +
-         metres_text(low.x() - margin) + ' ' + metres_text(-high.y() - margin) + ' ' +
-         metres_text(high.x() - low.x() + 2.0 * margin) + ' ' + metres_text(high.y() - low.y() + 2.0 * margin) +
-         "\">\n" + quiet + loud + "</svg>\n";
+  return plan_html(low, high, quiet + loud, "Map of component " + std::to_string(component + 1));
 }
 
 std::string counts_of(std::size_t component, const std::vector<ChangedLandmark>& shared) {
@@ -163,8 +160,8 @@ std::string joined_page(const std::vector<std::string>& names, const supervisor:
   std::string page =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\"><title>HelixNav joined sessions</title>\n<style>" +
-      std::string(page_style) + "</style></head><body>\n<h1>" + std::to_string(names.size()) + " sessions, " +
-      std::to_string(joined.components.size()) +
+      std::string(page_style) + plan_style + "</style></head><body>\n<h1>" + std::to_string(names.size()) +
+      " sessions, " + std::to_string(joined.components.size()) +
       (joined.components.size() == 1 ? " map</h1>\n" : " maps that nothing joins</h1>\n") +
       placing_table(names, joined);
   for (std::size_t k = 0; k < joined.components.size(); ++k) {

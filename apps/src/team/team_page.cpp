@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <set>
 
+#include "common/plan.hpp"
 #include "helixnav/files/number_text.hpp"
 #include "team/team_folder.hpp"
 
@@ -21,7 +22,6 @@ constexpr const char* style =
     "body{margin:0 auto;max-width:1240px;padding:1.5rem;background:var(--paper);color:var(--ink);font:15px/1.5 "
     "system-ui,\"Liberation Sans\",sans-serif}"
     "a{color:var(--accent)}code{overflow-wrap:anywhere}"
-    "svg{width:100%;max-height:80vh;border:1px solid var(--line)}"
     "pre{background:var(--panel);border:1px solid var(--line);padding:1rem;white-space:pre-wrap}"
     "polyline,path{vector-effect:non-scaling-stroke}.truth{stroke:var(--line);stroke-width:5}"
     ".landmark{stroke:var(--ink);stroke-width:5;stroke-linecap:round}";
@@ -52,11 +52,8 @@ class Picture {
     body_ += "<path class=\"landmark\" d=\"M" + place(at_m) + "h0\"><title>" + title + "</title></path>\n";
   }
 
-  std::string svg() const {
-    const Eigen::Vector2d size = (high_ - low_).cwiseMax(1e-3);
-    const Eigen::Vector2d margin = 0.05 * size;
-    return "<svg viewBox=\"" + shortened(low_.x() - margin.x()) + ' ' + shortened(low_.y() - margin.y()) + ' ' +
-           shortened(1.1 * size.x()) + ' ' + shortened(1.1 * size.y()) + "\">\n" + body_ + "</svg>\n";
+  std::string html() const {
+    return plan_html({low_.x(), -high_.y()}, {high_.x(), -low_.y()}, body_, "Paths and landmarks in this frame");
   }
 
  private:
@@ -101,7 +98,7 @@ std::string picture_of(const TeamTask& task, const TeamDrive& drive, int compone
     picture.dot(landmark.point.mean_m, "landmark " + std::to_string(landmark.id) + ", " +
                                            std::to_string(landmark.observations) + " observations");
   }
-  return picture.svg();
+  return picture.html();
 }
 
 std::string legend(const TeamTask& task, const TeamDrive& drive, int component) {
@@ -122,8 +119,9 @@ std::string team_page(const std::string& command, const TeamTask& task, const Te
   std::string page =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\"><title>HelixNav team</title>\n<style>" +
-      std::string(style) + "</style></head><body>\n<h1>" + escaped(task.recording.name) + "</h1>\n<p><code>" +
-      escaped(command) + "</code></p>\n<pre>" + escaped(team_text(task, drive, evaluation)) + "</pre>\n";
+      std::string(style) + plan_style + "</style></head><body>\n<h1>" + escaped(task.recording.name) +
+      "</h1>\n<p><code>" + escaped(command) + "</code></p>\n<pre>" + escaped(team_text(task, drive, evaluation)) +
+      "</pre>\n";
   std::set<int> components;
   for (const TeamDrive::Robot& robot : drive.robots) components.insert(robot.component);
   for (const int component : components) {
