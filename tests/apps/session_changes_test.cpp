@@ -7,6 +7,7 @@
 
 #include "helixnav/core/random.hpp"
 #include "join/joined_page.hpp"
+#include "join/joined_warnings.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -199,6 +200,17 @@ TEST(SessionChanges, WhatIsGoneIsTentativeFromThenOn) {
   EXPECT_EQ(std::count(joined.components[0].states.begin(), joined.components[0].states.end(),
                        core::LandmarkState::tentative),
             1);
+}
+
+TEST(SessionChanges, ThePageWarnsOfMapsWithManyLandmarksTwice) {
+  TwoSessions world;
+  std::vector<ChangedLandmark> changes = world.changes();
+  ASSERT_GE(changes.size(), 20u);
+  EXPECT_TRUE(joined_warnings(world.joined(), changes).empty());
+  for (std::size_t k = 0; k < 20; ++k) changes[k].perhaps_copy_of = changes[k ^ 1u].id;
+  ASSERT_EQ(joined_warnings(world.joined(), changes).size(), 1u);
+  const std::string page = joined_page({"monday", "tuesday"}, world.joined(), changes);
+  EXPECT_NE(page.find("component 1: 10 of its"), std::string::npos);
 }
 
 TEST(SessionChanges, ThePageHasAMarkForEachAndNamesTheSessions) {

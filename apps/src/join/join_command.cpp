@@ -16,6 +16,7 @@
 #include "helixnav/core/decision_row.hpp"
 #include "joined_folder.hpp"
 #include "joined_names.hpp"
+#include "joined_warnings.hpp"
 #include "run_views.hpp"
 #include "session_changes.hpp"
 
@@ -65,24 +66,6 @@ void say_changes(const std::vector<ChangedLandmark>& shared) {
               counts[Change::both]);
 }
 
-/// Some are neighbours that each session missed one of; many are a part of the map that two sessions left twice.
-void warn_of_copies(const supervisor::JoinedSessions& joined, const std::vector<ChangedLandmark>& shared) {
-  constexpr std::size_t few = 5, one_in = 20;
-  for (std::size_t number = 0; number < joined.components.size(); ++number) {
-    const auto is_copy = [&](const ChangedLandmark& one) {
-      return one.component == number && one.perhaps_copy_of != core::no_landmark;
-    };
-    const auto pairs = static_cast<std::size_t>(std::count_if(shared.begin(), shared.end(), is_copy)) / 2;
-    const std::size_t landmarks = joined.components[number].joint.ids.size();
-    if (pairs < few || pairs * one_in < landmarks) continue;
-    std::fprintf(stderr,
-                 "helixnav: warning: component %zu: %zu of its %zu landmarks stand where another one may stand that no "
-                 "common run saw: they are on the map twice, since the runs do not tell them from their neighbours "
-                 "(perhaps_copy_of in changes.csv)\n",
-                 number + 1, pairs, landmarks);
-  }
-}
-
 void say(const JoinJob& job, const supervisor::JoinedSessions& joined, const std::vector<ChangedLandmark>& shared) {
   for (std::size_t k = 0; k < job.runs.size(); ++k) {
     const supervisor::JoinedSession& session = joined.sessions[k];
@@ -116,7 +99,9 @@ void join(CLI::App& command, const JoinJob& job) {
   supervisor::JoinedSessions joined = supervisor::join_sessions(maps);
   tell_drives(maps, joined);
   const std::vector<ChangedLandmark> shared = shared_landmarks(maps, joined, read_views(job.runs, maps));
-  warn_of_copies(joined, shared);
+  for (const std::string& warning : joined_warnings(joined, shared)) {
+    std::fprintf(stderr, "helixnav: warning: %s\n", warning.c_str());
+  }
   make_gone_tentative(shared, joined.components);
   const JoinedNames names = joined_names(read_names(job.runs), joined);
   for (const std::string& note : names.notes) std::fprintf(stderr, "helixnav: note: %s\n", note.c_str());

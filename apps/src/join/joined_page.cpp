@@ -7,6 +7,7 @@
 
 #include "common/plan.hpp"
 #include "helixnav/core/decision_row.hpp"
+#include "joined_warnings.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -16,7 +17,7 @@ constexpr const char* page_style = R"(
 @media(prefers-color-scheme:dark){:root{--paper:#12161c;--ink:#e6e9ee;--quiet:#9aa5b4;--line:#313a46;--kept:#6d7887;--gone:#ff8a80;--new:#5fd39a;--moved:#b79cff;--both:#ffb066}}
 body{font:15px/1.45 sans-serif;max-width:70em;margin:2em auto;padding:0 1em;background:var(--paper);color:var(--ink)}
 .scroll{overflow-x:auto}table{border-collapse:collapse}td,th{padding:.2em .8em .2em 0;text-align:left;border-bottom:1px solid var(--line);white-space:nowrap}
-.quiet{color:var(--quiet)}.key{display:inline-block;margin-right:1.4em}.key svg{width:1.1em;height:1.1em;border:0;vertical-align:-.15em;margin-right:.3em}
+.quiet{color:var(--quiet)}.warning{border-left:.25em solid var(--gone);padding-left:.8em}.key{display:inline-block;margin-right:1.4em}.key svg{width:1.1em;height:1.1em;border:0;vertical-align:-.15em;margin-right:.3em}
 svg *{vector-effect:non-scaling-stroke}.alone{fill:none;stroke:var(--kept);stroke-width:1}.kept{fill:var(--kept)}
 .gone{fill:none;stroke:var(--gone);stroke-width:2}.new{fill:none;stroke:var(--new);stroke-width:2}.moved{fill:none;stroke:var(--moved);stroke-width:2}.both{fill:none;stroke:var(--both);stroke-width:2}
 )";
@@ -164,6 +165,9 @@ std::string joined_page(const std::vector<std::string>& names, const supervisor:
       " sessions, " + std::to_string(joined.components.size()) +
       (joined.components.size() == 1 ? " map</h1>\n" : " maps that nothing joins</h1>\n") +
       placing_table(names, joined);
+  for (const std::string& warning : joined_warnings(joined, shared)) {
+    page += "<p class=\"warning\">⚠ " + as_html(warning) + "</p>\n";
+  }
   for (std::size_t k = 0; k < joined.components.size(); ++k) {
     const core::JointMap& map = joined.components[k];
     page +=
