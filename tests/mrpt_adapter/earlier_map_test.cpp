@@ -224,7 +224,8 @@ TEST_F(EarlierMap, WhatCannotBeUsedLeavesTheBuilderAsItWas) {
   const core::PoseGaussian before = RunAccess::pose(builder);
   EXPECT_THROW(builder.initializeFromRun(path("nowhere")), core::InputError);
   EXPECT_THROW(builder.loadCurrentMapFromFile(path("nowhere") + "/map.bin"), core::InputError);
-  EXPECT_THROW(builder.loadCurrentMapFromFile(path("nowhere")), core::InputError) << "MRPT would begin with an empty map";
+  EXPECT_THROW(builder.loadCurrentMapFromFile(path("nowhere")), core::InputError)
+      << "MRPT would begin with an empty map";
   core::JointMap one;
   one.joint.ids = {0};
   one.joint.points_m = {{1.0, 2.0}};
