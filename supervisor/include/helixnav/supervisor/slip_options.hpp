@@ -21,7 +21,7 @@ struct SlipOptions {
   double nats = 8.0;             ///< over what was associated without a slip
   double same_pairs_nats = 4.0;  ///< over the same pairs without a slip
   double rival_nats = 6.9;       ///< over a slip to any other place: a thousand to one
-  double few_pairs_nats = 15.0;  ///< instead of `nats`, if it rests on only three pairs
+  double few_pairs_nats = 11.0;  ///< instead of `nats`, if it rests on only three pairs
   double tentative_nats = 25.0;  ///< instead of `nats`, if it rests on landmarks seen only once
   int least_pairs = 4;
 };
