@@ -142,7 +142,7 @@ TEST(SlipDecision, TakesASlipOfAPitchForNoneWhereItsRivalIsToSeeNewRows) {
 TEST(SlipDecision, NeedsMoreEvidenceFromFewOrTentativeLandmarks) {
   const SlipScene three(scattered(3, 3), {0.5, 0.3, 2.0 * degree}, 3);
   const std::optional<Slip> slip = decide(three);
-  EXPECT_TRUE(!slip || slip->figures.nats > 15.0);
+  EXPECT_TRUE(!slip || slip->figures.nats > SlipOptions{}.few_pairs_nats);
   const std::vector<double> new_per_m2(three.seen.size(), extraneous_per_m2);
   SlipQuestion question{three.geometry, three.seen, new_per_m2, {}, a_pair_nats, extraneous_per_m2, true};
   EXPECT_FALSE(decide_slip(question, SlipOptions{}));
