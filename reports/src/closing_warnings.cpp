@@ -60,8 +60,7 @@ std::string refused_while_localizing_text(const Closings& closings) {
          counted(closings.accepted, "time") +
          " accepted; searches that ended undecided: " + std::to_string(closings.undecided) +
          "): what was seen there differs from the map by more than the covariances allow. The map is bent by more than "
-         "it "
-         "says, or the vehicle was elsewhere meanwhile. The map itself is unchanged";
+         "it says, or the vehicle was elsewhere meanwhile. The map itself is unchanged";
 }
 
 /// Of 193 drives of a tester, the seven like that had a mean NEES of 4 to 14.

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "helixnav/reports/decision_sentence.hpp"
+#include "helixnav/reports/run_warnings.hpp"
 
 namespace helixnav::reports {
 namespace {

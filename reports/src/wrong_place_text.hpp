@@ -14,9 +14,6 @@ std::string wrong_place_text(const runs::Run& run);
 /// The part was placed again; nobody carried the vehicle.
 bool is_wrong_place(const core::Decision& decision);
 
-/// Likewise: the start given was wrong.
-bool is_wrong_start(const core::Decision& decision);
-
 /// The vehicle was carried away, or may have been.
 bool is_carried_off(const core::Decision& decision);
 

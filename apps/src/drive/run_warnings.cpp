@@ -76,15 +76,10 @@ std::string given_start_text(const runs::Run& run) {
          "holds landmarks twice; --start unknown finds the start itself";
 }
 
-bool is_wrong_start(const core::Decision& decision) {
-  const auto* carried = std::get_if<core::CarriedDecision>(&decision);
-  return carried != nullptr && carried->cause == core::CarriedDecision::Cause::wrong_start;
-}
-
 /// Empty if the start that was given on an earlier map is right as far as can be told.
 std::string doubted_start_text(const runs::Run& run) {
   const bool was_wrong = std::any_of(run.steps.begin(), run.steps.end(), [](const core::StepReport& step) {
-    return std::any_of(step.decisions.begin(), step.decisions.end(), is_wrong_start);
+    return std::any_of(step.decisions.begin(), step.decisions.end(), reports::is_wrong_start);
   });
   if (was_wrong) {
     return "the start given (--start) is wrong or off the map: what was seen does not fit the map there. It was "

@@ -64,11 +64,10 @@ bool doubt_missing_rows(const OwnLog& log, std::size_t before, double gap_s, Dou
   };
   const double beside_mps = std::min(speed_mps(before), speed_mps(before + 2));
   if (!(speed_mps(before + 1) < much * beside_mps)) return false;
-  doubts.push_back(
-      sentence("odometry: rows are missing from %.9g s on for %.4g s: the vehicle moves %.3g m in that time, and %.3g "
-               "m/s before and "
-               "after. The path breaks there; if the vehicle did drive, the motion is lost (event lost says so)",
-               core::seconds(log.odometry[before].t_ns), gap_s, length_m(log, before + 1), beside_mps));
+  doubts.push_back(sentence(
+      "odometry: rows are missing from %.9g s on for %.4g s: the vehicle moves %.3g m in that time, and %.3g "
+      "m/s before and after. The path breaks there; if the vehicle did drive, the motion is lost (event lost says so)",
+      core::seconds(log.odometry[before].t_ns), gap_s, length_m(log, before + 1), beside_mps));
   return true;
 }
 

@@ -194,8 +194,9 @@ void SeenAgain::see(std::int64_t step, std::size_t sensor, const std::vector<cor
         vanished.nats > needed)
       suspicion_ = std::move(vanished);
   }
-  count_seen_again(landmarks_with(Outcome::matched, fate), in_view.surely, by.last, by.surely);
-  count_seen_again(landmarks_with(Outcome::matched, fate), in_view.perhaps, by.last, by.perhaps);
+  const std::vector<LandmarkId> matched = landmarks_with(Outcome::matched, fate);
+  count_seen_again(matched, in_view.surely, by.last, by.surely);
+  count_seen_again(matched, in_view.perhaps, by.last, by.perhaps);
   by.last = seen_by(fate);
 }
 

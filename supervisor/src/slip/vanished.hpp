@@ -72,7 +72,7 @@ class SeenAgain {
 
  private:
   struct Again;
-  /// What one sensor saw. Sensors that see the same landmarks seldom do so one after the other.
+  /// What one sensor saw: scans of others, which look elsewhere, come in between.
   struct BySensor {
     core::Pose2 T_robot_sensor;
     double min_bearing_rad = 0.0, max_bearing_rad = 0.0;

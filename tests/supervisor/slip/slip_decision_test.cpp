@@ -141,10 +141,19 @@ TEST(SlipDecision, TakesASlipOfAPitchForNoneWhereItsRivalIsToSeeNewRows) {
 
 TEST(SlipDecision, NeedsMoreEvidenceFromFewOrTentativeLandmarks) {
   const SlipScene three(scattered(3, 3), {0.5, 0.3, 2.0 * degree}, 3);
-  const std::optional<Slip> slip = decide(three);
-  EXPECT_TRUE(!slip || slip->figures.nats > SlipOptions{}.few_pairs_nats);
   const std::vector<double> new_per_m2(three.seen.size(), extraneous_per_m2);
-  SlipQuestion question{three.geometry, three.seen, new_per_m2, {}, a_pair_nats, extraneous_per_m2, true};
+  SlipQuestion question{three.geometry, three.seen, new_per_m2, {}, a_pair_nats, extraneous_per_m2, false};
+  SlipOptions options;
+  options.few_pairs_nats = 0.0;
+  const std::optional<Slip> slip = decide_slip(question, options);
+  ASSERT_TRUE(slip);
+  EXPECT_EQ(slip->figures.pairs, 3);
+  for (const double more : {-0.01, 0.01}) {
+    options.few_pairs_nats = slip->figures.nats + more;
+    EXPECT_EQ(decide_slip(question, options).has_value(), more < 0.0);
+  }
+  EXPECT_GT(SlipOptions{}.few_pairs_nats, SlipOptions{}.nats);
+  question.tentative = true;
   EXPECT_FALSE(decide_slip(question, SlipOptions{}));
 }
 

@@ -64,9 +64,9 @@ struct JsonRows::Line {
       fail(1, "a number that is larger than any that can be held (1.8e308)");
     } catch (const Json::exception& error) {
       const auto* placed = dynamic_cast<const Json::parse_error*>(&error);
-      const bool is_number = text.find("NaN") != std::string::npos || text.find("Infinity") != std::string::npos;
+      const bool has_no_number = text.find("NaN") != std::string::npos || text.find("Infinity") != std::string::npos;
       fail(placed != nullptr ? placed->byte : 1,
-           is_number
+           has_no_number
                ? "NaN and Infinity are no numbers of JSON: leave out what has no value"
                : "no JSON; each line is one object, as {\"odometry\": {\"t\": 0.1, \"v_mps\": 1, \"omega_radps\": 0}}");
     }

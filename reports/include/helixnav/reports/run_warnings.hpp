@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "helixnav/core/decision.hpp"
 #include "helixnav/evaluation/evaluation.hpp"
 #include "helixnav/runs/run.hpp"
 
@@ -25,6 +26,9 @@ std::string contradicted_place_text(const runs::Run& run);
 /// Warns that the place on an earlier map, or on what was mapped before the vehicle was carried, was sought and not
 /// found, and what the best answer lacked: otherwise empty. Test: reports/opening_test.cpp.
 std::string place_not_found_text(const runs::Run& run);
+
+/// Whether a start that was given on an earlier map was found to be wrong: nobody carried the vehicle.
+bool is_wrong_start(const core::Decision& decision);
 
 /// Warns if the run ended without knowing its place, or went on for long without a landmark that it knew. Test:
 /// reports/opening_test.cpp.
