@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "helixnav/relocalize/repetition.hpp"
 #include "index/parts.hpp"
 
 namespace helixnav::relocalize {
@@ -89,18 +90,24 @@ double evidence_elsewhere(const MapIndex& map, std::size_t landmarks, double eno
   return best;
 }
 
-void judge_where_places_repeat(const MapIndex& map, std::size_t landmarks, const AskOptions& options, Answer& answer) {
+void judge_where_places_repeat(const MapIndex& map, const Question& question, const AskOptions& options,
+                               Answer& answer) {
   if (answer.verdict != Verdict::closed) return;
+  const Place& best = answer.places.front();
   const double lead_needed = -std::log(options.alpha);
-  const double evidence = answer.places.front().evidence;
-  const double elsewhere = evidence_elsewhere(map, landmarks, evidence - lead_needed);
-  answer.gap = std::min(answer.gap, evidence - std::max(0.0, elsewhere));
-  if (answer.gap < lead_needed) answer.verdict = Verdict::ambiguous;
+  const double share = independent_share(map, question, best);
+  answer.gap *= share;
+  const bool is_open = answer.gap < lead_needed || share * best.evidence < evidence_needed(options);
+  if (!is_open) {
+    const double elsewhere = evidence_elsewhere(map, question.landmarks.size(), best.evidence - lead_needed);
+    answer.gap = std::min(answer.gap, best.evidence - std::max(0.0, elsewhere));
+  }
+  if (is_open || answer.gap < lead_needed) answer.verdict = Verdict::ambiguous;
 }
 
 Answer ask_where_places_repeat(const MapIndex& map, const Question& question, const AskOptions& options) {
   Answer answer = ask(map, question, options);
-  judge_where_places_repeat(map, question.landmarks.size(), options, answer);
+  judge_where_places_repeat(map, question, options, answer);
   return answer;
 }
 

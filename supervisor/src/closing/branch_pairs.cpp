@@ -11,6 +11,7 @@
 #include "helixnav/core/angle.hpp"
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
+#include "helixnav/core/rigid_fit.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -56,6 +57,15 @@ KeptRemoved kept_removed(const std::vector<pf_relocalize::ConstellationPair>& pa
   KeptRemoved result;
   for (const pf_relocalize::ConstellationPair& pair : pairs) result.emplace_back(pair.old_landmark, pair.branch);
   return result;
+}
+
+core::Pose2 fitted_to_pairs(const cekf::CompressedEkf& filter, const KeptRemoved& pairs) {
+  std::vector<Eigen::Vector2d> kept_m, removed_m;
+  for (const auto& [kept, removed] : pairs) {
+    kept_m.push_back(filter.landmark_mean(kept));
+    removed_m.push_back(filter.landmark_mean(removed));
+  }
+  return core::fit_rigidly(kept_m, removed_m);
 }
 
 void note(const KeptRemoved& pairs, Closing& closing) {

@@ -22,6 +22,9 @@ constexpr double leftover_reach_share = 0.35;
 
 KeptRemoved kept_removed(const std::vector<pf_relocalize::ConstellationPair>& pairs);
 
+/// T_map_branch: lays the branch's landmarks, where the filter has them, on their partners. Without covariances.
+core::Pose2 fitted_to_pairs(const cekf::CompressedEkf& filter, const KeptRemoved& pairs);
+
 /// An old landmark that a landmark of the branch may be a duplicate of.
 struct Leftover {
   core::LandmarkId kept, removed;

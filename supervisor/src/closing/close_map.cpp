@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "closing/agreed_pairs.hpp"
 #include "closing/close_by_merge.hpp"
 #include "closing/close_by_replay.hpp"
 #include "closing/close_by_restart.hpp"
@@ -47,8 +48,9 @@ Closing close_map(cekf::CompressedEkf& filter, const ClosingView& view,
     return close_by_restart(filter, mapped_since(search.begun_path_m(), view.life),
                             search.heaviest_mode(filter).value_or(filter.pose()));
   }
-  const std::vector<pf_relocalize::ConstellationPair> pairs = tied_pairs(filter, all_pairs);
   const Branch branch = branch_of(view, options);
+  const std::vector<pf_relocalize::ConstellationPair> pairs =
+      agreed_pairs(filter, branch, search.old_landmarks(), tied_pairs(filter, all_pairs), options);
   if (options.closing == ClosingMethod::replay) {
     Closing closing = close_by_replay(filter, view.record, pairs, branch, search.old_landmarks(), options);
     if (closing.accepted) return closing;

@@ -11,7 +11,6 @@
 
 #include "closing/pair_differences.hpp"
 #include "helixnav/core/chi2.hpp"
-#include "helixnav/core/rigid_fit.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -20,15 +19,6 @@ using core::LandmarkId;
 using Index = Eigen::Index;
 
 constexpr std::size_t most_pairs = 100;  // the nearest: what lies farther back adds little, and all cost its cube
-
-core::Pose2 fitted_to_pairs(const cekf::CompressedEkf& filter, const KeptRemoved& pairs) {
-  std::vector<Eigen::Vector2d> kept_m, removed_m;
-  for (const auto& [kept, removed] : pairs) {
-    kept_m.push_back(filter.landmark_mean(kept));
-    removed_m.push_back(filter.landmark_mean(removed));
-  }
-  return core::fit_rigidly(kept_m, removed_m);
-}
 
 /// What moving and turning the branch as a whole, about the first pair, adds to the differences of its pairs.
 Eigen::MatrixXd by_pose(const cekf::CompressedEkf& filter, const KeptRemoved& pairs, const core::Pose2& T) {

@@ -31,19 +31,20 @@ relocalize::AskOptions options_for(std::size_t questions) {
 
 struct AnsweredQuestion {
   relocalize::Answer answer;
-  std::size_t landmarks = 0;  ///< of the question
+  relocalize::Question question;
 };
 
 /// All answers: closed ones first, the surest first within each group. What else the map repeats is not asked yet: in a vineyard that
 /// takes seconds for each.
 std::vector<AnsweredQuestion> ask_for(const EarlierMap& session, const relocalize::MapIndex& index,
                                       const std::function<void()>& now_and_then) {
-  const std::vector<relocalize::Question> questions = map_questions(session, index.options());
+  std::vector<relocalize::Question> questions = map_questions(session, index.options());
   const relocalize::AskOptions options = options_for(questions.size());
   std::vector<AnsweredQuestion> answers;
-  for (const relocalize::Question& question : questions) {
+  for (relocalize::Question& question : questions) {
     now_and_then();
-    answers.push_back({relocalize::ask(index, question, options), question.landmarks.size()});
+    relocalize::Answer answer = relocalize::ask(index, question, options);
+    answers.push_back({std::move(answer), std::move(question)});
   }
   std::stable_sort(answers.begin(), answers.end(), [](const AnsweredQuestion& a, const AnsweredQuestion& b) {
     const auto rank = [](const AnsweredQuestion& asked) {
@@ -80,7 +81,7 @@ core::PlacedDecision nothing_asked(std::size_t questions, const core::JointMap& 
 
 void note(const AnsweredQuestion& asked, core::PlacedDecision& decision) {
   const relocalize::Answer& answer = asked.answer;
-  decision.landmarks = static_cast<int>(asked.landmarks);
+  decision.landmarks = static_cast<int>(asked.question.landmarks.size());
   if (answer.verdict == relocalize::Verdict::ambiguous) decision.verdict = core::PlacedDecision::Verdict::ambiguous;
   decision.lead = answer.gap;
   if (answer.places.empty()) return;
@@ -158,7 +159,7 @@ bool place_in(const core::JointMap& session_map, const std::function<void()>& no
   for (AnsweredQuestion& asked : answers) {
     if (asked.answer.verdict != relocalize::Verdict::closed || tried == most_tried) break;
     now_and_then();
-    relocalize::judge_where_places_repeat(index, asked.landmarks, options_for(answers.size()), asked.answer);
+    relocalize::judge_where_places_repeat(index, asked.question, options_for(answers.size()), asked.answer);
     if (tried == 0) note(asked, result.decision);
     if (asked.answer.verdict != relocalize::Verdict::closed) continue;
     ++tried;

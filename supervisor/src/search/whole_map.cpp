@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "association/revisit_ambiguity.hpp"
+#include "closing/branch_pairs.hpp"
 #include "closing/close_against_odometry.hpp"
 #include "closing/tied_by_view.hpp"
 #include "helixnav/core/errors.hpp"
-#include "helixnav/core/rigid_fit.hpp"
+#include "helixnav/relocalize/repetition.hpp"
 #include "loop/navigation_loop.hpp"
 #include "placing/question_landmarks.hpp"
 #include "placing/session_question.hpp"
@@ -60,15 +61,12 @@ std::vector<std::vector<pf_relocalize::ConstellationPair>> places_left(const rel
   return found;
 }
 
-/// Where the pairs put the branch, on the map as it is now.
-core::Pose2 branch_on_map(const std::vector<pf_relocalize::ConstellationPair>& pairs,
-                          const cekf::CompressedEkf& filter) {
-  std::vector<Eigen::Vector2d> on_map_m, in_branch_m;
-  for (const pf_relocalize::ConstellationPair& pair : pairs) {
-    on_map_m.push_back(filter.landmark_mean(pair.old_landmark));
-    in_branch_m.push_back(filter.landmark_mean(pair.branch));
-  }
-  return core::fit_rigidly(on_map_m, in_branch_m);
+/// Of what the branch's landmarks say: a row of posts fits any other row of the same spacing.
+double independent_share_of(const std::vector<pf_relocalize::ConstellationPair>& pairs,
+                            const cekf::CompressedEkf& filter, const relocalize::IndexOptions& lengths) {
+  std::vector<Eigen::Vector2d> in_branch_m;
+  for (const auto& pair : pairs) in_branch_m.push_back(filter.landmark_mean(pair.branch));
+  return relocalize::independent_share(in_branch_m, relocalize::same_to_m(lengths));
 }
 
 }  // namespace
@@ -207,7 +205,7 @@ bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair
                               core::StepReport& report) {
   ClosingView view{search, belief_.existence, belief_.coverage, scan, {trigger, tape_}, tied_if_slipping_m()};
   const core::Pose2 before = belief_.filter.pose().mean;
-  ForbiddenPlace place{pairs, branch_on_map(pairs, belief_.filter), {}};
+  ForbiddenPlace place{pairs, fitted_to_pairs(belief_.filter, kept_removed(pairs)), {}};
   decision.displaced_m = (core::compose(place.T_map_branch, before).position_m() - before.position_m()).norm();
   Closing closing = close_map(belief_.filter, view, pairs, options_.search);
   decision.cost = closing.cost;
@@ -219,7 +217,8 @@ bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair
       pending_.forbidden = pairs;  // a pause tells when it was carried, matches only since when nothing fitted
       return false;
     }
-    decision.needed += nats_against_odometry(closing);
+    decision.needed = (decision.needed + nats_against_odometry(closing)) /
+                      independent_share_of(pairs, belief_.filter, index_lengths());
     if (std::min(decision.evidence, decision.lead) < decision.needed) return false;
     place.as_measured = closing;
     view.tied_since_m = tied_since_m(tape_, belief_.existence.path_m(), options_.search.old_after_m);

@@ -16,10 +16,11 @@ namespace helixnav::relocalize {
 double evidence_elsewhere(const MapIndex& map, std::size_t landmarks,
                           double enough = std::numeric_limits<double>::infinity());
 
-/// A closed answer to a question of so many landmarks stays closed only if its evidence is ahead of evidence_elsewhere() as it has to
-/// be ahead of its rivals; if it is not, it becomes ambiguous. For whoever will act on a single answer: where places repeat, the
-/// landmarks that make a wrong one fit are not independent, as α assumes.
-void judge_where_places_repeat(const MapIndex& map, std::size_t landmarks, const AskOptions& options, Answer& answer);
+/// A closed answer stays closed only if its evidence is ahead of evidence_elsewhere() as it has to be ahead of its rivals, and if the
+/// independent_share() of its evidence and lead is enough by itself; else it becomes ambiguous. For whoever will act on a single
+/// answer: where places repeat, the landmarks that make a wrong one fit are not independent, as α assumes.
+void judge_where_places_repeat(const MapIndex& map, const Question& question, const AskOptions& options,
+                               Answer& answer);
 
 /// ask(), judged like that.
 Answer ask_where_places_repeat(const MapIndex& map, const Question& question, const AskOptions& options = {});
