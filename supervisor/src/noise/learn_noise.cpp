@@ -27,18 +27,21 @@ void NavigationLoop::learn_noise(const core::Scan& scan) {
 
   std::vector<core::LandmarkId> ids;
   std::vector<SeenPoint> seen;
-  std::vector<PointPair> pairs;
-  std::vector<Look> looks;
   for (const NoisePair& pair : found) {
-    pairs.push_back({seen.size(), ids.size()});
     ids.push_back(pair.landmark);
     seen.push_back(pair.seen);
     seen.back().covariance_m2 *= noise_.scale.observations();
-    const Eigen::Vector2d at_m = core::transform(belief_.filter.pose().mean, pair.seen.point_m);
-    const Eigen::Vector2d back_m = belief_.filter.pose().mean.position_m() - at_m;
-    looks.push_back({pair.landmark, noise_.sides.is_new_side(pair.landmark, std::atan2(back_m.y(), back_m.x()))});
   }
   const RelativeGeometry geometry(belief_.filter.joint(ids));
+  std::vector<PointPair> pairs;
+  std::vector<Look> looks;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    pairs.push_back({k, k});
+    const Eigen::Vector2d at_m = core::transform(belief_.filter.pose().mean, seen[k].point_m);
+    const Eigen::Vector2d back_m = belief_.filter.pose().mean.position_m() - at_m;
+    looks.push_back({ids[k], noise_.sides.is_new_side(ids[k], std::atan2(back_m.y(), back_m.x())),
+                     is_fair(found[k], geometry.covariance_of(k, k) + seen[k].covariance_m2)});
+  }
   noise_.scale.observe(PairEquations(geometry, seen, pairs, Eigen::Vector3d::Zero()), looks,
                        belief_.filter.pose().mean.heading_rad, Q);
 }

@@ -7,6 +7,8 @@
 #include <limits>
 #include <optional>
 
+#include <Eigen/LU>
+
 #include "helixnav/core/angle.hpp"
 
 namespace helixnav::supervisor {
@@ -23,10 +25,15 @@ double to_next_m(const std::vector<SeenPoint>& seen, std::size_t s) {
   return nearest_m;
 }
 
+struct OnlyLandmark {
+  core::LandmarkId id;
+  double limit_m;  ///< a quarter of the distance to the next
+};
+
 /// The landmark near `point_m` [world], if nothing else within `spacing_m` could be mistaken for it.
-std::optional<core::LandmarkId> only_landmark(const cekf::CompressedEkf& filter, const Eigen::Vector2d& point_m,
-                                              double spacing_m) {
-  std::optional<core::LandmarkId> nearest;
+std::optional<OnlyLandmark> only_landmark(const cekf::CompressedEkf& filter, const Eigen::Vector2d& point_m,
+                                          double spacing_m) {
+  core::LandmarkId nearest = core::no_landmark;
   double nearest_m = std::numeric_limits<double>::infinity();
   double second_m = spacing_m;
   for (const core::LandmarkId id : filter.landmarks_within(point_m, spacing_m)) {
@@ -39,10 +46,19 @@ std::optional<core::LandmarkId> only_landmark(const cekf::CompressedEkf& filter,
       second_m = std::min(second_m, distance_m);
     }
   }
-  return distinct * nearest_m < second_m ? nearest : std::nullopt;
+  if (distinct * nearest_m >= second_m) return std::nullopt;
+  return OnlyLandmark{nearest, second_m / distinct};
 }
 
 }  // namespace
+
+bool is_fair(const NoisePair& pair, const Eigen::Matrix2d& S_m2) {
+  // Errors cut off there keep 0.76 of their mean square, and the dead band of a factor forgives 0.74.
+  constexpr double sigmas = 2.2;
+  const double half_trace = 0.5 * S_m2.trace();
+  const double largest_m2 = half_trace + std::sqrt(std::max(0.0, half_trace * half_trace - S_m2.determinant()));
+  return pair.limit_m * pair.limit_m >= sigmas * sigmas * largest_m2;
+}
 
 std::vector<NoisePair> noise_pairs(const cekf::CompressedEkf& filter, const core::Scan& scan) {
   const std::vector<SeenPoint> seen = seen_points(scan, most_observations);
@@ -52,7 +68,7 @@ std::vector<NoisePair> noise_pairs(const cekf::CompressedEkf& filter, const core
     const double spacing_m = to_next_m(seen, s);
     if (!std::isfinite(spacing_m)) continue;
     const auto landmark = only_landmark(filter, core::transform(T_world_robot, seen[s].point_m), spacing_m);
-    if (landmark) pairs.push_back({seen[s], *landmark});
+    if (landmark) pairs.push_back({seen[s], landmark->id, landmark->limit_m});
   }
   return pairs;
 }

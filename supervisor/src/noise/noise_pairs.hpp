@@ -13,7 +13,12 @@ namespace helixnav::supervisor {
 struct NoisePair {
   SeenPoint seen;
   core::LandmarkId landmark;
+  double limit_m;  ///< had they been this far apart, they would not be a pair
 };
+
+/// Whether its distance is a fair sample of the noise: 2.2 standard deviations of it, S_m2 as believed, are within its limit. In a row
+/// of posts only small distances make pairs, and would say that the noise is small.
+bool is_fair(const NoisePair& pair, const Eigen::Matrix2d& S_m2);
 
 /// Pairs four times nearer to each other than either is to the next of its kind. No gate is involved: if the assumed
 /// noise is far too small, a gate admits only what happens to fit. O(n²) in the points seen, at most 24, nearest to the

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -29,6 +30,45 @@ double most_sigmas(double in_force) { return in_force == 1.0 ? sure_sigmas : 1.0
 
 double bounded(double factor) { return std::clamp(factor, 1.0 / most, most); }
 
+/// The displacement that the pairs show.
+struct Displaced {
+  Eigen::Vector3d by;
+  Eigen::Matrix3d information;
+  Eigen::Vector3d w;   ///< normalised
+  double share = 0.0;  ///< of odometry in its covariance
+};
+
+std::optional<Displaced> displaced_by(const PairEquations& pairs, const Eigen::Matrix3d& Q) {
+  constexpr Index least_rows = 6;
+  if (pairs.nu.size() < least_rows) return std::nullopt;
+  const Eigen::LLT<Eigen::MatrixXd> S(pairs.S);
+  if (S.info() != Eigen::Success) return std::nullopt;
+  const Eigen::Matrix3d information = pairs.A.transpose() * S.solve(pairs.A);
+  const Eigen::LLT<Eigen::Matrix3d> root(information);
+  if (root.info() != Eigen::Success) return std::nullopt;
+  const Eigen::Vector3d weighed = pairs.A.transpose() * S.solve(pairs.nu);
+  return Displaced{root.solve(weighed), information, root.matrixL().solve(weighed),
+                   std::clamp((Q * information).trace() / 3.0, 0.0, 1.0)};
+}
+
+PairEquations fair_ones(PairEquations pairs, const std::vector<Look>& looks) {
+  Index kept = 0;
+  std::vector<Index> rows;
+  for (std::size_t k = 0; k < looks.size(); ++k) {
+    if (!looks[k].is_fair) continue;
+    rows.insert(rows.end(), {2 * static_cast<Index>(k), 2 * static_cast<Index>(k) + 1});
+  }
+  for (const Index row : rows) {
+    pairs.nu(kept) = pairs.nu(row);
+    pairs.A.row(kept) = pairs.A.row(row);
+    ++kept;
+  }
+  pairs.nu.conservativeResize(kept);
+  pairs.A.conservativeResize(kept, 3);
+  pairs.S = Eigen::MatrixXd(pairs.S(rows, rows));
+  return pairs;
+}
+
 }  // namespace
 
 /// E[nis / 3] = share · q + (1 − share) · detector for motion whose noise is q times the assumed noise.
@@ -50,16 +90,13 @@ double NoiseScale::Displacements::sure_rise(double sigmas, double log_sigma) con
 
 void NoiseScale::observe(const PairEquations& pairs, const std::vector<Look>& looks, double heading_rad,
                          const Eigen::Matrix3d& Q) {
-  constexpr Index least_rows = 6;
-  if (pairs.nu.size() < least_rows) return;
-  const Eigen::LLT<Eigen::MatrixXd> S(pairs.S);
-  if (S.info() != Eigen::Success) return;
-  const Eigen::Matrix3d information = pairs.A.transpose() * S.solve(pairs.A);
-  const Eigen::LLT<Eigen::Matrix3d> root(information);
-  if (root.info() != Eigen::Success) return;
-  const Eigen::Vector3d weighed = pairs.A.transpose() * S.solve(pairs.nu);
-  add_rest(pairs, root.solve(weighed), information, looks, heading_rad);
-  add_displacement(root.matrixL().solve(weighed), std::clamp((Q * information).trace() / 3.0, 0.0, 1.0));
+  const std::optional<Displaced> displaced = displaced_by(pairs, Q);
+  if (!displaced) return;
+  add_rest(pairs, displaced->by, displaced->information, looks, heading_rad);
+  add_displacement(displaced->w, displaced->share);
+  const bool are_all_fair = std::all_of(looks.begin(), looks.end(), [](const Look& look) { return look.is_fair; });
+  const std::optional<Displaced> fair = are_all_fair ? displaced : displaced_by(fair_ones(pairs, looks), Q);
+  if (fair) add_fair_displacement(fair->w, fair->share);
   const double detector = detector_factor();
   odometry_ = odometry_factor();
   observations_ = detector;
@@ -86,20 +123,29 @@ void NoiseScale::add_rest(const PairEquations& pairs, const Eigen::Vector3d& dis
     const Look& look = looks[static_cast<std::size_t>(i)];
     slow_.add(squared, weight);
     quick_.add(squared, weight);
+    if (!look.is_fair) continue;
     if (look.is_new_side) new_sides_.add(squared, weight);
     repeated_.add(look.id, error);
   }
+}
+
+double NoiseScale::detector_seen() const {
+  const double credible = slow_.weight() / (slow_.weight() + prior_errors);
+  return std::pow(slow_.scale(), credible) / observations_;
 }
 
 void NoiseScale::add_displacement(const Eigen::Vector3d& w, double share) {
   const double about_mean = (w - mean_).squaredNorm() / (1.0 + 1.0 / mean_weight_);
   mean_weight_ = keep_mean * mean_weight_ + 1.0;
   mean_ += (w - mean_) / mean_weight_;
-  const double credible = slow_.weight() / (slow_.weight() + prior_errors);
-  const double detector = std::pow(slow_.scale(), credible) / observations_;
+  const double detector = detector_seen();
   slow_motion_.add(std::min(most_pose_nis, about_mean), share, std::max(1.0, detector), odometry_);
   quick_motion_.add(std::min(most_pose_nis, about_mean), share, std::max(1.0, detector), odometry_);
   biased_motion_.add(std::min(most_pose_nis, w.squaredNorm()), share, detector, odometry_);
+}
+
+void NoiseScale::add_fair_displacement(const Eigen::Vector3d& w, double share) {
+  fair_motion_.add(std::min(most_pose_nis, w.squaredNorm()), share, detector_seen(), odometry_);
 }
 
 /// Up from all errors, at once if the quick window is sure of the rise. Down only if independent errors confirm it.
@@ -142,8 +188,9 @@ double NoiseScale::odometry_factor() const {
   const double slow = slow_motion_.scale();
   const double up = std::max({rise, slow > 1.0 + sigmas * slow_motion_.sigma() ? slow : 1.0, hidden_rise(sigmas)});
   if (up > dead_band) return bounded(up);
-  const double with_mean = std::max(0.0, biased_motion_.scale()) + biased_motion_.sigma();
-  const bool is_less = with_mean < 1.0 / dead_band && with_mean < 1.0 - (sigmas - 1.0) * biased_motion_.sigma();
+  if (!(fair_motion_.weight > least_weight)) return 1.0;
+  const double with_mean = std::max(0.0, fair_motion_.scale()) + fair_motion_.sigma();
+  const bool is_less = with_mean < 1.0 / dead_band && with_mean < 1.0 - (sigmas - 1.0) * fair_motion_.sigma();
   return is_less ? bounded(with_mean) : 1.0;
 }
 

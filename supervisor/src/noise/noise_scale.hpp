@@ -16,6 +16,7 @@ namespace helixnav::supervisor {
 struct Look {
   core::LandmarkId id = core::no_landmark;
   bool is_new_side = false;  ///< from another side than when it last counted
+  bool is_fair = true;       ///< its error could have been as large as the noise is believed to be (see NoisePair)
 };
 
 /// Factors on the covariances that odometry and detector claim, learnt from where landmarks are seen. The innovation of
@@ -27,7 +28,7 @@ struct Look {
 /// wrong scale of ranges) and not noise; otherwise DLR's forward motion, 8 % too long against its detector, would pass
 /// for four times the variance. Down: the detector's factor also needs independent errors, of landmarks seen from
 /// another side than when they last counted, sums of eight looks that are as small, and displacements that odometry explains;
-/// odometry's needs all of w. Rules and figures: docs/slips.md. Test: supervisor/noise/noise_scale_test.cpp.
+/// odometry's needs all of w. Errors that could not have been larger, of posts in a row, say nothing of that. Rules and figures: docs/slips.md. Test: supervisor/noise/noise_scale_test.cpp.
 class NoiseScale {
  public:
   /// One scan while nothing is in question; Q: the covariance of the motion before it (x, y, heading; robot frame); the look
@@ -62,6 +63,8 @@ class NoiseScale {
   void add_rest(const PairEquations& pairs, const Eigen::Vector3d& displacement, const Eigen::Matrix3d& information,
                 const std::vector<Look>& looks, double heading_rad);
   void add_displacement(const Eigen::Vector3d& w, double share);
+  void add_fair_displacement(const Eigen::Vector3d& w, double share);
+  double detector_seen() const;
   bool motion_is_as_assumed_at_most() const;
   double detector_factor() const;
   double odometry_factor() const;
@@ -74,6 +77,7 @@ class NoiseScale {
   Displacements slow_motion_{1.0 - 1.0 / 1000.0};
   Displacements quick_motion_{1.0 - 1.0 / 60.0};
   Displacements biased_motion_{1.0 - 1.0 / 1000.0};
+  Displacements fair_motion_{1.0 - 1.0 / 1000.0};   ///< the same of fair pairs only
   Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();  ///< of w
   double mean_weight_ = 20.0;                       ///< weight, in scans, of the belief that there is no bias
   double odometry_ = 1.0;

@@ -49,6 +49,18 @@ TEST(NoisePairs, LeaveOutWhatOtherObservationsMayBe) {
   EXPECT_TRUE(noise_pairs(mapped(trees), scan_of({{10.4, 0.0}, {9.4, 0.0}})).empty());
 }
 
+TEST(NoisePairs, SayHowFarApartTheyCouldBe) {
+  std::vector<Eigen::Vector2d> row = trees;
+  row.emplace_back(10.8, 0.0);
+  const auto pairs = noise_pairs(mapped(row), scan_of({{10.05, 0.0}, {0.0, 12.1}}));
+  ASSERT_EQ(pairs.size(), 2U);
+  EXPECT_NEAR(pairs[0].limit_m, 0.75 / 4.0, 1e-3) << "a quarter of the way to the next";
+  EXPECT_TRUE(is_fair(pairs[0], 0.08 * 0.08 * Eigen::Matrix2d::Identity()));
+  EXPECT_FALSE(is_fair(pairs[0], 0.09 * 0.09 * Eigen::Matrix2d::Identity()));
+  EXPECT_FALSE(is_fair(pairs[0], Eigen::Vector2d(1e-6, 0.09 * 0.09).asDiagonal())) << "in one direction";
+  EXPECT_TRUE(is_fair(pairs[1], 0.09 * 0.09 * Eigen::Matrix2d::Identity()));
+}
+
 TEST(SidesSeen, CountHalfARadianApart) {
   SidesSeen sides;
   EXPECT_FALSE(sides.is_new_side(4, 3.0)) << "the look that began it";
