@@ -2,12 +2,14 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "closing/branch_pairs.hpp"
 #include "closing/closing.hpp"
+#include "closing/stretch.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/supervisor/search_options.hpp"
 
@@ -29,6 +31,16 @@ class DuplicateSegment {
   KeptRemoved place(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& old,
                     const SearchOptions& options) const;
 
+  /// The same for maps of two drives that are bent against each other, where any place on the map may hold copies: the segment around the
+  /// best-known copy that was, before the closing, farther than half a segment from all of `tried`, to which it is added. Nothing
+  /// in the list unless the segment is surely placed (closing/sure_placing.hpp); no list once all segments were tried.
+  /// Test: supervisor/placing/session_leftovers_test.cpp.
+  std::optional<KeptRemoved> place_next(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& old,
+                                        const SearchOptions& options, std::vector<core::LandmarkId>& tried) const;
+
+  /// Where a landmark was before the closing.
+  const Eigen::Vector2d& before_m(core::LandmarkId id) const { return before_m_.at(id); }
+
   const core::MapAppearance& appearance() const { return appearance_; }
 
  private:
@@ -37,6 +49,10 @@ class DuplicateSegment {
   pf_relocalize::Constellation ground_around(core::LandmarkId middle, double reach_m, const cekf::CompressedEkf& filter,
                                              const std::vector<core::LandmarkId>& old,
                                              const SearchOptions& options) const;
+
+  /// The segment around one of the copies; those beyond it are erased.
+  Stretch stretch_about(core::LandmarkId middle, std::vector<Copy>& copies, const cekf::CompressedEkf& filter,
+                        const std::vector<core::LandmarkId>& old, const SearchOptions& options) const;
 
   std::vector<core::LandmarkId> confirmed_;
   std::map<core::LandmarkId, Eigen::Vector2d> before_m_;  ///< where the branch had them

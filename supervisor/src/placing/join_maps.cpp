@@ -2,18 +2,17 @@
 #include "placing/join_maps.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include <Eigen/LU>
 #include <Eigen/QR>
 
 #include "closing/branch_pairs.hpp"
+#include "placing/session_leftovers.hpp"
 
 namespace helixnav::supervisor {
 namespace {
 
 constexpr double loosened = 1e4;  ///< of a variance: the pairs count once, not twice
-constexpr int share_dropped = 8;  ///< one pair in so many may be dropped
 
 KeptRemoved pairs_of(const relocalize::Place& place) {
   KeptRemoved pairs;
@@ -23,45 +22,8 @@ KeptRemoved pairs_of(const relocalize::Place& place) {
 
 SearchOptions across_sessions(SearchOptions options, double pair_noise_m, std::size_t pairs) {
   options.merge_sigma_m = options.duplicate_sigma_m = pair_noise_m;
-  options.most_dropped = std::max(1, static_cast<int>(pairs) / share_dropped);
+  options.most_dropped = most_dropped_of(pairs);
   return options;
-}
-
-/// Median distance of a map's landmarks to their nearest neighbours; 0 for a map of one.
-double spacing_m(const std::vector<Eigen::Vector2d>& points_m) {
-  std::vector<double> nearest_m;
-  for (std::size_t i = 0; i < points_m.size(); ++i) {
-    double least_m = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < points_m.size(); ++j) {
-      if (j != i) least_m = std::min(least_m, (points_m[j] - points_m[i]).norm());
-    }
-    nearest_m.push_back(least_m);
-  }
-  if (nearest_m.size() < 2) return 0.0;
-  const auto middle = nearest_m.begin() + static_cast<std::ptrdiff_t>(nearest_m.size() / 2);
-  std::nth_element(nearest_m.begin(), middle, nearest_m.end());
-  return *middle;
-}
-
-/// A session that was placed late is off by metres where it began: how far a copy may be from its landmark is limited
-/// by the map's own spacing, not by what a closing assumes of any map.
-SearchOptions with_spacing(SearchOptions options, const core::JointGaussian& earlier) {
-  options.leftover_most_m = std::max(options.leftover_most_m, leftover_reach_share * spacing_m(earlier.points_m));
-  return options;
-}
-
-/// Merges pairs that the joint covariance leaves no doubt about, nearest first: each ties the session's drive more
-/// firmly to the map where it was long before, and so helps the next one. Every pass removes a landmark.
-void merge_leftovers_of_session(const std::vector<core::LandmarkId>& confirmed, const core::JointGaussian& earlier,
-                                const SearchOptions& across, JoinedMaps& joined) {
-  const SearchOptions options = with_spacing(across, earlier);
-  while (true) {
-    KeptRemoved rest = leftovers(joined.filter, confirmed, earlier.ids, options);
-    Closing rest_closing;
-    if (rest.empty() || !make_compatible(joined.filter, options, rest, rest_closing)) return;
-    joined.filter.merge(rest, options.merge_sigma_m);
-    note(rest, joined.closing);
-  }
 }
 
 std::vector<core::LandmarkId> those_in(const cekf::CompressedEkf& filter, std::vector<core::LandmarkId> ids) {
@@ -155,19 +117,21 @@ core::JointGaussian side_by_side(const core::JointGaussian& session, const core:
 JoinedMaps join_maps(const cekf::CompressedEkf& session, const core::JointGaussian& earlier,
                      const relocalize::Place& place, const std::vector<core::LandmarkId>& confirmed,
                      const std::vector<core::LandmarkId>& unconfirmed, double pair_noise_m,
-                     const SearchOptions& options) {
+                     const SearchOptions& options, LeftTwice left_twice) {
   KeptRemoved pairs = pairs_of(place);
   const core::JointGaussian both =
       side_by_side(session.joint(session.landmarks()), earlier, place_on(earlier, place, pairs));
   JoinedMaps joined{cekf::CompressedEkf(both, session.next_name(), session.options()), {}, place.T_map_branch};
   const SearchOptions across = across_sessions(options, pair_noise_m, pairs.size());
+  const SessionLeftovers leftovers_of_session(joined.filter, earlier, confirmed, across);
   Closing& closing = joined.closing;
   constexpr int of_place = 3;  // loosened
   if (!make_compatible(joined.filter, across, pairs, closing, of_place)) return joined;
   joined.filter.merge(pairs, across.merge_sigma_m);
   note(pairs, closing);
   closing.accepted = true;
-  merge_leftovers_of_session(confirmed, earlier, across, joined);
+  leftovers_of_session.merge_one_by_one(joined.filter, closing);
+  if (left_twice == LeftTwice::in_segments) leftovers_of_session.merge_segments(joined.filter, closing);
   forget_copies(joined.filter, those_in(joined.filter, unconfirmed), earlier.ids, across, closing);
   return joined;
 }

@@ -29,11 +29,15 @@ struct JoinedMaps {
   core::Pose2 T_map_session;   ///< in which the session was linearised
 };
 
+/// How far leftovers are merged: one by one, or also as segments where one alone is ambiguous. A drive that goes on decides these later,
+/// by what it sees; maps of drives that have ended cannot.
+enum class LeftTwice { one_by_one, in_segments };
+
 /// One map of both. The session is linearised at the place's pose, and what is known of that pose comes from the pairs,
 /// each of which says that two landmarks differ by no more than pair_noise_m. It enters with a covariance of a hundred
 /// of its standard deviations around where the map's own landmarks of the pairs are: relative to these and not to the
 /// frame, so that it says nothing about where in the frame they are, however little the map knows of it. Then further
-/// pairs that the joint covariance leaves no doubt about are merged. Refused if the cost of the pairs exceeds
+/// pairs that the joint covariance leaves no doubt about are merged (SessionLeftovers). Refused if the cost of the pairs exceeds
 /// options.closing_probability, whichever few were dropped.
 /// confirmed: landmarks of the session that may be merged, unconfirmed: those that may be clutter; ascending.
 /// Cost O(N²·pairs) for N landmarks in all. Test: supervisor/placing/join_maps_test.cpp (equal to least squares over
@@ -41,6 +45,6 @@ struct JoinedMaps {
 JoinedMaps join_maps(const cekf::CompressedEkf& session, const core::JointGaussian& earlier,
                      const relocalize::Place& place, const std::vector<core::LandmarkId>& confirmed,
                      const std::vector<core::LandmarkId>& unconfirmed, double pair_noise_m,
-                     const SearchOptions& options);
+                     const SearchOptions& options, LeftTwice left_twice = LeftTwice::one_by_one);
 
 }  // namespace helixnav::supervisor

@@ -165,8 +165,8 @@ bool place_in(const core::JointMap& session_map, const std::function<void()>& no
     ++tried;
     relocalize::Place place = asked.answer.places.front();
     for (relocalize::Pair& pair : place.pairs) pair.branch += offset;
-    const JoinedMaps joined =
-        join_maps(filter, earlier.landmarks(), place, joint.ids, {}, lengths.pair_noise_m, options.search);
+    const JoinedMaps joined = join_maps(filter, earlier.landmarks(), place, joint.ids, {}, lengths.pair_noise_m,
+                                        options.search, LeftTwice::in_segments);
     note(joined.closing, result.decision);
     if (!joined.closing.accepted) continue;
     result.T_component_session = core::compose(joined.filter.pose().mean, core::inverse(session_map.joint.pose));

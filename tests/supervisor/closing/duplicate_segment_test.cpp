@@ -51,6 +51,11 @@ struct Orchard {
 
   KeptRemoved placed() const { return DuplicateSegment(filter, branch).place(filter, old, {}); }
 
+  KeptRemoved surely_placed() const {
+    std::vector<core::LandmarkId> tried;
+    return DuplicateSegment(filter, branch).place_next(filter, old, {}, tried).value_or(KeptRemoved{});
+  }
+
   int wrong(const KeptRemoved& pairs) const {
     int wrong = 0;
     for (const auto& [kept, removed] : pairs) {
@@ -97,6 +102,26 @@ TEST(DuplicateSegment, IsPlacedByTheEndOfALatticeThatHasNoShapeWhereItIsLikelier
   const KeptRemoved pairs = orchard.placed();
   EXPECT_EQ(pairs.size(), 32u);
   EXPECT_EQ(orchard.wrong(pairs), 0);
+}
+
+/// Between two bent maps the covariance decides nothing: here it favours one pitch, and the ground has the pattern on every pitch.
+TEST(DuplicateSegment, StaysBetweenBentMapsWhereTheGroundRepeats) {
+  const Orchard orchard(30, 10, 14, 0.5, 0.6, 0.0);
+  EXPECT_EQ(orchard.placed().size(), 20u);
+  EXPECT_TRUE(orchard.surely_placed().empty());
+}
+
+TEST(DuplicateSegment, ComesUpInTurnUntilAllWereTried) {
+  const Orchard orchard(30, 2, 27, 0.5, 0.6, 0.0);
+  const DuplicateSegment segment(orchard.filter, orchard.branch);
+  std::vector<core::LandmarkId> tried;
+  while (segment.place_next(orchard.filter, orchard.old, {}, tried)) ASSERT_LT(tried.size(), 20u);
+  EXPECT_GE(tried.size(), 4u);
+  for (std::size_t i = 0; i < tried.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      EXPECT_GT((segment.before_m(tried[i]) - segment.before_m(tried[k])).norm(), 20.0);
+    }
+  }
 }
 
 TEST(DuplicateSegment, StaysWhereNothingTellsOnePitchFromAnother) {
