@@ -20,13 +20,13 @@ Points posts(int count) {
 }
 
 /// Old landmarks, then the loss of the place by 3 m and 6°, then some of them again as a branch.
-struct SeenAgain {
+struct MappedAgain {
   cekf::CompressedEkf filter{core::PoseGaussian{}};
   SearchOptions options;
   std::vector<core::LandmarkId> old;
   Branch branch;
 
-  explicit SeenAgain(const Points& points, std::size_t from = 0, std::size_t to = 1000) {
+  explicit MappedAgain(const Points& points, std::size_t from = 0, std::size_t to = 1000) {
     for (const Eigen::Vector2d& point_m : points) old.push_back(see(point_m));
     core::Odometry drift;
     drift.covariance.diagonal() << 9.0, 9.0, 0.01;
@@ -56,7 +56,7 @@ struct SeenAgain {
 };
 
 TEST(AgreedPairs, AreThoseGivenWhereNothingStandsNear) {
-  const SeenAgain apart({{5.0, 0.0}, {12.0, 3.0}, {9.0, -6.0}, {17.0, 8.0}, {20.0, -3.0}});
+  const MappedAgain apart({{5.0, 0.0}, {12.0, 3.0}, {9.0, -6.0}, {17.0, 8.0}, {20.0, -3.0}});
   const Pairs given = apart.shifted(5, 0);
   const Pairs agreed = apart.agreed(given);
   ASSERT_EQ(agreed.size(), given.size());
@@ -70,7 +70,7 @@ TEST(AgreedPairs, AreThoseGivenWhereNothingStandsNear) {
 TEST(AgreedPairs, AreOfTheWayThatExplainsMore) {
   Points points = posts(10);
   points.insert(points.end(), clump.begin(), clump.end());
-  const SeenAgain fence(points);
+  const MappedAgain fence(points);
   const Pairs one_post_on = fence.shifted(9, 1);
   const Pairs agreed = fence.agreed(one_post_on);
   EXPECT_EQ(agreed.size(), 14U);
@@ -79,7 +79,7 @@ TEST(AgreedPairs, AreOfTheWayThatExplainsMore) {
 
 /// The branch has seen four posts of ten, and none beside them.
 TEST(AgreedPairs, AreNoneWhereTwoWaysFit) {
-  const SeenAgain fence(posts(10), 3, 7);
+  const MappedAgain fence(posts(10), 3, 7);
   EXPECT_TRUE(fence.agreed(fence.shifted(4, 3)).empty());
 }
 
@@ -89,7 +89,7 @@ TEST(AgreedPairs, AreThoseOfOneCopyWhereTheMapHasTwo) {
   points.insert(points.end(), clump.begin(), clump.end());
   const std::size_t once = points.size();
   for (std::size_t i = 0; i < once; ++i) points.push_back(points[i] + Eigen::Vector2d(0.3, -0.35));
-  const SeenAgain twice(points, 0, once);
+  const MappedAgain twice(points, 0, once);
   const Pairs agreed = twice.agreed(twice.shifted(once, 0));
   ASSERT_EQ(agreed.size(), once);
   EXPECT_TRUE(twice.right(agreed) == once || twice.right(agreed, once) == once);
@@ -98,7 +98,7 @@ TEST(AgreedPairs, AreThoseOfOneCopyWhereTheMapHasTwo) {
 /// Tolerances let neighbours pass: the pairs of two stems are swapped.
 TEST(AgreedPairs, LeaveOutOrMendWhatIsMixedUp) {
   Points points{{6.0, 0.0}, {6.35, 0.2}, {12.0, 3.0}, {9.0, -6.0}, {17.0, 8.0}, {20.0, -3.0}};
-  const SeenAgain twins(points);
+  const MappedAgain twins(points);
   Pairs given = twins.shifted(6, 0);
   std::swap(given[0].old_landmark, given[1].old_landmark);
   const Pairs agreed = twins.agreed(given);
