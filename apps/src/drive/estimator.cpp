@@ -70,7 +70,7 @@ struct NavigatorDrive {
   std::optional<core::StepReport> take(const core::Event& event) {
     std::optional<core::StepReport> report = navigator.take(event);
     if (!check) return report;
-    check->take(event, report ? &*report : nullptr, navigator.pose());
+    check->take(event, report ? &*report : nullptr, navigator.filter().pose());
     if (std::optional<StartCheck::RightStart> right = check->right_start()) {
       navigator = ChosenNavigator(std::move(right->navigator), labels);
       report = std::move(right->report);

@@ -103,7 +103,7 @@ std::optional<core::StepReport> NavigatorOnMap::take(const core::Event& event) {
   }
   const auto* scan = std::get_if<core::Scan>(&event);
   if (scan == nullptr) {
-    if (check_) check_->take(event, nullptr, pose());
+    if (check_) check_->take(event, nullptr, believed());
     return std::nullopt;
   }
   core::StepReport report = observe(*scan);
@@ -122,7 +122,7 @@ core::StepReport NavigatorOnMap::observe(const core::Scan& scan) {
     const bool is_contradicted = !is_placed_ && !confirms(tracked);  // carried, as the navigator has found out
     if (!is_placed_ && !is_contradicted) track_from(tracked.pose);
     if (knows_better(navigated, tracked)) {
-      track_from(navigated.pose);
+      track_from(navigator_.filter().pose());
       monitor_.reset();
       return navigated;
     }
@@ -142,14 +142,16 @@ core::StepReport NavigatorOnMap::observe(const core::Scan& scan) {
     is_start_in_doubt_ = false;
     return begin_anew(scan, navigated);
   }
-  if (monitor_.is_confirmed() && navigated.mode == core::Mode::mapping) track_from(navigated.pose);
+  if (monitor_.is_confirmed() && navigated.mode == core::Mode::mapping) {
+    track_from(navigator_.filter().pose());
+  }
   return navigated;
 }
 
 std::optional<core::StepReport> NavigatorOnMap::checked_start(const core::Event& event,
                                                               const core::StepReport& report) {
   if (!check_) return std::nullopt;
-  check_->take(event, &report, report.pose);
+  check_->take(event, &report, believed());
   std::optional<StartCheck::RightStart> right = check_->right_start();
   is_start_ambiguous_ = check_->is_ambiguous();
   if (check_->is_over()) check_.reset();

@@ -30,6 +30,8 @@ class NavigatorOnMap {
   core::PoseGaussian pose() const { return tracker_ ? tracker_->pose() : navigator_.pose(); }
 
  private:
+  /// The estimate itself: pose() says more if nothing ties that to the map.
+  core::PoseGaussian believed() const { return tracker_ ? tracker_->pose() : navigator_.filter().pose(); }
   core::StepReport observe(const core::Scan& scan);
   bool knows_better(const core::StepReport& navigated, const core::StepReport& tracked);
   core::StepReport begin_anew(const core::Scan& scan, const core::StepReport& report);

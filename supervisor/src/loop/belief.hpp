@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "association/confirmation.hpp"
@@ -39,6 +40,8 @@ struct Belief {
   Window window = {};  ///< which part of it the filter holds
   MovingThings moving = {};
   SeenAgain seen_again = {};
+  std::optional<double> untied_since_m =
+      {};  ///< length of the drive before everything in view vanished, see slip/untied.hpp
 };
 
 /// A belief to return to, and where the tape was then. A snapshot of O(n_a²) bytes and the landmarks' existence; valid as
@@ -54,12 +57,14 @@ struct Checkpoint {
   std::vector<LeftOpen> left_open = {};
   MovingThings moving = {};
   SeenAgain seen_again = {};
+  std::optional<double> untied_since_m = {};
 };
 
 inline Checkpoint take_checkpoint(Belief& belief, const Tape& tape) {
   belief.filter.keep_open_phase();
-  return {belief.filter.snapshot(), belief.existence, belief.confirmation, belief.step, tape.end(), belief.slips,
-          belief.left_open,         belief.moving,    belief.seen_again};
+  return {
+      belief.filter.snapshot(), belief.existence, belief.confirmation, belief.step,          tape.end(), belief.slips,
+      belief.left_open,         belief.moving,    belief.seen_again,   belief.untied_since_m};
 }
 
 /// Test: supervisor/tape_test.cpp.
@@ -73,6 +78,7 @@ inline void roll_back(const Checkpoint& checkpoint, Belief& belief) {
   belief.left_open = checkpoint.left_open;
   belief.moving = checkpoint.moving;
   belief.seen_again = checkpoint.seen_again;
+  belief.untied_since_m = checkpoint.untied_since_m;
 }
 
 }  // namespace helixnav::supervisor

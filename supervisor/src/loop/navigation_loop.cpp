@@ -114,7 +114,7 @@ StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* not
     solve_with_learnt_noise(report);
     if (!report.merged.empty() || !report.solved.empty()) noise_.fixes.forget_offset();
     learn_systematic(report);
-    report.pose = belief_.filter.pose();
+    report.pose = pose();
     if (apart_.any()) find_place(scan.field_of_view, report);
     if (!pending_.forbidden.empty()) look_elsewhere(scan, report);
     report_late(report);
@@ -195,6 +195,7 @@ bool NavigationLoop::use_fix(const WidenedFix& fix) {
   predict();
   const core::FixDecision decision = judge_fix(belief_.filter, fix, options_.fix_probability);
   tape_.append(Tape::Fix{fix, decision.nis, decision.accepted});
+  if (decision.accepted) belief_.untied_since_m.reset();
   pending_.decisions.emplace_back(decision);
   return decision.accepted;
 }
@@ -303,7 +304,8 @@ void NavigationLoop::drop_movers(const std::vector<Mover>& movers, StepReport& r
 StepReport NavigationLoop::finish(const Scan& scan, StepReport report) {
   report.step = belief_.step++;
   report.t_ns = scan.t_ns;
-  report.pose = belief_.filter.pose();
+  forget_if_tied_again();
+  report.pose = pose();
   report.active_landmarks = belief_.filter.active_count();
   report.mapped_landmarks = static_cast<int>(belief_.existence.records().size());
   std::vector<core::Decision> decisions = std::exchange(pending_.decisions, {});

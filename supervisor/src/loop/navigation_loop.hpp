@@ -49,6 +49,7 @@ class NavigationLoop {
   const MapsApart& maps_apart() const { return apart_; }
 
   const Belief& belief() const { return belief_; }
+  core::PoseGaussian pose() const;  // slip/search_if_vanished.cpp
 
   // window/whole_estimate.cpp
   std::vector<core::LandmarkId> landmarks() const;
@@ -132,6 +133,7 @@ class NavigationLoop {
   // slip/search_if_vanished.cpp
   void note_seen_again(const core::Scan& scan, bool slipped, const core::StepReport& report);
   bool has_slipped_away() const;
+  void forget_if_tied_again();
   core::StepReport search_since_slip(core::StepReport report);
 
   // moving/watch_moving.cpp
@@ -194,6 +196,7 @@ class NavigationLoop {
   void ask_whether_new(const core::Scan& scan, core::StepReport& report);
   void ask_meanwhile(const core::Scan& scan, core::StepReport& report);
   LandmarksAbout branch_about() const;
+  LandmarksAbout untied_about() const;
   AskedWholeMap ask_about_place(const core::Scan& scan);
   AskedWholeMap ask(LandmarksAbout& about, const Search& search, const core::Scan& scan);
   const relocalize::MapIndex& follow_old_ground(const Search& search);

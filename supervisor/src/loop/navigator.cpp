@@ -59,7 +59,7 @@ std::map<int, core::JointMap> Navigator::maps_apart() const {
 
 void Navigator::look_for_place_in(const core::JointMap& earlier) { loop_->look_for_place_in(earlier); }
 
-core::PoseGaussian Navigator::pose() const { return filter().pose(); }
+core::PoseGaussian Navigator::pose() const { return loop_->pose(); }
 const cekf::CompressedEkf& Navigator::filter() const { return loop_->belief().filter; }
 
 core::JointGaussian Navigator::joint(const std::vector<core::LandmarkId>& ids) const { return loop_->joint(ids); }

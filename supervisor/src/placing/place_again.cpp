@@ -111,7 +111,7 @@ void NavigationLoop::drive_again(const std::vector<Tape::Entry>& since, StepRepo
         belief_.filter.keep_since(checkpoint().filter.phase);
       });
   report.revised.pop_back();  // the last one is this scan
-  report.pose = belief_.filter.pose();
+  report.pose = pose();
 }
 
 /// Only if it is then found elsewhere, by more than it was placed with.

@@ -121,6 +121,7 @@ void NavigationLoop::accept(const Closing& closing, const ClosingView& view, Ste
   for (const core::MergedLandmarks& one : closing.merged) belief_.existence.merge(one.kept, one.removed);
   for (const LandmarkId id : closing.forgotten) belief_.existence.remove(id);
   report.merged = closing.merged;
+  belief_.untied_since_m.reset();
   tape_.append(Tape::Merge{closing.merged, closing.limit + closing.limit_of_leftovers});
   const double tied_m = view.tied_since_m;
   const core::FieldOfView field = view.scan.field_of_view;

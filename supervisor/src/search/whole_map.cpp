@@ -82,6 +82,11 @@ LandmarksAbout NavigationLoop::branch_about() const {
   return landmarks_about(belief_, options_.search.branch_seen_within_m, born_after_m);
 }
 
+/// What was mapped before everything vanished is elsewhere: only what came since.
+LandmarksAbout NavigationLoop::untied_about() const {
+  return landmarks_about(belief_, options_.search.branch_seen_within_m, *belief_.untied_since_m);
+}
+
 /// Before a search ends undecided: closes the map if the answer allows it.
 AskedWholeMap NavigationLoop::ask_whole_map(const core::Scan& scan, core::StepReport& report) {
   LandmarksAbout about = branch_about();
@@ -95,22 +100,28 @@ AskedWholeMap NavigationLoop::ask_whole_map(const core::Scan& scan, core::StepRe
 
 /// Attempts to find the place within the prior may go on and on if the prior does not contain it: a search that has
 /// long seen enough asks the whole map as well. That ends it only at a place that odometry as measured forbids: it
-/// finds any other by itself, and whether nothing fits is asked at its end.
+/// finds any other by itself, and whether nothing fits is asked at its end. A vehicle that nothing ties to the map has no prior
+/// that could find it: it asks from the first landmarks on, and whatever the map decides for is believed.
 void NavigationLoop::ask_meanwhile(const core::Scan& scan, core::StepReport& report) {
   const double path_m = belief_.existence.path_m();
-  if (!asks_whole_map() || !searching()->search.goes_on(path_m) || path_m < questions_.next_path_m) return;
+  const bool is_untied = belief_.untied_since_m.has_value();
+  const bool is_time = is_untied || searching()->search.goes_on(path_m);
+  if (!asks_whole_map() || !is_time || path_m < questions_.next_path_m) return;
   questions_.next_path_m = path_m + options_.search.ask_again_m;
-  LandmarksAbout about = branch_about();
+  LandmarksAbout about = is_untied ? untied_about() : branch_about();
   const Asked before = questions_.asked;
   questions_.asked.with = questions_.asked_meanwhile;
-  constexpr double least_new = 0.5;
+  constexpr double somebody_waits = 0.2, nobody_waits = 0.5;  // see Asked::is_due
+  const double least_new = is_untied ? somebody_waits : nobody_waits;
   const bool is_due = questions_.asked.is_due(about.ids, least_new);
   questions_.asked.with = before.with;
   if (!is_due) return;
   const Searching& open = *searching();
   AskedWholeMap asked = ask(about, open.search, scan);
   questions_.asked_meanwhile = std::exchange(questions_.asked.with, before.with);
-  if (asked.is_closed()) {
+  if (is_untied && asked.is_closed()) {
+    if (close_at(asked.pairs, open.search, open.trigger, scan, asked.decision, report)) return;
+  } else if (asked.is_closed()) {
     const ClosingView view{open.search, belief_.existence,     belief_.coverage,
                            scan,        {open.trigger, tape_}, tied_if_slipping_m()};
     cekf::CompressedEkf trial = belief_.filter;

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Everything that was in view has vanished from one scan to the next, and stayed away: the vehicle slipped, to a place that one scan
 // does not show.
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "helixnav/supervisor/lengths.hpp"
 #include "loop/navigation_loop.hpp"
 #include "loop/process_again.hpp"
 #include "slip/should_be_seen.hpp"
 #include "slip/slip_evidence.hpp"
+#include "slip/untied.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -45,6 +48,19 @@ bool NavigationLoop::has_slipped_away() const {
   return mapping != nullptr && lost != nullptr && mapping->trusted->step <= lost->step;
 }
 
+/// For good: that the known ones become few among all that is seen later says nothing.
+void NavigationLoop::forget_if_tied_again() {
+  const std::optional<double>& since_m = belief_.untied_since_m;
+  if (since_m && is_tied_again(belief_.existence, *since_m)) belief_.untied_since_m.reset();
+}
+
+/// As it is reported. Nothing here reads it: the filter assumes that the vehicle slipped, and stays exact for what is mapped since.
+core::PoseGaussian NavigationLoop::pose() const {
+  if (!belief_.untied_since_m) return belief_.filter.pose();
+  return pose_anywhere(belief_.filter, belief_.existence, *belief_.untied_since_m,
+                       view_.reach().value_or(reference_reach_m));
+}
+
 /// Where places repeat, or too few landmarks are in view, a slip has rivals and is not believed. But the vehicle is not where
 /// odometry puts it, either: its pose becomes as uncertain as the largest slips are, before the scan after the slip, and a
 /// search decides where it is.
@@ -58,6 +74,7 @@ core::StepReport NavigationLoop::search_since_slip(core::StepReport report) {
   roll_back(trusted, belief_);
   process_again(
       {since.begin(), slip}, [](const Tape::Fix&, bool) {}, [](const core::StepReport&) {});
+  belief_.untied_since_m = belief_.existence.path_m();
   predict();
   pending_.decisions = std::move(report.decisions);
   pending_.decisions.emplace_back(core::LostBySlipDecision{static_cast<int>(lost.missing.size()), lost.seen,

@@ -80,7 +80,7 @@ class Navigator {
   /// carried and, as part 0, the earlier map of look_for_place_in().
   std::map<int, core::JointMap> maps_apart() const;
 
-  /// Pose at the last scan or fix.
+  /// Pose at the last scan or fix; anywhere on the map if the vehicle may have been carried (supervisor/slip/untied_test.cpp)
   core::PoseGaussian pose() const;
 
   /// All landmarks with their state, in order of id. O(landmarks · q²): for the end of a run, not for every step. If
