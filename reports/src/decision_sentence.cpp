@@ -43,8 +43,8 @@ std::string sentence(const core::LostBySlipDecision& d) {
          " were seen again, and " + counted(d.unknown, "unknown one") + " came instead (" + short_number(d.nats) +
          " nats for a slip). The pose was widened by " + short_number(d.sigma_m) +
          " m, and a search began. If it was carried, it may be anywhere: until landmarks tie its pose to the map "
-         "again, "
-         "the covariance reported covers the whole map.";
+         "again, the "
+         "covariance reported covers the whole map.";
 }
 
 std::string sentence(const core::MovingDecision& d) {

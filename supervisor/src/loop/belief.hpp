@@ -40,8 +40,8 @@ struct Belief {
   Window window = {};  ///< which part of it the filter holds
   MovingThings moving = {};
   SeenAgain seen_again = {};
-  std::optional<double> untied_since_m =
-      {};  ///< length of the drive before everything in view vanished, see slip/untied.hpp
+  /// Length of the drive before everything in view vanished, until the pose is tied to the map again: slip/untied.hpp.
+  std::optional<double> untied_since_m = {};
 };
 
 /// A belief to return to, and where the tape was then. A snapshot of O(n_a²) bytes and the landmarks' existence; valid as

@@ -7,7 +7,7 @@
 #include "helixnav/core/joint_map.hpp"
 #include "helixnav/core/random.hpp"
 
-namespace helixnav::supervisor::support {
+namespace helixnav::supervisor {
 
 /// A grove by which two maps are joined and, after a bare stretch, an avenue. Drives go along x from the origin; by the end of the bare
 /// stretch two maps of it are some metres off against each other, so that a tree of one may be several of the other's.
@@ -78,4 +78,4 @@ struct BentAvenue {
   }
 };
 
-}  // namespace helixnav::supervisor::support
+}  // namespace helixnav::supervisor

@@ -39,7 +39,7 @@ JudgedJoin judged(const JoinedSessions& joined) {
 }
 
 /// The later drive turned round between two trees of the avenue, so that neither of its ends tells one place from the next.
-std::vector<core::JointMap> two_drives(const support::BentAvenue& avenue, std::uint64_t seed) {
+std::vector<core::JointMap> two_drives(const BentAvenue& avenue, std::uint64_t seed) {
   return {avenue.drive(0.0, 2.0 * avenue.avenue_until_m, 10 * seed + 1), avenue.drive(200.0, 330.0, 10 * seed + 2)};
 }
 
@@ -53,7 +53,7 @@ std::vector<Eigen::Vector2d> sorted_points(const JoinedSessions& joined) {
 TEST(SessionLeftovers, AreMergedAsSegmentsWhereOneTreeMayBeSeveral) {
   JudgedJoin all;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    all += judged(join_sessions(two_drives(support::BentAvenue(1000 + seed, 3.0), seed)));
+    all += judged(join_sessions(two_drives(BentAvenue(1000 + seed, 3.0), seed)));
   }
   EXPECT_GE(all.shared, 400);
   EXPECT_EQ(all.wrong, 0);
@@ -64,7 +64,7 @@ TEST(SessionLeftovers, AreMergedAsSegmentsWhereOneTreeMayBeSeveral) {
 TEST(SessionLeftovers, StayWhereAnAvenueRepeatsItself) {
   JudgedJoin all;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    support::BentAvenue avenue(1000 + seed, 0.0);
+    BentAvenue avenue(1000 + seed, 0.0);
     for (const double claimed : {1.0, 0.5}) {
       avenue.claimed = claimed;
       all += judged(join_sessions(two_drives(avenue, seed)));
@@ -75,7 +75,7 @@ TEST(SessionLeftovers, StayWhereAnAvenueRepeatsItself) {
 }
 
 TEST(SessionLeftovers, AreTheSameInAnyOrder) {
-  const std::vector<core::JointMap> maps = two_drives(support::BentAvenue(1005, 3.0), 5);
+  const std::vector<core::JointMap> maps = two_drives(BentAvenue(1005, 3.0), 5);
   const JoinedSessions joined = join_sessions(maps);
   const JoinedSessions swapped = join_sessions({maps[1], maps[0]});
   ASSERT_EQ(joined.components.size(), 1u);
