@@ -70,6 +70,14 @@ void numbers(SystematicDecision& d, Visit&& visit) {
 }
 
 template <class Visit>
+void numbers(NoiseDecision& d, Visit&& visit) {
+  visit("odometry", d.odometry);
+  visit("detections", d.detections);
+  visit("fixes", d.fixes);
+  visit("solved_again", d.solved_again);
+}
+
+template <class Visit>
 void numbers(AttemptStarted& d, Visit&& visit) {
   visit("attempt", d.attempt);
   visit("reference_landmarks", d.reference_landmarks);
@@ -260,6 +268,7 @@ KindAndVerdict words_of(const SlipDecision&) { return {"slip", "accepted"}; }
 KindAndVerdict words_of(const LostBySlipDecision&) { return {"slip", "lost"}; }
 KindAndVerdict words_of(const MovingDecision&) { return {"moving", "dropped"}; }
 KindAndVerdict words_of(const SystematicDecision&) { return {"systematic", "taken-out"}; }
+KindAndVerdict words_of(const NoiseDecision&) { return {"noise", "learnt"}; }
 KindAndVerdict words_of(const AttemptStarted&) { return {"search", "started"}; }
 KindAndVerdict words_of(const AttemptEnded& d) { return {"search", reason_words[static_cast<int>(d.reason)]}; }
 KindAndVerdict words_of(const ReferenceUnusable&) { return {"search", "reference-unusable"}; }
@@ -372,6 +381,7 @@ Decision decision_of(const DecisionRow& row) {
   if (row.kind == "slip" && row.verdict == "lost") return fill(LostBySlipDecision{}, row);
   if (row.kind == "moving" && row.verdict == "dropped") return fill(MovingDecision{}, row);
   if (row.kind == "systematic" && row.verdict == "taken-out") return fill(SystematicDecision{}, row);
+  if (row.kind == "noise" && row.verdict == "learnt") return fill(NoiseDecision{}, row);
   if (row.kind == "search") return search_decision(row);
   if (row.kind == "carried") return carried_decision(row);
   if (row.kind == "placed") return decision_with<PlacedDecision>(placed_words, row);

@@ -64,6 +64,20 @@ std::string sentence(const core::SystematicDecision& d) {
          " nats better than before. It was taken out of the whole drive.";
 }
 
+std::string sentence(const core::NoiseDecision& d) {
+  std::string errors;
+  const auto add = [&](const char* what, double times) {
+    if (times != 1.0)
+      errors += (errors.empty() ? "" : ", ") + std::string(what) + short_number(times) + " times as much";
+  };
+  add("odometry errs ", d.odometry);
+  add("detections err ", d.detections);
+  add("fixes err ", d.fixes);
+  return "The drive shows other noise than was stated: " + (errors.empty() ? std::string("none, after all") : errors) +
+         (d.solved_again != 0 ? ". What was driven before was solved again with it."
+                              : ". That holds from now on; what was driven before stays as it was.");
+}
+
 std::string attempt_number(int attempt) { return "Attempt " + std::to_string(attempt); }
 
 std::string sentence(const core::AttemptStarted& d) {

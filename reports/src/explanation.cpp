@@ -251,6 +251,7 @@ std::string explain_run(const runs::Run& run) {
   text += slips_text(run);
   text += all_of_kind<core::MovingDecision>(decided, "What moves");
   text += all_of_kind<core::SystematicDecision>(decided, "Constant errors");
+  text += all_of_kind<core::NoiseDecision>(decided, "Noise that was learnt");
   text += numerics_line(run);
   if (!closures.empty()) text += "\nDetails of one: helixnav explain " + run.path + " --closure 1\n";
   return text;

@@ -12,8 +12,9 @@ std::vector<DecisionRow> all_rows() {
   for (const Decision& decision :
        {Decision(TriggerDecision{}), Decision(RollbackDecision{}), Decision(SlipDecision{}),
         Decision(LostBySlipDecision{}), Decision(MovingDecision{}), Decision(SystematicDecision{}),
-        Decision(AttemptStarted{}), Decision(ReferenceUnusable{}), Decision(UndecidedDecision{}),
-        Decision(NewGroundDecision{}), Decision(CarriedDecision{}), Decision(ShapeDecision{})}) {
+        Decision(NoiseDecision{1.5, 0.5, 1.0, 1}), Decision(AttemptStarted{}), Decision(ReferenceUnusable{}),
+        Decision(UndecidedDecision{}), Decision(NewGroundDecision{}), Decision(CarriedDecision{}),
+        Decision(ShapeDecision{})}) {
     rows.push_back(row_of(decision));
   }
   for (const char* cause : {"found-out", "broken-off", "by-place", "no-odometry", "wrong-start"})

@@ -114,6 +114,20 @@ TEST(Explanation, SaysWhatSlippedAndWhatMovesBesideASearch) {
   EXPECT_TRUE(says(run, "Slips that the odometry did not show, 1:"));
 }
 
+TEST(Explanation, SaysWhichNoiseWasLearnt) {
+  runs::Run run = run_of(40);
+  run.steps[3].decisions = {core::NoiseDecision{1.5, 0.5, 1.0, 1}};
+  EXPECT_TRUE(
+      says(run,
+           "Noise that was learnt, 1:\n  step 3 (0 s)  The drive shows other noise than was stated: odometry errs 1.5 "
+           "times as much, detections err 0.5 times as much. What was driven before was solved again"))
+      << explain_run(run);
+  run.steps[3].decisions = {core::NoiseDecision{1.0, 1.0, 2.0, 0}};
+  EXPECT_TRUE(says(run, "stated: fixes err 2 times as much. That holds from now on")) << explain_run(run);
+  run.steps[3].decisions = {core::NoiseDecision{1.0, 1.0, 1.0, 1}};
+  EXPECT_TRUE(says(run, "stated: none, after all.")) << explain_run(run);
+}
+
 TEST(Explanation, ListsTheFirstOfManyAndCountsTheOthers) {
   runs::Run run = run_of(12);
   for (core::StepReport& step : run.steps) step.decisions = {core::MovingDecision{1, 13.0, 1.5}};

@@ -66,9 +66,14 @@ void NavigationLoop::solve_with_learnt_noise(core::StepReport& report) {
   noise_.scale.applied_observations = noise_.scale.observations();
   noise_.scale.applied_odometry = noise_.scale.odometry();
   noise_.fixes.applied = std::max(noise_.fixes.applied, noise_.fixes.in_update());
-  if (!tape_.holds_drive()) return;
-  Tape again = tape_.rescaled(observations, odometry);
-  solve_again(fixes_err_alike ? again.with_wider_fixes(noise_.fixes.applied) : std::move(again), report);
+  core::NoiseDecision decision{std::sqrt(noise_.scale.odometry()), std::sqrt(noise_.scale.observations()),
+                               std::sqrt(noise_.fixes.applied), 0};
+  if (tape_.holds_drive()) {
+    Tape again = tape_.rescaled(observations, odometry);
+    if (fixes_err_alike) again = again.with_wider_fixes(noise_.fixes.applied);
+    decision.solved_again = solve_again(std::move(again), report) ? 1 : 0;
+  }
+  report.decisions.emplace_back(decision);
 }
 
 /// The drive that the tape holds, had it been `again`. False if it cannot be solved: everything is as it was.

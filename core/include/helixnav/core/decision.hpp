@@ -75,6 +75,16 @@ struct SystematicDecision {
   int stretches = 0;  ///< of the drive that it was found in, one reach of the sensor long
 };
 
+/// The drive has shown other noise than was stated, and what was driven before was solved again with it, if it could be. Standard
+/// deviations in units of those stated; more than 1: worse than stated. docs/slips.md#noise-that-is-learnt.
+struct NoiseDecision {
+  double odometry = 1.0;
+  double detections = 1.0;
+  double fixes = 1.0;  ///< that err alike, or by more than stated
+  int solved_again =
+      0;  ///< 1: the drive until now; 0: its part on the tape could not be, and the noise holds from now on
+};
+
 /// An attempt of a search began: particles drawn on helices around old landmarks.
 struct AttemptStarted {
   int attempt = 0;
@@ -288,11 +298,11 @@ struct OtherDecision {
 };
 
 /// A decision of the navigator that is worth a sentence, with the numbers that decided it.
-using Decision =
-    std::variant<TriggerDecision, RollbackDecision, SlipDecision, LostBySlipDecision, MovingDecision,
-                 SystematicDecision, AttemptStarted, AttemptEnded, ReferenceUnusable, VerificationDecision,
-                 ShapeDecision, ClosureDecision, UndecidedDecision, NewGroundDecision, SmoothingDecision, FixDecision,
-                 CarriedDecision, PlacedDecision, WholeMapDecision, PostponedDecision, OtherDecision>;
+using Decision = std::variant<TriggerDecision, RollbackDecision, SlipDecision, LostBySlipDecision, MovingDecision,
+                              SystematicDecision, NoiseDecision, AttemptStarted, AttemptEnded, ReferenceUnusable,
+                              VerificationDecision, ShapeDecision, ClosureDecision, UndecidedDecision,
+                              NewGroundDecision, SmoothingDecision, FixDecision, CarriedDecision, PlacedDecision,
+                              WholeMapDecision, PostponedDecision, OtherDecision>;
 
 /// True for what ends a search: a closing accepted or refused, new ground, or a search given up.
 inline bool is_closure(const Decision& decision) {
