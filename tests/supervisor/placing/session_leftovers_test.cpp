@@ -14,8 +14,9 @@ namespace helixnav::supervisor {
 namespace {
 
 struct JudgedJoin {
-  int shared = 0, twice = 0,
-      wrong = 0;  ///< trees that both maps have; those left twice; different trees that became one
+  int shared = 0;  ///< trees that both maps have
+  int twice = 0;   ///< of those, left twice
+  int wrong = 0;   ///< different trees that became one
 
   JudgedJoin& operator+=(const JudgedJoin& other) {
     shared += other.shared;

@@ -80,9 +80,8 @@ struct SystematicDecision {
 struct NoiseDecision {
   double odometry = 1.0;
   double detections = 1.0;
-  double fixes = 1.0;  ///< that err alike, or by more than stated
-  int solved_again =
-      0;  ///< 1: the drive until now; 0: its part on the tape could not be, and the noise holds from now on
+  double fixes = 1.0;    ///< that err alike, or by more than stated
+  int solved_again = 0;  ///< 1: the drive until now was; 0: it could not be, and the noise holds from now on
 };
 
 /// An attempt of a search began: particles drawn on helices around old landmarks.
