@@ -69,8 +69,9 @@ void Referee::Book::judge_closure(const StepReport& report, const std::vector<Ma
   std::set<core::LandmarkId> kept;
   for (const core::MergedLandmarks& pair : report.merged) kept.insert(pair.kept);
   closure.pose = judge({pose, truth(), std::move(kept)}, map);
-  // Before the first return there may still be something to close: a town crossing is old ground from two sides.
-  const bool nothing_to_close = returns_at_m.empty() || (score.returns.empty() && closure.pairs == 0);
+  // Without a return, before the first or at all, there may still be something to close: a town crossing is old ground
+  // from two sides. Then the pairs' labels decide.
+  const bool nothing_to_close = score.returns.empty() && closure.pairs == 0;
   closure.is_false =
       nothing_to_close || is_wrong(closure.pose.relative) || too_many_wrong(closure.wrong_pairs, closure.pairs);
   if (!score.returns.empty()) score.returns.back().closed = true;

@@ -279,12 +279,22 @@ TEST(Referee, JudgesAVehicleThatIsCarriedAwayOnTheMapOfThen) {
   EXPECT_NEAR(score.end_on_old_ground.relative.position_m, 0.0, 1e-9);
 }
 
-TEST(Referee, CallsAnyClosingFalseWhereNothingReturns) {
+TEST(Referee, JudgesAClosingByItsPairsWhereNoReturnIsPlanned) {
   Script script;
   script.returns_at_m = {};
+  EXPECT_EQ(judged(script).verdict, RunVerdict::undecided) << "a tour that crosses its own way";
+  script.swapped_pairs = 1000;
   EXPECT_EQ(judged(script).verdict, RunVerdict::false_closure);
-  script.close_at_m = 1e9;
-  EXPECT_EQ(judged(script).verdict, RunVerdict::undecided);
+  script.swapped_pairs = 0;
+  script.error = {2.1, 0.0, 0.0};
+  EXPECT_EQ(judged(script).verdict, RunVerdict::false_closure) << "right pairs, a wrong place";
+}
+
+TEST(Referee, CallsAClosingWithoutPairsFalseWhereNothingReturns) {
+  Script script;
+  script.returns_at_m = {};
+  script.new_after_return = false;
+  EXPECT_EQ(judged(script).verdict, RunVerdict::false_closure);
 }
 
 TEST(Referee, CallsMatchesWithOldLandmarksFalseWhereNothingReturns) {

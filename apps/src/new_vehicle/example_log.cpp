@@ -30,6 +30,7 @@ sigma_along_m_per_sqrt_m = 0.027
 sigma_sideways_m_per_sqrt_m = 0.005
 sigma_heading_deg_per_sqrt_m = 0.16
 # sigma_heading_deg_per_sqrt_s = 0.1     # of a gyro
+# sigma_heading_deg_per_sqrt_turn = 4.0  # of wheels that slide when the vehicle turns on the spot; 360 degrees are a turn
 # Noise of each sample of speed and turn rate, instead or as well:
 # sigma_v_mps = 0.1
 # sigma_omega_deg_per_s = 1.0

@@ -32,7 +32,8 @@ void refuse_of_truck(const logs::Vehicle& vehicle, const logs::SensorModel& sens
   refuse(odometry.track_m.has_value(), vehicle, "odometry.track_m");
   refuse(!odometry.T_vehicle_odometry.vector().isZero(0.0), vehicle, "another place of the odometry");
   refuse(odometry.sigma_along_m_per_sqrt_m || odometry.sigma_heading_rad_per_sqrt_m ||
-             odometry.sigma_heading_rad_per_sqrt_s || odometry.sigma_omega_radps,
+             odometry.sigma_heading_rad_per_sqrt_s || odometry.sigma_heading_rad_per_sqrt_turn ||
+             odometry.sigma_omega_radps,
          vehicle, "noise along the way or of the heading (sigma_v_mps and sigma_steering are)");
   refuse(sensor.range_scale != 1.0, vehicle, "sensor.range_scale");
   refuse(sensor.range_offset_m != 0.0, vehicle, "sensor.range_offset_m");
@@ -79,9 +80,9 @@ void take_plaza(CLI::App& command, const logs::Vehicle& vehicle, Settings& setti
   const logs::OdometryModel& odometry = vehicle.odometry;
   refuse(odometry.scale != 1.0 || odometry.turn_scale != 1.0 || odometry.turn_bias_radps != 0.0, vehicle,
          "a scale or bias of the odometry");
-  refuse(odometry.sigma_heading_rad_per_sqrt_s || odometry.sigma_v_mps || odometry.sigma_omega_radps ||
-             odometry.sigma_steering_rad,
-         vehicle, "noise by the time or of a sample");
+  refuse(odometry.sigma_heading_rad_per_sqrt_s || odometry.sigma_heading_rad_per_sqrt_turn || odometry.sigma_v_mps ||
+             odometry.sigma_omega_radps || odometry.sigma_steering_rad,
+         vehicle, "noise by the time, by turns or of a sample");
   refuse(is_mounted(sensor), vehicle, "a mounting or delay of the sensor");
   refuse(sensor.range_offset_m != 0.0, vehicle, "sensor.range_offset_m");
   logs::PlazaSettings& plaza = settings.logs.plaza;

@@ -169,11 +169,13 @@ void Motions::move(Motion& motion, std::size_t row) const {
 
 void Motions::add_model_noise(Motion& motion) const {
   const double way_m = motion.twist.head<2>().norm();
+  const double turns = std::abs(motion.twist.z()) / (2.0 * core::pi);
   const double duration_s = core::seconds(motion.end_ns - motion.begin_ns);
   const Eigen::Vector3d variances(square(model_.sigma_along_m_per_sqrt_m.value_or(0.0)) * way_m,
                                   square(model_.sigma_sideways_m_per_sqrt_m.value_or(0.0)) * way_m,
                                   square(model_.sigma_heading_rad_per_sqrt_m.value_or(0.0)) * way_m +
-                                      square(model_.sigma_heading_rad_per_sqrt_s.value_or(0.0)) * duration_s);
+                                      square(model_.sigma_heading_rad_per_sqrt_s.value_or(0.0)) * duration_s +
+                                      square(model_.sigma_heading_rad_per_sqrt_turn.value_or(0.0)) * turns);
   const Eigen::Matrix3d R = half_turned(motion.twist.z());
   motion.covariance += R * variances.asDiagonal() * R.transpose();
 }

@@ -68,7 +68,7 @@ struct ReturnScore {
 
 enum class RunVerdict {
   closed,         ///< every return was closed, none wrongly
-  false_closure,  ///< at least one closing is wrong; if nothing returns, any closing is
+  false_closure,  ///< at least one closing is wrong, by its place or by its pairs' labels
   undecided,      ///< nothing wrong, but a return was left open, or the road never returns
 };
 

@@ -26,11 +26,12 @@ struct OdometryModel {
   double encoder_offset_m = 0.0;      ///< from the centre of the rear axle to the wheel measured, left positive
   std::optional<double> track_m;      ///< between the left and the right wheel; of wheels
 
-  // Noise that grows with distance or time.
+  // Noise that grows with distance, time, or how far the vehicle turned either way (a turn is one of 360 degrees).
   std::optional<double> sigma_along_m_per_sqrt_m;
   std::optional<double> sigma_sideways_m_per_sqrt_m;
   std::optional<double> sigma_heading_rad_per_sqrt_m;
   std::optional<double> sigma_heading_rad_per_sqrt_s;
+  std::optional<double> sigma_heading_rad_per_sqrt_turn;  ///< test: logs/own/turning_noise_test.cpp
   // Noise per sample.
   /// Of v; of v_left and of v_right each, unless sigma_omega is given: then of their mean. Test:
   /// logs/own/own_recording_test.cpp
@@ -42,7 +43,8 @@ struct OdometryModel {
 
   bool tells_noise() const {
     return sigma_along_m_per_sqrt_m || sigma_sideways_m_per_sqrt_m || sigma_heading_rad_per_sqrt_m ||
-           sigma_heading_rad_per_sqrt_s || sigma_v_mps || sigma_omega_radps || sigma_steering_rad;
+           sigma_heading_rad_per_sqrt_s || sigma_heading_rad_per_sqrt_turn || sigma_v_mps || sigma_omega_radps ||
+           sigma_steering_rad;
   }
 };
 

@@ -39,6 +39,7 @@ OdometryModel odometry_of(TomlSection section) {
   model.sigma_sideways_m_per_sqrt_m = section.number("sigma_sideways_m_per_sqrt_m", least_sigma, most_sigma);
   model.sigma_heading_rad_per_sqrt_m = section.angle("sigma_heading", least_sigma, most_sigma, "_per_sqrt_m");
   model.sigma_heading_rad_per_sqrt_s = section.angle("sigma_heading", least_sigma, most_sigma, "_per_sqrt_s");
+  model.sigma_heading_rad_per_sqrt_turn = section.angle("sigma_heading", least_sigma, most_sigma, "_per_sqrt_turn");
   model.sigma_v_mps = section.number("sigma_v_mps", least_sigma, most_sigma);
   model.sigma_omega_radps = section.angle("sigma_omega", least_sigma, most_sigma, "_per_s");
   model.sigma_steering_rad = section.angle("sigma_steering", least_sigma, 1.0);
