@@ -16,6 +16,7 @@
 #include "helixnav/logs/mrclam.hpp"
 #include "helixnav/sim/team_world.hpp"
 #include "map.hpp"
+#include "signals.hpp"
 #include "team/team_folder.hpp"
 #include "team_log.hpp"
 
@@ -63,7 +64,10 @@ TeamRun replay_team(const TeamLog& log, const std::optional<fs::path>& out, bool
   task.options.join.by_names = known_association;
   task.options.join.by_constellation = !known_association;
   task.quiet = true;
+  SignalWatch signals;
+  task.before_each_event = [&signals] { signals.heed(); };
   apps::TeamDrive drive = apps::drive_team(task);
+  task.before_each_event = nullptr;
   apps::TeamEvaluation evaluation = apps::evaluate_team(task, drive);
   TeamRun run{std::move(task), std::move(drive), std::move(evaluation)};
   if (out) write_run(log, out->string(), overwrite, run);
@@ -176,7 +180,8 @@ void bind_team_log(py::module_& module) {
   module.def("replay_team", &replay_team, py::arg("log"), py::arg("out") = py::none(), py::arg("overwrite") = false,
              py::arg("unknown_starts") = false, py::arg("known_association") = true, Released(),
              "Navigates all robots of a log in one map, as helixnav replay does; with `out`, writes the team's run "
-             "folder. Without known_association, landmarks have no names and robots are joined by constellations.");
+             "folder. Without known_association, landmarks have no names and robots are joined by constellations. "
+             "Ctrl-C ends it before anything is written.");
 }
 
 }  // namespace helixnav::python

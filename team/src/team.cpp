@@ -240,6 +240,7 @@ void check_names(const core::Scan& scan, const std::vector<std::int64_t>& names)
 }  // namespace
 
 Team::Team(const std::vector<std::optional<core::PoseGaussian>>& starts, const TeamOptions& options) {
+  if (starts.empty()) throw core::PreconditionError("team: expected the start of one robot or more");
   for (const std::optional<core::PoseGaussian>& start : starts) {
     if (start) core::check_start(*start);
   }

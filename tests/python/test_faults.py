@@ -202,3 +202,22 @@ except KeyboardInterrupt:
 """
     assert interrupted(code, tmp_path / "out", after_s=0.1) == "interrupted\n"
     assert not (tmp_path / "out").exists()
+
+
+def test_ctrl_c_ends_a_team_before_it_writes(tmp_path):
+    code = """
+import sys, helixnav
+log = helixnav.simulate_team(robots=12, seed=1)
+print("begun", flush=True)
+try:
+    helixnav.replay_team(log, out=sys.argv[1], known_association=False)
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+    assert interrupted(code, tmp_path / "out", after_s=0.1) == "interrupted\n"
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_team_has_a_robot():
+    with pytest.raises(helixnav.PreconditionError, match="one robot"):
+        helixnav.Team([])

@@ -90,6 +90,7 @@ TeamDrive drive_team(const TeamTask& task) {
   const std::vector<Fed> all = in_order(task.recording);
   ProgressBar progress("navigating", all.size(), task.quiet);
   for (std::size_t k = 0; k < all.size() && !interrupted(); ++k) {
+    if (task.before_each_event) task.before_each_event();
     const Fed& fed = all[k];
     const auto r = static_cast<std::size_t>(fed.robot);
     const core::TeamMember& member = members[r];

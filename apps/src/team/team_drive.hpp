@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "helixnav/core/step_report.hpp"
@@ -34,6 +35,7 @@ struct TeamTask {
   bool own_names = false;  ///< each robot tells its own landmarks apart with its own navigator, and not another's
   team::TeamOptions options;
   bool quiet = false;
+  std::function<void()> before_each_event;  ///< what it throws ends the drive; may be empty
 };
 
 /// Feeds all robots' events in order of time, until the program is interrupted.

@@ -42,8 +42,8 @@ struct JudgedSighting {
 /// Test: team/team_test.cpp.
 class Team {
  public:
-  /// [robot] its start in the common frame, nothing where it is unknown. PreconditionError for a start that core::check_start
-  /// refuses, and for looks_as_one below 1.
+  /// [robot] its start in the common frame, nothing where it is unknown. PreconditionError for a team of none, a start that
+  /// core::check_start refuses, and looks_as_one below 1.
   explicit Team(const std::vector<std::optional<core::PoseGaussian>>& starts, const TeamOptions& options = {});
   ~Team();
   Team(Team&&) noexcept;
