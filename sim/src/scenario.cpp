@@ -122,9 +122,6 @@ Scenario circuit(double sigma_turn_rad, double sigma_range_m, double sigma_beari
   s.vehicle.lookahead_m = 1.0;
   s.scanner.T_robot_sensor = {};
   s.scanner.field_of_view = {0.1, 8.0, -core::pi, core::pi};
-  // The small robot's noise is large relative to 8 m: with lengths based on that reach it searches when it need not
-  // (large noise: recall 77 instead of 96 %).
-  s.scanner.field_of_view.reach_m = 30.0;
   s.scanner.detection_probability = 1.0;
   s.scanner.clutter_per_scan = 0.0;
   const double sample_m = s.vehicle.speed_mps * s.vehicle.odometry_period_s;
