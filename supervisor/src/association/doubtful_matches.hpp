@@ -12,7 +12,7 @@ namespace helixnav::supervisor {
 /// A tentative landmark may be a false alarm, and the observation matched with it another one: then the two say nothing
 /// about where the vehicle is. The odds that a match is right are (odds that the landmark exists) · P_D N(ν; 0, S) / λ,
 /// where λ is the density of objects in no map, with as many of them per scan as landmarks were begun per scan on this
-/// drive. Matches less than 95 % likely to be right are left unused (docs/slips.md, "False alarms", explains the
+/// drive. Matches less than 95 % likely to be right are left unused (docs/moving.md, "False alarms", explains the
 /// 95), and those of them with P_D N > λ are returned: another sighting there counts towards the landmark's existence,
 /// by ln P_D N/λ. Mature landmarks are never in question.
 /// Test: supervisor/association/doubtful_matches_test.cpp.

@@ -37,7 +37,7 @@ bool was_no_noise(const Closing& as_measured);
 /// By how much likelier a place has to be than without odometry, given how odometry as measured refused it: the
 /// likelihood of a scale is factor^(−3/2), and that something else was wrong, with no pause in which the vehicle may
 /// have been carried, is expected of one drive to a place in a million: rarer than repetitive ground, rows of trees and
-/// blocks of houses (docs/slips.md). Test: supervisor/placing/whole_map_test.cpp.
+/// blocks of houses (docs/no_prior.md). Test: supervisor/placing/whole_map_test.cpp.
 double nats_against_odometry(const Closing& as_measured);
 
 /// Closes the map at a place that odometry forbids. χ² of the pairs at a free pose decides on a place; the excess of

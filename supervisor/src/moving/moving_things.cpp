@@ -19,7 +19,7 @@ constexpr int nobody = -1;
 
 /// As uncertain as uncalibrated odometry: what everything that stands still seems to do, at a few hundredths of the
 /// vehicle's speed, is not motion. With 0.02, DLR, whose odometry is 8 % too long against its detector, is the same as
-/// without; with 0.05, walkers pass for standing (docs/slips.md).
+/// without; with 0.05, walkers pass for standing (docs/moving.md).
 core::Odometry as_uncalibrated(core::Odometry motion) {
   constexpr double share = 0.03;
   const double off_m = share * motion.T_before_after.position_m().norm();

@@ -23,7 +23,7 @@ struct FixInnovation {
 ///
 /// Fixes that err alike for τ are worth one fix every 2τ: an estimator that knows only white errors has to be given each
 /// of them with (1 + φ)/(1 − φ) times its variance, φ = exp(−dt/τ), which is the integral of the autocorrelation.
-/// Equations and figures: docs/slips.md. Test: supervisor/noise/fix_noise_test.cpp.
+/// Equations and figures: docs/noise.md. Test: supervisor/noise/fix_noise_test.cpp.
 class FixNoise {
  public:
   FixNoise();

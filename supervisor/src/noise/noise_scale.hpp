@@ -28,7 +28,7 @@ struct Look {
 /// wrong scale of ranges) and not noise; otherwise DLR's forward motion, 8 % too long against its detector, would pass
 /// for four times the variance. Down: the detector's factor also needs independent errors, of landmarks seen from
 /// another side than when they last counted, sums of eight looks that are as small, and displacements that odometry explains;
-/// odometry's needs all of w. Errors that could not have been larger, of posts in a row, say nothing of that. Rules and figures: docs/slips.md. Test: supervisor/noise/noise_scale_test.cpp.
+/// odometry's needs all of w. Errors that could not have been larger, of posts in a row, say nothing of that. Rules and figures: docs/noise.md. Test: supervisor/noise/noise_scale_test.cpp.
 class NoiseScale {
  public:
   /// One scan while nothing is in question; Q: the covariance of the motion before it (x, y, heading; robot frame); the look

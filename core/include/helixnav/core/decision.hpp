@@ -76,7 +76,7 @@ struct SystematicDecision {
 };
 
 /// The drive has shown other noise than was stated, and what was driven before was solved again with it, if it could be. Standard
-/// deviations in units of those stated; more than 1: worse than stated. docs/slips.md#noise-that-is-learnt.
+/// deviations in units of those stated; more than 1: worse than stated. docs/noise.md.
 struct NoiseDecision {
   double odometry = 1.0;
   double detections = 1.0;

@@ -3,7 +3,7 @@
 
 namespace helixnav::supervisor {
 
-/// Moving landmarks are detected and dropped. Figures: docs/slips.md.
+/// Moving landmarks are detected and dropped. Figures: docs/moving.md.
 struct MovingOptions {
   bool enabled = true;
   double speed_mps =
