@@ -55,27 +55,43 @@ JointFilter::Judged JointFilter::sight(std::size_t robot, std::size_t seen, cons
                 gate);
 }
 
-JointFilter::Judged JointFilter::update(std::size_t robot, const Point& point, const core::Pose2& T_robot_sensor,
-                                        const core::Observation& observation, double gate) {
+JointFilter::Judged JointFilter::judge_sighting(std::size_t robot, std::size_t seen, const core::Pose2& T_robot_sensor,
+                                                const core::Observation& observation, double gate) const {
+  return innovation(robot, {static_cast<Eigen::Index>(3 * seen), poses_[seen].position_m()}, T_robot_sensor,
+                    observation, gate)
+      .judged;
+}
+
+JointFilter::Innovation JointFilter::innovation(std::size_t robot, const Point& point,
+                                                const core::Pose2& T_robot_sensor, const core::Observation& observation,
+                                                double gate) const {
   const auto pose = static_cast<Eigen::Index>(3 * robot);
   const core::PredictedObservation predicted =
       core::predict_observation(observation.kind, poses_[robot], T_robot_sensor, point.at_m);
-  const core::ObsVector nu = core::innovation(observation.kind, observation.z, predicted.z_hat);
-  const Eigen::MatrixXd PHt = covariance_.middleCols<3>(pose) * predicted.H_pose.transpose() +
-                              covariance_.middleCols<2>(point.column) * predicted.H_landmark.transpose();
-  core::ObsMatrix S = predicted.H_pose * PHt.middleRows<3>(pose) +
-                      predicted.H_landmark * PHt.middleRows<2>(point.column) + observation.R;
+  Innovation found;
+  found.nu = core::innovation(observation.kind, observation.z, predicted.z_hat);
+  found.PHt = covariance_.middleCols<3>(pose) * predicted.H_pose.transpose() +
+              covariance_.middleCols<2>(point.column) * predicted.H_landmark.transpose();
+  core::ObsMatrix S = predicted.H_pose * found.PHt.middleRows<3>(pose) +
+                      predicted.H_landmark * found.PHt.middleRows<2>(point.column) + observation.R;
   S = (0.5 * (S + S.transpose())).eval();
-  const Eigen::LLT<core::ObsMatrix> llt(S);
-  if (llt.info() != Eigen::Success) throw core::NumericalError("team: innovation covariance is not positive definite");
-  Judged judged{nu.dot(llt.solve(nu)), static_cast<int>(nu.size()), false};
-  judged.accepted = judged.nis <= gate;
-  if (!judged.accepted) return judged;
-  const Eigen::MatrixXd W = llt.matrixL().solve(PHt.transpose()).transpose();
-  const Eigen::VectorXd step = PHt * llt.solve(nu);
+  found.S.compute(S);
+  if (found.S.info() != Eigen::Success)
+    throw core::NumericalError("team: innovation covariance is not positive definite");
+  found.judged = {found.nu.dot(found.S.solve(found.nu)), static_cast<int>(found.nu.size()), false};
+  found.judged.accepted = found.judged.nis <= gate;
+  return found;
+}
+
+JointFilter::Judged JointFilter::update(std::size_t robot, const Point& point, const core::Pose2& T_robot_sensor,
+                                        const core::Observation& observation, double gate) {
+  const Innovation found = innovation(robot, point, T_robot_sensor, observation, gate);
+  if (!found.judged.accepted) return found.judged;
+  const Eigen::MatrixXd W = found.S.matrixL().solve(found.PHt.transpose()).transpose();
+  const Eigen::VectorXd step = found.PHt * found.S.solve(found.nu);
   covariance_.noalias() -= W * W.transpose();
   add_step(robot, step, {poses_, points_m_, covariance_});
-  return judged;
+  return found.judged;
 }
 
 void JointFilter::augment(std::size_t robot, core::LandmarkId id, const core::Pose2& T_robot_sensor,

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "helixnav/core/events.hpp"
@@ -46,6 +47,10 @@ class JointFilter {
   Judged sight(std::size_t robot, std::size_t seen, const core::Pose2& T_robot_sensor,
                const core::Observation& observation, double gate);
 
+  /// The same without an update: whether it would be accepted.
+  Judged judge_sighting(std::size_t robot, std::size_t seen, const core::Pose2& T_robot_sensor,
+                        const core::Observation& observation, double gate) const;
+
   std::size_t robots() const { return poses_.size(); }
   core::PoseGaussian pose(std::size_t robot) const;
   core::PointGaussian landmark(core::LandmarkId id) const;
@@ -67,6 +72,14 @@ class JointFilter {
     Eigen::Index column;
     Eigen::Vector2d at_m;
   };
+  struct Innovation {
+    core::ObsVector nu;
+    Eigen::MatrixXd PHt;
+    Eigen::LLT<core::ObsMatrix> S;
+    Judged judged;
+  };
+  Innovation innovation(std::size_t robot, const Point& point, const core::Pose2& T_robot_sensor,
+                        const core::Observation& observation, double gate) const;
   std::size_t index_of(core::LandmarkId id) const;
   Eigen::Index column_of(std::size_t landmark) const;
   Judged update(std::size_t robot, const Point& point, const core::Pose2& T_robot_sensor,

@@ -204,6 +204,18 @@ core::StepReport take(std::size_t robot, const NamedScan& named, const TeamOptio
   return report;
 }
 
+/// Whether another robot of the component is where one was seen: then it was probably taken for the wrong one.
+bool fits_another(const SightingRow& row, double gate, const State& state) {
+  const Component& component = state.components[state.robots[row.robot].component];
+  return std::any_of(component.robots.begin(), component.robots.end(), [&](std::size_t other) {
+    if (other == row.robot || other == row.seen) return false;
+    return component.filter
+        .judge_sighting(state.robots[row.robot].slot, state.robots[other].slot, row.T_robot_sensor, row.observation,
+                        gate)
+        .accepted;
+  });
+}
+
 void take(std::size_t robot, const core::RobotSighting& sighting, const TeamOptions& options, State& state) {
   SightingRow row;
   row.robot = robot;
@@ -220,6 +232,7 @@ void take(std::size_t robot, const core::RobotSighting& sighting, const TeamOpti
                                                               row.T_robot_sensor, row.observation, gate);
     row.nis = judged.nis;
     row.use = judged.accepted ? SightingRow::Use::used : SightingRow::Use::refused;
+    row.fits_another = !judged.accepted && fits_another(row, gate, state);
     state.news_of_joins = state.news_of_joins || !judged.accepted;
     component.news = component.news || judged.accepted;
   }

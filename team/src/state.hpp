@@ -62,8 +62,9 @@ struct SightingRow {
   core::Nanoseconds t_ns = 0;
   core::Pose2 T_robot_sensor;
   core::Observation observation;
-  Use use = Use::apart;  ///< apart: between two components
-  double nis = 0.0;      ///< of the innovation, if it was in one component
+  Use use = Use::apart;       ///< apart: between two components
+  double nis = 0.0;           ///< of the innovation, if it was in one component
+  bool fits_another = false;  ///< refused, and accepted if the robot seen were another one of the component
 };
 
 /// A sighting identified independently of late arrivals: time, robot, robot seen.

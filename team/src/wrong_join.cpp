@@ -20,7 +20,7 @@ std::optional<WrongJoin> contradiction_of(std::size_t join, const State& state) 
   const JoinEvidence& evidence = state.evidence[join];
   WrongJoin count{join, 0, 0};
   for (std::size_t i = evidence.rows_before; i < state.sighting_rows.size() && count.seen < first; ++i) {
-    if (!is_between(state.sighting_rows[i], evidence)) continue;
+    if (!is_between(state.sighting_rows[i], evidence) || state.sighting_rows[i].fits_another) continue;
     ++count.seen;
     count.refused += state.sighting_rows[i].use == SightingRow::Use::refused ? 1 : 0;
     if (count.refused >= least && 2 * count.refused > count.seen) return count;

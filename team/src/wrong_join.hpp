@@ -15,7 +15,8 @@ struct WrongJoin {
 };
 
 /// The last join that later sightings contradict: of the first forty of a robot on one side by one on the other, six and more
-/// than half are refused. One misread robot is enough for two sightings that agree. Test: team/team_test.cpp.
+/// than half are refused. One misread robot is enough for two sightings that agree. A refused sighting that fits another robot
+/// of the team, as one that was taken for the wrong robot does, says nothing of the join. Test: team/team_test.cpp.
 std::optional<WrongJoin> find_wrong_join(const State& state);
 
 /// It is not made again on the same evidence: if that is two sightings, on either of them.

@@ -288,6 +288,28 @@ TEST(Team, AJoinThatAllLaterSightingsContradictIsTakenBack) {
   EXPECT_LT(difference(core::between(team.pose(0).mean, team.pose(1).mean), truth).head<2>().norm(), 0.2);
 }
 
+/// Robots 0 and 2 do not meet robot 1 again, and 0 takes the other for it.
+TEST(Team, SightingsOfARobotTakenForAnotherDoNotContradictAJoin) {
+  SmallTeamOptions three;
+  three.robots = 3;
+  SmallTeam small = with_sightings(small_team(three), [](const Message& message) {
+    return message.t_ns <= 12 * second_ns ||
+           (message.robot == 0 && std::get<core::RobotSighting>(message.what).seen == 2);
+  });
+  int mistaken = 0;
+  for (Message& message : small.messages) {
+    if (message.t_ns <= 12 * second_ns || !is_sighting_of(message, 0)) continue;
+    std::get<core::RobotSighting>(message.what).seen = 1;
+    ++mistaken;
+  }
+  ASSERT_GE(mistaken, 6);
+  TeamOptions options;
+  options.join.by_names = false;
+  const Team team = testing::run(small, unknown_starts(small), options);
+  EXPECT_EQ(team.joins().size(), 2u);
+  EXPECT_TRUE(team.joins_taken_back().empty());
+}
+
 TEST(Team, DoesNotJoinWhatSightingsBeforeContradict) {
   SmallTeam small = with_sightings(small_team(), [](const Message& message) {
     return message.t_ns <= 15 * second_ns && (message.robot == 1 || message.t_ns == 14 * second_ns);

@@ -68,7 +68,7 @@ std::optional<RobotErrors> errors_of(const TeamTask& task, const TeamDrive::Robo
     errors.nees_mean += e.dot((pose.covariance + floor * Eigen::Matrix3d::Identity()).ldlt().solve(e));
   }
   if (raw.empty()) return std::nullopt;
-  errors.nees_mean /= std::max(1, in_frame);
+  errors.nees_mean /= in_frame;  // NaN where the robot came into its frame after its last scan with truth
   errors.raw_m = evaluation::error_statistics(raw);
   errors.aligned_m = evaluation::error_statistics(aligned_errors(truth_m, at_m));
   return errors;

@@ -14,7 +14,8 @@ namespace helixnav::apps {
 struct RobotErrors {
   evaluation::ErrorStatistics raw_m;
   evaluation::ErrorStatistics aligned_m;
-  double nees_mean = 0.0;  ///< of (x, y, heading), since the robot has been in that frame; 3 if consistent
+  double nees_mean =
+      0.0;  ///< of (x, y, heading), since the robot has been in that frame; 3 if consistent, NaN if none counts
 };
 
 /// Landmarks of one component by their labels.

@@ -257,14 +257,16 @@ std::string team_text(const TeamTask& task, const TeamDrive& drive, const TeamEv
       text += robot.wrongly_placed > 0 ? ", which it has to itself: what joined it to another was taken back"
                                        : ", which it has to itself: nothing joined it to another";
     } else if (robot.wrongly_placed > 0) {
-      std::snprintf(line, sizeof line, " (%zu scans before a wrong join was taken back)", robot.wrongly_placed);
+      std::snprintf(line, sizeof line, " (%zu scans before a join was taken back)", robot.wrongly_placed);
       text += line;
     }
     if (evaluation.robots[r]) {
       const RobotErrors& errors = *evaluation.robots[r];
-      std::snprintf(line, sizeof line, "; position RMSE %.3f m, aligned %.3f m, NEES %.1f (3)", errors.raw_m.rmse,
-                    errors.aligned_m.rmse, errors.nees_mean);
+      std::snprintf(line, sizeof line, "; position RMSE %.3f m, aligned %.3f m", errors.raw_m.rmse,
+                    errors.aligned_m.rmse);
       text += line;
+      std::snprintf(line, sizeof line, ", NEES %.1f (3)", errors.nees_mean);
+      text += std::isnan(errors.nees_mean) ? ", NEES of no scan (it came into its frame at the end)" : line;
       mean += errors.raw_m.rmse;
       ++with_truth;
     }

@@ -154,6 +154,20 @@ void warn_of_innovations(const TeamTask& task, const TeamDrive& drive, Sentences
   }
 }
 
+/// Of joins that were taken back, and of which nothing took the place.
+void warn_of_joins_taken_back(const TeamTask& task, const TeamDrive& drive, Sentences& warnings) {
+  std::set<std::pair<int, int>> told;
+  for (const team::TakenBackJoin& one : drive.team.joins_taken_back()) {
+    const auto component = [&](int robot) { return drive.robots[static_cast<std::size_t>(robot)].component; };
+    const std::pair<int, int> pair = std::minmax(one.join.robot, one.join.other);
+    if (one.seen == 0 || component(pair.first) == component(pair.second) || !told.insert(pair).second) continue;
+    warnings.push_back(
+        sentence("robots %d and %d are in two frames: their join was taken back, since %d of the %d sightings between "
+                 "the two sides afterwards contradict it. It was wrong, or robots were taken for others",
+                 number_of(task, pair.first), number_of(task, pair.second), one.refused, one.seen));
+  }
+}
+
 void warn_of_mapped_anew(const TeamTask& task, const TeamDrive& drive, Sentences& warnings) {
   for (std::size_t r = 0; r < drive.robots.size(); ++r) {
     const std::optional<MappedAnew> anew = mapped_anew(drive, r);
@@ -191,6 +205,7 @@ std::vector<std::string> team_warnings(const TeamTask& task, const TeamDrive& dr
   warn_of_refused(task, drive, warnings);
   warn_of_all_refused(task, drive, warnings);
   warn_of_innovations(task, drive, warnings);
+  warn_of_joins_taken_back(task, drive, warnings);
   if (task.known_association) {
     warn_of_names_in_two_frames(task, drive, warnings);
   } else {
