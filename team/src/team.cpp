@@ -13,9 +13,9 @@
 #include "find_same.hpp"
 #include "helixnav/core/check_event.hpp"
 #include "helixnav/core/errors.hpp"
+#include "increments.hpp"
 #include "process.hpp"
 #include "solve.hpp"
-#include "split_motion.hpp"
 #include "wrong_join.hpp"
 
 namespace helixnav::team {
@@ -32,6 +32,7 @@ struct Team::Book {
       : options(given),
         state(begin(starts)),
         first{0, state},
+        increments(starts.size()),
         moved_until_ns(starts.size(), std::numeric_limits<core::Nanoseconds>::min()) {}
 
   std::optional<core::StepReport> enter(Entry entry);
@@ -44,7 +45,9 @@ struct Team::Book {
   void start_again();
   void move(std::size_t robot, const core::Odometry& motion);
   void sight(std::size_t robot, const core::RobotSighting& sighting);
+  void add_motion(std::size_t robot, const core::Odometry& motion);
   void end_motion_at(std::size_t robot, core::Nanoseconds t_ns);
+  void replace_motions(std::size_t robot, const Increments::Pieces& pieces);
   void check_robot(int robot) const;
 
   TeamOptions options;
@@ -53,6 +56,7 @@ struct Team::Book {
   std::size_t done = 0;  ///< of the entries, in the state
   Checkpoint first;
   std::vector<Checkpoint> checkpoints;
+  std::vector<Increments> increments;             ///< [robot]
   std::vector<core::Nanoseconds> moved_until_ns;  ///< [robot]
   std::vector<Entry> waiting;                     ///< sightings of robots that have not yet moved until then
   RefusedJoins refused;
@@ -69,6 +73,26 @@ std::set<std::size_t> joined_since(std::size_t joins, const State& state) {
     components.insert(state.robots[static_cast<std::size_t>(state.joins[j].robot)].component);
   }
   return components;
+}
+
+bool is_same(const Entry& a, const Entry& b) {
+  if (a.robot != b.robot || a.what.index() != b.what.index() || a.t_ns() != b.t_ns()) return false;
+  const auto* one = std::get_if<core::Odometry>(&a.what);
+  if (one == nullptr) return true;
+  const auto& other = std::get<core::Odometry>(b.what);
+  return one->T_before_after.vector() == other.T_before_after.vector() && one->covariance == other.covariance;
+}
+
+/// Entries of a stretch of time, with these motions instead of the robot's.
+std::vector<Entry> with_motions(std::size_t robot, const std::vector<core::Odometry>& motions,
+                                std::vector<Entry> entries) {
+  const auto is_motion = [&](const Entry& entry) {
+    return entry.robot == robot && std::holds_alternative<core::Odometry>(entry.what);
+  };
+  entries.erase(std::remove_if(entries.begin(), entries.end(), is_motion), entries.end());
+  for (const core::Odometry& motion : motions) entries.push_back({robot, motion});
+  std::stable_sort(entries.begin(), entries.end(), before);
+  return entries;
 }
 
 }  // namespace
@@ -171,7 +195,7 @@ bool Team::Book::take_back_wrong_join() {
 
 /// Motion, and the sightings that waited for it.
 void Team::Book::move(std::size_t robot, const core::Odometry& motion) {
-  enter({robot, motion});
+  add_motion(robot, motion);
   moved_until_ns[robot] = std::max(moved_until_ns[robot], motion.t_ns);
   std::vector<Entry> still;
   std::vector<Entry> due;
@@ -194,29 +218,54 @@ void Team::Book::sight(std::size_t robot, const core::RobotSighting& sighting) {
   enter({robot, sighting});
 }
 
-/// Cuts the increment that the robot was in the middle of; before its first there is nothing to cut.
+void Team::Book::add_motion(std::size_t robot, const core::Odometry& motion) {
+  const bool is_last = increments[robot].ends_after_all(motion.t_ns);
+  const std::size_t place = increments[robot].add(motion);
+  try {
+    if (is_last) {
+      enter({robot, motion});
+    } else {
+      replace_motions(robot, increments[robot].pieces_about(motion.t_ns));
+    }
+  } catch (...) {
+    increments[robot].take_out(place);
+    throw;
+  }
+}
+
+/// Cuts the increment that the robot was in the middle of.
 void Team::Book::end_motion_at(std::size_t robot, core::Nanoseconds t_ns) {
-  const auto is_motion = [&](const Entry& entry) {
-    return entry.robot == robot && std::holds_alternative<core::Odometry>(entry.what);
+  if (!increments[robot].cut(t_ns)) return;
+  try {
+    replace_motions(robot, increments[robot].pieces_about(t_ns));
+  } catch (...) {
+    increments[robot].mend(t_ns);
+    throw;
+  }
+}
+
+/// Processes again what follows from the first piece that is another one.
+void Team::Book::replace_motions(std::size_t robot, const Increments::Pieces& pieces) {
+  const auto by_time = [](core::Nanoseconds t_ns, const Entry& entry) { return t_ns < entry.t_ns(); };
+  const auto begin = std::upper_bound(entries.begin(), entries.end(), pieces.after_ns, by_time);
+  const auto end = std::upper_bound(begin, entries.end(), pieces.until_ns, by_time);
+  const std::vector<Entry> old(begin, end);
+  const std::vector<Entry> now = with_motions(robot, pieces.motions, old);
+  const auto first = static_cast<std::size_t>(begin - entries.begin());
+  const auto same = static_cast<std::size_t>(
+      std::mismatch(old.begin(), old.end(), now.begin(), now.end(), is_same).first - old.begin());
+  const auto put = [&](const std::vector<Entry>& window, std::size_t instead_of) {
+    const auto at = entries.begin() + static_cast<std::ptrdiff_t>(first);
+    entries.insert(entries.erase(at, at + static_cast<std::ptrdiff_t>(instead_of)), window.begin(), window.end());
+    rewind(first + same);
+    replay();
   };
-  const auto from = std::lower_bound(entries.begin(), entries.end(), t_ns,
-                                     [](const Entry& entry, core::Nanoseconds t) { return entry.t_ns() < t; });
-  const auto over = std::find_if(from, entries.end(), is_motion);
-  if (over == entries.end() || over->t_ns() == t_ns) return;
-  const auto before_it = std::find_if(std::make_reverse_iterator(over), entries.rend(), is_motion);
-  if (before_it == entries.rend() || before_it->t_ns() >= t_ns) return;
-  const auto whole = std::get<core::Odometry>(over->what);
-  const double share = core::seconds(t_ns - before_it->t_ns()) / core::seconds(whole.t_ns - before_it->t_ns());
-  const auto [first_part, second_part] = split_motion(whole, share, t_ns);
-  over->what = second_part;
-  const auto index = static_cast<std::size_t>(over - entries.begin());
-  const Entry begun{robot, first_part};
-  entries.insert(std::upper_bound(entries.begin(), entries.end(), begun, before), begun);
-  if (index >= done) return;
-  const auto place = std::find_if(entries.begin(), entries.end(),
-                                  [&](const Entry& entry) { return entry.t_ns() == t_ns && is_motion(entry); });
-  rewind(static_cast<std::size_t>(place - entries.begin()));
-  replay();
+  try {
+    put(now, old.size());
+  } catch (...) {
+    put(old, now.size());
+    throw;
+  }
 }
 
 void Team::Book::check_robot(int robot) const {
