@@ -191,6 +191,8 @@ void bind_team(py::module_& module) {
       .def("take", &take_of_robot, py::arg("robot"), py::arg("event"), py::arg("names") = py::tuple(),
            "Takes odometry, or a scan with a name for each observation (negative for none); a scan without names is "
            "associated by place. Returns the report of a scan; None for odometry and for a scan that came late. "
+           "Without odometry a robot is taken to stand still: the report of a scan that arrives before it is wrong "
+           "until then. "
            "PreconditionError for AbsoluteFix and Lost.")
       .def("sight", locked(&Team::sight), py::arg("robot"), py::arg("sighting"), Released(),
            "`robot` sees another robot.")

@@ -358,7 +358,7 @@ std::vector<core::MapLandmark> Team::map(int robot) const {
     landmark.id = id;
     landmark.point = filter.landmark(id);
     landmark.observations = book_->state.observations[static_cast<std::size_t>(id)];
-    landmark.state = core::LandmarkState::mature;
+    landmark.state = landmark.observations > 1 ? core::LandmarkState::mature : core::LandmarkState::tentative;
   }
   return map;
 }

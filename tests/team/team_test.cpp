@@ -369,6 +369,19 @@ TEST(Team, ALandmarkFirstSeenUnderAnothersNameIsBegunAnew) {
   EXPECT_GE(found->observations, 10);
 }
 
+TEST(Team, ALandmarkUnderANameReadOnceIsTentative) {
+  SmallTeam small = small_team();
+  constexpr std::int64_t misread = 99;
+  const auto middle = small.messages.begin() + static_cast<std::ptrdiff_t>(small.messages.size() / 2);
+  Message& scan = *std::find_if(middle, small.messages.end(), [](const Message& one) { return !one.names.empty(); });
+  scan.names.front() = misread;
+  const Team team = testing::run(small, known_starts(small));
+  for (const core::MapLandmark& landmark : team.map(0)) {
+    const bool is_misread = landmark.id == team.landmark_of(scan.robot, misread);
+    EXPECT_EQ(landmark.state, is_misread ? core::LandmarkState::tentative : core::LandmarkState::mature);
+  }
+}
+
 TEST(Team, AFalseSightingIsGatedOut) {
   SmallTeam small = small_team();
   Team team = testing::run(small, known_starts(small));

@@ -94,7 +94,7 @@ std::optional<LandmarkErrors> landmark_errors(const TeamTask& task, const TeamDr
   std::vector<Eigen::Vector2d> truth_m, at_m;
   for (const core::MapLandmark& landmark : drive.team.map(component)) {
     const auto label = labels.find(landmark.id);
-    if (label == labels.end()) continue;
+    if (label == labels.end() || landmark.state != core::LandmarkState::mature) continue;
     truth_m.push_back(true_m.at(label->second));
     at_m.push_back(landmark.point.mean_m);
   }

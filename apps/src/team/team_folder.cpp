@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "helixnav/reports/finish_run.hpp"
 #include "helixnav/runs/run_recorder.hpp"
 #include "helixnav/runs/run_writer.hpp"
+#include "helixnav/runs/words.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -115,14 +117,39 @@ std::set<int> components_of(const TeamDrive& drive) {
   return components;
 }
 
+std::string names_text(const std::set<std::int64_t>& names) {
+  std::string text;
+  for (const std::int64_t name : names) text += (text.empty() ? "" : " ") + std::to_string(name);
+  return text;
+}
+
+/// What the robots of a component call their landmarks.
+std::map<core::LandmarkId, std::set<std::int64_t>> names_in(const TeamDrive& drive, int component) {
+  std::map<core::LandmarkId, std::set<std::int64_t>> names;
+  for (std::size_t r = 0; r < drive.robots.size(); ++r) {
+    if (drive.robots[r].component != component) continue;
+    std::set<std::int64_t> own;
+    for (const std::vector<std::int64_t>& scan : drive.robots[r].names) own.insert(scan.begin(), scan.end());
+    for (const std::int64_t name : own) {
+      const core::LandmarkId id = drive.team.landmark_of(static_cast<int>(r), name);
+      if (id != core::no_landmark) names[id].insert(name);
+    }
+  }
+  return names;
+}
+
 std::string map_table(const TeamTask& task, const TeamDrive& drive) {
-  std::string text = "component,landmark,x,y,xx,xy,yy,observations\n";
+  std::string text = "component,landmark,x,y,xx,xy,yy,observations,state,names\n";
   for (const int component : components_of(drive)) {
+    const std::map<core::LandmarkId, std::set<std::int64_t>> names = names_in(drive, component);
     for (const core::MapLandmark& landmark : drive.team.map(component)) {
       const Eigen::Matrix2d& P = landmark.point.covariance_m2;
       text += std::to_string(number_of(task, component)) + ',' + std::to_string(landmark.id);
       files::append_cells(text, {landmark.point.mean_m.x(), landmark.point.mean_m.y(), P(0, 0), P(0, 1), P(1, 1),
                                  static_cast<double>(landmark.observations)});
+      text += ',' + std::string(runs::word_of(runs::state_words, landmark.state)) + ',';
+      const auto own = names.find(landmark.id);
+      if (own != names.end()) text += names_text(own->second);
       text += '\n';
     }
   }
@@ -243,6 +270,22 @@ void write_team(const std::string& folder, bool overwrite, const runs::RunManife
   files::write_whole_file(folder + "/summary.json", team_summary(task, drive, evaluation));
 }
 
+namespace {
+
+std::size_t seen_once(const TeamDrive& drive, int component) {
+  const std::vector<core::MapLandmark> map = drive.team.map(component);
+  return static_cast<std::size_t>(std::count_if(map.begin(), map.end(), [](const core::MapLandmark& landmark) {
+    return landmark.state == core::LandmarkState::tentative;
+  }));
+}
+
+std::string seen_once_text(const TeamDrive& drive, int component) {
+  const std::size_t count = seen_once(drive, component);
+  return count == 0 ? "" : " (not counted: " + std::to_string(count) + " seen only once)";
+}
+
+}  // namespace
+
 std::string team_text(const TeamTask& task, const TeamDrive& drive, const TeamEvaluation& evaluation) {
   std::string text;
   char line[200];
@@ -284,16 +327,17 @@ std::string team_text(const TeamTask& task, const TeamDrive& drive, const TeamEv
       std::snprintf(line, sizeof line, "RMSE %.3f m, ", errors.raw_rmse_m);
       text += line;
     }
-    std::snprintf(line, sizeof line, "aligned %.3f m\n", errors.aligned_rmse_m);
-    text += line;
+    std::snprintf(line, sizeof line, "aligned %.3f m", errors.aligned_rmse_m);
+    text += line + seen_once_text(drive, errors.component) + '\n';
   }
   for (const int component : components_of(drive)) {
     const bool told = std::any_of(evaluation.landmarks.begin(), evaluation.landmarks.end(),
                                   [&](const LandmarkErrors& errors) { return errors.component == component; });
     if (told) continue;
-    std::snprintf(line, sizeof line, "frame of robot %d: %zu landmarks\n", number_of(task, component),
-                  drive.team.map(component).size());
-    text += line;
+    const std::size_t tentative = seen_once(drive, component);
+    std::snprintf(line, sizeof line, "frame of robot %d: %zu landmarks", number_of(task, component),
+                  drive.team.map(component).size() - tentative);
+    text += line + seen_once_text(drive, component) + '\n';
   }
   text += joins_text(task, drive);
   text += taken_back_text(task, drive);

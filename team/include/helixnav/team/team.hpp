@@ -52,7 +52,8 @@ class Team {
   /// Motion, or a scan with a name for each observation, below 0: none. With JoinOptions::by_names a name means the same
   /// landmark to all robots, else to this one. Without names at all the observations of a scan are associated with the
   /// landmarks of the robot's component, whichever robot began them (optimal assignment by likelihood ratio), or begin new
-  /// ones. The report of a scan, nothing for motion and for a scan that came late.
+  /// ones. The report of a scan, nothing for motion and for a scan that came late. A robot that sent no motion is taken to have stood
+  /// still: of a scan that arrives before the motion up to it, the report is wrong, and pose() is right once the motion is there.
   std::optional<core::StepReport> take(int robot, const core::Event& event,
                                        const std::vector<std::int64_t>& names = {});
 
@@ -66,7 +67,7 @@ class Team {
   core::PoseGaussian pose(int robot) const;
   /// Number of the robot's component: the least of its robots.
   int component(int robot) const;
-  /// Landmarks of the robot's component.
+  /// Landmarks of the robot's component; tentative what was seen only once, as under a misread name.
   std::vector<core::MapLandmark> map(int robot) const;
   /// Where the robot was when it saw something or was seen, as known at the last solution, in its component's frame.
   std::vector<core::StampedPose> path(int robot) const;
