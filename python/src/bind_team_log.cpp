@@ -10,6 +10,7 @@
 #include "arrays.hpp"
 #include "bind.hpp"
 #include "common/input_files.hpp"
+#include "configuration.hpp"
 #include "gil.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/version.hpp"
@@ -25,8 +26,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TeamLog read_team_log(const fs::path& path, const std::vector<int>& robots) {
-  return {logs::read_mrclam(path, robots), {path.string()}, 0};
+TeamLog read_team_log(const fs::path& path, const std::vector<int>& robots, const py::dict& options) {
+  const Configuration configuration = configuration_of(options);
+  for (const std::string& key : configuration.keys) {
+    if (key.rfind("mrclam.", 0) != 0) throw core::InputError(key + ": is not for several robots; mrclam.… are");
+  }
+  const WithoutGil released;
+  return {logs::read_mrclam(path, robots, configuration.settings.logs.mrclam), {path.string()}, 0};
 }
 
 TeamLog simulate_team(int robots, std::uint64_t seed) {
@@ -51,18 +57,10 @@ void write_run(const TeamLog& log, const std::string& out, bool overwrite, const
 
 TeamRun replay_team(const TeamLog& log, const std::optional<fs::path>& out, bool overwrite, bool unknown_starts,
                     bool known_association) {
-  if (!unknown_starts && !log.recording.starts_known) {
-    throw core::InputError(log.recording.name + ": the starts are not known: give unknown_starts=True");
-  }
+  apps::TeamTask task = apps::task_of(log.recording, unknown_starts, known_association);
   if (out && fs::exists(*out) && !overwrite && !(fs::is_directory(*out) && fs::is_empty(*out))) {
     throw core::InputError(out->string() + ": the folder is not empty");
   }
-  apps::TeamTask task;
-  task.recording = log.recording;
-  task.unknown_starts = unknown_starts;
-  task.known_association = known_association;
-  task.options.join.by_names = known_association;
-  task.options.join.by_constellation = !known_association;
   task.quiet = true;
   SignalWatch signals;
   task.before_each_event = [&signals] { signals.heed(); };
@@ -173,8 +171,10 @@ void bind_team_log(py::module_& module) {
   using Released = py::call_guard<WithoutGil>;
   bind_log_parts(module);
   bind_team_run(module);
-  module.def("read_team_log", &read_team_log, py::arg("path"), py::arg("robots") = std::vector<int>(), Released(),
-             "Reads a log of several robots (MRCLAM): the robots with these numbers, or all.");
+  module.def("read_team_log", &read_team_log, py::arg("path"), py::arg("robots") = std::vector<int>(),
+             py::arg("options") = py::dict(),
+             "Reads a log of several robots (MRCLAM): the robots with these numbers, or all. options: its noise, as "
+             "{'mrclam.sigma_range_m': 0.2}, keys as in a configuration file.");
   module.def("simulate_team", &simulate_team, py::arg("robots") = 2, py::arg("seed") = 1, Released(),
              "Simulates several robots that see each other, in one world with known truth.");
   module.def("replay_team", &replay_team, py::arg("log"), py::arg("out") = py::none(), py::arg("overwrite") = false,

@@ -257,3 +257,24 @@ def test_landmarks_that_were_made_one_are_listed_and_taken_back(team_log):
     assert (same[0].kept, removed) not in [(one.kept, one.removed) for one in team.same_landmarks]
     with pytest.raises(helixnav.PreconditionError):
         team.remove_same(len(team.same_landmarks))
+
+
+def test_a_team_without_names_is_that_of_the_program(program, tmp_path):
+    helixnav.replay_team(helixnav.simulate_team(robots=3, seed=7), out=tmp_path / "python", known_association=False)
+    program("simulate", "team", "--robots", 3, "--seed", 7, "--association", "unknown", "--out", tmp_path / "program",
+            "--quiet")
+    same(tmp_path / "python", tmp_path / "program", ("map.csv", "joins.csv"))
+
+
+def test_the_noise_of_a_team_log_is_an_option(tmp_path):
+    (tmp_path / "odometry.csv").write_text("1,0.0,0.2,0.0\n1,1.0,0.2,0.0\n1,2.0,0.0,0.0\n")
+    (tmp_path / "measurements.csv").write_text("1,0.53,63,6,2.0,0.1\n1,1.27,63,6,1.9,0.1\n")
+    (tmp_path / "landmarks_true.csv").write_text("6,2.0,0.1,0.0,0.0\n")
+
+    def variance(options):
+        log = helixnav.read_team_log(tmp_path, options=options)
+        return next(e for e in log.robots[0].events if isinstance(e, helixnav.Scan) and len(e)).R[0, 0, 0]
+
+    assert variance({"mrclam": {"sigma_range_m": 0.4}}) == pytest.approx(16.0 * variance({"mrclam.sigma_range_m": 0.1}))
+    with pytest.raises(helixnav.InputError, match="several robots"):
+        helixnav.read_team_log(tmp_path, options={"search.particles": 300})

@@ -22,15 +22,6 @@
 namespace helixnav::apps {
 namespace {
 
-void choose(bool unknown_starts, const RunOptions& run, const Settings& settings, TeamTask& task) {
-  task.unknown_starts = unknown_starts;
-  task.options.looks_as_one = task.recording.looks_as_one;
-  task.known_association = !settings.unknown_association;
-  task.quiet = run.quiet;
-  task.options.join.by_names = task.known_association;
-  task.options.join.by_constellation = task.options.join.by_place = !task.known_association;
-}
-
 ExitCode navigate(const TeamTask& task, runs::RunManifest manifest, const RunOptions& run, const std::string& config) {
   manifest.version = core::version();
   manifest.commit = core::commit();
@@ -75,12 +66,9 @@ void refuse_options_of_a_team(const CLI::App& command, const std::vector<std::st
 
 ExitCode replay_team(const std::string& path, const TeamChoice& choice, const RunOptions& run, const Settings& settings,
                      const std::string& config) {
-  TeamTask task;
-  task.recording = logs::read_mrclam(path, choice.robots, settings.logs.mrclam);
-  if (!choice.unknown_starts && !task.recording.starts_known) {
-    throw core::InputError(path + ": not all robots have a true pose at their first command: give --unknown-starts");
-  }
-  choose(choice.unknown_starts, run, settings, task);
+  TeamTask task = task_of(logs::read_mrclam(path, choice.robots, settings.logs.mrclam), choice.unknown_starts,
+                          !settings.unknown_association);
+  task.quiet = run.quiet;
   for (const std::string& remark : task.recording.remarks) std::fprintf(stderr, "helixnav: %s\n", remark.c_str());
   if (task.recording.misread > 0) std::printf("%d misread barcodes left out\n", task.recording.misread);
   runs::RunManifest manifest;
@@ -93,9 +81,8 @@ ExitCode simulate_team(int robots, std::uint64_t seed, bool unknown_starts, cons
   sim::TeamWorldOptions world;
   world.robots = robots;
   world.see_each_other = true;
-  TeamTask task;
-  task.recording = sim::simulate_team(world, seed);
-  choose(unknown_starts, run, settings, task);
+  TeamTask task = task_of(sim::simulate_team(world, seed), unknown_starts, !settings.unknown_association);
+  task.quiet = run.quiet;
   runs::RunManifest manifest;
   manifest.seed = seed;
   return navigate(task, std::move(manifest), run, config);

@@ -10,6 +10,7 @@
 
 #include "common/interrupt.hpp"
 #include "common/progress_bar.hpp"
+#include "helixnav/core/errors.hpp"
 #include "team/last_frames.hpp"
 #include "team/own_names.hpp"
 
@@ -74,6 +75,22 @@ void bring_into_last_frames(const LastFrames& frames, const std::vector<std::vec
 }
 
 }  // namespace
+
+TeamTask task_of(core::TeamRecording recording, bool unknown_starts, bool known_association) {
+  if (!unknown_starts && !recording.starts_known) {
+    throw core::InputError(recording.name +
+                           ": not all robots have a true pose at their first command: give "
+                           "--unknown-starts (in Python: unknown_starts=True)");
+  }
+  TeamTask task;
+  task.unknown_starts = unknown_starts;
+  task.known_association = known_association;
+  task.options.looks_as_one = recording.looks_as_one;
+  task.options.join.by_names = known_association;
+  task.options.join.by_constellation = task.options.join.by_place = !known_association;
+  task.recording = std::move(recording);
+  return task;
+}
 
 TeamDrive drive_team(const TeamTask& task) {
   using Clock = std::chrono::steady_clock;

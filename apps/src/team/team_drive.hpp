@@ -38,6 +38,10 @@ struct TeamTask {
   std::function<void()> before_each_event;  ///< what it throws ends the drive; may be empty
 };
 
+/// A team as it is to be driven; association and joins go by names if `known_association`, else by places and constellations.
+/// InputError if the starts are to be known and the log does not say them.
+TeamTask task_of(core::TeamRecording recording, bool unknown_starts, bool known_association);
+
 /// Feeds all robots' events in order of time, until the program is interrupted.
 TeamDrive drive_team(const TeamTask& task);
 
