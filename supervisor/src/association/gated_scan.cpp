@@ -33,8 +33,21 @@ double extraneous_on_return(const association::LandmarkLife& existence, const Se
   return std::max(begun, existence.seen_per_scan());
 }
 
-void defer_isolated_match(const std::vector<RevisitAmbiguity>& returns, const SearchOptions& options, double path_m,
+/// Whether an object in no map is likelier to be seen there. Few of them are in a gate that is small enough to go by one
+/// match, and yet at its rim, where a right match hardly ever is, they are likelier.
+bool is_likelier_in_no_map(const GatedScan& gated, const core::AssociationReport& report, const RevisitAmbiguity& met,
+                           double detection_probability) {
+  const int index = gated.assignment.observations[static_cast<std::size_t>(report.observation)].pair;
+  if (index < 0) return false;
+  const association::GatedPair& pair = gated.gating->problem.pairs[static_cast<std::size_t>(index)];
+  return std::log(detection_probability) + pair.log_likelihood + pair.appearance_nats <
+         std::log(met.extraneous_density);
+}
+
+void defer_isolated_match(const GatedScan& gated, const NavigatorOptions& navigator, double path_m,
                           Confirmation& confirmation, std::vector<core::AssociationReport>& reports) {
+  const std::vector<RevisitAmbiguity>& returns = gated.returns;
+  const SearchOptions& options = navigator.search;
   core::AssociationReport* isolated = nullptr;
   for (core::AssociationReport& report : reports) {
     if (report.outcome != core::Outcome::matched || find_return(returns, report.landmark) == nullptr) continue;
@@ -46,7 +59,8 @@ void defer_isolated_match(const std::vector<RevisitAmbiguity>& returns, const Se
   const bool ambiguous = met.expected_confusers > options.defer_confusers;
   const bool informative = met.widening > options.confirmation_widening;
   const bool met_again = confirmation.confirms(isolated->landmark, path_m, options.confirmation_m);
-  if (ambiguous || (informative && !met_again)) isolated->outcome = core::Outcome::ambiguous;
+  const bool unlikely = is_likelier_in_no_map(gated, *isolated, met, navigator.association.detection_probability);
+  if (ambiguous || (informative && (!met_again || unlikely))) isolated->outcome = core::Outcome::ambiguous;
 }
 
 /// The other matches show where the vehicle is, but not where these are.
@@ -157,7 +171,7 @@ std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, cons
   std::vector<core::AssociationReport> reports = association_reports(gated.assignment);
   defer_matches(gated.place.loose, reports);
   defer_matches(gated.doubtful, reports);
-  defer_isolated_match(gated.returns, options.search, path_m, confirmation, reports);
+  defer_isolated_match(gated, options, path_m, confirmation, reports);
   return reports;
 }
 

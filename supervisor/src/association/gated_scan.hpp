@@ -49,9 +49,10 @@ void leave_unplaced_unused(const core::Scan& scan, std::vector<core::Association
 bool has_unplaced(const core::Scan& scan);
 
 /// The outcome of every observation. Two matched old landmarks confirm each other; an isolated match is deferred if other
-/// objects may be in its gate, and, until its second hit, if it would correct the pose by a lot. A loose match
+/// objects may be in its gate, and, if it would correct the pose by a lot, until its second hit and wherever an object in no
+/// map is likelier to be seen. A loose match
 /// (place_evidence.hpp) is deferred too, however many others there are.
-/// Test: supervisor/association/revisit_ambiguity_test.cpp.
+/// Tests: supervisor/association/revisit_ambiguity_test.cpp, isolated_match_test.cpp.
 std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, const NavigatorOptions& options,
                                                     double path_m, Confirmation& confirmation);
 

@@ -150,7 +150,8 @@ std::vector<RevisitAmbiguity> returns_in_gate(const cekf::CompressedEkf& filter,
     const Eigen::Matrix2d R = scan.observations[static_cast<std::size_t>(pair.observation)].R;
     here.widening = std::sqrt(pair.S.determinant() / R.determinant());
     here.gate_area = widened_area(pair.S, R);
-    const double extraneous = density_at(prediction, scan.field_of_view, extraneous_per_scan) * here.gate_area;
+    here.extraneous_density = density_at(prediction, scan.field_of_view, extraneous_per_scan);
+    const double extraneous = here.extraneous_density * here.gate_area;
     here.expected_confusers = neighbours.alike + share_alike(0.0, pair) * extraneous;
     keep_worst(here, returns);
   }

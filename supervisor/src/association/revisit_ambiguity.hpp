@@ -23,8 +23,9 @@ struct RevisitAmbiguity {
   /// π·5.99·(√|S| − √|R|) in the units of the observation: what the pose's uncertainty adds to the gate. Clutter in the
   /// part due to the sensor's noise does not depend on the pose.
   double gate_area = 0.0;
-  double widening = 1.0;  ///< √(|S|/|R|): how much wider the gate is than sensor noise alone would make it
-  bool is_mature = true;  ///< a search can begin only for a mature one
+  double widening = 1.0;            ///< √(|S|/|R|): how much wider the gate is than sensor noise alone would make it
+  double extraneous_density = 0.0;  ///< of objects in no map where it is expected, per unit of the observation space
+  bool is_mature = true;            ///< a search can begin only for a mature one
 };
 
 /// √(|S|/|R|) above which a landmark counts as old, however short the drive since it was seen: a vehicle that turns on
