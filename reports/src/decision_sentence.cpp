@@ -216,8 +216,8 @@ std::string why_carried(const core::CarriedDecision& d) {
            short_number(d.pose_sigma_m) + " m and " + short_number(d.heading_sigma_deg) + "°.";
   }
   if (d.cause == Cause::by_place) {
-    return "The vehicle was carried during the pause " + counted(d.scans, "scan") +
-           " ago: the landmarks mapped since are elsewhere on the map.";
+    return "The vehicle was carried " + counted(d.scans, "scan") +
+           " ago, which nobody noticed: the landmarks mapped since are elsewhere on the map.";
   }
   return "The vehicle was carried during a pause: after it " + std::to_string(d.missing) + " of " +
          counted(d.missing + d.seen, "landmark") + " that had been in view " + (d.missing == 1 ? "was" : "were") +

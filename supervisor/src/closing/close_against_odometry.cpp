@@ -135,6 +135,23 @@ class Sightings {
   Tape::Position on_tape(Tape::Position position) const { return from_ + position; }
   double driven_m(Tape::Position from, Tape::Position until) const { return driven_m_[until] - driven_m_[from]; }
 
+  /// The last position at which the vehicle had driven no more than this until the end.
+  Tape::Position position_at(double before_end_m) const {
+    constexpr double rounding_m = 1e-6;
+    const double driven_m = driven_m_.back() - before_end_m + rounding_m;
+    const auto after = std::upper_bound(driven_m_.begin(), driven_m_.end(), driven_m);
+    return after == driven_m_.begin() ? 0 : static_cast<Tape::Position>(after - driven_m_.begin()) - 1;
+  }
+
+  /// From there back to the last scan that saw something; 0 if there is none.
+  Tape::Position last_before(Tape::Position until) const {
+    Tape::Position last = 0;
+    for (const auto& [id, positions] : at_) {
+      for (const Tape::Position at : positions) last = at <= until ? std::max(last, at) : last;
+    }
+    return last;
+  }
+
   /// First sighting of any paired branch landmark.
   Tape::Position first_of(const std::vector<pf_relocalize::ConstellationPair>& pairs) const {
     Tape::Position first = end();
@@ -192,11 +209,7 @@ std::optional<Tape::Position> last_place_without_view_across(const Sightings& si
   Tape::Position unseen = branch;
   while (unseen > 0 && across[unseen - 1] > 0) --unseen;
   if (unseen > 0) --unseen;
-  // From there back to the last scan that saw something.
-  Tape::Position position = 0;
-  for (const auto& [id, positions] : sightings.at()) {
-    for (const Tape::Position at : positions) position = at <= unseen ? std::max(position, at) : position;
-  }
+  const Tape::Position position = sightings.last_before(unseen);
   return position > 0 ? std::optional(position) : std::nullopt;
 }
 
@@ -230,9 +243,17 @@ bool close_at_cut(const Input& in, const Cut& cut, const Tape& tape, Reconciled&
   return solve_and_merge(in, tape.with_jump(cut.position, jump), result);
 }
 
+/// Where it is known to have been carried. A later cut, as on a bare street, would leave what was mapped in between where it never was.
+bool close_where_carried(const Input& in, double carried_m, const Sightings& sightings, Reconciled& result) {
+  const Tape& tape = in.view.record.tape;
+  const Tape::Position at = sightings.last_before(sightings.position_at(in.view.life.path_m() - carried_m));
+  return at > 0 && close_at_cut(in, cut_at(at, sightings, tape), tape, result);
+}
+
 bool close_after_cut(const Input& in, Reconciled& result) {
   const Tape& tape = in.view.record.tape;
   const Sightings sightings(tape, 0);
+  if (in.place.carried_m) return close_where_carried(in, *in.place.carried_m, sightings, result);
   const Tape::Position branch = sightings.first_of(in.place.pairs);
   if (branch == 0) return false;
   const auto unseen = last_place_without_view_across(sightings, branch);
@@ -256,12 +277,12 @@ bool replay_with_jump(const Input& in, Tape::Position position, const core::Odom
 }
 
 /// For a drive that is no longer kept as a whole: the jump is where the vehicle stopped seeing what it had mapped,
-/// otherwise where the search began.
+/// otherwise where the search began, as it did if everything had vanished.
 bool replay_after_jump(const Input& in, Reconciled& result) {
   const BranchRecord& record = in.view.record;
   const Sightings sightings(record.tape, record.trigger.position);
   const auto unseen = last_place_without_view_across(sightings, sightings.first_of(in.place.pairs));
-  if (unseen) {
+  if (unseen && !in.place.carried_m) {
     const Cut cut = cut_at(*unseen, sightings, record.tape);
     if (replay_with_jump(in, cut.position, jump_at(in, cut), result)) return true;
   }

@@ -20,6 +20,8 @@ struct ForbiddenPlace {
   std::vector<pf_relocalize::ConstellationPair> pairs;
   core::Pose2 T_map_branch;  ///< where the branch is, from where the filter has it
   Closing as_measured;       ///< refused
+  /// Length of the drive after which everything in view vanished and nothing known has been seen again: it was carried there.
+  std::optional<double> carried_m = {};
 };
 
 /// What made odometry and place agree.

@@ -20,6 +20,7 @@
 #include "loop/mode.hpp"
 #include "loop/tape.hpp"
 #include "noise/noise_learner.hpp"
+#include "placing/gap_in_sightings.hpp"
 #include "placing/maps_apart.hpp"
 #include "placing/scan_rhythm.hpp"
 #include "placing/session_question.hpp"
@@ -237,9 +238,14 @@ class NavigationLoop {
   // placing/part_at_pause.cpp
   void forget_pauses(const core::StepReport& report);
   std::optional<UnsurePause> pause_before(const std::vector<pf_relocalize::ConstellationPair>& pairs) const;
-  Belief belief_since(const UnsurePause& pause) const;
+  std::optional<SightingGap> gap_before(const std::vector<pf_relocalize::ConstellationPair>& pairs) const;
+  std::int64_t step_after(double path_m) const;
+  Belief belief_since(double path_m) const;
   bool part_at_pause(const std::vector<pf_relocalize::ConstellationPair>& pairs, const core::Scan& scan,
                      core::StepReport& report);
+  bool part_at_gap(const std::vector<pf_relocalize::ConstellationPair>& pairs, const core::Scan& scan,
+                   core::StepReport& report);
+  bool part_between(double map_until_m, const UnsurePause& pause, const core::Scan& scan, core::StepReport& report);
 
   // placing/place_again.cpp
   void look_elsewhere(const core::Scan& scan, core::StepReport& report);

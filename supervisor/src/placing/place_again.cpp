@@ -33,11 +33,16 @@ bool is_of_other_map(const association::LandmarkRecord& record) { return record.
 
 }  // namespace
 
-/// The whole map has the place of these landmarks where no measured motion leads.
+/// The whole map has the place of these landmarks where no measured motion leads. A wrong place contradicts what is mapped later as a
+/// vehicle does that was carried without a pause, and as long as it may be wrong, that is not believed.
 void NavigationLoop::look_elsewhere(const core::Scan& scan, StepReport& report) {
   const std::vector<pf_relocalize::ConstellationPair> pairs = std::exchange(pending_.forbidden, {});
   if (part_at_pause(pairs, scan, report)) return;
-  if (may_be_placed_wrongly(pairs)) place_again(scan, report);
+  if (!may_be_placed_wrongly(pairs)) {
+    part_at_gap(pairs, scan, report);
+  } else if (belief_.step >= questions_.place_again_at) {
+    place_again(scan, report);
+  }
 }
 
 /// Once the tape would have to keep too much.
@@ -49,10 +54,9 @@ void NavigationLoop::forget_old_placing() noexcept {
   tape_.keep_since(std::nullopt);
 }
 
-/// By landmarks on another map that are elsewhere than where it was placed, while few of that map were seen since it was; how often it is
-/// tried does not grow with the drive.
+/// By landmarks on another map that are elsewhere than where it was placed, while few of that map were seen since it was.
 bool NavigationLoop::may_be_placed_wrongly(const std::vector<pf_relocalize::ConstellationPair>& pairs) const {
-  if (!apart_.placing || apart_.any() || belief_.step < questions_.place_again_at) return false;
+  if (!apart_.placing || apart_.any()) return false;
   const association::LandmarkLife& existence = belief_.existence;
   const auto is_on_other_map = [&](const pf_relocalize::ConstellationPair& pair) {
     return existence.contains(pair.old_landmark) && is_of_other_map(existence.record(pair.old_landmark));

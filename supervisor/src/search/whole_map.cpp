@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -216,7 +217,7 @@ bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair
                               core::StepReport& report) {
   ClosingView view{search, belief_.existence, belief_.coverage, scan, {trigger, tape_}, tied_if_slipping_m()};
   const core::Pose2 before = belief_.filter.pose().mean;
-  ForbiddenPlace place{pairs, fitted_to_pairs(belief_.filter, kept_removed(pairs)), {}};
+  ForbiddenPlace place{pairs, fitted_to_pairs(belief_.filter, kept_removed(pairs)), {}, belief_.untied_since_m};
   decision.displaced_m = (core::compose(place.T_map_branch, before).position_m() - before.position_m()).norm();
   Closing closing = close_map(belief_.filter, view, pairs, options_.search);
   decision.cost = closing.cost;
@@ -231,6 +232,13 @@ bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair
     decision.needed = (decision.needed + nats_against_odometry(closing)) /
                       independent_share_of(pairs, belief_.filter, index_lengths());
     if (std::min(decision.evidence, decision.lead) < decision.needed) return false;
+    // Where the drive is not kept the jump could be put no earlier than where the search began, and what was mapped between it and
+    // there would stay where it never was.
+    const std::optional<SightingGap> gap = tape_.holds_drive() ? std::nullopt : gap_before(pairs);
+    if (gap && gap->first_m < trigger.existence.path_m()) {
+      pending_.forbidden = pairs;
+      return false;
+    }
     place.as_measured = closing;
     view.tied_since_m = tied_since_m(tape_, belief_.existence.path_m(), options_.search.old_after_m);
     Reconciled reconciled = close_against_odometry(belief_.filter, start_, view, place, options_.search);

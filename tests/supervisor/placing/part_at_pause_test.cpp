@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A vehicle that was carried during a pause, which no scan right after it reveals: what it maps from then on does.
+// A vehicle that was carried, which no scan right after it reveals: what it maps from then on does. When it was, a pause tells, or the
+// landmarks do.
 #include <optional>
 #include <string>
 #include <vector>
@@ -92,8 +93,47 @@ TEST(PartAtPause, LeavesNothingWhereItNeverWas) {
   EXPECT_LT(driven.error_at_end_m, 5.0);
 }
 
-/// A log that does not show when the vehicle was carried leaves it undecided rather than cut at an arbitrary point.
-TEST(PartAtPause, NotWithoutAPause) {
+/// The first scan after the last time that it was carried.
+std::size_t scan_after_last_carry(const core::Recording& run) {
+  constexpr double farther_than_it_drives_m = 20.0;
+  std::size_t scan = run.true_poses.size() - 1;
+  const auto moved_m = [&] {
+    return core::between(run.true_poses[scan - 1].T_world_robot, run.true_poses[scan].T_world_robot)
+        .position_m()
+        .norm();
+  };
+  while (scan > 1 && moved_m() < farther_than_it_drives_m) --scan;
+  return scan;
+}
+
+/// No pause tells when it was carried, and no drive is kept that could be cut, as in an earlier session's map: the landmarks tell, which
+/// are all new since. A few of those before were matched by chance.
+TEST(PartAtPause, WhereTheLandmarksTellWhenItWas) {
+  const core::Recording run = without_waiting(sim::simulate(sim::named_scenario("kidnapped"), 3400054));
+  NavigatorOptions options;
+  options.search.smooth_up_to_scans = 100;
+  const FoundLater driven = drive_on(run, options);  // 246 m off at the end, 22 answers of the whole map refused
+  ASSERT_EQ(driven.by_place.size(), 1u);
+  const ByPlace& found = driven.by_place[0];
+  const std::size_t begun = found.scan - static_cast<std::size_t>(found.decision.scans);
+  EXPECT_GE(begun, scan_after_last_carry(run));
+  EXPECT_LE(begun, scan_after_last_carry(run) + 20) << "for so long, trees stand as those that it left";
+  EXPECT_LT(driven.error_at_end_m, 5.0);
+}
+
+/// What a search mapped before the whole map was sure, and before the search began, does not stay where it never was.
+TEST(PartAtPause, WhereItWasCarriedLongBeforeTheSearch) {
+  const core::Recording run = without_waiting(sim::simulate(sim::named_scenario("kidnapped"), 3400030));
+  NavigatorOptions options;
+  options.search.smooth_up_to_scans = 100;
+  const FoundLater driven = drive_on(run, options);
+  EXPECT_EQ(driven.by_place.size(), 2u);
+  EXPECT_EQ(driven.placed, 2);
+  EXPECT_LT(driven.error_at_end_m, 5.0);
+}
+
+/// A drive that is kept as a whole is cut instead.
+TEST(PartAtPause, NotWithoutAPauseWhereTheDriveIsKept) {
   const core::Recording run = without_waiting(sim::simulate(sim::named_scenario("kidnapped"), 3400054));
   EXPECT_TRUE(drive_on(run).by_place.empty());
 }
