@@ -39,6 +39,7 @@ struct Searching {
   Checkpoint trigger;
   WholeMapQuestions questions_before = {};
   bool after_slip = false;  ///< nothing ties the branch to the old ground, not even odometry
+  bool is_over = false;     ///< its scans are processed once more, only to map what they saw
 };
 
 using Mode = std::variant<Mapping, Searching>;

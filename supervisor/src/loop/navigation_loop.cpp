@@ -147,7 +147,7 @@ StepReport NavigationLoop::step(const Scan& scan) {
   predict();
   GatedScan gated = gate(scan);
   if (const auto trigger = find_trigger(gated, belief_.filter.pose(), options_.search)) {
-    if (searching() != nullptr) {
+    if (searching() != nullptr || belief_.seen_again.is_suspicious()) {
       leave_returns_unused(gated);
     } else if (leaves_one_place(gated.place, options_.search)) {
       leave_ambiguous_unused(options_.search, gated);

@@ -135,6 +135,8 @@ class NavigationLoop {
   void note_seen_again(const core::Scan& scan, bool slipped, const core::StepReport& report);
   bool has_slipped_away() const;
   void forget_if_tied_again();
+  void leave_search();
+  void drop_untied();
   core::StepReport search_since_slip(core::StepReport report);
 
   // moving/watch_moving.cpp

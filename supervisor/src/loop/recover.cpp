@@ -67,6 +67,7 @@ void NavigationLoop::recover() {
   since.resize(undo.tape_end - from.position);
   roll_back(from, belief_);
   if (Searching* open = searching()) {
+    open->is_over = false;
     open->search = search_from(from.existence, open->search.old_landmarks());
     questions_ = open->questions_before;
   } else {

@@ -28,16 +28,20 @@ void NavigationLoop::begin_search(const core::Scan& scan) {
   Checkpoint trigger = take_checkpoint(belief_, tape_);
   Search search = search_from(trigger.existence,
                               old_or_drifted(belief_.filter, belief_.existence, scan, options_.search.old_after_m));
+  belief_.seen_again.leave_out(search.old_landmarks());
+  trigger.seen_again = belief_.seen_again;
   if (!undo_.mode) undo_.mode.emplace(std::move(mode_));
   mode_.emplace<Searching>(Searching{std::move(search), std::move(trigger), questions_});
 }
 
+/// Nothing is decided while everything may just have vanished: the vehicle would then not be where the branch has it.
 void NavigationLoop::search(const Scan& scan, StepReport& report) {
+  report.mode = core::Mode::searching;
+  if (searching()->is_over || belief_.seen_again.is_suspicious()) return;
   Search& open = searching()->search;
   const auto pairs = open.look({belief_.filter, belief_.existence, belief_.coverage, scan}, report.decisions);
   report.cloud = open.cloud(belief_.filter);
   report.drawn = open.drawn(belief_.filter);
-  report.mode = core::Mode::searching;
   if (pairs) close(scan, *pairs, report);
   if (searching() != nullptr && open.asks_shape()) close_by_shape(scan, report);
   const double path_m = belief_.existence.path_m();

@@ -144,6 +144,7 @@ AskedWholeMap NavigationLoop::ask_about_place(const core::Scan& scan) {
 void NavigationLoop::ask_whether_new(const core::Scan& scan, core::StepReport& report) {
   const double path_m = belief_.existence.path_m();
   if (!asks_whole_map() || std::get_if<Mapping>(&mode_) == nullptr || path_m < questions_.next_path_m) return;
+  if (belief_.seen_again.is_suspicious()) return;  // it may be elsewhere since
   questions_.next_path_m = path_m + options_.search.ask_again_m;
   // A landmark not seen for longer is old, and would be compared with itself.
   const double within_m = std::min(options_.search.branch_seen_within_m, options_.search.old_after_m);

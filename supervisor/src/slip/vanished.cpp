@@ -201,10 +201,22 @@ void SeenAgain::see(std::int64_t step, std::size_t sensor, const std::vector<cor
 }
 
 void SeenAgain::start_from(std::size_t sensor, const std::vector<core::AssociationReport>& fate) {
+  forget();
+  sensors_[sensor].last = seen_by(fate);
+}
+
+void SeenAgain::leave_out(const std::vector<LandmarkId>& ids) {
+  const auto is_left_out = [&ids](LandmarkId id) { return std::binary_search(ids.begin(), ids.end(), id); };
+  suspicion_.reset();
+  is_confirmed_ = false;
+  for (BySensor& by : sensors_)
+    by.last.erase(std::remove_if(by.last.begin(), by.last.end(), is_left_out), by.last.end());
+}
+
+void SeenAgain::forget() {
   suspicion_.reset();
   is_confirmed_ = false;
   for (BySensor& by : sensors_) by.last.clear();
-  sensors_[sensor].last = seen_by(fate);
 }
 
 }  // namespace helixnav::supervisor

@@ -61,8 +61,14 @@ class SeenAgain {
            const InView& in_view, const association::LandmarkLife& existence, double extraneous_per_scan, int slips,
            const Chance& chance);
 
-  /// A scan for which the vehicle had slipped, or in a search: what was seen before says nothing about it.
+  /// A scan for which the vehicle had slipped: what was seen before says nothing about it.
   void start_from(std::size_t sensor, const std::vector<core::AssociationReport>& fate);
+
+  /// A search begins that leaves these out (ascending), so that no scan matches them.
+  void leave_out(const std::vector<core::LandmarkId>& ids);
+
+  /// The vehicle is elsewhere: nothing seen before is expected any more.
+  void forget();
 
   /// Something has vanished, and the next scans decide whether it stays away.
   bool is_suspicious() const { return suspicion_.has_value(); }

@@ -56,7 +56,19 @@ struct WhileUntied {
   double largest_error_m = 0.0;
   int lost = 0;
   double error_at_end_m = 0.0;
+  int where_nothing_is = 0;  ///< landmarks at the end, no tree of the world near them
 };
+
+int landmarks_where_nothing_is(const cekf::CompressedEkf& filter, const core::Recording& run) {
+  constexpr double near_m = 4.0;
+  int count = 0;
+  for (const LandmarkId id : filter.landmarks()) {
+    count += std::none_of(run.true_landmarks.begin(), run.true_landmarks.end(), [&](const core::TrueLandmark& tree) {
+      return (tree.point_m - filter.landmark_mean(id)).norm() < near_m;
+    });
+  }
+  return count;
+}
 
 double nees_of(const core::PoseGaussian& pose, const core::Pose2& truth) {
   Eigen::Vector3d error = pose.mean.vector() - truth.vector();
@@ -86,7 +98,36 @@ WhileUntied drive_carried(const core::Recording& run) {
     EXPECT_EQ(report->pose.covariance, navigator.pose().covariance);
     EXPECT_LT(navigator.filter().pose().covariance(2, 2), 1.0) << "the filter's own estimate stays exact";
   }
+  result.where_nothing_is = landmarks_where_nothing_is(navigator.filter(), run);
   return result;
+}
+
+/// The first search is still open when it is carried on. Its place was then found by the prior of that search, 400 scans later, and it was
+/// 150 to 300 m off until then without a word.
+TEST(Untied, AVehicleThatIsCarriedDuringASearchIsFoundLost) {
+  const WhileUntied drive = drive_carried(without_waiting(sim::simulate(sim::named_scenario("kidnapped"), 18)));
+  EXPECT_EQ(drive.lost, 2);
+  EXPECT_LT(drive.error_at_end_m, 5.0);
+}
+
+TEST(Untied, AVehicleThatIsCarriedTwiceWithinTenScansIsFoundLostTwice) {
+  sim::Scenario town = sim::named_scenario("kidnapped");
+  town.carried.every_m = 0.0;
+  const core::Recording whole = sim::simulate(town, 4);
+  const std::size_t first = whole.true_poses.size() * 3 / 4;
+  const std::vector<Pause> twice = {{first, first + 80}, {first + 90, first + 170}};
+  const WhileUntied drive = drive_carried(without_waiting(with_pauses(whole, twice, false)));
+  EXPECT_EQ(drive.lost, 2);
+  EXPECT_LT(drive.scans, 30) << "42 when only the first time was noticed";
+  EXPECT_LT(drive.error_at_end_m, 5.0);
+}
+
+/// It drives through a bare street before it is placed, beyond which nothing is seen of what it mapped since it was carried. The drive was
+/// cut at that street, and what was mapped before it stayed on the map where no tree stands.
+TEST(Untied, TheDriveIsCutWhereItWasCarriedAndNotLater) {
+  const WhileUntied drive = drive_carried(without_waiting(sim::simulate(sim::named_scenario("kidnapped"), 17)));
+  EXPECT_EQ(drive.lost, 2);
+  EXPECT_LT(drive.where_nothing_is, 6) << "7 when it was cut later";
 }
 
 /// Twice, by 108 to 273 m through streets that it knows, found lost one scan later each time. It was placed 41 to 43 scans after that, with a

@@ -46,6 +46,7 @@ struct WatchedDrive {
 };
 
 const std::vector<LandmarkId> known = {0, 1, 2, 3, 4, 5};
+const std::vector<LandmarkId> nothing = {};
 const std::vector<LandmarkId> unknown = {10, 11, 12, 13, 14, 15};
 
 TEST(SeenAgain, BelievesASlipOnceWhatVanishedStaysAwayAndWhatCameIsThere) {
@@ -141,6 +142,30 @@ TEST(SeenAgain, AsksEachSensorForWhatItSawItself) {
   drive.scan(unknown, {}, known);
   ASSERT_NE(drive.watched.lost(), nullptr);
   EXPECT_EQ(drive.watched.lost()->missing, known);
+}
+
+/// A search leaves known landmarks out, so that no scan can match them.
+TEST(SeenAgain, DoesNotMissWhatASearchLeavesOut) {
+  for (const bool is_left_out : {false, true}) {
+    WatchedDrive drive;
+    drive.pass_quietly(known, 50);
+    if (is_left_out) drive.watched.leave_out(known);
+    drive.scan({}, unknown, known);
+    EXPECT_EQ(drive.watched.is_suspicious(), !is_left_out);
+  }
+}
+
+/// Once the vehicle has been found lost, and again once it is carried on from there.
+TEST(SeenAgain, ExpectsOnlyWhatWasSeenSinceItForgot) {
+  WatchedDrive drive;
+  drive.pass_quietly(known, 50);
+  drive.watched.forget();
+  for (int k = 0; k < 4; ++k) {
+    drive.scan(k > 0 ? unknown : nothing, k > 0 ? nothing : unknown, known);
+    EXPECT_FALSE(drive.watched.is_suspicious()) << k;
+  }
+  drive.scan({}, {20, 21, 22, 23}, unknown);
+  EXPECT_TRUE(drive.watched.is_suspicious());
 }
 
 TEST(SeenAgain, StopsSuspectingWhatNoScanDecides) {
