@@ -14,7 +14,7 @@ namespace helixnav::supervisor {
 double local_density_per_m2(const std::vector<Eigen::Vector2d>& points_m);
 
 /// [seen] Density of landmarks not mapped yet [1/m²] where an observation is as measured. On ground already looked at,
-/// it is `extraneous_per_m2`, what a scan sees of nothing mapped on the average of the drive; elsewhere it is that of
+/// it is `extraneous_per_m2`, NavigatorOptions::extraneous_per_scan over the area of the view; elsewhere it is that of
 /// the mapped landmarks, if higher: a vehicle turning into the next row sees several new ones at once. O(seen · views).
 /// Test: supervisor/slip/slip_decision_test.cpp.
 std::vector<double> density_of_new(const std::vector<SeenPoint>& seen, const core::Pose2& T_world_robot,
