@@ -177,8 +177,8 @@ std::string widened_fixes_text(const runs::Run& run) {
   if (widened < worth_saying) return {};
   return warning(
       "position fixes err alike over many of them, or by more than stated (sigma, gps.sigma_m): each of the last ones "
-      "was "
-      "used with %.1f times its standard deviation, and the path may be off by as much as they are",
+      "was used with %.1f times its standard deviation, and the path may be off by as much as they are. An antenna "
+      "that is not where [antenna] says and a clock that is not the log's look like this, too",
       std::sqrt(widened));
 }
 

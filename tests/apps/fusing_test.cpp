@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "helixnav/core/angle.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "helixnav/supervisor/navigator.hpp"
 #include "program.hpp"
@@ -80,6 +81,23 @@ TEST(FuseGps, UsesAFixWhereTheVehicleWasThen) {
   }
 }
 
+// The way until the first fix says nothing of the start's heading, and does not count.
+TEST(FuseGps, AlignsTheStartToTheFirstFixesHoweverLateTheyBegin) {
+  core::Recording recording;
+  recording.events.emplace_back(core::Scan{});
+  for (int k = 1; k <= 60; ++k) {
+    core::Odometry moved = core::no_motion(core::nanoseconds_from_seconds(0.5 * k));
+    moved.T_before_after.x_m = 5.0;
+    moved.covariance = Eigen::Vector3d(0.01, 0.01, 1e-8).asDiagonal();
+    recording.events.emplace_back(moved);
+    const double error_m = k % 2 == 0 ? 0.3 : -0.3;
+    if (k > 24) recording.true_positions.push_back({moved.t_ns, {5.0 * k, error_m}, 0.3});
+  }
+  fuse_gps(recording, {true, 0.3, 30.0});
+  EXPECT_LT(std::sqrt(recording.start.covariance(2, 2)), 2.5 * core::pi / 180.0);
+  EXPECT_NEAR(recording.start.mean.heading_rad, 0.0, 0.05);
+}
+
 /// The same drive with true poses that begin at the origin of the map, as such a log gives them; fixes in a grid frame.
 core::Recording drive_with_truth(const core::Pose2& T_grid_map, const core::Pose2& T_truth_map) {
   core::Recording recording;
@@ -112,6 +130,27 @@ TEST(FuseGps, IsJudgedByTheTruePosesInTheFrameOfTheFixes) {
   EXPECT_NEAR(recording.true_poses[0].T_world_robot.y_m, recording.start.mean.y_m, 1e-3);
   const Eigen::Vector2d landmark_m = core::transform(T_grid_map, {10.0, 5.0});
   EXPECT_NEAR((recording.true_landmarks[0].point_m - landmark_m).norm(), 0.0, 1e-6);
+}
+
+// A circle; the antenna is two metres beside where it is stated. No motion of the truth explains that.
+TEST(FuseGps, IsJudgedInTheFrameOfTheFixesAlsoIfTheseErr) {
+  core::Recording recording;
+  recording.truth_frame.T_truth_map = core::Pose2();
+  recording.events.emplace_back(core::Scan{});
+  core::Pose2 T_map_robot;
+  for (int k = 0; k <= 60; ++k) {
+    core::Odometry moved = core::no_motion(core::nanoseconds_from_seconds(0.5 * k));
+    moved.T_before_after = {3.0, 0.0, 0.1};
+    moved.covariance = Eigen::Vector3d(1e-4, 1e-4, 1e-6).asDiagonal();
+    if (k > 0) {
+      recording.events.emplace_back(moved);
+      T_map_robot = core::compose(T_map_robot, moved.T_before_after);
+    }
+    recording.true_poses.push_back({moved.t_ns, T_map_robot});
+    recording.true_positions.push_back({moved.t_ns, core::transform(T_map_robot, {0.0, 2.0}), 0.2});
+  }
+  fuse_gps(recording, {true, 0.2, 30.0});
+  EXPECT_TRUE(recording.truth_frame.is_map);
 }
 
 TEST(FuseGps, AlignsTruePosesThatAreOfAnotherFrameThanTheFixes) {

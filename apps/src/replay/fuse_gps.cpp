@@ -45,7 +45,7 @@ double sigma_of(const core::TruePosition& fix, const GpsSettings& settings) {
   return fix.sigma_m > 0.0 ? fix.sigma_m : settings.sigma_m;
 }
 
-/// The way so far, as a chain of chords of at least a tenth of the length asked for: the noise of the poses of a parked vehicle
+/// The way since the first fix, as a chain of chords of at least a tenth of the length asked for: the noise of the poses of a parked vehicle
 /// is no way.
 class DrivenWay {
  public:
@@ -89,7 +89,8 @@ class Beginning {
     since_start_ = core::chain(since_start_, since_last_);
     fixes_.push_back({fix.position_m, sigma_of(fix, settings_), since_last_, since_start_});
     since_last_ = core::no_motion(fix.t_ns);
-    way_.go_to(since_start_.T_before_after.position_m());
+    if (fixes_.size() == 1) first_m_ = since_start_.T_before_after.position_m();
+    way_.go_to(since_start_.T_before_after.position_m() - first_m_);
     if (!may_be_enough()) return false;
     aligned_ = align_start(fixes_, antenna_robot_m_);
     next_size_ = fixes_.size() + fixes_.size() / 10 + 1;
@@ -125,16 +126,23 @@ class Beginning {
   core::Odometry since_last_ = core::no_motion(0);
   core::Odometry since_start_ = core::no_motion(0);
   std::vector<FixOnTheWay> fixes_;
+  Eigen::Vector2d first_m_ = Eigen::Vector2d::Zero();  ///< where the first fix was taken: the way before says nothing
   std::size_t next_size_ = 2;
   AlignedStart aligned_;
 };
 
 const AlignedStart& Beginning::last_resort(const std::string& name) {
-  if (!is_long() || fixes_.size() < 2) {
-    throw core::InputError(name + ": --gps fuse aligns the start to the fixes of the first gps.start_m = " +
+  if (fixes_.size() < 2) {
+    throw core::InputError(
+        name +
+        ": --gps fuse aligns the start to the first fixes, and this log has only one, which does not tell "
+        "the heading: choose --gps truth");
+  }
+  if (!is_long()) {
+    throw core::InputError(name + ": --gps fuse aligns the start to the fixes of gps.start_m = " +
                            std::to_string(std::lround(settings_.start_m)) + " m of driving, and this log has " +
                            std::to_string(fixes_.size()) + " fixes on " + std::to_string(std::lround(way_.length_m())) +
-                           " m: choose a smaller gps.start_m or --gps truth");
+                           " m from the first one on: choose a smaller gps.start_m or --gps truth");
   }
   aligned_ = align_start(fixes_, antenna_robot_m_);
   return aligned_;

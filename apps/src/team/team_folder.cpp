@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -111,6 +112,9 @@ std::string sightings_table(const TeamTask& task, const TeamDrive& drive) {
   return text;
 }
 
+/// Steps at which the log has sightings, without those between that only say where the robot was.
+std::int64_t scans_of(const TeamDrive::Robot& robot) { return std::count(robot.at.begin(), robot.at.end(), 1); }
+
 std::set<int> components_of(const TeamDrive& drive) {
   std::set<int> components;
   for (const TeamDrive::Robot& robot : drive.robots) components.insert(robot.component);
@@ -218,7 +222,7 @@ std::string team_summary(const TeamTask& task, const TeamDrive& drive, const Tea
     Json robot{{"robot", task.recording.robots[r].number},
                {"component", number_of(task, drive.robots[r].component)},
                {"alone", is_alone(drive, r)},
-               {"scans", drive.robots[r].steps.size()}};
+               {"scans", scans_of(drive.robots[r])}};
     if (drive.robots[r].wrongly_placed > 0) robot["scans_in_wrong_frame"] = drive.robots[r].wrongly_placed;
     const core::Nanoseconds since_ns = drive.robots[r].in_frame_since_ns;
     if (since_ns > std::numeric_limits<core::Nanoseconds>::min()) robot["in_frame_since_s"] = core::seconds(since_ns);
@@ -293,8 +297,8 @@ std::string team_text(const TeamTask& task, const TeamDrive& drive, const TeamEv
   int with_truth = 0;
   for (std::size_t r = 0; r < drive.robots.size(); ++r) {
     const TeamDrive::Robot& robot = drive.robots[r];
-    std::snprintf(line, sizeof line, "robot %d: %zu scans, in the frame of robot %d", task.recording.robots[r].number,
-                  robot.steps.size(), number_of(task, robot.component));
+    std::snprintf(line, sizeof line, "robot %d: %lld scans, in the frame of robot %d", task.recording.robots[r].number,
+                  static_cast<long long>(scans_of(robot)), number_of(task, robot.component));
     text += line;
     if (is_alone(drive, r)) {
       text += robot.wrongly_placed > 0 ? ", which it has to itself: what joined it to another was taken back"
