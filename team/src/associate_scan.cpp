@@ -13,15 +13,9 @@
 namespace helixnav::team {
 namespace {
 
-/// The scan with the noise of one look, by which things are told apart, and the field of view that has shown landmarks so far if it
-/// does not say its own.
-core::Scan as_one_look(const core::Scan& scan, double looks_as_one, const State& state) {
-  core::Scan look = scan;
+/// The scan with the noise of one look, by which things are told apart.
+core::Scan as_one_look(core::Scan look, double looks_as_one) {
   for (core::Observation& observation : look.observations) observation.R /= looks_as_one;
-  const bool is_known = std::isfinite(look.field_of_view.max_range_m);
-  if (!is_known && state.reach_m > 0.0 && state.widest_rad > 0.0) {
-    look.field_of_view = {0.0, state.reach_m, -state.widest_rad, state.widest_rad};
-  }
   return look;
 }
 
@@ -51,12 +45,19 @@ std::vector<std::size_t> within_reach(std::size_t slot, const core::Scan& look, 
 
 }  // namespace
 
-association::Assignment associate_scan(std::size_t robot, const core::Scan& scan, const TeamOptions& options,
-                                       const State& state) {
+core::Scan with_view(const core::Scan& scan, const State& state) {
+  core::Scan seen = scan;
+  const bool is_known = std::isfinite(seen.field_of_view.max_range_m);
+  if (!is_known && state.reach_m > 0.0 && state.widest_rad > 0.0) {
+    seen.field_of_view = {0.0, state.reach_m, -state.widest_rad, state.widest_rad};
+  }
+  return seen;
+}
+
+association::Assignment associate_scan(std::size_t slot, const core::Scan& scan, const TeamOptions& options,
+                                       const JointFilter& filter, const State& state) {
   const supervisor::NavigatorOptions as_navigator;
-  const JointFilter& filter = state.components[state.robots[robot].component].filter;
-  const std::size_t slot = state.robots[robot].slot;
-  const core::Scan look = as_one_look(scan, options.looks_as_one, state);
+  const core::Scan look = as_one_look(with_view(scan, state), options.looks_as_one);
   const double gate = core::chi2_quantile(as_navigator.gates.new_probability, 2);
   const core::JointGaussian joint = filter.joint(slot, within_reach(slot, look, gate, filter));
   const association::InnovationProblem problem = association::make_innovation_problem(joint, look, as_navigator.gates);

@@ -137,6 +137,12 @@ core::JointGaussian JointFilter::joint(std::size_t robot, const std::vector<std:
   return joint;
 }
 
+core::JointGaussian JointFilter::joint_of(std::size_t robot, const std::vector<core::LandmarkId>& ids) const {
+  std::vector<std::size_t> places;
+  for (const core::LandmarkId id : ids) places.push_back(index_of(id));
+  return joint(robot, places);
+}
+
 void JointFilter::remove(const std::vector<core::LandmarkId>& ids) {
   std::vector<Eigen::Index> columns;
   for (Eigen::Index c = 0; c < static_cast<Eigen::Index>(3 * poses_.size()); ++c) columns.push_back(c);

@@ -56,6 +56,8 @@ class JointFilter {
   core::PointGaussian landmark(core::LandmarkId id) const;
   /// The robot's pose with landmarks by their place in ids(): what data association asks for.
   core::JointGaussian joint(std::size_t robot, const std::vector<std::size_t>& landmarks) const;
+  /// The same by their ids, all of which are there.
+  core::JointGaussian joint_of(std::size_t robot, const std::vector<core::LandmarkId>& ids) const;
   /// Leaves landmarks out. O(N²).
   void remove(const std::vector<core::LandmarkId>& ids);
   const std::vector<core::LandmarkId>& ids() const { return ids_; }

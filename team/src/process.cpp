@@ -7,8 +7,8 @@
 #include <set>
 #include <tuple>
 
-#include "associate_scan.hpp"
 #include "helixnav/core/chi2.hpp"
+#include "unnamed_scan.hpp"
 
 namespace helixnav::team {
 namespace {
@@ -171,24 +171,38 @@ Reports observe_by_name(std::size_t robot, const NamedScan& named, const TeamOpt
   return reports;
 }
 
+void take(std::size_t robot, const core::Odometry& motion, State& state) {
+  Robot& moved = state.robots[robot];
+  moved.since = core::chain(moved.since, motion);
+  moved.since.t_ns = motion.t_ns;
+  state.of(robot).filter.predict(moved.slot, motion);
+}
+
+/// Unmeasured motion before a scan, of mean zero, between two poses of the graph.
+void slip(std::size_t robot, core::Nanoseconds t_ns, const supervisor::Slip& slip, State& state) {
+  core::Odometry unmeasured = core::no_motion(t_ns);
+  unmeasured.covariance = slip.covariance;
+  take(robot, unmeasured, state);
+  state.slips.push_back({t_ns, static_cast<int>(robot), slip.figures});
+}
+
 Reports observe_by_place(std::size_t robot, const core::Scan& scan, const TeamOptions& options, State& state) {
-  Reports reports;
-  const association::Assignment assignment = associate_scan(robot, scan, options, state);
-  for (int i = 0; i < static_cast<int>(assignment.observations.size()); ++i) {
-    const association::ObservationOutcome& one = assignment.observations[static_cast<std::size_t>(i)];
-    const bool is_new = one.outcome == association::Outcome::new_landmark;
-    if (one.outcome == association::Outcome::ambiguous) {
-      reports.push_back(unused(i, core::Outcome::ambiguous));
-    } else {
-      reports.push_back(observe(robot, scan, i, false, is_new ? core::no_landmark : one.landmark, options, state));
-    }
-    reports.back().margin_nats = one.margin_nats;
+  const UnnamedScan read = read_unnamed(robot, scan, options, state);
+  if (read.slip) slip(robot, scan.t_ns, *read.slip, state);
+  Reports reports = read.fate;
+  for (const int i : read.order) {
+    core::AssociationReport& one = reports[static_cast<std::size_t>(i)];
+    const double margin_nats = one.margin_nats;
+    one = one.outcome == core::Outcome::ambiguous ? unused(i, core::Outcome::ambiguous)
+                                                  : observe(robot, scan, i, false, one.landmark, options, state);
+    one.margin_nats = margin_nats;
   }
   return reports;
 }
 
 core::StepReport take(std::size_t robot, const NamedScan& named, const TeamOptions& options, State& state) {
   core::StepReport report;
+  const std::size_t slips = state.slips.size();
   report.associations = named.names.empty() ? observe_by_place(robot, named.scan, options, state)
                                             : observe_by_name(robot, named, options, state);
   for (const core::AssociationReport& association : report.associations) {
@@ -196,6 +210,7 @@ core::StepReport take(std::size_t robot, const NamedScan& named, const TeamOptio
     report.joint_nis += association.nis;
     report.joint_dof += association.dof;
   }
+  if (state.slips.size() > slips) report.decisions.emplace_back(state.slips.back().decision);
   const JointFilter& filter = state.of(robot).filter;
   report.step = state.robots[robot].scans++;
   report.t_ns = named.scan.t_ns;
@@ -237,13 +252,6 @@ void take(std::size_t robot, const core::RobotSighting& sighting, const TeamOpti
     component.news = component.news || judged.accepted;
   }
   state.sighting_rows.push_back(row);
-}
-
-void take(std::size_t robot, const core::Odometry& motion, State& state) {
-  Robot& moved = state.robots[robot];
-  moved.since = core::chain(moved.since, motion);
-  moved.since.t_ns = motion.t_ns;
-  state.of(robot).filter.predict(moved.slot, motion);
 }
 
 int rank_of(const Entry& entry) { return static_cast<int>(entry.what.index()); }

@@ -11,6 +11,7 @@
 #include "helixnav/core/odometry.hpp"
 #include "helixnav/core/robot_sighting.hpp"
 #include "helixnav/core/step_report.hpp"
+#include "helixnav/team/robot_slip.hpp"
 #include "helixnav/team/same_landmarks.hpp"
 #include "helixnav/team/team_join.hpp"
 #include "joint_filter.hpp"
@@ -107,6 +108,7 @@ struct State {
   std::vector<JoinEvidence> evidence;  ///< [join]
   bool news_of_joins = false;          ///< a sighting was refused since it was asked whether a join is wrong
   std::vector<SameLandmarks> same;
+  std::vector<RobotSlip> slips;
   std::map<std::pair<std::size_t, std::size_t>, int>
       observations_asked;                                   ///< at the last question, by pair of components
   std::vector<std::pair<std::size_t, std::size_t>> placed;  ///< (robot, join) not yet reported

@@ -407,6 +407,8 @@ void Team::remove_join(std::size_t join) {
   book_->start_again();
 }
 
+const std::vector<RobotSlip>& Team::slips() const { return book_->state.slips; }
+
 const std::vector<SameLandmarks>& Team::same_landmarks() const { return book_->state.same; }
 
 void Team::remove_same(std::size_t same) {

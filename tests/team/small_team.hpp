@@ -37,6 +37,8 @@ struct SmallTeamOptions {
   double reach_m = 8.0;
   double twin_m = 0.0;  ///< each landmark has another so far beside it; 0: none
   bool see_each_other = true;
+  int slip_step = 0;  ///< before its scan of this step the first robot is displaced unnoticed; 0: never
+  core::Pose2 slip;
   std::uint64_t seed = 1;
 };
 
@@ -77,6 +79,7 @@ inline SmallTeam small_team(const SmallTeamOptions& options = {}) {
       odometry.T_before_after =
           core::Pose2(Eigen::Vector3d(true_way.vector() + options.drawn * random.normal3(odometry.covariance)));
       team.last[static_cast<std::size_t>(r)] = core::compose(team.last[static_cast<std::size_t>(r)], true_way);
+      if (r == 0 && step == options.slip_step) team.last[0] = core::compose(team.last[0], options.slip);
       team.messages.push_back({t_ns, r, odometry, {}});
     }
     for (int r = 0; r < options.robots; ++r) {

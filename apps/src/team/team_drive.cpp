@@ -74,6 +74,22 @@ void bring_into_last_frames(const LastFrames& frames, const std::vector<std::vec
   }
 }
 
+/// The slips that hold at the end: a scan that was processed again since may have been told otherwise.
+void tell_slips(TeamDrive& drive) {
+  const auto is_slip = [](const core::Decision& one) { return std::holds_alternative<core::SlipDecision>(one); };
+  for (TeamDrive::Robot& robot : drive.robots) {
+    for (core::StepReport& step : robot.steps) {
+      step.decisions.erase(std::remove_if(step.decisions.begin(), step.decisions.end(), is_slip), step.decisions.end());
+    }
+  }
+  for (const team::RobotSlip& slip : drive.team.slips()) {
+    std::vector<core::StepReport>& steps = drive.robots[static_cast<std::size_t>(slip.robot)].steps;
+    const auto step =
+        std::find_if(steps.begin(), steps.end(), [&](const core::StepReport& one) { return one.t_ns == slip.t_ns; });
+    if (step != steps.end()) step->decisions.emplace_back(slip.decision);
+  }
+}
+
 }  // namespace
 
 TeamTask task_of(core::TeamRecording recording, bool unknown_starts, bool known_association) {
@@ -133,6 +149,7 @@ TeamDrive drive_team(const TeamTask& task) {
   drive.team.solve();
   frames.note(drive.team.joins());
   bring_into_last_frames(frames, told_in, drive);
+  tell_slips(drive);
   drive.seconds = since(begin);
   return drive;
 }

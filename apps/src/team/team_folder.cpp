@@ -56,6 +56,23 @@ std::string joins_text(const TeamTask& task, const TeamDrive& drive) {
   return text;
 }
 
+std::string slips_text(const TeamTask& task, const TeamDrive& drive) {
+  std::string text;
+  for (std::size_t r = 0; r < drive.robots.size(); ++r) {
+    std::string times;
+    for (const team::RobotSlip& slip : drive.team.slips()) {
+      if (static_cast<std::size_t>(slip.robot) != r) continue;
+      char time[40];
+      std::snprintf(time, sizeof time, "%s%.1f", times.empty() ? "" : ", ", core::seconds(slip.t_ns));
+      times += time;
+    }
+    if (times.empty()) continue;
+    const std::string number = std::to_string(task.recording.robots[r].number);
+    text += "robot " + number + " slipped, at " + times + " s: see 'helixnav explain' of robot_" + number + '\n';
+  }
+  return text;
+}
+
 /// One line for all evidence on which the same two were joined, and separated at the same time.
 std::string taken_back_text(const TeamTask& task, const TeamDrive& drive) {
   std::string text;
@@ -343,6 +360,7 @@ std::string team_text(const TeamTask& task, const TeamDrive& drive, const TeamEv
                   drive.team.map(component).size() - tentative);
     text += line + seen_once_text(drive, component) + '\n';
   }
+  text += slips_text(task, drive);
   text += joins_text(task, drive);
   text += taken_back_text(task, drive);
   return text;

@@ -14,6 +14,7 @@
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/pf_relocalize/constellation.hpp"
+#include "helixnav/supervisor/find_slip.hpp"
 #include "helixnav/supervisor/navigator_options.hpp"
 #include "loop/belief.hpp"
 #include "loop/judge_fix.hpp"
@@ -26,7 +27,6 @@
 #include "placing/session_question.hpp"
 #include "placing/still_there.hpp"
 #include "search/whole_map_questions.hpp"
-#include "slip/slip_decision.hpp"
 #include "smoothing/smooth_drive.hpp"
 
 namespace helixnav::supervisor {
@@ -125,10 +125,7 @@ class NavigationLoop {
   // slip/slip_in_scan.cpp
   bool allow_for_slip(const core::Scan& scan, const Confirmation& before, core::StepReport& report);
   std::optional<Slip> find_slip(const core::Scan& scan, const std::vector<core::AssociationReport>& fate) const;
-  std::optional<Slip> find_slip_within(SlipReach reach, const core::Scan& scan,
-                                       const std::vector<core::AssociationReport>& fate) const;
-  std::vector<core::LandmarkId> landmarks_near(const core::Scan& scan) const;
-  pf_relocalize::Coverage ground_looked_at(const core::FieldOfView& view) const;
+  std::vector<SlipLandmark> landmarks_near(const core::Scan& scan) const;
   void move_unmeasured(const Eigen::Matrix3d& covariance, core::Nanoseconds t_ns);
 
   // slip/search_if_vanished.cpp

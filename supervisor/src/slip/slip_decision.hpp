@@ -4,25 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "helixnav/core/decision.hpp"
+#include "helixnav/supervisor/find_slip.hpp"
 #include "slip/slip_places.hpp"
 
 namespace helixnav::supervisor {
-
-/// An observation of a landmark, as a slip explains it.
-struct SlipPair {
-  int observation = 0;  ///< index in the scan
-  core::LandmarkId landmark = core::no_landmark;
-  double nis = 0.0;  ///< of the pair at the displacement found, landmark and observation alone
-};
-
-/// A slip that is believed.
-struct Slip {
-  Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the unmeasured motion: the component's
-  std::vector<SlipPair> pairs;
-  core::SlipDecision figures;
-};
 
 /// What a slip is weighed against: the landmarks that may be evidence for it, whether they were seen more than once, and the
 /// pairs among them that were associated without a slip.

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/random.hpp"
 #include "slip/slip_decision.hpp"
 
@@ -42,14 +43,26 @@ cekf::CompressedEkf forest_map(const std::vector<Eigen::Vector2d>& points_m) {
   return filter;
 }
 
+std::vector<SlipLandmark> all_of(const cekf::CompressedEkf& filter) {
+  std::vector<SlipLandmark> landmarks;
+  for (const core::LandmarkId id : filter.landmarks()) landmarks.push_back({id, filter.landmark_mean(id), 2});
+  return landmarks;
+}
+
+std::vector<core::LandmarkId> ids_in(const std::vector<SlipLandmark>& landmarks) {
+  std::vector<core::LandmarkId> ids;
+  for (const SlipLandmark& one : landmarks) ids.push_back(one.id);
+  return ids;
+}
+
 TEST(KeepWeighed, LeavesOutWhatIsFartherThanAllThatIsWeighed) {
   const cekf::CompressedEkf filter = forest_map(forest(120));
   const core::Scan scan = scan_of(forest(120), core::Pose2(1.5, 0.5, 0.05));
   const std::vector<SeenPoint> seen = seen_points(scan, most_weighed);
   ASSERT_EQ(seen.size(), most_weighed);
   const SlipOptions options;
-  std::vector<core::LandmarkId> near = filter.landmarks();
-  keep_weighed(filter, scan, seen, slip_components(options).back(), SlipReach::next_neighbour, near);
+  std::vector<SlipLandmark> near = all_of(filter);
+  keep_weighed(filter.pose().mean, scan, seen, slip_components(options).back(), SlipReach::next_neighbour, near);
   EXPECT_LT(2 * near.size(), filter.landmarks().size());
   EXPECT_GE(near.size(), most_weighed);
 
@@ -59,7 +72,7 @@ TEST(KeepWeighed, LeavesOutWhatIsFartherThanAllThatIsWeighed) {
     return decide_slip({geometry, seen, new_per_m2, {}, pair_nats(0.9, 1e-4), 1e-4, false}, options);
   };
   const std::optional<Slip> of_all = decide(filter.landmarks());
-  const std::optional<Slip> of_near = decide(near);
+  const std::optional<Slip> of_near = decide(ids_in(near));
   ASSERT_TRUE(of_all && of_near);
   EXPECT_NEAR((of_all->displacement - of_near->displacement).norm(), 0.0, 1e-9);
   EXPECT_NEAR(of_near->displacement.x(), 1.5, 0.3);
@@ -72,10 +85,10 @@ TEST(KeepWeighed, OfAScanThatIsWeighedAsAWholeEveryLandmarkStays) {
   const cekf::CompressedEkf filter = forest_map(forest(120));
   core::Scan scan = scan_of(forest(120), {});
   scan.observations.resize(most_weighed - 1);
-  std::vector<core::LandmarkId> near = filter.landmarks();
-  keep_weighed(filter, scan, seen_points(scan, most_weighed), slip_components({}).back(), SlipReach::next_neighbour,
-               near);
-  EXPECT_EQ(near, filter.landmarks());
+  std::vector<SlipLandmark> near = all_of(filter);
+  keep_weighed(filter.pose().mean, scan, seen_points(scan, most_weighed), slip_components({}).back(),
+               SlipReach::next_neighbour, near);
+  EXPECT_EQ(ids_in(near), filter.landmarks());
 }
 
 }  // namespace

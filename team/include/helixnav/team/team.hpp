@@ -9,6 +9,7 @@
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/robot_sighting.hpp"
 #include "helixnav/core/step_report.hpp"
+#include "helixnav/team/robot_slip.hpp"
 #include "helixnav/team/same_landmarks.hpp"
 #include "helixnav/team/team_join.hpp"
 #include "helixnav/team/team_options.hpp"
@@ -79,6 +80,9 @@ class Team {
   std::vector<JudgedSighting> sightings() const;
   /// Landmarks that were made one by their position (JoinOptions::by_place).
   const std::vector<SameLandmarks>& same_landmarks() const;
+
+  /// Slips of robots found in scans without names, by time: those that hold, also where a scan was processed again.
+  const std::vector<RobotSlip>& slips() const;
 
   /// Takes back a join and everything that followed from it; the same two are not joined by the same kind of evidence
   /// again. PreconditionError for one that does not exist; likewise for remove_same().

@@ -24,8 +24,9 @@ struct TeamOptions {
   double clone_sigma_rad = 0.01;  ///< uncertain as this
   double gate_probability = 0.999999;  ///< of the innovation of a sighting
   double looks_as_one =
-      1.0;  ///< this many looks at a landmark in a row say what one would, and the noise given is that of
-            ///< all of them: scans without names are told apart by the noise of one look, R divided by it
+      1.0;            ///< this many looks at a landmark in a row say what one would, and the noise given is that of
+                      ///< all of them: scans without names are told apart by the noise of one look, R divided by it
+  bool slips = true;  ///< scans without names are asked whether the robot slipped before them (RobotSlip)
   JoinOptions join;
 };
 
