@@ -19,7 +19,7 @@ struct LocatedObservation {
 /// Upper bound, from the trace, on the standard deviation in any direction.
 double sigma_bound(const Eigen::Matrix2d& covariance) { return std::sqrt(std::max(0.0, covariance.trace())); }
 
-std::vector<LocatedObservation> seen_points(const core::PoseGaussian& pose, const core::Scan& scan) {
+std::vector<LocatedObservation> located_observations(const core::PoseGaussian& pose, const core::Scan& scan) {
   std::vector<LocatedObservation> points;
   points.reserve(scan.observations.size());
   for (const core::Observation& observation : scan.observations) {
@@ -90,7 +90,7 @@ std::vector<core::LandmarkId> candidates(const cekf::CompressedEkf& filter, cons
   }
 
   constexpr double wider = 1.5;  // the gate uses the Mahalanobis distance, this the trace and a linear step
-  const std::vector<LocatedObservation> seen = seen_points(pose, scan);
+  const std::vector<LocatedObservation> seen = located_observations(pose, scan);
   const std::vector<core::LandmarkId> about = within(filter, sensor_m, reach_of(seen, sensor_m, sigmas), excluded);
   const std::vector<cekf::Outlook> outlooks = filter.outlooks(about);
   const double least_sigma_m = std::min_element(seen.begin(), seen.end(), sharper)->sigma_m;
