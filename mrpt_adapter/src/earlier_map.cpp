@@ -40,7 +40,7 @@ core::JointMap read_map(const fs::path& path, bool unknown_start) {
 core::JointMap with_pose(core::JointMap map, const core::PoseGaussian& pose) {
   core::check_start(pose);
   map.joint.pose = pose.mean;
-  map.has_end = true;
+  map.has_end = map.is_pose_given = true;
   Eigen::MatrixXd& P = map.joint.covariance;
   P.topRows(3).setZero();
   P.leftCols(3).setZero();
@@ -140,7 +140,7 @@ void MapBuilder::saveMapToFolder(const std::string& folder) const {
     const Impl::Lock lock(impl_->lock);
     map = impl_->joint_map();
   }
-  if (map.joint.ids.size() > runs::most_joint_landmarks) {
+  if (map.factors == nullptr && map.joint.ids.size() > runs::most_joint_landmarks) {
     throw core::InputError(folder + ": a map of " + std::to_string(map.joint.ids.size()) +
                            " landmarks is too large to be saved with its covariance");
   }

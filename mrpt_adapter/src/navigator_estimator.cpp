@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "navigator_estimator.hpp"
 
+#include <optional>
+#include <utility>
+
 #include "helixnav/core/errors.hpp"
+#include "helixnav/runs/joint_map_file.hpp"
 #include "helixnav/supervisor/joint_map.hpp"
 
 namespace helixnav::mrpt_adapter {
@@ -72,7 +76,9 @@ core::JointGaussian NavigatorEstimator::joint(const std::vector<core::LandmarkId
 
 core::JointMap NavigatorEstimator::joint_map() const {
   const std::vector<core::MapLandmark> landmarks = map();
-  return unnamed_ ? supervisor::joint_map(*unnamed_, landmarks) : supervisor::joint_map(*named_, landmarks);
+  if (!unnamed_) return supervisor::joint_map(*named_, landmarks);
+  std::optional<core::JointMap> map = supervisor::map_to_go_on_in(*unnamed_, landmarks, runs::most_joint_landmarks);
+  return map ? std::move(*map) : supervisor::joint_map(*unnamed_, landmarks);
 }
 
 std::optional<core::JointMap> NavigatorEstimator::sought_in() const {

@@ -44,14 +44,16 @@ Sessions sessions_from(const py::sequence& list) {
   for (const py::handle& value : list) {
     const std::string number = std::to_string(sessions.maps.size() + 1);
     if (py::isinstance<core::JointMap>(value)) {
-      sessions.maps.push_back(value.cast<core::JointMap>());
       sessions.names.push_back("session " + number);
+      sessions.maps.push_back(value.cast<core::JointMap>());
+      apps::check_has_covariance(sessions.maps.back(), sessions.names.back(), "join");
+      sessions.maps.back().factors = nullptr;
       sessions.views.emplace_back();
       sessions.landmarks.emplace_back();
       continue;
     }
     const std::string folder = path_from(value, "sessions").string();
-    sessions.maps.push_back(apps::read_joint_map_in(folder));
+    sessions.maps.push_back(apps::read_dense_map_in(folder, "join"));
     sessions.names.push_back(folder);
     sessions.folders.push_back(folder);
     sessions.views.push_back(apps::views_in(folder, sessions.maps.back()));

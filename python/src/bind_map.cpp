@@ -103,6 +103,12 @@ core::PoseGaussian pose_in(const core::JointMap& map) {
   return {map.joint.pose, map.joint.covariance.topLeftCorner<3, 3>()};
 }
 
+Eigen::MatrixXd covariance_in(const core::JointMap& map) {
+  if (map.has_covariance()) return map.joint.covariance;
+  throw core::PreconditionError("covariance: a map of " + std::to_string(map.joint.ids.size()) +
+                                " landmarks has no joint covariance; landmarks.covariances has one for each");
+}
+
 /// The folder is of one map: what a run left there would be read beside it.
 void save(const core::JointMap& map, const fs::path& folder, bool overwrite) {
   using IfNotEmpty = runs::RunWriter::IfNotEmpty;
@@ -119,13 +125,15 @@ void bind_joint_map(py::module_& module) {
           "A Map: the landmarks without their cross-correlations.")
       .def_property_readonly("pose", &pose_in, "The vehicle's pose at the end of that session.")
       .def_property_readonly(
-          "covariance", [](const core::JointMap& map) { return map.joint.covariance; },
-          "(3 + 2 N, 3 + 2 N): covariance of x, y, heading and the landmarks' x, y.")
+          "covariance", &covariance_in,
+          "(3 + 2 N, 3 + 2 N): covariance of x, y, heading and the landmarks' x, y. PreconditionError for more than "
+          "2000 "
+          "landmarks: their correlations are kept as factors, for a session that continues in the map.")
       .def_readonly("reach", &core::JointMap::reach_m, "Reach of the sensor that mapped it [m]; 0: unknown.")
       .def_readonly("drives", &core::JointMap::drives,
                     "Digests of the drives that went into it; maps that share one are not joined. Empty: unknown.")
       .def("save", &save, py::arg("folder"), py::arg("overwrite") = false, py::call_guard<WithoutGil>(),
-           "Writes map.csv and, for up to 2000 landmarks, map.bin with drives.csv; replay can continue in the folder. "
+           "Writes map.csv, map.bin and drives.csv; replay can continue in the folder. "
            "InputError if it is not empty; with overwrite, the files of any earlier run there are deleted.")
       .def("__len__", [](const core::JointMap& map) { return map.joint.ids.size(); });
 }

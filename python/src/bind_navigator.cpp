@@ -253,7 +253,8 @@ void bind_common(py::class_<Locked<AnyNavigator>>& type) {
                              "The pose at the last scan or fix.")
       .def_property_readonly("map", py::cpp_function(&map_of<AnyNavigator>, Released()), "The landmarks now.")
       .def("joint_map", &joint_map_of<AnyNavigator>, py::arg("reach") = 0.0, Released(),
-           "The map with all correlations and the pose, for another session to continue in; None above 2000 landmarks. "
+           "The map with all correlations and the pose, for another session to continue in; None above 2000 landmarks "
+           "if the drive was not kept. "
            "`reach` is the sensor's [m], 0 if unknown.");
 }
 

@@ -129,7 +129,8 @@ void bind_run(py::module_& module) {
           "map", [](const runs::Run& run) { return Map{run.map}; }, "The landmarks at the end, in the map frame.")
       .def_readonly("joint_map", &runs::Run::joint_map,
                     "The JointMap to continue in; None for a run that was read (use read_map), that only localised or "
-                    "that used FastSLAM, and above 2000 landmarks.")
+                    "that used FastSLAM, and above 2000 landmarks if the drive was not "
+                    "kept.")
       .def_property_readonly(
           "final_trajectory", &final_trajectory_of,
           "(N, 4): the trajectory as known at the end; equal to trajectory where nothing corrected it.")

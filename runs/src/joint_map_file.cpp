@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -14,12 +15,14 @@
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/files/file.hpp"
 #include "little_endian.hpp"
+#include "map_factors_bytes.hpp"
 
 namespace helixnav::runs {
 namespace {
 
 constexpr std::string_view magic = "HELIXMAP";
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t dense_version = 1;
+constexpr std::uint32_t factors_version = 2;
 constexpr std::size_t digest_bytes = 32;
 constexpr std::size_t header_bytes = 8 + 4 + 4 + 4 + 8;  // magic, version, landmarks, next name, reach
 
@@ -33,6 +36,7 @@ std::string digest_of(std::string_view bytes) {
   return {reinterpret_cast<const char*>(digest.data()), digest_bytes};
 }
 
+/// Of a dense map.
 std::size_t size_for(std::size_t landmarks) {
   const std::size_t rows = 3 + 2 * landmarks;
   return header_bytes + 12 * landmarks + 8 * (rows + rows * (rows + 1) / 2) + digest_bytes;
@@ -42,30 +46,38 @@ std::size_t size_for(std::size_t landmarks) {
   throw core::InputError(path + ": " + problem);
 }
 
-/// The number of landmarks in a complete file.
-std::size_t check_frame(const std::string& path, std::string_view bytes) {
-  if (bytes.size() < header_bytes || bytes.substr(0, magic.size()) != magic) {
+void check_size_of_dense(const std::string& path, std::size_t landmarks, std::size_t bytes) {
+  if (landmarks > most_joint_landmarks) {
+    refuse(path, "says that it holds " + std::to_string(landmarks) + " landmarks; expected at most " +
+                     std::to_string(most_joint_landmarks));
+  }
+  if (bytes != size_for(landmarks)) {
+    refuse(path, "the file has " + std::to_string(bytes) + " bytes; a map of " + std::to_string(landmarks) +
+                     " landmarks has " + std::to_string(size_for(landmarks)) + ": it is cut short or damaged");
+  }
+}
+
+/// What the head of a complete file says.
+struct Head {
+  bool has_factors = false;
+  std::size_t landmarks = 0;
+};
+
+Head check_frame(const std::string& path, std::string_view bytes) {
+  if (bytes.size() < header_bytes + digest_bytes || bytes.substr(0, magic.size()) != magic) {
     refuse(path,
            bytes.empty() ? "the file is empty; expected a map.bin" : "no map.bin: it does not begin with HELIXMAP");
   }
   LittleEndian header(bytes.substr(magic.size()));
   const std::uint32_t found = header.small();
-  if (found != version) {
-    refuse(path,
-           "version " + std::to_string(found) + " of map.bin; this program reads version " + std::to_string(version));
+  if (found != dense_version && found != factors_version) {
+    refuse(path, "version " + std::to_string(found) + " of map.bin; this program reads versions 1 and 2");
   }
-  const std::size_t landmarks = header.small();
-  if (landmarks > most_joint_landmarks) {
-    refuse(path, "says that it holds " + std::to_string(landmarks) + " landmarks; expected at most " +
-                     std::to_string(most_joint_landmarks));
-  }
-  if (bytes.size() != size_for(landmarks)) {
-    refuse(path, "the file has " + std::to_string(bytes.size()) + " bytes; a map of " + std::to_string(landmarks) +
-                     " landmarks has " + std::to_string(size_for(landmarks)) + ": it is cut short or damaged");
-  }
+  const Head head{found == factors_version, header.small()};
+  if (!head.has_factors) check_size_of_dense(path, head.landmarks, bytes.size());
   const std::string_view body = bytes.substr(0, bytes.size() - digest_bytes);
   if (bytes.substr(body.size()) != digest_of(body)) refuse(path, "the checksum does not fit: the file is damaged");
-  return landmarks;
+  return head;
 }
 
 // Beyond these a map is garbage, like the numbers of a log (docs/fuzzing.md).
@@ -112,25 +124,78 @@ void check_content(const std::string& path, const core::JointMap& map) {
   if (!can_be_covariance(map.joint.covariance)) {
     refuse(path, "its covariance is none: variances from 0 to 1e12 and correlations of at most one are expected");
   }
+  for (const Eigen::Matrix2d& P : map.covariances_m2) {
+    if (!core::is_symmetric_positive_semidefinite(P) || P.diagonal().maxCoeff() > most_variance) {
+      refuse(path, "the covariance of a landmark is none");
+    }
+  }
   const auto is_negative = [](int count) { return count < 0; };
   if (std::any_of(map.observations.begin(), map.observations.end(), is_negative)) {
     refuse(path, "a landmark was observed less than never");
   }
 }
 
+void put_triangle_of(std::string& bytes, const Eigen::Ref<const Eigen::MatrixXd>& A) {
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) put(bytes, 0.5 * (A(i, j) + A(j, i)));
+  }
+}
+
+/// There must be enough bytes.
+Eigen::MatrixXd triangle_of(LittleEndian& bytes, Eigen::Index rows) {
+  Eigen::MatrixXd A(rows, rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) A(i, j) = A(j, i) = bytes.number();
+  }
+  return A;
+}
+
+void check_parts(const core::JointMap& map) {
+  const core::JointGaussian& joint = map.joint;
+  const std::size_t n = joint.ids.size();
+  const bool has_marginals = map.factors != nullptr && joint.covariance.rows() == 3 && map.covariances_m2.size() == n;
+  const bool has_any_covariance = has_marginals || (map.has_covariance() && n <= most_joint_landmarks);
+  if (!has_any_covariance || joint.covariance.rows() != joint.covariance.cols() || joint.points_m.size() != n ||
+      map.states.size() != n || map.observations.size() != n) {
+    throw core::PreconditionError("joint_map_bytes: the parts of the map do not fit, or it is too large");
+  }
+}
+
+/// Every landmark of the map, at its name.
+void check_names(const std::string& path, const core::JointMap& map) {
+  auto known = map.factors->landmarks.begin();
+  for (const core::LandmarkId id : map.joint.ids) {
+    while (known != map.factors->landmarks.end() && known->first < id) ++known;
+    if (known == map.factors->landmarks.end() || known->first != id) {
+      refuse(path, "landmark " + std::to_string(id) + " is in none of its factors");
+    }
+  }
+}
+
+/// What comes behind the places of the landmarks in a map with factors.
+void read_factors(const std::string& path, LittleEndian& bytes, core::JointMap& map) {
+  const auto rows = map.rows_with_landmarks();
+  const bool is_dense = bytes.small() != 0;
+  const std::size_t numbers = static_cast<std::size_t>(
+      is_dense ? rows * (rows + 1) / 2 : 6 + 3 * static_cast<Eigen::Index>(map.joint.ids.size()));
+  if (bytes.left() < 8 * numbers) refuse(path, "it is cut short within its covariance");
+  map.joint.covariance = triangle_of(bytes, is_dense ? rows : 3);
+  for (std::size_t i = 0; !is_dense && i < map.joint.ids.size(); ++i) {
+    map.covariances_m2.emplace_back(triangle_of(bytes, 2));
+  }
+  map.factors = std::make_shared<const core::MapFactors>(take_factors(bytes, path));
+  check_names(path, map);
+}
+
 }  // namespace
 
 std::string joint_map_bytes(const core::JointMap& map) {
+  check_parts(map);
   const core::JointGaussian& joint = map.joint;
   const std::size_t n = joint.ids.size();
-  const auto rows = static_cast<Eigen::Index>(3 + 2 * n);
-  if (n > most_joint_landmarks || joint.points_m.size() != n || map.states.size() != n ||
-      map.observations.size() != n || joint.covariance.rows() != rows || joint.covariance.cols() != rows) {
-    throw core::PreconditionError("joint_map_bytes: the parts of the map do not fit, or it is too large");
-  }
   std::string bytes(magic);
-  bytes.reserve(size_for(n));
-  put_unsigned(bytes, version);
+  if (map.factors == nullptr) bytes.reserve(size_for(n));
+  put_unsigned(bytes, map.factors == nullptr ? dense_version : factors_version);
   put_unsigned(bytes, static_cast<std::uint32_t>(n));
   put(bytes, static_cast<std::int32_t>(map.next_name));
   put(bytes, map.reach_m);
@@ -144,17 +209,22 @@ std::string joint_map_bytes(const core::JointMap& map) {
     put(bytes, point_m.x());
     put(bytes, point_m.y());
   }
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    for (Eigen::Index j = 0; j <= i; ++j) put(bytes, 0.5 * (joint.covariance(i, j) + joint.covariance(j, i)));
-  }
+  if (map.factors != nullptr) put_unsigned(bytes, static_cast<std::uint32_t>(map.has_covariance()));
+  put_triangle_of(bytes, joint.covariance);
+  for (const Eigen::Matrix2d& covariance_m2 : map.covariances_m2) put_triangle_of(bytes, covariance_m2);
+  if (map.factors != nullptr) put_factors(bytes, *map.factors);
   bytes += digest_of(bytes);
   return bytes;
 }
 
 core::JointMap read_joint_map(const std::string& path) {
   const std::string file = files::read_whole_file(path);
-  const std::size_t n = check_frame(path, file);
-  LittleEndian bytes(std::string_view(file).substr(magic.size() + 8));
+  const auto [has_factors, n] = check_frame(path, file);
+  LittleEndian bytes(std::string_view(file).substr(0, file.size() - digest_bytes).substr(magic.size() + 8));
+  constexpr std::size_t landmark_bytes = 12 + 16;
+  if (has_factors && bytes.left() < header_bytes + 3 * 8 + n * landmark_bytes) {
+    refuse(path, "it is cut short within its landmarks");
+  }
   core::JointMap map;
   map.next_name = bytes.integer();
   map.reach_m = bytes.number();
@@ -174,10 +244,10 @@ core::JointMap read_joint_map(const std::string& path) {
     const double point_x_m = bytes.number();
     map.joint.points_m.emplace_back(point_x_m, bytes.number());
   }
-  const auto rows = static_cast<Eigen::Index>(3 + 2 * n);
-  map.joint.covariance.resize(rows, rows);
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    for (Eigen::Index j = 0; j <= i; ++j) map.joint.covariance(i, j) = map.joint.covariance(j, i) = bytes.number();
+  if (has_factors) {
+    read_factors(path, bytes, map);
+  } else {
+    map.joint.covariance = triangle_of(bytes, static_cast<Eigen::Index>(3 + 2 * n));
   }
   check_content(path, map);
   return map;

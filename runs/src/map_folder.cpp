@@ -32,9 +32,8 @@ bool is_digest(const std::string& text) {
 std::vector<core::MapLandmark> landmarks_of(const core::JointMap& map) {
   std::vector<core::MapLandmark> landmarks(map.joint.ids.size());
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
-    const auto row = 3 + 2 * static_cast<Eigen::Index>(i);
     landmarks[i].id = map.joint.ids[i];
-    landmarks[i].point = {map.joint.points_m[i], map.joint.covariance.block<2, 2>(row, row)};
+    landmarks[i].point = {map.joint.points_m[i], map.covariance_m2_of(i)};
     landmarks[i].observations = map.observations[i];
     landmarks[i].state = map.states[i];
     if (!map.appearances.empty()) landmarks[i].appearance = map.appearances[i];
@@ -57,7 +56,7 @@ void write_map(const std::string& folder, const core::JointMap& map,
 }
 
 void write_joint_map(const std::string& folder, const core::JointMap& map) {
-  if (map.joint.ids.size() > most_joint_landmarks) return;
+  if (map.factors == nullptr && map.joint.ids.size() > most_joint_landmarks) return;
   files::write_whole_file(folder + '/' + joint_map_file, joint_map_bytes(map));
   const std::string drives = folder + '/' + drives_file;
   std::error_code none;

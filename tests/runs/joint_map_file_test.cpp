@@ -94,8 +94,8 @@ TEST_F(JointMapFile, SaysWhatIsWrong) {
   expect_refused("", "empty");
   expect_refused("id,x,y,sxx,sxy,syy,observations,state\n", "HELIXMAP");
   std::string newer = whole;
-  newer[8] = 2;
-  expect_refused(newer, "version 2");
+  newer[8] = 3;
+  expect_refused(newer, "version 3");
   std::string larger = whole;
   larger[15] = 1;
   expect_refused(larger, "at most 2000");

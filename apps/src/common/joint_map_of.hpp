@@ -15,13 +15,13 @@ namespace helixnav::apps {
 /// What the drive leaves to the next session; nothing if it is too large to be saved.
 std::optional<core::JointMap> joint_map_of(const ChosenNavigator& navigator, const core::Recording& recording);
 
-/// The same for a navigator of either kind; reach_m of the sensor, 0 if unknown.
+/// The same for a navigator of either kind; reach_m of the sensor, 0 if unknown. A large map has factors, and up to
+/// runs::most_joint_landmarks a joint covariance as well.
 template <class Navigator>
 std::optional<core::JointMap> joint_map_of(const Navigator& navigator, double reach_m) {
   const std::vector<core::MapLandmark> landmarks = navigator.sketch();  // the joint estimate has places and covariances
-  if (landmarks.size() > runs::most_joint_landmarks) return std::nullopt;
-  core::JointMap map = supervisor::joint_map(navigator, landmarks);
-  map.reach_m = reach_m;
+  std::optional<core::JointMap> map = supervisor::map_to_go_on_in(navigator, landmarks, runs::most_joint_landmarks);
+  if (map) map->reach_m = reach_m;
   return map;
 }
 

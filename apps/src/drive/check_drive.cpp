@@ -11,6 +11,7 @@ namespace helixnav::apps {
 namespace {
 
 void check_earlier_labels(const EarlierSession& earlier) {
+  check_has_covariance(earlier.map, "--map", "--association known");
   if (earlier.landmark_of.empty()) {
     throw core::InputError(
         "--association known needs to know the labels of the map's landmarks: give --map the folder "

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "given_map.hpp"
+#include "helixnav/atlas/atlas.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/files/number_text.hpp"
 #include "helixnav/runs/joint_map_file.hpp"
@@ -89,9 +90,23 @@ std::string why_without_map(const std::string& folder) {
     return "A run of FastSLAM writes none: its map is that of its particles; it cannot be gone on from nor joined with "
            "another run";
   }
-  return "A run that came to its end writes it, unless it has more than " + std::to_string(runs::most_joint_landmarks) +
-         " landmarks, only localised, or is of version 0.1";
+  return "A run that came to its end writes it, unless it only localised, is of version 0.1, or has more than " +
+         std::to_string(runs::most_joint_landmarks) +
+         " landmarks whose drive was not kept (it began in a smaller map, or its search was off)";
 }
+
+namespace {
+
+void check_factors_of(const core::JointMap& map, const std::string& file) {
+  if (map.factors == nullptr) return;
+  try {
+    atlas::check_factors(*map.factors);
+  } catch (const core::PreconditionError& error) {
+    throw core::InputError(file + ": " + error.what());
+  }
+}
+
+}  // namespace
 
 core::JointMap read_joint_map_in(const std::string& folder) {
   namespace fs = std::filesystem;
@@ -104,11 +119,26 @@ core::JointMap read_joint_map_in(const std::string& folder) {
     throw core::InputError(file + ": not there. " + why_without_map(folder));
   }
   core::JointMap map = runs::read_joint_map(file);
+  check_factors_of(map, file);
   map.drives = runs::read_drives(folder);
   map.has_end =
       fs::exists(fs::path(folder) / "manifest.json") || !fs::exists(fs::path(folder) / runs::joined_from_file);
   const fs::path table = fs::path(folder) / "map.csv";
   if (fs::exists(table)) tell_appearances(runs::read_map(table.string()), map);
+  return map;
+}
+
+void check_has_covariance(const core::JointMap& map, const std::string& name, const std::string& what) {
+  if (map.has_covariance()) return;
+  throw core::InputError(name + ": a map of " + std::to_string(map.joint.ids.size()) +
+                         " landmarks is kept without a joint covariance, which " + what +
+                         " needs; that is kept for up to " + std::to_string(runs::most_joint_landmarks) + " landmarks");
+}
+
+core::JointMap read_dense_map_in(const std::string& folder, const std::string& what) {
+  core::JointMap map = read_joint_map_in(folder);
+  check_has_covariance(map, joint_map_file_in(folder), what);
+  map.factors = nullptr;
   return map;
 }
 
@@ -141,7 +171,7 @@ core::JointMap seen_from(core::JointMap map, const core::Pose2& T_map_robot, dou
   const double sigma_m = reach_m / 60.0;
   constexpr double sigma_rad = 3.0 * core::pi / 180.0;
   map.joint.pose = T_map_robot;
-  map.has_end = true;
+  map.has_end = map.is_pose_given = true;
   Eigen::MatrixXd& P = map.joint.covariance;
   P.topRows(3).setZero();
   P.leftCols(3).setZero();

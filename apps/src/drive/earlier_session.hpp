@@ -46,6 +46,12 @@ EarlierSession read_earlier_session(const std::string& folder, const SessionStar
 /// The map that a run left in its folder. InputError naming the file if there is none or it cannot be used.
 core::JointMap read_joint_map_in(const std::string& folder);
 
+/// The same with a joint covariance, for what needs one. InputError naming the file, and what needs it, if the map is too
+/// large to have one.
+core::JointMap read_dense_map_in(const std::string& folder, const std::string& what);
+/// InputError likewise.
+void check_has_covariance(const core::JointMap& map, const std::string& name, const std::string& what);
+
 /// The map.bin in it.
 std::string joint_map_file_in(const std::string& folder);
 

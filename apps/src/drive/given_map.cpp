@@ -25,8 +25,10 @@ void sort_by_id(std::vector<core::MapLandmark>& landmarks) {
   std::sort(landmarks.begin(), landmarks.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
 }
 
-/// Nothing if the map holds a landmark that `joint` does not.
-Eigen::MatrixXd covariance_of(const std::vector<core::MapLandmark>& landmarks, const core::JointGaussian& joint) {
+/// Nothing if the map holds a landmark that `earlier` does not, or if that has no joint covariance.
+Eigen::MatrixXd covariance_of(const std::vector<core::MapLandmark>& landmarks, const core::JointMap& earlier) {
+  const core::JointGaussian& joint = earlier.joint;
+  if (!earlier.has_covariance()) return {};
   std::vector<Eigen::Index> rows;
   for (const core::MapLandmark& landmark : landmarks) {
     const auto found = std::lower_bound(joint.ids.begin(), joint.ids.end(), landmark.id);
@@ -112,7 +114,7 @@ GivenMap given_map(const core::JointMap& map) {
   }
   if (given.landmarks.empty()) throw core::InputError("map: expected mature landmarks, found none");
   sort_by_id(given.landmarks);
-  given.covariance_m2 = covariance_of(given.landmarks, map.joint);
+  given.covariance_m2 = covariance_of(given.landmarks, map);
   return given;
 }
 
@@ -136,7 +138,7 @@ GivenMap read_given_map(const std::string& path) {
   sort_by_id(map.landmarks);
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   if (file.filename() == "map.csv" && fs::exists(folder / "map.bin")) {
-    map.covariance_m2 = covariance_of(map.landmarks, runs::read_joint_map((folder / "map.bin").string()).joint);
+    map.covariance_m2 = covariance_of(map.landmarks, runs::read_joint_map((folder / "map.bin").string()));
   }
   if (!fs::exists(folder / "manifest.json")) {
     tell_missing_landmarks(file, folder / "map.bin", rows.size(), map.missing);

@@ -30,7 +30,7 @@ struct JoinJob {
 
 std::vector<core::JointMap> read_maps(const std::vector<std::string>& runs) {
   std::vector<core::JointMap> maps;
-  for (const std::string& run : runs) maps.push_back(read_joint_map_in(run));
+  for (const std::string& run : runs) maps.push_back(read_dense_map_in(run, "join"));
   return maps;
 }
 

@@ -147,6 +147,58 @@ void lay_out(State& state, int subtree) {
   mark_dirty(state, parent);
 }
 
+namespace {
+
+/// Which phases hold each variable, how many those are, and no tree.
+void count_leaves(State& state) {
+  std::vector<std::vector<int>> phases_of(state.variables.size());
+  for (std::size_t phase = 0; phase < state.phases.size(); ++phase) {
+    for (const int v : variables_of(*state.phases[phase]))
+      phases_of[State::index(v)].push_back(static_cast<int>(phase));
+  }
+  for (std::size_t v = 0; v < phases_of.size(); ++v) {
+    Variable& variable = state.variables.write(v);
+    variable.leaves = static_cast<int>(phases_of[v].size());
+    variable.at = -1;
+    state.phases_of.write(v) = std::make_shared<const std::vector<int>>(std::move(phases_of[v]));
+  }
+}
+
+void drop_tree(State& state) {
+  state.nodes = {};
+  state.leaf_of_phase = {};
+  state.free_node = state.root = -1;
+  state.descending = false;
+  state.to_open.clear();
+  state.rounds = 0;
+  state.begun = nullptr;
+}
+
+}  // namespace
+
+void lay_out_anew(State& state) {
+  drop_tree(state);
+  count_leaves(state);
+  std::vector<int> leaves;
+  for (std::size_t phase = 0; phase < state.phases.size(); ++phase) {
+    state.leaf_of_phase.push_back(-1);
+    if (state.phases[phase]->parts.empty()) continue;
+    TreeNode node;
+    node.phase = static_cast<int>(phase);
+    leaves.push_back(add_node(state, node));
+    state.leaf_of_phase.write(phase) = leaves.back();
+  }
+  std::vector<int> inner;
+  while (inner.size() + 1 < leaves.size()) inner.push_back(add_node(state, TreeNode()));
+  state.root = inner.empty() ? leaves.back() : inner.back();  // comes off first
+  for (const int leaf : leaves) shape_front(state, leaf);
+  if (inner.empty()) return;
+  const std::vector<Item> items = items_of(state, leaves);
+  Order order;
+  for (const Item& item : items) order.push_back(&item);
+  Layout(state, inner).build(std::move(order), -1);
+}
+
 void rebalance(State& state, int leaf) {
   int height = 0;
   int node = leaf;

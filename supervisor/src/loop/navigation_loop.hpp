@@ -58,6 +58,7 @@ class NavigationLoop {
   std::vector<core::PointGaussian> sketched(const std::vector<core::LandmarkId>& ids) const;
   std::vector<core::PointGaussian> marginals() const;
   core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;
+  std::optional<core::JointMap> factored(const std::vector<core::MapLandmark>& landmarks) const;
 
  private:
   /// What came in since the last scan.
@@ -172,16 +173,22 @@ class NavigationLoop {
   void report_unsolved(core::StepReport& report) const;
   Smoothing solve_on_atlas(core::NumericalHealth& numerics);
 
+  void go_on_behind(const core::JointMap& earlier);  // placing/go_on.cpp
+
   // window/hand_over.cpp
+  bool is_drive_known() const;
   bool may_have_window() const;
   bool needs_window() const;
   WindowNeeds window_to_map() const;
+  WindowNeeds window_about(const cekf::CompressedEkf& filter) const;
   int would_hold(const WindowNeeds& needs) const;
   bool is_hand_over_due() const;
   bool is_at_edge() const;
   WindowNeeds window_to_search() const;
   std::shared_ptr<DriveMap> drive_until_now() const;
   std::shared_ptr<DriveMap> begun_drive() const;
+  std::pair<cekf::CompressedEkf, Window> begun_window(const DriveMap& drive, const Belief& belief,
+                                                      const WindowNeeds& needs) const;
   void begin_window(std::shared_ptr<DriveMap> drive, const WindowNeeds& needs);
   bool is_drive_due() const;
   void take_drive_if_due();
@@ -217,9 +224,16 @@ class NavigationLoop {
   void note_too_few(std::size_t landmarks, core::StepReport& report);
   bool join(const MapApart& apart, const relocalize::Place& place, core::PlacedDecision& decision,
             core::StepReport& report);
+  core::JointGaussian landmarks_about_session(const EarlierMap& earlier, const relocalize::Place& place) const;
+  std::shared_ptr<DriveMap> drive_behind(const EarlierMap& earlier, const core::Pose2& T_map_session,
+                                         const Closing& closing) const;
+  void begin_behind(std::shared_ptr<DriveMap> drive, Belief& belief, Tape& tape) const;
 
   // placing/carried.cpp
   core::JointMap map_to_keep(core::CarriedDecision& decision, double until_m) const;
+  std::optional<core::JointMap> large_map_to_keep(core::CarriedDecision& decision, std::size_t begun,
+                                                  const std::vector<core::MapLandmark>& kept) const;
+  core::LandmarkId next_name() const;
   Belief belief_elsewhere(const core::Pose2& T_part_robot) const;
   Part part_elsewhere(const core::CarriedDecision& decision) const;
   Part part_since(const UnsurePause& pause, core::CarriedDecision decision) const;

@@ -64,6 +64,8 @@ const cekf::CompressedEkf& Navigator::filter() const { return loop_->belief().fi
 
 core::JointGaussian Navigator::joint(const std::vector<core::LandmarkId>& ids) const { return loop_->joint(ids); }
 
+std::optional<core::JointMap> Navigator::factored_map() const { return loop_->factored(sketch()); }
+
 std::vector<core::MapLandmark> Navigator::sketch() const {
   const Belief& belief = loop_->belief();
   const std::vector<core::LandmarkId> ids = loop_->landmarks();

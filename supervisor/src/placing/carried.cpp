@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -81,20 +82,43 @@ core::JointMap NavigationLoop::map_to_keep(core::CarriedDecision& decision, doub
     landmark.state = record.state;
     landmark.appearance = belief_.existence.appearance().of(record.id);
   }
+  if (std::isinf(until_m)) {
+    if (std::optional<core::JointMap> large = large_map_to_keep(decision, begun, kept)) return std::move(*large);
+  }
   const std::vector<core::PointGaussian> points = sketched(ids_of(kept));
   for (std::size_t i = 0; i < kept.size(); ++i) kept[i].point = points[i];
   kept = nearest(std::move(kept), belief_.filter.pose().mean.position_m());
   if (kept.size() < least_to_keep) kept.clear();
   decision.landmarks = static_cast<int>(kept.size());
   decision.dropped = static_cast<int>(begun - kept.size());
+  core::JointMap map = joint_map(joint(ids_of(kept)), next_name(), kept);
+  map.reach_m = view_.reach().value_or(0.0);
+  if (decision.cause == core::CarriedDecision::Cause::broken_off) make_definite(map.joint.covariance);
+  return map;
+}
+
+/// All of it, as factors, or nothing.
+std::optional<core::JointMap> NavigationLoop::large_map_to_keep(core::CarriedDecision& decision, std::size_t begun,
+                                                                const std::vector<core::MapLandmark>& kept) const {
+  if (kept.size() < least_to_keep) return std::nullopt;
+  try {
+    std::optional<core::JointMap> map = factored(kept);
+    if (!map) return std::nullopt;
+    map->reach_m = view_.reach().value_or(0.0);
+    decision.landmarks = static_cast<int>(kept.size());
+    decision.dropped = static_cast<int>(begun - kept.size());
+    return map;
+  } catch (const core::NumericalError&) {
+    return std::nullopt;
+  }
+}
+
+LandmarkId NavigationLoop::next_name() const {
   LandmarkId next_name = belief_.filter.next_name();
   for (const association::LandmarkRecord& record : belief_.existence.records()) {
     next_name = std::max(next_name, record.id + 1);
   }
-  core::JointMap map = joint_map(joint(ids_of(kept)), next_name, kept);
-  map.reach_m = view_.reach().value_or(0.0);
-  if (decision.cause == core::CarriedDecision::Cause::broken_off) make_definite(map.joint.covariance);
-  return map;
+  return next_name;
 }
 
 /// Nothing is known about where it is: the frame of the part begins with the vehicle.

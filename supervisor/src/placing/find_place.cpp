@@ -63,8 +63,8 @@ void NavigationLoop::look_for_place_in(const core::JointMap& earlier) {
   if (belief_.step > 0 || belief_.filter.mapped_count() > 0 || earlier.next_name < 0) {
     throw core::PreconditionError("look_for_place_in: a session that has begun cannot look for its place any more");
   }
-  EarlierMap checked(earlier);
-  if (checked.landmarks().ids.empty())
+  check_earlier_map(earlier);
+  if (std::count(earlier.states.begin(), earlier.states.end(), core::LandmarkState::mature) == 0)
     throw core::PreconditionError("look_for_place_in: no mature landmark in the map");
   apart_.maps = {{0, std::make_shared<const core::JointMap>(earlier)}};
   apart_.part = 1;
@@ -134,14 +134,54 @@ void NavigationLoop::note_too_few(std::size_t landmarks, core::StepReport& repor
   apart_.asked.most_about = landmarks;
 }
 
-/// From here on one map, in the frame of the earlier one, or everything as before. The drive so far can no longer be
-/// solved as a whole, since it says nothing about how the earlier map was made.
+/// Of a large map: what the session may have seen of it.
+core::JointGaussian NavigationLoop::landmarks_about_session(const EarlierMap& earlier,
+                                                            const relocalize::Place& place) const {
+  constexpr std::size_t most = 1000;
+  const Eigen::Vector2d here_m = belief_.filter.pose().mean.position_m();
+  double farthest_m = 0.0;
+  for (const LandmarkId id : belief_.filter.landmarks()) {
+    farthest_m = std::max(farthest_m, (belief_.filter.landmark_mean(id) - here_m).norm());
+  }
+  const double reach_m = view_.reach().value_or(reference_reach_m);
+  return earlier.landmarks_about(core::transform(place.T_map_branch, here_m), farthest_m + reach_m, most);
+}
+
+/// The drive so far behind the one that made the map; null if it is not known from its start, or if the two cannot be
+/// solved together.
+std::shared_ptr<DriveMap> NavigationLoop::drive_behind(const EarlierMap& earlier, const core::Pose2& T_map_session,
+                                                       const Closing& closing) const {
+  if (!is_drive_known()) return nullptr;
+  try {
+    return std::make_shared<DriveMap>(
+        earlier.drive()->followed_by(*drive_until_now(), T_map_session, closing.merged, tape_.end() + 1));
+  } catch (const core::NumericalError&) {
+    return nullptr;
+  }
+}
+
+/// As after a drive that has been taken into the atlas up to now.
+void NavigationLoop::begin_behind(std::shared_ptr<DriveMap> drive, Belief& belief, Tape& tape) const {
+  tape.append(Tape::Solved{drive->cost()});
+  tape.hand_on(tape.end());
+  auto [filter, window] = begun_window(*drive, belief, window_about(belief.filter));
+  drive->remember(belief.filter);
+  belief.filter = std::move(filter);
+  belief.window = window;
+  belief.drive = std::move(drive);
+}
+
+/// From here on one map, in the frame of the earlier one, or everything as before. Behind a dense map, the drive so far can
+/// no longer be solved as a whole, since it says nothing about how that map was made.
 bool NavigationLoop::join(const MapApart& apart, const relocalize::Place& place, PlacedDecision& decision,
                           core::StepReport& report) {
   const PlaceSearch& search = *apart.search;
+  const EarlierMap& earlier = search.earlier();
   const SeenLandmarks seen = seen_landmarks(belief_.existence, options_.search.constellation.least_hits);
-  JoinedMaps joined = join_maps(belief_.filter, search.earlier().landmarks(), place, seen.confirmed, seen.unconfirmed,
-                                search.lengths().pair_noise_m, options_.search);
+  core::JointGaussian about;
+  if (earlier.drive()) about = landmarks_about_session(earlier, place);
+  JoinedMaps joined = join_maps(belief_.filter, earlier.drive() ? about : earlier.landmarks(), place, seen.confirmed,
+                                seen.unconfirmed, search.lengths().pair_noise_m, options_.search);
   decision.cost = joined.closing.cost;
   decision.dof = joined.closing.dof;
   decision.limit = joined.closing.limit;
@@ -152,8 +192,13 @@ bool NavigationLoop::join(const MapApart& apart, const relocalize::Place& place,
   }
   const core::Pose2 before = belief_.filter.pose().mean;
   decision.T_map_session = core::compose(joined.filter.pose().mean, core::inverse(before));
+  std::shared_ptr<DriveMap> drive;
+  if (earlier.drive() && !(drive = drive_behind(earlier, decision.T_map_session, joined.closing))) {
+    decision.verdict = PlacedDecision::Verdict::refused;
+    return false;
+  }
   Belief both{std::move(joined.filter),
-              existence_of_both(belief_.existence, search.earlier(), joined, options_.life),
+              existence_of_both(belief_.existence, earlier, joined, options_.life),
               belief_.coverage,
               {},
               belief_.step,
@@ -161,11 +206,19 @@ bool NavigationLoop::join(const MapApart& apart, const relocalize::Place& place,
               belief_.left_open};
   both.moving = belief_.moving;
   both.coverage.change_frame(decision.T_map_session);
+  Tape tape = tape_;
+  if (drive) {
+    begin_behind(std::move(drive), both, tape);
+    report.solved = both.drive->path();
+  } else {
+    tape.drop_drive();
+  }
+  tape.keep_since(tape.end());
   Mapping mapping;
   std::vector<LandmarkId> recognised;
   for (const core::MergedLandmarks& one : joined.closing.merged) recognised.push_back(one.kept);
   mapping.monitor.close(both.existence.path_m(), recognised);
-  mapping.trust(take_checkpoint(both, tape_));
+  mapping.trust(take_checkpoint(both, tape));
   report.merged.insert(report.merged.end(), joined.closing.merged.begin(), joined.closing.merged.end());
   report.pose = both.filter.pose();
   report.active_landmarks = both.filter.active_count();
@@ -174,7 +227,7 @@ bool NavigationLoop::join(const MapApart& apart, const relocalize::Place& place,
   MapsApart left = apart_;
   left.part = apart.part;
   left.placing = std::make_shared<const PlacingRecord>(
-      PlacingRecord{start_, belief_, tape_, apart_, tape_.end(), belief_.existence.path_m(),
+      PlacingRecord{start_, belief_, tape_, apart_, tape.end(), belief_.existence.path_m(),
                     std::min(decision.evidence, decision.lead), decision.T_map_session});
   const auto is_joined = [&](const MapApart& one) { return one.part == apart.part; };
   left.maps.erase(std::remove_if(left.maps.begin(), left.maps.end(), is_joined), left.maps.end());
@@ -183,8 +236,7 @@ bool NavigationLoop::join(const MapApart& apart, const relocalize::Place& place,
   belief_ = std::move(both);
   mode_ = std::move(mapping);
   questions_.place_again_at = 0;
-  tape_.drop_drive();
-  tape_.keep_since(tape_.end());
+  tape_ = std::move(tape);
   apart_ = std::move(left);
   return true;
 }

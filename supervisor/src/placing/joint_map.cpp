@@ -2,9 +2,11 @@
 #include "helixnav/supervisor/joint_map.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "helixnav/core/errors.hpp"
+#include "window/marginals.hpp"
 
 namespace helixnav::supervisor {
 
@@ -20,8 +22,9 @@ std::vector<core::LandmarkId> ids_of(const std::vector<core::MapLandmark>& landm
   return ids;
 }
 
-core::JointMap joint_map(core::JointGaussian joint, core::LandmarkId next_name,
-                         const std::vector<core::MapLandmark>& landmarks) {
+namespace {
+
+core::JointMap without_joint(core::LandmarkId next_name, const std::vector<core::MapLandmark>& landmarks) {
   core::JointMap map;
   for (const core::MapLandmark& landmark : landmarks) {
     map.states.push_back(landmark.state);
@@ -31,8 +34,29 @@ core::JointMap joint_map(core::JointGaussian joint, core::LandmarkId next_name,
   if (std::any_of(landmarks.begin(), landmarks.end(), is_given)) {
     for (const core::MapLandmark& landmark : landmarks) map.appearances.push_back(landmark.appearance);
   }
-  map.joint = std::move(joint);
   map.next_name = next_name;
+  return map;
+}
+
+}  // namespace
+
+core::JointMap joint_map(core::JointGaussian joint, core::LandmarkId next_name,
+                         const std::vector<core::MapLandmark>& landmarks) {
+  core::JointMap map = without_joint(next_name, landmarks);
+  map.joint = std::move(joint);
+  return map;
+}
+
+core::JointMap factored_map(const atlas::Atlas& drive, core::LandmarkId next_name,
+                            const std::vector<core::MapLandmark>& landmarks) {
+  core::JointMap map = without_joint(next_name, landmarks);
+  map.joint = drive.joint({});
+  map.joint.ids = ids_of(landmarks);
+  for (const core::PointGaussian& point : marginals_of(drive, map.joint.ids)) {
+    map.joint.points_m.push_back(point.mean_m);
+    map.covariances_m2.push_back(0.5 * (point.covariance_m2 + point.covariance_m2.transpose()));
+  }
+  map.factors = std::make_shared<const core::MapFactors>(drive.factors());
   return map;
 }
 

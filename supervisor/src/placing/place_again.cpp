@@ -49,7 +49,8 @@ void NavigationLoop::look_elsewhere(const core::Scan& scan, StepReport& report) 
 void NavigationLoop::forget_old_placing() noexcept {
   if (!apart_.placing) return;
   const std::int64_t scans = belief_.step - apart_.placing->belief.step;
-  if (scans <= options_.search.smooth_up_to_scans && !belief_.drive) return;
+  const bool is_taken_in = belief_.drive && belief_.drive->end() > apart_.placing->since;
+  if (scans <= options_.search.smooth_up_to_scans && !is_taken_in) return;
   apart_.placing.reset();
   tape_.keep_since(std::nullopt);
 }

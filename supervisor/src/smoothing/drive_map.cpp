@@ -18,10 +18,77 @@ std::map<core::LandmarkId, int> sightings(const std::vector<Stop>& stops, const 
   return count;
 }
 
+constexpr double unknown_m = 1e4;  ///< of a gap between two drives
+
+/// Where a session begins that somebody gave: from where the earlier one ended, nothing is known but the heading.
+void begin_at(const core::PoseGaussian& start, atlas::Atlas& atlas) {
+  atlas::PhaseFactor gap;
+  const double per_m2 = 1.0 / (unknown_m * unknown_m);
+  gap.gaussian.information = Eigen::Vector3d(per_m2, per_m2, 1.0 / start.covariance(2, 2)).asDiagonal();
+  gap.gaussian.vector = Eigen::Vector3d::Zero();
+  gap.gaussian.mean = core::between(atlas.pose(), start.mean).vector();
+  gap.shape.T_entry_robot.emplace_back(Eigen::Vector3d(gap.gaussian.mean));
+  core::AbsoluteFix fix;
+  fix.position_world_m = start.mean.position_m();
+  fix.covariance_m2 = start.covariance.topLeftCorner<2, 2>();
+  const int clone = atlas.add(std::move(gap)) + 1;
+  atlas.fix(clone, fix);
+  atlas.settle();
+}
+
 }  // namespace
 
 DriveMap::DriveMap(const core::PoseGaussian& start, double phase_m, const atlas::Options& options)
     : phase_m_(phase_m), standing_(phase_m), atlas_(softened_start(start), options) {}
+
+DriveMap::DriveMap(const core::JointMap& earlier, double phase_m, Tape::Position begin)
+    : phase_m_(phase_m), standing_(phase_m), atlas_(atlas::Atlas::from_factors(*earlier.factors)), end_(begin) {
+  if (earlier.is_pose_given) begin_at({earlier.joint.pose, earlier.joint.covariance.topLeftCorner<3, 3>()}, atlas_);
+  stops_.assign(static_cast<std::size_t>(atlas_.phase_count()), std::make_shared<const std::vector<StopInPhase>>());
+  covariances_m2_.resize(static_cast<std::size_t>(earlier.next_name), Eigen::Matrix2d::Zero());
+  for (std::size_t i = 0; i < earlier.joint.ids.size(); ++i) {
+    covariances_m2_[static_cast<std::size_t>(earlier.joint.ids[i])] = earlier.covariance_m2_of(i);
+  }
+  for (const atlas::Place& place : atlas_.landmarks()) {
+    name(place.id);
+    extent_m_ = std::max(extent_m_, place.point_m.norm());
+  }
+  cost_ = atlas_.chi2();
+}
+
+/// The gap says next to nothing, so that what is known of the place comes from the pairs.
+DriveMap DriveMap::followed_by(const DriveMap& drive, const core::Pose2& T_map_drive,
+                               const std::vector<core::MergedLandmarks>& merged, Tape::Position begin) const {
+  atlas::RelativeGaussian gap;
+  const double per_m2 = 1.0 / (unknown_m * unknown_m);
+  gap.information = Eigen::Vector3d(per_m2, per_m2, 0.01).asDiagonal();
+  gap.vector = Eigen::Vector3d::Zero();
+  const core::Pose2 T_map_first = core::compose(T_map_drive, drive.atlas_.clone(0));
+  gap.mean = core::between(atlas_.pose(), T_map_first).vector();
+  DriveMap both(*this);
+  both.atlas_ = atlas_.followed_by(gap, drive.atlas_);
+  both.standing_ = drive.standing_;
+  both.stops_.push_back(std::make_shared<const std::vector<StopInPhase>>());  // the gap
+  both.stops_.insert(both.stops_.end(), drive.stops_.begin(), drive.stops_.end());
+  both.phases_when_placed_ = both.stops_.size();
+  both.T_map_part_ = T_map_drive;
+  for (const atlas::Place& place : drive.atlas_.landmarks()) both.name(place.id);
+  both.covariances_m2_.resize(std::max(covariances_m2_.size(), drive.covariances_m2_.size()), Eigen::Matrix2d::Zero());
+  for (std::size_t id = 0; id < drive.covariances_m2_.size(); ++id) {
+    if (!drive.covariances_m2_[id].isZero(0.0)) both.covariances_m2_[id] = drive.covariances_m2_[id];
+  }
+  std::vector<atlas::MergePair> pairs;
+  for (const core::MergedLandmarks& one : merged) {
+    if (!both.has_name(one.removed) || !both.has_name(one.kept)) continue;
+    pairs.emplace_back(one.removed, one.kept);
+  }
+  both.atlas_.merge(pairs);
+  for (const auto& [removed, kept] : pairs) both.named_[static_cast<std::size_t>(removed)] = false;
+  both.settle();
+  both.end_ = begin;
+  both.cost_ = both.atlas_.chi2();
+  return both;
+}
 
 void DriveMap::take(const Tape& tape, const cekf::CompressedEkf& filter) {
   std::vector<Stop> stops = stops_of(tape, end_);
@@ -42,11 +109,7 @@ void DriveMap::take(const Tape& tape, const cekf::CompressedEkf& filter) {
 /// Over the length of a phase, dead reckoning is a start from which three Gauss-Newton steps reach its minimum.
 void DriveMap::add(const DrivePhase& phase) {
   atlas::PhaseFactor factor = atlas::derive_factor(*phase.log, atlas::dead_reckon(*phase.log));
-  for (const core::LandmarkId id : factor.shape.ids) {
-    const auto at = static_cast<std::size_t>(id);
-    if (at >= named_.size()) named_.resize(at + 1, false);
-    named_[at] = true;
-  }
+  for (const core::LandmarkId id : factor.shape.ids) name(id);
   stops_.push_back(std::make_shared<const std::vector<StopInPhase>>(phase.stops));
   const int clone = atlas_.add(std::move(factor), phase.log) + 1;
   if (phase.fix) atlas_.fix(clone, *phase.fix);
@@ -64,6 +127,12 @@ void DriveMap::merge(const Tape& tape, const core::MergedIds& ids) {
       named_[static_cast<std::size_t>(one.removed)] = false;
     }
   });
+}
+
+void DriveMap::name(core::LandmarkId id) {
+  const auto at = static_cast<std::size_t>(id);
+  if (at >= named_.size()) named_.resize(at + 1, false);
+  named_[at] = true;
 }
 
 bool DriveMap::has_name(core::LandmarkId id) const {
@@ -96,10 +165,13 @@ std::vector<core::StampedPose> DriveMap::path() const {
   std::vector<core::StampedPose> path;
   const std::vector<core::Pose2> entries = atlas_.clones();
   const std::vector<std::vector<core::Pose2>> poses = atlas_.poses();
+  const core::Pose2 T_part_map = core::inverse(T_map_part_);
   for (std::size_t phase = 0; phase < stops_.size(); ++phase) {
     for (const StopInPhase& stop : *stops_[phase]) {
       const bool at_entry = stop.step < 0;
-      path.push_back({stop.t_ns, at_entry ? entries[phase] : poses[phase][static_cast<std::size_t>(stop.step)]});
+      const core::Pose2& there = at_entry ? entries[phase] : poses[phase][static_cast<std::size_t>(stop.step)];
+      const bool is_of_part = phase < phases_when_placed_;
+      path.push_back({stop.t_ns, is_of_part ? core::compose(T_part_map, there) : there});
     }
   }
   return path;

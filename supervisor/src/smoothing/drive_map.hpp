@@ -7,6 +7,7 @@
 #include "helixnav/atlas/atlas.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/joint_map.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "loop/tape.hpp"
 #include "smoothing/drive_phases.hpp"
@@ -23,6 +24,15 @@ class DriveMap {
  public:
   /// `phase_m`: length of a phase. `options`: how close to the solution the atlas gets; tests go all the way.
   DriveMap(const core::PoseGaussian& start, double phase_m, const atlas::Options& options = {});
+
+  /// The map of an earlier session, which holds factors, to go on in from `begin` on a tape: from where that session ended,
+  /// or from the pose that was given (known as well as its covariance says, but apart from the landmarks).
+  DriveMap(const core::JointMap& earlier, double phase_m, Tape::Position begin);
+
+  /// This map with another drive behind it that began somewhere on it. `T_map_drive`: where its frame is; what ties the
+  /// two is `merged`, landmarks of both (the kept one's name stays). `begin` on the tape: what follows. Solved.
+  DriveMap followed_by(const DriveMap& drive, const core::Pose2& T_map_drive,
+                       const std::vector<core::MergedLandmarks>& merged, Tape::Position begin) const;
 
   /// Takes in what the tape holds from end() on: scans, fixes, motion and merges. Landmarks lost again after a single look,
   /// which `filter` no longer has, are left out.
@@ -43,13 +53,18 @@ class DriveMap {
   /// What the filter paid for the measurements up to there, see drive_cost.
   double cost() const { return cost_; }
 
-  /// Poses of all stops as they are solved.
+  /// Poses of all stops as they are solved; those before the drive's place on an earlier map was found in the frame that
+  /// it had then.
   std::vector<core::StampedPose> path() const;
+
+  /// From the origin to the farthest landmark of an earlier map; 0 without one.
+  double extent_m() const { return extent_m_; }
 
  private:
   void add(const DrivePhase& phase);
   void merge(const Tape& tape, const core::MergedIds& ids);
   bool has_name(core::LandmarkId id) const;
+  void name(core::LandmarkId id);
 
   double phase_m_;
   StandingLooks standing_;
@@ -59,6 +74,9 @@ class DriveMap {
   std::vector<Eigen::Matrix2d> covariances_m2_;                         ///< by id
   Tape::Position end_ = 0;
   double cost_ = 0.0;
+  double extent_m_ = 0.0;
+  std::size_t phases_when_placed_ = 0;
+  core::Pose2 T_map_part_;  ///< of the frame of the path in these phases
 };
 
 }  // namespace helixnav::supervisor

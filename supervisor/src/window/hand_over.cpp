@@ -26,11 +26,14 @@ double drift_m(const cekf::CompressedEkf& filter) {
 
 }  // namespace
 
-/// The drive is known from its start, and no other map is asked for a place in it.
-bool NavigationLoop::may_have_window() const {
+/// From its start, or from an earlier map on.
+bool NavigationLoop::is_drive_known() const {
   const bool is_whole = belief_.drive ? tape_.holds_since(belief_.drive->end()) : tape_.holds_drive();
-  return is_whole && !apart_.any() && options_.search.closing != ClosingMethod::restart;
+  return is_whole && options_.search.closing != ClosingMethod::restart;
 }
+
+/// No other map is asked for a place in it.
+bool NavigationLoop::may_have_window() const { return is_drive_known() && !apart_.any(); }
 
 /// A phase of the atlas holds what a few scans see, and costs the cube of it; a filter keeps it once. In a forest (68 trees seen in a
 /// scan, 1146 in all) the atlas took 212 MB and 2.5 s more than it saved.
@@ -43,8 +46,12 @@ bool NavigationLoop::needs_window() const {
 WindowNeeds NavigationLoop::window_to_map() const {
   constexpr int all = std::numeric_limits<int>::max();
   if (apart_.any() || !needs_window()) return {0.0, all, all};
+  return window_about(belief_.filter);
+}
+
+WindowNeeds NavigationLoop::window_about(const cekf::CompressedEkf& filter) const {
   const double reach_m = view_.reach().value_or(reference_reach_m);
-  return {5.0 * reach_m + drift_m(belief_.filter), options_.map.window, options_.map.most};
+  return {5.0 * reach_m + drift_m(filter), options_.map.window, options_.map.most};
 }
 
 /// Most searches are decided within one attempt; the filter is not handed over meanwhile.
@@ -65,22 +72,28 @@ std::shared_ptr<DriveMap> NavigationLoop::begun_drive() const {
   return std::make_shared<DriveMap>(start_, phase_length_m(view_.reach().value_or(reference_reach_m)));
 }
 
-/// The filter becomes the joint estimate of the pose and of the landmarks of the window; the covariances of those left
-/// out are remembered as they are now.
-void NavigationLoop::begin_window(std::shared_ptr<DriveMap> drive, const WindowNeeds& needs) {
-  const atlas::Atlas& atlas = drive->atlas();
+/// The joint estimate of the pose and of the landmarks of the window.
+std::pair<cekf::CompressedEkf, Window> NavigationLoop::begun_window(const DriveMap& drive, const Belief& belief,
+                                                                    const WindowNeeds& needs) const {
+  const atlas::Atlas& atlas = drive.atlas();
   const Eigen::Vector2d here_m = atlas.pose().position_m();
-  const double last_m = std::isfinite(belief_.window.radius_m) ? belief_.window.radius_m : 0.0;
-  const double farthest_m = belief_.existence.path_m() + view_.reach().value_or(reference_reach_m);
+  const double last_m = std::isfinite(belief.window.radius_m) ? belief.window.radius_m : 0.0;
+  const double driven_m = belief.existence.path_m() + view_.reach().value_or(reference_reach_m);
+  const double farthest_m = driven_m + 2.0 * drive.extent_m();
   ChosenWindow chosen =
-      choose_window(places_about(atlas, belief_.existence, here_m, needs, 1.1 * last_m, farthest_m), here_m, needs);
-  cekf::CompressedEkf filter(atlas.joint(chosen.ids), belief_.filter.next_name(), belief_.filter.options());
-  chosen.window.begun_path_m = belief_.existence.path_m();
+      choose_window(places_about(atlas, belief.existence, here_m, needs, 1.1 * last_m, farthest_m), here_m, needs);
+  chosen.window.begun_path_m = belief.existence.path_m();
+  return {{atlas.joint(chosen.ids), belief.filter.next_name(), belief.filter.options()}, chosen.window};
+}
+
+/// The covariances of the landmarks that are left out are remembered as they are now.
+void NavigationLoop::begin_window(std::shared_ptr<DriveMap> drive, const WindowNeeds& needs) {
+  auto [filter, window] = begun_window(*drive, belief_, needs);
   drive->remember(belief_.filter);
   pending_.numerics.note(belief_.filter.take_health());
   std::swap(belief_.filter, filter);
   if (!undo_.filter) undo_.filter.emplace(std::move(filter));
-  become(std::move(drive), chosen.window);
+  become(std::move(drive), window);
 }
 
 bool NavigationLoop::hand_over(const WindowNeeds& needs) {

@@ -2,8 +2,10 @@
 // Questions about the whole map of landmarks known by name, of which the filter may hold a part.
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <vector>
 
+#include "helixnav/supervisor/joint_map.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
 #include "named/named_drive.hpp"
 #include "window/marginals.hpp"
@@ -70,6 +72,13 @@ core::JointGaussian NamedNavigator::joint(const std::vector<LandmarkId>& ids) co
   core::JointGaussian joint = filter_.joint(names);
   joint.ids = ids;
   return joint;
+}
+
+std::optional<core::JointMap> NamedNavigator::factored_map() const {
+  if (!names_.is_part) return std::nullopt;
+  const std::vector<core::MapLandmark> landmarks = sketch();
+  const LandmarkId next_name = landmarks.empty() ? 0 : landmarks.back().id + 1;
+  return supervisor::factored_map(solved(*drive_, reach_m_).atlas(), next_name, landmarks);
 }
 
 }  // namespace helixnav::supervisor

@@ -2,8 +2,10 @@
 // Questions about the whole map, of which the filter may hold a part.
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <vector>
 
+#include "helixnav/supervisor/joint_map.hpp"
 #include "loop/navigation_loop.hpp"
 #include "window/marginals.hpp"
 
@@ -49,6 +51,13 @@ core::JointGaussian NavigationLoop::joint(const std::vector<core::LandmarkId>& i
   const auto is_held = [&](core::LandmarkId id) { return belief_.filter.contains(id); };
   if (std::all_of(ids.begin(), ids.end(), is_held)) return belief_.filter.joint(ids);
   return drive_until_now()->atlas().joint(ids);
+}
+
+/// Of landmarks(); nothing while a filter holds the whole map, or if the drive is not known.
+std::optional<core::JointMap> NavigationLoop::factored(const std::vector<core::MapLandmark>& landmarks) const {
+  const bool is_large = static_cast<int>(belief_.existence.records().size()) > options_.map.whole;
+  if (!is_large || !belief_.drive || !is_drive_known()) return std::nullopt;
+  return factored_map(drive_until_now()->atlas(), next_name(), landmarks);
 }
 
 }  // namespace helixnav::supervisor

@@ -13,6 +13,7 @@
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/landmark_id.hpp"
+#include "helixnav/core/map_factors.hpp"
 #include "helixnav/core/se2.hpp"
 
 namespace helixnav::atlas {
@@ -64,6 +65,10 @@ class Atlas {
  public:
   /// `start` is clone 0 in the map frame. With zero covariance it represents the map frame itself.
   explicit Atlas(const core::PoseGaussian& start = {}, const Options& options = {});
+  /// The map that factors() has put away, settled. Its phases have no logs: they turn and bend with the map, but are not
+  /// derived again. PreconditionError if its parts do not fit together, NumericalError if it has no solution.
+  /// Test: atlas/factors_test.cpp.
+  static Atlas from_factors(const core::MapFactors& map, const Options& options = {});
   Atlas(const Atlas& other);
   Atlas(Atlas&& other) noexcept;
   Atlas& operator=(const Atlas& other);
@@ -96,6 +101,13 @@ class Atlas {
   /// Rebuilds the layout of the whole tree by position. Worthwhile after a long drive over old ground; results stay the
   /// same up to rounding.
   void reshape();
+
+  /// This map and that of another drive, which began somewhere on it: one map in the frame of this one, with the phases of
+  /// the other behind a phase without landmarks, `gap`, from where this drive ends to where the other begins (3 rows, with
+  /// an inverse; wide, if only landmarks tell). What the other knows of a frame of its own, by fixes or by its start, is
+  /// left out. Both must be settled, and the names of their landmarks differ: merge those that are the same, then settle.
+  /// O(N log N). Test: atlas/factors_test.cpp.
+  Atlas followed_by(const RelativeGaussian& gap, const Atlas& drive) const;
 
   /// Bounds the cost of ground driven again and again. A settled phase on ground that was driven again more than
   /// options.laps_kept times (three quarters of its landmarks are seen by others) becomes part of the earlier phase
@@ -141,6 +153,10 @@ class Atlas {
   /// Test: atlas/joint_test.cpp.
   std::vector<std::vector<core::Pose2>> poses() const;
 
+  /// The settled map as a value to be put away. Names of landmarks merged into others are not in it. O(N); the Gaussians
+  /// are shared. PreconditionError if it has no phase.
+  core::MapFactors factors() const;
+
   /// Size of the tree as it was settled, for benchmarks and reports.
   struct Size {
     int phases = 0;
@@ -161,5 +177,8 @@ class Atlas {
   std::unique_ptr<State> settled_;
   int nodes_redone_ = 0;
 };
+
+/// PreconditionError if the parts of a map that was put away do not fit together. O(its bytes).
+void check_factors(const core::MapFactors& map);
 
 }  // namespace helixnav::atlas

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/map_factors.hpp"
 #include "helixnav/core/step_report.hpp"
 
 namespace helixnav::core {
 
-/// A map with all correlations and the pose at its end: what another session needs to continue in it.
+/// A map with all correlations and the pose at its end: what another session needs to continue in it. A large map holds
+/// them as factors. If it is too large for a joint covariance, too, that of `joint` is of the pose alone, 3×3, and
+/// `covariances_m2` has those of the landmarks one by one.
 struct JointMap {
   JointGaussian joint;                               ///< ids ascending
   std::vector<LandmarkState> states;                 ///< [landmark] tentative or mature
@@ -20,6 +26,17 @@ struct JointMap {
   std::vector<std::string> drives = {};              ///< what went into it, runs::DriveDigest each; sorted
   /// False for a joined map: each of its sessions ended elsewhere, and nobody continues from its pose.
   bool has_end = true;
+  std::shared_ptr<const MapFactors> factors = {};
+  std::vector<Eigen::Matrix2d> covariances_m2 = {};  ///< [landmark], without a joint covariance
+  /// Of a map that holds factors: whether its pose was given, and is not where its drive ended.
+  bool is_pose_given = false;
+
+  bool has_covariance() const { return joint.covariance.rows() == rows_with_landmarks(); }
+  Eigen::Index rows_with_landmarks() const { return 3 + 2 * static_cast<Eigen::Index>(joint.ids.size()); }
+  Eigen::Matrix2d covariance_m2_of(std::size_t landmark) const {
+    const auto row = 3 + 2 * static_cast<Eigen::Index>(landmark);
+    return has_covariance() ? Eigen::Matrix2d(joint.covariance.block<2, 2>(row, row)) : covariances_m2[landmark];
+  }
 };
 
 }  // namespace helixnav::core

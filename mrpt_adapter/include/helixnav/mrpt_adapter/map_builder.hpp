@@ -111,8 +111,8 @@ class MapBuilder : public mrpt::slam::CMetricMapBuilder {
   bool isPlaceKnown() const;
 
   /// Writes map.csv and map.bin into a folder, which is created: what initializeFromRun() continues in. Where the place
-  /// is still sought it is the map since then. InputError where it cannot be written or has more than
-  /// runs::most_joint_landmarks landmarks.
+  /// is still sought it is the map since then. InputError where it cannot be written, or has more than
+  /// runs::most_joint_landmarks landmarks and its drive was not kept.
   void saveMapToFolder(const std::string& folder) const;
 
   // Beyond.

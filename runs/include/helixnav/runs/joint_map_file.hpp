@@ -8,16 +8,16 @@
 
 namespace helixnav::runs {
 
-/// Landmarks in the largest map that is saved with its joint covariance: 64 MB.
+/// Landmarks in the largest map that is saved with its joint covariance: 64 MB. Others are saved as factors.
 inline constexpr std::size_t most_joint_landmarks = 2000;
 
 /// The bytes of map.bin (docs/run-folder.md): version, sizes, pose, landmarks, the lower triangle of the joint
-/// covariance, SHA-256 of everything before. PreconditionError for a map whose parts do not fit together or with more
-/// landmarks than that.
+/// covariance or the factors, SHA-256 of everything before. PreconditionError for a map whose parts do not fit together, or
+/// a dense one with more landmarks than that.
 std::string joint_map_bytes(const core::JointMap& map);
 
 /// Reads a map.bin. InputError naming the file if it cannot be read, is not a map.bin, is cut short or too long, is of
-/// another version, does not match the digest written in it, or does not hold a valid map. O(N²). Test:
+/// another version, does not match the digest written in it, or does not hold a valid map. O(bytes). Test:
 /// runs/joint_map_file_test.cpp (there and back bit for bit; every byte flipped; every length).
 core::JointMap read_joint_map(const std::string& path);
 

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <optional>
 #include <vector>
 
+#include "helixnav/atlas/atlas.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/joint_map.hpp"
 
@@ -15,6 +18,9 @@ core::JointMap joint_map(const cekf::CompressedEkf& filter, const std::vector<co
 /// The same for any navigator that has joint() and filter().
 core::JointMap joint_map(core::JointGaussian joint, core::LandmarkId next_name,
                          const std::vector<core::MapLandmark>& landmarks);
+/// The same as factors of a drive, for a map of any size; `landmarks` are known to it. O(N).
+core::JointMap factored_map(const atlas::Atlas& drive, core::LandmarkId next_name,
+                            const std::vector<core::MapLandmark>& landmarks);
 /// PreconditionError for a joined map, since no session can continue from the pose in it.
 void check_has_end(const core::JointMap& map);
 
@@ -34,6 +40,18 @@ core::JointMap joint_map(const Navigator& navigator, const std::vector<core::Map
   const core::LandmarkId after_last = landmarks.empty() ? 0 : landmarks.back().id + 1;
   const core::LandmarkId next_name = std::max(navigator.filter().next_name(), after_last);
   return joint_map(navigator.joint(ids_of(landmarks)), next_name, landmarks);
+}
+
+/// What a session leaves to the next: a joint covariance for up to `most_dense` landmarks, and factors if the map is large
+/// (Navigator::factored_map). Nothing if it has neither.
+template <class Navigator>
+std::optional<core::JointMap> map_to_go_on_in(const Navigator& navigator,
+                                              const std::vector<core::MapLandmark>& landmarks, std::size_t most_dense) {
+  std::optional<core::JointMap> map = navigator.factored_map();
+  if (landmarks.size() > most_dense) return map;
+  core::JointMap dense = joint_map(navigator, landmarks);
+  if (map) dense.factors = map->factors;
+  return dense;
 }
 
 }  // namespace helixnav::supervisor

@@ -70,6 +70,9 @@ class NamedNavigator {
   /// As for Navigator.
   std::vector<core::MapLandmark> sketch() const;
   core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;
+  /// The map as factors, if the filter holds only a part of it; else nothing. For Navigator: a session by name continues in
+  /// a joint covariance.
+  std::optional<core::JointMap> factored_map() const;
 
   /// The filter. While it holds only part of the map, it uses its own names for landmarks.
   const cekf::CompressedEkf& filter() const { return filter_; }

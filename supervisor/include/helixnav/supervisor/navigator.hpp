@@ -95,6 +95,11 @@ class Navigator {
   /// times the largest separator of the map.
   core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;
 
+  /// The map as factors, for a session that continues in it, if it is larger than MapOptions::whole and the drive was kept
+  /// (SearchOptions::smooth_up_to_scans), or continued in such a map; else nothing: use joint_map. O(N).
+  /// Test: supervisor/placing/large_map_test.cpp.
+  std::optional<core::JointMap> factored_map() const;
+
   /// The filter; it holds all landmarks up to MapOptions::whole, and beyond that those near the vehicle.
   const cekf::CompressedEkf& filter() const;
 
