@@ -3,8 +3,9 @@
 # suite with parameters and types run together. Suites named …Campaign, statistics over many drives, have the label
 # `campaign`, too, and start first together with those that are known to be long.
 cmake_minimum_required(VERSION 3.25)
-set(long_suites apps.Associate apps.Fusing apps.SearchSettings apps.Smooth mrpt_adapter.Feed mrpt_adapter.Outputs
-  supervisor.Closing supervisor.SmoothDrive)
+set(long_suites apps.Associate apps.CalibrateProgram apps.Fusing apps.SearchSettings apps.ShippedVehicleProgram apps.Smooth
+  apps.TeamCampaignParts apps.TeamWholeReplay mrpt_adapter.Feed mrpt_adapter.Outputs supervisor.Closing supervisor.Guarantee
+  supervisor.JoinSessions supervisor.SmoothDrive)
 
 # No sanitizer looks for leaks in a program that only lists.
 execute_process(COMMAND ${CMAKE_COMMAND} -E env ASAN_OPTIONS=detect_leaks=0 ${PROGRAM} --gtest_list_tests

@@ -2,11 +2,13 @@
 // Going on in the map of an earlier run.
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "helixnav/core/check_event.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/runs/joint_map_file.hpp"
 #include "helixnav/runs/map_folder.hpp"
+#include "helixnav/supervisor/joint_map.hpp"
 #include "map_builder_impl.hpp"
 #include "navigator_estimator.hpp"
 #include "navigator_options.hpp"
@@ -36,16 +38,9 @@ core::JointMap read_map(const fs::path& path, bool unknown_start) {
                          (unknown_start ? " to find the place on it: give a pose" : ""));
 }
 
-/// The vehicle at a pose that nothing on the map has a part in.
 core::JointMap with_pose(core::JointMap map, const core::PoseGaussian& pose) {
   core::check_start(pose);
-  map.joint.pose = pose.mean;
-  map.has_end = map.is_pose_given = true;
-  Eigen::MatrixXd& P = map.joint.covariance;
-  P.topRows(3).setZero();
-  P.leftCols(3).setZero();
-  P.topLeftCorner<3, 3>() = pose.covariance;
-  return map;
+  return supervisor::begun_at(std::move(map), pose);
 }
 
 }  // namespace

@@ -242,8 +242,8 @@ TEST_F(GoOn, WhatIsNoMapToGoOnInEndsWithStatus3AndNamesTheFile) {
   flipped[bytes.size() / 2] = static_cast<char>(flipped[bytes.size() / 2] ^ 1);
   with(flipped, "checksum");
   std::string newer = bytes;
-  newer[8] = 2;
-  with(newer, "version 2");
+  newer[8] = 3;
+  with(newer, "version 3");
   fs::remove(folder("monday") / "map.bin");
   refused("not there");
   const Outcome nowhere = replay("monday.circles", {"--map", folder("nowhere")}, "none");

@@ -14,6 +14,7 @@
 #include "helixnav/runs/joint_map_file.hpp"
 #include "helixnav/runs/map_folder.hpp"
 #include "helixnav/sim/simulate.hpp"
+#include "helixnav/supervisor/joint_map.hpp"
 #include "helixnav/supervisor/navigator.hpp"
 #include "input_error.hpp"
 #include "quiet_builder.hpp"
@@ -95,14 +96,6 @@ core::Pose2 as_mrpt_keeps_pose(const core::Pose2& T) {
   return {T.x_m, T.y_m, mrpt::poses::CPose2D(T.x_m, T.y_m, T.heading_rad).phi()};
 }
 
-core::JointMap seen_from(core::JointMap map, const core::PoseGaussian& pose) {
-  map.joint.pose = pose.mean;
-  map.joint.covariance.topRows(3).setZero();
-  map.joint.covariance.leftCols(3).setZero();
-  map.joint.covariance.topLeftCorner<3, 3>() = pose.covariance;
-  return map;
-}
-
 class EarlierMap : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -146,7 +139,7 @@ TEST_F(EarlierMap, FromAPoseItGoesOnAsTheNavigatorDoes) {
   const mrpt::poses::CPosePDFGaussian x0 = pdf_of(pose_);
   builder.initializeFromRun(folder(), &x0);
   EXPECT_TRUE(builder.isPlaceKnown());
-  supervisor::Navigator navigator = supervisor::Navigator::go_on_in(seen_from(earlier_, pose_));
+  supervisor::Navigator navigator = supervisor::Navigator::go_on_in(supervisor::begun_at(earlier_, pose_));
   expect_same_poses(built_from(builder, today_, skipped), navigated_from(navigator, today_, skipped));
 }
 
@@ -162,7 +155,7 @@ TEST_F(EarlierMap, APoseGivenWhileThePlaceIsSoughtBeginsThereOnTheEarlierMap) {
     builder.setInitialPose(pdf_of(pose));
   });
   EXPECT_TRUE(builder.isPlaceKnown());
-  supervisor::Navigator navigator = supervisor::Navigator::go_on_in(seen_from(earlier_, pose));
+  supervisor::Navigator navigator = supervisor::Navigator::go_on_in(supervisor::begun_at(earlier_, pose));
   expect_same_poses({poses.begin() + later, poses.end()},
                     navigated_from(navigator, today_, skipped + later, {}, FirstMotion::used));
 }

@@ -167,16 +167,10 @@ EarlierSession read_earlier_session(const std::string& folder, const SessionStar
   return session;
 }
 
-core::JointMap seen_from(core::JointMap map, const core::Pose2& T_map_robot, double reach_m) {
+core::PoseGaussian given_start(const core::Pose2& T_map_robot, double reach_m) {
   const double sigma_m = reach_m / 60.0;
   constexpr double sigma_rad = 3.0 * core::pi / 180.0;
-  map.joint.pose = T_map_robot;
-  map.has_end = map.is_pose_given = true;
-  Eigen::MatrixXd& P = map.joint.covariance;
-  P.topRows(3).setZero();
-  P.leftCols(3).setZero();
-  P.diagonal().head<3>() << sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad;
-  return map;
+  return {T_map_robot, Eigen::Vector3d(sigma_m, sigma_m, sigma_rad).cwiseAbs2().asDiagonal()};
 }
 
 }  // namespace helixnav::apps

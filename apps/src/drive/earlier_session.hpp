@@ -55,7 +55,7 @@ void check_has_covariance(const core::JointMap& map, const std::string& name, co
 /// The map.bin in it.
 std::string joint_map_file_in(const std::string& folder);
 
-/// The map as a session continues in it from a given pose, independent of it and known to a 60th of the reach and 3°.
-core::JointMap seen_from(core::JointMap map, const core::Pose2& T_map_robot, double reach_m);
+/// A pose on a map that the user gave: known to a 60th of the reach and 3°.
+core::PoseGaussian given_start(const core::Pose2& T_map_robot, double reach_m);
 
 }  // namespace helixnav::apps

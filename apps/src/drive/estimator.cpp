@@ -10,7 +10,9 @@
 #include "common/chosen_navigator.hpp"
 #include "common/joint_map_of.hpp"
 #include "helixnav/logs/field_of_view.hpp"
+#include "helixnav/supervisor/joint_map.hpp"
 #include "helixnav/supervisor/lengths.hpp"
+#include "helixnav/supervisor/pose_on_map.hpp"
 #include "localizer_feed.hpp"
 #include "navigator_on_map.hpp"
 #include "start_check.hpp"
@@ -33,7 +35,8 @@ ChosenNavigator begun(const Drive& job, const std::vector<std::vector<core::Labe
   }
   const bool at_end = earlier.start.kind == SessionStart::Kind::end;
   const core::JointMap map =
-      at_end ? earlier.map : seen_from(earlier.map, earlier.start.T_map_robot, reach_of_log(job));
+      at_end ? earlier.map
+             : supervisor::begun_at(earlier.map, given_start(earlier.start.T_map_robot, reach_of_log(job)));
   if (job.known_association) return {supervisor::NamedNavigator(map, earlier.landmark_of, job.navigator), labels};
   return {supervisor::Navigator::go_on_in(map, job.navigator), labels};
 }
@@ -63,14 +66,19 @@ struct NavigatorDrive {
   ChosenNavigator navigator;
   std::optional<StartCheck> check;
   bool is_start_ambiguous = false;
+  core::LandmarkId earlier_next_name;
 
   explicit NavigatorDrive(const Drive& job)
-      : labels(labels_fed(job)), navigator(begun(job, labels)), check(check_of_start(job)) {}
+      : labels(labels_fed(job)),
+        navigator(begun(job, labels)),
+        check(check_of_start(job)),
+        earlier_next_name(job.earlier ? job.earlier->map.next_name : 0) {}
 
   std::optional<core::StepReport> take(const core::Event& event) {
     std::optional<core::StepReport> report = navigator.take(event);
     if (!check) return report;
-    check->take(event, report ? &*report : nullptr, navigator.filter().pose());
+    const auto believed = [this] { return supervisor::pose_on_map(navigator.filter(), earlier_next_name); };
+    check->take(event, report ? &*report : nullptr, believed);
     if (std::optional<StartCheck::RightStart> right = check->right_start()) {
       navigator = ChosenNavigator(std::move(right->navigator), labels);
       report = std::move(right->report);

@@ -35,12 +35,8 @@ std::vector<core::LandmarkId> landmarks_of(const std::vector<core::Label>& label
 core::PoseGaussian start_of(const Drive& job) {
   const std::optional<SessionStart>& start = job.given_map->start;
   if (!start) return job.recording.start;
-  core::JointMap nothing;
-  nothing.joint.covariance = Eigen::Matrix3d::Zero();
   const core::FieldOfView view = logs::field_of_view_of(job.recording);
-  const double reach_m = view.reach().value_or(supervisor::reference_reach_m);
-  const core::JointGaussian seen = seen_from(nothing, start->T_map_robot, reach_m).joint;
-  return {seen.pose, seen.covariance.topLeftCorner<3, 3>()};
+  return given_start(start->T_map_robot, view.reach().value_or(supervisor::reference_reach_m));
 }
 
 bool has_found(const core::StepReport& report) {

@@ -36,8 +36,8 @@ supervisor::Navigator looking_for_place(const Drive& job, const core::JointMap& 
 supervisor::Navigator begun_on_map(const Drive& job, const core::JointMap& map) {
   if (is_unknown(job)) return looking_for_place(job, map, core::Pose2());
   const std::optional<SessionStart>& start = job.given_map->start;
-  return supervisor::Navigator::go_on_in(
-      start ? seen_from(map, start->T_map_robot, reach_of(job)) : with_pose(map, job.recording.start), job.navigator);
+  const core::PoseGaussian pose = start ? given_start(start->T_map_robot, reach_of(job)) : job.recording.start;
+  return supervisor::Navigator::go_on_in(with_pose(map, pose), job.navigator);
 }
 
 localization::LocalizerOptions tracking_options(const supervisor::NavigatorOptions& navigator) {
@@ -103,7 +103,7 @@ std::optional<core::StepReport> NavigatorOnMap::take(const core::Event& event) {
   }
   const auto* scan = std::get_if<core::Scan>(&event);
   if (scan == nullptr) {
-    if (check_) check_->take(event, nullptr, believed());
+    if (check_) check_->take(event, nullptr, [this] { return believed(); });
     return std::nullopt;
   }
   core::StepReport report = observe(*scan);
@@ -151,7 +151,7 @@ core::StepReport NavigatorOnMap::observe(const core::Scan& scan) {
 std::optional<core::StepReport> NavigatorOnMap::checked_start(const core::Event& event,
                                                               const core::StepReport& report) {
   if (!check_) return std::nullopt;
-  check_->take(event, &report, believed());
+  check_->take(event, &report, [this] { return believed(); });
   std::optional<StartCheck::RightStart> right = check_->right_start();
   is_start_ambiguous_ = check_->is_ambiguous();
   if (check_->is_over()) check_.reset();

@@ -84,7 +84,7 @@ NamedMap named(const GivenMap& given) {
   return map;
 }
 
-/// Whether it may be taken as a given start (seen_from), which has no covariance of its own: at most twice as uncertain.
+/// Whether it may be taken as a given start (given_start), which has no covariance of its own: at most twice as uncertain.
 bool is_as_if_given(const core::PoseGaussian& start, double reach_m) {
   const double sigma_m = reach_m / 60.0;
   const Eigen::Array3d given(sigma_m, sigma_m, start_sigma_rad);

@@ -12,6 +12,7 @@
 #include "helixnav/core/chi2.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/supervisor/lengths.hpp"
+#include "helixnav/supervisor/pose_on_map.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -45,12 +46,13 @@ bool has_place(const core::StepReport& report) {
 
 StartCheck::StartCheck(const core::JointMap& map, const core::Pose2& T_map_start, double reach_m,
                        const supervisor::NavigatorOptions& options)
-    : reach_m_(reach_m),
+    : next_name_(map.next_name),
+      reach_m_(reach_m),
       apart_m_(options.search.rivals.apart_m * reach_m / supervisor::reference_reach_m),
       apart_rad_(options.search.rivals.apart_rad),
       navigator_(looking_in(map, T_map_start, options)) {}
 
-void StartCheck::take(const core::Event& event, const core::StepReport* report, const core::PoseGaussian& believed) {
+void StartCheck::take(const core::Event& event, const core::StepReport* report, const Believed& believed) {
   constexpr double most_reaches = 30.0;
   if (is_over_) return;
   // A vehicle that was carried has another place now, and fixes determine it without landmarks.
@@ -69,13 +71,13 @@ void StartCheck::take(const core::Event& event, const core::StepReport* report, 
   }
 }
 
-void StartCheck::observe(core::StepReport own, const core::PoseGaussian& believed) {
+void StartCheck::observe(core::StepReport own, const Believed& believed) {
   is_over_ = was_carried(own) || has_place(own);
   for (const core::Decision& decision : own.decisions) {
     const auto* placed = std::get_if<core::PlacedDecision>(&decision);
     if (placed != nullptr) is_ambiguous_ = placed->verdict == core::PlacedDecision::Verdict::ambiguous;
   }
-  if (has_place(own) && is_elsewhere(believed)) {
+  if (has_place(own) && is_elsewhere(believed())) {
     report_ = std::move(own);
     return;
   }
@@ -89,7 +91,7 @@ void StartCheck::observe(core::StepReport own, const core::PoseGaussian& believe
 /// Farther than two hypotheses of one place are apart, and than the two may err.
 bool StartCheck::is_elsewhere(const core::PoseGaussian& believed) const {
   static const double limit = core::chi2_quantile(0.9999, 3);
-  const core::PoseGaussian found = navigator_.pose();
+  const core::PoseGaussian found = supervisor::pose_on_map(navigator_.filter(), next_name_);
   Eigen::Vector3d d = found.mean.vector() - believed.mean.vector();
   d.z() = core::wrap_to_pi(d.z());
   if (d.head<2>().norm() < apart_m_ && std::abs(d.z()) < apart_rad_) return false;

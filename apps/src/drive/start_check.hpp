@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -22,8 +23,11 @@ class StartCheck {
   StartCheck(const core::JointMap& map, const core::Pose2& T_map_start, double reach_m,
              const supervisor::NavigatorOptions& options);
 
+  /// The session's pose, relative to the landmarks of the map around it; asked for when the place is found.
+  using Believed = std::function<core::PoseGaussian()>;
+
   /// An event that the session has taken, with its report if it is a scan, and the pose after it.
-  void take(const core::Event& event, const core::StepReport* report, const core::PoseGaussian& believed);
+  void take(const core::Event& event, const core::StepReport* report, const Believed& believed);
 
   /// The place was found, or it is time to stop looking.
   bool is_over() const { return is_over_; }
@@ -40,9 +44,10 @@ class StartCheck {
   std::optional<RightStart> right_start();
 
  private:
-  void observe(core::StepReport report, const core::PoseGaussian& believed);
+  void observe(core::StepReport report, const Believed& believed);
   bool is_elsewhere(const core::PoseGaussian& believed) const;
 
+  core::LandmarkId next_name_;  ///< of the map
   double reach_m_;
   double apart_m_, apart_rad_;  ///< of two hypotheses of one place
   supervisor::Navigator navigator_;

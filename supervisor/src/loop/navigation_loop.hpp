@@ -22,6 +22,7 @@
 #include "loop/tape.hpp"
 #include "noise/noise_learner.hpp"
 #include "placing/gap_in_sightings.hpp"
+#include "placing/join_maps.hpp"
 #include "placing/maps_apart.hpp"
 #include "placing/scan_rhythm.hpp"
 #include "placing/session_question.hpp"
@@ -227,6 +228,10 @@ class NavigationLoop {
   core::JointGaussian landmarks_about_session(const EarlierMap& earlier, const relocalize::Place& place) const;
   std::shared_ptr<DriveMap> drive_behind(const EarlierMap& earlier, const core::Pose2& T_map_session,
                                          const Closing& closing) const;
+  JoinedMaps joined_at(const relocalize::Place& place, const PlaceSearch& search) const;
+  Belief belief_on_both(const EarlierMap& earlier, JoinedMaps joined, const core::Pose2& T_map_session) const;
+  void become_one(const MapApart& apart, Belief both, Tape tape, const Closing& closing,
+                  const core::PlacedDecision& decision, core::StepReport& report);
   void begin_behind(std::shared_ptr<DriveMap> drive, Belief& belief, Tape& tape) const;
 
   // placing/carried.cpp

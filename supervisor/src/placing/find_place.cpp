@@ -171,41 +171,46 @@ void NavigationLoop::begin_behind(std::shared_ptr<DriveMap> drive, Belief& belie
   belief.drive = std::move(drive);
 }
 
-/// From here on one map, in the frame of the earlier one, or everything as before. Behind a dense map, the drive so far can
-/// no longer be solved as a whole, since it says nothing about how that map was made.
-bool NavigationLoop::join(const MapApart& apart, const relocalize::Place& place, PlacedDecision& decision,
-                          core::StepReport& report) {
-  const PlaceSearch& search = *apart.search;
+JoinedMaps NavigationLoop::joined_at(const relocalize::Place& place, const PlaceSearch& search) const {
   const EarlierMap& earlier = search.earlier();
   const SeenLandmarks seen = seen_landmarks(belief_.existence, options_.search.constellation.least_hits);
   core::JointGaussian about;
   if (earlier.drive()) about = landmarks_about_session(earlier, place);
-  JoinedMaps joined = join_maps(belief_.filter, earlier.drive() ? about : earlier.landmarks(), place, seen.confirmed,
-                                seen.unconfirmed, search.lengths().pair_noise_m, options_.search);
-  decision.cost = joined.closing.cost;
-  decision.dof = joined.closing.dof;
-  decision.limit = joined.closing.limit;
-  decision.merged = static_cast<int>(joined.closing.merged.size());
-  if (!joined.closing.accepted) {
-    decision.verdict = PlacedDecision::Verdict::refused;
-    return false;
-  }
-  const core::Pose2 before = belief_.filter.pose().mean;
-  decision.T_map_session = core::compose(joined.filter.pose().mean, core::inverse(before));
-  std::shared_ptr<DriveMap> drive;
-  if (earlier.drive() && !(drive = drive_behind(earlier, decision.T_map_session, joined.closing))) {
-    decision.verdict = PlacedDecision::Verdict::refused;
-    return false;
-  }
-  Belief both{std::move(joined.filter),
-              existence_of_both(belief_.existence, earlier, joined, options_.life),
-              belief_.coverage,
-              {},
-              belief_.step,
-              belief_.slips,
+  return join_maps(belief_.filter, earlier.drive() ? about : earlier.landmarks(), place, seen.confirmed,
+                   seen.unconfirmed, search.lengths().pair_noise_m, options_.search);
+}
+
+/// What is believed on one map.
+Belief NavigationLoop::belief_on_both(const EarlierMap& earlier, JoinedMaps joined,
+                                      const core::Pose2& T_map_session) const {
+  association::LandmarkLife existence = existence_of_both(belief_.existence, earlier, joined, options_.life);
+  Belief both{std::move(joined.filter), std::move(existence), belief_.coverage, {}, belief_.step, belief_.slips,
               belief_.left_open};
   both.moving = belief_.moving;
-  both.coverage.change_frame(decision.T_map_session);
+  both.coverage.change_frame(T_map_session);
+  return both;
+}
+
+/// From here on one map, in the frame of the earlier one, or everything as before. Behind a dense map, the drive so far can
+/// no longer be solved as a whole, since it says nothing about how that map was made.
+bool NavigationLoop::join(const MapApart& apart, const relocalize::Place& place, PlacedDecision& decision,
+                          core::StepReport& report) {
+  const EarlierMap& earlier = apart.search->earlier();
+  JoinedMaps joined = joined_at(place, *apart.search);
+  const Closing closing = joined.closing;
+  decision.cost = closing.cost;
+  decision.dof = closing.dof;
+  decision.limit = closing.limit;
+  decision.merged = static_cast<int>(closing.merged.size());
+  decision.T_map_session = core::compose(joined.filter.pose().mean, core::inverse(belief_.filter.pose().mean));
+  std::shared_ptr<DriveMap> drive;
+  if (closing.accepted && earlier.drive()) drive = drive_behind(earlier, decision.T_map_session, closing);
+  if (!closing.accepted || (earlier.drive() && !drive)) {
+    decision.verdict = PlacedDecision::Verdict::refused;
+    decision.T_map_session = place.T_map_branch;
+    return false;
+  }
+  Belief both = belief_on_both(earlier, std::move(joined), decision.T_map_session);
   Tape tape = tape_;
   if (drive) {
     begin_behind(std::move(drive), both, tape);
@@ -214,12 +219,18 @@ bool NavigationLoop::join(const MapApart& apart, const relocalize::Place& place,
     tape.drop_drive();
   }
   tape.keep_since(tape.end());
+  become_one(apart, std::move(both), std::move(tape), closing, decision, report);
+  return true;
+}
+
+void NavigationLoop::become_one(const MapApart& apart, Belief both, Tape tape, const Closing& closing,
+                                const PlacedDecision& decision, core::StepReport& report) {
   Mapping mapping;
   std::vector<LandmarkId> recognised;
-  for (const core::MergedLandmarks& one : joined.closing.merged) recognised.push_back(one.kept);
+  for (const core::MergedLandmarks& one : closing.merged) recognised.push_back(one.kept);
   mapping.monitor.close(both.existence.path_m(), recognised);
   mapping.trust(take_checkpoint(both, tape));
-  report.merged.insert(report.merged.end(), joined.closing.merged.begin(), joined.closing.merged.end());
+  report.merged.insert(report.merged.end(), closing.merged.begin(), closing.merged.end());
   report.pose = both.filter.pose();
   report.active_landmarks = both.filter.active_count();
   report.mapped_landmarks = both.filter.mapped_count();
@@ -238,7 +249,6 @@ bool NavigationLoop::join(const MapApart& apart, const relocalize::Place& place,
   questions_.place_again_at = 0;
   tape_ = std::move(tape);
   apart_ = std::move(left);
-  return true;
 }
 
 }  // namespace helixnav::supervisor

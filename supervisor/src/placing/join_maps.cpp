@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 
 #include "closing/branch_pairs.hpp"
+#include "placing/place_by_points.hpp"
 #include "placing/session_leftovers.hpp"
 
 namespace helixnav::supervisor {
@@ -49,27 +49,17 @@ Eigen::MatrixXd turned(const Eigen::MatrixXd& covariance, double angle_rad) {
   return twice;
 }
 
-/// Errors of a point in the map per error of T, which moved it there.
-Eigen::Matrix<double, 2, 3> point_by_place(const core::Pose2& T, const Eigen::Vector2d& point_m) {
-  const Eigen::Vector2d arm_m = point_m - T.position_m();
-  Eigen::Matrix<double, 2, 3> J;
-  J << 1.0, 0.0, -arm_m.y(), 0.0, 1.0, arm_m.x();
-  return J;
-}
-
-/// How T moves when the map's landmarks of the pairs do: by the rigid motion that fits theirs best. Any fit would do,
-/// since its residual is far within the loosened covariance.
+/// How T moves when the map's landmarks of the pairs do. Any fit would do, since its residual is far within the loosened
+/// covariance.
 Eigen::MatrixXd place_by_map(const core::Pose2& T, const core::JointGaussian& earlier, const KeptRemoved& pairs) {
-  const auto rows = 2 * static_cast<Eigen::Index>(pairs.size());
-  Eigen::MatrixXd B(rows, 3);
+  std::vector<Eigen::Vector2d> points_m;
   std::vector<Eigen::Index> columns;
   for (const auto& [kept, removed] : pairs) {
     const auto at = std::find(earlier.ids.begin(), earlier.ids.end(), kept) - earlier.ids.begin();
-    B.middleRows<2>(2 * static_cast<Eigen::Index>(columns.size())) =
-        point_by_place(T, earlier.points_m[static_cast<std::size_t>(at)]);
+    points_m.push_back(earlier.points_m[static_cast<std::size_t>(at)]);
     columns.push_back(2 * at);
   }
-  const Eigen::MatrixXd fit = B.colPivHouseholderQr().solve(Eigen::MatrixXd::Identity(rows, rows));
+  const Eigen::MatrixXd fit = place_by_points(T, points_m);
   Eigen::MatrixXd by_map = Eigen::MatrixXd::Zero(3, 2 * static_cast<Eigen::Index>(earlier.ids.size()));
   for (std::size_t i = 0; i < columns.size(); ++i) {
     by_map.middleCols<2>(columns[i]) += fit.middleCols<2>(2 * static_cast<Eigen::Index>(i));

@@ -5,7 +5,10 @@
 #include <map>
 #include <utility>
 
+#include <Eigen/LU>
+
 #include "helixnav/atlas/phase_factor.hpp"
+#include "placing/place_by_points.hpp"
 
 namespace helixnav::supervisor {
 namespace {
@@ -20,20 +23,32 @@ std::map<core::LandmarkId, int> sightings(const std::vector<Stop>& stops, const 
 
 constexpr double unknown_m = 1e4;  ///< of a gap between two drives
 
-/// Where a session begins that somebody gave: from where the earlier one ended, nothing is known but the heading.
-void begin_at(const core::PoseGaussian& start, atlas::Atlas& atlas) {
-  atlas::PhaseFactor gap;
-  const double per_m2 = 1.0 / (unknown_m * unknown_m);
-  gap.gaussian.information = Eigen::Vector3d(per_m2, per_m2, 1.0 / start.covariance(2, 2)).asDiagonal();
-  gap.gaussian.vector = Eigen::Vector3d::Zero();
-  gap.gaussian.mean = core::between(atlas.pose(), start.mean).vector();
-  gap.shape.T_entry_robot.emplace_back(Eigen::Vector3d(gap.gaussian.mean));
-  core::AbsoluteFix fix;
-  fix.position_world_m = start.mean.position_m();
-  fix.covariance_m2 = start.covariance.topLeftCorner<2, 2>();
-  const int clone = atlas.add(std::move(gap)) + 1;
-  atlas.fix(clone, fix);
-  atlas.settle();
+/// A pose relative to landmarks, as a phase from where the drive ended that says nothing else: the error of the pose, less what
+/// the errors of the landmarks make of it, is that of the pose given.
+atlas::PhaseFactor phase_to(const core::JointMap::Given& given, const atlas::Atlas& atlas) {
+  const core::Pose2 T_map_entry = atlas.pose();
+  const core::Pose2 T_entry_map = core::inverse(T_map_entry);
+  const core::Pose2 T_entry_exit = core::compose(T_entry_map, given.pose.mean);
+  atlas::PhaseFactor phase;
+  phase.shape.ids = given.around;
+  for (const atlas::Place& place : atlas.places_of(given.around)) {
+    phase.shape.points_m.push_back(core::transform(T_entry_map, place.point_m));
+  }
+  phase.shape.T_entry_robot.push_back(T_entry_exit);
+  const auto rows = 3 + 2 * static_cast<Eigen::Index>(given.around.size());
+  Eigen::MatrixXd error(3, rows);
+  error << Eigen::Matrix3d::Identity(), -place_by_points(T_entry_exit, phase.shape.points_m);
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = core::rotation(T_entry_map.heading_rad);
+  const Eigen::Matrix3d information = (turn * given.pose.covariance * turn.transpose()).inverse();
+  phase.gaussian.information = error.transpose() * information * error;
+  phase.gaussian.vector = Eigen::VectorXd::Zero(rows);
+  phase.gaussian.mean.resize(rows);
+  phase.gaussian.mean.head<3>() = T_entry_exit.vector();
+  for (std::size_t i = 0; i < phase.shape.points_m.size(); ++i) {
+    phase.gaussian.mean.segment<2>(3 + 2 * static_cast<Eigen::Index>(i)) = phase.shape.points_m[i];
+  }
+  return phase;
 }
 
 }  // namespace
@@ -43,7 +58,10 @@ DriveMap::DriveMap(const core::PoseGaussian& start, double phase_m, const atlas:
 
 DriveMap::DriveMap(const core::JointMap& earlier, double phase_m, Tape::Position begin)
     : phase_m_(phase_m), standing_(phase_m), atlas_(atlas::Atlas::from_factors(*earlier.factors)), end_(begin) {
-  if (earlier.is_pose_given) begin_at({earlier.joint.pose, earlier.joint.covariance.topLeftCorner<3, 3>()}, atlas_);
+  if (earlier.given) {
+    atlas_.add(phase_to(*earlier.given, atlas_));
+    atlas_.settle();
+  }
   stops_.assign(static_cast<std::size_t>(atlas_.phase_count()), std::make_shared<const std::vector<StopInPhase>>());
   covariances_m2_.resize(static_cast<std::size_t>(earlier.next_name), Eigen::Matrix2d::Zero());
   for (std::size_t i = 0; i < earlier.joint.ids.size(); ++i) {

@@ -26,7 +26,7 @@ class DriveMap {
   DriveMap(const core::PoseGaussian& start, double phase_m, const atlas::Options& options = {});
 
   /// The map of an earlier session, which holds factors, to go on in from `begin` on a tape: from where that session ended,
-  /// or from the pose that was given (known as well as its covariance says, but apart from the landmarks).
+  /// or from the pose that was given.
   DriveMap(const core::JointMap& earlier, double phase_m, Tape::Position begin);
 
   /// This map with another drive behind it that began somewhere on it. `T_map_drive`: where its frame is; what ties the

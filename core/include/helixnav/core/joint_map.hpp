@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,12 @@ struct JointMap {
   bool has_end = true;
   std::shared_ptr<const MapFactors> factors = {};
   std::vector<Eigen::Matrix2d> covariances_m2 = {};  ///< [landmark], without a joint covariance
-  /// Of a map that holds factors: whether its pose was given, and is not where its drive ended.
-  bool is_pose_given = false;
+  /// A pose that was given, and is not where the drive ended; known as well relative to the landmarks around it.
+  struct Given {
+    PoseGaussian pose;
+    std::vector<LandmarkId> around;  ///< ascending
+  };
+  std::optional<Given> given = {};
 
   bool has_covariance() const { return joint.covariance.rows() == rows_with_landmarks(); }
   Eigen::Index rows_with_landmarks() const { return 3 + 2 * static_cast<Eigen::Index>(joint.ids.size()); }
