@@ -12,6 +12,7 @@
 #include "helixnav/core/rigid_fit.hpp"
 #include "helixnav/evaluation/alignment.hpp"
 #include "helixnav/evaluation/nees.hpp"
+#include "helixnav/runs/only_localized.hpp"
 #include "helixnav/runs/report_frame.hpp"
 #include "pose_pairs.hpp"
 #include "run_interpolation.hpp"
@@ -287,6 +288,7 @@ Evaluation evaluate(const runs::Run& run, const runs::RunTruth& truth, const Eva
   if (!truth.positions.empty()) evaluation.position = evaluate_positions(run.steps, truth, options.fix_limit_m);
   if (!truth.poses.empty()) {
     auto [position, pose] = evaluate_poses(run.steps, truth, runs::report_frames(run), options.nees_from_ns);
+    pose.is_on_given_map = runs::only_localized(run);
     evaluation.pose = std::move(pose);
     if (!evaluation.position) evaluation.position = std::move(position);
   }

@@ -6,7 +6,7 @@
 #include "helixnav/core/decision.hpp"
 #include "helixnav/core/time.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
-#include "only_localized.hpp"
+#include "helixnav/runs/only_localized.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -82,7 +82,7 @@ std::vector<std::string> closing_warnings(const runs::Run& run) {
   const bool is_mostly_refused = closings.refused_since >= several && closings.refused > 2 * closings.accepted;
   const bool is_mostly_undecided = closings.undecided >= 2 && closings.undecided > closings.accepted;
   const std::string often = often_refused_text(closings);
-  if (only_localized(run)) {
+  if (runs::only_localized(run)) {
     if (is_mostly_refused || is_mostly_undecided || !often.empty())
       warnings.push_back(refused_while_localizing_text(closings));
   } else if (is_mostly_refused || is_mostly_undecided) {

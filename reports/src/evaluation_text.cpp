@@ -103,6 +103,9 @@ std::string pose_text(const evaluation::PoseEvaluation& pose) {
   if (pose.nees_count > 0) {
     text += format("NEES                 mean %.3f (3 when consistent), %.1f %% inside the 95 %% band, %zu instants\n",
                    pose.nees_mean, 100.0 * pose.nees_inside_95, pose.nees_count);
+    if (pose.is_on_given_map) {
+      text += "  on the given map   the covariance leaves out the errors of that map, which count here\n";
+    }
   }
   if (pose.nees_in_own_frame > 0) {
     text += format("  before placed      %zu instants, by the truth since the session or part began\n",

@@ -13,9 +13,9 @@
 #include "helixnav/core/errors.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
 #include "helixnav/reports/run_warnings.hpp"
+#include "helixnav/runs/only_localized.hpp"
 #include "known_by_name.hpp"
 #include "numerics_text.hpp"
-#include "only_localized.hpp"
 #include "place_questions.hpp"
 #include "slip_spans.hpp"
 
@@ -160,9 +160,10 @@ std::string places_of(const runs::Run& run, const std::vector<Decided>& decided)
   }
   if (text.empty()) return {};
   const char* const alone =
-      only_localized(run) ? "  It did not find its place: none of its poses is on the map, which stays as given.\n"
-      : carried           ? "  It has not found its place since: the map covers the last part only.\n"
-                          : "  It never found its place: the map covers this session only.\n";
+      runs::only_localized(run)
+          ? "  It did not find its place: none of its poses is on the map, which stays as given.\n"
+      : carried ? "  It has not found its place since: the map covers the last part only.\n"
+                : "  It never found its place: the map covers this session only.\n";
   return std::string(carried ? "\nWhere the vehicle is:\n" : "\nThe earlier map:\n") + text +
          (accepted ? "" : alone + questions_text(questions_in(run))) + '\n';
 }
@@ -233,7 +234,7 @@ std::string explain_run(const runs::Run& run) {
                      std::to_string(count_of(closures, "new-ground")) + " on new ground, " +
                      std::to_string(count_of(closures, "undecided")) + " left undecided.\n";
   text += fates_line(run) + places_of(run, decided);
-  if (only_localized(run)) {
+  if (runs::only_localized(run)) {
     text += "The map stays as it was given: what fits none of its landmarks is rejected.\n";
   } else if (has_observations(run) && std::none_of(decided.begin(), decided.end(), is_of_search)) {
     text += "No return was ambiguous enough for a search: every scan was associated at once.\n";

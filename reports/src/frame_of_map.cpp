@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "helixnav/reports/run_warnings.hpp"
-#include "only_localized.hpp"
+#include "helixnav/runs/only_localized.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -30,7 +30,7 @@ bool start_is_given(const runs::Run& run) {
     if (!is_option(words[i], "--start")) continue;
     return words[i] != "--start=unknown" && (i + 1 == words.size() || words[i + 1] != "unknown");
   }
-  return only_localized(run);  // it starts where the log says
+  return runs::only_localized(run);  // it starts where the log says
 }
 
 template <class Test>

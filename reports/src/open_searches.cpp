@@ -10,7 +10,7 @@
 #include <Eigen/Cholesky>
 
 #include "helixnav/reports/decision_sentence.hpp"
-#include "only_localized.hpp"
+#include "helixnav/runs/only_localized.hpp"
 
 namespace helixnav::reports {
 namespace {
@@ -159,7 +159,7 @@ std::string still_open_text(const std::vector<OpenSearch>& searches, const runs:
 
 std::string open_search_text(const runs::Run& run) {
   const std::vector<OpenSearch> searches = open_searches(run);
-  if (only_localized(run)) return still_open_text(searches, run);
+  if (runs::only_localized(run)) return still_open_text(searches, run);
   constexpr std::size_t several = 3;
   for (auto search = searches.rbegin(); search != searches.rend(); ++search) {
     const Begun begun = begun_in(*search, run);

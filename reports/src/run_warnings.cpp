@@ -12,9 +12,9 @@
 #include "closing_warnings.hpp"
 #include "frame_of_map.hpp"
 #include "helixnav/reports/decision_sentence.hpp"
+#include "helixnav/runs/only_localized.hpp"
 #include "known_by_name.hpp"
 #include "numerics_text.hpp"
-#include "only_localized.hpp"
 #include "open_searches.hpp"
 #include "place_questions.hpp"
 #include "scans_apart.hpp"
@@ -46,7 +46,7 @@ ObservationCounts count_observations(const runs::Run& run) {
   bool counts_step = true;
   const bool by_name = known_by_name(run);
   for (const core::StepReport& step : run.steps) {
-    if (only_localized(run)) counts_step = knows_place_after(step, counts_step);
+    if (runs::only_localized(run)) counts_step = knows_place_after(step, counts_step);
     if (!counts_step) continue;
     counts.seen += step.associations.size();
     for (const core::AssociationReport& a : step.associations) {
@@ -321,7 +321,7 @@ std::string contradicted_place_text(const runs::Run& run) {
 std::string place_not_found_text(const runs::Run& run) {
   if (!sought_in_vain(run)) return {};
   const char* const what =
-      only_localized(run)
+      runs::only_localized(run)
           ? "the vehicle never found its place on the earlier map: its poses are not in the frame of that map; "
       : was_carried(run) ? "the vehicle has not found its place since it was carried: the map covers only the last "
                            "part of the drive; "
@@ -358,7 +358,7 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
                 evaluation.position->fixes_outside));
   }
   for (const std::string& text :
-       {only_localized(run) ? std::string() : calibration_text(run), ancestors_text(evaluation), fixes_text(run),
+       {runs::only_localized(run) ? std::string() : calibration_text(run), ancestors_text(evaluation), fixes_text(run),
         widened_fixes_text(run), contradicted_place_text(run), wrong_place_text(run), numerics_text(numerics_of(run)),
         postponed_text(postponed_in(run)), open_search_text(run)}) {
     if (!text.empty()) warnings.push_back(text);

@@ -297,6 +297,16 @@ TEST(EvaluationText, SaysTheFiguresWithUnits) {
   const std::string text = reports::evaluation_text(evaluate(run));
   EXPECT_NE(text.find("RMSE 2.000 m"), std::string::npos) << text;
   EXPECT_NE(text.find("NEES"), std::string::npos) << text;
+  EXPECT_EQ(text.find("on the given map"), std::string::npos) << text;
+}
+
+TEST(EvaluationText, SaysThatTheCovarianceOnAGivenMapLeavesOutItsErrors) {
+  runs::Run run = straight_run();
+  run.manifest.command = "helixnav replay a.log --localize --map b --out c";
+  run.truth.poses = {{run.steps[1].t_ns, core::Pose2(1.0, 2.0, 0.0)}};
+  const std::string text = reports::evaluation_text(evaluate(run));
+  EXPECT_NE(text.find("NEES"), std::string::npos) << text;
+  EXPECT_NE(text.find("on the given map"), std::string::npos) << text;
 }
 
 }  // namespace

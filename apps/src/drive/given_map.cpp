@@ -39,6 +39,16 @@ Eigen::MatrixXd covariance_of(const std::vector<core::MapLandmark>& landmarks, c
   return joint.covariance(rows, rows);
 }
 
+/// The map with its factors alone; null if it has none.
+std::shared_ptr<const core::JointMap> factors_alone(core::JointMap map) {
+  if (map.factors == nullptr) return nullptr;
+  if (map.has_covariance()) {
+    for (std::size_t i = 0; i < map.joint.ids.size(); ++i) map.covariances_m2.push_back(map.covariance_m2_of(i));
+    map.joint.covariance = map.joint.covariance.topLeftCorner<3, 3>().eval();
+  }
+  return std::make_shared<const core::JointMap>(std::move(map));
+}
+
 /// A map made by no single run, such as one from join: map.bin beside map.csv holds the same landmarks.
 void tell_missing_landmarks(const std::filesystem::path& table, const std::filesystem::path& whole, std::size_t found,
                             std::vector<std::string>& missing) {
@@ -74,11 +84,24 @@ std::map<core::Label, core::LandmarkId> landmarks_by_label(const runs::Run& run)
 
 bool can_be_searched(const GivenMap& map) {
   constexpr std::size_t least_searched = 5;
-  return map.landmarks.size() >= least_searched && map.landmarks.size() <= runs::most_joint_landmarks;
+  const bool is_small = map.landmarks.size() <= runs::most_joint_landmarks;
+  return map.landmarks.size() >= least_searched && (is_small || map.large != nullptr);
 }
 
-core::JointMap as_drawn(const GivenMap& map, const supervisor::NavigatorOptions& options,
-                        const core::FieldOfView& view) {
+namespace {
+
+/// Without those that are not among the landmarks.
+core::JointMap with_these_alone(core::JointMap map, const std::vector<core::MapLandmark>& landmarks) {
+  auto given = landmarks.begin();
+  for (std::size_t i = 0; i < map.joint.ids.size(); ++i) {
+    while (given != landmarks.end() && given->id < map.joint.ids[i]) ++given;
+    const bool is_given = given != landmarks.end() && given->id == map.joint.ids[i];
+    if (!is_given) map.states[i] = core::LandmarkState::tentative;
+  }
+  return map;
+}
+
+core::JointMap with_covariance(const GivenMap& map) {
   core::JointMap given;
   const auto rows = static_cast<Eigen::Index>(2 * map.landmarks.size());
   given.joint.covariance = Eigen::MatrixXd::Zero(3 + rows, 3 + rows);
@@ -91,6 +114,14 @@ core::JointMap as_drawn(const GivenMap& map, const supervisor::NavigatorOptions&
     given.appearances.push_back(landmark.appearance);
     given.next_name = landmark.id + 1;
   }
+  return given;
+}
+
+}  // namespace
+
+core::JointMap as_drawn(const GivenMap& map, const supervisor::NavigatorOptions& options,
+                        const core::FieldOfView& view) {
+  const core::JointMap given = map.large ? with_these_alone(*map.large, map.landmarks) : with_covariance(map);
   const double reach_m = view.reach().value_or(supervisor::reference_reach_m);
   const double pair_noise_m = supervisor::fit_lengths(options, view).search.constellation.branch_sigma_m;
   return supervisor::as_drawn(given, reach_m, pair_noise_m);
@@ -100,7 +131,7 @@ void check_start(const GivenMap& map) {
   if (!map.start || map.start->kind != SessionStart::Kind::unknown || can_be_searched(map)) return;
   throw core::InputError("--start unknown: a map of " + std::to_string(map.landmarks.size()) +
                          " landmarks cannot be searched; expected 5 to " + std::to_string(runs::most_joint_landmarks) +
-                         ": give a pose");
+                         ", or the folder of a run that left a larger one: give a pose");
 }
 
 std::string map_file(const std::string& path) {
@@ -115,6 +146,7 @@ GivenMap given_map(const core::JointMap& map) {
   if (given.landmarks.empty()) throw core::InputError("map: expected mature landmarks, found none");
   sort_by_id(given.landmarks);
   given.covariance_m2 = covariance_of(given.landmarks, map);
+  given.large = factors_alone(map);
   return given;
 }
 
@@ -138,7 +170,9 @@ GivenMap read_given_map(const std::string& path) {
   sort_by_id(map.landmarks);
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   if (file.filename() == "map.csv" && fs::exists(folder / "map.bin")) {
-    map.covariance_m2 = covariance_of(map.landmarks, runs::read_joint_map((folder / "map.bin").string()));
+    core::JointMap whole = read_joint_map_in(folder.string());
+    map.covariance_m2 = covariance_of(map.landmarks, whole);
+    map.large = factors_alone(std::move(whole));
   }
   if (!fs::exists(folder / "manifest.json")) {
     tell_missing_landmarks(file, folder / "map.bin", rows.size(), map.missing);

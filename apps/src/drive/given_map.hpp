@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,6 +24,7 @@ namespace helixnav::apps {
 struct GivenMap {
   std::vector<core::MapLandmark> landmarks;             ///< mature ones, by increasing id
   Eigen::MatrixXd covariance_m2;                        ///< of their places in that order; empty if unknown
+  std::shared_ptr<const core::JointMap> large;          ///< the map, if it holds factors, with these alone
   std::map<core::Label, core::LandmarkId> landmark_of;  ///< by label; empty when the run had no labels
   std::optional<SessionStart> start;                    ///< on it; none: as in the log
   std::vector<std::string> missing;                     ///< of the run or the map: lost since it was written
@@ -39,7 +41,8 @@ GivenMap read_given_map(const std::string& path);
 /// From the map itself, which does not say which label is which landmark. InputError if it has no mature one.
 GivenMap given_map(const core::JointMap& map);
 
-/// Whether a place on it can be searched for: at least 5 landmarks, and no more than a dense joint covariance may have.
+/// Whether a place on it can be searched for: at least 5 landmarks, and no more than a dense joint covariance may have,
+/// unless it holds factors.
 bool can_be_searched(const GivenMap& map);
 
 /// InputError if the start on it is unknown and cannot be searched for.

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "helixnav/logs/field_of_view.hpp"
+#include "helixnav/supervisor/joint_map.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 
 namespace helixnav::apps {
@@ -21,6 +22,7 @@ double reach_of(const Drive& job) {
 }
 
 core::JointMap with_pose(core::JointMap map, const core::PoseGaussian& pose) {
+  if (!map.has_covariance()) return supervisor::begun_at(std::move(map), pose);
   map.joint.pose = pose.mean;
   map.joint.covariance.topLeftCorner<3, 3>() = pose.covariance;
   return map;

@@ -129,8 +129,15 @@ core::PointGaussian EarlierMap::relative_to_neighbours(std::size_t landmark, dou
                                                landmarks_.covariance, row_of)};
 }
 
-/// Square by square: the joint marginal of a square and those around it has all that its landmarks need.
 std::vector<core::PointGaussian> EarlierMap::relative_to_neighbours(double reach_m) const {
+  if (drive_ != nullptr) return relative_by_squares(reach_m);
+  std::vector<core::PointGaussian> relative;
+  for (std::size_t i = 0; i < landmarks_.ids.size(); ++i) relative.push_back(relative_to_neighbours(i, reach_m));
+  return relative;
+}
+
+/// Square by square: the joint marginal of a square and those around it has all that its landmarks need.
+std::vector<core::PointGaussian> EarlierMap::relative_by_squares(double reach_m) const {
   const std::vector<Eigen::Vector2d>& points_m = landmarks_.points_m;
   std::vector<core::PointGaussian> relative(points_m.size());
   const Squares squares(points_m, reach_m);
@@ -174,14 +181,13 @@ core::JointGaussian EarlierMap::landmarks_about(const Eigen::Vector2d& center_m,
 relocalize::MapIndex EarlierMap::index(const relocalize::IndexOptions& lengths) const {
   const double half_m2 = 0.5 * lengths.pair_noise_m * lengths.pair_noise_m;
   const double farthest_m = 3e5 * lengths.pair_noise_m;  // beyond, an index cannot hold it, and nobody drives there
-  std::vector<core::PointGaussian> relative;
-  if (drive_ != nullptr) relative = relative_to_neighbours(lengths.reach_m);
+  const std::vector<core::PointGaussian> relative = relative_to_neighbours(lengths.reach_m);
   std::vector<relocalize::Landmark> landmarks;
   for (std::size_t i = 0; i < landmarks_.ids.size(); ++i) {
     if ((landmarks_.points_m[i] - landmarks_.points_m[0]).norm() > farthest_m) continue;
     relocalize::Landmark& landmark = landmarks.emplace_back();
     landmark.id = landmarks_.ids[i];
-    landmark.point = drive_ != nullptr ? relative[i] : relative_to_neighbours(i, lengths.reach_m);
+    landmark.point = relative[i];
     landmark.point.covariance_m2 += half_m2 * Eigen::Matrix2d::Identity();
     tell_traits(appearance_.of(landmark.id), landmark);
   }

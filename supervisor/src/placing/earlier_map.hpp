@@ -46,8 +46,11 @@ class EarlierMap {
   /// Where a landmark is, with its covariance once the nearest dozen are moved and turned together to fit best. O(N).
   core::PointGaussian relative_to_neighbours(std::size_t landmark, double reach_m) const;
 
- private:
+  /// The same for all landmarks, in their order. O(N) if the map holds factors, else O(N²).
   std::vector<core::PointGaussian> relative_to_neighbours(double reach_m) const;
+
+ private:
+  std::vector<core::PointGaussian> relative_by_squares(double reach_m) const;
 
   core::JointGaussian landmarks_;
   std::vector<int> observations_;

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "circuits.hpp"
+#include "helixnav/atlas/atlas.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/supervisor/joint_map.hpp"
 #include "helixnav/supervisor/pose_on_map.hpp"
@@ -173,6 +174,30 @@ TEST(LargeMap, IsKeptAsFactorsWhenTheVehicleIsCarried) {
   const Session after = driven(on_day(76), std::move(before.navigator));
   ASSERT_TRUE(placing_in(after).has_value());
   EXPECT_LE(mature_in(after.navigator.map()), trees_in(run) + 1);
+}
+
+/// For localisation: landmarks independent of each other, each known relative to its neighbours.
+TEST(LargeMap, IsDrawnAsASmallOneIs) {
+  const core::Recording run = on_day(70);
+  const Session session = driven(run, Navigator(run.start, small_windows()));
+  const core::JointMap large = *session.navigator.factored_map();
+  core::JointMap small = large;
+  small.factors = nullptr;
+  small.joint = session.navigator.joint(large.joint.ids);
+  const core::JointMap drawn = as_drawn(large, 30.0, 0.15);
+  const core::JointMap expected = as_drawn(small, 30.0, 0.15);
+  ASSERT_NE(drawn.factors, nullptr);
+  ASSERT_EQ(drawn.joint.ids, expected.joint.ids);
+  const core::JointGaussian joint = atlas::Atlas::from_factors(*drawn.factors).joint(drawn.joint.ids);
+  constexpr double rounding_m2 = 5e-5;  // of 0.01: the one is linearised in squares, the other all at once
+  EXPECT_EQ(drawn.states, expected.states);
+  for (std::size_t i = 0; i < joint.ids.size(); ++i) {
+    EXPECT_LT((joint.points_m[i] - drawn.joint.points_m[i]).norm(), 1e-9);
+    EXPECT_LT((drawn.covariances_m2[i] - expected.covariance_m2_of(i)).norm(), rounding_m2);
+  }
+  Eigen::MatrixXd difference = joint.covariance - expected.joint.covariance;
+  difference.topLeftCorner<3, 3>().setZero();  // of the last pose, which means nothing
+  EXPECT_LT(difference.cwiseAbs().maxCoeff(), rounding_m2);
 }
 
 TEST(LargeMap, AnotherWorldIsNotHere) {

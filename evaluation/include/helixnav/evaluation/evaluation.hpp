@@ -74,8 +74,11 @@ struct PoseEvaluation {
   std::size_t nees_in_own_frame =
       0;                          ///< of these: against the truth since the session or part began, before it was placed
   std::size_t nees_left_out = 0;  ///< no truth at that start, or reported in a frame later known to be wrong
-  double nees_mean = 0.0;         ///< 3 when the filter is consistent
-  double nees_inside_95 = 0.0;    ///< fraction within the two-sided 95 % band of χ²₃
+  /// The pose was estimated in a given map: its covariance describes the place on that map and leaves out the map's own
+  /// errors, which are in the error.
+  bool is_on_given_map = false;
+  double nees_mean = 0.0;       ///< 3 when the filter is consistent, unless it is on a given map
+  double nees_inside_95 = 0.0;  ///< fraction within the two-sided 95 % band of χ²₃
   std::vector<HeadingError> errors;
 };
 

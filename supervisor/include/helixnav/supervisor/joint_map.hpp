@@ -34,7 +34,7 @@ std::vector<core::LandmarkId> ids_of(const std::vector<core::MapLandmark>& landm
 /// The mature landmarks of a map as drawn, for finding where on it the vehicle is: each independent of the others, with
 /// its covariance relative to its neighbours within `reach_m` plus half the variance between two drives' views of one
 /// landmark (`pair_noise_m`). Distortion of the map as a whole is not included. The pose is at the origin and certain.
-/// O(N²). PreconditionError when the parts of the map do not fit together. Test: supervisor/placing/as_drawn_test.cpp.
+/// As factors if the map has no joint covariance, and then O(N), else O(N²). PreconditionError when the parts of the map do not fit together. Test: supervisor/placing/as_drawn_test.cpp.
 core::JointMap as_drawn(const core::JointMap& map, double reach_m, double pair_noise_m);
 
 /// The same for a navigator with all landmarks of its map, as listed: a filter that holds only some of them may use its

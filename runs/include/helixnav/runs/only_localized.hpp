@@ -3,9 +3,9 @@
 
 #include "helixnav/runs/run.hpp"
 
-namespace helixnav::reports {
+namespace helixnav::runs {
 
 /// Whether the run is one of replay --localize, which maps nothing: its map is the given one.
-bool only_localized(const runs::Run& run);
+bool only_localized(const Run& run);
 
-}  // namespace helixnav::reports
+}  // namespace helixnav::runs
