@@ -24,10 +24,21 @@ double reach_of_log(const Drive& job) {
   return logs::field_of_view_of(job.recording).reach().value_or(supervisor::reference_reach_m);
 }
 
+/// Without searches the filter is not handed over, closings by restart forget what ties a drive together, and names need a
+/// joint covariance.
+EarlierSession session_for(const Drive& job) {
+  EarlierSession session = *job.earlier;
+  const supervisor::SearchOptions& search = job.navigator.search;
+  const bool is_whole_in_filter = !search.enabled || search.closing == supervisor::ClosingMethod::restart;
+  if (is_whole_in_filter) check_has_covariance(session.map, "--map", "a session without searches, or with restarts,");
+  if (is_whole_in_filter || job.known_association) session.map.factors = nullptr;
+  return session;
+}
+
 /// A session that does not know where it is calls its own start the origin.
 ChosenNavigator begun(const Drive& job, const std::vector<std::vector<core::Label>>& labels) {
   if (!job.earlier) return {job.recording, job.navigator, job.known_association, labels};
-  const EarlierSession& earlier = *job.earlier;
+  const EarlierSession earlier = session_for(job);
   if (earlier.start.kind == SessionStart::Kind::unknown) {
     supervisor::Navigator navigator(core::PoseGaussian{}, job.navigator);
     navigator.look_for_place_in(earlier.map);
@@ -41,10 +52,15 @@ ChosenNavigator begun(const Drive& job, const std::vector<std::vector<core::Labe
   return {supervisor::Navigator::go_on_in(map, job.navigator), labels};
 }
 
-/// Of a pose that was given; names tell by themselves.
+/// Of a pose that was given, or of the end of the earlier session; names tell by themselves.
 std::optional<StartCheck> check_of_start(const Drive& job) {
-  if (!job.earlier || job.earlier->start.kind != SessionStart::Kind::pose || job.known_association) return std::nullopt;
-  return StartCheck(job.earlier->map, job.earlier->start.T_map_robot, reach_of_log(job), job.navigator);
+  if (!job.earlier || job.earlier->start.kind == SessionStart::Kind::unknown || job.known_association) {
+    return std::nullopt;
+  }
+  const EarlierSession session = session_for(job);
+  const bool at_end = session.start.kind == SessionStart::Kind::end;
+  const core::Pose2& T_map_start = at_end ? session.map.joint.pose : session.start.T_map_robot;
+  return StartCheck(session.map, T_map_start, reach_of_log(job), job.navigator);
 }
 
 bool is_same_map(const core::JointMap& one, const core::JointMap& other) {

@@ -9,6 +9,7 @@
 
 #include "has_match.hpp"
 #include "helixnav/reports/run_warnings.hpp"
+#include "helixnav/runs/joint_map_file.hpp"
 
 namespace helixnav::apps {
 namespace {
@@ -36,6 +37,18 @@ std::string names_text(const runs::Run& run) {
   return std::to_string(all) + " sightings contradict their names and were left out, most of them (" +
          std::to_string(most->second) + ") of landmark " + name_of(run, most->first) +
          ": some identities are wrong, or landmarks were moved. 'helixnav explain --step N' shows a scan";
+}
+
+/// Where another session cannot continue in the map.
+std::string unsaved_text(const Drive& job, const runs::Run& run) {
+  const bool is_large = run.map.size() > runs::most_joint_landmarks;
+  if (run.joint_map || !is_large || job.given_map || job.fastslam.chosen) return {};
+  return "no session can continue in this map (there is no map.bin): it has " + std::to_string(run.map.size()) +
+         " landmarks, more than a joint covariance is kept for, and " +
+         (job.earlier
+              ? std::string("the map in which the session began holds no factors, as one of more than --map.whole "
+                            "landmarks does: a smaller --map.whole from the first session on keeps them")
+              : std::string("its drive was not kept (search.enabled, search.smooth_up_to_scans)"));
 }
 
 /// Counts of detections: those of landmarks of the given map (not begun in this run), and all in the scans that have one.
@@ -115,6 +128,7 @@ std::vector<std::string> warnings_of_job(const Drive& job, const runs::Run& run)
     if (!text.empty()) warnings.push_back(text);
   }
   if (const std::string text = doubted_start_text(run); !text.empty()) warnings.push_back(text);
+  if (const std::string text = unsaved_text(job, run); !text.empty()) warnings.push_back(text);
   if (job.earlier && job.earlier->start.kind == SessionStart::Kind::pose) {
     const std::string text = given_start_text(run);
     if (!text.empty()) warnings.push_back(text);

@@ -88,12 +88,26 @@ bool has_names_in_order(const MapFactors& map) {
 }
 
 /// Of all variables, up to date.
-Values values_of(const State& state) {
+Values all_values(const State& state) {
   Estimates estimates(state);
   if (state.root >= 0) estimates.update_all(state.root);
   Values values;
   for (std::size_t v = 0; v < state.variables.size(); ++v) values.push_back(estimates(static_cast<int>(v)));
   return values;
+}
+
+/// All fronts where the values are, which stay: they are the solution of what was put away, and the parts of a map that measurements
+/// tear would not be solved again by relinearising everything at once.
+void linearise_in_place(State& state) {
+  int redone = 0;
+  redo_dirty(state, redone, {});
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
+    TreeNode& node = state.nodes.write(i);
+    const FrontShape& shape = *node.shape;
+    node.fresh = false;
+    node.opened_at = std::make_shared<const Values>(
+        values_of(state, shape, shape.eliminated, static_cast<int>(shape.variables.size())));
+  }
 }
 
 /// Another drive's state behind this one, its variables counted on. The frame of its map is no longer one.
@@ -107,7 +121,7 @@ class Behind {
 
   /// `T_atlas_first`: where its first pose is.
   void take_variables(const core::Pose2& T_atlas_first) {
-    const Values values = values_of(drive_);
+    const Values values = all_values(drive_);
     const core::Pose2 T_drive_first(Eigen::Vector3d(values[State::index(drive_.variable_of_clone[0])]));
     const core::Pose2 T = core::compose(T_atlas_first, core::inverse(T_drive_first));
     for (std::size_t v = 0; v < values.size(); ++v) {
@@ -211,7 +225,7 @@ core::MapFactors Atlas::factors() const {
   MapFactors map;
   map.start = state.start;
   map.world = state.world;
-  const Values values = values_of(state);
+  const Values values = all_values(state);
   for (std::size_t v = 0; v < values.size(); ++v) map.variables.push_back({state.variables[v].dim, values[v]});
   for (std::size_t k = 0; k < state.variable_of_clone.size(); ++k) map.poses.push_back(state.variable_of_clone[k]);
   for (std::size_t id = 0; id < state.variable_of_landmark.size(); ++id) {
@@ -248,7 +262,8 @@ Atlas Atlas::from_factors(const core::MapFactors& map, const Options& options) {
   }
   state.condensed = static_cast<int>(map.phases.size());
   lay_out_anew(state);
-  atlas.settle();
+  linearise_in_place(state);
+  *atlas.settled_ = state;
   return atlas;
 }
 
@@ -260,7 +275,7 @@ Atlas Atlas::followed_by(const RelativeGaussian& gap, const Atlas& drive) const 
   const State& next = *drive.settled_;
   Atlas both(*this);
   State& state = *both.working_;
-  const Values values = values_of(state);
+  const Values values = all_values(state);
   for (std::size_t v = 0; v < values.size(); ++v) state.values.write(v) = values[v];
   const int last = state.variable_of_clone.back();
   const int first = static_cast<int>(state.variables.size()) + next.variable_of_clone[0];
@@ -272,6 +287,8 @@ Atlas Atlas::followed_by(const RelativeGaussian& gap, const Atlas& drive) const 
   behind.take_names();
   behind.take_phases();
   lay_out_anew(state);
+  linearise_in_place(state);
+  *both.settled_ = state;
   return both;
 }
 

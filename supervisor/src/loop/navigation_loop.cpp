@@ -102,6 +102,7 @@ StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* not
   return all_or_nothing([&] {
     if (note != nullptr) pending_.decisions.push_back(*note);
     pending_.forbidden.clear();
+    pending_.seeks_part = false;
     predict();
     learn_noise(scan);
     StepReport report = take_as_assumed(scan);
@@ -116,7 +117,11 @@ StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* not
     learn_systematic(report);
     report.pose = pose();
     if (apart_.any()) find_place(scan.field_of_view, report);
-    if (!pending_.forbidden.empty()) look_elsewhere(scan, report);
+    if (!pending_.forbidden.empty()) {
+      look_elsewhere(scan, report);
+    } else if (pending_.seeks_part) {
+      part_since_untied(scan, report);
+    }
     report_late(report);
     return report;
   });

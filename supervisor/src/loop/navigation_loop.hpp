@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -59,7 +60,8 @@ class NavigationLoop {
   std::vector<core::PointGaussian> sketched(const std::vector<core::LandmarkId>& ids) const;
   std::vector<core::PointGaussian> marginals() const;
   core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;
-  std::optional<core::JointMap> factored(const std::vector<core::MapLandmark>& landmarks) const;
+  std::optional<core::JointMap> factored(const std::vector<core::MapLandmark>& landmarks,
+                                         double until_m = std::numeric_limits<double>::infinity()) const;
 
  private:
   /// What came in since the last scan.
@@ -70,6 +72,7 @@ class NavigationLoop {
     std::vector<core::Decision> decisions;
     core::NumericalHealth numerics = {};                     ///< not yet in any report
     std::vector<association::UnusedSighting> doubtful = {};  ///< matches of this scan that are left unused
+    bool seeks_part = false;  ///< nothing ties the vehicle to the map, of which the filter holds a part
     std::vector<pf_relocalize::ConstellationPair> forbidden =
         {};  ///< of a place that the whole map has, at which it could not be closed in this step
   };
@@ -222,10 +225,13 @@ class NavigationLoop {
   relocalize::IndexOptions index_lengths() const;
   void index_maps_apart(core::StepReport& report);
   void find_place(const core::FieldOfView& view, core::StepReport& report);
+  bool can_be_joined(const MapApart& apart) const;
   void note_too_few(std::size_t landmarks, core::StepReport& report);
   bool join(const MapApart& apart, const relocalize::Place& place, core::PlacedDecision& decision,
             core::StepReport& report);
   core::JointGaussian landmarks_about_session(const EarlierMap& earlier, const relocalize::Place& place) const;
+  std::shared_ptr<const DriveMap> drive_by_its_end() const;
+  Tape tape_behind() const;
   std::shared_ptr<DriveMap> drive_behind(const EarlierMap& earlier, const core::Pose2& T_map_session,
                                          const Closing& closing) const;
   JoinedMaps joined_at(const relocalize::Place& place, const PlaceSearch& search) const;
@@ -236,9 +242,10 @@ class NavigationLoop {
 
   // placing/carried.cpp
   core::JointMap map_to_keep(core::CarriedDecision& decision, double until_m) const;
-  std::optional<core::JointMap> large_map_to_keep(core::CarriedDecision& decision, std::size_t begun,
+  std::optional<core::JointMap> large_map_to_keep(core::CarriedDecision& decision, std::size_t begun, double until_m,
                                                   const std::vector<core::MapLandmark>& kept) const;
   core::LandmarkId next_name() const;
+  Tape tape_until(double until_m) const;  // window/whole_estimate.cpp
   Belief belief_elsewhere(const core::Pose2& T_part_robot) const;
   Part part_elsewhere(const core::CarriedDecision& decision) const;
   Part part_since(const UnsurePause& pause, core::CarriedDecision decision) const;
@@ -263,6 +270,7 @@ class NavigationLoop {
                      core::StepReport& report);
   bool part_at_gap(const std::vector<pf_relocalize::ConstellationPair>& pairs, const core::Scan& scan,
                    core::StepReport& report);
+  bool part_since_untied(const core::Scan& scan, core::StepReport& report);
   bool part_between(double map_until_m, const UnsurePause& pause, const core::Scan& scan, core::StepReport& report);
 
   // placing/place_again.cpp

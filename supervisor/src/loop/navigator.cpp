@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "helixnav/core/check_event.hpp"
+#include "helixnav/core/errors.hpp"
 #include "helixnav/supervisor/joint_map.hpp"
 #include "loop/navigation_loop.hpp"
 
@@ -85,8 +86,12 @@ std::vector<core::MapLandmark> Navigator::sketch() const {
 std::vector<core::MapLandmark> Navigator::map() const {
   std::vector<core::MapLandmark> landmarks = sketch();
   if (static_cast<int>(landmarks.size()) == filter().mapped_count()) return landmarks;
-  const std::vector<core::PointGaussian> points = loop_->marginals();
-  for (std::size_t i = 0; i < landmarks.size(); ++i) landmarks[i].point = points[i];
+  try {
+    const std::vector<core::PointGaussian> points = loop_->marginals();
+    for (std::size_t i = 0; i < landmarks.size(); ++i) landmarks[i].point = points[i];
+  } catch (const core::NumericalError&) {
+    return sketch();  // what is torn is not solved: as it was solved last
+  }
   return landmarks;
 }
 

@@ -64,6 +64,7 @@ class Tape {
   explicit Tape(int most_stops) : most_stops_(most_stops) {}
 
   void append(Entry entry);
+  Position begin() const { return forgotten_; }
   Position end() const { return forgotten_ + entries_.size(); }
 
   /// The tape of the same drive, had the covariances of all observations and of all measured motion been this many

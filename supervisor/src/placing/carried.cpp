@@ -82,9 +82,7 @@ core::JointMap NavigationLoop::map_to_keep(core::CarriedDecision& decision, doub
     landmark.state = record.state;
     landmark.appearance = belief_.existence.appearance().of(record.id);
   }
-  if (std::isinf(until_m)) {
-    if (std::optional<core::JointMap> large = large_map_to_keep(decision, begun, kept)) return std::move(*large);
-  }
+  if (std::optional<core::JointMap> large = large_map_to_keep(decision, begun, until_m, kept)) return std::move(*large);
   const std::vector<core::PointGaussian> points = sketched(ids_of(kept));
   for (std::size_t i = 0; i < kept.size(); ++i) kept[i].point = points[i];
   kept = nearest(std::move(kept), belief_.filter.pose().mean.position_m());
@@ -99,18 +97,15 @@ core::JointMap NavigationLoop::map_to_keep(core::CarriedDecision& decision, doub
 
 /// All of it, as factors, or nothing.
 std::optional<core::JointMap> NavigationLoop::large_map_to_keep(core::CarriedDecision& decision, std::size_t begun,
+                                                                double until_m,
                                                                 const std::vector<core::MapLandmark>& kept) const {
   if (kept.size() < least_to_keep) return std::nullopt;
-  try {
-    std::optional<core::JointMap> map = factored(kept);
-    if (!map) return std::nullopt;
-    map->reach_m = view_.reach().value_or(0.0);
-    decision.landmarks = static_cast<int>(kept.size());
-    decision.dropped = static_cast<int>(begun - kept.size());
-    return map;
-  } catch (const core::NumericalError&) {
-    return std::nullopt;
-  }
+  std::optional<core::JointMap> map = factored(kept, until_m);
+  if (!map) return std::nullopt;
+  map->reach_m = view_.reach().value_or(0.0);
+  decision.landmarks = static_cast<int>(map->joint.ids.size());
+  decision.dropped = static_cast<int>(begun - map->joint.ids.size());
+  return map;
 }
 
 LandmarkId NavigationLoop::next_name() const {

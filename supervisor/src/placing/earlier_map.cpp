@@ -98,6 +98,12 @@ void check_earlier_map(const core::JointMap& map) {
   if (!fits_together(map)) throw core::PreconditionError("earlier map: its parts do not fit each other");
 }
 
+void check_closing(const core::JointMap& map, const SearchOptions& options) {
+  if (map.factors == nullptr || (options.enabled && options.closing != ClosingMethod::restart)) return;
+  throw core::PreconditionError(
+      "earlier map: a map that holds factors cannot be continued in without searches, or with closings by restart");
+}
+
 double mapped_reach_m(const core::JointMap& map) { return map.reach_m > 0.0 ? map.reach_m : reference_reach_m; }
 
 EarlierMap::EarlierMap(const core::JointMap& map) : next_name_(map.next_name) {
@@ -116,7 +122,7 @@ EarlierMap::EarlierMap(const core::JointMap& map) : next_name_(map.next_name) {
   }
   if (map.has_covariance()) landmarks_.covariance = all.covariance(rows, rows);
   if (map.factors != nullptr) {
-    drive_ = std::make_shared<const DriveMap>(map, phase_length_m(mapped_reach_m(map)), Tape::Position{0});
+    drive_ = std::make_shared<const DriveMap>(DriveMap::of_earlier(map, phase_length_m(mapped_reach_m(map))));
   }
 }
 

@@ -10,12 +10,17 @@
 #include "helixnav/core/joint_map.hpp"
 #include "helixnav/core/map_appearance.hpp"
 #include "helixnav/relocalize/map_index.hpp"
+#include "helixnav/supervisor/search_options.hpp"
 #include "smoothing/drive_map.hpp"
 
 namespace helixnav::supervisor {
 
 /// PreconditionError if the parts of the map do not fit together.
 void check_earlier_map(const core::JointMap& map);
+
+/// PreconditionError for a map that holds factors if nothing is searched for, so that the filter is never handed over, or if
+/// closings forget what ties the drive together.
+void check_closing(const core::JointMap& map, const SearchOptions& options);
 
 /// Of the sensor that mapped it, or the reference if nobody knows.
 double mapped_reach_m(const core::JointMap& map);

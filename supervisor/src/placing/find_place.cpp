@@ -64,6 +64,7 @@ void NavigationLoop::look_for_place_in(const core::JointMap& earlier) {
     throw core::PreconditionError("look_for_place_in: a session that has begun cannot look for its place any more");
   }
   check_earlier_map(earlier);
+  check_closing(earlier, options_.search);
   if (std::count(earlier.states.begin(), earlier.states.end(), core::LandmarkState::mature) == 0)
     throw core::PreconditionError("look_for_place_in: no mature landmark in the map");
   apart_.maps = {{0, std::make_shared<const core::JointMap>(earlier)}};
@@ -110,7 +111,7 @@ void NavigationLoop::find_place(const core::FieldOfView& view, core::StepReport&
   for (const MapApart& apart : apart_.maps) {
     PlacedDecision& decision = answers.emplace_back();
     decision.part = apart.part;
-    if (!apart.search->can_be_asked()) continue;
+    if (!apart.search->can_be_asked() || !can_be_joined(apart)) continue;
     const relocalize::Answer answer = apart.search->ask(question, apart_.asked, decision);
     decision.driven_m = belief_.existence.path_m();
     if (answer.verdict == relocalize::Verdict::closed && join(apart, answer.places.front(), decision, report)) return;
@@ -120,6 +121,11 @@ void NavigationLoop::find_place(const core::FieldOfView& view, core::StepReport&
     if (decision.questions > 0) report.decisions.emplace_back(decision);  // the others cannot be asked
   }
   apart_.asked.note(about.ids);
+}
+
+/// A filter that holds a part of its map can only be put behind a drive.
+bool NavigationLoop::can_be_joined(const MapApart& apart) const {
+  return std::isinf(belief_.window.radius_m) || apart.search->earlier().drive() != nullptr;
 }
 
 /// Before the first question to an earlier session's map: reports the number of landmarks to ask with, whenever it is
@@ -147,22 +153,30 @@ core::JointGaussian NavigationLoop::landmarks_about_session(const EarlierMap& ea
   return earlier.landmarks_about(core::transform(place.T_map_branch, here_m), farthest_m + reach_m, most);
 }
 
-/// The drive so far behind the one that made the map; null if it is not known from its start, or if the two cannot be
-/// solved together.
+std::shared_ptr<const DriveMap> NavigationLoop::drive_by_its_end() const {
+  const double phase_m = phase_length_m(view_.reach().value_or(reference_reach_m));
+  return std::make_shared<const DriveMap>(DriveMap::of_end(belief_.filter.joint(belief_.filter.landmarks()), phase_m));
+}
+
+/// The drive so far, or if it is not known from its start what came of it, behind the one that made the map; null if the two
+/// cannot be solved together.
 std::shared_ptr<DriveMap> NavigationLoop::drive_behind(const EarlierMap& earlier, const core::Pose2& T_map_session,
                                                        const Closing& closing) const {
-  if (!is_drive_known()) return nullptr;
   try {
-    return std::make_shared<DriveMap>(
-        earlier.drive()->followed_by(*drive_until_now(), T_map_session, closing.merged, tape_.end() + 1));
+    const std::shared_ptr<const DriveMap> drive = is_drive_known() ? drive_until_now() : drive_by_its_end();
+    return std::make_shared<DriveMap>(earlier.drive()->followed_by(*drive, T_map_session, closing.merged));
   } catch (const core::NumericalError&) {
     return nullptr;
   }
 }
 
+/// What is taken into the atlas needs a tape, whether or not a drive would be kept.
+Tape NavigationLoop::tape_behind() const { return Tape(std::max(1, options_.search.smooth_up_to_scans)); }
+
 /// As after a drive that has been taken into the atlas up to now.
 void NavigationLoop::begin_behind(std::shared_ptr<DriveMap> drive, Belief& belief, Tape& tape) const {
   tape.append(Tape::Solved{drive->cost()});
+  drive->begin_at(tape.end());
   tape.hand_on(tape.end());
   auto [filter, window] = begun_window(*drive, belief, window_about(belief.filter));
   drive->remember(belief.filter);
@@ -211,7 +225,7 @@ bool NavigationLoop::join(const MapApart& apart, const relocalize::Place& place,
     return false;
   }
   Belief both = belief_on_both(earlier, std::move(joined), decision.T_map_session);
-  Tape tape = tape_;
+  Tape tape = !drive || is_drive_known() ? tape_ : tape_behind();
   if (drive) {
     begin_behind(std::move(drive), both, tape);
     report.solved = both.drive->path();

@@ -48,9 +48,12 @@ NavigationLoop::NavigationLoop(const core::JointMap& earlier, const NavigatorOpt
 
 /// As after a drive that has been taken into the atlas up to now, and of which the tape has nothing.
 void NavigationLoop::go_on_behind(const core::JointMap& earlier) {
+  check_closing(earlier, options_.search);
+  tape_ = tape_behind();
   belief_.filter.name_from(earlier.next_name);
-  auto drive = std::make_shared<DriveMap>(earlier, phase_length_m(mapped_reach_m(earlier)), tape_.end() + 1);
+  auto drive = std::make_shared<DriveMap>(DriveMap::of_earlier(earlier, phase_length_m(mapped_reach_m(earlier))));
   tape_.append(Tape::Solved{drive->cost()});
+  drive->begin_at(tape_.end());
   tape_.hand_on(tape_.end());
   begin_window(std::move(drive), window_to_map());
   undo_ = Undo{};

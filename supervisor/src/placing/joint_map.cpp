@@ -24,6 +24,13 @@ std::vector<core::LandmarkId> ids_of(const std::vector<core::MapLandmark>& landm
 
 namespace {
 
+/// The names of landmarks that do not belong to the map: others may have them.
+void forget_others(const std::vector<core::LandmarkId>& ids, core::MapFactors& factors) {
+  const auto is_other = [&](const auto& named) { return !std::binary_search(ids.begin(), ids.end(), named.first); };
+  factors.landmarks.erase(std::remove_if(factors.landmarks.begin(), factors.landmarks.end(), is_other),
+                          factors.landmarks.end());
+}
+
 core::JointMap without_joint(core::LandmarkId next_name, const std::vector<core::MapLandmark>& landmarks) {
   core::JointMap map;
   for (const core::MapLandmark& landmark : landmarks) {
@@ -56,7 +63,9 @@ core::JointMap factored_map(const atlas::Atlas& drive, core::LandmarkId next_nam
     map.joint.points_m.push_back(point.mean_m);
     map.covariances_m2.push_back(0.5 * (point.covariance_m2 + point.covariance_m2.transpose()));
   }
-  map.factors = std::make_shared<const core::MapFactors>(drive.factors());
+  core::MapFactors factors = drive.factors();
+  forget_others(map.joint.ids, factors);
+  map.factors = std::make_shared<const core::MapFactors>(std::move(factors));
   return map;
 }
 

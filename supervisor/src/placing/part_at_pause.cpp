@@ -151,6 +151,16 @@ bool NavigationLoop::part_at_gap(const std::vector<pf_relocalize::ConstellationP
   return part_between(just_before(gap->first_m), {last_m, step_after(last_m)}, scan, report);
 }
 
+/// Of a large map the filter holds what is around where the vehicle was: the rest is asked as a map of its own. A place that is not
+/// found counts as a question.
+bool NavigationLoop::part_since_untied(const core::Scan& scan, StepReport& report) {
+  if (!belief_.untied_since_m || !is_drive_known()) return false;
+  const double last_m = just_before(first_born_after(*belief_.untied_since_m, belief_.existence));
+  if (part_between(last_m, {last_m, step_after(last_m)}, scan, report)) return true;
+  ++apart_.asked.questions;
+  return false;
+}
+
 /// Only if the part is then found on the map from before: otherwise everything stays as it is. If the vehicle may have been carried at
 /// several places since its own was certain, nobody knows which one it was: what was mapped between them is dropped, and so
 /// is what was matched since.

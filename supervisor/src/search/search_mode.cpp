@@ -53,7 +53,7 @@ void NavigationLoop::search(const Scan& scan, StepReport& report) {
   const AskedWholeMap asked = ask_whole_map(scan, report);
   if (searching() == nullptr) return;
   const double driven_m = path_m - open.begun_path_m();
-  if (asked.is_nowhere()) {
+  if (asked.is_nowhere() && std::isinf(belief_.window.radius_m)) {
     report.decisions.emplace_back(core::NewGroundDecision{driven_m, asked.decision.landmarks});
   } else if (asks_whole_map() && !open.is_over(path_m)) {
     open.wait(path_m);

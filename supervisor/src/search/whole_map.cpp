@@ -72,10 +72,10 @@ double independent_share_of(const std::vector<pf_relocalize::ConstellationPair>&
 
 }  // namespace
 
+/// As much of it as the filter holds: of a large map, the part around the vehicle.
 bool NavigationLoop::asks_whole_map() const {
   return options_.search.enabled && options_.search.whole_map &&
-         options_.search.acceptance == Acceptance::constellation && !apart_.any() &&
-         std::isinf(belief_.window.radius_m);  // else it is not in the filter
+         options_.search.acceptance == Acceptance::constellation && !apart_.any();
 }
 
 LandmarksAbout NavigationLoop::branch_about() const {
@@ -120,6 +120,7 @@ void NavigationLoop::ask_meanwhile(const core::Scan& scan, core::StepReport& rep
   const Searching& open = *searching();
   AskedWholeMap asked = ask(about, open.search, scan);
   questions_.asked_meanwhile = std::exchange(questions_.asked.with, before.with);
+  pending_.seeks_part = is_untied && !asked.is_closed() && std::isfinite(belief_.window.radius_m);
   if (is_untied && asked.is_closed()) {
     if (close_at(asked.pairs, open.search, open.trigger, scan, asked.decision, report)) return;
   } else if (asked.is_closed()) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "helixnav/atlas/phase_factor.hpp"
@@ -51,32 +52,69 @@ atlas::PhaseFactor phase_to(const core::JointMap::Given& given, const atlas::Atl
   return phase;
 }
 
+/// Landmarks relative to the pose, where the phase begins and ends: where both are in a frame is left out.
+atlas::PhaseFactor phase_of(const core::JointGaussian& joint) {
+  constexpr double cancelled =
+      1e-11;  // of the variances in the frame, where a vehicle that is lost turns about the origin
+  const atlas::PointPrior points = atlas::relative_to_pose(joint);
+  const Eigen::Index rows = 3 + points.covariance.rows();
+  atlas::PhaseFactor phase;
+  phase.shape.ids = points.ids;
+  phase.shape.points_m = points.points_m;
+  phase.shape.T_entry_robot = {core::Pose2()};
+  Eigen::MatrixXd softened = points.covariance;
+  softened.diagonal().array() += softening().x() * softening().x() + cancelled * joint.covariance.diagonal().maxCoeff();
+  const Eigen::MatrixXd information = softened.llt().solve(Eigen::MatrixXd::Identity(rows - 3, rows - 3));
+  phase.gaussian.information = Eigen::MatrixXd::Zero(rows, rows);
+  phase.gaussian.information.diagonal().head<3>() = softening().cwiseAbs2().cwiseInverse();
+  phase.gaussian.information.bottomRightCorner(rows - 3, rows - 3) = 0.5 * (information + information.transpose());
+  phase.gaussian.vector = Eigen::VectorXd::Zero(rows);
+  phase.gaussian.mean = Eigen::VectorXd::Zero(rows);
+  for (std::size_t i = 0; i < points.points_m.size(); ++i) {
+    phase.gaussian.mean.segment<2>(3 + 2 * static_cast<Eigen::Index>(i)) = points.points_m[i];
+  }
+  return phase;
+}
+
 }  // namespace
 
 DriveMap::DriveMap(const core::PoseGaussian& start, double phase_m, const atlas::Options& options)
     : phase_m_(phase_m), standing_(phase_m), atlas_(softened_start(start), options) {}
 
-DriveMap::DriveMap(const core::JointMap& earlier, double phase_m, Tape::Position begin)
-    : phase_m_(phase_m), standing_(phase_m), atlas_(atlas::Atlas::from_factors(*earlier.factors)), end_(begin) {
+DriveMap DriveMap::of_end(const core::JointGaussian& joint, double phase_m) {
+  DriveMap map(core::PoseGaussian{joint.pose, Eigen::Matrix3d::Zero()}, phase_m);
+  map.has_whole_path_ = false;
+  map.stops_.push_back(std::make_shared<const std::vector<StopInPhase>>());
+  for (const core::LandmarkId id : joint.ids) map.name(id);
+  map.atlas_.add(phase_of(joint));
+  map.atlas_.settle();
+  return map;
+}
+
+DriveMap DriveMap::of_earlier(const core::JointMap& earlier, double phase_m) {
+  DriveMap map(core::PoseGaussian{}, phase_m);
+  map.atlas_ = atlas::Atlas::from_factors(*earlier.factors);
   if (earlier.given) {
-    atlas_.add(phase_to(*earlier.given, atlas_));
-    atlas_.settle();
+    map.atlas_.add(phase_to(*earlier.given, map.atlas_));
+    map.atlas_.settle();
   }
-  stops_.assign(static_cast<std::size_t>(atlas_.phase_count()), std::make_shared<const std::vector<StopInPhase>>());
-  covariances_m2_.resize(static_cast<std::size_t>(earlier.next_name), Eigen::Matrix2d::Zero());
+  map.stops_.assign(static_cast<std::size_t>(map.atlas_.phase_count()),
+                    std::make_shared<const std::vector<StopInPhase>>());
+  map.covariances_m2_.resize(static_cast<std::size_t>(earlier.next_name), Eigen::Matrix2d::Zero());
   for (std::size_t i = 0; i < earlier.joint.ids.size(); ++i) {
-    covariances_m2_[static_cast<std::size_t>(earlier.joint.ids[i])] = earlier.covariance_m2_of(i);
+    map.covariances_m2_[static_cast<std::size_t>(earlier.joint.ids[i])] = earlier.covariance_m2_of(i);
   }
-  for (const atlas::Place& place : atlas_.landmarks()) {
-    name(place.id);
-    extent_m_ = std::max(extent_m_, place.point_m.norm());
+  for (const atlas::Place& place : map.atlas_.landmarks()) {
+    map.name(place.id);
+    map.extent_m_ = std::max(map.extent_m_, place.point_m.norm());
   }
-  cost_ = atlas_.chi2();
+  map.cost_ = map.atlas_.chi2();
+  return map;
 }
 
 /// The gap says next to nothing, so that what is known of the place comes from the pairs.
 DriveMap DriveMap::followed_by(const DriveMap& drive, const core::Pose2& T_map_drive,
-                               const std::vector<core::MergedLandmarks>& merged, Tape::Position begin) const {
+                               const std::vector<core::MergedLandmarks>& merged) const {
   atlas::RelativeGaussian gap;
   const double per_m2 = 1.0 / (unknown_m * unknown_m);
   gap.information = Eigen::Vector3d(per_m2, per_m2, 0.01).asDiagonal();
@@ -86,6 +124,7 @@ DriveMap DriveMap::followed_by(const DriveMap& drive, const core::Pose2& T_map_d
   DriveMap both(*this);
   both.atlas_ = atlas_.followed_by(gap, drive.atlas_);
   both.standing_ = drive.standing_;
+  both.has_whole_path_ = drive.has_whole_path_;
   both.stops_.push_back(std::make_shared<const std::vector<StopInPhase>>());  // the gap
   both.stops_.insert(both.stops_.end(), drive.stops_.begin(), drive.stops_.end());
   both.phases_when_placed_ = both.stops_.size();
@@ -103,7 +142,6 @@ DriveMap DriveMap::followed_by(const DriveMap& drive, const core::Pose2& T_map_d
   both.atlas_.merge(pairs);
   for (const auto& [removed, kept] : pairs) both.named_[static_cast<std::size_t>(removed)] = false;
   both.settle();
-  both.end_ = begin;
   both.cost_ = both.atlas_.chi2();
   return both;
 }
@@ -181,6 +219,7 @@ std::vector<core::PointGaussian> DriveMap::remembered(const std::vector<core::La
 
 std::vector<core::StampedPose> DriveMap::path() const {
   std::vector<core::StampedPose> path;
+  if (!has_whole_path_) return path;
   const std::vector<core::Pose2> entries = atlas_.clones();
   const std::vector<std::vector<core::Pose2>> poses = atlas_.poses();
   const core::Pose2 T_part_map = core::inverse(T_map_part_);

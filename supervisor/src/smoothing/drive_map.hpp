@@ -25,18 +25,25 @@ class DriveMap {
   /// `phase_m`: length of a phase. `options`: how close to the solution the atlas gets; tests go all the way.
   DriveMap(const core::PoseGaussian& start, double phase_m, const atlas::Options& options = {});
 
-  /// The map of an earlier session, which holds factors, to go on in from `begin` on a tape: from where that session ended,
-  /// or from the pose that was given.
-  DriveMap(const core::JointMap& earlier, double phase_m, Tape::Position begin);
+  /// A drive of which nothing is known but what came of it, as one phase: the joint estimate of the pose and of the
+  /// landmarks, in a frame of which nothing is known. Its path is not known.
+  static DriveMap of_end(const core::JointGaussian& joint, double phase_m);
+
+  /// The map of an earlier session, which holds factors, to go on in: from where that session ended, or from the pose that
+  /// was given.
+  static DriveMap of_earlier(const core::JointMap& earlier, double phase_m);
 
   /// This map with another drive behind it that began somewhere on it. `T_map_drive`: where its frame is; what ties the
-  /// two is `merged`, landmarks of both (the kept one's name stays). `begin` on the tape: what follows. Solved.
+  /// two is `merged`, landmarks of both (the kept one's name stays). Solved.
   DriveMap followed_by(const DriveMap& drive, const core::Pose2& T_map_drive,
-                       const std::vector<core::MergedLandmarks>& merged, Tape::Position begin) const;
+                       const std::vector<core::MergedLandmarks>& merged) const;
 
   /// Takes in what the tape holds from end() on: scans, fixes, motion and merges. Landmarks lost again after a single look,
   /// which `filter` no longer has, are left out.
   void take(const Tape& tape, const cekf::CompressedEkf& filter);
+
+  /// What was measured up to there on the tape is in the map.
+  void begin_at(Tape::Position position) { end_ = position; }
 
   /// Solves what was taken in since it was last solved.
   void settle();
@@ -53,7 +60,7 @@ class DriveMap {
   /// What the filter paid for the measurements up to there, see drive_cost.
   double cost() const { return cost_; }
 
-  /// Poses of all stops as they are solved; those before the drive's place on an earlier map was found in the frame that
+  /// Poses of all stops as they are solved, none if some of them are not known; those before the drive's place on an earlier map was found in the frame that
   /// it had then.
   std::vector<core::StampedPose> path() const;
 
@@ -77,6 +84,7 @@ class DriveMap {
   double extent_m_ = 0.0;
   std::size_t phases_when_placed_ = 0;
   core::Pose2 T_map_part_;  ///< of the frame of the path in these phases
+  bool has_whole_path_ = true;
 };
 
 }  // namespace helixnav::supervisor

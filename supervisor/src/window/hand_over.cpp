@@ -32,8 +32,10 @@ bool NavigationLoop::is_drive_known() const {
   return is_whole && options_.search.closing != ClosingMethod::restart;
 }
 
-/// No other map is asked for a place in it.
-bool NavigationLoop::may_have_window() const { return is_drive_known() && !apart_.any(); }
+/// None begins while another map is asked for a place in it.
+bool NavigationLoop::may_have_window() const {
+  return is_drive_known() && (!apart_.any() || std::isfinite(belief_.window.radius_m));
+}
 
 /// A phase of the atlas holds what a few scans see, and costs the cube of it; a filter keeps it once. In a forest (68 trees seen in a
 /// scan, 1146 in all) the atlas took 212 MB and 2.5 s more than it saved.
@@ -45,7 +47,8 @@ bool NavigationLoop::needs_window() const {
 
 WindowNeeds NavigationLoop::window_to_map() const {
   constexpr int all = std::numeric_limits<int>::max();
-  if (apart_.any() || !needs_window()) return {0.0, all, all};
+  const bool is_part = std::isfinite(belief_.window.radius_m);
+  if ((apart_.any() && !is_part) || !needs_window()) return {0.0, all, all};
   return window_about(belief_.filter);
 }
 

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <variant>
 #include <vector>
 
+#include "helixnav/core/errors.hpp"
 #include "helixnav/supervisor/joint_map.hpp"
 #include "loop/navigation_loop.hpp"
 #include "window/marginals.hpp"
@@ -53,11 +55,41 @@ core::JointGaussian NavigationLoop::joint(const std::vector<core::LandmarkId>& i
   return drive_until_now()->atlas().joint(ids);
 }
 
-/// Of landmarks(); nothing while a filter holds the whole map, or if the drive is not known.
-std::optional<core::JointMap> NavigationLoop::factored(const std::vector<core::MapLandmark>& landmarks) const {
+/// Of landmarks(); nothing while a filter holds the whole map, or if the drive is not known or cannot be solved. What was measured
+/// after `until_m` of the drive is left out as far as the atlas has not taken it in.
+std::optional<core::JointMap> NavigationLoop::factored(const std::vector<core::MapLandmark>& landmarks,
+                                                       double until_m) const {
   const bool is_large = static_cast<int>(belief_.existence.records().size()) > options_.map.whole;
   if (!is_large || !belief_.drive || !is_drive_known()) return std::nullopt;
-  return factored_map(drive_until_now()->atlas(), next_name(), landmarks);
+  try {
+    DriveMap drive = *belief_.drive;
+    drive.take(tape_until(until_m), belief_.filter);
+    drive.settle();
+    std::vector<core::MapLandmark> known;
+    for (const core::MapLandmark& landmark : landmarks) {
+      if (drive.atlas().knows(landmark.id)) known.push_back(landmark);
+    }
+    return factored_map(drive.atlas(), next_name(), known);
+  } catch (const core::NumericalError&) {
+    return std::nullopt;
+  }
+}
+
+Tape NavigationLoop::tape_until(double until_m) const {
+  double path_m = belief_.existence.path_m();
+  tape_.read_from(0, [&](const Tape::Entry& entry) {
+    if (const auto* motion = std::get_if<Tape::Motion>(&entry)) path_m -= motion->driven_m;
+  });
+  Tape::Position position = tape_.end();
+  Tape::Position at = tape_.begin();
+  tape_.read_from(0, [&](const Tape::Entry& entry) {
+    if (const auto* motion = std::get_if<Tape::Motion>(&entry)) path_m += motion->driven_m;
+    if (path_m > until_m) position = std::min(position, at);
+    ++at;
+  });
+  Tape tape = tape_;
+  tape.cut(position);
+  return tape;
 }
 
 }  // namespace helixnav::supervisor

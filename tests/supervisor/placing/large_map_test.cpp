@@ -200,6 +200,33 @@ TEST(LargeMap, IsDrawnAsASmallOneIs) {
   EXPECT_LT(difference.cwiseAbs().maxCoeff(), rounding_m2);
 }
 
+/// What came of a drive that was not kept is one factor of the map; the drive from there on is kept.
+TEST(LargeMap, ASessionWhoseDriveWasNotKeptIsPlacedAndIsAPartOfTheMap) {
+  const core::JointMap map = large_map(70);
+  const core::Recording today = on_day(77);
+  NavigatorOptions options = small_windows();
+  options.search.smooth_up_to_scans = 0;
+  Navigator navigator(core::PoseGaussian{}, options);
+  navigator.look_for_place_in(map);
+  const Session session = driven(today, std::move(navigator));
+  ASSERT_TRUE(placing_in(session).has_value());
+  const core::Pose2& truth = today.true_poses.back().T_world_robot;
+  EXPECT_LT((session.poses.back().mean.position_m() - truth.position_m()).norm(), 0.8);
+  EXPECT_LE(mature_in(session.navigator.map()), trees_in(today) + 1);
+  EXPECT_TRUE(session.navigator.factored_map().has_value());
+}
+
+TEST(LargeMap, CannotBeGoneOnInWithoutSearchesOrByRestarting) {
+  const core::JointMap map = large_map(70);
+  NavigatorOptions restarting = small_windows(), without = small_windows();
+  restarting.search.closing = ClosingMethod::restart;
+  without.search.enabled = false;
+  for (const NavigatorOptions& options : {restarting, without}) {
+    EXPECT_THROW(Navigator::go_on_in(map, options), core::PreconditionError);
+    EXPECT_THROW(Navigator(core::PoseGaussian{}, options).look_for_place_in(map), core::PreconditionError);
+  }
+}
+
 TEST(LargeMap, AnotherWorldIsNotHere) {
   const core::JointMap map = large_map(70);
   const core::Recording today = on_day(72, 4);

@@ -65,7 +65,7 @@ class Atlas {
  public:
   /// `start` is clone 0 in the map frame. With zero covariance it represents the map frame itself.
   explicit Atlas(const core::PoseGaussian& start = {}, const Options& options = {});
-  /// The map that factors() has put away, settled. Its phases have no logs: they turn and bend with the map, but are not
+  /// The map that factors() has put away, with the same estimates. Its phases have no logs: they turn and bend with the map, but are not
   /// derived again. PreconditionError if its parts do not fit together, NumericalError if it has no solution.
   /// Test: atlas/factors_test.cpp.
   static Atlas from_factors(const core::MapFactors& map, const Options& options = {});
@@ -105,7 +105,7 @@ class Atlas {
   /// This map and that of another drive, which began somewhere on it: one map in the frame of this one, with the phases of
   /// the other behind a phase without landmarks, `gap`, from where this drive ends to where the other begins (3 rows, with
   /// an inverse; wide, if only landmarks tell). What the other knows of a frame of its own, by fixes or by its start, is
-  /// left out. Both must be settled, and the names of their landmarks differ: merge those that are the same, then settle.
+  /// left out. Both must be settled, as the result is, and the names of their landmarks differ: merge those that are the same.
   /// O(N log N). Test: atlas/factors_test.cpp.
   Atlas followed_by(const RelativeGaussian& gap, const Atlas& drive) const;
 

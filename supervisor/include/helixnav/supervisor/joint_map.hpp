@@ -8,6 +8,7 @@
 
 #include "helixnav/atlas/atlas.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
+#include "helixnav/core/errors.hpp"
 #include "helixnav/core/joint_map.hpp"
 
 namespace helixnav::supervisor {
@@ -47,15 +48,19 @@ core::JointMap joint_map(const Navigator& navigator, const std::vector<core::Map
 }
 
 /// What a session leaves to the next: a joint covariance for up to `most_dense` landmarks, and factors if the map is large
-/// (Navigator::factored_map). Nothing if it has neither.
+/// (Navigator::factored_map). Nothing if it has neither, or if its drive cannot be solved.
 template <class Navigator>
 std::optional<core::JointMap> map_to_go_on_in(const Navigator& navigator,
                                               const std::vector<core::MapLandmark>& landmarks, std::size_t most_dense) {
   std::optional<core::JointMap> map = navigator.factored_map();
   if (landmarks.size() > most_dense) return map;
-  core::JointMap dense = joint_map(navigator, landmarks);
-  if (map) dense.factors = map->factors;
-  return dense;
+  try {
+    core::JointMap dense = joint_map(navigator, landmarks);
+    if (map) dense.factors = map->factors;
+    return dense;
+  } catch (const core::NumericalError&) {
+    return map;
+  }
 }
 
 }  // namespace helixnav::supervisor
