@@ -200,6 +200,23 @@ TEST(LargeMap, IsDrawnAsASmallOneIs) {
   EXPECT_LT(difference.cwiseAbs().maxCoeff(), rounding_m2);
 }
 
+/// The vehicle is carried off the map, maps a little there, and is carried back: what it mapped there stays apart.
+TEST(LargeMap, TheWindowMovesWhileAPartIsApart) {
+  const core::Recording run = on_day(75);
+  Session before = driven(run, Navigator(run.start, small_windows()));
+  before.navigator.lose({});
+  core::Recording elsewhere = on_day(79, 4);
+  elsewhere.events.resize(elsewhere.events.size() / 8);
+  Session off = driven(elsewhere, std::move(before.navigator));
+  ASSERT_FALSE(placing_in(off).has_value());
+  off.navigator.lose({});
+  ASSERT_EQ(off.navigator.maps_apart().size(), 2u);
+  const Session after = driven(on_day(76), std::move(off.navigator));
+  ASSERT_TRUE(placing_in(after).has_value());
+  EXPECT_EQ(after.navigator.maps_apart().size(), 1u);
+  EXPECT_LE(mature_in(after.navigator.map()), trees_in(run) + 1);
+}
+
 /// What came of a drive that was not kept is one factor of the map; the drive from there on is kept.
 TEST(LargeMap, ASessionWhoseDriveWasNotKeptIsPlacedAndIsAPartOfTheMap) {
   const core::JointMap map = large_map(70);

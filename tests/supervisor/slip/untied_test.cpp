@@ -76,9 +76,9 @@ double nees_of(const core::PoseGaussian& pose, const core::Pose2& truth) {
   return error.dot(pose.covariance.ldlt().solve(error));
 }
 
-WhileUntied drive_carried(const core::Recording& run) {
+WhileUntied drive_carried(const core::Recording& run, const NavigatorOptions& options = {}) {
   WhileUntied result;
-  Navigator navigator(run.start);
+  Navigator navigator(run.start, options);
   std::size_t scan = 0;
   for (const core::Event& event : run.events) {
     const std::optional<core::StepReport> report = navigator.take(event);
@@ -142,6 +142,20 @@ TEST(Untied, AVehicleCarriedWithoutAPauseReportsThatItMayBeAnywhereAndIsPlacedSo
     EXPECT_GT(drive.largest_error_m, 100.0);
     EXPECT_GT(drive.least_sigma_m, 100.0);
     EXPECT_LT(drive.nees / drive.scans, 7.8) << "1000 and more with the filter's covariance";
+    EXPECT_LT(drive.error_at_end_m, 5.0);
+  }
+}
+
+/// Of which the filter holds what is around where the vehicle was.
+TEST(Untied, AVehicleCarriedOnALargeMapIsPlacedOnAllOfIt) {
+  NavigatorOptions large;
+  large.map.whole = large.map.window = 60;
+  large.map.most = 120;
+  for (const std::uint64_t seed : {3u, 8u}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const core::Recording run = without_waiting(sim::simulate(sim::named_scenario("kidnapped"), seed));
+    const WhileUntied drive = drive_carried(run, large);
+    EXPECT_GT(drive.largest_error_m, 100.0);
     EXPECT_LT(drive.error_at_end_m, 5.0);
   }
 }
