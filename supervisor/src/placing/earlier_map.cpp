@@ -16,20 +16,20 @@
 namespace helixnav::supervisor {
 namespace {
 
-constexpr std::size_t most_neighbours = 12;
+constexpr std::size_t most_related = 12;
 
 using Near = std::vector<std::pair<double, std::size_t>>;
 
 /// Those of `candidates` within reach of a landmark that are nearest to it, itself included, by distance.
 template <class Candidates>
-Near neighbours(const std::vector<Eigen::Vector2d>& points_m, std::size_t landmark, double reach_m,
+Near nearest_to(const std::vector<Eigen::Vector2d>& points_m, std::size_t landmark, double reach_m,
                 const Candidates& candidates) {
   Near near;
   for (const std::size_t i : candidates) {
     const double distance_m = (points_m[i] - points_m[landmark]).norm();
     if (distance_m <= reach_m) near.emplace_back(distance_m, i);
   }
-  const auto kept = static_cast<std::ptrdiff_t>(std::min(most_neighbours, near.size()));
+  const auto kept = static_cast<std::ptrdiff_t>(std::min(most_related, near.size()));
   std::partial_sort(near.begin(), near.begin() + kept, near.end());
   near.resize(static_cast<std::size_t>(kept));
   return near;
@@ -131,7 +131,7 @@ core::PointGaussian EarlierMap::relative_to_neighbours(std::size_t landmark, dou
   std::iota(all.begin(), all.end(), std::size_t{0});
   const std::vector<Eigen::Vector2d>& points_m = landmarks_.points_m;
   const auto row_of = [](std::size_t i) { return 3 + 2 * static_cast<Eigen::Index>(i); };
-  return {points_m[landmark], covariance_among(neighbours(points_m, landmark, reach_m, all), landmark, points_m,
+  return {points_m[landmark], covariance_among(nearest_to(points_m, landmark, reach_m, all), landmark, points_m,
                                                landmarks_.covariance, row_of)};
 }
 
@@ -152,7 +152,7 @@ std::vector<core::PointGaussian> EarlierMap::relative_by_squares(double reach_m)
     std::vector<Near> near_of;
     std::vector<core::LandmarkId> ids;
     for (const std::size_t i : landmarks) {
-      near_of.push_back(neighbours(points_m, i, reach_m, about));
+      near_of.push_back(nearest_to(points_m, i, reach_m, about));
       for (const auto& [distance_m, neighbour] : near_of.back()) ids.push_back(landmarks_.ids[neighbour]);
     }
     std::sort(ids.begin(), ids.end());

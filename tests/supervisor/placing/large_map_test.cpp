@@ -36,14 +36,14 @@ core::Recording on_day(std::uint64_t day, std::uint64_t world_seed = 3) {
 
 std::ptrdiff_t trees_in(const core::Recording& run) { return static_cast<std::ptrdiff_t>(run.true_landmarks.size()); }
 
-struct Session {
+struct LargeSession {
   Navigator navigator;
   std::vector<core::PoseGaussian> poses;
   std::vector<core::Decision> decisions;
 };
 
-Session driven(const core::Recording& run, Navigator navigator) {
-  Session session{std::move(navigator), {}, {}};
+LargeSession driven(const core::Recording& run, Navigator navigator) {
+  LargeSession session{std::move(navigator), {}, {}};
   drive(run, session.navigator, [&](const core::Scan& scan, std::size_t) {
     const core::StepReport report = session.navigator.observe(scan);
     session.poses.push_back(report.pose);
@@ -54,13 +54,13 @@ Session driven(const core::Recording& run, Navigator navigator) {
 
 core::JointMap large_map(std::uint64_t day) {
   const core::Recording run = on_day(day);
-  const Session session = driven(run, Navigator(run.start, small_windows()));
+  const LargeSession session = driven(run, Navigator(run.start, small_windows()));
   std::optional<core::JointMap> map = session.navigator.factored_map();
   EXPECT_TRUE(map.has_value());
   return *map;
 }
 
-std::optional<core::PlacedDecision> placing_in(const Session& session) {
+std::optional<core::PlacedDecision> placing_in(const LargeSession& session) {
   for (const core::Decision& decision : session.decisions) {
     const auto* placed = std::get_if<core::PlacedDecision>(&decision);
     if (placed != nullptr && placed->verdict == Verdict::accepted) return *placed;
@@ -80,7 +80,7 @@ TEST(LargeMap, HasFactorsAndNoJointCovariance) {
   EXPECT_EQ(map.covariances_m2.size(), map.joint.ids.size());
   const core::Recording run = on_day(70);
   EXPECT_GE(static_cast<std::ptrdiff_t>(map.joint.ids.size()), trees_in(run) - 2);
-  const Session whole = driven(run, Navigator(run.start));
+  const LargeSession whole = driven(run, Navigator(run.start));
   EXPECT_FALSE(whole.navigator.factored_map().has_value()) << "a filter holds it";
 }
 
@@ -89,7 +89,7 @@ TEST(LargeMap, ASessionBegunAnywhereBecomesOneWithTheMap) {
   const core::Recording today = on_day(71);
   Navigator navigator(core::PoseGaussian{}, small_windows());
   navigator.look_for_place_in(map);
-  const Session session = driven(today, std::move(navigator));
+  const LargeSession session = driven(today, std::move(navigator));
   const std::optional<core::PlacedDecision> placed = placing_in(session);
   ASSERT_TRUE(placed.has_value());
   const core::Pose2& truth = today.true_poses.back().T_world_robot;
@@ -157,7 +157,7 @@ TEST(LargeMap, GoesOnFromAPoseThatWasGiven) {
   EXPECT_LT((begun.pose().mean.vector() - today.start.mean.vector()).norm(), 1e-3);
   const core::PoseGaussian on_map = pose_on_map(begun.filter(), map.next_name);
   EXPECT_LT((on_map.covariance - start.covariance).norm(), 0.01 * start.covariance.norm());
-  const Session session = driven(today, std::move(begun));
+  const LargeSession session = driven(today, std::move(begun));
   const core::Pose2& truth = today.true_poses.back().T_world_robot;
   EXPECT_LT((session.poses.back().mean.position_m() - truth.position_m()).norm(), 0.8);
   EXPECT_LE(mature_in(session.navigator.map()), trees_in(today) + 1);
@@ -166,12 +166,12 @@ TEST(LargeMap, GoesOnFromAPoseThatWasGiven) {
 
 TEST(LargeMap, IsKeptAsFactorsWhenTheVehicleIsCarried) {
   const core::Recording run = on_day(75);
-  Session before = driven(run, Navigator(run.start, small_windows()));
+  LargeSession before = driven(run, Navigator(run.start, small_windows()));
   before.navigator.lose({});
   const std::map<int, core::JointMap> apart = before.navigator.maps_apart();
   ASSERT_EQ(apart.size(), 1u);
   EXPECT_NE(apart.begin()->second.factors, nullptr);
-  const Session after = driven(on_day(76), std::move(before.navigator));
+  const LargeSession after = driven(on_day(76), std::move(before.navigator));
   ASSERT_TRUE(placing_in(after).has_value());
   EXPECT_LE(mature_in(after.navigator.map()), trees_in(run) + 1);
 }
@@ -179,7 +179,7 @@ TEST(LargeMap, IsKeptAsFactorsWhenTheVehicleIsCarried) {
 /// For localisation: landmarks independent of each other, each known relative to its neighbours.
 TEST(LargeMap, IsDrawnAsASmallOneIs) {
   const core::Recording run = on_day(70);
-  const Session session = driven(run, Navigator(run.start, small_windows()));
+  const LargeSession session = driven(run, Navigator(run.start, small_windows()));
   const core::JointMap large = *session.navigator.factored_map();
   core::JointMap small = large;
   small.factors = nullptr;
@@ -203,15 +203,15 @@ TEST(LargeMap, IsDrawnAsASmallOneIs) {
 /// The vehicle is carried off the map, maps a little there, and is carried back: what it mapped there stays apart.
 TEST(LargeMap, TheWindowMovesWhileAPartIsApart) {
   const core::Recording run = on_day(75);
-  Session before = driven(run, Navigator(run.start, small_windows()));
+  LargeSession before = driven(run, Navigator(run.start, small_windows()));
   before.navigator.lose({});
   core::Recording elsewhere = on_day(79, 4);
   elsewhere.events.resize(elsewhere.events.size() / 8);
-  Session off = driven(elsewhere, std::move(before.navigator));
+  LargeSession off = driven(elsewhere, std::move(before.navigator));
   ASSERT_FALSE(placing_in(off).has_value());
   off.navigator.lose({});
   ASSERT_EQ(off.navigator.maps_apart().size(), 2u);
-  const Session after = driven(on_day(76), std::move(off.navigator));
+  const LargeSession after = driven(on_day(76), std::move(off.navigator));
   ASSERT_TRUE(placing_in(after).has_value());
   EXPECT_EQ(after.navigator.maps_apart().size(), 1u);
   EXPECT_LE(mature_in(after.navigator.map()), trees_in(run) + 1);
@@ -225,7 +225,7 @@ TEST(LargeMap, ASessionWhoseDriveWasNotKeptIsPlacedAndIsAPartOfTheMap) {
   options.search.smooth_up_to_scans = 0;
   Navigator navigator(core::PoseGaussian{}, options);
   navigator.look_for_place_in(map);
-  const Session session = driven(today, std::move(navigator));
+  const LargeSession session = driven(today, std::move(navigator));
   ASSERT_TRUE(placing_in(session).has_value());
   const core::Pose2& truth = today.true_poses.back().T_world_robot;
   EXPECT_LT((session.poses.back().mean.position_m() - truth.position_m()).norm(), 0.8);
