@@ -194,7 +194,9 @@ std::string joint_map_bytes(const core::JointMap& map) {
   const core::JointGaussian& joint = map.joint;
   const std::size_t n = joint.ids.size();
   std::string bytes(magic);
-  if (map.factors == nullptr) bytes.reserve(size_for(n));
+  std::string factors;
+  if (map.factors != nullptr) put_factors(factors, *map.factors);
+  if (map.has_covariance()) bytes.reserve(size_for(n) + sizeof(std::uint32_t) + factors.size());
   put_unsigned(bytes, map.factors == nullptr ? dense_version : factors_version);
   put_unsigned(bytes, static_cast<std::uint32_t>(n));
   put(bytes, static_cast<std::int32_t>(map.next_name));
@@ -212,7 +214,7 @@ std::string joint_map_bytes(const core::JointMap& map) {
   if (map.factors != nullptr) put_unsigned(bytes, static_cast<std::uint32_t>(map.has_covariance()));
   put_triangle_of(bytes, joint.covariance);
   for (const Eigen::Matrix2d& covariance_m2 : map.covariances_m2) put_triangle_of(bytes, covariance_m2);
-  if (map.factors != nullptr) put_factors(bytes, *map.factors);
+  bytes += factors;
   bytes += digest_of(bytes);
   return bytes;
 }

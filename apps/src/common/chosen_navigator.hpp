@@ -51,8 +51,8 @@ class ChosenNavigator {
   core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const {
     return std::visit([&](const auto& navigator) { return navigator.joint(ids); }, navigator_);
   }
-  std::optional<core::JointMap> factored_map() const {
-    return std::visit([](const auto& navigator) { return navigator.factored_map(); }, navigator_);
+  std::optional<core::JointMap> factored_map(supervisor::FactoredMap how) const {
+    return std::visit([how](const auto& navigator) { return navigator.factored_map(how); }, navigator_);
   }
   /// [part] of the drive before the vehicle was carried, or the earlier map.
   std::map<int, core::JointMap> maps_apart() const {

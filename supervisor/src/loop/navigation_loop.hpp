@@ -15,6 +15,7 @@
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/pf_relocalize/constellation.hpp"
+#include "helixnav/supervisor/factored_map.hpp"
 #include "helixnav/supervisor/find_slip.hpp"
 #include "helixnav/supervisor/navigator_options.hpp"
 #include "loop/belief.hpp"
@@ -61,6 +62,7 @@ class NavigationLoop {
   std::vector<core::PointGaussian> marginals() const;
   core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;
   std::optional<core::JointMap> factored(const std::vector<core::MapLandmark>& landmarks,
+                                         FactoredMap how = FactoredMap::whole,
                                          double until_m = std::numeric_limits<double>::infinity()) const;
 
  private:

@@ -65,7 +65,7 @@ const cekf::CompressedEkf& Navigator::filter() const { return loop_->belief().fi
 
 core::JointGaussian Navigator::joint(const std::vector<core::LandmarkId>& ids) const { return loop_->joint(ids); }
 
-std::optional<core::JointMap> Navigator::factored_map() const { return loop_->factored(sketch()); }
+std::optional<core::JointMap> Navigator::factored_map(FactoredMap how) const { return loop_->factored(sketch(), how); }
 
 std::vector<core::MapLandmark> Navigator::sketch() const {
   const Belief& belief = loop_->belief();

@@ -100,7 +100,7 @@ std::optional<core::JointMap> NavigationLoop::large_map_to_keep(core::CarriedDec
                                                                 double until_m,
                                                                 const std::vector<core::MapLandmark>& kept) const {
   if (kept.size() < least_to_keep) return std::nullopt;
-  std::optional<core::JointMap> map = factored(kept, until_m);
+  std::optional<core::JointMap> map = factored(kept, FactoredMap::whole, until_m);
   if (!map) return std::nullopt;
   map->reach_m = view_.reach().value_or(0.0);
   decision.landmarks = static_cast<int>(map->joint.ids.size());

@@ -55,17 +55,24 @@ core::JointMap joint_map(core::JointGaussian joint, core::LandmarkId next_name,
 }
 
 core::JointMap factored_map(const atlas::Atlas& drive, core::LandmarkId next_name,
-                            const std::vector<core::MapLandmark>& landmarks) {
+                            const std::vector<core::MapLandmark>& landmarks, FactoredMap how) {
   core::JointMap map = without_joint(next_name, landmarks);
   map.joint = drive.joint({});
   map.joint.ids = ids_of(landmarks);
+  core::MapFactors factors = drive.factors();
+  forget_others(map.joint.ids, factors);
+  map.factors = std::make_shared<const core::MapFactors>(std::move(factors));
+  if (how == FactoredMap::factors_alone) {
+    for (const core::MapLandmark& landmark : landmarks) {
+      map.joint.points_m.push_back(landmark.point.mean_m);
+      map.covariances_m2.push_back(landmark.point.covariance_m2);
+    }
+    return map;
+  }
   for (const core::PointGaussian& point : marginals_of(drive, map.joint.ids)) {
     map.joint.points_m.push_back(point.mean_m);
     map.covariances_m2.push_back(0.5 * (point.covariance_m2 + point.covariance_m2.transpose()));
   }
-  core::MapFactors factors = drive.factors();
-  forget_others(map.joint.ids, factors);
-  map.factors = std::make_shared<const core::MapFactors>(std::move(factors));
   return map;
 }
 

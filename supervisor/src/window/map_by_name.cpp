@@ -74,11 +74,11 @@ core::JointGaussian NamedNavigator::joint(const std::vector<LandmarkId>& ids) co
   return joint;
 }
 
-std::optional<core::JointMap> NamedNavigator::factored_map() const {
+std::optional<core::JointMap> NamedNavigator::factored_map(FactoredMap how) const {
   if (!names_.is_part) return std::nullopt;
   const std::vector<core::MapLandmark> landmarks = sketch();
   const LandmarkId next_name = landmarks.empty() ? 0 : landmarks.back().id + 1;
-  return supervisor::factored_map(solved(*drive_, reach_m_).atlas(), next_name, landmarks);
+  return supervisor::factored_map(solved(*drive_, reach_m_).atlas(), next_name, landmarks, how);
 }
 
 }  // namespace helixnav::supervisor

@@ -57,7 +57,7 @@ core::JointGaussian NavigationLoop::joint(const std::vector<core::LandmarkId>& i
 
 /// Of landmarks(); nothing while a filter holds the whole map, or if the drive is not known or cannot be solved. What was measured
 /// after `until_m` of the drive is left out as far as the atlas has not taken it in.
-std::optional<core::JointMap> NavigationLoop::factored(const std::vector<core::MapLandmark>& landmarks,
+std::optional<core::JointMap> NavigationLoop::factored(const std::vector<core::MapLandmark>& landmarks, FactoredMap how,
                                                        double until_m) const {
   const bool is_large = static_cast<int>(belief_.existence.records().size()) > options_.map.whole;
   if (!is_large || !belief_.drive || !is_drive_known()) return std::nullopt;
@@ -69,7 +69,7 @@ std::optional<core::JointMap> NavigationLoop::factored(const std::vector<core::M
     for (const core::MapLandmark& landmark : landmarks) {
       if (drive.atlas().knows(landmark.id)) known.push_back(landmark);
     }
-    return factored_map(drive.atlas(), next_name(), known);
+    return factored_map(drive.atlas(), next_name(), known, how);
   } catch (const core::NumericalError&) {
     return std::nullopt;
   }

@@ -10,6 +10,7 @@
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/joint_map.hpp"
+#include "helixnav/supervisor/factored_map.hpp"
 
 namespace helixnav::supervisor {
 
@@ -21,7 +22,7 @@ core::JointMap joint_map(core::JointGaussian joint, core::LandmarkId next_name,
                          const std::vector<core::MapLandmark>& landmarks);
 /// The same as factors of a drive, for a map of any size; `landmarks` are known to it. O(N).
 core::JointMap factored_map(const atlas::Atlas& drive, core::LandmarkId next_name,
-                            const std::vector<core::MapLandmark>& landmarks);
+                            const std::vector<core::MapLandmark>& landmarks, FactoredMap how = FactoredMap::whole);
 /// The map as a session continues in it from a pose on it that was given, with its covariance (x, y, heading) relative to
 /// the nearest dozen landmarks: it shares their errors, and says nothing about where in the frame they are. O(N).
 /// Test: supervisor/placing/begun_at_test.cpp.
@@ -52,14 +53,16 @@ core::JointMap joint_map(const Navigator& navigator, const std::vector<core::Map
 template <class Navigator>
 std::optional<core::JointMap> map_to_go_on_in(const Navigator& navigator,
                                               const std::vector<core::MapLandmark>& landmarks, std::size_t most_dense) {
-  std::optional<core::JointMap> map = navigator.factored_map();
-  if (landmarks.size() > most_dense) return map;
+  const bool is_dense = landmarks.size() <= most_dense;
+  std::optional<core::JointMap> map =
+      navigator.factored_map(is_dense ? FactoredMap::factors_alone : FactoredMap::whole);
+  if (!is_dense) return map;
   try {
     core::JointMap dense = joint_map(navigator, landmarks);
     if (map) dense.factors = map->factors;
     return dense;
   } catch (const core::NumericalError&) {
-    return map;
+    return std::nullopt;
   }
 }
 

@@ -14,6 +14,7 @@
 #include "helixnav/core/landmark_id.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "helixnav/supervisor/delayed_landmarks.hpp"
+#include "helixnav/supervisor/factored_map.hpp"
 #include "helixnav/supervisor/name_integrity.hpp"
 #include "helixnav/supervisor/navigator_options.hpp"
 
@@ -72,7 +73,7 @@ class NamedNavigator {
   core::JointGaussian joint(const std::vector<core::LandmarkId>& ids) const;
   /// The map as factors, if the filter holds only a part of it; else nothing. For Navigator: a session by name continues in
   /// a joint covariance.
-  std::optional<core::JointMap> factored_map() const;
+  std::optional<core::JointMap> factored_map(FactoredMap how = FactoredMap::whole) const;
 
   /// The filter. While it holds only part of the map, it uses its own names for landmarks.
   const cekf::CompressedEkf& filter() const { return filter_; }

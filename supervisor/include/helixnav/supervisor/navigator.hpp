@@ -10,6 +10,7 @@
 #include "helixnav/core/events.hpp"
 #include "helixnav/core/joint_map.hpp"
 #include "helixnav/core/step_report.hpp"
+#include "helixnav/supervisor/factored_map.hpp"
 #include "helixnav/supervisor/navigator_options.hpp"
 
 namespace helixnav::supervisor {
@@ -98,7 +99,7 @@ class Navigator {
   /// The map as factors, for a session that continues in it, if it is larger than MapOptions::whole and the drive was kept
   /// (SearchOptions::smooth_up_to_scans), or continued in such a map; else nothing: use joint_map. O(N).
   /// Test: supervisor/placing/large_map_test.cpp.
-  std::optional<core::JointMap> factored_map() const;
+  std::optional<core::JointMap> factored_map(FactoredMap how = FactoredMap::whole) const;
 
   /// The filter; it holds all landmarks up to MapOptions::whole, and beyond that those near the vehicle.
   const cekf::CompressedEkf& filter() const;
