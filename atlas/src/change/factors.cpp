@@ -122,7 +122,7 @@ class Behind {
   /// `T_atlas_first`: where its first pose is.
   void take_variables(const core::Pose2& T_atlas_first) {
     const Values values = all_values(drive_);
-    const core::Pose2 T_drive_first(Eigen::Vector3d(values[State::index(drive_.variable_of_clone[0])]));
+    const core::Pose2 T_drive_first{Eigen::Vector3d(values[State::index(drive_.variable_of_clone[0])])};
     const core::Pose2 T = core::compose(T_atlas_first, core::inverse(T_drive_first));
     for (std::size_t v = 0; v < values.size(); ++v) {
       const Variable& variable = drive_.variables[v];
@@ -279,7 +279,7 @@ Atlas Atlas::followed_by(const RelativeGaussian& gap, const Atlas& drive) const 
   for (std::size_t v = 0; v < values.size(); ++v) state.values.write(v) = values[v];
   const int last = state.variable_of_clone.back();
   const int first = static_cast<int>(state.variables.size()) + next.variable_of_clone[0];
-  const core::Pose2 T_last_first(Eigen::Vector3d(gap.mean));
+  const core::Pose2 T_last_first{Eigen::Vector3d(gap.mean)};
   const core::Pose2 T_atlas_first = core::compose(core::Pose2(Eigen::Vector3d(state.value(last))), T_last_first);
   state.phases.push_back(std::make_shared<const Leaf>(leaf_of_gap(gap, last, first)));
   Behind behind(state, next);
