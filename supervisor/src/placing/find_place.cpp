@@ -143,7 +143,7 @@ void NavigationLoop::note_too_few(std::size_t landmarks, core::StepReport& repor
 /// Of a large map: what the session may have seen of it.
 core::JointGaussian NavigationLoop::landmarks_about_session(const EarlierMap& earlier,
                                                             const relocalize::Place& place) const {
-  constexpr std::size_t most = 1000;
+  const auto most = static_cast<std::size_t>(options_.map.most);  // as much as a filter holds
   const Eigen::Vector2d here_m = belief_.filter.pose().mean.position_m();
   double farthest_m = 0.0;
   for (const LandmarkId id : belief_.filter.landmarks()) {
