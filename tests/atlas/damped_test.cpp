@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "atlas_access.hpp"
 #include "campaign.hpp"
@@ -52,6 +54,39 @@ TEST(DampedCampaign, ManyPhasesOnOldGroundAtOnceAreSolvedAfterAnyDrift) {
     EXPECT_TRUE(atlas.is_settled());
     EXPECT_LT(road.error_m(atlas), 2.0) << seed;
     EXPECT_NEAR(atlas.chi2(), road.dof(), 4.5 * std::sqrt(2.0 * road.dof())) << seed;  // exceeded with probability 1e-5
+  }
+}
+
+/// Shortened steps alone end where the ordinary passes do.
+TEST(DampedCampaign, ShortenedStepsFindTheSameSolution) {
+  for (const std::uint64_t seed : support::campaign_seeds(2, 3)) {
+    Options options;
+    options.rederive_m = options.rederive_rad = 1e9;  // shortened steps do not derive phases again
+    LongRoad road(seed);
+    Atlas atlas(core::PoseGaussian{}, options);
+    int waiting = 0;
+    while (road.steps() < LongRoad::steps_a_lap + 60) {
+      if (++waiting % 26 == 0) atlas.settle();
+      road.add_phase(atlas);
+    }
+    State state = AtlasAccess::working(atlas);
+    int redone = 0;
+    damp(state, redone);
+    settle_damped(state, redone);
+    EXPECT_TRUE(state.is_clean());
+    atlas.settle();
+    options.bend_m = 1e-6;
+    AtlasAccess::settle_with(atlas, options);
+    const std::vector<core::Pose2> ordinary = atlas.clones();
+    ASSERT_EQ(ordinary.size(), state.variable_of_clone.size());
+    const auto pose_of = [&](std::size_t k) { return core::Pose2(state.value(state.variable_of_clone[k])); };
+    double off_m = 0.0;
+    for (std::size_t k = 0; k < ordinary.size(); ++k) {
+      const core::Pose2 damped = core::between(pose_of(0), pose_of(k));  // the values are in a frame of their own
+      const core::Pose2 expected = core::between(ordinary[0], ordinary[k]);
+      off_m = std::max(off_m, (damped.position_m() - expected.position_m()).norm());
+    }
+    EXPECT_LT(off_m, 0.02) << seed;
   }
 }
 

@@ -96,20 +96,6 @@ Values all_values(const State& state) {
   return values;
 }
 
-/// All fronts where the values are, which stay: they are the solution of what was put away, and the parts of a map that measurements
-/// tear would not be solved again by relinearising everything at once.
-void linearise_in_place(State& state) {
-  int redone = 0;
-  redo_dirty(state, redone, {});
-  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
-    TreeNode& node = state.nodes.write(i);
-    const FrontShape& shape = *node.shape;
-    node.fresh = false;
-    node.opened_at = std::make_shared<const Values>(
-        values_of(state, shape, shape.eliminated, static_cast<int>(shape.variables.size())));
-  }
-}
-
 /// Another drive's state behind this one, its variables counted on. The frame of its map is no longer one.
 class Behind {
  public:

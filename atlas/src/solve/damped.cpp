@@ -109,19 +109,36 @@ void step(State& state, const std::vector<int>& nodes, double share) {
   }
 }
 
-/// Takes a step short enough for the cost to fall by a tenth of what the linear problem promises; returns the promise.
-double step_down(State& state, const std::vector<int>& nodes, double chi2, const LeastChi2& least) {
+/// By how much the step that the fronts propose would lower χ² if everything were linear.
+double promise_of(const State& state, double chi2) { return chi2 - state.node(state.root).front->message.back(); }
+
+/// Takes a step short enough for the cost to fall by a tenth of what the linear problem promises. False, with everything as before, if
+/// there is none.
+template <class Cost>
+bool step_down(State& state, const std::vector<int>& nodes, double chi2, const Cost& cost) {
   constexpr double least_kept = 0.1, smallest_share = 1e-4, rounding = 1e-9;
-  const double promised = chi2 - state.node(state.root).front->message.back();
+  const double promised = promise_of(state, chi2);
   const PersistentVector<Eigen::Vector3d> begun = state.values;
-  const double before = cost_of(state, least);
+  const double before = cost();
   for (double share = 1.0; share > smallest_share; share *= 0.5) {
     step(state, nodes, share);
-    if (before - cost_of(state, least) > least_kept * (2.0 - share) * share * promised - rounding * chi2)
-      return promised;
+    if (before - cost() > least_kept * (2.0 - share) * share * promised - rounding * chi2) return true;
     state.values = begun;
   }
-  throw core::NumericalError("atlas: no step from where the map is brings it nearer to its measurements");
+  return false;
+}
+
+void linearise_all_here(State& state, const std::vector<int>& nodes, int& redone) {
+  for (const int id : nodes) state.nodes.write(State::index(id)).dirty = true;
+  redo_dirty(state, redone, {});
+}
+
+double chi2_of_all(const State& state) {
+  double chi2 = 0.0;
+  for (std::size_t k = 0; k < state.phases.size(); ++k) {
+    for (const Part& part : state.phases[k]->parts) chi2 += chi2_of(state, part);
+  }
+  return chi2;
 }
 
 }  // namespace
@@ -138,15 +155,35 @@ void damp(State& state, int& redone) {
   state.rounds = 0;
   for (int round = 0; round < state.options.max_rounds; ++round) {
     const Weighed weighed = weigh(state, least);
-    for (const int id : nodes) state.nodes.write(State::index(id)).dirty = true;
-    redo_dirty(state, redone, {});
-    const double promised = step_down(state, nodes, weighed.chi2, least);
+    linearise_all_here(state, nodes, redone);
+    const double promised = promise_of(state, weighed.chi2);
+    if (!step_down(state, nodes, weighed.chi2, [&] { return cost_of(state, least); })) {
+      throw core::NumericalError("atlas: no step from where the map is brings it nearer to its measurements");
+    }
     if (promised > near || weighed.least < no_longer_torn) continue;
     unweigh(state);
     for (const int id : nodes) state.nodes.write(State::index(id)).dirty = true;
     return;
   }
   throw core::NumericalError("atlas: not settled after " + std::to_string(state.options.max_rounds) + " damped rounds");
+}
+
+void settle_damped(State& state, int& redone) {
+  constexpr double near = 1e-3, enough = 1.0;  // of χ²
+  const std::vector<int> nodes = nodes_downwards(state);
+  double promised = 0.0;
+  for (int round = 0; round < state.options.max_rounds; ++round) {
+    linearise_all_here(state, nodes, redone);
+    const double chi2 = chi2_of_all(state);
+    promised = promise_of(state, chi2);
+    if (promised < near || !step_down(state, nodes, chi2, [&] { return chi2_of_all(state); })) break;
+  }
+  if (promised > enough) throw core::NumericalError("atlas: not settled by shortened steps either");
+  for (const int id : nodes) state.nodes.write(State::index(id)).dirty = true;
+  linearise_in_place(state);
+  state.to_open.clear();
+  state.descending = false;
+  state.rounds = 0;
 }
 
 }  // namespace helixnav::atlas

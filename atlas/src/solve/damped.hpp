@@ -12,4 +12,10 @@ namespace helixnav::atlas {
 /// the whole tree per round. NumericalError if no step leads nearer, or after options.max_rounds. Test: atlas/damped_test.cpp.
 void damp(State& state, int& redone);
 
+/// Settles a map near its solution, as damp() leaves it, by shortened steps alone, and linearises it there. For what ordinary passes do not
+/// settle: a long road that next to nothing holds swings by tens of metres from pass to pass, while χ² hardly changes. Phases are not
+/// derived again. Cost: the whole tree per round. NumericalError if a step still promises more than one unit of χ².
+/// Test: atlas/damped_test.cpp.
+void settle_damped(State& state, int& redone);
+
 }  // namespace helixnav::atlas

@@ -17,15 +17,23 @@ namespace {
 /// Below this nothing moves, however small a bend is asked for.
 constexpr double still_m = 1e-8;
 
+/// By how much the options' limits are widened. After twenty rounds χ² has long settled, and what still moves is what little is known
+/// of: a landmark seen once or twice, with phases that move it to and fro by a bit more than the limit.
+double widened(const State& state) {
+  constexpr int enough = 20;
+  constexpr double rounds_to_double = 4.0;
+  return std::exp2(std::max(0, state.rounds - enough) / rounds_to_double);
+}
+
 bool is_bent(const State& state, const Motion& motion) {
-  return motion.rest_m > still_m && motion.bend_m > state.options.bend_m;
+  return motion.rest_m > still_m && motion.bend_m > widened(state) * state.options.bend_m;
 }
 
 /// The parent took the child's message as it was then; turned on by φ, what is `reach` away is off by φ²/2 of that.
 bool is_turned(const State& state, const Motion& motion, double was_turned_rad) {
   const double turn_rad = std::abs(core::wrap_to_pi(motion.rigid.turn_rad - was_turned_rad));
   const double off_m = turn_rad * (0.5 * turn_rad * motion.reach_m + motion.rest_m);
-  return off_m > std::max(state.options.bend_m, still_m);
+  return off_m > std::max(widened(state) * state.options.bend_m, still_m);
 }
 
 std::vector<Eigen::Vector2d> points_of(const Eigen::VectorXd& u) {
@@ -44,8 +52,9 @@ bool rederive_if_moved(State& state, int phase) {
   Eigen::VectorXd moved = (u - leaf.parts.front().gaussian->mean).cwiseAbs();
   const double turned_rad = std::abs(core::wrap_to_pi(moved[2]));
   moved[2] = 0.0;
-  if (moved.maxCoeff() <= std::max(state.options.rederive_m, still_m) &&
-      turned_rad <= std::max(state.options.rederive_rad, still_m)) {
+  const double share = widened(state);
+  if (moved.maxCoeff() <= std::max(share * state.options.rederive_m, still_m) &&
+      turned_rad <= std::max(share * state.options.rederive_rad, still_m)) {
     return false;
   }
   Leaf changed = leaf;

@@ -56,11 +56,33 @@ bool go_on(State& state, int& redone, const std::function<bool()>& should_stop) 
   return true;
 }
 
+void settle_near(State& state, int& redone) {
+  State damped = state;
+  try {
+    go_on(state, redone, {});
+  } catch (const core::NumericalError&) {
+    settle_damped(damped, redone);
+    state = damped;
+  }
+}
+
 }  // namespace
 
 bool redo_dirty(State& state, int& redone, const std::function<bool()>& should_stop) {
   Workspace workspace;
   return redo(state, state.root, workspace, redone, should_stop);
+}
+
+void linearise_in_place(State& state) {
+  int redone = 0;
+  redo_dirty(state, redone, {});
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
+    TreeNode& node = state.nodes.write(i);
+    const FrontShape& shape = *node.shape;
+    node.fresh = false;
+    node.opened_at = std::make_shared<const Values>(
+        values_of(state, shape, shape.eliminated, static_cast<int>(shape.variables.size())));
+  }
 }
 
 /// If the ordinary passes find no solution, it is sought again by shortened steps, from where settling began and not from where
@@ -75,7 +97,7 @@ bool Atlas::settle(const std::function<bool()>& should_stop) {
     *working_ = *begun;
     State damped = *begun;
     damp(damped, nodes_redone_);
-    go_on(damped, nodes_redone_, {});
+    settle_near(damped, nodes_redone_);
     *working_ = damped;
   } catch (...) {
     *working_ = *begun;
