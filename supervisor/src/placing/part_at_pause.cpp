@@ -173,6 +173,7 @@ bool NavigationLoop::part_between(double map_until_m, const UnsurePause& pause, 
   core::JointMap map = map_to_keep(decision, map_until_m);
   if (map.joint.ids.empty()) return false;
   Part other = part_apart(decision, std::move(map), belief_since(pause.path_m));
+  other.tape.drop_drive();  // of how its landmarks were mapped it has nothing
   StepReport placed = report;
   exchange(other);
   try {
