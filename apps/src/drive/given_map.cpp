@@ -39,9 +39,10 @@ Eigen::MatrixXd covariance_of(const std::vector<core::MapLandmark>& landmarks, c
   return joint.covariance(rows, rows);
 }
 
-/// The map with its factors alone; null if it has none.
+/// A large map with its factors alone; null if it has none. A small one is not drawn as factors.
 std::shared_ptr<const core::JointMap> factors_alone(core::JointMap map) {
-  if (map.factors == nullptr) return nullptr;
+  const auto landmarks = static_cast<int>(map.joint.ids.size());
+  if (map.factors == nullptr || landmarks <= supervisor::MapOptions{}.whole) return nullptr;
   if (map.has_covariance()) {
     for (std::size_t i = 0; i < map.joint.ids.size(); ++i) map.covariances_m2.push_back(map.covariance_m2_of(i));
     map.joint.covariance = map.joint.covariance.topLeftCorner<3, 3>().eval();

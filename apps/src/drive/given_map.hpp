@@ -24,7 +24,7 @@ namespace helixnav::apps {
 struct GivenMap {
   std::vector<core::MapLandmark> landmarks;             ///< mature ones, by increasing id
   Eigen::MatrixXd covariance_m2;                        ///< of their places in that order; empty if unknown
-  std::shared_ptr<const core::JointMap> large;          ///< the map, if it holds factors, with these alone
+  std::shared_ptr<const core::JointMap> large;          ///< the map, if it is large, with its factors alone
   std::map<core::Label, core::LandmarkId> landmark_of;  ///< by label; empty when the run had no labels
   std::optional<SessionStart> start;                    ///< on it; none: as in the log
   std::vector<std::string> missing;                     ///< of the run or the map: lost since it was written

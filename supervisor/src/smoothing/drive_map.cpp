@@ -41,7 +41,9 @@ atlas::PhaseFactor phase_to(const core::JointMap::Given& given, const atlas::Atl
   error << Eigen::Matrix3d::Identity(), -place_by_points(T_entry_exit, phase.shape.points_m);
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   turn.topLeftCorner<2, 2>() = core::rotation(T_entry_map.heading_rad);
-  const Eigen::Matrix3d information = (turn * given.pose.covariance * turn.transpose()).inverse();
+  Eigen::Matrix3d covariance = turn * given.pose.covariance * turn.transpose();
+  covariance.diagonal() += softening().cwiseAbs2();
+  const Eigen::Matrix3d information = covariance.inverse();
   phase.gaussian.information = error.transpose() * information * error;
   phase.gaussian.vector = Eigen::VectorXd::Zero(rows);
   phase.gaussian.mean.resize(rows);
