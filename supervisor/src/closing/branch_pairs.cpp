@@ -53,6 +53,15 @@ std::optional<cekf::CostByPart> cost_of(const cekf::CompressedEkf& filter, const
   }
 }
 
+bool try_merge(cekf::CompressedEkf& filter, const KeptRemoved& pairs, double sigma_m) {
+  try {
+    filter.merge(pairs, sigma_m);
+    return true;
+  } catch (const core::NumericalError&) {
+    return false;
+  }
+}
+
 KeptRemoved kept_removed(const std::vector<pf_relocalize::ConstellationPair>& pairs) {
   KeptRemoved result;
   for (const pf_relocalize::ConstellationPair& pair : pairs) result.emplace_back(pair.old_landmark, pair.branch);
@@ -119,6 +128,11 @@ bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& opt
   }
 }
 
+bool is_surely_a_duplicate(const Leftover& leftover, double neighbour_m, const SearchOptions& options) {
+  const double reach_m = std::max(options.leftover_least_m, leftover_reach_share * neighbour_m);
+  return leftover.difference_m.norm() <= reach_m && !may_be_a_neighbours(leftover, neighbour_m);
+}
+
 KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& confirmed,
                       const std::vector<core::LandmarkId>& old, const SearchOptions& options,
                       const core::MapAppearance& appearance) {
@@ -133,9 +147,7 @@ KeptRemoved leftovers(const cekf::CompressedEkf& filter, const std::vector<core:
     if (here.size() != 1) continue;
     const double neighbour_m =
         nearest_old_m(filter, here.front().kept, old, options.leftover_most_m / leftover_reach_share);
-    const double reach_m = std::max(options.leftover_least_m, leftover_reach_share * neighbour_m);
-    if (here.front().difference_m.norm() > reach_m || may_be_a_neighbours(here.front(), neighbour_m)) continue;
-    found.push_back(here.front());
+    if (is_surely_a_duplicate(here.front(), neighbour_m, options)) found.push_back(here.front());
   }
   std::sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.nis < b.nis; });
   KeptRemoved pairs;

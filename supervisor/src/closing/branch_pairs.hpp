@@ -54,6 +54,9 @@ std::vector<std::vector<Leftover>> compatible(const cekf::CompressedEkf& filter,
 /// errors in its covariance are larger than the uncertainty of the pairs.
 std::optional<cekf::CostByPart> cost_of(const cekf::CompressedEkf& filter, const KeptRemoved& pairs, double sigma_m);
 
+/// False, with the filter as before, if cost_of would give nothing one iteration later.
+bool try_merge(cekf::CompressedEkf& filter, const KeptRemoved& pairs, double sigma_m);
+
 /// Adds the pairs to what the closing merged.
 void note(const KeptRemoved& pairs, Closing& closing);
 
@@ -62,6 +65,10 @@ void note(const KeptRemoved& pairs, Closing& closing);
 /// 3 for a pose of which nothing else is known.
 bool make_compatible(const cekf::CompressedEkf& filter, const SearchOptions& options, KeptRemoved& pairs,
                      Closing& closing, int free_dof = 0);
+
+/// Whether a landmark is as near to the one that it may be a duplicate of as a third of that one's distance to its nearest
+/// neighbour, and a thousand times likelier to be that one than one as near as that neighbour on any side.
+bool is_surely_a_duplicate(const Leftover& leftover, double neighbour_m, const SearchOptions& options);
 
 /// Confirmed branch landmarks that are compatible with exactly one landmark of `old` (ascending) by the joint
 /// covariance of the closed map, a thousand times likelier to be that one than an unmapped one on another side, as near

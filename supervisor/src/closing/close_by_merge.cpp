@@ -3,20 +3,9 @@
 
 #include "closing/branch_pairs.hpp"
 #include "closing/duplicate_segment.hpp"
-#include "helixnav/core/errors.hpp"
 
 namespace helixnav::supervisor {
 namespace {
-
-/// False, with the filter as before, if cost_of would give nothing one iteration later.
-bool try_merge(cekf::CompressedEkf& filter, const KeptRemoved& pairs, double sigma_m) {
-  try {
-    filter.merge(pairs, sigma_m);
-    return true;
-  } catch (const core::NumericalError&) {
-    return false;
-  }
-}
 
 Closing refused_for_rounding(Closing closing) {
   closing.cost = closing.limit = 0.0;

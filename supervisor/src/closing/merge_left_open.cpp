@@ -7,6 +7,7 @@
 
 #include "closing/close_by_merge.hpp"
 #include "closing/duplicate_segment.hpp"
+#include "closing/mapped_twice.hpp"
 #include "closing/tied_by_view.hpp"
 #include "loop/navigation_loop.hpp"
 
@@ -32,6 +33,15 @@ std::vector<core::LandmarkId> mature_before(double path_m, const association::La
   std::vector<core::LandmarkId> ids;
   for (const association::LandmarkRecord& record : existence.records()) {
     if (record.born_path_m <= path_m && record.state == core::LandmarkState::mature) ids.push_back(record.id);
+  }
+  return ids;
+}
+
+std::vector<core::LandmarkId> mature_in(const cekf::CompressedEkf& filter, const association::LandmarkLife& existence) {
+  std::vector<core::LandmarkId> ids;
+  for (const association::LandmarkRecord& record : existence.records()) {
+    const bool is_mature = record.state == core::LandmarkState::mature;
+    if (is_mature && filter.contains(record.id)) ids.push_back(record.id);
   }
   return ids;
 }
@@ -85,6 +95,26 @@ void NavigationLoop::merge_left_open(const core::FieldOfView& view, double tied_
       std::swap(belief_.filter, before);
       continue;
     }
+    note_merged(closing, report);
+  }
+}
+
+/// Once the drive is solved, copies are where their landmark is, also those that were left over by this closing and by earlier
+/// ones, among which a copy made later has more than one to be merged with.
+void NavigationLoop::merge_mapped_twice(core::StepReport& report) {
+  constexpr int most_passes = 10;
+  const core::MapAppearance& appearance = belief_.existence.appearance();
+  for (int pass = 0; pass < most_passes; ++pass) {
+    Closing closing;
+    KeptRemoved pairs =
+        mapped_twice(belief_.filter, mature_in(belief_.filter, belief_.existence), options_.search, appearance);
+    if (pairs.empty() || !make_compatible(belief_.filter, options_.search, pairs, closing)) return;
+    if (!try_merge(belief_.filter, pairs, options_.search.merge_sigma_m)) {
+      ++report.numerics.refused;
+      return;
+    }
+    note(pairs, closing);
+    closing.limit_of_leftovers = closing.limit;
     note_merged(closing, report);
   }
 }

@@ -172,6 +172,7 @@ class NavigationLoop {
   void end_search(const Closing* closing);
   void merge_left_open(const core::FieldOfView& view, double tied_since_m,
                        core::StepReport& report);  // merge_left_open.cpp
+  void merge_mapped_twice(core::StepReport& report);
   void note_merged(const Closing& closing, core::StepReport& report);
 
   // smoothing/solve_drive.cpp
@@ -244,8 +245,8 @@ class NavigationLoop {
 
   // placing/carried.cpp
   core::JointMap map_to_keep(core::CarriedDecision& decision, double until_m) const;
-  std::optional<core::JointMap> large_map_to_keep(core::CarriedDecision& decision, std::size_t begun, double until_m,
-                                                  const std::vector<core::MapLandmark>& kept) const;
+  std::optional<core::JointMap> factors_to_keep(core::CarriedDecision& decision, std::size_t begun, double until_m,
+                                                const std::vector<core::MapLandmark>& kept) const;
   core::LandmarkId next_name() const;
   Tape tape_until(double until_m) const;  // window/whole_estimate.cpp
   Belief belief_elsewhere(const core::Pose2& T_part_robot) const;

@@ -132,6 +132,7 @@ void NavigationLoop::accept(const Closing& closing, const ClosingView& view, Ste
   end_search(&closing);
   merge_left_open(field, tied_m, report);
   solve_drive(report);
+  merge_mapped_twice(report);
 }
 
 void NavigationLoop::report_closing(const Closing& closing, std::size_t pairs, double driven_m,
