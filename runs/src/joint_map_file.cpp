@@ -76,7 +76,8 @@ Head check_frame(const std::string& path, std::string_view bytes) {
   const Head head{found == factors_version, header.small()};
   if (!head.has_factors) check_size_of_dense(path, head.landmarks, bytes.size());
   const std::string_view body = bytes.substr(0, bytes.size() - digest_bytes);
-  if (bytes.substr(body.size()) != digest_of(body)) refuse(path, "the checksum does not fit: the file is damaged");
+  if (bytes.substr(body.size()) != digest_of(body))
+    refuse(path, "the checksum does not fit: the file is damaged or cut short");
   return head;
 }
 

@@ -240,7 +240,7 @@ TEST_F(GoOn, WhatIsNoMapToGoOnInEndsWithStatus3AndNamesTheFile) {
   with(bytes.substr(0, bytes.size() / 2), "cut short");
   std::string flipped = bytes;
   flipped[bytes.size() / 2] = static_cast<char>(flipped[bytes.size() / 2] ^ 1);
-  with(flipped, "checksum");
+  with(flipped, "the checksum does not fit");
   std::string newer = bytes;
   newer[8] = 3;
   with(newer, "version 3");

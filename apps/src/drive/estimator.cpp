@@ -24,33 +24,27 @@ double reach_of_log(const Drive& job) {
   return logs::field_of_view_of(job.recording).reach().value_or(supervisor::reference_reach_m);
 }
 
-/// Without its factors, where it has to be in one filter: without searches that is not handed over, and closings by restart
-/// forget what ties a drive together. Else nothing.
-std::optional<core::JointMap> map_for_one_filter(const Drive& job) {
+/// Without searches the filter is not handed over, and closings by restart forget what ties a drive together.
+void check_for_one_filter(const Drive& job) {
   const supervisor::SearchOptions& search = job.navigator.search;
-  const bool is_in_one_filter = !search.enabled || search.closing == supervisor::ClosingMethod::restart;
-  if (!is_in_one_filter || job.earlier->map.factors == nullptr) return std::nullopt;
+  if (search.enabled && search.closing != supervisor::ClosingMethod::restart) return;
   check_has_covariance(job.earlier->map, "--map", "a session without searches, or with restarts,");
-  core::JointMap map = job.earlier->map;
-  map.factors = nullptr;
-  return map;
 }
 
 /// A session that does not know where it is calls its own start the origin.
 ChosenNavigator begun(const Drive& job, const std::vector<std::vector<core::Label>>& labels) {
   if (!job.earlier) return {job.recording, job.navigator, job.known_association, labels};
   const EarlierSession& earlier = *job.earlier;
-  const std::optional<core::JointMap> for_one_filter = map_for_one_filter(job);
-  const core::JointMap& earlier_map = for_one_filter ? *for_one_filter : earlier.map;
+  check_for_one_filter(job);
   if (earlier.start.kind == SessionStart::Kind::unknown) {
     supervisor::Navigator navigator(core::PoseGaussian{}, job.navigator);
-    navigator.look_for_place_in(earlier_map);
+    navigator.look_for_place_in(earlier.map);
     return {std::move(navigator), labels};
   }
   const bool at_end = earlier.start.kind == SessionStart::Kind::end;
   const core::JointMap map =
-      at_end ? earlier_map
-             : supervisor::begun_at(earlier_map, given_start(earlier.start.T_map_robot, reach_of_log(job)));
+      at_end ? earlier.map
+             : supervisor::begun_at(earlier.map, given_start(earlier.start.T_map_robot, reach_of_log(job)));
   if (job.known_association) return {supervisor::NamedNavigator(map, earlier.landmark_of, job.navigator), labels};
   return {supervisor::Navigator::go_on_in(map, job.navigator), labels};
 }
@@ -60,8 +54,7 @@ std::optional<StartCheck> check_of_start(const Drive& job) {
   if (!job.earlier || job.earlier->start.kind == SessionStart::Kind::unknown || job.known_association) {
     return std::nullopt;
   }
-  const std::optional<core::JointMap> for_one_filter = map_for_one_filter(job);
-  const core::JointMap& map = for_one_filter ? *for_one_filter : job.earlier->map;
+  const core::JointMap& map = job.earlier->map;
   const bool at_end = job.earlier->start.kind == SessionStart::Kind::end;
   const core::Pose2& T_map_start = at_end ? map.joint.pose : job.earlier->start.T_map_robot;
   return StartCheck(map, T_map_start, reach_of_log(job), job.navigator);

@@ -82,7 +82,8 @@ core::JointMap NavigationLoop::map_to_keep(core::CarriedDecision& decision, doub
     landmark.state = record.state;
     landmark.appearance = belief_.existence.appearance().of(record.id);
   }
-  if (std::optional<core::JointMap> large = large_map_to_keep(decision, begun, until_m, kept)) return std::move(*large);
+  if (std::optional<core::JointMap> factored = factors_to_keep(decision, begun, until_m, kept))
+    return std::move(*factored);
   const std::vector<core::PointGaussian> points = sketched(ids_of(kept));
   for (std::size_t i = 0; i < kept.size(); ++i) kept[i].point = points[i];
   kept = nearest(std::move(kept), belief_.filter.pose().mean.position_m());
@@ -96,9 +97,9 @@ core::JointMap NavigationLoop::map_to_keep(core::CarriedDecision& decision, doub
 }
 
 /// All of it, as factors, or nothing.
-std::optional<core::JointMap> NavigationLoop::large_map_to_keep(core::CarriedDecision& decision, std::size_t begun,
-                                                                double until_m,
-                                                                const std::vector<core::MapLandmark>& kept) const {
+std::optional<core::JointMap> NavigationLoop::factors_to_keep(core::CarriedDecision& decision, std::size_t begun,
+                                                              double until_m,
+                                                              const std::vector<core::MapLandmark>& kept) const {
   if (kept.size() < least_to_keep) return std::nullopt;
   std::optional<core::JointMap> map = factored(kept, FactoredMap::whole, until_m);
   if (!map) return std::nullopt;

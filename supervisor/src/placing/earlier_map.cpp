@@ -98,10 +98,13 @@ void check_earlier_map(const core::JointMap& map) {
   if (!fits_together(map)) throw core::PreconditionError("earlier map: its parts do not fit each other");
 }
 
-void check_closing(const core::JointMap& map, const SearchOptions& options) {
-  if (map.factors == nullptr || (options.enabled && options.closing != ClosingMethod::restart)) return;
+bool goes_on_behind(const core::JointMap& map, const SearchOptions& options) {
+  const bool keeps_drive = options.enabled && options.closing != ClosingMethod::restart;
+  if (map.factors != nullptr && keeps_drive) return true;
+  if (map.has_covariance()) return false;
   throw core::PreconditionError(
-      "earlier map: a map that holds factors cannot be continued in without searches, or with closings by restart");
+      "earlier map: a map without a joint covariance cannot be continued in without searches, or with closings by "
+      "restart");
 }
 
 double mapped_reach_m(const core::JointMap& map) { return map.reach_m > 0.0 ? map.reach_m : reference_reach_m; }

@@ -18,9 +18,10 @@ namespace helixnav::supervisor {
 /// PreconditionError if the parts of the map do not fit together.
 void check_earlier_map(const core::JointMap& map);
 
-/// PreconditionError for a map that holds factors if nothing is searched for, so that the filter is never handed over, or if
-/// closings forget what ties the drive together.
-void check_closing(const core::JointMap& map, const SearchOptions& options);
+/// Whether a session continues behind the drive that made the map, and not in its joint covariance. It does if the map
+/// holds factors, unless nothing is searched for, so that the filter is never handed over, or closings by restart forget
+/// what ties the drive together. PreconditionError if the map has no joint covariance then.
+bool goes_on_behind(const core::JointMap& map, const SearchOptions& options);
 
 /// Of the sensor that mapped it, or the reference if nobody knows.
 double mapped_reach_m(const core::JointMap& map);

@@ -21,9 +21,11 @@ struct SeenLandmarks {
   std::vector<LandmarkId> confirmed, unconfirmed;
 };
 
-SeenLandmarks seen_landmarks(const association::LandmarkLife& existence, int least_hits) {
+/// Of those in the filter: a window leaves out what is far away.
+SeenLandmarks seen_landmarks(const Belief& belief, int least_hits) {
   SeenLandmarks seen;
-  for (const association::LandmarkRecord& record : existence.records()) {
+  for (const association::LandmarkRecord& record : belief.existence.records()) {
+    if (!belief.filter.contains(record.id)) continue;
     (record.hits >= least_hits ? seen.confirmed : seen.unconfirmed).push_back(record.id);
   }
   return seen;
@@ -64,10 +66,11 @@ void NavigationLoop::look_for_place_in(const core::JointMap& earlier) {
     throw core::PreconditionError("look_for_place_in: a session that has begun cannot look for its place any more");
   }
   check_earlier_map(earlier);
-  check_closing(earlier, options_.search);
   if (std::count(earlier.states.begin(), earlier.states.end(), core::LandmarkState::mature) == 0)
     throw core::PreconditionError("look_for_place_in: no mature landmark in the map");
-  apart_.maps = {{0, std::make_shared<const core::JointMap>(earlier)}};
+  auto map = std::make_shared<core::JointMap>(earlier);
+  if (!goes_on_behind(earlier, options_.search)) map->factors = nullptr;
+  apart_.maps = {{0, std::move(map)}};
   apart_.part = 1;
   apart_.next_part = 2;
   belief_.filter.name_from(earlier.next_name);
@@ -187,7 +190,7 @@ void NavigationLoop::begin_behind(std::shared_ptr<DriveMap> drive, Belief& belie
 
 JoinedMaps NavigationLoop::joined_at(const relocalize::Place& place, const PlaceSearch& search) const {
   const EarlierMap& earlier = search.earlier();
-  const SeenLandmarks seen = seen_landmarks(belief_.existence, options_.search.constellation.least_hits);
+  const SeenLandmarks seen = seen_landmarks(belief_, options_.search.constellation.least_hits);
   core::JointGaussian about;
   if (earlier.drive()) about = landmarks_about_session(earlier, place);
   return join_maps(belief_.filter, earlier.drive() ? about : earlier.landmarks(), place, seen.confirmed,

@@ -37,18 +37,17 @@ NavigationLoop::NavigationLoop(const core::JointMap& earlier, const NavigatorOpt
     belief_.existence.adopt(record);
     if (!earlier.appearances.empty()) belief_.existence.adopt_appearance(record.id, earlier.appearances[i]);
   }
-  if (earlier.factors == nullptr) {
+  if (goes_on_behind(earlier, options.search)) {
+    go_on_behind(earlier);
+  } else {
     belief_.filter = cekf::CompressedEkf(earlier.joint, earlier.next_name, options.filter);
     tape_.drop_drive();
-  } else {
-    go_on_behind(earlier);
   }
   std::get<Mapping>(mode_).trust(take_checkpoint(belief_, tape_));
 }
 
 /// As after a drive that has been taken into the atlas up to now, and of which the tape has nothing.
 void NavigationLoop::go_on_behind(const core::JointMap& earlier) {
-  check_closing(earlier, options_.search);
   tape_ = tape_behind();
   belief_.filter.name_from(earlier.next_name);
   auto drive = std::make_shared<DriveMap>(DriveMap::of_earlier(earlier, phase_length_m(mapped_reach_m(earlier))));

@@ -55,14 +55,13 @@ core::JointGaussian NavigationLoop::joint(const std::vector<core::LandmarkId>& i
   return drive_until_now()->atlas().joint(ids);
 }
 
-/// Of landmarks(); nothing while a filter holds the whole map, or if the drive is not known or cannot be solved. What was measured
-/// after `until_m` of the drive is left out as far as the atlas has not taken it in.
+/// Of landmarks(); nothing if the drive is not known or cannot be solved. What was measured after `until_m` of the drive is left out
+/// as far as the atlas has not taken it in.
 std::optional<core::JointMap> NavigationLoop::factored(const std::vector<core::MapLandmark>& landmarks, FactoredMap how,
                                                        double until_m) const {
-  const bool is_large = static_cast<int>(belief_.existence.records().size()) > options_.map.whole;
-  if (!is_large || !belief_.drive || !is_drive_known()) return std::nullopt;
+  if (!is_drive_known()) return std::nullopt;
   try {
-    DriveMap drive = *belief_.drive;
+    DriveMap drive = belief_.drive ? *belief_.drive : *begun_drive();
     drive.take(tape_until(until_m), belief_.filter);
     drive.settle();
     std::vector<core::MapLandmark> known;

@@ -12,6 +12,7 @@
 #include "campaign.hpp"
 #include "circuits.hpp"
 #include "helixnav/core/chi2.hpp"
+#include "helixnav/core/errors.hpp"
 #include "helixnav/core/odometry.hpp"
 #include "helixnav/supervisor/named_navigator.hpp"
 

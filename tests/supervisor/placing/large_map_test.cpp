@@ -81,7 +81,7 @@ TEST(LargeMap, HasFactorsAndNoJointCovariance) {
   const core::Recording run = on_day(70);
   EXPECT_GE(static_cast<std::ptrdiff_t>(map.joint.ids.size()), trees_in(run) - 2);
   const LargeSession whole = driven(run, Navigator(run.start));
-  EXPECT_FALSE(whole.navigator.factored_map().has_value()) << "a filter holds it";
+  EXPECT_TRUE(whole.navigator.factored_map().has_value()) << "also where one filter holds it";
 }
 
 TEST(LargeMap, ASessionBegunAnywhereBecomesOneWithTheMap) {
@@ -164,6 +164,15 @@ TEST(LargeMap, GoesOnFromAPoseThatWasGiven) {
   EXPECT_TRUE(session.navigator.factored_map().has_value()) << "the next session can continue in it";
 }
 
+TEST(LargeMap, GoesOnFromAPoseThatIsCertain) {
+  const core::JointMap map = large_map(70);
+  const core::Recording today = on_day(74);
+  Navigator begun = Navigator::go_on_in(begun_at(map, {today.start.mean, Eigen::Matrix3d::Zero()}), small_windows());
+  const LargeSession session = driven(today, std::move(begun));
+  const core::Pose2& truth = today.true_poses.back().T_world_robot;
+  EXPECT_LT((session.poses.back().mean.position_m() - truth.position_m()).norm(), 0.8);
+}
+
 TEST(LargeMap, IsKeptAsFactorsWhenTheVehicleIsCarried) {
   const core::Recording run = on_day(75);
   LargeSession before = driven(run, Navigator(run.start, small_windows()));
@@ -242,6 +251,29 @@ TEST(LargeMap, CannotBeGoneOnInWithoutSearchesOrByRestarting) {
     EXPECT_THROW(Navigator::go_on_in(map, options), core::PreconditionError);
     EXPECT_THROW(Navigator(core::PoseGaussian{}, options).look_for_place_in(map), core::PreconditionError);
   }
+}
+
+/// One filter holds it, and it is continued as a drive all the same: what came before the place was found is solved with it. Where no
+/// drive can be kept, its joint covariance is used.
+TEST(LargeMap, ASmallMapHasFactorsToo) {
+  const core::Recording first = on_day(70), today = on_day(72);
+  const LargeSession yesterday = driven(first, Navigator(first.start));
+  const std::optional<core::JointMap> map = map_to_go_on_in(yesterday.navigator, yesterday.navigator.map(), 2000);
+  ASSERT_TRUE(map.has_value());
+  EXPECT_TRUE(map->has_covariance());
+  ASSERT_NE(map->factors, nullptr);
+  Navigator navigator(core::PoseGaussian{}, {});
+  navigator.look_for_place_in(*map);
+  std::size_t solved = 0;
+  drive(today, navigator,
+        [&](const core::Scan& scan, std::size_t) { solved += navigator.observe(scan).solved.size(); });
+  EXPECT_GT(solved, 10u);
+  EXPECT_EQ(navigator.filter().mapped_count(), static_cast<int>(navigator.map().size()));
+  EXPECT_LE(mature_in(navigator.map()), trees_in(today) + 1);
+  NavigatorOptions without;
+  without.search.enabled = false;
+  const Navigator in_one_filter = Navigator::go_on_in(*map, without);
+  EXPECT_LT((in_one_filter.pose().covariance - map->joint.covariance.topLeftCorner<3, 3>()).norm(), 1e-12);
 }
 
 TEST(LargeMap, AnotherWorldIsNotHere) {
