@@ -92,7 +92,7 @@ std::string why_without_map(const std::string& folder) {
   }
   return "A run that came to its end writes it, unless it only localised, is of version 0.1, or has more than " +
          std::to_string(runs::most_joint_landmarks) +
-         " landmarks whose drive was not kept (it began in a smaller map, or its search was off)";
+         " landmarks whose drive was not kept (it began in a map without factors, or its search was off)";
 }
 
 namespace {
