@@ -71,6 +71,5 @@ TEST(MappedTwice, AreOneAfterMergingThem) {
   EXPECT_TRUE(mapped_twice(map.filter, left, {}).empty());
 }
 
-
 }  // namespace
 }  // namespace helixnav::supervisor
