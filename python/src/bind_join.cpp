@@ -47,7 +47,6 @@ Sessions sessions_from(const py::sequence& list) {
       sessions.names.push_back("session " + number);
       sessions.maps.push_back(value.cast<core::JointMap>());
       apps::check_has_covariance(sessions.maps.back(), sessions.names.back(), "join");
-      sessions.maps.back().factors = nullptr;
       sessions.views.emplace_back();
       sessions.landmarks.emplace_back();
       continue;

@@ -138,7 +138,6 @@ void check_has_covariance(const core::JointMap& map, const std::string& name, co
 core::JointMap read_dense_map_in(const std::string& folder, const std::string& what) {
   core::JointMap map = read_joint_map_in(folder);
   check_has_covariance(map, joint_map_file_in(folder), what);
-  map.factors = nullptr;
   return map;
 }
 

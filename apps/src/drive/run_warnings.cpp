@@ -46,8 +46,8 @@ std::string unsaved_text(const Drive& job, const runs::Run& run) {
   return "no session can continue in this map (there is no map.bin): it has " + std::to_string(run.map.size()) +
          " landmarks, more than a joint covariance is kept for, and " +
          (job.earlier
-              ? std::string("the map in which the session began holds no factors of its drive: one made by 'join', by "
-                            "names, without searches or by an earlier version does not")
+              ? std::string("the map in which the session began holds no factors of its drive: one made by names, "
+                            "without searches or by an earlier version does not")
               : std::string("its drive was not kept (search.enabled, search.smooth_up_to_scans)"));
 }
 

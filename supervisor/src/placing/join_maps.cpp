@@ -20,12 +20,6 @@ KeptRemoved pairs_of(const relocalize::Place& place) {
   return pairs;
 }
 
-SearchOptions across_sessions(SearchOptions options, double pair_noise_m, std::size_t pairs) {
-  options.merge_sigma_m = options.duplicate_sigma_m = pair_noise_m;
-  options.most_dropped = most_dropped_of(pairs);
-  return options;
-}
-
 std::vector<core::LandmarkId> those_in(const cekf::CompressedEkf& filter, std::vector<core::LandmarkId> ids) {
   const auto gone = [&](core::LandmarkId id) { return !filter.contains(id); };
   ids.erase(std::remove_if(ids.begin(), ids.end(), gone), ids.end());
@@ -74,6 +68,12 @@ PlaceOnMap place_on(const core::JointGaussian& earlier, const relocalize::Place&
 }
 
 }  // namespace
+
+SearchOptions across_sessions(SearchOptions options, double pair_noise_m, std::size_t pairs) {
+  options.merge_sigma_m = options.duplicate_sigma_m = pair_noise_m;
+  options.most_dropped = most_dropped_of(pairs);
+  return options;
+}
 
 core::JointGaussian side_by_side(const core::JointGaussian& session, const core::JointGaussian& earlier,
                                  const PlaceOnMap& place) {

@@ -47,4 +47,7 @@ JoinedMaps join_maps(const cekf::CompressedEkf& session, const core::JointGaussi
                      const std::vector<core::LandmarkId>& unconfirmed, double pair_noise_m,
                      const SearchOptions& options, LeftTwice left_twice = LeftTwice::one_by_one);
 
+/// For pairs between two drives, of which a place has so many: they differ by more than the noise of one.
+SearchOptions across_sessions(SearchOptions options, double pair_noise_m, std::size_t pairs);
+
 }  // namespace helixnav::supervisor

@@ -6,10 +6,12 @@
 #include <tuple>
 #include <utility>
 
+#include "helixnav/core/merged_ids.hpp"
 #include "helixnav/relocalize/elsewhere.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 #include "placing/asked.hpp"
 #include "placing/earlier_map.hpp"
+#include "placing/join_drives.hpp"
 #include "placing/join_maps.hpp"
 #include "placing/map_questions.hpp"
 
@@ -62,6 +64,17 @@ core::JointGaussian renamed(const EarlierMap& session, LandmarkId from) {
   return joint;
 }
 
+/// The drive that made a session's map, under the same names; null if the map holds no factors.
+std::shared_ptr<const DriveMap> drive_of(core::JointMap map, LandmarkId from) {
+  if (map.factors == nullptr) return nullptr;
+  auto factors = std::make_shared<core::MapFactors>(*map.factors);
+  for (auto& [id, variable] : factors->landmarks) id += from;
+  for (LandmarkId& id : map.joint.ids) id += from;
+  map.next_name += from;
+  map.factors = std::move(factors);
+  return std::make_shared<const DriveMap>(DriveMap::of_earlier(map, phase_length_m(mapped_reach_m(map))));
+}
+
 /// All landmarks active: the pairs are all over the map, and nothing is to be left passive and updated later.
 cekf::FilterOptions without_regions(cekf::FilterOptions options, std::size_t landmarks) {
   constexpr double whole_world_m = 1e9;
@@ -105,25 +118,45 @@ void tell_appearances(const core::MapAppearance& appearance, core::JointMap& map
   for (const LandmarkId id : map.joint.ids) map.appearances.push_back(appearance.of(id));
 }
 
+core::MergedIds merged_by(const JoinedMaps& joined) {
+  core::MergedIds now;
+  for (const core::MergedLandmarks& one : joined.closing.merged) now.merge(one);
+  return now;
+}
+
+/// Of the component, by what each landmark is now.
+std::map<LandmarkId, int> observations_of(const core::JointMap& component, const core::MergedIds& now) {
+  std::map<LandmarkId, int> observations;
+  for (std::size_t i = 0; i < component.joint.ids.size(); ++i) {
+    observations[now.now(component.joint.ids[i])] += component.observations[i];
+  }
+  return observations;
+}
+
+core::MapAppearance appearance_of(const core::JointMap& component, const core::MergedIds& now) {
+  const core::MapAppearance before = EarlierMap(component).appearance();
+  core::MapAppearance appearance = before;
+  for (const LandmarkId id : component.joint.ids) {
+    const LandmarkId kept = now.now(id);
+    if (kept != id) appearance.adopt(kept, core::fused(appearance.of(kept), before.of(id)));
+  }
+  return appearance;
+}
+
 /// The component with the session in it. Merged landmarks keep the component's name and count as observed as often as
 /// both.
 void take_in(const EarlierMap& session, const JoinedMaps& joined, JoinedSession& result, core::JointMap& component) {
   const LandmarkId offset = component.next_name;
-  std::map<LandmarkId, int> observations;
-  for (std::size_t i = 0; i < component.joint.ids.size(); ++i) {
-    observations[component.joint.ids[i]] = component.observations[i];
-  }
-  std::map<LandmarkId, LandmarkId> kept_of;
-  for (const core::MergedLandmarks& one : joined.closing.merged) kept_of[one.removed] = one.kept;
+  const core::MergedIds now = merged_by(joined);
+  std::map<LandmarkId, int> observations = observations_of(component, now);
   for (std::size_t i = 0; i < session.landmarks().ids.size(); ++i) {
     const LandmarkId own = session.landmarks().ids[i];
-    const auto merged = kept_of.find(own + offset);
-    const LandmarkId name = merged == kept_of.end() ? own + offset : merged->second;
+    const LandmarkId name = now.now(own + offset);
     if (!joined.filter.contains(name)) continue;
     result.name_of[own] = name;
     observations[name] += session.observations(i);
   }
-  core::MapAppearance appearance = EarlierMap(component).appearance();
+  core::MapAppearance appearance = appearance_of(component, now);
   for (const auto& [own, name] : result.name_of) {
     appearance.adopt(name, core::fused(appearance.of(name), session.appearance().of(own)));
   }
@@ -135,9 +168,22 @@ void take_in(const EarlierMap& session, const JoinedMaps& joined, JoinedSession&
   tell_appearances(appearance, component);
 }
 
-/// Tries the surest places until one is accepted.
+/// If both hold factors, what was joined to first order becomes the solution of both drives. The factors of both, or null.
+std::shared_ptr<const core::MapFactors> solve_together(const EarlierMap& earlier, const core::JointMap& session,
+                                                       const std::vector<LandmarkId>& of_session,
+                                                       const SearchOptions& across, JoinedMaps& joined) {
+  const std::shared_ptr<const DriveMap> drive = drive_of(session, earlier.next_name());
+  if (earlier.drive() == nullptr || drive == nullptr) return nullptr;
+  std::optional<JoinedDrives> solved =
+      join_drives(*earlier.drive(), earlier.landmarks().ids, *drive, of_session, joined, across);
+  if (!solved) return nullptr;
+  joined = std::move(solved->maps);
+  return solved->factors;
+}
+
+/// Tries the surest places until one is accepted. `now`: what landmarks of the component have become.
 bool place_in(const core::JointMap& session_map, const std::function<void()>& now_and_then, JoinedSession& result,
-              core::JointMap& component) {
+              core::JointMap& component, core::MergedIds& now) {
   const EarlierMap session(session_map);
   const EarlierMap earlier(component);
   const double reach_m = component.reach_m > 0.0 ? component.reach_m : reference_reach_m;
@@ -165,16 +211,27 @@ bool place_in(const core::JointMap& session_map, const std::function<void()>& no
     ++tried;
     relocalize::Place place = asked.answer.places.front();
     for (relocalize::Pair& pair : place.pairs) pair.branch += offset;
-    const JoinedMaps joined = join_maps(filter, earlier.landmarks(), place, joint.ids, {}, lengths.pair_noise_m,
-                                        options.search, LeftTwice::in_segments);
+    JoinedMaps joined = join_maps(filter, earlier.landmarks(), place, joint.ids, {}, lengths.pair_noise_m,
+                                  options.search, LeftTwice::in_segments);
     note(joined.closing, result.decision);
     if (!joined.closing.accepted) continue;
+    now_and_then();
+    const SearchOptions across = across_sessions(options.search, lengths.pair_noise_m, place.pairs.size());
+    auto factors = solve_together(earlier, session_map, joint.ids, across, joined);
+    note(joined.closing, result.decision);
     result.T_component_session = core::compose(joined.filter.pose().mean, core::inverse(session_map.joint.pose));
     result.decision.T_map_session = result.T_component_session;
+    component.factors = nullptr;
     take_in(session, joined, result, component);
+    component.factors = std::move(factors);
+    now = merged_by(joined);
     return true;
   }
   return false;
+}
+
+void call_as_now(const core::MergedIds& now, JoinedSession& session) {
+  for (auto& [own, name] : session.name_of) name = now.now(name);
 }
 
 /// The session alone, without its immature landmarks.
@@ -225,14 +282,17 @@ JoinedSessions join_sessions(const std::vector<core::JointMap>& sessions, const 
     const std::size_t number = result.components.size();
     result.sessions[apart.front()].component = number;
     core::JointMap component = begin(sessions[apart.front()], result.sessions[apart.front()]);
+    std::vector<std::size_t> joined_there{apart.front()};
     apart.erase(apart.begin());
     for (std::size_t k = 0; k < apart.size();) {
-      JoinedSession& session = result.sessions[apart[k]];
-      if (!place_in(sessions[apart[k]], now_and_then, session, component)) {
+      core::MergedIds now;
+      if (!place_in(sessions[apart[k]], now_and_then, result.sessions[apart[k]], component, now)) {
         ++k;
         continue;
       }
-      session.component = number;
+      joined_there.push_back(apart[k]);
+      for (const std::size_t one : joined_there) call_as_now(now, result.sessions[one]);
+      result.sessions[apart[k]].component = number;
       apart.erase(apart.begin() + static_cast<std::ptrdiff_t>(k));
       k = 0;  // the others may fit what it added
     }

@@ -136,16 +136,20 @@ DriveMap DriveMap::followed_by(const DriveMap& drive, const core::Pose2& T_map_d
   for (std::size_t id = 0; id < drive.covariances_m2_.size(); ++id) {
     if (!drive.covariances_m2_[id].isZero(0.0)) both.covariances_m2_[id] = drive.covariances_m2_[id];
   }
-  std::vector<atlas::MergePair> pairs;
-  for (const core::MergedLandmarks& one : merged) {
-    if (!both.has_name(one.removed) || !both.has_name(one.kept)) continue;
-    pairs.emplace_back(one.removed, one.kept);
-  }
-  both.atlas_.merge(pairs);
-  for (const auto& [removed, kept] : pairs) both.named_[static_cast<std::size_t>(removed)] = false;
+  both.merge(merged);
   both.settle();
   both.cost_ = both.atlas_.chi2();
   return both;
+}
+
+void DriveMap::merge(const std::vector<core::MergedLandmarks>& merged) {
+  std::vector<atlas::MergePair> pairs;
+  for (const core::MergedLandmarks& one : merged) {
+    if (!has_name(one.removed) || !has_name(one.kept)) continue;
+    pairs.emplace_back(one.removed, one.kept);
+  }
+  atlas_.merge(pairs);
+  for (const auto& [removed, kept] : pairs) named_[static_cast<std::size_t>(removed)] = false;
 }
 
 void DriveMap::take(const Tape& tape, const cekf::CompressedEkf& filter) {

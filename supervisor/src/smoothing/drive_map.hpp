@@ -38,6 +38,9 @@ class DriveMap {
   DriveMap followed_by(const DriveMap& drive, const core::Pose2& T_map_drive,
                        const std::vector<core::MergedLandmarks>& merged) const;
 
+  /// Landmarks that are one; those that the map does not know are passed over.
+  void merge(const std::vector<core::MergedLandmarks>& merged);
+
   /// Takes in what the tape holds from end() on: scans, fixes, motion and merges. Landmarks lost again after a single look,
   /// which `filter` no longer has, are left out.
   void take(const Tape& tape, const cekf::CompressedEkf& filter);

@@ -208,7 +208,9 @@ TEST(JoinMaps, TheCostOfPairsHasTheDegreesOfFreedomThatAFreePlaceLeaves) {
     const JoinedMaps joined = join(maps);
     cost += joined.closing.cost;
     dof += joined.closing.dof;
-    if (joined.closing.dropped == 0) EXPECT_EQ(joined.closing.dof, 2 * 8 - 3);
+    if (joined.closing.dropped == 0) {
+      EXPECT_EQ(joined.closing.dof, 2 * 8 - 3);
+    }
   }
   EXPECT_GT(cost, core::chi2_quantile(0.0005, dof));
   EXPECT_LT(cost, core::chi2_quantile(0.9995, dof));
