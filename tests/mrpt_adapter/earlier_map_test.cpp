@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <mrpt/maps/CSimpleMap.h>
@@ -96,6 +97,12 @@ core::Pose2 as_mrpt_keeps_pose(const core::Pose2& T) {
   return {T.x_m, T.y_m, mrpt::poses::CPose2D(T.x_m, T.y_m, T.heading_rad).phi()};
 }
 
+std::vector<core::MapLandmark> mature_of(std::vector<core::MapLandmark> map) {
+  const auto is_tentative = [](const auto& landmark) { return landmark.state != core::LandmarkState::mature; };
+  map.erase(std::remove_if(map.begin(), map.end(), is_tentative), map.end());
+  return map;
+}
+
 class EarlierMap : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -163,13 +170,13 @@ TEST_F(EarlierMap, APoseGivenWhileThePlaceIsSoughtBeginsThereOnTheEarlierMap) {
 TEST_F(EarlierMap, APoseGivenOnThePresentMapKeepsItsLandmarks) {
   QuietBuilder builder;
   built_from(builder, drive_of_day(1), 0);
-  const std::vector<core::MapLandmark> before = RunAccess::map(builder);
+  const std::vector<core::MapLandmark> before = mature_of(RunAccess::map(builder));
   builder.setInitialPose(pdf_of(pose_));
   const std::vector<core::MapLandmark> after = RunAccess::map(builder);
   ASSERT_EQ(after.size(), before.size());
   for (std::size_t i = 0; i < after.size(); ++i) {
     EXPECT_EQ(after[i].id, before[i].id);
-    EXPECT_EQ(after[i].point.mean_m, before[i].point.mean_m);
+    EXPECT_LT((after[i].point.mean_m - before[i].point.mean_m).norm(), 0.02) << "the drive until then is solved";
     EXPECT_EQ(after[i].state, before[i].state);
   }
   EXPECT_EQ(RunAccess::pose(builder).mean.vector(), pose_.mean.vector());

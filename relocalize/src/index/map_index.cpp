@@ -103,6 +103,10 @@ const IndexOptions& MapIndex::options() const { return parts_->options; }
 std::size_t MapIndex::size() const { return parts_->count; }
 bool MapIndex::contains(core::LandmarkId id) const { return parts_->slot_of(id) != no_slot; }
 double MapIndex::looked_at_m2() const { return parts_->looked.area_m2(); }
+bool MapIndex::has_looked_at(const Eigen::Vector2d& point_m) const {
+  const Eigen::Vector2d at_m = point_m - parts_->origin_m;
+  return at_m.allFinite() && parts_->looked.covers(at_m.x(), at_m.y());
+}
 std::size_t MapIndex::triangles() const { return parts_->bins.size(); }
 
 std::size_t MapIndex::memory_bytes() const {

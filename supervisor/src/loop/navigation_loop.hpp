@@ -279,6 +279,7 @@ class NavigationLoop {
   // placing/place_again.cpp
   void look_elsewhere(const core::Scan& scan, core::StepReport& report);
   void forget_old_placing() noexcept;
+  const PlaceSearch* search_of_placing() const;
   bool may_be_placed_wrongly(const std::vector<pf_relocalize::ConstellationPair>& pairs) const;
   Part part_before_placing() const;
   std::vector<core::LandmarkId> gone_since_placing() const;

@@ -1,13 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cstddef>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "helixnav/supervisor/joint_map.hpp"
+#include "placing/names_of_factors.hpp"
 #include "placing/place_by_points.hpp"
 
 namespace helixnav::supervisor {
 namespace {
+
+template <class Value>
+void keep(const std::vector<std::size_t>& which, std::vector<Value>& values) {
+  if (values.empty()) return;
+  std::vector<Value> kept;
+  for (const std::size_t i : which) kept.push_back(values[i]);
+  values = std::move(kept);
+}
+
+/// What an earlier session saw a few times and never confirmed is clutter for the most part, and where it stands beside a landmark,
+/// that one would be taken for it.
+void forget_tentative(core::JointMap& map) {
+  std::vector<std::size_t> mature;
+  std::vector<Eigen::Index> rows{0, 1, 2};
+  for (std::size_t i = 0; i < map.joint.ids.size(); ++i) {
+    if (map.states[i] != core::LandmarkState::mature) continue;
+    mature.push_back(i);
+    const auto row = 3 + 2 * static_cast<Eigen::Index>(i);
+    rows.insert(rows.end(), {row, row + 1});
+  }
+  if (mature.size() == map.joint.ids.size()) return;
+  if (map.has_covariance()) map.joint.covariance = map.joint.covariance(rows, rows).eval();
+  keep(mature, map.joint.ids);
+  keep(mature, map.joint.points_m);
+  keep(mature, map.states);
+  keep(mature, map.observations);
+  keep(mature, map.appearances);
+  keep(mature, map.covariances_m2);
+  if (map.factors == nullptr) return;
+  auto factors = std::make_shared<core::MapFactors>(*map.factors);
+  keep_names(map.joint.ids, *factors);
+  map.factors = std::move(factors);
+}
 
 /// Mature landmarks, the nearest dozen.
 std::vector<std::size_t> landmarks_around(const core::JointMap& map, const Eigen::Vector2d& point_m) {
@@ -45,6 +81,7 @@ void correlate(const core::PoseGaussian& pose, const std::vector<std::size_t>& a
 }  // namespace
 
 core::JointMap begun_at(core::JointMap map, const core::PoseGaussian& pose) {
+  forget_tentative(map);
   const std::vector<std::size_t> around = landmarks_around(map, pose.mean.position_m());
   map.joint.pose = pose.mean;
   map.has_end = true;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "helixnav/core/errors.hpp"
+#include "placing/names_of_factors.hpp"
 #include "window/marginals.hpp"
 
 namespace helixnav::supervisor {
@@ -22,14 +23,13 @@ std::vector<core::LandmarkId> ids_of(const std::vector<core::MapLandmark>& landm
   return ids;
 }
 
-namespace {
-
-/// The names of landmarks that do not belong to the map: others may have them.
-void forget_others(const std::vector<core::LandmarkId>& ids, core::MapFactors& factors) {
+void keep_names(const std::vector<core::LandmarkId>& ids, core::MapFactors& factors) {
   const auto is_other = [&](const auto& named) { return !std::binary_search(ids.begin(), ids.end(), named.first); };
   factors.landmarks.erase(std::remove_if(factors.landmarks.begin(), factors.landmarks.end(), is_other),
                           factors.landmarks.end());
 }
+
+namespace {
 
 core::JointMap without_joint(core::LandmarkId next_name, const std::vector<core::MapLandmark>& landmarks) {
   core::JointMap map;
@@ -60,7 +60,7 @@ core::JointMap factored_map(const atlas::Atlas& drive, core::LandmarkId next_nam
   map.joint = drive.joint({});
   map.joint.ids = ids_of(landmarks);
   core::MapFactors factors = drive.factors();
-  forget_others(map.joint.ids, factors);
+  keep_names(map.joint.ids, factors);
   map.factors = std::make_shared<const core::MapFactors>(std::move(factors));
   if (how == FactoredMap::factors_alone) {
     for (const core::MapLandmark& landmark : landmarks) {

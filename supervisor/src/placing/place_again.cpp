@@ -55,7 +55,17 @@ void NavigationLoop::forget_old_placing() noexcept {
   tape_.keep_since(std::nullopt);
 }
 
-/// By landmarks on another map that are elsewhere than where it was placed, while few of that map were seen since it was.
+/// The map that the part was placed on.
+const PlaceSearch* NavigationLoop::search_of_placing() const {
+  for (const MapApart& map : apart_.placing->apart.maps) {
+    if (map.part == apart_.part) return map.search.get();
+  }
+  return nullptr;
+}
+
+/// By landmarks on another map that are elsewhere than where it was placed, while few of what was seen since are of that map. Once
+/// as many of it were recognised since as two places need, ground that it does not cover says nothing: a vehicle that was placed rightly,
+/// left that map and was carried then is no sign of a wrong place.
 bool NavigationLoop::may_be_placed_wrongly(const std::vector<pf_relocalize::ConstellationPair>& pairs) const {
   if (!apart_.placing || apart_.any()) return false;
   const association::LandmarkLife& existence = belief_.existence;
@@ -63,15 +73,24 @@ bool NavigationLoop::may_be_placed_wrongly(const std::vector<pf_relocalize::Cons
     return existence.contains(pair.old_landmark) && is_of_other_map(existence.record(pair.old_landmark));
   };
   if (!std::all_of(pairs.begin(), pairs.end(), is_on_other_map)) return false;
+  const PlaceSearch* other_map = search_of_placing();
+  const auto is_on_its_ground = [&](core::LandmarkId id) {
+    return other_map != nullptr && belief_.filter.contains(id) && other_map->covers(belief_.filter.landmark_mean(id));
+  };
   const double soon_m = apart_.placing->path_m + view_.reach().value_or(0.0);
-  int since = 0, of_other_map = 0;
+  int off_its_ground = 0, on_its_ground = 0, of_other_map = 0;
   for (const association::LandmarkRecord& record : existence.records()) {
     if (record.last_seen_path_m <= soon_m) continue;
-    ++since;
-    of_other_map += is_of_other_map(record);
+    if (is_of_other_map(record)) {
+      ++of_other_map;
+    } else {
+      ++(is_on_its_ground(record.id) ? on_its_ground : off_its_ground);
+    }
   }
-  constexpr int few = 3;  // at most one in three
-  return few * of_other_map <= since;
+  const bool is_confirmed = of_other_map >= 2 * options_.search.constellation.least_matches;
+  const int others = on_its_ground + (is_confirmed ? 0 : off_its_ground);
+  constexpr int few = 2;  // of the map, at most one in three
+  return few * of_other_map <= others;
 }
 
 /// As it was before it was placed.

@@ -19,6 +19,9 @@ class PlaceSearch {
   /// Whether it covers any ground.
   bool can_be_asked() const { return index_.looked_at_m2() > 0.0; }
 
+  /// Whether a landmark there would be on the map.
+  bool covers(const Eigen::Vector2d& point_m) const { return index_.has_looked_at(point_m); }
+
   /// The answer to the next question after `before`, also as a decision (nothing merged yet).
   relocalize::Answer ask(const relocalize::Question& question, const Asked& before,
                          core::PlacedDecision& decision) const;

@@ -17,7 +17,9 @@ core::JointMap mapped() {
   const core::Recording run = sim::simulate(wide_circuit(), 1);
   Navigator navigator(run.start);
   drive(run, navigator, [&](const core::Scan& scan, std::size_t) { navigator.observe(scan); });
-  return joint_map(navigator.filter(), navigator.map());
+  core::JointMap map = joint_map(navigator.filter(), navigator.map());
+  map.states.assign(map.joint.ids.size(), core::LandmarkState::mature);
+  return map;
 }
 
 /// Moved and turned as a whole by an error of metres, as far from the start of a long drive.
@@ -62,6 +64,22 @@ TEST(BegunAt, TheLandmarksStayAsTheyWereAndThePoseSharesTheirErrors) {
   const core::PoseGaussian on_map = pose_on_map(cekf::CompressedEkf(begun.joint, begun.next_name, {}), begun.next_name);
   EXPECT_EQ(on_map.mean.vector(), some_pose().mean.vector());
   EXPECT_LT((on_map.covariance - some_pose().covariance).norm(), 1e-8);
+}
+
+TEST(BegunAt, TentativeLandmarksAreLeftOut) {
+  core::JointMap map = mapped();
+  ASSERT_GT(map.joint.ids.size(), 6u);
+  map.states.assign(map.joint.ids.size(), core::LandmarkState::mature);
+  map.states[1] = map.states[4] = core::LandmarkState::tentative;
+  const core::JointMap begun = begun_at(map, some_pose());
+  ASSERT_EQ(begun.joint.ids.size(), map.joint.ids.size() - 2);
+  EXPECT_EQ(begun.joint.ids[1], map.joint.ids[2]);
+  EXPECT_EQ(begun.joint.points_m[4], map.joint.points_m[6]);
+  EXPECT_EQ(begun.observations[4], map.observations[6]);
+  EXPECT_TRUE(begun.has_covariance());
+  const Eigen::Matrix2d kept = begun.joint.covariance.block<2, 2>(3 + 2 * 4, 3 + 2 * 1);
+  const Eigen::Matrix2d before = map.joint.covariance.block<2, 2>(3 + 2 * 6, 3 + 2 * 2);
+  EXPECT_EQ(kept, before);
 }
 
 /// Seeing old landmarks says nothing about where the map lies in its frame.

@@ -62,6 +62,7 @@ class MapIndex {
   std::size_t size() const;
   bool contains(core::LandmarkId id) const;
   double looked_at_m2() const;
+  bool has_looked_at(const Eigen::Vector2d& point_m) const;
   std::size_t triangles() const;
   std::size_t memory_bytes() const;
 

@@ -24,7 +24,8 @@ core::JointMap joint_map(core::JointGaussian joint, core::LandmarkId next_name,
 core::JointMap factored_map(const atlas::Atlas& drive, core::LandmarkId next_name,
                             const std::vector<core::MapLandmark>& landmarks, FactoredMap how = FactoredMap::whole);
 /// The map as a session continues in it from a pose on it that was given, with its covariance (x, y, heading) relative to
-/// the nearest dozen landmarks: it shares their errors, and says nothing about where in the frame they are. O(N).
+/// the nearest dozen landmarks: it shares their errors, and says nothing about where in the frame they are. Tentative
+/// landmarks are left out. O(N), with a joint covariance O(N²).
 /// Test: supervisor/placing/begun_at_test.cpp.
 core::JointMap begun_at(core::JointMap map, const core::PoseGaussian& pose);
 /// PreconditionError for a joined map, since no session can continue from the pose in it.
