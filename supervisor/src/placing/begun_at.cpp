@@ -13,7 +13,7 @@ namespace helixnav::supervisor {
 namespace {
 
 template <class Value>
-void keep(const std::vector<std::size_t>& which, std::vector<Value>& values) {
+void keep_those(const std::vector<std::size_t>& which, std::vector<Value>& values) {
   if (values.empty()) return;
   std::vector<Value> kept;
   for (const std::size_t i : which) kept.push_back(values[i]);
@@ -33,12 +33,12 @@ void forget_tentative(core::JointMap& map) {
   }
   if (mature.size() == map.joint.ids.size()) return;
   if (map.has_covariance()) map.joint.covariance = map.joint.covariance(rows, rows).eval();
-  keep(mature, map.joint.ids);
-  keep(mature, map.joint.points_m);
-  keep(mature, map.states);
-  keep(mature, map.observations);
-  keep(mature, map.appearances);
-  keep(mature, map.covariances_m2);
+  keep_those(mature, map.joint.ids);
+  keep_those(mature, map.joint.points_m);
+  keep_those(mature, map.states);
+  keep_those(mature, map.observations);
+  keep_those(mature, map.appearances);
+  keep_those(mature, map.covariances_m2);
   if (map.factors == nullptr) return;
   auto factors = std::make_shared<core::MapFactors>(*map.factors);
   keep_names(map.joint.ids, *factors);
