@@ -179,7 +179,7 @@ TEST_F(EarlierMap, APoseGivenOnThePresentMapKeepsItsLandmarks) {
     EXPECT_LT((after[i].point.mean_m - before[i].point.mean_m).norm(), 0.02) << "the drive until then is solved";
     EXPECT_EQ(after[i].state, before[i].state);
   }
-  EXPECT_EQ(RunAccess::pose(builder).mean.vector(), pose_.mean.vector());
+  EXPECT_LT((RunAccess::pose(builder).mean.vector() - pose_.mean.vector()).norm(), 1e-3);
   const Poses poses = built_from(builder, today_, skipped);
   const core::Pose2& truth = today_.true_poses.back().T_world_robot;
   EXPECT_LT((poses.back().mean.position_m() - truth.position_m()).norm(), 0.8);
