@@ -33,16 +33,18 @@ cekf::CompressedEkf filter_of(const DriveMap& both, const std::vector<LandmarkId
   return {both.atlas().joint(ids), like.next_name(), like.options()};
 }
 
-/// What the solution shows to be one: of the session and the map, then of either.
+/// What the solution shows to be one: of the session and the map, then of either. There the noise between two drives does not count:
+/// twin stems stand no farther apart than a few of its standard deviations.
 Closing more_pairs(cekf::CompressedEkf filter, const std::vector<LandmarkId>& of_map,
-                   const std::vector<LandmarkId>& of_session, const SearchOptions& across) {
+                   const std::vector<LandmarkId>& of_session, const SearchOptions& within,
+                   const SearchOptions& across) {
   const core::JointGaussian earlier = filter.joint(of_map);
   const SessionLeftovers left(filter, earlier, of_session, across);
   Closing closing;
   left.merge_one_by_one(filter, closing);
   if (!closing.merged.empty()) return closing;
-  KeptRemoved twice = mapped_twice(filter, filter.landmarks(), across);
-  if (!twice.empty() && make_compatible(filter, across, twice, closing)) note(twice, closing);
+  KeptRemoved twice = mapped_twice(filter, filter.landmarks(), within);
+  if (!twice.empty() && make_compatible(filter, within, twice, closing)) note(twice, closing);
   return closing;
 }
 
@@ -63,7 +65,8 @@ bool is_contradicted(double chi2, std::size_t pairs, const SearchOptions& option
 
 std::optional<JoinedDrives> join_drives(const DriveMap& map, const std::vector<LandmarkId>& of_map,
                                         const DriveMap& session, const std::vector<LandmarkId>& of_session,
-                                        const JoinedMaps& joined, const SearchOptions& across) {
+                                        const JoinedMaps& joined, const SearchOptions& within,
+                                        const SearchOptions& across) {
   constexpr int most_rounds = 10;
   try {
     DriveMap both = map.followed_by(session, joined.T_map_session, joined.closing.merged);
@@ -71,7 +74,7 @@ std::optional<JoinedDrives> join_drives(const DriveMap& map, const std::vector<L
     std::vector<LandmarkId> old = of_map, left = left_of(of_session, closing.merged);
     cekf::CompressedEkf filter = filter_of(both, old, left, joined.filter);
     for (int round = 0; round < most_rounds; ++round) {
-      const Closing more = more_pairs(filter, old, left, across);
+      const Closing more = more_pairs(filter, old, left, within, across);
       if (more.merged.empty()) break;
       both.merge(more.merged);
       both.settle();

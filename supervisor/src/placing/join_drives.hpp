@@ -18,10 +18,11 @@ struct JoinedDrives {
 
 /// Two maps that were joined to first order, solved together as drives, one behind the other. Where maps are bent against each other
 /// by as much as a landmark's spacing, many pairs are found only now: they are merged as they become clear, and everything is
-/// solved again, with what either map has twice. `of_map`, `of_session`: landmarks of each, ascending. Nothing if the drives cannot be solved together, or contradict
+/// solved again, with what either map has twice. `of_map`, `of_session`: landmarks of each, ascending. `across`: for pairs of both maps (across_sessions), `within`: of one. Nothing if the drives cannot be solved together, or contradict
 /// each other: the first-order join remains. Test: supervisor/placing/join_drives_test.cpp.
 std::optional<JoinedDrives> join_drives(const DriveMap& map, const std::vector<core::LandmarkId>& of_map,
                                         const DriveMap& session, const std::vector<core::LandmarkId>& of_session,
-                                        const JoinedMaps& joined, const SearchOptions& across);
+                                        const JoinedMaps& joined, const SearchOptions& within,
+                                        const SearchOptions& across);
 
 }  // namespace helixnav::supervisor

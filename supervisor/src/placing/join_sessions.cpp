@@ -171,11 +171,12 @@ void take_in(const EarlierMap& session, const JoinedMaps& joined, JoinedSession&
 /// If both hold factors, what was joined to first order becomes the solution of both drives. The factors of both, or null.
 std::shared_ptr<const core::MapFactors> solve_together(const EarlierMap& earlier, const core::JointMap& session,
                                                        const std::vector<LandmarkId>& of_session,
-                                                       const SearchOptions& across, JoinedMaps& joined) {
+                                                       const SearchOptions& within, const SearchOptions& across,
+                                                       JoinedMaps& joined) {
   const std::shared_ptr<const DriveMap> drive = drive_of(session, earlier.next_name());
   if (earlier.drive() == nullptr || drive == nullptr) return nullptr;
   std::optional<JoinedDrives> solved =
-      join_drives(*earlier.drive(), earlier.landmarks().ids, *drive, of_session, joined, across);
+      join_drives(*earlier.drive(), earlier.landmarks().ids, *drive, of_session, joined, within, across);
   if (!solved) return nullptr;
   joined = std::move(solved->maps);
   return solved->factors;
@@ -217,7 +218,7 @@ bool place_in(const core::JointMap& session_map, const std::function<void()>& no
     if (!joined.closing.accepted) continue;
     now_and_then();
     const SearchOptions across = across_sessions(options.search, lengths.pair_noise_m, place.pairs.size());
-    auto factors = solve_together(earlier, session_map, joint.ids, across, joined);
+    auto factors = solve_together(earlier, session_map, joint.ids, options.search, across, joined);
     note(joined.closing, result.decision);
     result.T_component_session = core::compose(joined.filter.pose().mean, core::inverse(session_map.joint.pose));
     result.decision.T_map_session = result.T_component_session;

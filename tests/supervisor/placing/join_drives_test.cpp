@@ -91,7 +91,7 @@ TEST(JoinDrives, IsNothingWhereTheDrivesContradictEachOther) {
     wrong.closing.merged.push_back({monday.joint.ids[i], other.joint.ids[(5 * i + 7) % other.joint.ids.size()]});
   }
   wrong.closing.accepted = true;
-  EXPECT_FALSE(join_drives(*drive, monday.joint.ids, session, other.joint.ids, wrong, {}).has_value());
+  EXPECT_FALSE(join_drives(*drive, monday.joint.ids, session, other.joint.ids, wrong, {}, {}).has_value());
 }
 
 }  // namespace
