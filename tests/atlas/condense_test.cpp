@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -132,6 +138,75 @@ TEST(Condense, LeavesNoPhaseThatNothingHolds) {
   }
   const Eigen::MatrixXd lost = condensed.joint(all_of(whole)).covariance - whole.joint(all_of(whole)).covariance;
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(lost).eigenvalues()[0], -1e-8 * lost.trace());
+}
+
+/// A drive that has a map of its own in some of its phases, of which one landmark is on the first map, too; the others see old ground.
+struct ApartInPhases {
+  testing::SmallDrive drive;
+  std::vector<MergePair> same;
+  std::vector<core::LandmarkId> own;
+};
+
+ApartInPhases apart_in(const std::vector<std::size_t>& phases, testing::SmallDrive drive) {
+  constexpr core::LandmarkId seen_again = 100, of_its_own = 200;
+  ApartInPhases apart{std::move(drive), {}, {}};
+  std::set<core::LandmarkId> again, own;
+  for (std::size_t k = 0; k < apart.drive.logs.size(); ++k) {
+    const bool is_apart = std::find(phases.begin(), phases.end(), k) != phases.end();
+    const auto rename = [&](std::vector<SeenLandmark>& seen) {
+      for (SeenLandmark& one : seen) {
+        one.id += is_apart ? of_its_own : seen_again;
+        (is_apart ? own : again).insert(one.id);
+      }
+    };
+    rename(apart.drive.logs[k]->seen_at_entry);
+    for (LoggedStep& step : apart.drive.logs[k]->steps) rename(step.seen);
+  }
+  for (const core::LandmarkId id : again) apart.same.emplace_back(id, id - seen_again);
+  apart.same.emplace_back(*own.begin(), *own.begin() - of_its_own);
+  apart.own.assign(std::next(own.begin()), own.end());
+  return apart;
+}
+
+/// The map of eight rounds with that drive behind it; what is between the two is not known.
+Atlas followed(const ApartInPhases& apart, const testing::SmallDriveOptions& rounds, int laps_kept) {
+  Options options;
+  options.laps_kept = laps_kept;
+  Atlas map({}, options);
+  for (const auto& log : testing::make_small_drive(36, rounds).logs) testing::add_phase(map, log);
+  RelativeGaussian gap;
+  gap.mean = core::inverse(map.pose()).vector();
+  gap.vector = Eigen::Vector3d::Zero();
+  gap.information = Eigen::Vector3d(1e-8, 1e-8, 0.01).asDiagonal();
+  Atlas both = map.followed_by(gap, testing::driven(apart.drive, Options()));
+  both.merge(apart.same);
+  both.condense();
+  both.settle();
+  return both;
+}
+
+/// A part of the drive that only the drive itself and one landmark tie to the map was free to turn about that landmark: across the gap
+/// between two drives nothing is tied, and two pieces of it held each other. The standard deviations were 100 m and more.
+TEST(Condense, LeavesTiedWhatOnlyTheDriveTies) {
+  testing::SmallDriveOptions options;
+  options.noise = 0.0;
+  options.steps_per_phase = 3;
+  testing::SmallDriveOptions rounds = options;
+  rounds.rounds = 8;
+  rounds.steps = 8 * 49;
+  options.rounds = 1;
+  options.steps = 49;
+  for (std::size_t last = 2; last < 10; ++last) {
+    std::vector<std::size_t> phases{
+        last};  // and those before, but for one that saw old ground, except in the first case
+    for (std::size_t k = 0; k + 1 < last; ++k) phases.push_back(k);
+    if (last == 2) phases.push_back(1);
+    const ApartInPhases apart = apart_in(phases, testing::make_small_drive(36, options));
+    const Atlas whole = followed(apart, rounds, 1000), condensed = followed(apart, rounds, 1);
+    EXPECT_GT(condensed.size().condensed, whole.size().condensed + 40);
+    const double exact = whole.joint(apart.own).covariance.trace();
+    EXPECT_LT(condensed.joint(apart.own).covariance.trace(), 3.0 * exact) << "until phase " << last;
+  }
 }
 
 /// NEES of three landmarks and the last pose, in the map frame. Bands are exceeded with probability 1e-4; conservative covariances

@@ -98,6 +98,7 @@ bool condense_phase(State& state, int phase, int end) {
   if (!std::all_of(floating.begin(), floating.end(), [&](const Run& run) { return can_be_dropped(state, run, end); })) {
     return false;
   }
+  if (!hold_each_other_without(state, phase)) return false;
   bring_ground_along(state, phase);
   for (const Run& run : floating) {
     for (int one = run.first; one <= run.last; ++one) bring_ground_along(state, one);
