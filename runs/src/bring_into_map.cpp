@@ -27,6 +27,11 @@ void move(const core::Pose2& T_final_reported, core::StepReport& step) {
   for (core::Pose2& pose : step.cloud) pose = core::compose(T_final_reported, pose);
 }
 
+/// Up to a place that turned out to be wrong and beyond it, the part is solved in the frame with which it began.
+void drive_again(const core::Pose2& T_final_part, std::size_t first, std::vector<FrameOfStep>& frames) {
+  for (std::size_t k = first; k < frames.size(); ++k) frames[k].T_final_solved = T_final_part;
+}
+
 }  // namespace
 
 bool has_found_place(const Run& run) {
@@ -48,9 +53,14 @@ std::vector<FrameOfStep> frames_of(const Run& run) {
         part = carried->part;
         ++times_carried;
         const std::size_t scans = std::min(frames.size(), static_cast<std::size_t>(std::max(0, carried->scans)));
-        for (std::size_t k = frames.size() - scans; k < frames.size(); ++k) {
+        const std::size_t first = frames.size() - scans;
+        for (std::size_t k = first; k < frames.size(); ++k) {
           frames[k].part = part;
           frames[k].times_carried = times_carried;
+        }
+        if (carried->cause == core::CarriedDecision::Cause::wrong_place && scans > 0) {
+          drive_again(frames[first].T_final_solved, first, frames);
+          T_reported_solved = frames[first].T_final_solved;
         }
       }
       const core::PlacedDecision* placing = placing_in(decision);

@@ -38,6 +38,38 @@ TEST(FinalPath, IsEmptyWhereNothingWasSolved) {
   EXPECT_TRUE(run.final_path.empty());
 }
 
+core::PlacedDecision placed_at(const core::Pose2& T_map_session) {
+  core::PlacedDecision placed;
+  placed.verdict = core::PlacedDecision::Verdict::accepted;
+  placed.T_map_session = T_map_session;
+  return placed;
+}
+
+/// A part that was driven again, because its first place was wrong, is solved in the frame with which it began. Its path came out as
+/// far off as that frame is from the map.
+TEST(FinalPath, OfAPartThatWasPlacedAgainIsInTheFrameOfTheMap) {
+  runs::Run run = along_x(6);
+  core::PlacedDecision sought;
+  sought.verdict = core::PlacedDecision::Verdict::sought;
+  run.steps[0].decisions.emplace_back(sought);
+  run.steps[2].decisions.emplace_back(placed_at({10.0, 0.0, 1.0}));
+  core::CarriedDecision again;
+  again.cause = core::CarriedDecision::Cause::wrong_place;
+  again.part = 2;
+  again.scans = 4;
+  const core::Pose2 T_map_session(20.0, 5.0, 0.5);
+  run.steps[4].decisions.emplace_back(again);
+  run.steps[4].decisions.emplace_back(placed_at(core::compose(T_map_session, core::inverse({10.0, 0.0, 1.0}))));
+  std::vector<core::StampedPose> solved;
+  for (int k = 0; k < 5; ++k) solved.push_back({k * 1'000'000'000LL, {1.0 * k, 0.0, 0.0}});
+  correct_path(run, solved);
+  ASSERT_EQ(run.final_path.size(), 6u);
+  for (std::size_t k = 0; k < 5; ++k) {
+    const core::Pose2 expected = core::compose(T_map_session, solved[k].T_world_robot);
+    EXPECT_LT((run.final_path[k].position_m() - expected.position_m()).norm(), 1e-9) << k;
+  }
+}
+
 TEST(FinalPath, OfAClosingIsWrittenReadAndJudged) {
   const testing::TemporaryFolder folder;
   const std::string path = (folder.path() / "run").string();
