@@ -67,6 +67,7 @@ void numbers(SystematicDecision& d, Visit&& visit) {
   visit("short_m", d.short_m);
   visit("nats", d.nats);
   visit("stretches", d.stretches);
+  visit("solved_again", d.solved_again);
 }
 
 template <class Visit>

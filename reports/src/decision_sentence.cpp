@@ -54,14 +54,18 @@ std::string sentence(const core::MovingDecision& d) {
 }
 
 std::string sentence(const core::SystematicDecision& d) {
+  const bool is_whole = d.solved_again != 0;
   if (const std::string errors = systematic_errors_text(d); errors.empty()) {
-    return "What had been taken out of odometry and detections was put back, since it has changed: without, " +
+    return "What had been taken out of odometry and detections was put back" +
+           std::string(is_whole ? "" : " from here on") + ", since it has changed: without, " +
            short_number(d.stretches) + " stretches of the drive are explained " + short_number(d.nats) +
            " nats better than before.";
   }
   return "Odometry and detections contradict each other in the same way throughout: " + systematic_errors_text(d) +
          ". This explains " + short_number(d.stretches) + " stretches of the drive " + short_number(d.nats) +
-         " nats better than before. It was taken out of the whole drive.";
+         " nats better than before. It " +
+         (is_whole ? "was taken out of the whole drive."
+                   : "is taken out from here on; what was mapped before still has its effect.");
 }
 
 std::string sentence(const core::NoiseDecision& d) {

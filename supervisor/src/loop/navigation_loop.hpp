@@ -293,6 +293,7 @@ class NavigationLoop {
   // loop/recover.cpp
   template <class Call>
   auto all_or_nothing(const Call& call);
+  Tape::Position oldest_needed() const;
   void commit();
   void thin_coverage();
   void recover();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <new>
+#include <optional>
 #include <tuple>
 #include <utility>
 #include <variant>
@@ -17,6 +18,14 @@ const Checkpoint& NavigationLoop::checkpoint() const {
   return open != nullptr ? open->trigger : *std::get<Mapping>(mode_).trusted;
 }
 
+/// On the tape: for rolling back, and to learn from the present stretch of road, unless the vehicle stays on it for long.
+Tape::Position NavigationLoop::oldest_needed() const {
+  constexpr Tape::Position most_entries = 2000;
+  const Tape::Position position = checkpoint().position;
+  const std::optional<Tape::Position>& begun = noise_.systematic.begun;
+  return begun && *begun + most_entries > tape_.end() ? std::min(position, *begun) : position;
+}
+
 /// Frees what only an undone call would have needed.
 void NavigationLoop::commit() {
   undo_ = Undo{};
@@ -28,7 +37,7 @@ void NavigationLoop::commit() {
   const bool is_long = tape_.stops() > options_.search.smooth_up_to_scans || !tape_.holds_since(0);
   if (belief_.drive && is_long) tape_.hand_on(belief_.drive->end());
   forget_old_placing();
-  tape_.settle(checkpoint().position);
+  tape_.settle(oldest_needed());
   thin_coverage();
 }
 

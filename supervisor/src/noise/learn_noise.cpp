@@ -68,7 +68,7 @@ void NavigationLoop::solve_with_learnt_noise(core::StepReport& report) {
   noise_.fixes.applied = std::max(noise_.fixes.applied, noise_.fixes.in_update());
   core::NoiseDecision decision{std::sqrt(noise_.scale.odometry()), std::sqrt(noise_.scale.observations()),
                                std::sqrt(noise_.fixes.applied), 0};
-  if (tape_.holds_drive()) {
+  if (is_drive_known()) {
     Tape again = tape_.rescaled(observations, odometry);
     if (fixes_err_alike) again = again.with_wider_fixes(noise_.fixes.applied);
     decision.solved_again = solve_again(std::move(again), report) ? 1 : 0;
@@ -76,9 +76,9 @@ void NavigationLoop::solve_with_learnt_noise(core::StepReport& report) {
   report.decisions.emplace_back(decision);
 }
 
-/// The drive that the tape holds, had it been `again`. False if it cannot be solved: everything is as it was.
+/// The drive, had what the tape holds of it been `again`. False if it cannot be solved: everything is as it was.
 bool NavigationLoop::solve_again(Tape again, core::StepReport& report) {
-  auto drive = begun_drive();
+  auto drive = tape_.holds_drive() ? begun_drive() : std::make_shared<DriveMap>(*belief_.drive);
   if (belief_.drive) drive->remember(*belief_.drive);
   Smoothing smoothing;
   std::optional<cekf::CompressedEkf> solved;

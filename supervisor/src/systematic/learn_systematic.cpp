@@ -74,19 +74,18 @@ std::optional<StretchEvidence> evidence_between(const Tape& tape, Tape::Position
 
 }  // namespace
 
-/// While mapping, with nothing in question, as long as the whole map can be drawn again: not on an earlier map, nor once the
-/// atlas holds a part of the drive. A stretch is one reach of the sensor long, or ends where it is interrupted.
+/// While mapping, with nothing in question. A stretch is one reach of the sensor long, or ends where it is interrupted.
 void NavigationLoop::learn_systematic(core::StepReport& report) {
   SystematicState& systematic = noise_.systematic;
   const std::optional<double> reach_m = view_.reach();
-  const bool is_learning = options_.noise.systematic && reach_m && searching() == nullptr && tape_.holds_drive();
-  if (!is_learning || apart_.any()) {
+  if (!options_.noise.systematic || !reach_m || searching() != nullptr) {
     systematic.begun.reset();
     return;
   }
   const double path_m = belief_.existence.path_m();
   const Tape::Position end = tape_.end();
-  if (!systematic.begun || *systematic.begun > systematic.read || systematic.read > end) systematic.begin(end, path_m);
+  const bool is_on_tape = systematic.begun && tape_.holds_since(*systematic.begun) && systematic.read <= end;
+  if (!is_on_tape || *systematic.begun > systematic.read) systematic.begin(end, path_m);
   const Tape::Position until = first_interruption(tape_, std::exchange(systematic.read, end), end);
   if (until == end && path_m - systematic.begun_m < *reach_m) return;
   const auto evidence = evidence_between(tape_, *systematic.begun, until, *reach_m);
@@ -95,16 +94,20 @@ void NavigationLoop::learn_systematic(core::StepReport& report) {
   systematic.begin(tape_.end(), path_m);
 }
 
+/// Of the whole drive, or, on an earlier map and once the atlas holds a part of the drive, of what has not been taken into it: its
+/// phases do not say which of their measurements err. Where that is not known either, from now on.
 void NavigationLoop::take_out_systematic(core::StepReport& report) {
   SystematicLearner& learner = noise_.systematic.learner;
   const std::optional<CertainErrors> back = learner.contradicted();
   const std::optional<CertainErrors> found = back ? back : learner.certain();
-  if (!found || !solve_again(tape_.without(found->errors), report)) return;
+  if (!found) return;
+  const bool is_whole = tape_.holds_drive();
+  if (is_drive_known() && !solve_again(tape_.without(found->errors), report)) return;
   back ? learner.give_up(found->errors) : learner.take_out(found->errors);
   const SystematicErrors& all = learner.taken_out();
   report.decisions.emplace_back(core::SystematicDecision{all.too_long, all.turn_rad_per_s, all.turn_rad_per_m,
-                                                         all.heading_rad, all.short_m, found->nats,
-                                                         learner.stretches()});
+                                                         all.heading_rad, all.short_m, found->nats, learner.stretches(),
+                                                         is_whole ? 1 : 0});
 }
 
 }  // namespace helixnav::supervisor

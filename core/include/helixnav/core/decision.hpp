@@ -64,7 +64,7 @@ struct MovingDecision {
 };
 
 /// Odometry or detections err throughout the drive, and that was taken out of them (supervisor/systematic_errors.hpp has the
-/// same quantities). Totals since the beginning of the drive; what was driven before was solved again without them.
+/// same quantities). Totals since the beginning of the drive.
 struct SystematicDecision {
   double too_long = 0.0;        ///< odometry's distances, as a share of the true ones
   double turn_rad_per_s = 0.0;  ///< odometry turns too far to the left
@@ -73,6 +73,8 @@ struct SystematicDecision {
   double short_m = 0.0;         ///< missing from every range
   double nats = 0.0;  ///< by which what was added now explains the drive better than what was taken out before
   int stretches = 0;  ///< of the drive that it was found in, one reach of the sensor long
+  int solved_again =
+      1;  ///< 1: the drive until now was, without them; 0: not as a whole, and they are taken out from now on
 };
 
 /// The drive has shown other noise than was stated, and what was driven before was solved again with it, if it could be. Standard
