@@ -140,6 +140,41 @@ TEST(Condense, LeavesNoPhaseThatNothingHolds) {
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(lost).eigenvalues()[0], -1e-8 * lost.trace());
 }
 
+/// Seen at the end of a phase and at the beginning of the next one, a little to the side.
+void add_landmark_where_begins(std::size_t phase, core::LandmarkId id, testing::SmallDrive& drive) {
+  const auto pose = static_cast<std::size_t>(drive.pose_of_clone[phase]);
+  const Eigen::Vector2d point_m = core::transform(drive.truth[pose], Eigen::Vector2d(1.0, 3.0));
+  core::RandomStream none(1);
+  const auto seen_from = [&](std::size_t k) {
+    return SeenLandmark{id, core::Pose2(), testing::noisy_view(drive.truth[k], point_m, 0.0, none)};
+  };
+  drive.logs[phase - 1]->steps.back().seen.push_back(seen_from(pose));
+  drive.logs[phase]->steps.front().seen.push_back(seen_from(pose + 1));
+}
+
+/// What only a phase and the street before it had seen went with both, and the joint estimate with it was sought for ever.
+TEST(Condense, LeavesNoLandmarkThatNothingHolds) {
+  testing::SmallDriveOptions options;
+  options.rounds = 8;
+  options.steps = 8 * 49;
+  options.steps_per_phase = 4;
+  options.noise = 0.0;
+  options.bare_rad = 3.5;
+  testing::SmallDrive drive = testing::make_small_drive(35, options);
+  core::LandmarkId next = 100;
+  bool is_street = false;
+  for (std::size_t k = 20; k < drive.logs.size(); ++k) {
+    const bool was_street = std::exchange(is_street, landmarks_of(*drive.logs[k]).empty());
+    if (was_street && !is_street) add_landmark_where_begins(k, next++, drive);
+  }
+  ASSERT_GT(next, 103);
+  const Atlas condensed = condensed_drive(drive, 1);
+  EXPECT_GT(condensed.size().condensed, 40);
+  const std::vector<core::LandmarkId> ids = all_of(condensed);
+  EXPECT_EQ(ids.back(), next - 1);
+  EXPECT_TRUE(condensed.joint(ids).covariance.allFinite());
+}
+
 /// A drive that has a map of its own in some of its phases, of which one landmark is on the first map, too; the others see old ground.
 struct ApartInPhases {
   testing::SmallDrive drive;

@@ -105,6 +105,17 @@ TEST(Joint, HoldsALandmarkAsOftenAsItIsAskedFor) {
   EXPECT_EQ(twice.covariance, Eigen::MatrixXd(once.covariance(rows, rows)));
 }
 
+/// Sought for ever before.
+TEST(Joint, HoldsALandmarkUnderBothOfItsNames) {
+  Atlas atlas = testing::driven(testing::make_small_drive(11));
+  atlas.merge({{20, 3}});
+  atlas.settle();
+  const core::JointGaussian once = atlas.joint({3}), both = atlas.joint({20, 3});
+  ASSERT_EQ(both.ids, (std::vector<core::LandmarkId>{20, 3}));
+  const std::vector<Eigen::Index> rows{0, 1, 2, 3, 4, 3, 4};
+  EXPECT_EQ(both.covariance, Eigen::MatrixXd(once.covariance(rows, rows)));
+}
+
 TEST(Joint, OfAnUncertainStartHasItsCovarianceToo) {
   testing::SmallDrive drive = testing::make_small_drive(12);
   core::PoseGaussian start;

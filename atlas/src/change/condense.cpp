@@ -50,15 +50,6 @@ int host_for(const State& state, int phase) {
   return best.phase;
 }
 
-/// No landmark is held by the phase alone, except for those of the host.
-bool leaves_all_landmarks(const State& state, int phase, int host) {
-  const std::vector<int> kept = landmarks_of(state.leaf(host));
-  for (const int v : landmarks_of(state.leaf(phase))) {
-    if (state.phases_of[State::index(v)]->size() < 2 && !std::binary_search(kept.begin(), kept.end(), v)) return false;
-  }
-  return true;
-}
-
 /// How often the vehicle came, given the phases on some ground: consecutive ones are one visit, up to ten. Those before and after a
 /// phase also share most of its landmarks while the vehicle passes; where it stays or turns round and round, all do.
 int visits(const std::vector<int>& ground) {
@@ -78,36 +69,49 @@ bool has_fix(const State& state, int phase) {
   return std::any_of(parts.begin(), parts.end(), [](const Part& part) { return part.fix != nullptr; });
 }
 
-/// A run that floats and can be dropped without loss: no other phase has or needs what it has seen.
+/// A run that floats and holds nothing that is to stay.
 bool can_be_dropped(const State& state, const Run& run, int end) {
   for (int phase = run.first; phase <= run.last; ++phase) {
     if (phase == 0 || phase >= end || state.leaf(phase).revisits >= 0 || has_fix(state, phase)) return false;
-    for (const int v : landmarks_of(state.leaf(phase))) {
-      const std::vector<int>& phases = *state.phases_of[State::index(v)];
-      const auto is_inside = [&](int other) { return other >= run.first && other <= run.last; };
-      if (std::all_of(phases.begin(), phases.end(), is_inside)) return false;
-    }
   }
   return true;
 }
 
+/// The phase and the runs that go with it.
+std::vector<int> phases_that_go(int phase, const std::vector<Run>& floating) {
+  std::vector<int> go{phase};
+  for (const Run& run : floating) {
+    for (int one = run.first; one <= run.last; ++one) go.push_back(one);
+  }
+  std::sort(go.begin(), go.end());
+  return go;
+}
+
+/// No landmark is held by these alone.
+bool leave_all_landmarks(const State& state, const std::vector<int>& phases) {
+  const auto goes = [&](int phase) { return std::binary_search(phases.begin(), phases.end(), phase); };
+  return std::all_of(phases.begin(), phases.end(), [&](int phase) {
+    const std::vector<int> points = landmarks_of(state.leaf(phase));
+    return std::none_of(points.begin(), points.end(), [&](int v) {
+      const std::vector<int>& holders = *state.phases_of[State::index(v)];
+      return std::all_of(holders.begin(), holders.end(), goes);
+    });
+  });
+}
+
 bool condense_phase(State& state, int phase, int end) {
   const int host = host_for(state, phase);
-  if (host < 0 || !leaves_all_landmarks(state, phase, host)) return false;
+  if (host < 0) return false;
   const std::vector<Run> floating = floating_without(state, phase);
   if (!std::all_of(floating.begin(), floating.end(), [&](const Run& run) { return can_be_dropped(state, run, end); })) {
     return false;
   }
-  if (!hold_each_other_without(state, phase)) return false;
-  bring_ground_along(state, phase);
-  for (const Run& run : floating) {
-    for (int one = run.first; one <= run.last; ++one) bring_ground_along(state, one);
-  }
+  const std::vector<int> going = phases_that_go(phase, floating);
+  const bool is_host_going = std::binary_search(going.begin(), going.end(), host);
+  if (is_host_going || !leave_all_landmarks(state, going) || !hold_each_other_without(state, phase)) return false;
+  for (const int one : going) bring_ground_along(state, one);
   if (!take_in(state, host, phase)) return false;
-  take_out(state, phase, host);
-  for (const Run& run : floating) {
-    for (int one = run.first; one <= run.last; ++one) take_out(state, one, host);
-  }
+  for (const int one : going) take_out(state, one, host);
   return true;
 }
 

@@ -92,6 +92,9 @@ class PathSolve {
     std::vector<Index> rows;
     for (const int v : variables) {
       const auto found = std::lower_bound(column_of_.begin(), column_of_.end(), std::make_pair(v, Index{-1}));
+      if (found == column_of_.end() || found->first != v) {
+        throw core::NumericalError("atlas: nothing determines landmark " + std::to_string(state_.variable(v).name));
+      }
       for (int i = 0; i < state_.variable(v).dim; ++i) rows.push_back(found->second + i);
     }
     core::mirror_lower(P_.matrix());
@@ -246,42 +249,11 @@ MatrixXd seen_from_world(Joint joint, const Eigen::Vector3d& world, const Values
   return joint.take();
 }
 
-/// With rows and columns of landmarks as often as they are asked for, `places` among those of `joint`.
-core::JointGaussian repeated(const core::JointGaussian& joint, const std::vector<std::size_t>& places) {
-  core::JointGaussian all;
-  all.pose = joint.pose;
-  std::vector<Index> rows{0, 1, 2};
-  for (const std::size_t place : places) {
-    all.ids.push_back(joint.ids[place]);
-    all.points_m.push_back(joint.points_m[place]);
-    for (int i = 0; i < 2; ++i) rows.push_back(3 + 2 * static_cast<Index>(place) + i);
-  }
-  all.covariance = joint.covariance(rows, rows);
-  return all;
-}
-
-}  // namespace
-
-MatrixXd covariance_of(const State& state, const std::vector<int>& variables) {
-  return PathSolve(state, variables).covariance(variables).matrix();
-}
-
-core::JointGaussian Atlas::joint(const std::vector<core::LandmarkId>& ids) const {
-  std::vector<core::LandmarkId> once = ids;
-  std::sort(once.begin(), once.end());
-  once.erase(std::unique(once.begin(), once.end()), once.end());
-  if (once.size() < ids.size()) {
-    std::vector<std::size_t> places;
-    for (const core::LandmarkId id : ids) {
-      places.push_back(static_cast<std::size_t>(std::lower_bound(once.begin(), once.end(), id) - once.begin()));
-    }
-    return repeated(joint(once), places);
-  }
-  const State& state = *settled_;
-  std::vector<int> variables{state.variable_of_clone[State::index(phase_count())]};
-  for (const core::LandmarkId id : ids) variables.push_back(variable_of_named(state, id));
+/// Of the last clone and points, each once; without their names.
+core::JointGaussian joint_of(const State& state, const std::vector<int>& points, int last_clone) {
+  std::vector<int> variables{last_clone};
+  variables.insert(variables.end(), points.begin(), points.end());
   core::JointGaussian joint;
-  joint.ids = ids;
   Estimates estimates(state);
   const core::Pose2 T_map = T_map_atlas(state, estimates);
   Values values;
@@ -297,6 +269,47 @@ core::JointGaussian Atlas::joint(const std::vector<core::LandmarkId>& ids) const
   variables.insert(variables.begin(), state.world);
   joint.covariance = seen_from_world(PathSolve(state, variables).covariance(variables), estimates(state.world), values,
                                      T_map.heading_rad);
+  return joint;
+}
+
+/// With rows and columns of points as often as they are asked for, `places` among those of `joint`.
+core::JointGaussian repeated(const core::JointGaussian& joint, const std::vector<std::size_t>& places) {
+  core::JointGaussian all;
+  all.pose = joint.pose;
+  std::vector<Index> rows{0, 1, 2};
+  for (const std::size_t place : places) {
+    all.points_m.push_back(joint.points_m[place]);
+    for (int i = 0; i < 2; ++i) rows.push_back(3 + 2 * static_cast<Index>(place) + i);
+  }
+  all.covariance = joint.covariance(rows, rows);
+  return all;
+}
+
+}  // namespace
+
+MatrixXd covariance_of(const State& state, const std::vector<int>& variables) {
+  return PathSolve(state, variables).covariance(variables).matrix();
+}
+
+core::JointGaussian Atlas::joint(const std::vector<core::LandmarkId>& ids) const {
+  const State& state = *settled_;
+  const int last_clone = state.variable_of_clone[State::index(phase_count())];
+  std::vector<int> asked;
+  for (const core::LandmarkId id : ids) asked.push_back(variable_of_named(state, id));
+  std::vector<int> once = asked;  // the names of merged landmarks refer to one
+  std::sort(once.begin(), once.end());
+  once.erase(std::unique(once.begin(), once.end()), once.end());
+  core::JointGaussian joint;
+  if (once.size() == asked.size()) {
+    joint = joint_of(state, asked, last_clone);
+  } else {
+    std::vector<std::size_t> places;
+    for (const int v : asked) {
+      places.push_back(static_cast<std::size_t>(std::lower_bound(once.begin(), once.end(), v) - once.begin()));
+    }
+    joint = repeated(joint_of(state, once, last_clone), places);
+  }
+  joint.ids = ids;
   return joint;
 }
 
