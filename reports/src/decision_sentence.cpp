@@ -279,6 +279,10 @@ std::string sentence(const core::PlacedDecision& d) {
     case core::PlacedDecision::Verdict::ambiguous:
       return "Not placed" + after + "a place fits, and others may as well: " + evidence_of(d) + '.';
     case core::PlacedDecision::Verdict::refused:
+      if (d.cost <= d.limit) {
+        return "Not placed" + after + "the drive could not be solved together with that of the map. " + evidence_of(d) +
+               '.';
+      }
       return "Not placed" + after + "the pairs contradict each other, their joint cost " + short_number(d.cost) +
              " exceeds " + short_number(d.limit) + ". " + evidence_of(d) + '.';
     case core::PlacedDecision::Verdict::not_here:

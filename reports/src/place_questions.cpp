@@ -35,7 +35,10 @@ std::string answer_text(const core::PlacedDecision& d) {
   if (d.pairs == 0) return question + "they agree with no place on the map.";
   const std::string pairs = std::to_string(d.pairs) + " of them agree with the map, with evidence" +
                             had(d.evidence, d.needed) + " and a lead over other places" + had(d.lead, d.needed);
-  return question + pairs + (d.verdict == Verdict::refused ? "; but the pairs contradict each other." : ".");
+  if (d.verdict != Verdict::refused) return question + pairs + ".";
+  return question + pairs +
+         (d.cost <= d.limit ? "; but the drive could not be solved together with the map's."
+                            : "; but the pairs contradict each other.");
 }
 
 }  // namespace

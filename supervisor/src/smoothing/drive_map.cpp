@@ -22,8 +22,6 @@ std::map<core::LandmarkId, int> sightings(const std::vector<Stop>& stops, const 
   return count;
 }
 
-constexpr double unknown_m = 1e4;  ///< of a gap between two drives
-
 /// A pose relative to landmarks, as a phase from where the drive ended that says nothing else: the error of the pose, less what
 /// the errors of the landmarks make of it, is that of the pose given.
 atlas::PhaseFactor phase_to(const core::JointMap::Given& given, const atlas::Atlas& atlas) {
@@ -114,11 +112,13 @@ DriveMap DriveMap::of_earlier(const core::JointMap& earlier, double phase_m) {
   return map;
 }
 
-/// The gap says next to nothing, so that what is known of the place comes from the pairs.
+/// The gap says next to nothing, so that what is known of the place comes from the pairs: it is ten phases wide about a place that is
+/// known to a fraction of one. Much wider, and the drive before it is merged would be left with less than rounding leaves of it.
 DriveMap DriveMap::followed_by(const DriveMap& drive, const core::Pose2& T_map_drive,
                                const std::vector<core::MergedLandmarks>& merged) const {
   atlas::RelativeGaussian gap;
-  const double per_m2 = 1.0 / (unknown_m * unknown_m);
+  const double wide_m = 10.0 * phase_m_;
+  const double per_m2 = 1.0 / (wide_m * wide_m);
   gap.information = Eigen::Vector3d(per_m2, per_m2, 0.01).asDiagonal();
   gap.vector = Eigen::Vector3d::Zero();
   const core::Pose2 T_map_first = core::compose(T_map_drive, drive.atlas_.clone(0));
