@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <variant>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct OpenSearch {
   enum class End { none, undecided, new_ground };
   End end = End::none;
   std::size_t from = 0, to = 0;  ///< steps [from, to)
+  bool is_lost = false;          ///< it began where everything in view had vanished
 };
 
 bool closed_in(const core::StepReport& step) {
@@ -26,6 +28,34 @@ bool closed_in(const core::StepReport& step) {
     const auto* closure = std::get_if<core::ClosureDecision>(&decision);
     return (closure != nullptr && closure->accepted) || core::begins_part(decision);
   });
+}
+
+bool begins_part_in(const core::StepReport& step) {
+  return std::any_of(step.decisions.begin(), step.decisions.end(), core::begins_part);
+}
+
+bool lost_by_slip(const core::StepReport& step) {
+  return std::any_of(step.decisions.begin(), step.decisions.end(), [](const core::Decision& decision) {
+    return std::holds_alternative<core::LostBySlipDecision>(decision);
+  });
+}
+
+/// [landmark] the step in which it began; those of an earlier map are not there.
+using Begins = std::map<core::LandmarkId, std::size_t>;
+
+void note_begun(const core::StepReport& step, std::size_t k, Begins& begins) {
+  for (const core::AssociationReport& a : step.associations) {
+    if (a.outcome == core::Outcome::augmented) begins.emplace(a.landmark, k);
+  }
+}
+
+/// Most of what a closing merged was known before the search.
+bool ties_to_before(const core::StepReport& step, const OpenSearch& search, const Begins& begins) {
+  const auto known = std::count_if(step.merged.begin(), step.merged.end(), [&](const core::MergedLandmarks& one) {
+    const auto begin = begins.find(one.kept);
+    return begin == begins.end() || begin->second < search.from;
+  });
+  return 2 * known > static_cast<std::ptrdiff_t>(step.merged.size());
 }
 
 OpenSearch::End end_in(const core::StepReport& step) {
@@ -36,19 +66,50 @@ OpenSearch::End end_in(const core::StepReport& step) {
   return OpenSearch::End::none;
 }
 
-/// Those after the last closing; the one open at the end is the last.
+/// As supervisor/slip/untied: as many landmarks as a place needs were known before and seen after it, and they are not few.
+bool is_tied_again_after(const OpenSearch& search, const runs::Run& run, const Begins& begins) {
+  std::set<core::LandmarkId> seen;
+  for (std::size_t k = search.to; k < run.steps.size(); ++k) {
+    for (const core::AssociationReport& a : run.steps[k].associations) {
+      if (a.outcome == core::Outcome::matched || a.outcome == core::Outcome::augmented) seen.insert(a.landmark);
+    }
+  }
+  const auto known = std::count_if(seen.begin(), seen.end(), [&](core::LandmarkId id) {
+    const auto begin = begins.find(id);
+    return begin == begins.end() || begin->second < search.from;
+  });
+  constexpr std::ptrdiff_t least = 5, few = 3;
+  return known >= least && few * known > static_cast<std::ptrdiff_t>(seen.size());
+}
+
+/// Those that no closing decided afterwards; the one open at the end is the last. Where the vehicle was lost, a closing of what was
+/// mapped since then decides nothing.
 std::vector<OpenSearch> open_searches(const runs::Run& run) {
   std::vector<OpenSearch> found;
-  std::optional<std::size_t> begun;
+  std::optional<OpenSearch> open;
+  Begins begins;
   for (std::size_t k = 0; k < run.steps.size(); ++k) {
     const core::StepReport& step = run.steps[k];
     const OpenSearch::End end = end_in(step);
-    if (step.mode == core::Mode::searching && !begun) begun = k;
-    if (closed_in(step)) found.clear();
-    if (begun && end != OpenSearch::End::none) found.push_back({end, *begun, k + 1});
-    if (closed_in(step) || end != OpenSearch::End::none || step.mode == core::Mode::mapping) begun.reset();
+    note_begun(step, k, begins);
+    if (step.mode == core::Mode::searching && (!open || lost_by_slip(step))) {
+      open = OpenSearch{OpenSearch::End::none, k, k, lost_by_slip(step)};
+    }
+    if (closed_in(step)) {
+      const auto is_decided = [&](const OpenSearch& search) {
+        return !search.is_lost || begins_part_in(step) || ties_to_before(step, search, begins);
+      };
+      found.erase(std::remove_if(found.begin(), found.end(), is_decided), found.end());
+    }
+    if (open && end != OpenSearch::End::none) found.push_back({end, open->from, k + 1, open->is_lost});
+    if (closed_in(step) || end != OpenSearch::End::none || step.mode == core::Mode::mapping) open.reset();
   }
-  if (begun) found.push_back({OpenSearch::End::none, *begun, run.steps.size()});
+  if (open) found.push_back({OpenSearch::End::none, open->from, run.steps.size(), open->is_lost});
+  const auto is_over = [&](const OpenSearch& search) {
+    return search.is_lost && is_tied_again_after(search, run, begins);
+  };
+  found.erase(std::remove_if(found.begin(), found.end(), is_over), found.end());
+  for (OpenSearch& search : found) search.to = search.is_lost ? run.steps.size() : search.to;
   return found;
 }
 
@@ -136,6 +197,13 @@ std::string text_of(const OpenSearch& search, const Begun& begun, const runs::Ru
   return {};
 }
 
+std::string lost_text(const OpenSearch& search, const runs::Run& run) {
+  return "everything in view vanished at " + short_number(core::seconds(run.steps[search.from].t_ns)) +
+         " s, as when a vehicle is carried, and where it is on what was mapped before was not decided since: its pose "
+         "from then on may be anywhere there, and " +
+         twice_text(begun_in(search, run), "since") + "; 'helixnav explain RUN' has the numbers";
+}
+
 /// It began because the pose had turned out to be wrong, not because it was about to become ambiguous.
 bool began_lost(const core::StepReport& step) {
   return std::any_of(step.decisions.begin(), step.decisions.end(), [](const core::Decision& decision) {
@@ -160,6 +228,8 @@ std::string still_open_text(const std::vector<OpenSearch>& searches, const runs:
 std::string open_search_text(const runs::Run& run) {
   const std::vector<OpenSearch> searches = open_searches(run);
   if (runs::only_localized(run)) return still_open_text(searches, run);
+  const auto lost = std::find_if(searches.begin(), searches.end(), [](const OpenSearch& s) { return s.is_lost; });
+  if (lost != searches.end() && lost->end == OpenSearch::End::undecided) return lost_text(*lost, run);
   constexpr std::size_t several = 3;
   for (auto search = searches.rbegin(); search != searches.rend(); ++search) {
     const Begun begun = begun_in(*search, run);

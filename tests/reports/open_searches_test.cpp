@@ -65,6 +65,33 @@ TEST(OpenSearches, AreSaidWhereTheLastEndedUndecided) {
   EXPECT_TRUE(open_search_text(run).empty());
 }
 
+/// Everything vanished where the search began; it ended undecided, and the last step closes a loop.
+runs::Run lost_run(core::LandmarkId merged_with) {
+  runs::Run run = ended(searching_run(50.0), core::UndecidedDecision{});
+  run.steps[turn].decisions = {core::LostBySlipDecision{}};
+  core::ClosureDecision closed;
+  closed.accepted = true;
+  run.steps.back().decisions = {closed};
+  run.steps.back().merged = {{merged_with, static_cast<core::LandmarkId>(steps - 1)}};
+  return run;
+}
+
+/// It was silent before: a carried vehicle that closes loops in its own copies of the map is as lost as before.
+TEST(OpenSearches, OfALostVehicleAreNotDecidedByALoopInWhatItMappedSince) {
+  const std::string text = open_search_text(lost_run(turn + 5));
+  EXPECT_NE(text.find("everything in view vanished at 20 s"), std::string::npos) << text;
+  EXPECT_NE(text.find("20 landmarks mapped since"), std::string::npos) << text;
+  EXPECT_TRUE(open_search_text(lost_run(turn - 5)).empty()) << "closed with what was known before";
+}
+
+TEST(OpenSearches, OfALostVehicleAreOverWhenItSeesEnoughOfWhatWasKnown) {
+  runs::Run run = lost_run(turn + 5);
+  core::AssociationReport known;
+  known.outcome = core::Outcome::matched;
+  for (known.landmark = 0; known.landmark < 5; ++known.landmark) run.steps.back().associations.push_back(known);
+  EXPECT_TRUE(open_search_text(run).empty()) << open_search_text(run);
+}
+
 TEST(OpenSearches, DoubtNewGroundOnlyWhereOldLandmarksStand) {
   const std::string doubted = open_search_text(ended(searching_run(0.1), core::NewGroundDecision{}));
   EXPECT_NE(doubted.find("as on new ground"), std::string::npos) << doubted;

@@ -9,6 +9,7 @@
 #include "closing/tied_by_view.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 #include "loop/navigation_loop.hpp"
+#include "slip/untied.hpp"
 
 namespace helixnav::supervisor {
 
@@ -125,7 +126,9 @@ void NavigationLoop::accept(const Closing& closing, const ClosingView& view, Ste
   for (const core::MergedLandmarks& one : closing.merged) belief_.existence.merge(one.kept, one.removed);
   for (const LandmarkId id : closing.forgotten) belief_.existence.remove(id);
   report.merged = closing.merged;
-  belief_.untied_since_m.reset();
+  if (belief_.untied_since_m && is_tied_by(closing.merged, belief_.existence, *belief_.untied_since_m)) {
+    belief_.untied_since_m.reset();
+  }
   tape_.append(Tape::Merge{closing.merged, closing.limit + closing.limit_of_leftovers});
   const double tied_m = view.tied_since_m;
   const core::FieldOfView field = view.scan.field_of_view;

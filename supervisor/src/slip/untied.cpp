@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slip/untied.hpp"
 
+#include <algorithm>
+
 #include "helixnav/core/angle.hpp"
 
 namespace helixnav::supervisor {
@@ -39,6 +41,14 @@ bool is_tied_again(const association::LandmarkLife& existence, double since_m) {
   constexpr int least = 5;  // pairs of a place
   constexpr int few = 3;    // at most one in three
   return known >= least && few * known > all;
+}
+
+bool is_tied_by(const std::vector<core::MergedLandmarks>& merged, const association::LandmarkLife& existence,
+                double since_m) {
+  const auto known = std::count_if(merged.begin(), merged.end(), [&](const core::MergedLandmarks& one) {
+    return existence.contains(one.kept) && was_known(existence.record(one.kept), since_m);
+  });
+  return 2 * known > static_cast<std::ptrdiff_t>(merged.size());
 }
 
 core::PoseGaussian pose_anywhere(const cekf::CompressedEkf& filter, const association::LandmarkLife& existence,

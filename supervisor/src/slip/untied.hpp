@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include "helixnav/association/landmark_life.hpp"
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/gaussian.hpp"
+#include "helixnav/core/step_report.hpp"
 
 namespace helixnav::supervisor {
 
@@ -11,6 +14,11 @@ namespace helixnav::supervisor {
 /// not few of all that was seen since. Then the vehicle slipped, and its pose holds as the filter has it. Test:
 /// supervisor/slip/untied_test.cpp.
 bool is_tied_again(const association::LandmarkLife& existence, double since_m);
+
+/// Whether a closing ties it: most of what it merged was known before. Where a lost vehicle returns to what it has mapped since it was
+/// lost, both are as lost as before. `merged`: the kept ones exist. Test: supervisor/slip/untied_test.cpp.
+bool is_tied_by(const std::vector<core::MergedLandmarks>& merged, const association::LandmarkLife& existence,
+                double since_m);
 
 /// The pose of a vehicle that may have been carried anywhere: nothing ties it to what was mapped before `since_m` of the drive. The mean is
 /// the filter's. The covariance is the filter's plus the second moment, about that mean, of where the vehicle may be: beside any landmark

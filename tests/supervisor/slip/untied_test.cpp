@@ -48,6 +48,12 @@ TEST(Untied, IsNotOverByChanceMatchesAmongManyUnknown) {
   EXPECT_FALSE(is_tied_again(seen_since({0, 1, 2, 3, 4}, begun), since_m)) << "5 of 15";
 }
 
+TEST(Untied, IsOverByAClosingOfWhatWasKnownBefore) {
+  const association::LandmarkLife life = seen_since({0, 1}, {10, 11, 12, 13});
+  EXPECT_TRUE(is_tied_by({{0, 20}, {1, 21}, {2, 22}, {10, 23}}, life, since_m));
+  EXPECT_FALSE(is_tied_by({{10, 20}, {11, 21}, {12, 22}, {0, 23}}, life, since_m)) << "a loop in what came since";
+}
+
 /// What a drive reports while it is untied, which its heading reveals: no other pose here is that uncertain.
 struct WhileUntied {
   int scans = 0;
