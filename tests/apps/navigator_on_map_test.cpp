@@ -159,6 +159,22 @@ TEST(NavigatorOnMap, GoesOnFromTheNavigatorsPoseAfterASlip) {
   }
 }
 
+// The navigator finds within a few scans that everything has vanished; the EKF was believed until nothing had confirmed it over a reach.
+TEST(NavigatorOnMap, StopsBelievingTheOldPlaceWhereEverythingVanished) {
+  int sure_and_wrong = 0, found = 0;
+  for (std::uint64_t seed = 61; seed <= 70; ++seed) {
+    WoodAndBareGround world(seed);
+    world.go(60.0, 2.0 * core::pi);
+    world.slip({-22.0, 17.0, 2.0});
+    world.go(40.0, 2.0 * core::pi);
+    const Judged drive = judged(world);
+    sure_and_wrong += drive.sure_and_wrong;
+    found += drive.last_error_m < 0.5;
+  }
+  EXPECT_LE(sure_and_wrong, 25);
+  EXPECT_GE(found, 9);
+}
+
 TEST(NavigatorOnMap, KeepsAStartThatIsRight) {
   WoodAndBareGround world(31);
   world.go(60.0, 2.0 * core::pi);

@@ -65,6 +65,12 @@ bool has_slipped(const core::StepReport& report) {
   });
 }
 
+bool is_lost_by_slip(const core::StepReport& report) {
+  return std::any_of(report.decisions.begin(), report.decisions.end(), [](const core::Decision& decision) {
+    return std::holds_alternative<core::LostBySlipDecision>(decision);
+  });
+}
+
 /// After what a step decided.
 bool is_placed_after(const std::vector<core::Decision>& decisions, bool is_placed) {
   for (const core::Decision& decision : decisions) {
@@ -121,7 +127,8 @@ core::StepReport NavigatorOnMap::observe(const core::Scan& scan) {
   if (tracker_) {
     core::StepReport tracked = tracker_->observe(scan);
     monitor_.observe(scan, tracked, driven_m);
-    const bool is_contradicted = !is_placed_ && !confirms(tracked);  // carried, as the navigator has found out
+    // Carried, or everything in view has vanished, as the navigator has found out.
+    const bool is_contradicted = (!is_placed_ || is_lost_by_slip(navigated)) && !confirms(tracked);
     if (!is_placed_ && !is_contradicted) track_from(tracked.pose);
     if (knows_better(navigated, tracked)) {
       track_from(navigator_.filter().pose());

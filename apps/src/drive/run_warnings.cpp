@@ -95,8 +95,13 @@ std::string doubted_start_text(const runs::Run& run) {
     return std::any_of(step.decisions.begin(), step.decisions.end(), reports::is_wrong_start);
   });
   if (was_wrong) {
-    return "the start given (--start) is wrong or off the map: what was seen does not fit the map there. It was "
-           "dropped, and the place searched for; 'helixnav explain' says when and with what result";
+    const bool is_given = run.manifest.command.find("--start") != std::string::npos;
+    const std::string what = is_given
+                                 ? "the start given (--start) is wrong or off the map"
+                                 : "the start that the log gives is wrong or off the map (--start unknown gives none)";
+    return what +
+           ": what was seen does not fit the map there. It was dropped, and the place searched for; 'helixnav explain' "
+           "says when and with what result";
   }
   const bool is_ambiguous = std::any_of(run.numbers.begin(), run.numbers.end(),
                                         [](const auto& number) { return number.first == start_is_ambiguous; });
