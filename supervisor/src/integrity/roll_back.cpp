@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Back to the trusted checkpoint; what came since is processed again in a search that begins there.
+#include <algorithm>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -11,6 +12,19 @@ namespace helixnav::supervisor {
 
 using core::StepReport;
 
+namespace {
+
+/// Length of the drive where a landmark known at `known_m` of it was last seen; no less than that.
+double last_seen_m(const association::LandmarkLife& existence, double known_m) {
+  double last_m = known_m;
+  for (const association::LandmarkRecord& record : existence.records()) {
+    if (record.born_path_m <= known_m) last_m = std::max(last_m, record.last_seen_path_m);
+  }
+  return last_m;
+}
+
+}  // namespace
+
 bool NavigationLoop::has_lost_its_place() const {
   const Mapping* mapping = std::get_if<Mapping>(&mode_);
   return mapping != nullptr && is_monitored() && mapping->monitor.is_lost(belief_.existence, options_.search.integrity);
@@ -20,11 +34,16 @@ StepReport NavigationLoop::roll_back_and_relocalise(const core::Scan& scan, Step
   const Mapping& mapping = std::get<Mapping>(mode_);
   const IntegrityMonitor::Evidence evidence = mapping.monitor.evidence(belief_.existence, options_.search.integrity);
   const Checkpoint trusted = *mapping.trusted;
+  const double last_known_m = last_seen_m(belief_.existence, trusted.existence.path_m());
   const auto scans = static_cast<int>(belief_.step - trusted.step);
   const core::LandmarkId next = belief_.filter.next_name();
   const std::vector<Tape::Entry>& since = undo_.rolled_back.emplace(tape_.cut(trusted.position));
   roll_back(trusted, belief_);
   belief_.filter.name_from(next);
+  constexpr int few = 4;
+  const bool is_lost =
+      few * evidence.seen <= evidence.missing;  // at most one in five of what should be seen, by chance
+  if (is_lost && !belief_.untied_since_m) belief_.untied_since_m = last_known_m;
   pending_.decisions = std::move(report.decisions);
   pending_.decisions.emplace_back(
       core::RollbackDecision{evidence.missing, evidence.seen, evidence.spawned, evidence.nats, scans});
