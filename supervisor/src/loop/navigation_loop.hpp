@@ -130,6 +130,12 @@ class NavigationLoop {
   void name_revised(core::StepReport& report) const;
 
   // slip/slip_in_scan.cpp
+  struct SeenAfterSlip {
+    double expected = 0.0, seen = 0.0;
+    double by_chance = 0.0;  ///< probability that one is matched elsewhere
+  };
+  SeenAfterSlip seen_after(const Slip& slip, const core::Scan& scan, const Confirmation& before);
+  bool is_rather_elsewhere(const Slip& slip, const core::Scan& scan, const Confirmation& before);
   bool allow_for_slip(const core::Scan& scan, const Confirmation& before, core::StepReport& report);
   std::optional<Slip> find_slip(const core::Scan& scan, const std::vector<core::AssociationReport>& fate) const;
   std::vector<SlipLandmark> landmarks_near(const core::Scan& scan) const;
