@@ -28,9 +28,16 @@ core::JointMap with_pose(core::JointMap map, const core::PoseGaussian& pose) {
   return map;
 }
 
+/// The EKF beside the navigator takes measurements as they are, so neither of them has constant errors taken out.
+supervisor::NavigatorOptions options_on_map(const Drive& job) {
+  supervisor::NavigatorOptions options = job.navigator;
+  options.noise.systematic = false;
+  return options;
+}
+
 /// In a frame of its own, in which the vehicle is at this pose.
 supervisor::Navigator looking_for_place(const Drive& job, const core::JointMap& map, const core::Pose2& T_own_robot) {
-  supervisor::Navigator navigator(core::PoseGaussian{T_own_robot, Eigen::Matrix3d::Zero()}, job.navigator);
+  supervisor::Navigator navigator(core::PoseGaussian{T_own_robot, Eigen::Matrix3d::Zero()}, options_on_map(job));
   navigator.look_for_place_in(map);
   return navigator;
 }
@@ -39,7 +46,7 @@ supervisor::Navigator begun_on_map(const Drive& job, const core::JointMap& map) 
   if (is_unknown(job)) return looking_for_place(job, map, core::Pose2());
   const std::optional<SessionStart>& start = job.given_map->start;
   const core::PoseGaussian pose = start ? given_start(start->T_map_robot, reach_of(job)) : job.recording.start;
-  return supervisor::Navigator::go_on_in(with_pose(map, pose), job.navigator);
+  return supervisor::Navigator::go_on_in(with_pose(map, pose), options_on_map(job));
 }
 
 localization::LocalizerOptions tracking_options(const supervisor::NavigatorOptions& navigator) {
@@ -96,7 +103,7 @@ NavigatorOnMap::NavigatorOnMap(const Drive& job, std::vector<std::vector<core::L
       is_placed_(!is_unknown(job)),
       monitor_(job.given_map->landmarks, reach_m_),
       is_start_in_doubt_(is_placed_) {
-  if (is_placed_) check_.emplace(map_, navigator_.pose().mean, reach_m_, job.navigator);
+  if (is_placed_) check_.emplace(map_, navigator_.pose().mean, reach_m_, options_on_map(job));
 }
 
 std::optional<core::StepReport> NavigatorOnMap::take(const core::Event& event) {
@@ -202,7 +209,7 @@ void NavigatorOnMap::track_from(const core::PoseGaussian& pose) {
   better_scans_ = 0;
   tracker_.emplace(pose, job_.given_map->landmarks, tracking_options(job_.navigator));
   if (is_placed_) return;
-  navigator_ = supervisor::Navigator::go_on_in(with_pose(map_, pose), job_.navigator);
+  navigator_ = supervisor::Navigator::go_on_in(with_pose(map_, pose), options_on_map(job_));
   is_placed_ = true;
 }
 
