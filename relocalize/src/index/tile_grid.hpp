@@ -32,6 +32,15 @@ class TileGrid {
   /// Calls visit(slot, squared distance) for all landmarks within radius_m.
   template <class Visit>
   void within(const Nodes& nodes, float x_m, float y_m, float radius_m, Visit&& visit) const {
+    any_within(nodes, x_m, y_m, radius_m, [&](Slot slot, float squared_m2) {
+      visit(slot, squared_m2);
+      return false;
+    });
+  }
+
+  /// The same until one of them is the one.
+  template <class Is>
+  bool any_within(const Nodes& nodes, float x_m, float y_m, float radius_m, Is&& is) const {
     const float scale = cells / side_m_;
     const std::int32_t first_column = floor_of((x_m - radius_m) * scale);
     const std::int32_t last_column = floor_of((x_m + radius_m) * scale);
@@ -42,12 +51,15 @@ class TileGrid {
       for (std::int32_t column = first_column; column <= last_column;) {
         const std::int32_t columns_end = std::min(last_column, column | (cells - 1));
         const std::uint32_t tile = table_.find(column >> cell_bits, row >> cell_bits);
-        if (tile != CellTable::none)
-          visit_cells(nodes, tiles_[tile], {column, columns_end, row, rows_end}, x_m, y_m, most_m2, visit);
+        if (tile != CellTable::none &&
+            any_in_cells(nodes, tiles_[tile], {column, columns_end, row, rows_end}, x_m, y_m, most_m2, is)) {
+          return true;
+        }
         column = columns_end + 1;
       }
       row = rows_end + 1;
     }
+    return false;
   }
 
   /// Where the bit of a point is; null if there is no tile.
@@ -72,9 +84,7 @@ class TileGrid {
 
   /// The same without checking the bit.
   bool holds(const Nodes& nodes, float x_m, float y_m, float radius_m) const {
-    bool found = false;
-    within(nodes, x_m, y_m, radius_m, [&](Slot, float) { found = true; });
-    return found;
+    return any_within(nodes, x_m, y_m, radius_m, [](Slot, float) { return true; });
   }
 
  private:
@@ -96,9 +106,9 @@ class TileGrid {
     const auto whole = static_cast<std::int32_t>(value);
     return whole - static_cast<std::int32_t>(value < static_cast<float>(whole));
   }
-  template <class Visit>
-  static void visit_cells(const Nodes& nodes, const Tile& tile, const Box& box, float x_m, float y_m, float most_m2,
-                          Visit& visit) {
+  template <class Is>
+  static bool any_in_cells(const Nodes& nodes, const Tile& tile, const Box& box, float x_m, float y_m, float most_m2,
+                           Is& is) {
     for (std::int32_t row = box.first_row; row <= box.last_row; ++row)
       for (std::int32_t column = box.first_column; column <= box.last_column; ++column) {
         Slot slot = tile.head[static_cast<std::size_t>((row & (cells - 1)) * cells + (column & (cells - 1)))];
@@ -106,9 +116,10 @@ class TileGrid {
           const float dx = nodes[slot].x_m - x_m;
           const float dy = nodes[slot].y_m - y_m;
           const float d2 = dx * dx + dy * dy;
-          if (d2 <= most_m2) visit(slot, d2);
+          if (d2 <= most_m2 && is(slot, d2)) return true;
         }
       }
+    return false;
   }
   Tile& tile_at(std::int32_t column, std::int32_t row);
   Slot& head_of(const Node& node);

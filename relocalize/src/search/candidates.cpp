@@ -24,12 +24,14 @@ class PoseCells {
       : side_m_(2.0 * asked.near_m), turn_rad_(asked.near_m / std::max(asked.extent_m, asked.near_m)) {}
 
   void offer(const Candidate& fresh) {
-    const auto cell = [](double value) { return static_cast<std::int64_t>(std::floor(value)) & 0x1FFFFF; };
-    const core::Pose2& pose = fresh.T_origin_centre;
-    const std::int64_t key =
-        cell(pose.x_m / side_m_) << 42 | cell(pose.y_m / side_m_) << 21 | cell(pose.heading_rad / turn_rad_);
-    const auto [at, is_new] = best_.try_emplace(key, fresh);
+    const auto [at, is_new] = best_.try_emplace(key_of(fresh.T_origin_centre), fresh);
     if (!is_new && before(fresh, at->second)) at->second = fresh;
+  }
+
+  /// Would offer() change nothing, even with the score that it may have at most?
+  bool is_outdone(const Candidate& at_most) const {
+    const auto found = best_.find(key_of(at_most.T_origin_centre));
+    return found != best_.end() && !before(at_most, found->second);
   }
 
   /// Do more poses than are kept score like the best, to within one nat?
@@ -49,6 +51,11 @@ class PoseCells {
   }
 
  private:
+  std::int64_t key_of(const core::Pose2& pose) const {
+    const auto cell = [](double value) { return static_cast<std::int64_t>(std::floor(value)) & 0x1FFFFF; };
+    return cell(pose.x_m / side_m_) << 42 | cell(pose.y_m / side_m_) << 21 | cell(pose.heading_rad / turn_rad_);
+  }
+
   /// A total order on values: what is kept does not depend on the order of arrival.
   static bool before(const Candidate& a, const Candidate& b) {
     const auto& p = a.T_origin_centre;
@@ -199,19 +206,37 @@ class Search {
     return {fit.x_m + fit.cosine * p.x_m - fit.sine * p.y_m, fit.y_m + fit.sine * p.x_m + fit.cosine * p.y_m};
   }
 
+  /// Where rows repeat, thousands of triangles lay the question on the same place, and nearly all of them are outdone by an earlier one.
+  /// That is asked once some points have been looked at, which most false poses do not survive.
   void test(const Fan& fan, const Laid& fit) {
+    constexpr std::size_t outdone_every = 8;
     const TileGrid& grid = asked_.map.grid;
     const auto near_m = static_cast<float>(asked_.near_m);
-    float score = 0.0F;
-    for (std::size_t k = 0; k < fan.others.size(); ++k) {
+    const std::size_t count = fan.others.size();
+    Candidate candidate{0.0F, {}};
+    for (std::size_t k = 0; k < count; ++k) {
       const Point at = place(fit, fan.others[k]);
       const bool marked = k == 0 ? fit.first_look.set() : grid.probe(at.x_m, at.y_m).set();
-      score += marked && grid.holds(nodes_, at.x_m, at.y_m, near_m) ? hit_ : miss_;
-      if (score < abandoned_below) return;
+      candidate.score += marked && grid.holds(nodes_, at.x_m, at.y_m, near_m) ? hit_ : miss_;
+      if (candidate.score < abandoned_below) return;
+      if ((k + 1) % outdone_every != 0) continue;
+      if (k + 1 == outdone_every) candidate.T_origin_centre = pose_of(fan, fit);
+      if (cells_.is_outdone({at_most(candidate.score, count - k - 1), candidate.T_origin_centre})) return;
     }
-    if (score < 0.0F) return;
+    if (candidate.score < 0.0F) return;
+    if (count < outdone_every) candidate.T_origin_centre = pose_of(fan, fit);
+    cells_.offer(candidate);
+  }
+
+  /// As the sum is made, so that it is reached to the last bit.
+  float at_most(float score, std::size_t left) const {
+    for (std::size_t k = 0; k < left; ++k) score += std::max(hit_, miss_);
+    return score;
+  }
+
+  static core::Pose2 pose_of(const Fan& fan, const Laid& fit) {
     const Point centre = place(fit, {-fan.centroid.x_m, -fan.centroid.y_m});
-    cells_.offer({score, core::Pose2(centre.x_m, centre.y_m, std::atan2(fit.sine, fit.cosine))});
+    return {centre.x_m, centre.y_m, std::atan2(fit.sine, fit.cosine)};
   }
 
   const Prepared& asked_;
