@@ -94,8 +94,9 @@ void set_field_of_view(core::Recording& recording, const GivenFieldOfView& given
 
 void tell_view(const SensorModel& sensor, core::FieldOfView& view) {
   if (sensor.reach_m || sensor.reliable_range_m) {
-    view.max_range_m = sensor.reliable_range_m.value_or(sensor.reach_m.value_or(0.0));
-    view.reach_m = sensor.reach_m.value_or(0.0);
+    const double least_m = sensor.reliable_range_m.value_or(0.0);
+    view.reach_m = sensor.reach_m.value_or(std::max(view.reach().value_or(0.0), least_m));
+    view.max_range_m = sensor.reliable_range_m.value_or(view.reach_m);
     view.min_range_m = sensor.min_range_m;
   }
   if (sensor.min_range_m > 0.0) view.min_range_m = sensor.min_range_m;

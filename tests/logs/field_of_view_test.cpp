@@ -80,6 +80,19 @@ TEST(FieldOfView, ToldIsBelieved) {
   EXPECT_EQ(field_of_view_of(recording).max_range_m, 25.0);
 }
 
+TEST(FieldOfView, KeepsTheReachBesideAReliableRangeAlone) {
+  SensorModel sensor;
+  sensor.reliable_range_m = 12.0;
+  core::FieldOfView estimated = estimate_field_of_view(detections({0.5, 20.0, -1.0, 1.0}, true));
+  const double reach_m = estimated.reach().value();
+  tell_view(sensor, estimated);
+  EXPECT_EQ(estimated.reach(), reach_m);
+  EXPECT_EQ(estimated.max_range_m, 12.0);
+  core::FieldOfView unknown;
+  tell_view(sensor, unknown);
+  EXPECT_EQ(unknown.reach(), 12.0) << "there is nothing else";
+}
+
 TEST(EstimateFieldOfView, HasAnAreaWhereAllIsSeenAtOneDistance) {
   core::Recording recording;
   core::Scan scan;

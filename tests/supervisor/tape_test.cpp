@@ -137,11 +137,14 @@ TEST(Checkpoint, GoingThroughTheTapeAgainEndsWhereItEnded) {
 TEST(Checkpoint, RestoresTheLandmarkThatWaitsForItsConfirmation) {
   Driver driver;
   constexpr double reach_m = 5.0;
-  EXPECT_FALSE(driver.belief.confirmation.confirms(7, 1.0, reach_m));
+  const auto hit = [](core::LandmarkId id, double path_m) {
+    return IsolatedHit{id, path_m, Eigen::Vector2d::Zero(), Eigen::Matrix2d::Identity(), Eigen::Matrix2d::Zero()};
+  };
+  EXPECT_FALSE(driver.belief.confirmation.confirms(hit(7, 1.0), reach_m));
   const Checkpoint checkpoint = take_checkpoint(driver.belief, driver.tape);
-  EXPECT_FALSE(driver.belief.confirmation.confirms(8, 2.0, reach_m));
+  EXPECT_FALSE(driver.belief.confirmation.confirms(hit(8, 2.0), reach_m));
   roll_back(checkpoint, driver.belief);
-  EXPECT_TRUE(driver.belief.confirmation.confirms(7, 3.0, reach_m));
+  EXPECT_TRUE(driver.belief.confirmation.confirms(hit(7, 3.0), reach_m));
 }
 
 TEST(Tape, CutTakesOffWhatCameAfterThePosition) {

@@ -126,6 +126,7 @@ void tell_vehicle(core::Recording& recording, logs::LogFormat format, const logs
   const bool has_model = has_vehicle_model(format);
   if (!has_model) refuse_what_goes_nowhere(vehicle);
   const logs::SensorModel& sensor = vehicle.sensors.front();
+  if (!sensor.reach_m && sensor.reliable_range_m) logs::estimate_missing_field_of_view(recording);
   for (core::Event& event : recording.events) {
     auto* scan = std::get_if<core::Scan>(&event);
     if (scan == nullptr) continue;

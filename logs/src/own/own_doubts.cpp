@@ -249,30 +249,40 @@ void doubt_reach(const Vehicle& vehicle, const core::Recording& recording, Doubt
   }
 }
 
-bool is_outside(const core::Observation& z, const core::FieldOfView& view) {
+/// What vehicle.toml states of every sensor; the rest is estimated, and some detections lie outside of that.
+struct Stated {
+  bool reach = true;
+  bool bearings = true;
+};
+
+Stated stated_by(const Vehicle& vehicle) {
+  const auto all = [&](auto has) { return std::all_of(vehicle.sensors.begin(), vehicle.sensors.end(), has); };
+  return {all([](const SensorModel& sensor) { return sensor.reach_m.has_value(); }),
+          all([](const SensorModel& sensor) { return sensor.min_bearing_rad.has_value(); })};
+}
+
+bool is_outside(const core::Observation& z, const core::FieldOfView& view, const Stated& stated) {
   const bool polar = z.kind == core::ObservationKind::range_bearing, point = z.kind == core::ObservationKind::cartesian;
   constexpr double slack = 1.05, slack_rad = 0.05;
   const double range_m = polar || z.kind == core::ObservationKind::range ? z.z[0] : point ? z.z.norm() : 0.0;
-  if (view.reach() && range_m > slack * *view.reach()) return true;
-  if (z.kind == core::ObservationKind::range) return false;
+  if (stated.reach && view.reach() && range_m > slack * *view.reach()) return true;
+  if (!stated.bearings || z.kind == core::ObservationKind::range) return false;
   const double bearing_rad = point ? std::atan2(z.z[1], z.z[0]) : core::wrap_to_pi(z.z[polar ? 1 : 0]);
   return !core::is_between_bearings(view, bearing_rad, -slack_rad);
 }
 
 void doubt_vehicle(const Vehicle& vehicle, const core::Recording& recording, Doubts& doubts) {
   std::size_t seen = 0, outside = 0;
+  const Stated stated = stated_by(vehicle);
   for (const core::Event& event : recording.events) {
     const auto* scan = std::get_if<core::Scan>(&event);
     if (scan == nullptr) continue;
     for (const core::Observation& observation : scan->observations) {
       ++seen;
-      outside += is_outside(observation, scan->field_of_view) ? 1 : 0;
+      outside += is_outside(observation, scan->field_of_view, stated) ? 1 : 0;
     }
   }
-  const bool stated = std::any_of(vehicle.sensors.begin(), vehicle.sensors.end(), [](const SensorModel& sensor) {
-    return sensor.reach_m || sensor.reliable_range_m || sensor.min_bearing_rad;
-  });
-  if (stated && outside * 20 > seen) {
+  if (outside * 20 > seen) {
     doubts.push_back(sentence(
         "%zu of %zu detections (%.0f %%) lie outside the reach and view that %s states; is it the vehicle "
         "of this log?",

@@ -66,7 +66,7 @@ void add_views(std::vector<LabelledScan>& scans, const std::vector<SensorModel>&
   for (std::size_t s = 0; s < sensors.size(); ++s) {
     core::Recording alone;
     const SensorModel& sensor = sensors[s];
-    const bool all_told = (sensor.reach_m || sensor.reliable_range_m) && sensor.min_bearing_rad;
+    const bool all_told = sensor.reach_m && sensor.min_bearing_rad;
     for (const LabelledScan& scan : scans) {
       if (!all_told && scan.sensor == s) alone.events.emplace_back(scan.scan);
     }

@@ -44,8 +44,8 @@ bool is_likelier_in_no_map(const GatedScan& gated, const core::AssociationReport
          std::log(met.extraneous_density);
 }
 
-void defer_isolated_match(const GatedScan& gated, const NavigatorOptions& navigator, double path_m,
-                          Confirmation& confirmation, std::vector<core::AssociationReport>& reports) {
+void defer_isolated_match(const GatedScan& gated, const core::Scan& scan, const NavigatorOptions& navigator,
+                          double path_m, Confirmation& confirmation, std::vector<core::AssociationReport>& reports) {
   const std::vector<RevisitAmbiguity>& returns = gated.returns;
   const SearchOptions& options = navigator.search;
   core::AssociationReport* isolated = nullptr;
@@ -55,10 +55,13 @@ void defer_isolated_match(const GatedScan& gated, const NavigatorOptions& naviga
     isolated = &report;
   }
   if (isolated == nullptr) return;
+  const core::Observation& seen = scan.observations[static_cast<std::size_t>(isolated->observation)];
+  if (core::dimension(seen.kind) != 2) return;  // left unused anyway
   const RevisitAmbiguity& met = *find_return(returns, isolated->landmark);
   const bool ambiguous = met.expected_confusers > options.defer_confusers;
   const bool informative = met.widening > options.confirmation_widening;
-  const bool met_again = confirmation.confirms(isolated->landmark, path_m, options.confirmation_m);
+  const IsolatedHit hit = isolated_hit(isolated->landmark, path_m, seen, gated.pose, scan.T_robot_sensor);
+  const bool met_again = confirmation.confirms(hit, options.confirmation_m);
   const bool unlikely = is_likelier_in_no_map(gated, *isolated, met, navigator.association.detection_probability);
   if (ambiguous || (informative && (!met_again || unlikely))) isolated->outcome = core::Outcome::ambiguous;
 }
@@ -114,6 +117,7 @@ std::vector<core::LandmarkId> inside_gates(const cekf::CompressedEkf& filter, st
 GatedScan gate_scan(const cekf::CompressedEkf& filter, const std::vector<core::LandmarkId>& candidates,
                     const core::Scan& scan, const NavigatorOptions& options, const core::MapAppearance& appearance) {
   GatedScan gated;
+  gated.pose = filter.pose();
   gated.gating = std::make_unique<Gating>(filter, inside_gates(filter, candidates, scan, options.gates), scan,
                                           options.gates, appearance.is_empty() ? nullptr : &appearance);
   association::Options how = options.association;
@@ -166,12 +170,13 @@ void leave_ambiguous_unused(const SearchOptions& options, GatedScan& gated) {
   }
 }
 
-std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, const NavigatorOptions& options,
-                                                    double path_m, Confirmation& confirmation) {
+std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, const core::Scan& scan,
+                                                    const NavigatorOptions& options, double path_m,
+                                                    Confirmation& confirmation) {
   std::vector<core::AssociationReport> reports = association_reports(gated.assignment);
   defer_matches(gated.place.loose, reports);
   defer_matches(gated.doubtful, reports);
-  defer_isolated_match(gated, options, path_m, confirmation, reports);
+  defer_isolated_match(gated, scan, options, path_m, confirmation, reports);
   return reports;
 }
 

@@ -17,6 +17,7 @@ namespace helixnav::supervisor {
 
 /// What the map expects a scan to look like, the best assignment, and which old landmarks it may have returned to.
 struct GatedScan {
+  core::PoseGaussian pose;  ///< that it was gated from
   std::unique_ptr<Gating> gating;
   association::Assignment assignment;
   std::vector<RevisitAmbiguity> returns;
@@ -49,11 +50,12 @@ void leave_unplaced_unused(const core::Scan& scan, std::vector<core::Association
 bool has_unplaced(const core::Scan& scan);
 
 /// The outcome of every observation. Two matched old landmarks confirm each other; an isolated match is deferred if other
-/// objects may be in its gate, and, if it would correct the pose by a lot, until its second hit and wherever an object in no
+/// objects may be in its gate, and, if it would correct the pose by a lot, until its second hit at the same place and wherever an object in no
 /// map is likelier to be seen. A loose match
 /// (place_evidence.hpp) is deferred too, however many others there are.
 /// Tests: supervisor/association/revisit_ambiguity_test.cpp, isolated_match_test.cpp.
-std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, const NavigatorOptions& options,
-                                                    double path_m, Confirmation& confirmation);
+std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, const core::Scan& scan,
+                                                    const NavigatorOptions& options, double path_m,
+                                                    Confirmation& confirmation);
 
 }  // namespace helixnav::supervisor

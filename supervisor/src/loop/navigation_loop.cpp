@@ -220,7 +220,7 @@ GatedScan NavigationLoop::gate(const Scan& scan) const {
 }
 
 std::vector<core::AssociationReport> NavigationLoop::associate_gated(const GatedScan& gated, const Scan& scan) {
-  auto reports = associate_scan(gated, options_, belief_.existence.path_m(), belief_.confirmation);
+  auto reports = associate_scan(gated, scan, options_, belief_.existence.path_m(), belief_.confirmation);
   leave_unplaced_unused(scan, reports);
   pending_.doubtful = leave_doubtful_unused(gated, belief_.existence, scan, options_, reports);
   return reports;

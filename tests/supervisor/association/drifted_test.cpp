@@ -139,7 +139,7 @@ TEST(Drifted, ATentativeLandmarkBeginsNoSearchAndIsLeftUnused) {
   look_for_returns(wide.filter, wide.life, scan, options, scan.field_of_view, gated);
   EXPECT_EQ(gated.doubtful, std::vector{wide.ids[1]});
   Confirmation confirmation;
-  for (const core::AssociationReport& report : associate_scan(gated, options, 0.0, confirmation)) {
+  for (const core::AssociationReport& report : associate_scan(gated, scan, options, 0.0, confirmation)) {
     EXPECT_NE(report.outcome, core::Outcome::matched);
   }
 }

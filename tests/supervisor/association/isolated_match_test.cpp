@@ -9,8 +9,8 @@ namespace helixnav::supervisor {
 namespace {
 
 /// What becomes of a sighting of the only old landmark in view, 15 m ahead, at so many standard deviations to the side of
-/// where it is expected, and seen there before. On this return, eighteen objects in no map are seen in a scan.
-core::Outcome outcome_at(double sigmas) {
+/// where it is expected, and `before` as many just before. On this return, eighteen objects in no map are seen in a scan.
+core::Outcome outcome_at(double sigmas, double before) {
   constexpr double sigma_m = 0.4, range_m = 15.0, sigma_range_m = 0.1, sigma_bearing_rad = 0.006;
   cekf::CompressedEkf filter{core::PoseGaussian{}};
   const core::LandmarkId id =
@@ -20,21 +20,30 @@ core::Outcome outcome_at(double sigmas) {
   filter.predict(drift);
   core::Scan scan;
   scan.field_of_view = {1.0, 30.0, -core::pi / 2, core::pi / 2};
-  const double off_rad = sigmas * std::hypot(sigma_m / range_m, std::sqrt(2.0) * sigma_bearing_rad);
-  scan.observations.push_back(core::make_range_bearing(range_m, off_rad, sigma_range_m, sigma_bearing_rad));
+  const double sigma_rad = std::hypot(sigma_m / range_m, std::sqrt(2.0) * sigma_bearing_rad);
+  const auto sighting = [&](double off) {
+    return core::make_range_bearing(range_m, off * sigma_rad, sigma_range_m, sigma_bearing_rad);
+  };
+  scan.observations.push_back(sighting(sigmas));
 
   const NavigatorOptions options;
   GatedScan gated = gate_scan(filter, {id}, scan, options);
   gated.returns = returns_in_gate(filter, gated.gating->problem, scan, {id}, 18.0);
   Confirmation confirmation;
-  confirmation.confirms(id, 0.0, options.search.confirmation_m);
-  return associate_scan(gated, options, 1.0, confirmation).front().outcome;
+  confirmation.confirms(isolated_hit(id, 0.0, sighting(before), filter.pose(), scan.T_robot_sensor),
+                        options.search.confirmation_m);
+  return associate_scan(gated, scan, options, 1.0, confirmation).front().outcome;
 }
 
 TEST(IsolatedMatch, IsDeferredWhereAnObjectInNoMapIsLikelier) {
-  EXPECT_EQ(outcome_at(0.0), core::Outcome::matched);
-  EXPECT_EQ(outcome_at(1.5), core::Outcome::matched);
-  EXPECT_EQ(outcome_at(2.9), core::Outcome::ambiguous) << "inside the gate, which ends at 3.03";
+  EXPECT_EQ(outcome_at(0.0, 0.0), core::Outcome::matched);
+  EXPECT_EQ(outcome_at(1.5, 1.5), core::Outcome::matched);
+  EXPECT_EQ(outcome_at(2.9, 2.9), core::Outcome::ambiguous) << "inside the gate, which ends at 3.03";
+}
+
+TEST(IsolatedMatch, IsDeferredWhereTheHitBeforeWasSomewhereElseInTheGate) {
+  EXPECT_EQ(outcome_at(0.5, 0.8), core::Outcome::matched);
+  EXPECT_EQ(outcome_at(0.5, -1.5), core::Outcome::ambiguous);
 }
 
 }  // namespace

@@ -333,7 +333,7 @@ TEST(PlaceEvidence, WhatIsKnownBesideOthersSaysNothingOfALandmarkFarFromThemAll)
   EXPECT_EQ(gated.place.loose, std::vector<core::LandmarkId>{torn.ground.ids.front()});
   EXPECT_TRUE(fixes_pose(gated.place, {}));
   Confirmation confirmation;
-  const std::vector<core::AssociationReport> fate = associate_scan(gated, {}, 0.0, confirmation);
+  const std::vector<core::AssociationReport> fate = associate_scan(gated, torn.ground.scan, {}, 0.0, confirmation);
   const auto outcomes = [&](core::Outcome outcome) {
     return std::count_if(fate.begin(), fate.end(), [&](const auto& one) { return one.outcome == outcome; });
   };

@@ -152,14 +152,34 @@ TEST(RevisitAmbiguity, SaysHowMuchWiderThePoseMakesTheGate) {
   }
 }
 
+IsolatedHit hit_on(core::LandmarkId landmark, double path_m, const Eigen::Vector2d& point_m = {0.0, 0.0},
+                   double pose_m2 = 0.0) {
+  constexpr double detector_m2 = 0.01;
+  return {landmark, path_m, point_m, detector_m2 * Eigen::Matrix2d::Identity(), pose_m2 * Eigen::Matrix2d::Identity()};
+}
+
 TEST(Confirmation, IsGivenByTheLandmarkThatWasMetJustBefore) {
   Confirmation confirmation;
-  EXPECT_FALSE(confirmation.confirms(7, 100.0, 5.0));
-  EXPECT_TRUE(confirmation.confirms(7, 104.0, 5.0));
-  EXPECT_TRUE(confirmation.confirms(7, 109.0, 5.0));
-  EXPECT_FALSE(confirmation.confirms(8, 110.0, 5.0)) << "another one";
-  EXPECT_FALSE(confirmation.confirms(7, 111.0, 5.0));
-  EXPECT_FALSE(confirmation.confirms(7, 117.0, 5.0)) << "too long ago";
+  EXPECT_FALSE(confirmation.confirms(hit_on(7, 100.0), 5.0));
+  EXPECT_TRUE(confirmation.confirms(hit_on(7, 104.0), 5.0));
+  EXPECT_TRUE(confirmation.confirms(hit_on(7, 109.0), 5.0));
+  EXPECT_FALSE(confirmation.confirms(hit_on(8, 110.0), 5.0)) << "another one";
+  EXPECT_FALSE(confirmation.confirms(hit_on(7, 111.0), 5.0));
+  EXPECT_FALSE(confirmation.confirms(hit_on(7, 117.0), 5.0)) << "too long ago";
+}
+
+/// The gate of 9.21 times twice the detector's variance ends at 0.43 m.
+TEST(Confirmation, IsGivenAtTheSamePlaceHoweverWideTheGate) {
+  constexpr double drifted_m2 = 400.0;
+  const auto confirms = [](const Eigen::Vector2d& second_m, double second_pose_m2) {
+    Confirmation confirmation;
+    EXPECT_FALSE(confirmation.confirms(hit_on(7, 100.0, {30.0, 40.0}, drifted_m2), 5.0));
+    return confirmation.confirms(hit_on(7, 101.0, second_m, second_pose_m2), 5.0);
+  };
+  EXPECT_TRUE(confirms({30.4, 40.0}, drifted_m2));
+  EXPECT_FALSE(confirms({30.5, 40.0}, drifted_m2)) << "clutter appears somewhere else";
+  EXPECT_TRUE(confirms({32.5, 40.0}, drifted_m2 + 1.0)) << "driven by a metre of noise";
+  EXPECT_TRUE(confirms({45.0, 40.0}, 1.0)) << "corrected in between";
 }
 
 TEST(RevisitAmbiguity, CallsOldWhatIsMatureAndLongUnseen) {

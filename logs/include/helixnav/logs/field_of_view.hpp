@@ -25,7 +25,8 @@ void estimate_missing_field_of_view(core::Recording& recording);
 /// Overwrites the view of every scan with the given values. If a range is given, it is the reach as well.
 void set_field_of_view(core::Recording& recording, const GivenFieldOfView& given);
 
-/// Overwrites what a sensor states about its view.
+/// Overwrites what a sensor states about its view. A reliable range alone says nothing of the reach: that remains, or is the reliable
+/// range if none is known. Test: logs/field_of_view_test.cpp.
 void tell_view(const SensorModel& sensor, core::FieldOfView& view);
 
 /// That of the first scan whose reach is known, else of the first scan, else the default.
