@@ -168,7 +168,9 @@ TEST(SlipDecision, WeighsFewPairsLessWhereNobodyHasLookedYet) {
   const std::optional<Slip> on_new_ground = decide_slip(question, SlipOptions{});
   const double nats = on_known_ground->figures.nats - 4.0 * std::log(denser);
   EXPECT_EQ(on_new_ground.has_value(), nats > SlipOptions{}.nats);
-  if (on_new_ground) EXPECT_NEAR(on_new_ground->figures.nats, nats, 1e-9);
+  if (on_new_ground) {
+    EXPECT_NEAR(on_new_ground->figures.nats, nats, 1e-9);
+  }
 }
 
 pf_relocalize::Coverage looked_at_along(double length_m) {
