@@ -14,6 +14,7 @@
 #include "helixnav/reports/decision_sentence.hpp"
 #include "helixnav/runs/only_localized.hpp"
 #include "known_by_name.hpp"
+#include "left_twice_text.hpp"
 #include "never_placed_text.hpp"
 #include "numerics_text.hpp"
 #include "open_searches.hpp"
@@ -361,7 +362,8 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
   for (const std::string& text :
        {runs::only_localized(run) ? std::string() : calibration_text(run), ancestors_text(evaluation), fixes_text(run),
         widened_fixes_text(run), contradicted_place_text(run), wrong_place_text(run), never_placed_text(run),
-        numerics_text(numerics_of(run)), postponed_text(postponed_in(run)), open_search_text(run)}) {
+        numerics_text(numerics_of(run)), postponed_text(postponed_in(run)), open_search_text(run),
+        left_twice_text(run)}) {
     if (!text.empty()) warnings.push_back(text);
   }
   for (const std::string& text : systematic_errors_texts(run)) warnings.push_back(text);

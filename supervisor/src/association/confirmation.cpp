@@ -9,7 +9,7 @@
 namespace helixnav::supervisor {
 namespace {
 
-constexpr double gate_probability = 0.99;  // of two sightings of one landmark
+constexpr double agree_probability = 0.99;  // of two sightings of one landmark
 
 Eigen::Matrix2d absolute(const Eigen::Matrix2d& A) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(0.5 * (A + A.transpose()));
@@ -20,7 +20,7 @@ Eigen::Matrix2d absolute(const Eigen::Matrix2d& A) {
 bool agree(const IsolatedHit& a, const IsolatedHit& b) {
   const Eigen::Matrix2d covariance = a.seen_m2 + b.seen_m2 + absolute(b.from_m2 - a.from_m2);
   const Eigen::Vector2d apart_m = b.point_world_m - a.point_world_m;
-  static const double gate = core::chi2_quantile(gate_probability, 2);
+  static const double gate = core::chi2_quantile(agree_probability, 2);
   return apart_m.dot(covariance.inverse() * apart_m) < gate;
 }
 
