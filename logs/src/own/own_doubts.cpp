@@ -256,7 +256,9 @@ struct Stated {
 };
 
 Stated stated_by(const Vehicle& vehicle) {
-  const auto all = [&](auto has) { return std::all_of(vehicle.sensors.begin(), vehicle.sensors.end(), has); };
+  const auto all = [&](auto has) {
+    return !vehicle.sensors.empty() && std::all_of(vehicle.sensors.begin(), vehicle.sensors.end(), has);
+  };
   return {all([](const SensorModel& sensor) { return sensor.reach_m.has_value(); }),
           all([](const SensorModel& sensor) { return sensor.min_bearing_rad.has_value(); })};
 }

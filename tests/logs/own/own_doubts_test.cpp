@@ -147,18 +147,20 @@ TEST(OwnDoubts, TellTheVehicleOfAnotherRobot) {
 
 TEST(OwnDoubts, SayNothingOfAViewThatIsNotStated) {
   const OwnLogFolder log;
-  std::string detections = "t,range_m,bearing_deg\n";
+  std::string detections = "t,range_m,bearing_deg,sigma_range_m,sigma_bearing_deg\n";
   for (int i = 0; i < 200; ++i) {
-    detections += std::to_string(0.01 * i) + ',' + std::to_string(5.0 + 0.1 * i) + ',' + std::to_string(i - 100) + '\n';
+    detections +=
+        std::to_string(0.01 * i) + ',' + std::to_string(5.0 + 0.1 * i) + ',' + std::to_string(i - 100) + ",0.05,0.2\n";
   }
   log.write("detections.csv", detections);
-  const auto with = [&](const std::string& keys) {
-    log.write("vehicle.toml", "[odometry]\nsigma_along_m_per_sqrt_m = 0.02\n[[sensor]]\n" + keys +
-                                  "\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n");
+  const auto with_sensor = [&](const std::string& sensor) {
+    log.write("vehicle.toml", "[odometry]\nsigma_along_m_per_sqrt_m = 0.02\n" + sensor);
     std::string all;
     for (const std::string& remark : log.recording().remarks) all += remark + '\n';
     return all;
   };
+  const auto with = [&](const std::string& keys) { return with_sensor("[[sensor]]\n" + keys + '\n'); };
+  EXPECT_FALSE(says(with_sensor(""), "lie outside"));
   EXPECT_FALSE(says(with("reliable_range_m = 8"), "lie outside")) << "what is seen beyond is seen less reliably";
   EXPECT_FALSE(says(with("reach_m = 26"), "lie outside"));
   EXPECT_TRUE(says(with("reach_m = 26\nview_deg = [-50, 50]"), "lie outside"));
