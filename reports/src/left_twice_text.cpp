@@ -79,25 +79,13 @@ std::set<LandmarkId> begun_in_closed_searches(const runs::Run& run) {
   return closed;
 }
 
-/// Of the pairs (newer, older), those that some scan saw both of are two.
-void drop_seen_together(const runs::Run& run, std::map<LandmarkId, LandmarkId>& pairs) {
-  for (const core::StepReport& step : run.steps) {
-    std::set<LandmarkId> seen;
-    for (const core::AssociationReport& a : step.associations) {
-      if (a.outcome == core::Outcome::matched || a.outcome == core::Outcome::augmented) seen.insert(a.landmark);
-    }
-    for (const LandmarkId id : seen) {
-      const auto pair = pairs.find(id);
-      if (pair != pairs.end() && seen.count(pair->second) > 0) pairs.erase(pair);
-    }
-  }
-}
-
-/// Pairs (newer, older) nearer than that share of the usual distance to the nearest, and the farthest of them.
-struct Beside {
-  std::map<LandmarkId, LandmarkId> pairs;
-  double farthest_m = 0.0;
+struct Older {
+  LandmarkId id = core::no_landmark;
+  double distance_m = 0.0;
 };
+
+/// [newer landmark] an older one, nearer than `near_m`.
+using Beside = std::map<LandmarkId, Older>;
 
 Beside beside_older(const std::vector<const core::MapLandmark*>& fresh, const ByX& known, double near_m) {
   Beside beside;
@@ -105,15 +93,30 @@ Beside beside_older(const std::vector<const core::MapLandmark*>& fresh, const By
     double distance_m = 0.0;
     const core::MapLandmark* other = known.nearest_to(*landmark, distance_m);
     if (other == nullptr || distance_m > near_m || other->id > landmark->id) continue;
-    beside.pairs[landmark->id] = other->id;
-    beside.farthest_m = std::max(beside.farthest_m, distance_m);
+    beside[landmark->id] = {other->id, distance_m};
   }
   return beside;
 }
 
+/// Those that some scan saw both of are two.
+void drop_seen_together(const runs::Run& run, Beside& beside) {
+  for (const core::StepReport& step : run.steps) {
+    std::set<LandmarkId> seen;
+    for (const core::AssociationReport& a : step.associations) {
+      if (a.outcome == core::Outcome::matched || a.outcome == core::Outcome::augmented) seen.insert(a.landmark);
+    }
+    for (const LandmarkId id : seen) {
+      const auto pair = beside.find(id);
+      if (pair != beside.end() && seen.count(pair->second.id) > 0) beside.erase(pair);
+    }
+  }
+}
+
 std::string text_of(const Beside& beside) {
-  return counted(static_cast<double>(beside.pairs.size()), "landmark") +
-         " mapped before a loop was closed stand within " + short_number(beside.farthest_m) +
+  double farthest_m = 0.0;
+  for (const auto& [id, older] : beside) farthest_m = std::max(farthest_m, older.distance_m);
+  return counted(static_cast<double>(beside.size()), "landmark") + " mapped before a loop was closed stand within " +
+         short_number(farthest_m) +
          " m of older ones and may be on the map twice: what a closing does not surely show to be one stays two. They "
          "may be merged when the vehicle drives there again";
 }
@@ -138,11 +141,14 @@ std::string left_twice_text(const runs::Run& run) {
   constexpr double least = 3.0, times_chance = 5.0;
   for (const double share : {0.25, 0.1}) {
     Beside beside = beside_older(fresh, known, share * spacing_m);
-    drop_seen_together(run, beside.pairs);
     // Of landmarks at random, with a median distance of the nearest of s: 1 − 2^(−share²) of them within share·s.
     const double by_chance = (1.0 - std::exp2(-share * share)) * static_cast<double>(fresh.size());
-    const auto count = static_cast<double>(beside.pairs.size());
-    if (count >= least && count >= times_chance * by_chance) return text_of(beside);
+    const auto is_enough = [&] {
+      return static_cast<double>(beside.size()) >= std::max(least, times_chance * by_chance);
+    };
+    if (!is_enough()) continue;
+    drop_seen_together(run, beside);
+    if (is_enough()) return text_of(beside);
   }
   return {};
 }

@@ -66,5 +66,17 @@ TEST(LeftTwice, IsNotSaidOfTwoThatWereSeenTogether) {
   EXPECT_TRUE(left_twice_text(run).empty());
 }
 
+TEST(LeftTwice, SaysHowFarOfThoseThatAreLeftAlone) {
+  runs::Run run = run_closed(0.8);
+  merge_last(run, 15);
+  run.map.back().point.mean_m.y() = 2.0;  // and that one was seen beside its neighbour
+  core::AssociationReport beside;
+  beside.outcome = core::Outcome::matched;
+  beside.landmark = run.map.back().id - static_cast<core::LandmarkId>(search_from);
+  run.steps[static_cast<std::size_t>(run.map.back().id)].associations.push_back(beside);
+  const std::string text = left_twice_text(run);
+  EXPECT_NE(text.find("4 landmarks mapped before a loop was closed stand within 0.8 m"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace helixnav::reports

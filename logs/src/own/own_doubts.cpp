@@ -249,18 +249,16 @@ void doubt_reach(const Vehicle& vehicle, const core::Recording& recording, Doubt
   }
 }
 
-/// What vehicle.toml states of every sensor; the rest is estimated, and some detections lie outside of that.
+/// What vehicle.toml states of a view; the rest is estimated, and some detections lie outside of that.
 struct Stated {
-  bool reach = true;
-  bool bearings = true;
+  bool reach = false;
+  bool bearings = false;
 };
 
-Stated stated_by(const Vehicle& vehicle) {
-  const auto all = [&](auto has) {
-    return !vehicle.sensors.empty() && std::all_of(vehicle.sensors.begin(), vehicle.sensors.end(), has);
-  };
-  return {all([](const SensorModel& sensor) { return sensor.reach_m.has_value(); }),
-          all([](const SensorModel& sensor) { return sensor.min_bearing_rad.has_value(); })};
+Stated stated_by(const Vehicle& vehicle, const core::FieldOfView& view) {
+  const auto any = [&](auto has) { return std::any_of(vehicle.sensors.begin(), vehicle.sensors.end(), has); };
+  return {any([&](const SensorModel& sensor) { return sensor.reach_m && view.reach() == sensor.reach_m; }),
+          any([&](const SensorModel& sensor) { return sensor.min_bearing_rad == view.min_bearing_rad; })};
 }
 
 bool is_outside(const core::Observation& z, const core::FieldOfView& view, const Stated& stated) {
@@ -275,10 +273,10 @@ bool is_outside(const core::Observation& z, const core::FieldOfView& view, const
 
 void doubt_vehicle(const Vehicle& vehicle, const core::Recording& recording, Doubts& doubts) {
   std::size_t seen = 0, outside = 0;
-  const Stated stated = stated_by(vehicle);
   for (const core::Event& event : recording.events) {
     const auto* scan = std::get_if<core::Scan>(&event);
     if (scan == nullptr) continue;
+    const Stated stated = stated_by(vehicle, scan->field_of_view);
     for (const core::Observation& observation : scan->observations) {
       ++seen;
       outside += is_outside(observation, scan->field_of_view, stated) ? 1 : 0;

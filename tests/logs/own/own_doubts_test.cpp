@@ -164,6 +164,9 @@ TEST(OwnDoubts, SayNothingOfAViewThatIsNotStated) {
   EXPECT_FALSE(says(with("reliable_range_m = 8"), "lie outside")) << "what is seen beyond is seen less reliably";
   EXPECT_FALSE(says(with("reach_m = 26"), "lie outside"));
   EXPECT_TRUE(says(with("reach_m = 26\nview_deg = [-50, 50]"), "lie outside"));
+  const std::string silent = "[[sensor]]\nname = \"silent\"\nx_m = 1\n";
+  const std::string stated = "[[sensor]]\nname = \"\"\nreach_m = 6\n";
+  EXPECT_TRUE(says(with_sensor(stated + silent), "lie outside")) << "of one sensor, whatever another states";
 }
 
 }  // namespace
