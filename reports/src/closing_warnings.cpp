@@ -44,6 +44,8 @@ Closings closings_of(const runs::Run& run) {
       if (const auto* solved = std::get_if<core::SmoothingDecision>(&decision)) {
         closings.is_path_solved = solved->accepted;
       }
+      const auto* systematic = std::get_if<core::SystematicDecision>(&decision);
+      closings.is_path_solved |= systematic != nullptr && systematic->solved_again == 1;
     }
   }
   return closings;

@@ -182,6 +182,40 @@ TEST(Tape, WithoutTheMergesAtItsEndIsTheTapeBeforeTheClosing) {
   EXPECT_EQ(drive_cost(tape), 25.0);
 }
 
+double variance_of(const Tape& tape, Tape::Position position) {
+  double variance = 0.0;
+  tape.read_between(position, position + 1, [&](const Tape::Entry& entry) {
+    if (const auto* motion = std::get_if<Tape::Motion>(&entry)) variance = motion->odometry.covariance(0, 0);
+  });
+  return variance;
+}
+
+TEST(Tape, LargerNoiseOfALoopDrivenSomeTimeAgoIsTakenBackWhereItWas) {
+  Tape tape(100);
+  for (int k = 0; k < 6; ++k) {
+    core::Odometry metre = core::no_motion(k);
+    metre.covariance = Eigen::Matrix3d::Identity();
+    tape.append(Tape::Motion{metre, 1.0});
+  }
+  const Tape larger = tape.with_larger_noise(4.0, 2.0, 3.0);  // two metres, three metres ago
+  for (Tape::Position k = 0; k < 6; ++k) EXPECT_EQ(variance_of(larger, k), k == 1 || k == 2 ? 4.0 : 1.0) << k;
+  const Tape back = larger.with_larger_noise(0.25, 2.0, 3.0);
+  for (Tape::Position k = 0; k < 6; ++k) EXPECT_EQ(variance_of(back, k), 1.0) << k;
+}
+
+TEST(Tape, WithoutItsLastSolutionCostsWhatWasPaidSinceTheOneBefore) {
+  Tape tape(100);
+  tape.append(Tape::Solved{50.0});
+  tape.append(Tape::Merge{{{0, 1}}, 7.0});
+  tape.append(Tape::Solved{53.0});
+  tape.append(Tape::Merge{{}, 2.0});
+  EXPECT_EQ(drive_cost(tape), 55.0);
+  const Tape unsolved = tape.without_last_solution();
+  EXPECT_EQ(drive_cost(unsolved), 59.0);
+  EXPECT_EQ(unsolved.end(), tape.end()) << "positions stay";
+  EXPECT_EQ(unsolved.cost_of_last_merges(), 9.0);
+}
+
 TEST(Tape, ChainsMotionThatLeadsToNoStop) {
   Tape tape(1000);
   tape.append(Tape::Motion{one_metre(), 1.0});

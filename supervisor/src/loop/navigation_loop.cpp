@@ -103,6 +103,7 @@ StepReport NavigationLoop::take_step(const Scan& scan, const core::Decision* not
     if (note != nullptr) pending_.decisions.push_back(*note);
     pending_.forbidden.clear();
     pending_.seeks_part = false;
+    pending_.odd_closing = {};
     predict();
     learn_noise(scan);
     StepReport report = take_as_assumed(scan);

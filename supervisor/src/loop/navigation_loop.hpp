@@ -31,6 +31,7 @@
 #include "placing/still_there.hpp"
 #include "search/whole_map_questions.hpp"
 #include "smoothing/smooth_drive.hpp"
+#include "systematic/odd_closing.hpp"
 
 namespace helixnav::supervisor {
 
@@ -77,6 +78,7 @@ class NavigationLoop {
     bool seeks_part = false;  ///< nothing ties the vehicle to the map, of which the filter holds a part
     std::vector<pf_relocalize::ConstellationPair> forbidden =
         {};  ///< of a place that the whole map has, at which it could not be closed in this step
+    OddClosing odd_closing = {};
   };
   /// What a call has replaced so far, for recover().
   struct Undo {
@@ -161,7 +163,12 @@ class NavigationLoop {
 
   // systematic/learn_systematic.cpp
   void learn_systematic(core::StepReport& report);
+  void learn_from_closing(core::StepReport& report);
+  Tape as_measured() const;
+  bool solve_without(const SystematicErrors& errors, core::StepReport& report);
+  void merge_what_straightened(core::StepReport& report);
   void take_out_systematic(core::StepReport& report);
+  void report_systematic(double nats, core::StepReport& report) const;
 
   // search/search_mode.cpp
   void begin_search(const core::Scan& scan);

@@ -86,13 +86,15 @@ Tape Tape::without(const SystematicErrors& errors) const {
   return tape;
 }
 
-Tape Tape::with_larger_noise(double odometry, double length_m) const {
+Tape Tape::with_larger_noise(double odometry, double length_m, double ago_m) const {
+  constexpr double rounding_m = 1e-6;
   Tape tape = *this;
   for (auto entry = tape.entries_.rbegin(); entry != tape.entries_.rend() && length_m > 0.0; ++entry) {
     auto* motion = std::get_if<Motion>(&*entry);
     if (motion == nullptr) continue;
-    motion->odometry.covariance *= odometry;
-    length_m -= motion->driven_m;
+    const bool is_since = ago_m > rounding_m;
+    (is_since ? ago_m : length_m) -= motion->driven_m;
+    if (!is_since) motion->odometry.covariance *= odometry;
   }
   return tape;
 }
@@ -121,6 +123,14 @@ Tape Tape::without_matches_since(Position position, const std::set<core::Landmar
 Tape Tape::without_last_merges() const {
   Tape tape = *this;
   while (!tape.entries_.empty() && std::holds_alternative<Merge>(tape.entries_.back())) tape.entries_.pop_back();
+  return tape;
+}
+
+Tape Tape::without_last_solution() const {
+  Tape tape = *this;
+  const auto is_solution = [](const Entry& entry) { return std::holds_alternative<Solved>(entry); };
+  const auto last = std::find_if(tape.entries_.rbegin(), tape.entries_.rend(), is_solution);
+  if (last != tape.entries_.rend()) *last = Merge{};  // of nothing: positions stay
   return tape;
 }
 

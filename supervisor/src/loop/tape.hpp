@@ -74,9 +74,9 @@ class Tape {
   /// The tape, had all fixes been widened as much as this; those that are wider stay so, and so do costs, as upper bounds.
   Tape with_wider_fixes(double widened) const;
 
-  /// The tape, had the covariance of the motion measured over the last `length_m` been this many times as large; costs stay
-  /// as they were, which is an upper bound.
-  Tape with_larger_noise(double odometry, double length_m) const;
+  /// The tape, had the covariance of the motion measured over the last `length_m`, or over as much until `ago_m` before its end, been
+  /// this many times as large; costs stay as they were, which is an upper bound.
+  Tape with_larger_noise(double odometry, double length_m, double ago_m = 0.0) const;
 
   /// The tape with these errors taken out of what was measured; costs stay as they were, which is an upper bound if the
   /// measurements have them.
@@ -92,6 +92,9 @@ class Tape {
   /// The tape as it was before the merges at its end, and what these may cost.
   Tape without_last_merges() const;
   double cost_of_last_merges() const;
+
+  /// The tape, had the drive not been solved when it last was: its cost is then the sum of all since the solution before.
+  Tape without_last_solution() const;
 
   /// Takes off everything from `position` on and returns it.
   std::vector<Entry> cut(Position position);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How a search begins, goes on, and ends with a closing or without one.
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -126,6 +127,7 @@ void NavigationLoop::accept(const Closing& closing, const ClosingView& view, Ste
   for (const core::MergedLandmarks& one : closing.merged) belief_.existence.merge(one.kept, one.removed);
   for (const LandmarkId id : closing.forgotten) belief_.existence.remove(id);
   report.merged = closing.merged;
+  pending_.odd_closing.excess = std::max(pending_.odd_closing.excess, closing.cost - closing.dof);
   if (belief_.untied_since_m && is_tied_by(closing.merged, belief_.existence, *belief_.untied_since_m)) {
     belief_.untied_since_m.reset();
   }

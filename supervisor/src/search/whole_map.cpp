@@ -252,6 +252,8 @@ bool NavigationLoop::close_at(const std::vector<pf_relocalize::ConstellationPair
     if (changes_drive && !begin_drive_anew(*reconciled.tape, *reconciled.filter)) return false;
     decision.odometry_factor = reconciled.odometry_factor;
     decision.loop_m = reconciled.loop_m;
+    pending_.odd_closing = {place.as_measured.cost - place.as_measured.dof, reconciled.odometry_factor,
+                            reconciled.loop_m};
     // Odometry had the vehicle elsewhere all along: landmarks begun there may be copies, old or not when the search
     // began.
     belief_.left_open.push_back({belief_.existence.path_m() - reconciled.loop_m, belief_.existence.path_m()});

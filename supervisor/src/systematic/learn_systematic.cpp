@@ -6,30 +6,17 @@
 #include <variant>
 #include <vector>
 
+#include "closing/tied_by_view.hpp"
 #include "helixnav/core/errors.hpp"
-#include "helixnav/core/odometry.hpp"
 #include "loop/navigation_loop.hpp"
+#include "systematic/closing_evidence.hpp"
+#include "systematic/spaced_out.hpp"
 #include "systematic/stretch_evidence.hpp"
 
 namespace helixnav::supervisor {
 namespace {
 
 constexpr int stops_a_stretch = 20;  // of one reach: more of them tell little more
-
-/// Scans closer than that to the one before are passed over.
-std::vector<Stop> spaced_out(const std::vector<Stop>& stops, double least_m) {
-  std::vector<Stop> chosen;
-  std::optional<core::Odometry> motion;
-  for (const Stop& stop : stops) {
-    if (stop.motion) motion = motion ? core::chain(*motion, *stop.motion) : *stop.motion;
-    const bool is_far = motion && motion->T_before_after.position_m().norm() >= least_m;
-    if (!chosen.empty() && !is_far) continue;
-    chosen.push_back(stop);
-    chosen.back().motion = chosen.size() > 1 ? motion : std::nullopt;
-    motion.reset();
-  }
-  return chosen;
-}
 
 /// Where something other than odometry and detections changed the drive or the names on the map.
 bool interrupts(const Tape::Entry& entry) {
@@ -82,6 +69,7 @@ void NavigationLoop::learn_systematic(core::StepReport& report) {
     systematic.begun.reset();
     return;
   }
+  learn_from_closing(report);
   const double path_m = belief_.existence.path_m();
   const Tape::Position end = tape_.end();
   const bool is_on_tape = systematic.begun && tape_.holds_since(*systematic.begun) && systematic.read <= end;
@@ -94,6 +82,50 @@ void NavigationLoop::learn_systematic(core::StepReport& report) {
   systematic.begin(tape_.end(), path_m);
 }
 
+/// A closing to which odometry had to give way by more than its noise. What it says is told with the noise as it was measured, although
+/// the drive may have been closed with more.
+void NavigationLoop::learn_from_closing(core::StepReport& report) {
+  constexpr double three_sigmas = 9.0;  // of χ²
+  const OddClosing odd = std::exchange(pending_.odd_closing, {});
+  if (report.merged.empty() || !(odd.excess > three_sigmas)) return;
+  SystematicState& systematic = noise_.systematic;
+  systematic.odd = odd;
+  systematic.odd.path_m = belief_.existence.path_m();
+  if (odd.odometry_factor < 1.0 || !tape_.holds_drive() || is_silent(tape_, tape_.begin(), tape_.end())) return;
+  const std::optional<StretchEvidence> evidence = evidence_of_closing(as_measured(), report.solved, *view_.reach());
+  if (!evidence) return;
+  systematic.learner.add_closing(*evidence);
+  const std::optional<CertainErrors> found = systematic.learner.certain_after_closing();
+  if (!found || !solve_without(found->errors, report)) return;
+  systematic.learner.take_out(found->errors);
+  report_systematic(found->nats, report);
+  merge_what_straightened(report);
+}
+
+/// Copies that odometry with the errors had left beside their landmarks.
+void NavigationLoop::merge_what_straightened(core::StepReport& report) {
+  merge_left_open(view_, tied_since_m(tape_, belief_.existence.path_m(), options_.search.old_after_m), report);
+  merge_mapped_twice(report);
+  trust(take_checkpoint(belief_, tape_));
+}
+
+/// The tape, had odometry not been allowed more noise for the last closing that it did not fit.
+Tape NavigationLoop::as_measured() const {
+  const OddClosing& odd = noise_.systematic.odd;
+  const double ago_m = belief_.existence.path_m() - odd.path_m;
+  return tape_.without_last_solution().with_larger_noise(1.0 / odd.odometry_factor, odd.loop_m, ago_m);
+}
+
+/// Without the errors odometry may fit that closing as it was measured.
+bool NavigationLoop::solve_without(const SystematicErrors& errors, core::StepReport& report) {
+  OddClosing& odd = noise_.systematic.odd;
+  if (odd.odometry_factor > 1.0 && tape_.holds_drive() && solve_again(as_measured().without(errors), report)) {
+    odd = {};
+    return true;
+  }
+  return solve_again(tape_.without(errors), report);
+}
+
 /// Of the whole drive, or, on an earlier map and once the atlas holds a part of the drive, of what has not been taken into it: its
 /// phases do not say which of their measurements err. Where that is not known either, from now on.
 void NavigationLoop::take_out_systematic(core::StepReport& report) {
@@ -101,13 +133,17 @@ void NavigationLoop::take_out_systematic(core::StepReport& report) {
   const std::optional<CertainErrors> back = learner.contradicted();
   const std::optional<CertainErrors> found = back ? back : learner.certain();
   if (!found) return;
-  const bool is_whole = tape_.holds_drive();
-  if (is_drive_known() && !solve_again(tape_.without(found->errors), report)) return;
+  if (is_drive_known() && !solve_without(found->errors, report)) return;
   back ? learner.give_up(found->errors) : learner.take_out(found->errors);
+  report_systematic(found->nats, report);
+}
+
+void NavigationLoop::report_systematic(double nats, core::StepReport& report) const {
+  const SystematicLearner& learner = noise_.systematic.learner;
   const SystematicErrors& all = learner.taken_out();
   report.decisions.emplace_back(core::SystematicDecision{all.too_long, all.turn_rad_per_s, all.turn_rad_per_m,
-                                                         all.heading_rad, all.short_m, found->nats, learner.stretches(),
-                                                         is_whole ? 1 : 0});
+                                                         all.heading_rad, all.short_m, nats, learner.stretches(),
+                                                         tape_.holds_drive() ? 1 : 0});
 }
 
 }  // namespace helixnav::supervisor

@@ -47,27 +47,32 @@ struct SightingRows : WhitenedRows<2> {
 /// A part of the normal equations that one landmark has, before it is eliminated.
 struct OfLandmark {
   Eigen::Matrix2d own = Eigen::Matrix2d::Zero();
-  Eigen::Matrix<double, 2, Eigen::Dynamic> with_rest;
+  std::vector<std::pair<Index, Eigen::Matrix<double, 2, 3>>>
+      with_stops;  ///< that saw it, but the first, which is the gauge
+  Eigen::Matrix<double, 2, errors> with_errors = Eigen::Matrix<double, 2, errors>::Zero();
   Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
 };
 
 class StretchProblem {
  public:
-  explicit StretchProblem(const std::vector<Stop>& stops) : stops_(stops) {
-    chain_poses();
+  StretchProblem(const std::vector<Stop>& stops, const std::vector<core::Pose2>& near) : stops_(stops) {
+    near.empty() ? chain_poses() : begin_at(near);
     collect_landmarks();
     of_landmark_.resize(landmarks_.size());
   }
 
-  std::optional<StretchEvidence> evidence() {
+  std::optional<StretchEvidence> evidence(int most_iterations) {
     const Index of_poses = 3 * (poses() - 1);
     if (landmarks_.empty() || of_poses < 3) return std::nullopt;
-    constexpr int iterations = 3;
-    for (int i = 0; i < iterations; ++i) {
+    constexpr int least_iterations = 3;
+    constexpr double little = 0.01;  // of χ²
+    for (int i = 0; i < most_iterations; ++i) {
       if (!set_up()) return std::nullopt;
       const Eigen::LLT<Eigen::MatrixXd> factor(H_.topLeftCorner(of_poses, of_poses));
       if (factor.info() != Eigen::Success) return std::nullopt;
-      step(factor.solve(g_.head(of_poses)));
+      const Eigen::VectorXd moved = factor.solve(g_.head(of_poses));
+      step(moved);
+      if (i + 1 >= least_iterations && moved.dot(g_.head(of_poses)) < little) break;
     }
     if (!set_up()) return std::nullopt;
     const Eigen::LLT<Eigen::MatrixXd> factor(H_.topLeftCorner(of_poses, of_poses));
@@ -81,6 +86,7 @@ class StretchProblem {
     found.motions = static_cast<int>(poses()) - 1;
     found.sightings = (static_cast<int>(rows_) - 3 * found.motions) / 2;
     found.chi2 = chi2_;
+    found.left = g_.head(of_poses).dot(factor.solve(g_.head(of_poses)));
     found.dof = static_cast<int>(rows_ - of_poses - 2 * static_cast<Index>(landmarks_.size()));
     return found;
   }
@@ -94,6 +100,10 @@ class StretchProblem {
       const std::optional<core::Odometry>& motion = stops_[k].motion;
       at_.push_back(motion ? core::compose(at_.back(), motion->T_before_after) : at_.back());
     }
+  }
+
+  void begin_at(const std::vector<core::Pose2>& near) {
+    for (const core::Pose2& pose : near) at_.push_back(core::between(near.front(), pose));
   }
 
   void collect_landmarks() {
@@ -202,20 +212,18 @@ class StretchProblem {
   }
 
   bool add_landmark(const SeenLandmark& landmark, OfLandmark& part) {
-    part.own.setZero();
-    part.gradient.setZero();
-    part.with_rest.setZero(2, H_.cols());
+    part = {};
     const Index e = error_column();
     for (const SeenFrom& sighting : landmark.seen) {
       const SightingRows rows = rows_of_sighting(landmark, sighting);
       part.own += rows.by_landmark.transpose() * rows.by_landmark;
       part.gradient += rows.by_landmark.transpose() * rows.residual;
-      part.with_rest.middleCols<errors>(e) -= rows.by_landmark.transpose() * rows.by_errors;
+      part.with_errors -= rows.by_landmark.transpose() * rows.by_errors;
       H_.block<errors, errors>(e, e) += rows.by_errors.transpose() * rows.by_errors;
       g_.segment<errors>(e) -= rows.by_errors.transpose() * rows.residual;
       if (sighting.stop > 0) {
         const Index p = first_column(sighting.stop);
-        part.with_rest.middleCols<3>(p) += rows.by_landmark.transpose() * rows.by_pose;
+        part.with_stops.emplace_back(p, rows.by_landmark.transpose() * rows.by_pose);
         H_.block<3, 3>(p, p) += rows.by_pose.transpose() * rows.by_pose;
         H_.block<3, errors>(p, e) -= rows.by_pose.transpose() * rows.by_errors;
         g_.segment<3>(p) += rows.by_pose.transpose() * rows.residual;
@@ -224,11 +232,24 @@ class StretchProblem {
       chi2_ += rows.residual.squaredNorm();
       rows_ += 2;
     }
+    return eliminate(part);
+  }
+
+  bool eliminate(const OfLandmark& part) {
     const Eigen::LLT<Eigen::Matrix2d> factor(part.own);
     if (factor.info() != Eigen::Success) return false;
-    const Eigen::Matrix<double, 2, Eigen::Dynamic> solved = factor.solve(part.with_rest);
-    H_.noalias() -= part.with_rest.transpose() * solved;
-    g_ -= solved.transpose() * part.gradient;
+    const Index e = error_column();
+    const Eigen::Matrix<double, 2, errors> errors_solved = factor.solve(part.with_errors);
+    const Eigen::Vector2d gradient_solved = factor.solve(part.gradient);
+    for (const auto& [p, with] : part.with_stops) {
+      for (const auto& [q, with_other] : part.with_stops) {
+        H_.block<3, 3>(p, q) -= with.transpose() * factor.solve(with_other);
+      }
+      H_.block<3, errors>(p, e) -= with.transpose() * errors_solved;
+      g_.segment<3>(p) -= with.transpose() * gradient_solved;
+    }
+    H_.block<errors, errors>(e, e) -= part.with_errors.transpose() * errors_solved;
+    g_.segment<errors>(e) -= part.with_errors.transpose() * gradient_solved;
     return true;
   }
 
@@ -238,8 +259,9 @@ class StretchProblem {
     }
     for (std::size_t l = 0; l < landmarks_.size(); ++l) {
       const OfLandmark& part = of_landmark_[l];
-      landmarks_[l].point_m +=
-          part.own.llt().solve(Eigen::Vector2d(part.gradient - part.with_rest.leftCols(moved.size()) * moved));
+      Eigen::Vector2d gradient = part.gradient;
+      for (const auto& [p, with] : part.with_stops) gradient -= with * moved.segment<3>(p);
+      landmarks_[l].point_m += part.own.llt().solve(gradient);
     }
   }
 
@@ -256,8 +278,9 @@ class StretchProblem {
 
 }  // namespace
 
-std::optional<StretchEvidence> evidence_of_stretch(const std::vector<Stop>& stops) {
-  return StretchProblem(stops).evidence();
+std::optional<StretchEvidence> evidence_of_stretch(const std::vector<Stop>& stops, const std::vector<core::Pose2>& near,
+                                                   int most_iterations) {
+  return StretchProblem(stops, near).evidence(most_iterations);
 }
 
 }  // namespace helixnav::supervisor

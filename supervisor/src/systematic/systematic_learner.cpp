@@ -15,8 +15,9 @@ namespace {
 constexpr std::size_t errors_count = SystematicErrors::count;
 using Chosen = std::array<bool, errors_count>;
 
-constexpr double new_one = 36.0;   // of χ²: six standard deviations
-constexpr double known_one = 9.0;  // an error that was found before is only made more precise
+constexpr double new_one = 36.0;            // of χ²: six standard deviations
+constexpr double with_closings_one = 25.0;  // with two kinds of evidence
+constexpr double known_one = 9.0;           // an error that was found before is only made more precise
 
 /// The errors that minimise χ², and by how much they lower it.
 struct Fit {
@@ -92,6 +93,14 @@ void SystematicLearner::add(const StretchEvidence& stretch) {
   if (is_power_of_two) early_ = std::exchange(pending_, all_);
 }
 
+void SystematicLearner::add_closing(const StretchEvidence& closing) {
+  const Fit own = fit(closing.information, closing.gradient);
+  const double worse = std::max(1.0, (closing.chi2 - own.lowers) / std::max(1, closing.dof));
+  closings_.information += closing.information / worse;
+  closings_.gradient += closing.gradient / worse;
+  has_closed_ = true;
+}
+
 /// Of the stretches about what they say together, per degree of freedom.
 double SystematicLearner::scatter() const {
   const Fit together = fit(all_.information, all_.gradient);
@@ -102,6 +111,7 @@ double SystematicLearner::scatter() const {
 bool SystematicLearner::matters(std::size_t error, const SystematicErrors::Vector& errors) const {
   constexpr double quarter = 0.25;
   constexpr std::size_t errors_of_odometry = 3;
+  if (has_closed_ && error < errors_of_odometry) return true;
   const double rows = error < errors_of_odometry ? motions_ : sightings_;
   const auto i = static_cast<Eigen::Index>(error);
   return errors(i) * errors(i) * in_rows_(i) >= quarter * quarter * rows;
@@ -119,21 +129,50 @@ bool SystematicLearner::is_constant(const Chosen& chosen) const {
 
 std::optional<CertainErrors> SystematicLearner::certain() {
   if (stretches_ < ask_at_) return std::nullopt;
+  std::optional<CertainErrors> found = best(all_, new_one);
+  if (!found && has_closed_) found = certain_by_closings();
+  if (found) ask_at_ = 2 * stretches_;
+  return found;
+}
+
+std::optional<CertainErrors> SystematicLearner::certain_after_closing() {
+  std::optional<CertainErrors> found = certain_by_closings();
+  if (found) ask_at_ = std::max(ask_at_, 2 * stretches_);
+  return found;
+}
+
+std::optional<CertainErrors> SystematicLearner::certain_by_closings() const {
+  std::optional<CertainErrors> found =
+      best({all_.information + closings_.information, all_.gradient + closings_.gradient}, with_closings_one);
+  if (found && !stretches_have(linear(found->errors))) found.reset();
+  return found;
+}
+
+/// Two standard deviations of a new error; of what is left of one that was found before, that they do not contradict it by as much.
+bool SystematicLearner::stretches_have(const SystematicErrors::Vector& errors) const {
+  constexpr double two_sigmas = 4.0;  // of χ²
+  const SystematicErrors::Vector known = taken_out_.vector();
+  const bool is_any_new = (errors.array() != 0.0 && known.array() == 0.0).any();
+  const double lowers = 2.0 * errors.dot(all_.gradient) - errors.dot(all_.information * errors);
+  return lowers >= (is_any_new ? two_sigmas : -two_sigmas) * scatter();
+}
+
+std::optional<CertainErrors> SystematicLearner::best(const StretchSums& sums, double least_new) const {
   const double unit = scatter();
   const SystematicErrors::Vector known = taken_out_.vector();
   Chosen chosen{};
   Fit best;
-  for (std::size_t found = 0; found < errors_count; ++found) {
+  for (std::size_t count = 0; count < errors_count; ++count) {
     std::size_t next = errors_count;
     double most = 0.0;
     for (std::size_t i = 0; i < errors_count; ++i) {
       if (chosen[i] || given_up_[i]) continue;
       Chosen more = chosen;
       more[i] = true;
-      const Fit with = fit(all_.information, all_.gradient, more);
+      const Fit with = fit(sums.information, sums.gradient, more);
       if (!matters(i, with.errors)) continue;
       const double lowers = with.lowers - best.lowers;
-      const double least = known(static_cast<Eigen::Index>(i)) == 0.0 ? new_one : known_one;
+      const double least = known(static_cast<Eigen::Index>(i)) == 0.0 ? least_new : known_one;
       if (lowers > unit * least && lowers > most) {
         next = i;
         most = lowers;
@@ -141,10 +180,9 @@ std::optional<CertainErrors> SystematicLearner::certain() {
     }
     if (next == errors_count) break;
     chosen[next] = true;
-    best = fit(all_.information, all_.gradient, chosen);
+    best = fit(sums.information, sums.gradient, chosen);
   }
   if (!(best.lowers > 0.0) || !is_constant(chosen)) return std::nullopt;
-  ask_at_ = 2 * stretches_;
   return CertainErrors{of_linear(best.errors), 0.5 * best.lowers / unit};
 }
 
@@ -183,6 +221,7 @@ void SystematicLearner::take_out(const SystematicErrors& errors) {
   const SystematicErrors::Vector e = linear(errors);
   of_stretches_ += e.dot(all_.information * e) - 2.0 * e.dot(all_.gradient);
   all_.gradient -= all_.information * e;
+  closings_.gradient -= closings_.information * e;
   base_ = early_ = pending_ = all_;
   since_ = 0;
   taken_out_ = both(taken_out_, errors);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "loop/tape.hpp"
+#include "systematic/odd_closing.hpp"
 #include "systematic/systematic_learner.hpp"
 
 namespace helixnav::supervisor {
@@ -14,6 +15,7 @@ struct SystematicState {
   std::optional<Tape::Position> begun;
   double begun_m = 0.0;
   Tape::Position read = 0;  ///< up to here nothing interrupts the stretch
+  OddClosing odd;           ///< the last one; what odometry was allowed for it is on the tape
 
   void begin(Tape::Position position, double path_m) {
     begun = read = position;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Drives whose odometry and sensor err throughout.
 #include <optional>
+#include <utility>
 #include <variant>
 
 #include <gtest/gtest.h>
@@ -14,8 +15,9 @@ namespace {
 struct LearningDrive {
   std::optional<core::SystematicDecision> taken_out;
   int times = 0;
-  double share = 1.0;  ///< of the drive until then, at first
-  double nees = 0.0;   ///< mean over the second half
+  double share = 1.0;       ///< of the drive until then, at first
+  bool at_closing = false;  ///< at first
+  double nees = 0.0;        ///< mean over the second half
   std::vector<core::MapLandmark> map;
 };
 
@@ -29,7 +31,10 @@ LearningDrive drive_learning(const core::Recording& run, NavigatorOptions option
     for (const core::Decision& decision : report.decisions) {
       const auto* taken_out = std::get_if<core::SystematicDecision>(&decision);
       if (taken_out == nullptr) continue;
-      if (!driven.taken_out) driven.share = static_cast<double>(k) / static_cast<double>(run.labels.size());
+      if (!driven.taken_out) {
+        driven.share = static_cast<double>(k) / static_cast<double>(run.labels.size());
+        driven.at_closing = !report.merged.empty();
+      }
       driven.taken_out = *taken_out;
       ++driven.times;
     }
@@ -96,6 +101,24 @@ TEST(SystematicDrive, IsNotFooledByNoise) {
   sim::Scenario scenario = sim::named_scenario("assumed-noise-half");
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     EXPECT_FALSE(drive_learning(sim::simulate(scenario, seed), {}).taken_out) << seed;
+  }
+}
+
+/// A bias of which the stretches know too little until the loop is closed; then it is right to half its size.
+TEST(SystematicDrive, ATurnBiasIsCertainWhenALoopIsClosed) {
+  SystematicErrors errors;
+  errors.turn_rad_per_s = 0.005;
+  constexpr double speed_mps = 3.0;
+  for (const auto& [scenario, seed] : {std::pair("large-loop", 5), {"large-loop", 6}, {"two-laps", 1}, {"sparse", 1}}) {
+    SCOPED_TRACE(scenario);
+    const core::Recording run = sim::simulate(sim::named_scenario(scenario), static_cast<std::uint64_t>(seed));
+    const LearningDrive learnt = drive_learning(with_errors(run, errors), {});
+    ASSERT_TRUE(learnt.taken_out);
+    EXPECT_TRUE(learnt.at_closing);
+    EXPECT_EQ(learnt.taken_out->solved_again, 1);
+    const double found = learnt.taken_out->turn_rad_per_s + speed_mps * learnt.taken_out->turn_rad_per_m;
+    EXPECT_NEAR(found, errors.turn_rad_per_s, 0.6 * errors.turn_rad_per_s);
+    EXPECT_FALSE(drive_learning(run, {}).taken_out) << "without the bias";
   }
 }
 

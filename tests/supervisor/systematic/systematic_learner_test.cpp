@@ -151,5 +151,48 @@ TEST(SystematicLearner, ScatterCounts) {
   EXPECT_FALSE(learner.certain());
 }
 
+StretchEvidence closing_that_says(double turn_rad_per_s, double sigma_rad_per_s) {
+  StretchEvidence evidence;
+  evidence.information(1, 1) = 1.0 / (sigma_rad_per_s * sigma_rad_per_s);
+  evidence.gradient(1) = evidence.information(1, 1) * turn_rad_per_s;
+  evidence.dof = 20;
+  evidence.chi2 = 20.0 + turn_rad_per_s * evidence.gradient(1);
+  return evidence;
+}
+
+/// Odometry may also not fit a closing because its noise is larger than assumed.
+TEST(SystematicLearner, AClosingCountsWithStretchesThatHaveTheError) {
+  const double bias = 0.01;
+  Vector errors = Vector::Zero();
+  errors(1) = bias;
+  for (const double stretches_know : {1.9, 3.1}) {  // the error, in standard deviations
+    SystematicLearner learner = after(9, stretch(errors, Vector::Constant(3.0 * bias / stretches_know)));
+    EXPECT_FALSE(learner.certain());
+    learner.add_closing(closing_that_says(bias, bias / 5.0));
+    const auto certain = learner.certain_after_closing();
+    ASSERT_EQ(certain.has_value(), stretches_know > 2.0);
+    if (certain.has_value()) {
+      EXPECT_NEAR(certain->errors.turn_rad_per_s, bias, 1e-9);
+    }
+  }
+  SystematicLearner alone = after(9, stretch(Vector::Zero(), sigmas()));
+  alone.add_closing(closing_that_says(bias, bias / 20.0));
+  EXPECT_FALSE(alone.certain_after_closing()) << "twenty standard deviations, of which the stretches know nothing";
+}
+
+TEST(SystematicLearner, AClosingMakesAKnownErrorMorePrecise) {
+  Vector errors = Vector::Zero();
+  errors(1) = 0.04;
+  SystematicLearner learner = after(4, stretch(errors, sigmas()));
+  learner.take_out(learner.certain()->errors);
+  learner.add_closing(closing_that_says(-0.006, 0.001));
+  const auto more = learner.certain_after_closing();
+  ASSERT_TRUE(more);
+  EXPECT_NEAR(more->errors.turn_rad_per_s, -0.006 / (1.0 + 4.0 * 0.01), 1e-5) << "of four stretches' sigma of 0.005";
+  learner.take_out(more->errors);
+  EXPECT_NEAR(learner.taken_out().turn_rad_per_s, 0.034, 0.001);
+  EXPECT_FALSE(learner.certain_after_closing());
+}
+
 }  // namespace
 }  // namespace helixnav::supervisor
