@@ -31,15 +31,24 @@ void LandmarkAppearance::add_vote(const ClassName& name, double nats) {
   for (; at != votes.begin() && (at - 1)->nats < at->nats; --at) std::iter_swap(at - 1, at);
 }
 
-void LandmarkAppearance::add_size(double measured_m, double variance_m2) {
+void LandmarkAppearance::add_size(double measured_m, double variance_m2, double says_nothing) {
   if (!(size_m > 0.0)) {
     size_m = measured_m;
     size_variance_m2 = variance_m2;
     return;
   }
   const double gain = size_variance_m2 / (size_variance_m2 + variance_m2);
-  size_m += gain * (measured_m - size_m);
-  size_variance_m2 *= 1.0 - gain;
+  const double squares = size_variance_m2 * size_variance_m2 + variance_m2 * variance_m2;
+  const double new_alone = says_nothing * size_variance_m2 * size_variance_m2 / squares;
+  const double old_alone = says_nothing - new_alone;
+  const double off_m = measured_m - size_m;
+  const double moved_m = ((1.0 - says_nothing) * gain + new_alone) * off_m;
+  const auto second_moment = [&](double at_m, double variance) {
+    return variance + (at_m - moved_m) * (at_m - moved_m);
+  };
+  size_variance_m2 = (1.0 - says_nothing) * second_moment(gain * off_m, (1.0 - gain) * size_variance_m2) +
+                     new_alone * second_moment(off_m, variance_m2) + old_alone * second_moment(0.0, size_variance_m2);
+  size_m += moved_m;
 }
 
 LandmarkAppearance fused(const LandmarkAppearance& one, const LandmarkAppearance& other) {

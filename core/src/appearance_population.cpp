@@ -46,11 +46,34 @@ void AppearancePopulation::learn_size_noise(const LandmarkAppearance& known, con
   if (!(known.size_m > 0.0) || !(seen.size_m > 0.0)) return;
   constexpr double most_looks = 300.0;
   constexpr double most = 100.0;
+  const double nothing = says_nothing(known, seen);
+  outlier_looks_ = std::min(most_looks, outlier_looks_ + 1.0);
+  outliers_ += (nothing - outliers_) / outlier_looks_;
   const double variance = known.size_variance_m2 + size_noise_ * seen.sigma_size_m * seen.sigma_size_m;
   const double off_m = seen.size_m - known.size_m;
   size_looks_ = std::min(most_looks, size_looks_ + 1.0);
-  size_noise_ *= 1.0 + (off_m * off_m / variance - 1.0) / size_looks_;
+  size_noise_ *= 1.0 + (1.0 - nothing) * (off_m * off_m / variance - 1.0) / size_looks_;
   size_noise_ = std::clamp(size_noise_, 1.0 / most, most);
+}
+
+double AppearancePopulation::size_outliers() const {
+  constexpr double least = 0.001;
+  constexpr double most = 0.3;
+  return sizes_ >= enough_sizes ? std::clamp(outliers_, least, most) : 0.0;
+}
+
+double AppearancePopulation::size_variance_m2(const Appearance& seen) const {
+  return size_noise() * seen.sigma_size_m * seen.sigma_size_m;
+}
+
+/// P(the size is as that of any object), of one that was matched.
+double AppearancePopulation::says_nothing(const LandmarkAppearance& known, const Appearance& seen) const {
+  const double outliers = size_outliers();
+  if (!(outliers > 0.0) || !(known.size_m > 0.0)) return 0.0;
+  const double variance = size_variance_m2(seen);
+  const double of_landmark = ln_normal(seen.size_m - known.size_m, known.size_variance_m2 + variance);
+  const double odds = (1.0 - outliers) / outliers * std::exp(of_landmark - ln_density(seen.size_m, variance));
+  return 1.0 / (1.0 + odds);
 }
 
 double AppearancePopulation::size_noise() const {
@@ -78,7 +101,7 @@ LandmarkAppearance AppearancePopulation::updated(const LandmarkAppearance& known
     const double odds = (1.0 - seen.class_error) / (seen.class_error * share(seen.name));
     now.add_vote(seen.name, std::log1p(odds));
   }
-  if (seen.size_m > 0.0) now.add_size(seen.size_m, size_noise() * seen.sigma_size_m * seen.sigma_size_m);
+  if (seen.size_m > 0.0) now.add_size(seen.size_m, size_variance_m2(seen), says_nothing(known, seen));
   return now;
 }
 
@@ -132,19 +155,24 @@ double AppearancePopulation::ln_alike(const LandmarkAppearance& one, const Landm
 }
 
 AppearanceEvidence AppearancePopulation::compare_sizes(const LandmarkAppearance& known, double size_m,
-                                                       double variance_m2) const {
+                                                       double variance_m2, double outliers) const {
   AppearanceEvidence evidence;
   if (!(known.size_m > 0.0) || !(size_m > 0.0)) return evidence;
-  const double off_m = size_m - known.size_m;
   const double variance = known.size_variance_m2 + variance_m2;
+  const double off_m = size_m - known.size_m;
   evidence.size_nis = off_m * off_m / variance;
   evidence.size_dof = 1;
-  if (sizes_ >= enough_sizes) evidence.nats = ln_normal(off_m, variance) - ln_density(size_m, variance_m2);
+  if (sizes_ < enough_sizes) return evidence;
+  const double odds = outliers / (1.0 - outliers);
+  const double of_any = ln_density(size_m, variance_m2);
+  const auto as_likely = [&](double m) { return std::exp(ln_normal(m, variance) - of_any) + odds; };
+  evidence.nats = std::log((1.0 - outliers) * as_likely(off_m));
+  if (outliers > 0.0) evidence.size_nis = 2.0 * std::log(as_likely(0.0) / as_likely(off_m));
   return evidence;
 }
 
 AppearanceEvidence AppearancePopulation::compare(const LandmarkAppearance& known, const Appearance& seen) const {
-  AppearanceEvidence evidence = compare_sizes(known, seen.size_m, size_noise() * seen.sigma_size_m * seen.sigma_size_m);
+  AppearanceEvidence evidence = compare_sizes(known, seen.size_m, size_variance_m2(seen), size_outliers());
   if (seen.name.empty() || known.votes.front().name.empty()) return evidence;
   const double sure = 1.0 - seen.class_error;
   evidence.nats += std::log(sure * probability(known, seen.name) / share(seen.name) + seen.class_error);
@@ -153,7 +181,7 @@ AppearanceEvidence AppearancePopulation::compare(const LandmarkAppearance& known
 }
 
 AppearanceEvidence AppearancePopulation::compare(const LandmarkAppearance& one, const LandmarkAppearance& other) const {
-  AppearanceEvidence evidence = compare_sizes(one, other.size_m, other.size_variance_m2);
+  AppearanceEvidence evidence = compare_sizes(one, other.size_m, other.size_variance_m2, 0.0);
   if (one.votes.front().name.empty() || other.votes.front().name.empty()) return evidence;
   const double alike = ln_alike(one, other);
   evidence.nats += alike;

@@ -50,8 +50,9 @@ struct LandmarkAppearance {
 
   bool is_given() const { return !votes.front().name.empty() || size_m > 0.0; }
   void add_vote(const ClassName& name, double nats);
-  /// The size measured once more, independently.
-  void add_size(double measured_m, double variance_m2);
+  /// The size measured once more, independently. With probability `says_nothing`, either that measurement or what was known is not of
+  /// this object: whichever is less precise, as the square of its variance.
+  void add_size(double measured_m, double variance_m2, double says_nothing = 0.0);
 };
 
 /// Two that are the same landmark, each from its own observations.

@@ -14,13 +14,15 @@ namespace helixnav::core {
 struct AppearanceEvidence {
   double nats = 0.0;  ///< ln p(appearance | the same object) − ln p(appearance | any object)
   double gate = 0.0;  ///< −2 ln of the probability that the same object is given a class this unlikely: adds to a NIS
-  double size_nis = 0.0;  ///< squared distance of the sizes, …
+  double size_nis = 0.0;  ///< squared distance of the sizes, bounded for one observation, …
   int size_dof = 0;       ///< … and 1 where both are known
 };
 
 /// How often which class and size is given: what an object of no known landmark looks like, and therefore what it means
 /// that two look alike. A class k is given with p(c | k) = (1 − ε) 1[c = k] + ε q_c, q the shares of the population and
-/// ε the observation's class_error, so that ln p(c | landmark) − ln q_c is bounded below by ln ε. Sizes are Gaussian.
+/// ε the observation's class_error, so that ln p(c | landmark) − ln q_c is bounded below by ln ε. Sizes are Gaussian about the landmark's
+/// but for a learnt share, which say nothing: they are as those of any object (a detector fits a circle to a branch). What is known of a
+/// landmark's size after an observation is the Gaussian with the moments of what it may be.
 /// Test: core/map_appearance_test.cpp (enumeration of all classes, batch of all sizes).
 class AppearancePopulation {
  public:
@@ -28,7 +30,8 @@ class AppearancePopulation {
   /// A size of a known landmark, measured once more: teaches by how much sizes scatter more than they state. Rises at once, in force
   /// once it is sure (three standard deviations) and a factor of 1.35 on the variance; never below 1.
   void learn_size_noise(const LandmarkAppearance& known, const Appearance& seen);
-  double size_noise() const;  ///< factor on the stated variance of a size
+  double size_noise() const;     ///< factor on the stated variance of a size
+  double size_outliers() const;  ///< share of sizes that say nothing
 
   /// Share of a class among those given, in (0, 1); above 0 for one that was never given.
   double share(const ClassName& name) const;
@@ -47,7 +50,10 @@ class AppearancePopulation {
   double probability(const LandmarkAppearance& known, const ClassName& name) const;
   double likelier(const LandmarkAppearance& known, const ClassName& than) const;
   double ln_alike(const LandmarkAppearance& one, const LandmarkAppearance& other) const;
-  AppearanceEvidence compare_sizes(const LandmarkAppearance& known, double size_m, double variance_m2) const;
+  AppearanceEvidence compare_sizes(const LandmarkAppearance& known, double size_m, double variance_m2,
+                                   double outliers) const;
+  double says_nothing(const LandmarkAppearance& known, const Appearance& seen) const;
+  double size_variance_m2(const Appearance& seen) const;
   double ln_density(double size_m, double variance_m2) const;
 
   static constexpr std::size_t enough_sizes = 8;
@@ -60,6 +66,8 @@ class AppearancePopulation {
   double size_squares_m2_ = 0.0;  ///< Σ of squared distances from the mean
   double size_noise_ = 1.0;       ///< estimated; in force if sure
   double size_looks_ = 20.0;      ///< that it was estimated from; at first the belief that sizes are as stated
+  double outliers_ = 0.02;        ///< share of sizes, estimated
+  double outlier_looks_ = 50.0;   ///< likewise
 };
 
 /// Class and size of the landmarks of a map, and the population that they come from. Nothing is stored for landmarks
