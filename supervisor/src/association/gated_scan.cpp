@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 
 #include "association/association_report.hpp"
 #include "helixnav/association/likelihood_ratio.hpp"
@@ -16,6 +17,17 @@ const RevisitAmbiguity* find_return(const std::vector<RevisitAmbiguity>& returns
   const auto found = std::find_if(returns.begin(), returns.end(),
                                   [&](const RevisitAmbiguity& one) { return one.landmark == landmark; });
   return found == returns.end() ? nullptr : &*found;
+}
+
+/// Those unseen for longer than that, but for some.
+std::vector<core::LandmarkId> away_for(double path_m, const association::LandmarkLife& life,
+                                       const std::vector<core::LandmarkId>& but) {
+  std::vector<core::LandmarkId> away;
+  for (const association::LandmarkRecord& record : life.records()) {
+    const bool is_away = life.path_m() - record.last_seen_path_m > path_m;
+    if (is_away && !std::binary_search(but.begin(), but.end(), record.id)) away.push_back(record.id);
+  }
+  return away;
 }
 
 std::vector<core::LandmarkId> returned_to(const std::vector<core::LandmarkId>& a,
@@ -64,6 +76,24 @@ void defer_isolated_match(const GatedScan& gated, const core::Scan& scan, const 
   const bool met_again = confirmation.confirms(hit, options.confirmation_m);
   const bool unlikely = is_likelier_in_no_map(gated, *isolated, met, navigator.association.detection_probability);
   if (ambiguous || (informative && (!met_again || unlikely))) isolated->outcome = core::Outcome::ambiguous;
+}
+
+/// Of landmarks that have been out of view, though not for so long as to be old, a single one at the rim of its gate moves the pose as
+/// well; two that agree do not happen by chance.
+void defer_unlikely_match(const GatedScan& gated, double detection_probability,
+                          std::vector<core::AssociationReport>& reports) {
+  core::AssociationReport* alone = nullptr;
+  for (core::AssociationReport& report : reports) {
+    const bool has_been_away =
+        find_return(gated.returns, report.landmark) != nullptr || find_return(gated.away, report.landmark) != nullptr;
+    if (report.outcome != core::Outcome::matched || !has_been_away) continue;
+    if (alone != nullptr) return;
+    alone = &report;
+  }
+  const RevisitAmbiguity* met = alone == nullptr ? nullptr : find_return(gated.away, alone->landmark);
+  if (met != nullptr && is_likelier_in_no_map(gated, *alone, *met, detection_probability)) {
+    alone->outcome = core::Outcome::ambiguous;
+  }
 }
 
 /// The other matches show where the vehicle is, but not where these are.
@@ -139,6 +169,11 @@ void look_for_returns(const cekf::CompressedEkf& filter, const association::Land
     const bool is_doubtful = !met.is_mature && met.expected_confusers > options.search.defer_confusers;
     if (is_doubtful) gated.doubtful.push_back(met.landmark);
   }
+  if (const std::optional<double> reach_m = scan.field_of_view.reach()) {
+    const double begun = with_extraneous_density(options.search, existence.born_per_scan(), view).extraneous_per_scan;
+    gated.away =
+        returns_in_gate(filter, problem, scan, away_for(*reach_m, existence, old), begun, existence.appearance());
+  }
   const RevisitAmbiguity* worst = most_ambiguous(gated.returns);
   if (worst == nullptr || worst->expected_confusers <= options.search.expected_confusers) return;
   gated.place = place_evidence(filter, problem, gated.assignment, scan, old, extraneous_per_scan, options.view_margin_m,
@@ -177,6 +212,7 @@ std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, cons
   defer_matches(gated.place.loose, reports);
   defer_matches(gated.doubtful, reports);
   defer_isolated_match(gated, scan, options, path_m, confirmation, reports);
+  defer_unlikely_match(gated, options.association.detection_probability, reports);
   return reports;
 }
 

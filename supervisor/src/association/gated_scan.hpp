@@ -21,7 +21,8 @@ struct GatedScan {
   std::unique_ptr<Gating> gating;
   association::Assignment assignment;
   std::vector<RevisitAmbiguity> returns;
-  PlaceEvidence place;  ///< weighed if a return alone is too ambiguous
+  std::vector<RevisitAmbiguity> away;  ///< likewise, of landmarks unseen for a reach of the sensor that are not old yet
+  PlaceEvidence place;                 ///< weighed if a return alone is too ambiguous
   /// Tentative landmarks that the vehicle has drifted from, ascending: left unused.
   std::vector<core::LandmarkId> doubtful;
 };
@@ -51,7 +52,8 @@ bool has_unplaced(const core::Scan& scan);
 
 /// The outcome of every observation. Two matched old landmarks confirm each other; an isolated match is deferred if other
 /// objects may be in its gate, and, if it would correct the pose by a lot, until its second hit at the same place and wherever an object in no
-/// map is likelier to be seen. A loose match
+/// map is likelier to be seen. The latter also holds for a single match of a landmark that has been out of view for a reach of the sensor,
+/// which where the road winds may be far less than makes it old. A loose match
 /// (place_evidence.hpp) is deferred too, however many others there are.
 /// Tests: supervisor/association/revisit_ambiguity_test.cpp, isolated_match_test.cpp.
 std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, const core::Scan& scan,

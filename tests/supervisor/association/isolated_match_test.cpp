@@ -10,7 +10,9 @@ namespace {
 
 /// What becomes of a sighting of the only old landmark in view, 15 m ahead, at so many standard deviations to the side of
 /// where it is expected, and `before` as many just before. On this return, eighteen objects in no map are seen in a scan.
-core::Outcome outcome_at(double sigmas, double before) {
+enum class Unseen { for_long, for_a_reach };
+
+core::Outcome outcome_at(double sigmas, double before, Unseen unseen = Unseen::for_long) {
   constexpr double sigma_m = 0.4, range_m = 15.0, sigma_range_m = 0.1, sigma_bearing_rad = 0.006;
   cekf::CompressedEkf filter{core::PoseGaussian{}};
   const core::LandmarkId id =
@@ -28,7 +30,8 @@ core::Outcome outcome_at(double sigmas, double before) {
 
   const NavigatorOptions options;
   GatedScan gated = gate_scan(filter, {id}, scan, options);
-  gated.returns = returns_in_gate(filter, gated.gating->problem, scan, {id}, 18.0);
+  (unseen == Unseen::for_long ? gated.returns : gated.away) =
+      returns_in_gate(filter, gated.gating->problem, scan, {id}, 18.0);
   Confirmation confirmation;
   confirmation.confirms(isolated_hit(id, 0.0, sighting(before), filter.pose(), scan.T_robot_sensor),
                         options.search.confirmation_m);
@@ -44,6 +47,12 @@ TEST(IsolatedMatch, IsDeferredWhereAnObjectInNoMapIsLikelier) {
 TEST(IsolatedMatch, IsDeferredWhereTheHitBeforeWasSomewhereElseInTheGate) {
   EXPECT_EQ(outcome_at(0.5, 0.8), core::Outcome::matched);
   EXPECT_EQ(outcome_at(0.5, -1.5), core::Outcome::ambiguous);
+}
+
+/// One that is not old yet needs no second hit, but is as wrong at the rim of a gate.
+TEST(IsolatedMatch, OfALandmarkThatHasBeenAwayIsDeferredAtTheRimOnly) {
+  EXPECT_EQ(outcome_at(1.5, -1.5, Unseen::for_a_reach), core::Outcome::matched);
+  EXPECT_EQ(outcome_at(2.9, 2.9, Unseen::for_a_reach), core::Outcome::ambiguous);
 }
 
 }  // namespace
