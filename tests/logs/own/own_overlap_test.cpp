@@ -94,5 +94,20 @@ TEST(OwnOverlap, IsTheSameOfAStream) {
   EXPECT_EQ(end.lines, std::vector<std::size_t>{13});
 }
 
+/// A driver that has lost its odometry is not a parked vehicle.
+TEST(OwnOverlap, OfAStreamWithoutOdometryNoScanIsTaken) {
+  const OwnLogFolder log;
+  log.write("vehicle.toml",
+            "[[sensor]]\nreach_m = 40\nview_deg = [-90, 90]\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n");
+  OwnStream stream(read_vehicle(log.folder.path() / "vehicle.toml"));
+  for (std::size_t line = 1; line <= 3; ++line) {
+    stream.take(R"({"detections": [{"t": )" + std::to_string(line) + R"(, "range": 10, "bearing": 1}]})", line);
+  }
+  const StreamedEvents end = stream.finish();
+  EXPECT_TRUE(end.lines.empty());
+  ASSERT_EQ(end.refused.size(), 3U);
+  EXPECT_EQ(end.refused[0].why, "no line of odometry has come: nobody knows where this scan was taken, 1 s");
+}
+
 }  // namespace
 }  // namespace helixnav::logs

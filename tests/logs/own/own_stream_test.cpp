@@ -403,8 +403,10 @@ TEST_F(OwnStreamLines, MixNamesAndNumbersAsIdentitiesOnlyWhereNamesCameFirst) {
   OwnStream numbers(vehicle_, true), names(vehicle_, true);
   const std::string name = R"({"detections": [{"t": 0, "range": 5, "bearing": 0, "id": "church"}]})";
   const std::string number = R"({"detections": [{"t": 0, "range": 6, "bearing": 0, "id": 17}]})";
-  EXPECT_EQ(streamed(names, {name, number}).recording.labels, (std::vector<std::vector<core::Label>>{{0, 1}}));
-  const StreamedEvents refused = streamed(numbers, {number, name});
+  const std::string standing = R"({"odometry": {"t": 0, "v": 0, "omega": 0}})";
+  EXPECT_EQ(streamed(names, {name, number, standing}).recording.labels,
+            (std::vector<std::vector<core::Label>>{{0, 1}}));
+  const StreamedEvents refused = streamed(numbers, {number, name, standing});
   ASSERT_EQ(refused.refused.size(), 1u);
   EXPECT_EQ(refused.refused[0].key, "id");
   EXPECT_EQ(refused.recording.labels, (std::vector<std::vector<core::Label>>{{17}}));

@@ -75,7 +75,8 @@ void LiveMotion::add(const OwnLog& log) {
 }
 
 bool LiveMotion::tells(core::Nanoseconds t_ns) const {
-  if (!motions_ || motions_->holds()) return true;
+  if (!motions_) return false;
+  if (motions_->holds()) return true;
   return t_ns <= told_until_ns(first_ns_, rows_.odometry.back().t_ns, count_);
 }
 

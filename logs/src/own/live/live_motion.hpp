@@ -42,8 +42,10 @@ class LiveMotion {
     return !rows_.odometry.empty() && rows_.odometry.back().t_ns >= t_ns && !is_begin_unknown();
   }
 
-  /// Whether, after the last row, the odometry determines where a scan of that time was taken: speeds are held, increments and
-  /// poses continue for a mean interval, and without any rows the vehicle stands still.
+  bool has_begun() const { return motions_.has_value(); }
+
+  /// Whether, after the last row, the odometry determines where a scan of that time was taken: speeds are held, and increments and
+  /// poses continue for a mean interval.
   bool tells(core::Nanoseconds t_ns) const;
 
   /// Appends the motion up to t_ns, which is covered or at the end, to the events. Times must not go back.

@@ -245,8 +245,10 @@ void OwnStream::State::weave(bool at_end) {
   while (scans.first_is_closed() && (at_end || is_due(scans.first_ns()))) {
     LiveScan scan = scans.pop();
     if (at_end && !motion.tells(scan.scan.t_ns)) {
+      const std::string t_s = LiveScans::text_of(scan.scan.t_ns) + " s";
       refuse(scan.line, "t",
-             "the odometry ended before the time of this scan, " + LiveScans::text_of(scan.scan.t_ns) + " s");
+             motion.has_begun() ? "the odometry ended before the time of this scan, " + t_s
+                                : "no line of odometry has come: nobody knows where this scan was taken, " + t_s);
       continue;
     }
     weave_lost(scan.scan.t_ns);
