@@ -119,11 +119,15 @@ TEST(AppearanceInAssociation, ASizeIsOneMoreRowOfTheGate) {
   twins.map.points_m = {{10.0, 0.0}};
   twins.map.covariance = Eigen::MatrixXd(twins.map.covariance.topLeftCorner(5, 5));
   twins.appearance.see(0, of_size(0.30));
-  const double inside_m = std::sqrt(0.99 * core::chi2_quantile(0.999, 3) * 0.0008);
-  const double outside_m = std::sqrt(1.01 * core::chi2_quantile(0.999, 3) * 0.0008);
-  twins.scan.observations = {point_at(10.0, 0.0, of_size(0.30 + inside_m))};
+  const core::Appearance unlike = of_size(0.60);
+  const double size_nis = twins.appearance.compare(0, unlike).size_nis;
+  ASSERT_GT(size_nis, 3.0);
+  const double left_nis = core::chi2_quantile(0.999, 3) - size_nis;
+  ASSERT_GT(left_nis, 0.0) << "one that says nothing";
+  const double variance_m2 = 0.04 + 0.01 + 0.01;
+  twins.scan.observations = {point_at(10.0 + std::sqrt(0.99 * left_nis * variance_m2), 0.0, unlike)};
   EXPECT_EQ(twins.problem().pairs.size(), 1u);
-  twins.scan.observations = {point_at(10.0, 0.0, of_size(0.30 + outside_m))};
+  twins.scan.observations = {point_at(10.0 + std::sqrt(1.01 * left_nis * variance_m2), 0.0, unlike)};
   EXPECT_TRUE(twins.problem().pairs.empty());
 }
 

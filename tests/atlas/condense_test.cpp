@@ -175,6 +175,46 @@ TEST(Condense, LeavesNoLandmarkThatNothingHolds) {
   EXPECT_TRUE(condensed.joint(ids).covariance.allFinite());
 }
 
+/// Seen from the first two steps of a phase, and never again.
+void add_passing_landmark(std::size_t phase, core::LandmarkId id, testing::SmallDrive& drive) {
+  const auto pose = static_cast<std::size_t>(drive.pose_of_clone[phase]);
+  const Eigen::Vector2d point_m = core::transform(drive.truth[pose], Eigen::Vector2d(1.0, 3.0));
+  core::RandomStream none(1);
+  for (const std::size_t step : {0u, 1u}) {
+    drive.logs[phase]->steps[step].seen.push_back(
+        {id, core::Pose2(), testing::noisy_view(drive.truth[pose + 1 + step], point_m, 0.0, none)});
+  }
+}
+
+/// A piece of clutter in each phase would otherwise keep them all for ever.
+TEST(Condense, TakesPhasesThatAloneHoldWhatIsForgotten) {
+  constexpr core::LandmarkId passing = 100;
+  testing::SmallDrive drive = rounds(37, 8, 0.0);
+  for (std::size_t k = 0; k < drive.logs.size(); ++k) {
+    add_passing_landmark(k, passing + static_cast<core::LandmarkId>(k), drive);
+  }
+  for (const bool forget : {false, true}) {
+    Options options;
+    options.laps_kept = 1;
+    Atlas atlas({}, options);
+    core::LandmarkId id = passing;
+    for (const auto& log : drive.logs) {
+      testing::add_phase(atlas, log);
+      if (forget) atlas.forget(id++);
+      if (atlas.condense() > 0) atlas.settle();
+    }
+    if (!forget) {
+      EXPECT_EQ(atlas.size().condensed, 0);
+      continue;
+    }
+    EXPECT_GT(atlas.size().condensed, 20);
+    const std::vector<core::LandmarkId> ids = all_of(atlas);
+    EXPECT_LT(ids.back(), passing);
+    EXPECT_TRUE(atlas.joint(ids).covariance.allFinite());
+    EXPECT_EQ(Atlas::from_factors(atlas.factors()).landmarks().size(), ids.size());
+  }
+}
+
 /// A drive that has a map of its own in some of its phases, of which one landmark is on the first map, too; the others see old ground.
 struct ApartInPhases {
   testing::SmallDrive drive;

@@ -21,9 +21,17 @@ struct Sharing {
   int landmarks = 0;
 };
 
+/// Of a phase, those that are not forgotten: what was taken for a landmark in passing ties the phase to nothing.
+std::vector<int> lasting_landmarks_of(const State& state, int phase) {
+  std::vector<int> points = landmarks_of(state.leaf(phase));
+  const auto is_forgotten = [&](int v) { return state.variable(v).name < 0; };
+  points.erase(std::remove_if(points.begin(), points.end(), is_forgotten), points.end());
+  return points;
+}
+
 /// Phases that hold most of the landmarks of one, by increasing number.
 std::vector<Sharing> on_ground_of(const State& state, int phase) {
-  const std::vector<int> points = landmarks_of(state.leaf(phase));
+  const std::vector<int> points = lasting_landmarks_of(state, phase);
   std::vector<int> all;
   for (const int v : points) {
     for (const int other : *state.phases_of[State::index(v)]) {
@@ -91,7 +99,7 @@ std::vector<int> phases_that_go(int phase, const std::vector<Run>& floating) {
 bool leave_all_landmarks(const State& state, const std::vector<int>& phases) {
   const auto goes = [&](int phase) { return std::binary_search(phases.begin(), phases.end(), phase); };
   return std::all_of(phases.begin(), phases.end(), [&](int phase) {
-    const std::vector<int> points = landmarks_of(state.leaf(phase));
+    const std::vector<int> points = lasting_landmarks_of(state, phase);
     return std::none_of(points.begin(), points.end(), [&](int v) {
       const std::vector<int>& holders = *state.phases_of[State::index(v)];
       return std::all_of(holders.begin(), holders.end(), goes);

@@ -157,6 +157,7 @@ void DriveMap::take(const Tape& tape, const cekf::CompressedEkf& filter) {
   standing_.thin(stops);
   const core::MergedIds ids = merged_ids(tape, end_);
   const std::map<core::LandmarkId, int> seen = sightings(stops, ids);
+  const auto first_new = static_cast<core::LandmarkId>(named_.size());
   PhaseNames names;
   names.now = [&](core::LandmarkId id) { return ids.now(id); };
   names.is_worth_it = [&](core::LandmarkId id) { return seen.at(id) > 1 || filter.contains(id) || has_name(id); };
@@ -164,6 +165,7 @@ void DriveMap::take(const Tape& tape, const cekf::CompressedEkf& filter) {
     add(phase);
   }
   merge(tape, ids);
+  forget_passing(tape, first_new);
   cost_ = drive_cost(tape, end_, cost_);
   end_ = tape.end();
 }
@@ -187,6 +189,20 @@ void DriveMap::merge(const Tape& tape, const core::MergedIds& ids) {
       if (!has_name(one.removed) || !has_name(kept) || one.removed == kept) continue;
       atlas_.merge({{one.removed, kept}});
       named_[static_cast<std::size_t>(one.removed)] = false;
+    }
+  });
+}
+
+/// What was taken for a landmark and removed within the same part of the drive: with a name, it would keep its phase from ever being
+/// condensed.
+void DriveMap::forget_passing(const Tape& tape, core::LandmarkId first_new) {
+  tape.read_from(end_, [&](const Tape::Entry& entry) {
+    const auto* scan = std::get_if<Tape::Scan>(&entry);
+    if (scan == nullptr) return;
+    for (const core::LandmarkId id : scan->died) {
+      if (id < first_new || !has_name(id)) continue;
+      atlas_.forget(id);
+      named_[static_cast<std::size_t>(id)] = false;
     }
   });
 }

@@ -73,6 +73,7 @@ class DriveMap {
  private:
   void add(const DrivePhase& phase);
   void merge(const Tape& tape, const core::MergedIds& ids);
+  void forget_passing(const Tape& tape, core::LandmarkId first_new);
   bool has_name(core::LandmarkId id) const;
   void name(core::LandmarkId id);
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "circuits.hpp"
+#include "helixnav/core/odometry.hpp"
 #include "labelled_drive.hpp"
 #include "smoothing/same_estimate.hpp"
 
@@ -47,6 +48,41 @@ TEST(DriveMap, IsTheSameTakenInByPieces) {
   EXPECT_EQ(map.path().size(), whole.path().size());
   const std::vector<core::LandmarkId> ids = drive.filter.landmarks();
   expect_same(map.atlas().joint(ids), whole.atlas().joint(ids));
+}
+
+// Seen twice and removed: its phase keeps what it measured, but not its name.
+TEST(DriveMap, ForgetsWhatWasTakenForALandmarkInPassing) {
+  cekf::CompressedEkf filter{core::PoseGaussian{}};
+  Tape tape(100000);
+  const std::vector<double> to_left_m = {3.0, 2.0};
+  for (int k = 0; k < 4; ++k) {
+    core::Odometry metre = core::no_motion(k);
+    metre.T_before_after.x_m = 1.0;
+    metre.covariance = 0.01 * Eigen::Matrix3d::Identity();
+    filter.predict(metre);
+    tape.append(Tape::Motion{metre, 1.0});
+    Tape::Scan entry;
+    entry.scan.t_ns = k;
+    for (core::LandmarkId id = 0; id < (k < 3 ? 2 : 1); ++id) {
+      const Eigen::Vector2d at_m(8.0 - k, to_left_m[static_cast<std::size_t>(id)]);
+      entry.scan.observations.push_back(core::make_cartesian(at_m, 0.01 * Eigen::Matrix2d::Identity()));
+      if (k == 0) filter.augment(entry.scan.observations.back(), {});
+      core::AssociationReport one;
+      one.observation = id;
+      one.landmark = id;
+      one.outcome = k == 0 ? core::Outcome::augmented : core::Outcome::matched;
+      entry.fate.push_back(one);
+    }
+    if (k == 3) entry.died = {1};
+    tape.append(entry);
+  }
+  filter.remove(1);
+  DriveMap map(core::PoseGaussian{}, 20.0);
+  map.take(tape, filter);
+  map.settle();
+  EXPECT_TRUE(map.atlas().knows(0));
+  EXPECT_FALSE(map.atlas().knows(1));
+  EXPECT_EQ(map.path().size(), 4u);
 }
 
 // A drive that is solved anew, because its noise is known better, has a map of its own.

@@ -110,12 +110,12 @@ class Atlas {
   Atlas followed_by(const RelativeGaussian& gap, const Atlas& drive) const;
 
   /// Bounds the cost of ground driven again and again. A settled phase on ground that was driven again more than
-  /// options.laps_kept times (three quarters of its landmarks are seen by others) becomes part of the earlier phase
+  /// options.laps_kept times (three quarters of its landmarks with names are seen by others) becomes part of the earlier phase
   /// that has most of its landmarks, the oldest phase first. Its information on these landmarks is kept; lost are its
   /// ties to the phases before and after, its information on landmarks that the other phase does not have, and its fix
   /// if as many others on that ground have one. All of that is marginalised as if it belonged to variables of its own,
   /// which takes information away and never adds any: covariances are conservative. The last two phases stay, and so
-  /// does a phase that alone holds a landmark. The shape of a condensed phase is kept for poses_of. Call before settle,
+  /// does a phase that alone holds a landmark with a name. The shape of a condensed phase is kept for poses_of. Call before settle,
   /// which then solves the result. Returns how many phases were condensed. Test: atlas/condense_test.cpp.
   int condense();
 
