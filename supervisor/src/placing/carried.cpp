@@ -171,7 +171,7 @@ NavigationLoop::Part NavigationLoop::part_apart(core::CarriedDecision decision, 
   questions.asked.questions = questions_.asked.questions;
   NoiseLearner noise = noise_;
   noise.moved.setZero();
-  noise.systematic.begun.reset();
+  noise.systematic.leave_tape();
   noise.scale.applied_observations = noise.scale.observations();
   noise.scale.applied_odometry = noise.scale.odometry();
   return {{},

@@ -264,7 +264,7 @@ void NavigationLoop::become_one(const MapApart& apart, Belief both, Tape tape, c
   belief_ = std::move(both);
   mode_ = std::move(mapping);
   questions_.place_again_at = 0;
-  noise_.systematic.begun.reset();  // a position on the tape that was
+  noise_.systematic.leave_tape();
   tape_ = std::move(tape);
   apart_ = std::move(left);
 }

@@ -59,6 +59,15 @@ std::optional<StretchEvidence> evidence_between(const Tape& tape, Tape::Position
   }
 }
 
+std::optional<StretchEvidence> evidence_if_solvable(const Tape& tape, const std::vector<core::StampedPose>& path,
+                                                    double reach_m) {
+  try {
+    return evidence_of_closing(tape, path, reach_m);
+  } catch (const core::NumericalError&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 /// While mapping, with nothing in question. A stretch is one reach of the sensor long, or ends where it is interrupted.
@@ -92,7 +101,7 @@ void NavigationLoop::learn_from_closing(core::StepReport& report) {
   systematic.odd = odd;
   systematic.odd.path_m = belief_.existence.path_m();
   if (odd.odometry_factor < 1.0 || !tape_.holds_drive() || is_silent(tape_, tape_.begin(), tape_.end())) return;
-  const std::optional<StretchEvidence> evidence = evidence_of_closing(as_measured(), report.solved, *view_.reach());
+  const std::optional<StretchEvidence> evidence = evidence_if_solvable(as_measured(), report.solved, *view_.reach());
   if (!evidence) return;
   systematic.learner.add_closing(*evidence);
   const std::optional<CertainErrors> found = systematic.learner.certain_after_closing();

@@ -17,6 +17,12 @@ struct SystematicState {
   Tape::Position read = 0;  ///< up to here nothing interrupts the stretch
   OddClosing odd;           ///< the last one; what odometry was allowed for it is on the tape
 
+  /// What refers to the present tape, if another takes its place.
+  void leave_tape() {
+    begun.reset();
+    odd = {};
+  }
+
   void begin(Tape::Position position, double path_m) {
     begun = read = position;
     begun_m = path_m;
