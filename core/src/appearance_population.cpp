@@ -20,6 +20,12 @@ double ln_normal(double difference, double variance) {
   return -0.5 * (std::log(variance) + difference * difference / variance);
 }
 
+/// ln(eᵃ + eᵇ), however large they are; a is finite.
+double ln_sum(double a, double b) {
+  const double larger = std::max(a, b);
+  return larger + std::log1p(std::exp(std::min(a, b) - larger));
+}
+
 bool is_before(const std::pair<ClassName, std::size_t>& one, const ClassName& name) { return one.first < name; }
 
 }  // namespace
@@ -163,11 +169,13 @@ AppearanceEvidence AppearancePopulation::compare_sizes(const LandmarkAppearance&
   evidence.size_nis = off_m * off_m / variance;
   evidence.size_dof = 1;
   if (sizes_ < enough_sizes) return evidence;
-  const double odds = outliers / (1.0 - outliers);
   const double of_any = ln_density(size_m, variance_m2);
-  const auto as_likely = [&](double m) { return std::exp(ln_normal(m, variance) - of_any) + odds; };
-  evidence.nats = std::log((1.0 - outliers) * as_likely(off_m));
-  if (outliers > 0.0) evidence.size_nis = 2.0 * std::log(as_likely(0.0) / as_likely(off_m));
+  const auto nats = [&](double m) {
+    const double of_landmark = ln_normal(m, variance) - of_any;
+    return outliers > 0.0 ? ln_sum(std::log1p(-outliers) + of_landmark, std::log(outliers)) : of_landmark;
+  };
+  evidence.nats = nats(off_m);
+  if (outliers > 0.0) evidence.size_nis = 2.0 * (nats(0.0) - nats(off_m));
   return evidence;
 }
 

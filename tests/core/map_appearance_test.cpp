@@ -255,6 +255,21 @@ TEST(MapAppearance, ASizeAloneDoesNotKeepAnObservationFromItsLandmark) {
   EXPECT_GT(far.nats, std::log(0.5 * map.population().size_outliers()));
 }
 
+/// A detector that reports nonsense, of an object that has it as well: densities of the population vanish there.
+TEST(MapAppearance, ASizeBeyondAllOthersIsComparedAsWell) {
+  int far_off = 0;
+  const MapAppearance map = with_outliers(0.05, 212, 400, far_off);
+  LandmarkAppearance giant;
+  giant.add_size(1e6, 1e-4);
+  for (const double size_m : {1e-6, 0.5, 1e6, 1e6 + 1.0}) {
+    const AppearanceEvidence evidence = map.population().compare(giant, sized(size_m, 0.02));
+    EXPECT_TRUE(std::isfinite(evidence.nats)) << size_m;
+    EXPECT_TRUE(std::isfinite(evidence.size_nis)) << size_m;
+    EXPECT_GE(evidence.size_nis, 0.0) << size_m;
+  }
+  EXPECT_NEAR(map.population().compare(giant, sized(1e6 + 0.02, 0.02)).size_nis, 0.0004 / 0.0005, 1e-3);
+}
+
 TEST(MapAppearance, WhatIsNotToldSaysNothing) {
   AppearancePopulation population = large_population();
   LandmarkAppearance oak = population.updated({}, given("oak"));

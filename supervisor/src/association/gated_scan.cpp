@@ -19,14 +19,16 @@ const RevisitAmbiguity* find_return(const std::vector<RevisitAmbiguity>& returns
   return found == returns.end() ? nullptr : &*found;
 }
 
-/// Those unseen for longer than that, but for some.
-std::vector<core::LandmarkId> away_for(double path_m, const association::LandmarkLife& life,
+/// Of the candidates, those unseen for longer than that, but for some; ascending.
+std::vector<core::LandmarkId> away_for(double path_m, const association::InnovationProblem& problem,
+                                       const association::LandmarkLife& life,
                                        const std::vector<core::LandmarkId>& but) {
   std::vector<core::LandmarkId> away;
-  for (const association::LandmarkRecord& record : life.records()) {
-    const bool is_away = life.path_m() - record.last_seen_path_m > path_m;
-    if (is_away && !std::binary_search(but.begin(), but.end(), record.id)) away.push_back(record.id);
+  for (const core::LandmarkId id : problem.ids) {
+    if (!life.contains(id) || std::binary_search(but.begin(), but.end(), id)) continue;
+    if (life.path_m() - life.record(id).last_seen_path_m > path_m) away.push_back(id);
   }
+  std::sort(away.begin(), away.end());
   return away;
 }
 
@@ -171,8 +173,8 @@ void look_for_returns(const cekf::CompressedEkf& filter, const association::Land
   }
   if (const std::optional<double> reach_m = scan.field_of_view.reach()) {
     const double begun = with_extraneous_density(options.search, existence.born_per_scan(), view).extraneous_per_scan;
-    gated.away =
-        returns_in_gate(filter, problem, scan, away_for(*reach_m, existence, old), begun, existence.appearance());
+    gated.away = returns_in_gate(filter, problem, scan, away_for(*reach_m, problem, existence, old), begun,
+                                 existence.appearance());
   }
   const RevisitAmbiguity* worst = most_ambiguous(gated.returns);
   if (worst == nullptr || worst->expected_confusers <= options.search.expected_confusers) return;

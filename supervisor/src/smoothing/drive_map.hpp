@@ -42,7 +42,7 @@ class DriveMap {
   void merge(const std::vector<core::MergedLandmarks>& merged);
 
   /// Takes in what the tape holds from end() on: scans, fixes, motion and merges. Landmarks lost again after a single look,
-  /// which `filter` no longer has, are left out.
+  /// which `filter` no longer has, are left out; those that the tape begins and removes lose their names.
   void take(const Tape& tape, const cekf::CompressedEkf& filter);
 
   /// What was measured up to there on the tape is in the map.

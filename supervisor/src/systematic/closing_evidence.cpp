@@ -108,15 +108,12 @@ std::optional<StretchEvidence> difference(const std::optional<StretchEvidence>& 
                                           const std::optional<StretchEvidence>& without) {
   constexpr double little = 0.1;  // of χ²
   if (!with || !without || !(with->left < little) || !(without->left < little)) return std::nullopt;
-  StretchEvidence left = *with;
-  left.information -= without->information;
-  left.gradient -= without->gradient;
-  left.in_rows -= without->in_rows;
-  left.motions -= without->motions;
-  left.sightings -= without->sightings;
-  left.chi2 -= without->chi2;
-  left.dof -= without->dof;
-  return left;
+  StretchEvidence added;
+  added.information = with->information - without->information;
+  added.gradient = with->gradient - without->gradient;
+  added.chi2 = with->chi2 - without->chi2;
+  added.dof = with->dof - without->dof;
+  return added;
 }
 
 }  // namespace

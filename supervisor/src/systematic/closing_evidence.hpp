@@ -17,7 +17,7 @@ std::vector<Stop> stops_of_closing(const Tape& tape, double reach_m);
 
 /// What that closing says about systematic errors: what the loop says with its landmarks merged, less what it says without.
 /// Independent of what the stretches of the loop say, since that is in both. Nothing without those scans, or if least squares do not
-/// converge. `path`: where the drive was solved, to begin at; empty: dead reckoning. Cost: some ten factorisations of as many poses.
+/// converge. Its rows are not counted. `path`: where the drive was solved, to begin at; empty: dead reckoning. Cost: some ten factorisations of as many poses.
 /// Test: supervisor/systematic/closing_evidence_test.cpp.
 std::optional<StretchEvidence> evidence_of_closing(const Tape& tape, const std::vector<core::StampedPose>& path,
                                                    double reach_m);

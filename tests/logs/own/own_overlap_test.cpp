@@ -95,7 +95,7 @@ TEST(OwnOverlap, IsTheSameOfAStream) {
 }
 
 /// A driver that has lost its odometry is not a parked vehicle.
-TEST(OwnOverlap, OfAStreamWithoutOdometryNoScanIsTaken) {
+TEST(OwnOverlap, TakesNoScanOfAStreamThatHasNoOdometry) {
   const OwnLogFolder log;
   log.write("vehicle.toml",
             "[[sensor]]\nreach_m = 40\nview_deg = [-90, 90]\nsigma_range_m = 0.05\nsigma_bearing_deg = 0.2\n");
