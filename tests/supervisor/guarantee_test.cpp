@@ -226,8 +226,8 @@ TEST(Guarantee, HoldsWhereSystematicErrorsAreTakenOutOfTheDrive) {
 }
 
 TEST(Guarantee, HoldsInARollBack) {
-  const core::Recording run = sim::simulate(sim::named_scenario("sparse"), 2817);
-  EXPECT_EQ(break_drive(run, single_threaded(2817), 6).count(Kind::rollback), 1u);
+  const core::Recording run = sim::simulate(sim::named_scenario("sparse"), 2199);
+  EXPECT_EQ(break_drive(run, single_threaded(2199), 6).count(Kind::rollback), 1u);
 }
 
 TEST(Guarantee, HoldsWhereThePlaceOfACarriedVehicleIsFoundWithoutASearch) {

@@ -181,7 +181,7 @@ TEST_P(WrongMatch, IsUndoneByASearchFromBefore) {
   EXPECT_EQ(std::adjacent_find(found.born.begin(), found.born.end()), found.born.end()) << "an id was given twice";
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, WrongMatch, testing::Values(2817));
+INSTANTIATE_TEST_SUITE_P(Seeds, WrongMatch, testing::Values(2199));
 
 /// Clutter at two places in the gate of one old landmark was a match there, until two hits had to agree with each other.
 TEST(WrongMatch, IsNotMadeByTwoHitsAtDifferentPlaces) {

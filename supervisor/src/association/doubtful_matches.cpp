@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "association/sure_match.hpp"
 #include "helixnav/association/likelihood_ratio.hpp"
 
 namespace helixnav::supervisor {
@@ -12,7 +13,6 @@ std::vector<association::UnusedSighting> leave_doubtful_unused(const GatedScan& 
                                                                const association::LandmarkLife& existence,
                                                                const core::Scan& scan, const NavigatorOptions& options,
                                                                std::vector<core::AssociationReport>& reports) {
-  static const double least_nats = std::log(0.95 / 0.05);
   const association::InnovationProblem& problem = gated.gating->problem;
   const association::ExtraneousDensity extraneous = association::density_in_view(
       scan, existence.born_per_scan(options.extraneous_per_scan), options.association.extraneous);
@@ -26,7 +26,7 @@ std::vector<association::UnusedSighting> leave_doubtful_unused(const GatedScan& 
     const association::GatedPair& pair = problem.pairs[static_cast<std::size_t>(index)];
     const double nats = std::log(options.association.detection_probability) + pair.log_likelihood -
                         std::log(extraneous.of(problem.observations[observation].kind));
-    if (std::log(existence.odds(report.landmark)) + nats >= least_nats) continue;
+    if (std::log(existence.odds(report.landmark)) + nats >= sure_match_nats()) continue;
     report.outcome = core::Outcome::ambiguous;
     if (nats > 0.0) doubtful.push_back({report.landmark, nats});
   }

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <optional>
 
 #include "association/association_report.hpp"
+#include "association/sure_match.hpp"
 #include "helixnav/association/likelihood_ratio.hpp"
 #include "helixnav/supervisor/lengths.hpp"
 
@@ -47,14 +49,14 @@ double extraneous_on_return(const association::LandmarkLife& existence, const Se
   return std::max(begun, existence.seen_per_scan());
 }
 
-/// Whether an object in no map is likelier to be seen there. Few of them are in a gate that is small enough to go by one
-/// match, and yet at its rim, where a right match hardly ever is, they are likelier.
-bool is_likelier_in_no_map(const GatedScan& gated, const core::AssociationReport& report, const RevisitAmbiguity& met,
-                           double detection_probability) {
+/// By how much the match is likelier than that an object in no map is seen there. Few of them are in a gate that is small enough to go
+/// by one match, and yet at its rim, where a right match hardly ever is, they are likelier.
+double nats_ahead_of_no_map(const GatedScan& gated, const core::AssociationReport& report, const RevisitAmbiguity& met,
+                            double detection_probability) {
   const int index = gated.assignment.observations[static_cast<std::size_t>(report.observation)].pair;
-  if (index < 0) return false;
+  if (index < 0) return std::numeric_limits<double>::infinity();
   const association::GatedPair& pair = gated.gating->problem.pairs[static_cast<std::size_t>(index)];
-  return std::log(detection_probability) + pair.log_likelihood + pair.appearance_nats <
+  return std::log(detection_probability) + pair.log_likelihood + pair.appearance_nats -
          std::log(met.extraneous_density);
 }
 
@@ -76,8 +78,10 @@ void defer_isolated_match(const GatedScan& gated, const core::Scan& scan, const 
   const bool informative = met.widening > options.confirmation_widening;
   const IsolatedHit hit = isolated_hit(isolated->landmark, path_m, seen, gated.pose, scan.T_robot_sensor);
   const bool met_again = confirmation.confirms(hit, options.confirmation_m);
-  const bool unlikely = is_likelier_in_no_map(gated, *isolated, met, navigator.association.detection_probability);
-  if (ambiguous || (informative && (!met_again || unlikely))) isolated->outcome = core::Outcome::ambiguous;
+  const double ahead_of_no_map =
+      nats_ahead_of_no_map(gated, *isolated, met, navigator.association.detection_probability);
+  const bool unsure = std::min(isolated->margin_nats, ahead_of_no_map) < sure_match_nats();
+  if (ambiguous || (informative && (!met_again || unsure))) isolated->outcome = core::Outcome::ambiguous;
 }
 
 /// Of landmarks that have been out of view, though not for so long as to be old, a single one at the rim of its gate moves the pose as
@@ -93,7 +97,7 @@ void defer_unlikely_match(const GatedScan& gated, double detection_probability,
     alone = &report;
   }
   const RevisitAmbiguity* met = alone == nullptr ? nullptr : find_return(gated.away, alone->landmark);
-  if (met != nullptr && is_likelier_in_no_map(gated, *alone, *met, detection_probability)) {
+  if (met != nullptr && nats_ahead_of_no_map(gated, *alone, *met, detection_probability) < 0.0) {
     alone->outcome = core::Outcome::ambiguous;
   }
 }

@@ -51,10 +51,10 @@ void leave_unplaced_unused(const core::Scan& scan, std::vector<core::Association
 bool has_unplaced(const core::Scan& scan);
 
 /// The outcome of every observation. Two matched old landmarks confirm each other; an isolated match is deferred if other
-/// objects may be in its gate, and, if it would correct the pose by a lot, until its second hit at the same place and wherever an object in no
-/// map is likelier to be seen. The latter also holds for a single match of a landmark that has been out of view for a reach of the sensor,
-/// which where the road winds may be far less than makes it old. A loose match
-/// (place_evidence.hpp) is deferred too, however many others there are.
+/// objects may be in its gate, and, if it would correct the pose by a lot, until its second hit at the same place and unless it is 95 %
+/// likely to be right, beside an object in no map and beside the other observations that may be of that landmark. A single match of a
+/// landmark that has been out of view for a reach of the sensor, which where the road winds may be far less than makes it old, is deferred
+/// where an object in no map is likelier. A loose match (place_evidence.hpp) is deferred too, however many others there are.
 /// Tests: supervisor/association/revisit_ambiguity_test.cpp, isolated_match_test.cpp.
 std::vector<core::AssociationReport> associate_scan(const GatedScan& gated, const core::Scan& scan,
                                                     const NavigatorOptions& options, double path_m,

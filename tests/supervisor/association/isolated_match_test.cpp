@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -9,10 +10,11 @@ namespace helixnav::supervisor {
 namespace {
 
 /// What becomes of a sighting of the only old landmark in view, 15 m ahead, at so many standard deviations to the side of
-/// where it is expected, and `before` as many just before. On this return, eighteen objects in no map are seen in a scan.
+/// where it is expected, and `before` as many just before; `another` stands there now. On this return, eighteen objects in no map are seen in a scan.
 enum class Unseen { for_long, for_a_reach };
 
-core::Outcome outcome_at(double sigmas, double before, Unseen unseen = Unseen::for_long) {
+core::Outcome outcome_at(double sigmas, double before, Unseen unseen = Unseen::for_long,
+                         std::optional<double> another = std::nullopt) {
   constexpr double sigma_m = 0.4, range_m = 15.0, sigma_range_m = 0.1, sigma_bearing_rad = 0.006;
   cekf::CompressedEkf filter{core::PoseGaussian{}};
   const core::LandmarkId id =
@@ -27,6 +29,7 @@ core::Outcome outcome_at(double sigmas, double before, Unseen unseen = Unseen::f
     return core::make_range_bearing(range_m, off * sigma_rad, sigma_range_m, sigma_bearing_rad);
   };
   scan.observations.push_back(sighting(sigmas));
+  if (another) scan.observations.push_back(sighting(*another));
 
   const NavigatorOptions options;
   GatedScan gated = gate_scan(filter, {id}, scan, options);
@@ -38,10 +41,18 @@ core::Outcome outcome_at(double sigmas, double before, Unseen unseen = Unseen::f
   return associate_scan(gated, scan, options, 1.0, confirmation).front().outcome;
 }
 
-TEST(IsolatedMatch, IsDeferredWhereAnObjectInNoMapIsLikelier) {
+/// P_D N(ν; 0, S) is 19 λ at 1.55 standard deviations and λ at 2.88; the gate ends at 3.03.
+TEST(IsolatedMatch, IsDeferredUnlessItIsSurelyNoObjectInNoMap) {
   EXPECT_EQ(outcome_at(0.0, 0.0), core::Outcome::matched);
   EXPECT_EQ(outcome_at(1.5, 1.5), core::Outcome::matched);
-  EXPECT_EQ(outcome_at(2.9, 2.9), core::Outcome::ambiguous) << "inside the gate, which ends at 3.03";
+  EXPECT_EQ(outcome_at(2.2, 2.2), core::Outcome::ambiguous) << "likelier than an object in no map, but not by 19 to 1";
+  EXPECT_EQ(outcome_at(2.9, 2.9), core::Outcome::ambiguous) << "less likely than an object in no map";
+}
+
+/// Odds of exp((ν₂² − ν₁²)/2), of two observations of which one is the landmark: 19 to 1 takes 2.43 against none.
+TEST(IsolatedMatch, IsDeferredBesideAnotherThatMayBeTheLandmarkAsWell) {
+  EXPECT_EQ(outcome_at(0.0, 0.0, Unseen::for_long, 2.0), core::Outcome::ambiguous);
+  EXPECT_EQ(outcome_at(0.0, 0.0, Unseen::for_long, 2.9), core::Outcome::matched);
 }
 
 TEST(IsolatedMatch, IsDeferredWhereTheHitBeforeWasSomewhereElseInTheGate) {
