@@ -142,9 +142,10 @@ std::string nis_text(double mean_per_dof) {
         factor, mean_per_dof);
   }
   return warning(
-      "innovations are %.2g times smaller than the assumed noise predicts (NIS %.3g per degree of freedom): the data "
-      "are better than assumed, and loops are harder to close than they need be; 'helixnav calibrate' estimates "
-      "the noise from the log",
+      "innovations are %.2g times smaller than the assumed noise predicts (NIS %.3g per degree of freedom): the "
+      "detections are better than assumed; loops are harder to close than they need be, and whether the odometry is "
+      "worse "
+      "than assumed does not show. 'helixnav calibrate' estimates both from the log",
       1.0 / factor, mean_per_dof);
 }
 
@@ -350,7 +351,7 @@ std::vector<std::string> warnings_of(const runs::Run& run, const evaluation::Eva
   } else if (has_mature_landmark(run) && counts.seen >= enough && share(counts.matched, counts.seen) < least_matched) {
     warnings.push_back(collapse_text(counts, run));
   }
-  constexpr double least_nis = 0.25, most_nis = 2.0;
+  constexpr double least_nis = 0.5, most_nis = 2.0;
   const double nis = evaluation.nis.mean_per_dof;
   if (evaluation.nis.updates >= 50 && (nis < least_nis || nis > most_nis)) warnings.push_back(nis_text(nis));
   if (evaluation.position && evaluation.position->error_m.count == 0) {
