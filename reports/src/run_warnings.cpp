@@ -143,9 +143,9 @@ std::string nis_text(double mean_per_dof) {
   }
   return warning(
       "innovations are %.2g times smaller than the assumed noise predicts (NIS %.3g per degree of freedom): the "
-      "detections are better than assumed; loops are harder to close than they need be, and whether the odometry is "
-      "worse "
-      "than assumed does not show. 'helixnav calibrate' estimates both from the log",
+      "detections are better than assumed. Loops are harder to close than they need be, and odometry that is worse "
+      "than "
+      "assumed does not show. 'helixnav calibrate' estimates both from the log",
       1.0 / factor, mean_per_dof);
 }
 

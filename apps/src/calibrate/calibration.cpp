@@ -70,7 +70,7 @@ class Calibrator {
   Calibration run() {
     constexpr int most_rounds = 8, most_with_fewer = 12;
     while (result_.rounds < (leaves_any() ? most_with_fewer : most_rounds) && !result_.settled) {
-      if (!try_round()) break;
+      try_round();
       if (!result_.settled && repeats(values_, sigmas())) leave_least_significant();
     }
     if (!result_.settled) leave_unsettled();
@@ -142,26 +142,15 @@ class Calibrator {
     double most_noise() const { return std::max(noise.odometry.factor, noise.landmarks.factor); }
   };
 
-  /// A log with too little in it determines no drive at all. If only the drive of a later round is not determined, as where a slip is
-  /// found on the spot by landmarks that are outliers to the fit, what the rounds before found stands: false.
-  bool try_round() {
-    const Calibration before = result_;
+  /// A log with too little in it determines no drive at all.
+  void try_round() {
     try {
       round();
-      return true;
     } catch (const core::NumericalError& error) {
-      if (before.rounds < least_rounds) {
-        throw core::InputError(path_ + ": the log does not determine the drive (" + error.what() + "); after " +
-                               std::to_string(result_.rounds) + " rounds, " + std::to_string(result_.used) + " of " +
-                               std::to_string(result_.observations) +
-                               " detections were used: it takes a longer log, or more landmarks in view");
-      }
-      std::printf("round %d: its drive cannot be solved (%s); what the rounds before found stands\n", before.rounds + 1,
-                  error.what());
-      std::fflush(stdout);
-      result_ = before;
-      scans_ = ids_.size();
-      return false;
+      throw core::InputError(path_ + ": the log does not determine the drive (" + error.what() + "); after " +
+                             std::to_string(result_.rounds) + " rounds, " + std::to_string(result_.used) + " of " +
+                             std::to_string(result_.observations) +
+                             " detections were used: it takes a longer log, or more landmarks in view");
     }
   }
 
@@ -369,7 +358,6 @@ class Calibrator {
   }
 
   static constexpr std::size_t every_scan = std::numeric_limits<std::size_t>::max();
-  static constexpr int least_rounds = 2;  ///< that say something without the next
 
   std::string path_;
   Settings known_;

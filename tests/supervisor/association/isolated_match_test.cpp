@@ -9,10 +9,11 @@
 namespace helixnav::supervisor {
 namespace {
 
-/// What becomes of a sighting of the only old landmark in view, 15 m ahead, at so many standard deviations to the side of
-/// where it is expected, and `before` as many just before; `another` stands there now. On this return, eighteen objects in no map are seen in a scan.
 enum class Unseen { for_long, for_a_reach };
 
+/// What becomes of a sighting of the only old landmark in view, 15 m ahead, at so many standard deviations to the side of
+/// where it is expected, `before` as many just before, and with `another` object seen at so many. On this return, eighteen
+/// objects in no map are seen in a scan.
 core::Outcome outcome_at(double sigmas, double before, Unseen unseen = Unseen::for_long,
                          std::optional<double> another = std::nullopt) {
   constexpr double sigma_m = 0.4, range_m = 15.0, sigma_range_m = 0.1, sigma_bearing_rad = 0.006;
@@ -49,7 +50,8 @@ TEST(IsolatedMatch, IsDeferredUnlessItIsSurelyNoObjectInNoMap) {
   EXPECT_EQ(outcome_at(2.9, 2.9), core::Outcome::ambiguous) << "less likely than an object in no map";
 }
 
-/// Odds of exp((ν₂² − ν₁²)/2), of two observations of which one is the landmark: 19 to 1 takes 2.43 against none.
+/// Of two observations of which one is the landmark, at ν₁ and ν₂ standard deviations, the odds are exp((ν₂² − ν₁²)/2): with ν₁ = 0,
+/// 19 to 1 takes ν₂ = 2.43.
 TEST(IsolatedMatch, IsDeferredBesideAnotherThatMayBeTheLandmarkAsWell) {
   EXPECT_EQ(outcome_at(0.0, 0.0, Unseen::for_long, 2.0), core::Outcome::ambiguous);
   EXPECT_EQ(outcome_at(0.0, 0.0, Unseen::for_long, 2.9), core::Outcome::matched);
