@@ -78,10 +78,17 @@ void AppendFile::append(std::string_view bytes) {
 }
 
 void write_whole_file(const std::string& path, std::string_view bytes) {
+  write_whole_file(path, [bytes](AppendFile& file) { file.append(bytes); });
+}
+
+void write_whole_file(const std::string& path, const std::function<void(AppendFile&)>& write) {
   const std::string temporary = path + ".part";
   ::unlink(temporary.c_str());  // left by a killed process, or a link planted to be written through
   try {
-    AppendFile(temporary).append(bytes);
+    {
+      AppendFile file(temporary);
+      write(file);
+    }
     if (std::rename(temporary.c_str(), path.c_str()) != 0) refuse(path, "write");
   } catch (...) {
     ::unlink(temporary.c_str());

@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <memory>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <openssl/evp.h>
 
+#include "byte_stream.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/files/file.hpp"
@@ -26,14 +28,34 @@ constexpr std::uint32_t factors_version = 2;
 constexpr std::size_t digest_bytes = 32;
 constexpr std::size_t header_bytes = 8 + 4 + 4 + 4 + 8;  // magic, version, landmarks, next name, reach
 
-std::string digest_of(std::string_view bytes) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned length = 0;
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1 ||
-      length != digest_bytes) {
-    throw core::NumericalError("map.bin: SHA-256 is not to be had");
+/// SHA-256 of bytes that come in pieces.
+class Digest {
+ public:
+  Digest() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
+    check(context_ != nullptr && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
   }
-  return {reinterpret_cast<const char*>(digest.data()), digest_bytes};
+
+  void take(std::string_view bytes) { check(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) == 1); }
+
+  std::string result() {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+    unsigned length = 0;
+    check(EVP_DigestFinal_ex(context_.get(), digest.data(), &length) == 1 && length == digest_bytes);
+    return {reinterpret_cast<const char*>(digest.data()), digest_bytes};
+  }
+
+ private:
+  static void check(bool is_fine) {
+    if (!is_fine) throw core::NumericalError("map.bin: SHA-256 is not to be had");
+  }
+
+  std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context_;
+};
+
+std::string digest_of(std::string_view bytes) {
+  Digest digest;
+  digest.take(bytes);
+  return digest.result();
 }
 
 /// Of a dense map.
@@ -136,12 +158,6 @@ void check_content(const std::string& path, const core::JointMap& map) {
   }
 }
 
-void put_triangle_of(std::string& bytes, const Eigen::Ref<const Eigen::MatrixXd>& A) {
-  for (Eigen::Index i = 0; i < A.rows(); ++i) {
-    for (Eigen::Index j = 0; j <= i; ++j) put(bytes, 0.5 * (A(i, j) + A(j, i)));
-  }
-}
-
 /// There must be enough bytes.
 Eigen::MatrixXd triangle_of(LittleEndian& bytes, Eigen::Index rows) {
   Eigen::MatrixXd A(rows, rows);
@@ -158,7 +174,7 @@ void check_parts(const core::JointMap& map) {
   const bool has_any_covariance = has_marginals || (map.has_covariance() && n <= most_joint_landmarks);
   if (!has_any_covariance || joint.covariance.rows() != joint.covariance.cols() || joint.points_m.size() != n ||
       map.states.size() != n || map.observations.size() != n) {
-    throw core::PreconditionError("joint_map_bytes: the parts of the map do not fit, or it is too large");
+    throw core::PreconditionError("put_joint_map: the parts of the map do not fit, or it is too large");
   }
 }
 
@@ -173,10 +189,19 @@ void check_names(const std::string& path, const core::JointMap& map) {
   }
 }
 
+/// What a map with factors has besides them, and whether they are solved.
+constexpr std::uint32_t dense = 1, unsolved = 2;
+
+std::uint32_t kind_of(const core::JointMap& map) {
+  return (map.has_covariance() ? dense : 0U) | (map.factors->is_solved ? 0U : unsolved);
+}
+
 /// What comes behind the places of the landmarks in a map with factors.
 void read_factors(const std::string& path, LittleEndian& bytes, core::JointMap& map) {
   const auto rows = map.rows_with_landmarks();
-  const bool is_dense = bytes.small() != 0;
+  const std::uint32_t kind = bytes.small();
+  if (kind > (dense | unsolved)) refuse(path, "an unknown kind of map");
+  const bool is_dense = (kind & dense) != 0;
   const std::size_t numbers = static_cast<std::size_t>(
       is_dense ? rows * (rows + 1) / 2 : 6 + 3 * static_cast<Eigen::Index>(map.joint.ids.size()));
   if (bytes.left() < 8 * numbers) refuse(path, "it is cut short within its covariance");
@@ -184,39 +209,49 @@ void read_factors(const std::string& path, LittleEndian& bytes, core::JointMap& 
   for (std::size_t i = 0; !is_dense && i < map.joint.ids.size(); ++i) {
     map.covariances_m2.emplace_back(triangle_of(bytes, 2));
   }
-  map.factors = std::make_shared<const core::MapFactors>(take_factors(bytes, path));
+  core::MapFactors factors = take_factors(bytes, path);
+  factors.is_solved = (kind & unsolved) == 0;
+  map.factors = std::make_shared<const core::MapFactors>(std::move(factors));
   check_names(path, map);
 }
 
 }  // namespace
 
-std::string joint_map_bytes(const core::JointMap& map) {
+void put_joint_map(const core::JointMap& map, const std::function<void(std::string_view)>& take) {
   check_parts(map);
   const core::JointGaussian& joint = map.joint;
   const std::size_t n = joint.ids.size();
-  std::string bytes(magic);
-  std::string factors;
-  if (map.factors != nullptr) put_factors(factors, *map.factors);
-  if (map.has_covariance()) bytes.reserve(size_for(n) + sizeof(std::uint32_t) + factors.size());
-  put_unsigned(bytes, map.factors == nullptr ? dense_version : factors_version);
-  put_unsigned(bytes, static_cast<std::uint32_t>(n));
-  put(bytes, static_cast<std::int32_t>(map.next_name));
-  put(bytes, map.reach_m);
+  Digest digest;
+  ByteStream bytes([&](std::string_view block) {
+    digest.take(block);
+    take(block);
+  });
+  bytes.text(magic);
+  bytes.whole(map.factors == nullptr ? dense_version : factors_version);
+  bytes.whole(static_cast<std::uint32_t>(n));
+  bytes.number(static_cast<std::int32_t>(map.next_name));
+  bytes.number(map.reach_m);
   for (std::size_t i = 0; i < n; ++i) {
-    put(bytes, static_cast<std::int32_t>(joint.ids[i]));
-    put(bytes, static_cast<std::int32_t>(map.states[i]));
-    put(bytes, static_cast<std::int32_t>(map.observations[i]));
+    bytes.number(static_cast<std::int32_t>(joint.ids[i]));
+    bytes.number(static_cast<std::int32_t>(map.states[i]));
+    bytes.number(static_cast<std::int32_t>(map.observations[i]));
   }
-  for (const double coordinate : {joint.pose.x_m, joint.pose.y_m, joint.pose.heading_rad}) put(bytes, coordinate);
+  for (const double coordinate : {joint.pose.x_m, joint.pose.y_m, joint.pose.heading_rad}) bytes.number(coordinate);
   for (const Eigen::Vector2d& point_m : joint.points_m) {
-    put(bytes, point_m.x());
-    put(bytes, point_m.y());
+    bytes.number(point_m.x());
+    bytes.number(point_m.y());
   }
-  if (map.factors != nullptr) put_unsigned(bytes, static_cast<std::uint32_t>(map.has_covariance()));
-  put_triangle_of(bytes, joint.covariance);
-  for (const Eigen::Matrix2d& covariance_m2 : map.covariances_m2) put_triangle_of(bytes, covariance_m2);
-  bytes += factors;
-  bytes += digest_of(bytes);
+  if (map.factors != nullptr) bytes.whole(kind_of(map));
+  bytes.triangle(joint.covariance);
+  for (const Eigen::Matrix2d& covariance_m2 : map.covariances_m2) bytes.triangle(covariance_m2);
+  if (map.factors != nullptr) put_factors(bytes, *map.factors);
+  bytes.pass_on();
+  take(digest.result());
+}
+
+std::string joint_map_bytes(const core::JointMap& map) {
+  std::string bytes;
+  put_joint_map(map, [&](std::string_view block) { bytes += block; });
   return bytes;
 }
 

@@ -19,40 +19,36 @@ using Eigen::Index;
 constexpr double largest_number =
     1e15;  // beyond, it is garbage: information on a landmark known to a micrometre is 1e12
 
-void put_count(std::string& bytes, std::size_t count) { put_unsigned(bytes, static_cast<std::uint32_t>(count)); }
+void put_count(ByteStream& bytes, std::size_t count) { bytes.whole(static_cast<std::uint32_t>(count)); }
 
-void put_pose(std::string& bytes, const core::Pose2& T) {
-  for (const double number : {T.x_m, T.y_m, T.heading_rad}) put(bytes, number);
+void put_integer(ByteStream& bytes, int value) { bytes.number(static_cast<std::int32_t>(value)); }
+
+void put_pose(ByteStream& bytes, const core::Pose2& T) {
+  for (const double number : {T.x_m, T.y_m, T.heading_rad}) bytes.number(number);
 }
 
-void put_triangle(std::string& bytes, const Eigen::MatrixXd& A) {
-  for (Index i = 0; i < A.rows(); ++i) {
-    for (Index j = 0; j <= i; ++j) put(bytes, 0.5 * (A(i, j) + A(j, i)));
-  }
+void put_vector(ByteStream& bytes, const Eigen::VectorXd& v) {
+  for (Index i = 0; i < v.size(); ++i) bytes.number(v[i]);
 }
 
-void put_vector(std::string& bytes, const Eigen::VectorXd& v) {
-  for (Index i = 0; i < v.size(); ++i) put(bytes, v[i]);
-}
-
-void put_part(std::string& bytes, const MapFactors::Part& part) {
+void put_part(ByteStream& bytes, const MapFactors::Part& part) {
   put_count(bytes, part.variables.size());
-  for (const int v : part.variables) put(bytes, static_cast<std::int32_t>(v));
-  put_triangle(bytes, part.gaussian->information);
+  for (const int v : part.variables) put_integer(bytes, v);
+  bytes.triangle(part.gaussian->information.full());
   put_vector(bytes, part.gaussian->vector);
   put_vector(bytes, part.gaussian->mean);
-  put(bytes, part.gaussian->chi2);
+  bytes.number(part.gaussian->chi2);
   put_count(bytes, part.fix ? 1 : 0);
   if (!part.fix) return;
-  put_unsigned(bytes, static_cast<std::uint64_t>(part.fix->t_ns));
+  bytes.whole(static_cast<std::uint64_t>(part.fix->t_ns));
   put_vector(bytes, part.fix->position_world_m);
-  put_triangle(bytes, part.fix->covariance_m2);
+  bytes.triangle(part.fix->covariance_m2);
   put_vector(bytes, part.fix->antenna_robot_m);
 }
 
-void put_phase(std::string& bytes, const MapFactors::Phase& phase) {
-  put(bytes, static_cast<std::int32_t>(phase.revisits));
-  put(bytes, static_cast<std::int32_t>(phase.host));
+void put_phase(ByteStream& bytes, const MapFactors::Phase& phase) {
+  put_integer(bytes, phase.revisits);
+  put_integer(bytes, phase.host);
   put_pose(bytes, phase.T_host_entry);
   put_count(bytes, phase.parts.size());
   for (const MapFactors::Part& part : phase.parts) put_part(bytes, part);
@@ -173,21 +169,21 @@ class FactorReader {
 
 }  // namespace
 
-void put_factors(std::string& bytes, const MapFactors& map) {
+void put_factors(ByteStream& bytes, const MapFactors& map) {
   put_pose(bytes, map.start.mean);
-  put_triangle(bytes, map.start.covariance);
-  put(bytes, static_cast<std::int32_t>(map.world));
+  bytes.triangle(map.start.covariance);
+  put_integer(bytes, map.world);
   put_count(bytes, map.variables.size());
   for (const MapFactors::Variable& variable : map.variables) {
-    put(bytes, static_cast<std::int32_t>(variable.dim));
+    put_integer(bytes, variable.dim);
     put_vector(bytes, variable.value);
   }
   put_count(bytes, map.poses.size());
-  for (const int v : map.poses) put(bytes, static_cast<std::int32_t>(v));
+  for (const int v : map.poses) put_integer(bytes, v);
   put_count(bytes, map.landmarks.size());
   for (const auto& [id, v] : map.landmarks) {
-    put(bytes, static_cast<std::int32_t>(id));
-    put(bytes, static_cast<std::int32_t>(v));
+    put_integer(bytes, id);
+    put_integer(bytes, v);
   }
   put_count(bytes, map.phases.size());
   for (const MapFactors::Phase& phase : map.phases) put_phase(bytes, phase);

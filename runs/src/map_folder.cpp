@@ -57,7 +57,9 @@ void write_map(const std::string& folder, const core::JointMap& map,
 
 void write_joint_map(const std::string& folder, const core::JointMap& map) {
   if (map.factors == nullptr && map.joint.ids.size() > most_joint_landmarks) return;
-  files::write_whole_file(folder + '/' + joint_map_file, joint_map_bytes(map));
+  files::write_whole_file(folder + '/' + joint_map_file, [&map](files::AppendFile& file) {
+    put_joint_map(map, [&file](std::string_view block) { file.append(block); });
+  });
   const std::string drives = folder + '/' + drives_file;
   std::error_code none;
   if (map.drives.empty()) {

@@ -80,7 +80,7 @@ TEST(PhaseFactor, IsTheSchurComplementOfTheInteriorPoses) {
     const Eigen::MatrixXd W = dense.H.topLeftCorner(inner, inner).inverse() * dense.H.topRightCorner(inner, kept);
     const Eigen::MatrixXd Lambda = dense.H.bottomRightCorner(kept, kept) - dense.H.bottomLeftCorner(kept, inner) * W;
     const Eigen::VectorXd eta = dense.b.tail(kept) - W.transpose() * dense.b.head(inner);
-    EXPECT_LT((factor.gaussian.information - Lambda).cwiseAbs().maxCoeff(), 1e-9 * Lambda.cwiseAbs().maxCoeff());
+    EXPECT_LT((factor.gaussian.information.full() - Lambda).cwiseAbs().maxCoeff(), 1e-9 * Lambda.cwiseAbs().maxCoeff());
     // Gauss–Newton has converged: what is left of η is rounding of terms of the order of Λ times metres.
     EXPECT_LT((factor.gaussian.vector - eta).cwiseAbs().maxCoeff(), 1e-9 * Lambda.cwiseAbs().maxCoeff());
     EXPECT_NEAR(
@@ -103,7 +103,7 @@ TEST(PhaseFactor, OfOneStepThatSeesManyLandmarksHasNothingToEliminate) {
   }
   const PhaseFactor factor = derive_factor(log, dead_reckon(log));
   const Dense dense = dense_equations(log, factor.shape);
-  EXPECT_LT((factor.gaussian.information - dense.H).cwiseAbs().maxCoeff(), 1e-9 * dense.H.cwiseAbs().maxCoeff());
+  EXPECT_LT((factor.gaussian.information.full() - dense.H).cwiseAbs().maxCoeff(), 1e-9 * dense.H.cwiseAbs().maxCoeff());
 }
 
 TEST(PhaseFactor, SaysTheSameAtAnyRigidMotion) {

@@ -26,9 +26,8 @@ void check_factor(const PhaseFactor& factor) {
   const Index n = 3 + 2 * static_cast<Index>(ids.size());
   const RelativeGaussian& g = factor.gaussian;
   const bool increasing = std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<>()) == ids.end();
-  if (!increasing || (!ids.empty() && ids.front() < 0) || g.information.rows() != n || g.information.cols() != n ||
-      g.vector.size() != n || g.mean.size() != n || !g.information.allFinite() || !g.vector.allFinite() ||
-      !g.mean.allFinite()) {
+  if (!increasing || (!ids.empty() && ids.front() < 0) || g.information.rows() != n || g.vector.size() != n ||
+      g.mean.size() != n || !g.information.all_finite() || !g.vector.allFinite() || !g.mean.allFinite()) {
     throw core::PreconditionError(
         "atlas: the factor's names are not increasing, or its sizes do not fit, or it is not finite");
   }
@@ -48,7 +47,7 @@ void check_determined(const State& state, const PhaseFactor& factor) {
     rows.push_back(4 + 2 * static_cast<Index>(i));
     born.push_back(factor.shape.ids[i]);
   }
-  Eigen::MatrixXd A = factor.gaussian.information(rows, rows);
+  Eigen::MatrixXd A = factor.gaussian.information.full()(rows, rows);
   const Eigen::VectorXd scale = A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   A = scale.asDiagonal() * A * scale.asDiagonal();
   const Eigen::LLT<Eigen::MatrixXd> llt(A);

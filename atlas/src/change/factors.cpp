@@ -60,9 +60,8 @@ bool fits(const MapFactors& map, const MapFactors::Part& part) {
   if (!std::all_of(variables.begin() + 2, variables.end(), [&](int v) { return is_point(map, v); })) return false;
   const auto rows = 2 * static_cast<Index>(variables.size()) - 1;
   const RelativeGaussian& g = *part.gaussian;
-  return g.information.rows() == rows && g.information.cols() == rows && g.vector.size() == rows &&
-         g.mean.size() == rows && g.information.allFinite() && g.vector.allFinite() && g.mean.allFinite() &&
-         std::isfinite(g.chi2);
+  return g.information.rows() == rows && g.vector.size() == rows && g.mean.size() == rows &&
+         g.information.all_finite() && g.vector.allFinite() && g.mean.allFinite() && std::isfinite(g.chi2);
 }
 
 /// A phase joins where it begins with where it ends; one that was taken in has a host that was not.
@@ -170,7 +169,7 @@ class Behind {
 
 void check_gap(const RelativeGaussian& gap) {
   if (gap.mean.size() == 3 && gap.vector.size() == 3 && gap.mean.allFinite() && gap.vector.allFinite() &&
-      gap.information.rows() == 3 && core::is_symmetric_positive_definite(gap.information)) {
+      gap.information.rows() == 3 && core::is_symmetric_positive_definite(gap.information.full())) {
     return;
   }
   throw core::PreconditionError("atlas: the gap between two drives is no motion with a covariance");
@@ -205,13 +204,13 @@ void check_factors(const core::MapFactors& map) {
   }
 }
 
-core::MapFactors Atlas::factors() const {
-  const State& state = *settled_;
+namespace {
+
+MapFactors factors_of(const State& state, const Values& values) {
   if (state.root < 0) throw core::PreconditionError("atlas: a map without phases has no factors");
   MapFactors map;
   map.start = state.start;
   map.world = state.world;
-  const Values values = all_values(state);
   for (std::size_t v = 0; v < values.size(); ++v) map.variables.push_back({state.variables[v].dim, values[v]});
   for (std::size_t k = 0; k < state.variable_of_clone.size(); ++k) map.poses.push_back(state.variable_of_clone[k]);
   for (std::size_t id = 0; id < state.variable_of_landmark.size(); ++id) {
@@ -221,6 +220,28 @@ core::MapFactors Atlas::factors() const {
     }
   }
   for (std::size_t k = 0; k < state.phases.size(); ++k) map.phases.push_back(phase_of(*state.phases[k]));
+  return map;
+}
+
+/// False: it is as it was.
+bool settles(Atlas& atlas) {
+  try {
+    return atlas.settle();
+  } catch (const core::NumericalError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+core::MapFactors Atlas::factors() const { return factors_of(*settled_, all_values(*settled_)); }
+
+core::MapFactors Atlas::unsolved_factors() const {
+  const State& state = *working_;
+  Values values;
+  for (std::size_t v = 0; v < state.values.size(); ++v) values.push_back(state.values[v]);
+  MapFactors map = factors_of(state, values);
+  map.is_solved = false;
   return map;
 }
 
@@ -248,6 +269,7 @@ Atlas Atlas::from_factors(const core::MapFactors& map, const Options& options) {
   }
   state.condensed = static_cast<int>(map.phases.size());
   lay_out_anew(state);
+  if (!map.is_solved && settles(atlas)) return atlas;
   linearise_in_place(state);
   *atlas.settled_ = state;
   return atlas;

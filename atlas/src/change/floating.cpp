@@ -11,7 +11,7 @@ namespace {
 /// Between two drives: it turns by an angle that nobody measured, and sees nothing.
 bool is_gap(const Leaf& leaf) {
   const RelativeGaussian& motion = leaf.phase->gaussian;
-  return motion.mean.size() == 3 && motion.information(2, 2) * core::pi * core::pi < 1.0;
+  return motion.mean.size() == 3 && motion.information.full()(2, 2) * core::pi * core::pi < 1.0;
 }
 
 /// The phases that are left when one of them is condensed, too.

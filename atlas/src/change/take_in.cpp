@@ -110,7 +110,7 @@ Part begun_part(State& state, int host, double weight) {
 void move_to(RelativeGaussian& g, const Eigen::VectorXd& mean) {
   Eigen::VectorXd delta = mean - g.mean;
   delta[2] = core::wrap_to_pi(delta[2]);
-  const Eigen::VectorXd pull = g.information * delta;
+  const Eigen::VectorXd pull = g.information.full() * delta;
   g.chi2 += delta.dot(pull) - 2.0 * g.vector.dot(delta);
   g.vector -= pull;
   g.mean = mean;
@@ -127,7 +127,9 @@ void add_said(const State& state, const MatrixXd& said, const std::vector<int>& 
     rows.push_back(2 * at);
   }
   const Index n = static_cast<Index>(rows.size());
-  sum->information(rows, rows) += 0.5 * (said.topLeftCorner(n, n) + said.topLeftCorner(n, n).transpose());
+  MatrixXd information = sum->information.full();
+  information(rows, rows) += 0.5 * (said.topLeftCorner(n, n) + said.topLeftCorner(n, n).transpose());
+  sum->information = information;
   sum->vector(rows) += said.bottomRows<1>().head(n).transpose();
   sum->chi2 += said(n, n);
   part.gaussian = std::move(sum);

@@ -52,11 +52,11 @@ Eigen::MatrixXd world_form(const RelativeGaussian& factor, const Values& values)
   const Index n = factor.mean.size();
   Eigen::VectorXd delta = relative_coordinates(values) - factor.mean;
   delta[2] = core::wrap_to_pi(delta[2]);
-  const Eigen::VectorXd pull = factor.information * delta;
+  Eigen::MatrixXd W = factor.information.full();
+  const Eigen::VectorXd pull = W * delta;
   Eigen::MatrixXd g = factor.vector - pull;
   const Eigen::Matrix2d R = core::rotation(values[0].z());
   turn_rows(g, R);
-  Eigen::MatrixXd W = factor.information;
   turn_rows(W, R);
   turn_rows(W.transpose(), R);
   const auto G = carried(values);

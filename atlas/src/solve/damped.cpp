@@ -36,12 +36,14 @@ double chi2_of(const State& state, const Part& part) {
   const RelativeGaussian& g = *part.gaussian;
   Eigen::VectorXd delta = relative_coordinates(values) - g.mean;
   delta[2] = core::wrap_to_pi(delta[2]);
-  return g.chi2 + delta.dot(g.information * delta) - 2.0 * g.vector.dot(delta);
+  return g.chi2 + delta.dot(g.information.full() * delta) - 2.0 * g.vector.dot(delta);
 }
 
 /// The least χ² that a part can have. It may have more where it was derived: a fix that came where the map was wrong, a phase derived
 /// while the map bent it.
-double least_chi2_of(const RelativeGaussian& g) { return g.chi2 - g.vector.dot(g.information.ldlt().solve(g.vector)); }
+double least_chi2_of(const RelativeGaussian& g) {
+  return g.chi2 - g.vector.dot(g.information.full().ldlt().solve(g.vector));
+}
 
 /// least_chi2_of all parts, phase after phase.
 using LeastChi2 = std::vector<std::vector<double>>;

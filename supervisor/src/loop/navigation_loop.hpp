@@ -261,7 +261,9 @@ class NavigationLoop {
   std::optional<core::JointMap> factors_to_keep(core::CarriedDecision& decision, std::size_t begun, double until_m,
                                                 const std::vector<core::MapLandmark>& kept) const;
   core::LandmarkId next_name() const;
-  Tape tape_until(double until_m) const;  // window/whole_estimate.cpp
+  core::JointMap unsolved_factors(const std::vector<core::MapLandmark>& landmarks,
+                                  double until_m) const;  // window/whole_estimate.cpp
+  Tape tape_until(double until_m) const;                  // window/whole_estimate.cpp
   Belief belief_elsewhere(const core::Pose2& T_part_robot) const;
   Part part_elsewhere(const core::CarriedDecision& decision) const;
   Part part_since(const UnsurePause& pause, core::CarriedDecision decision) const;

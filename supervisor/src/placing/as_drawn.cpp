@@ -29,15 +29,16 @@ Eigen::MatrixXd blocks_of(const std::vector<core::PointGaussian>& points) {
 std::shared_ptr<const core::RelativeGaussian> information_on(const std::vector<core::PointGaussian>& points) {
   auto gaussian = std::make_shared<core::RelativeGaussian>();
   const auto rows = static_cast<Eigen::Index>(3 + 2 * points.size());
-  gaussian->information = Eigen::MatrixXd::Zero(rows, rows);
-  gaussian->information.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity();
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(rows, rows);
+  information.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity();
   gaussian->vector = Eigen::VectorXd::Zero(rows);
   gaussian->mean = Eigen::VectorXd::Zero(rows);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto row = 3 + 2 * static_cast<Eigen::Index>(i);
-    gaussian->information.block<2, 2>(row, row) = points[i].covariance_m2.inverse();
+    information.block<2, 2>(row, row) = points[i].covariance_m2.inverse();
     gaussian->mean.segment<2>(row) = points[i].mean_m;
   }
+  gaussian->information = information;
   return gaussian;
 }
 

@@ -54,24 +54,31 @@ core::JointMap joint_map(core::JointGaussian joint, core::LandmarkId next_name,
   return map;
 }
 
-core::JointMap factored_map(const atlas::Atlas& drive, core::LandmarkId next_name,
-                            const std::vector<core::MapLandmark>& landmarks, FactoredMap how) {
+core::JointMap factored_map(core::MapFactors factors, const core::PoseGaussian& pose, core::LandmarkId next_name,
+                            const std::vector<core::MapLandmark>& landmarks) {
   core::JointMap map = without_joint(next_name, landmarks);
-  map.joint = drive.joint({});
+  map.joint.pose = pose.mean;
+  map.joint.covariance = pose.covariance;
   map.joint.ids = ids_of(landmarks);
-  core::MapFactors factors = drive.factors();
   keep_names(map.joint.ids, factors);
   map.factors = std::make_shared<const core::MapFactors>(std::move(factors));
-  if (how == FactoredMap::factors_alone) {
-    for (const core::MapLandmark& landmark : landmarks) {
-      map.joint.points_m.push_back(landmark.point.mean_m);
-      map.covariances_m2.push_back(landmark.point.covariance_m2);
-    }
-    return map;
+  for (const core::MapLandmark& landmark : landmarks) {
+    map.joint.points_m.push_back(landmark.point.mean_m);
+    map.covariances_m2.push_back(landmark.point.covariance_m2);
   }
-  for (const core::PointGaussian& point : marginals_of(drive, map.joint.ids)) {
-    map.joint.points_m.push_back(point.mean_m);
-    map.covariances_m2.push_back(0.5 * (point.covariance_m2 + point.covariance_m2.transpose()));
+  return map;
+}
+
+core::JointMap factored_map(const atlas::Atlas& drive, core::LandmarkId next_name,
+                            const std::vector<core::MapLandmark>& landmarks, FactoredMap how) {
+  const core::JointGaussian end = drive.joint({});
+  core::JointMap map = factored_map(drive.factors(), {end.pose, end.covariance}, next_name, landmarks);
+  if (how == FactoredMap::factors_alone) return map;
+  const std::vector<core::PointGaussian> solved = marginals_of(drive, map.joint.ids);
+  for (std::size_t i = 0; i < solved.size(); ++i) {
+    const Eigen::Matrix2d& covariance_m2 = solved[i].covariance_m2;
+    map.joint.points_m[i] = solved[i].mean_m;
+    map.covariances_m2[i] = 0.5 * (covariance_m2 + covariance_m2.transpose());
   }
   return map;
 }

@@ -2,6 +2,7 @@
 #include "smoothing/drive_map.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <utility>
 
@@ -21,6 +22,43 @@ std::map<core::LandmarkId, int> sightings(const std::vector<Stop>& stops, const 
   }
   return count;
 }
+
+/// Over the length of a phase, dead reckoning is a start from which three Gauss-Newton steps reach its minimum.
+atlas::PhaseFactor derived_alone(const atlas::PhaseLog& log) {
+  return atlas::derive_factor(log, atlas::dead_reckon(log));
+}
+
+/// Derives phase after phase about the landmarks where a filter has them.
+class DerivedAtFilter {
+ public:
+  DerivedAtFilter(const cekf::CompressedEkf& filter, const core::Pose2& T_map_start)
+      : filter_(filter), T_map_entry_(T_map_start) {}
+
+  atlas::PhaseFactor operator()(const atlas::PhaseLog& log) {
+    const atlas::PointPrior known = landmarks_in(log);
+    atlas::PhaseFactor factor = atlas::derive_factor(log, atlas::dead_reckon(log, &known), &known);
+    T_map_entry_ = core::compose(T_map_entry_, factor.shape.T_entry_robot.back());
+    return factor;
+  }
+
+ private:
+  /// So certain that they stay there.
+  atlas::PointPrior landmarks_in(const atlas::PhaseLog& log) const {
+    const core::Pose2 T_entry_map = core::inverse(T_map_entry_);
+    atlas::PointPrior known;
+    for (const core::LandmarkId id : atlas::landmarks_of(log)) {
+      if (!filter_.contains(id)) continue;
+      known.ids.push_back(id);
+      known.points_m.push_back(core::transform(T_entry_map, filter_.landmark(id).mean_m));
+    }
+    const auto rows = 2 * static_cast<Eigen::Index>(known.ids.size());
+    known.covariance = softening().x() * softening().x() * Eigen::MatrixXd::Identity(rows, rows);
+    return known;
+  }
+
+  const cekf::CompressedEkf& filter_;
+  core::Pose2 T_map_entry_;
+};
 
 /// A pose relative to landmarks, as a phase from where the drive ended that says nothing else: the error of the pose, less what
 /// the errors of the landmarks make of it, is that of the pose given.
@@ -65,9 +103,10 @@ atlas::PhaseFactor phase_of(const core::JointGaussian& joint) {
   Eigen::MatrixXd softened = points.covariance;
   softened.diagonal().array() += softening().x() * softening().x() + cancelled * joint.covariance.diagonal().maxCoeff();
   const Eigen::MatrixXd information = softened.llt().solve(Eigen::MatrixXd::Identity(rows - 3, rows - 3));
-  phase.gaussian.information = Eigen::MatrixXd::Zero(rows, rows);
-  phase.gaussian.information.diagonal().head<3>() = softening().cwiseAbs2().cwiseInverse();
-  phase.gaussian.information.bottomRightCorner(rows - 3, rows - 3) = 0.5 * (information + information.transpose());
+  Eigen::MatrixXd apart = Eigen::MatrixXd::Zero(rows, rows);
+  apart.diagonal().head<3>() = softening().cwiseAbs2().cwiseInverse();
+  apart.bottomRightCorner(rows - 3, rows - 3) = 0.5 * (information + information.transpose());
+  phase.gaussian.information = apart;
   phase.gaussian.vector = Eigen::VectorXd::Zero(rows);
   phase.gaussian.mean = Eigen::VectorXd::Zero(rows);
   for (std::size_t i = 0; i < points.points_m.size(); ++i) {
@@ -152,7 +191,17 @@ void DriveMap::merge(const std::vector<core::MergedLandmarks>& merged) {
   for (const auto& [removed, kept] : pairs) named_[static_cast<std::size_t>(removed)] = false;
 }
 
-void DriveMap::take(const Tape& tape, const cekf::CompressedEkf& filter) {
+core::MapFactors DriveMap::unsolved(const core::PoseGaussian& start, double phase_m, const Tape& tape,
+                                    const cekf::CompressedEkf& filter) {
+  DriveMap map(start, phase_m);
+  DerivedAtFilter derive(filter, start.mean);
+  map.take(tape, filter, std::ref(derive));
+  return map.atlas_.unsolved_factors();
+}
+
+void DriveMap::take(const Tape& tape, const cekf::CompressedEkf& filter) { take(tape, filter, derived_alone); }
+
+void DriveMap::take(const Tape& tape, const cekf::CompressedEkf& filter, const Derive& derive) {
   std::vector<Stop> stops = stops_of(tape, end_);
   standing_.thin(stops);
   const core::MergedIds ids = merged_ids(tape, end_);
@@ -162,7 +211,7 @@ void DriveMap::take(const Tape& tape, const cekf::CompressedEkf& filter) {
   names.now = [&](core::LandmarkId id) { return ids.now(id); };
   names.is_worth_it = [&](core::LandmarkId id) { return seen.at(id) > 1 || filter.contains(id) || has_name(id); };
   for (const DrivePhase& phase : phases_of(stops, motion_after_stops(tape, end_), phase_m_, stops_.empty(), names)) {
-    add(phase);
+    add(phase, derive);
   }
   merge(tape, ids);
   forget_passing(tape, first_new);
@@ -170,9 +219,8 @@ void DriveMap::take(const Tape& tape, const cekf::CompressedEkf& filter) {
   end_ = tape.end();
 }
 
-/// Over the length of a phase, dead reckoning is a start from which three Gauss-Newton steps reach its minimum.
-void DriveMap::add(const DrivePhase& phase) {
-  atlas::PhaseFactor factor = atlas::derive_factor(*phase.log, atlas::dead_reckon(*phase.log));
+void DriveMap::add(const DrivePhase& phase, const Derive& derive) {
+  atlas::PhaseFactor factor = derive(*phase.log);
   for (const core::LandmarkId id : factor.shape.ids) name(id);
   stops_.push_back(std::make_shared<const std::vector<StopInPhase>>(phase.stops));
   const int clone = atlas_.add(std::move(factor), phase.log) + 1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/gaussian.hpp"
 #include "helixnav/core/joint_map.hpp"
+#include "helixnav/core/map_factors.hpp"
 #include "helixnav/core/step_report.hpp"
 #include "loop/tape.hpp"
 #include "smoothing/drive_phases.hpp"
@@ -45,6 +47,12 @@ class DriveMap {
   /// which `filter` no longer has, are left out; those that the tape begins and removes lose their names.
   void take(const Tape& tape, const cekf::CompressedEkf& filter);
 
+  /// The factors of a drive that a filter holds as a whole, with its phases derived about the filter's landmarks: near enough to be
+  /// solved when the map is taken up again. Solving it here would take most of the time and memory of saving a map.
+  /// Test: supervisor/smoothing/unsolved_factors_test.cpp (solved, it is what the solved drive is).
+  static core::MapFactors unsolved(const core::PoseGaussian& start, double phase_m, const Tape& tape,
+                                   const cekf::CompressedEkf& filter);
+
   /// What was measured up to there on the tape is in the map.
   void begin_at(Tape::Position position) { end_ = position; }
 
@@ -71,7 +79,10 @@ class DriveMap {
   double extent_m() const { return extent_m_; }
 
  private:
-  void add(const DrivePhase& phase);
+  using Derive = std::function<atlas::PhaseFactor(const atlas::PhaseLog&)>;
+
+  void take(const Tape& tape, const cekf::CompressedEkf& filter, const Derive& derive);
+  void add(const DrivePhase& phase, const Derive& derive);
   void merge(const Tape& tape, const core::MergedIds& ids);
   void forget_passing(const Tape& tape, core::LandmarkId first_new);
   bool has_name(core::LandmarkId id) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -61,6 +62,7 @@ std::optional<core::JointMap> NavigationLoop::factored(const std::vector<core::M
                                                        double until_m) const {
   if (!is_drive_known()) return std::nullopt;
   try {
+    if (how == FactoredMap::factors_alone && !belief_.drive) return unsolved_factors(landmarks, until_m);
     DriveMap drive = belief_.drive ? *belief_.drive : *begun_drive();
     drive.take(tape_until(until_m), belief_.filter);
     drive.settle();
@@ -72,6 +74,12 @@ std::optional<core::JointMap> NavigationLoop::factored(const std::vector<core::M
   } catch (const core::NumericalError&) {
     return std::nullopt;
   }
+}
+
+core::JointMap NavigationLoop::unsolved_factors(const std::vector<core::MapLandmark>& landmarks, double until_m) const {
+  const double phase_m = phase_length_m(view_.reach().value_or(reference_reach_m));
+  core::MapFactors factors = DriveMap::unsolved(start_, phase_m, tape_until(until_m), belief_.filter);
+  return factored_map(std::move(factors), belief_.filter.pose(), next_name(), landmarks);
 }
 
 Tape NavigationLoop::tape_until(double until_m) const {

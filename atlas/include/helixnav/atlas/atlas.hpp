@@ -66,7 +66,8 @@ class Atlas {
   /// `start` is clone 0 in the map frame. With zero covariance it represents the map frame itself.
   explicit Atlas(const core::PoseGaussian& start = {}, const Options& options = {});
   /// The map that factors() has put away, with the same estimates. Its phases have no logs: they turn and bend with the map, but are not
-  /// derived again. PreconditionError if its parts do not fit together, NumericalError if it has no solution.
+  /// derived again. One that was not solved is solved first, and stays where it is if that does not end. PreconditionError if its parts
+  /// do not fit together, NumericalError if it has no solution.
   /// Test: atlas/factors_test.cpp.
   static Atlas from_factors(const core::MapFactors& map, const Options& options = {});
   Atlas(const Atlas& other);
@@ -156,6 +157,9 @@ class Atlas {
   /// The settled map as a value to be put away. Names of landmarks merged into others are not in it. O(N); the Gaussians
   /// are shared. PreconditionError if it has no phase.
   core::MapFactors factors() const;
+  /// The same of what was added to a new atlas, without solving it, which takes most of the time and memory: the values are where `add`
+  /// put them. Test: atlas/factors_test.cpp.
+  core::MapFactors unsolved_factors() const;
 
   /// Size of the tree as it was settled, for benchmarks and reports.
   struct Size {

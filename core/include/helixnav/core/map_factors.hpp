@@ -37,6 +37,8 @@ struct MapFactors {
     Pose2 T_host_entry;       ///< … and where it began, relative to where the host begins
   };
 
+  /// False: the values are where a filter had its landmarks, near the solution of the factors but not at it.
+  bool is_solved = true;
   PoseGaussian start;  ///< of the first pose in the frame of the map
   int world = -1;      ///< variable of the frame of the map: the first pose if it is certain
   std::vector<Variable> variables;

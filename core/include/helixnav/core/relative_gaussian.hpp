@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "helixnav/core/symmetric_matrix.hpp"
+
 namespace helixnav::core {
 
 /// A Gaussian factor over a pose and points, given relative to a reference pose, so that it stays the same wherever the
@@ -10,7 +12,7 @@ namespace helixnav::core {
 ///   χ²(u) = chi2 − 2·vectorᵀδ + δᵀ·information·δ,   δ = u − mean, its heading wrapped.
 /// information is (3+2n)×(3+2n), positive semidefinite; vector and mean have 3+2n rows [m, m, rad; m, m; …].
 struct RelativeGaussian {
-  Eigen::MatrixXd information;
+  SymmetricMatrix information;
   Eigen::VectorXd vector;
   Eigen::VectorXd mean;
   double chi2 = 0.0;

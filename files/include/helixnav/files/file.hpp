@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -27,6 +28,8 @@ class AppendFile {
 /// Writes `bytes` under a temporary name and renames: the file appears whole or not at all, and a symbolic link of that
 /// name is replaced, not followed. On InputError the temporary file is removed. Test: runs/run_writer_test.cpp.
 void write_whole_file(const std::string& path, std::string_view bytes);
+/// The same for a file that is written piece by piece.
+void write_whole_file(const std::string& path, const std::function<void(AppendFile&)>& write);
 
 /// InputError with the reason if write_whole_file could not write a small file of this name now; leaves nothing behind.
 /// Test: apps/hostile/lost_output_test.cpp.

@@ -10,6 +10,7 @@
 #include "helixnav/cekf/compressed_ekf.hpp"
 #include "helixnav/core/errors.hpp"
 #include "helixnav/core/joint_map.hpp"
+#include "helixnav/core/map_factors.hpp"
 #include "helixnav/supervisor/factored_map.hpp"
 
 namespace helixnav::supervisor {
@@ -23,6 +24,9 @@ core::JointMap joint_map(core::JointGaussian joint, core::LandmarkId next_name,
 /// The same as factors of a drive, for a map of any size; `landmarks` are known to it. O(N).
 core::JointMap factored_map(const atlas::Atlas& drive, core::LandmarkId next_name,
                             const std::vector<core::MapLandmark>& landmarks, FactoredMap how = FactoredMap::whole);
+/// The same with the places and covariances of the landmarks as listed.
+core::JointMap factored_map(core::MapFactors factors, const core::PoseGaussian& pose, core::LandmarkId next_name,
+                            const std::vector<core::MapLandmark>& landmarks);
 /// The map as a session continues in it from a pose on it that was given, with its covariance (x, y, heading) relative to
 /// the nearest dozen landmarks: it shares their errors, and says nothing about where in the frame they are. Tentative
 /// landmarks are left out. O(N), with a joint covariance O(N²).
