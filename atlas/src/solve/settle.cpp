@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solve/settle.hpp"
 
+#include <array>
 #include <memory>
 #include <string>
 
@@ -14,7 +15,8 @@ namespace {
 bool redo(State& state, int id, Workspace& workspace, int& redone, const std::function<bool()>& should_stop) {
   if (!state.node(id).dirty) return true;
   if (!state.is_leaf(id)) {
-    for (const int child : state.node(id).child) {
+    const std::array<int, 2> children = state.node(id).child;  // the node moves when it is written
+    for (const int child : children) {
       if (!redo(state, child, workspace, redone, should_stop)) return false;
     }
   }
