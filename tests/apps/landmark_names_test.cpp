@@ -60,6 +60,22 @@ TEST(LandmarkNames, AreOfTheLandmarksThatAreStillInTheMap) {
             (std::map<core::LandmarkId, std::string>{{1, "elm"}, {2, "beech"}, {3, "gate 4"}, {4, "oak"}}));
 }
 
+/// Its numbers for the words of its log would be taken for this log's.
+TEST(LandmarkNames, AreNotGuessedForAMapWithoutThem) {
+  const testing::TemporaryFolder folder;
+  write_named_log(folder, {"oak", "elm", "beech", "gate 4"}, false);
+  const std::string log = folder.path() / "log", map = folder.path() / "run";
+  ASSERT_EQ(run({"replay", log, "--out", map, "--quiet"}).exit_code, 0);
+  using Words = std::vector<std::string>;
+  for (const Words& how : {Words{"--start", "0,0,0"}, Words{"--localize"}}) {
+    Words words{"replay", log, "--map", map, "--association", "known", "--out", folder.path() / "b", "--quiet"};
+    words.insert(words.end(), how.begin(), how.end());
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.exit_code, 3) << how.front();
+    EXPECT_NE(outcome.err.find("needs to know the names of the map's landmarks"), std::string::npos) << outcome.err;
+  }
+}
+
 TEST(LandmarkNames, AreTheSameOnAnotherDayInAnotherOrder) {
   core::Recording tuesday;
   tuesday.label_names = {"elm", "birch", "oak"};

@@ -14,8 +14,8 @@ void check_earlier_labels(const EarlierSession& earlier) {
   check_has_covariance(earlier.map, "--map", "--association known");
   if (earlier.landmark_of.empty()) {
     throw core::InputError(
-        "--association known needs to know the labels of the map's landmarks: give --map the folder "
-        "of a run over a labelled log");
+        "--association known needs to know the names of the map's landmarks: give --map the folder "
+        "of a run with --association known over a labelled log");
   }
   if (earlier.start.kind == SessionStart::Kind::unknown) {
     throw core::InputError(
@@ -66,8 +66,8 @@ void check_labels(const Drive& job) {
   }
   if (job.known_association && job.given_map && job.given_map->landmark_of.empty()) {
     throw core::InputError(option +
-                           " needs to know the labels of the map's landmarks: give --map the folder "
-                           "of a run over a labelled log");
+                           " needs to know the names of the map's landmarks: give --map the folder "
+                           "of a run with --association known over a labelled log");
   }
 }
 

@@ -63,6 +63,8 @@ void call_as_log(const std::string& map, const std::vector<core::LandmarkId>& id
   for (auto& [id, name] : runs::read_landmark_names(table)) {
     if (std::binary_search(ids.begin(), ids.end(), id)) names.emplace(id, std::move(name));
   }
+  const bool are_numbers_of_words = names.empty() && !recording.label_names.empty();  // another log's, in its order
+  if (are_numbers_of_words) landmark_of.clear();
   if (landmark_of.empty()) landmark_of = landmarks_by_name(names, recording);
   number_by_names(names, recording, landmark_of);
 }

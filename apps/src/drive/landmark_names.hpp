@@ -20,7 +20,9 @@ std::map<core::LandmarkId, std::string> landmark_names(const Drive& job, const r
 void number_by_names(const std::map<core::LandmarkId, std::string>& names_of_map, core::Recording& recording,
                      std::map<core::Label, core::LandmarkId>& landmark_of);
 
-/// Both for the landmarks `ids` of the map in the folder or map.csv: from `landmark_of`, else their names, as this log calls them.
+/// Both for the landmarks `ids` of the map in the folder or map.csv: from `landmark_of`, else their names, as this log calls them. None if
+/// this log has words for names and the map has no names, as after a run without known association.
+/// Test: apps/landmark_names_test.cpp
 void call_as_log(const std::string& map, const std::vector<core::LandmarkId>& ids, core::Recording& recording,
                  std::map<core::Label, core::LandmarkId>& landmark_of);
 

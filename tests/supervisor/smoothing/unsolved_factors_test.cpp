@@ -20,7 +20,8 @@ core::JointGaussian taken_up(const core::MapFactors& factors, const cekf::Compre
 class UnsolvedFactors : public ::testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(UnsolvedFactors, AreTheSolvedDriveWhenTheyAreTakenUp) {
-  const LabelledDrive drive(sim::simulate(wide_circuit(), GetParam()), true);
+  const core::Recording run = sim::simulate(wide_circuit(), GetParam());
+  const LabelledDrive drive(run, true);
   DriveMap solved(drive.start(), 20.0);
   solved.take(drive.tape, drive.filter);
   solved.settle();
@@ -30,7 +31,8 @@ TEST_P(UnsolvedFactors, AreTheSolvedDriveWhenTheyAreTakenUp) {
 }
 
 TEST_P(UnsolvedFactors, HaveTheirLandmarksWhereTheFilterHasThem) {
-  const LabelledDrive drive(sim::simulate(wide_circuit(), GetParam()), true);
+  const core::Recording run = sim::simulate(wide_circuit(), GetParam());
+  const LabelledDrive drive(run, true);
   const core::MapFactors factors = DriveMap::unsolved(drive.start(), 20.0, drive.tape, drive.filter);
   for (const auto& [id, v] : factors.landmarks) {
     if (!drive.filter.contains(id)) continue;
