@@ -79,7 +79,7 @@ TEST_F(Localize, TakesAMapWithoutARunButThenKnowsNoLabels) {
   const Outcome outcome = run({"replay", folder("log.txt"), "--localize", "--map", folder("survey.csv"),
                                "--association", "known", "--quiet", "--out", folder("known")});
   EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_NE(outcome.err.find("labels"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("names of the map's landmarks"), std::string::npos) << outcome.err;
   EXPECT_FALSE(fs::exists(folder("known")));
 }
 
